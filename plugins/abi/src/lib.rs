@@ -1,0 +1,250 @@
+//! The C binary interface between Fretwork and its law plugins, version 1.
+//!
+//! The C header `include/fretwork.h` says the same thing for C and Fortran authors; a test compares
+//! the two, offset by offset. Rust authors use the safe wrapper crate `fretwork-law` instead.
+//!
+//! Rules of the interface:
+//! * the host owns all memory; nothing is allocated on one side and freed on the other;
+//! * every struct begins with its size and only grows at the end, so that a newer minor version loads
+//!   in an older host of the same major and the other way round;
+//! * calls are batches over `n` contacts, state is held in columns (struct of arrays);
+//! * calls are pure: no globals, any thread, any order, same input same bits;
+//! * a call answers with a status code and, when it fails, a message in the host's buffer.
+#![no_std]
+#![deny(missing_docs)]
+
+use core::ffi::c_char;
+
+/// Major version: a host refuses a plugin of another major.
+pub const ABI_MAJOR: u32 = 1;
+/// Minor version: grows when structs grow at their end.
+pub const ABI_MINOR: u32 = 0;
+/// Name of the one exported function, of type [`FwEntry`].
+pub const ENTRY_SYMBOL: &str = "fretwork_plugin";
+
+/// Kind of plugin: friction, restitution, rolling (fills the non-smooth part of the local form).
+pub const KIND_CONTACT: i32 = 1;
+/// Kind of plugin: traction against opening.
+pub const KIND_COHESION: i32 = 2;
+/// Kind of plugin: how the damage D grows, when a bond breaks.
+pub const KIND_DAMAGE: i32 = 3;
+/// Kind of plugin: what is removed, from slip, force and energy.
+pub const KIND_WEAR: i32 = 4;
+
+/// Status: done.
+pub const STATUS_OK: i32 = 0;
+/// Status: the call failed, the message says why; the run stops with exit code 1.
+pub const STATUS_ERROR: i32 = 1;
+/// Status of `validate`: a parameter is out of what the law accepts; exit code 2.
+pub const STATUS_BAD_PARAMETER: i32 = 2;
+/// Status: the law could not follow so large a step; the message proposes a smaller one.
+pub const STATUS_REDUCE_STEP: i32 = 3;
+/// Status: the plugin panicked; set by the Rust wrapper.
+pub const STATUS_PANIC: i32 = 4;
+
+/// Flag: the law is written for two-dimensional scenes only.
+pub const FLAG_2D_ONLY: u64 = 1;
+/// Flag: the law is written for three-dimensional scenes only.
+pub const FLAG_3D_ONLY: u64 = 1 << 1;
+/// Flag (cohesion): the normal stiffness pulls only; compression is the contact's.
+pub const FLAG_TENSION_ONLY: u64 = 1 << 2;
+/// Flag (cohesion): the law has an opening and a stored energy, so a damage law can follow it.
+pub const FLAG_OPENING: u64 = 1 << 3;
+
+/// Describes one parameter or one internal variable. Frozen within a major version.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct FwField {
+    /// Name, NUL-terminated, `[a-z][a-z0-9_]*`.
+    pub name: *const c_char,
+    /// SI unit, NUL-terminated, empty for a pure number.
+    pub unit: *const c_char,
+    /// One line for the user, NUL-terminated.
+    pub doc: *const c_char,
+    /// Default value of a parameter, initial value of a variable.
+    pub default: f64,
+    /// Smallest accepted value (may be minus infinity).
+    pub minimum: f64,
+    /// Largest accepted value (may be infinity).
+    pub maximum: f64,
+    /// For a variable: 1 to write it to the results. Otherwise 0.
+    pub flags: u64,
+}
+
+/// The host's buffer for a sentence.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct FwMessage {
+    /// Size of this struct in bytes, set by the host.
+    pub size: usize,
+    /// Where the plugin writes NUL-terminated UTF-8.
+    pub text: *mut c_char,
+    /// Bytes at `text`, the NUL included.
+    pub capacity: usize,
+    /// Index in the batch of the contact at fault, or -1; set by the plugin.
+    pub contact: i64,
+}
+
+/// One batch of contacts that share an interface law. Columns have `n` values and belong to the host.
+///
+/// A column that a call does not use is null. Inputs are read-only; `out_*` and `state_next` columns
+/// are written by the call. Vectors are in the local frame (n, t1, t2), n from the antagonist to the
+/// candidate; in two dimensions the `t2` columns are null.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct FwBatch {
+    /// Size of this struct in bytes, set by the host.
+    pub size: usize,
+    /// Number of contacts.
+    pub n: usize,
+    /// 2 or 3.
+    pub dimension: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// Time at the start of the step (s).
+    pub time: f64,
+    /// Time step (s).
+    pub h: f64,
+    /// Theta of the scheme.
+    pub theta: f64,
+    /// Exponent m of the cohesion law's degradation, psi = (1 - D)^m psi_0 (damage calls).
+    pub degradation: f64,
+    /// Parameters in the order of the plugin's schema.
+    pub parameters: *const f64,
+    /// Internal variables at the start of the step, one column each.
+    pub state: *const *const f64,
+    /// Internal variables at the end of the step, one column each (initialise, commit).
+    pub state_next: *const *mut f64,
+    /// Gap at detection (m), positive when open.
+    pub gap: *const f64,
+    /// Contact area (m^2; in 2D length times unit depth).
+    pub area: *const f64,
+    /// Reduced radius r1 r2/(r1 + r2) (m); the radius itself against a flat body.
+    pub radius: *const f64,
+    /// Time since the contact formed (s).
+    pub age: *const f64,
+    /// Bond elongation (m): at the start of the step in `prepare`, at its end in `commit`.
+    pub opening_n: *const f64,
+    /// Tangential opening along t1 (m).
+    pub opening_t1: *const f64,
+    /// Tangential opening along t2 (m).
+    pub opening_t2: *const f64,
+    /// Relative velocity (m/s): u^- in `prepare`, u_th in `commit`.
+    pub velocity_n: *const f64,
+    /// Tangential relative velocity along t1 (m/s).
+    pub velocity_t1: *const f64,
+    /// Tangential relative velocity along t2 (m/s).
+    pub velocity_t2: *const f64,
+    /// Impulse (N s): the last step's in `prepare`, this step's in `commit`.
+    pub impulse_n: *const f64,
+    /// Tangential impulse along t1 (N s).
+    pub impulse_t1: *const f64,
+    /// Tangential impulse along t2 (N s).
+    pub impulse_t2: *const f64,
+    /// Damage D in \[0, 1\]; 1 for a contact without bond.
+    pub damage: *const f64,
+    /// Stored energy of the undamaged bond at this opening, psi_0 (J/m^2) (damage).
+    pub energy_intact: *const f64,
+    /// Traction of the undamaged bond at this opening (Pa) (damage).
+    pub intact_n: *const f64,
+    /// Tangential traction of the undamaged bond along t1 (Pa) (damage).
+    pub intact_t1: *const f64,
+    /// Tangential traction of the undamaged bond along t2 (Pa) (damage).
+    pub intact_t2: *const f64,
+    /// Slip distance over this step, h |u_t| (m) (wear).
+    pub slip: *const f64,
+    /// Energy dissipated by friction over this step (J) (wear).
+    pub friction_work: *const f64,
+    /// Contact: friction coefficient mu.
+    pub out_friction: *mut f64,
+    /// Contact: normal restitution e_n.
+    pub out_restitution_n: *mut f64,
+    /// Contact: tangential restitution e_t.
+    pub out_restitution_t: *mut f64,
+    /// Contact, cohesion: tension strength c_n over the area (Pa).
+    pub out_tension_strength: *mut f64,
+    /// Contact, cohesion: shear cohesion c_t over the area (Pa).
+    pub out_shear_cohesion: *mut f64,
+    /// Contact: rolling friction length (m).
+    pub out_rolling: *mut f64,
+    /// Contact: spinning friction length (m).
+    pub out_spinning: *mut f64,
+    /// Cohesion: traction at the current opening and damage, positive pulls together (Pa).
+    pub out_traction_n: *mut f64,
+    /// Cohesion: tangential traction along t1 (Pa).
+    pub out_traction_t1: *mut f64,
+    /// Cohesion: tangential traction along t2 (Pa).
+    pub out_traction_t2: *mut f64,
+    /// Cohesion: normal stiffness, tangent or secant, not negative (Pa/m).
+    pub out_stiffness_n: *mut f64,
+    /// Cohesion: tangential stiffness (Pa/m).
+    pub out_stiffness_t: *mut f64,
+    /// Cohesion: normal damping (Pa s/m).
+    pub out_damping_n: *mut f64,
+    /// Cohesion: tangential damping (Pa s/m).
+    pub out_damping_t: *mut f64,
+    /// Cohesion, call `energy`: energy stored at this opening and damage (J/m^2).
+    pub out_energy: *mut f64,
+    /// Damage: D at the end of the step.
+    pub out_damage: *mut f64,
+    /// Wear: volume removed over this step (m^3).
+    pub out_volume: *mut f64,
+}
+
+/// Checks parameters beyond their ranges (relations between them). May be null.
+pub type FwValidate =
+    Option<unsafe extern "C" fn(parameters: *const f64, message: *mut FwMessage) -> i32>;
+/// A call over a batch. May be null where the kind does not need it.
+pub type FwCall =
+    Option<unsafe extern "C" fn(batch: *const FwBatch, message: *mut FwMessage) -> i32>;
+
+/// What a plugin is: returned by its entry function, static for the life of the program.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct FwPlugin {
+    /// Size of this struct in bytes, as the plugin was built.
+    pub size: usize,
+    /// Major version the plugin was built for.
+    pub abi_major: u32,
+    /// Minor version the plugin was built for.
+    pub abi_minor: u32,
+    /// One of the `KIND_*`.
+    pub kind: i32,
+    /// Zero.
+    pub reserved: u32,
+    /// Union of `FLAG_*`.
+    pub flags: u64,
+    /// Name by which a case asks for the law, NUL-terminated.
+    pub name: *const c_char,
+    /// The law's own version, NUL-terminated.
+    pub version: *const c_char,
+    /// One line for the user, NUL-terminated.
+    pub doc: *const c_char,
+    /// Paper or DOI, NUL-terminated.
+    pub reference: *const c_char,
+    /// Number of parameters.
+    pub n_parameters: usize,
+    /// Their schema.
+    pub parameters: *const FwField,
+    /// Number of internal variables.
+    pub n_variables: usize,
+    /// Their schema.
+    pub variables: *const FwField,
+    /// Cohesion: m of psi = (1 - D)^m psi_0, 0 where damage does not enter.
+    pub degradation: f64,
+    /// Checks the parameters. May be null.
+    pub validate: FwValidate,
+    /// Fills `state_next` of new contacts. Null: the schema's initial values.
+    pub initialise: FwCall,
+    /// Contact and cohesion: fills the local form at the start of the step.
+    pub prepare: FwCall,
+    /// Solves a contact of its own. Null in version 1.0; kept for laws that do not fit the local form.
+    pub solve_local: FwCall,
+    /// At the end of the step: new internal variables; damage: `out_damage`; wear: `out_volume`.
+    pub commit: FwCall,
+    /// Cohesion: `out_energy` at the given opening and damage.
+    pub energy: FwCall,
+}
+
+/// The entry function's type.
+pub type FwEntry = unsafe extern "C" fn() -> *const FwPlugin;

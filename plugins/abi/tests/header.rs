@@ -1,0 +1,79 @@
+//! The C header and the Rust crate say the same: sizes and offsets of every field, every constant.
+//! A C program prints them as the system's compiler sees them.
+use fretwork_abi::*;
+use std::{mem::offset_of, mem::size_of, process::Command};
+
+macro_rules! layout {
+    ($out:ident, $rust:ident, $c:literal, $($field:ident),*) => {
+        $out.push((format!("sizeof({})", $c), size_of::<$rust>() as u64));
+        $( $out.push((
+            format!("offsetof({}, {})", $c, match stringify!($field) { "default" => "default_value", f => f }),
+            offset_of!($rust, $field) as u64,
+        )); )*
+    };
+}
+
+fn rust_layout() -> Vec<(String, u64)> {
+    let mut out = Vec::new();
+    layout!(
+        out, FwField, "fw_field", name, unit, doc, default, minimum, maximum, flags
+    );
+    layout!(
+        out, FwMessage, "fw_message", size, text, capacity, contact
+    );
+    layout!(
+        out, FwBatch, "fw_batch", size, n, dimension, reserved, time, h, theta, degradation, parameters, state, state_next, gap, area, radius, age, opening_n, opening_t1, opening_t2, velocity_n, velocity_t1, velocity_t2, impulse_n, impulse_t1, impulse_t2, damage, energy_intact, intact_n, intact_t1, intact_t2, slip, friction_work, out_friction, out_restitution_n, out_restitution_t, out_tension_strength, out_shear_cohesion, out_rolling, out_spinning, out_traction_n, out_traction_t1, out_traction_t2, out_stiffness_n, out_stiffness_t, out_damping_n, out_damping_t, out_energy, out_damage, out_volume
+    );
+    layout!(
+        out, FwPlugin, "fw_plugin", size, abi_major, abi_minor, kind, reserved, flags, name, version, doc, reference, n_parameters, parameters, n_variables, variables, degradation, validate, initialise, prepare, solve_local, commit, energy
+    );
+    for (name, value) in [
+        ("FW_ABI_MAJOR", ABI_MAJOR as u64),
+        ("FW_ABI_MINOR", ABI_MINOR as u64),
+        ("FW_KIND_CONTACT", KIND_CONTACT as u64),
+        ("FW_KIND_COHESION", KIND_COHESION as u64),
+        ("FW_KIND_DAMAGE", KIND_DAMAGE as u64),
+        ("FW_KIND_WEAR", KIND_WEAR as u64),
+        ("FW_OK", STATUS_OK as u64),
+        ("FW_ERROR", STATUS_ERROR as u64),
+        ("FW_BAD_PARAMETER", STATUS_BAD_PARAMETER as u64),
+        ("FW_REDUCE_STEP", STATUS_REDUCE_STEP as u64),
+        ("FW_PANIC", STATUS_PANIC as u64),
+        ("FW_FLAG_2D_ONLY", FLAG_2D_ONLY as u64),
+        ("FW_FLAG_3D_ONLY", FLAG_3D_ONLY as u64),
+        ("FW_FLAG_TENSION_ONLY", FLAG_TENSION_ONLY as u64),
+        ("FW_FLAG_OPENING", FLAG_OPENING as u64),
+    ] {
+        out.push((name.to_owned(), value));
+    }
+    out
+}
+
+#[test]
+fn header_matches_crate() {
+    let expected = rust_layout();
+    let dir = std::env::temp_dir().join(format!("fretwork-abi-{}", std::process::id()));
+    std::fs::create_dir_all(&dir).unwrap();
+    let mut program = String::from("#include <stdio.h>\n#include \"fretwork.h\"\nint main(void) {\n");
+    for (expression, _) in &expected {
+        program += &format!("printf(\"%llu\\n\", (unsigned long long)({expression}));\n");
+    }
+    program += "return 0; }\n";
+    let (source, binary) = (dir.join("layout.c"), dir.join("layout"));
+    std::fs::write(&source, program).unwrap();
+    let include = concat!(env!("CARGO_MANIFEST_DIR"), "/include");
+    let compiled = Command::new("cc")
+        .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-I", include, "-o"])
+        .arg(&binary)
+        .arg(&source)
+        .status()
+        .expect("a C compiler named cc");
+    assert!(compiled.success());
+    let printed = String::from_utf8(Command::new(&binary).output().unwrap().stdout).unwrap();
+    let seen: Vec<u64> = printed.lines().map(|l| l.parse().unwrap()).collect();
+    assert_eq!(seen.len(), expected.len());
+    for ((expression, rust), c) in expected.iter().zip(seen) {
+        assert_eq!(*rust, c, "{expression}");
+    }
+    std::fs::remove_dir_all(&dir).ok();
+}
