@@ -1,1 +1,9 @@
+//! Fretwork: tribology of dry contacts by non-smooth contact dynamics, with interface laws loaded at
+//! run time.
+//!
+//! The folders mirror the step: a [`scene`] makes [`bodies`] with [`geometry`]; each [`step`] detects
+//! [`contact`]s, asks the [`laws`], [`solve`]s, commits, and [`record`]s.
 
+pub mod geometry;
+pub mod bodies;
+pub mod solve;

@@ -1,0 +1,218 @@
+//! Driven degrees of freedom and their functions of time.
+
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// A function of time (s). Velocities and forces use its value, displacements its rate.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum TimeFunction {
+    /// The same value for ever.
+    Constant(f64),
+    /// Linear between two instants, constant outside.
+    Ramp {
+        /// Value before `start`.
+        from: f64,
+        /// Value after `end`.
+        to: f64,
+        /// Start of the ramp (s).
+        start: f64,
+        /// End of the ramp (s).
+        end: f64,
+    },
+    /// offset + amplitude sin(2 pi frequency (t - start) + phase) from `start` on, and the value at
+    /// `start` before.
+    Sine {
+        /// Amplitude.
+        amplitude: f64,
+        /// Frequency (Hz).
+        frequency: f64,
+        /// Phase (rad).
+        #[serde(default)]
+        phase: f64,
+        /// Mean value.
+        #[serde(default)]
+        offset: f64,
+        /// When the oscillation begins (s).
+        #[serde(default)]
+        start: f64,
+    },
+    /// Points (time, value), linear between them, constant outside; times must rise.
+    Table(Vec<(f64, f64)>),
+}
+
+impl TimeFunction {
+    /// The value at a time.
+    pub fn value(&self, t: f64) -> f64 {
+        match self {
+            Self::Constant(x) => *x,
+            Self::Ramp { from, to, start, end } => {
+                from + (to - from) * ((t - start) / (end - start)).clamp(0.0, 1.0)
+            }
+            Self::Sine { amplitude, frequency, phase, offset, start } => {
+                offset + amplitude * (TAU * frequency * (t - start).max(0.0) + phase).sin()
+            }
+            Self::Table(points) => {
+                let k = points.partition_point(|p| p.0 <= t);
+                if k == 0 {
+                    points.first().map_or(0.0, |p| p.1)
+                } else if k == points.len() {
+                    points[k - 1].1
+                } else {
+                    let ((t0, x0), (t1, x1)) = (points[k - 1], points[k]);
+                    x0 + (x1 - x0) * (t - t0) / (t1 - t0)
+                }
+            }
+        }
+    }
+
+    /// The derivative at a time, from the left at a corner.
+    pub fn rate(&self, t: f64) -> f64 {
+        match self {
+            Self::Constant(_) => 0.0,
+            Self::Ramp { from, to, start, end } => {
+                if t > *start && t <= *end { (to - from) / (end - start) } else { 0.0 }
+            }
+            Self::Sine { amplitude, frequency, phase, start, .. } => {
+                if t < *start {
+                    return 0.0;
+                }
+                TAU * frequency * amplitude * (TAU * frequency * (t - start) + phase).cos()
+            }
+            Self::Table(points) => {
+                let k = points.partition_point(|p| p.0 < t);
+                if k == 0 || k == points.len() {
+                    return 0.0;
+                }
+                (points[k].1 - points[k - 1].1) / (points[k].0 - points[k - 1].0)
+            }
+        }
+    }
+
+    /// The period of the motion, for a sine (s).
+    pub fn period(&self) -> Option<f64> {
+        match self {
+            Self::Sine { frequency, .. } if *frequency > 0.0 => Some(1.0 / frequency),
+            _ => None,
+        }
+    }
+
+    /// What is wrong with the numbers, if anything.
+    pub fn fault(&self) -> Option<String> {
+        let finite = |values: &[f64]| values.iter().all(|v| v.is_finite());
+        match self {
+            Self::Constant(x) if !x.is_finite() => Some(format!("a constant must be finite, got {x}")),
+            Self::Ramp { from, to, start, end } => {
+                if !finite(&[*from, *to, *start, *end]) {
+                    Some("the numbers of a ramp must be finite".into())
+                } else if end <= start {
+                    Some(format!("a ramp must end after it starts, got start {start} and end {end}"))
+                } else {
+                    None
+                }
+            }
+            Self::Sine { amplitude, frequency, phase, offset, start } => {
+                if !finite(&[*amplitude, *frequency, *phase, *offset, *start]) {
+                    Some("the numbers of a sine must be finite".into())
+                } else if *frequency < 0.0 {
+                    Some(format!("a frequency must not be negative, got {frequency}"))
+                } else {
+                    None
+                }
+            }
+            Self::Table(points) => {
+                if points.is_empty() {
+                    Some("a table needs at least one (time, value)".into())
+                } else if !points.iter().all(|p| finite(&[p.0, p.1])) {
+                    Some("the numbers of a table must be finite".into())
+                } else if points.windows(2).any(|w| w[1].0 <= w[0].0) {
+                    Some("the times of a table must rise".into())
+                } else {
+                    None
+                }
+            }
+            Self::Constant(_) => None,
+        }
+    }
+}
+
+/// How one degree of freedom of a first body moves.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum Dof {
+    /// Moves under its contacts, gravity and its inertia.
+    #[default]
+    Free,
+    /// Does not move.
+    Fixed,
+    /// Imposed velocity (m/s or rad/s).
+    Velocity(TimeFunction),
+    /// Imposed displacement from the start (m or rad), through its rate.
+    Displacement(TimeFunction),
+    /// Imposed force (N; N/m of depth in 2D) or moment.
+    Force(TimeFunction),
+}
+
+impl Dof {
+    /// The velocity imposed at a time, if one is.
+    pub fn imposed_velocity(&self, t: f64) -> Option<f64> {
+        match self {
+            Self::Free | Self::Force(_) => None,
+            Self::Fixed => Some(0.0),
+            Self::Velocity(f) => Some(f.value(t)),
+            Self::Displacement(f) => Some(f.rate(t)),
+        }
+    }
+
+    /// The force imposed at a time.
+    pub fn force(&self, t: f64) -> f64 {
+        if let Self::Force(f) = self { f.value(t) } else { 0.0 }
+    }
+
+    /// The time function, if there is one.
+    pub fn function(&self) -> Option<&TimeFunction> {
+        match self {
+            Self::Free | Self::Fixed => None,
+            Self::Velocity(f) | Self::Displacement(f) | Self::Force(f) => Some(f),
+        }
+    }
+}
+
+/// A first body whose degrees of freedom are driven: translations first, then rotations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Driven {
+    /// Name in the case.
+    pub name: String,
+    /// Index of the body.
+    pub body: u32,
+    /// Translations (D of them), then rotations (one in 2D, three in 3D).
+    pub dofs: Vec<Dof>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_are_the_derivatives() {
+        let functions = [
+            TimeFunction::Ramp { from: 1.0, to: 3.0, start: 0.5, end: 1.5 },
+            TimeFunction::Sine { amplitude: 2.0, frequency: 0.3, phase: 0.2, offset: 1.0, start: 0.1 },
+            TimeFunction::Table(vec![(0.0, 0.0), (0.7, 2.0), (1.4, -1.0)]),
+        ];
+        for f in functions {
+            for t in [0.6, 0.95, 1.2] {
+                let e = 1e-6;
+                let difference = (f.value(t + e) - f.value(t - e)) / (2.0 * e);
+                assert!((difference - f.rate(t)).abs() < 1e-6, "{f:?} at {t}");
+            }
+            assert!(f.fault().is_none());
+        }
+    }
+
+    #[test]
+    fn bad_functions_say_why() {
+        assert!(TimeFunction::Table(vec![(0.0, 1.0), (0.0, 2.0)]).fault().is_some());
+        assert!(TimeFunction::Ramp { from: 0.0, to: 1.0, start: 1.0, end: 1.0 }.fault().is_some());
+        assert!(TimeFunction::Constant(f64::NAN).fault().is_some());
+    }
+}

@@ -1,0 +1,135 @@
+//! Positions, velocities and inertia of all bodies, in columns.
+
+use super::drive::Driven;
+use crate::geometry::space::{Space, VectorLike};
+
+/// All bodies of a scene, in columns; grains and first bodies alike. In 2D masses are per metre.
+#[derive(Clone, Debug)]
+pub struct Bodies<S: Space> {
+    /// Stable identities.
+    pub id: Vec<u64>,
+    /// Centres of mass (m).
+    pub position: Vec<S::Vector>,
+    /// Orientations.
+    pub rotation: Vec<S::Rotation>,
+    /// Velocities of the centres (m/s).
+    pub velocity: Vec<S::Vector>,
+    /// Angular velocities (rad/s).
+    pub spin: Vec<S::Spin>,
+    /// Masses (kg).
+    pub mass: Vec<f64>,
+    /// Moments of inertia (kg m^2); bodies that turn freely are isotropic or planar.
+    pub inertia: Vec<f64>,
+    /// A length that makes spins velocities in the solver (m): the radius of a grain.
+    pub length: Vec<f64>,
+    /// One over the mass, axis by axis; zero where the motion is imposed (1/kg).
+    pub inverse_mass: Vec<S::Vector>,
+    /// One over the inertia; zero where the rotation is imposed (1/(kg m^2)).
+    pub inverse_inertia: Vec<f64>,
+    /// The driven first bodies.
+    pub driven: Vec<Driven>,
+}
+
+impl<S: Space> Default for Bodies<S> {
+    fn default() -> Self {
+        Self {
+            id: Vec::new(),
+            position: Vec::new(),
+            rotation: Vec::new(),
+            velocity: Vec::new(),
+            spin: Vec::new(),
+            mass: Vec::new(),
+            inertia: Vec::new(),
+            length: Vec::new(),
+            inverse_mass: Vec::new(),
+            inverse_inertia: Vec::new(),
+            driven: Vec::new(),
+        }
+    }
+}
+
+impl<S: Space> Bodies<S> {
+    /// Number of bodies.
+    pub fn len(&self) -> usize {
+        self.id.len()
+    }
+
+    /// Whether there is no body.
+    pub fn is_empty(&self) -> bool {
+        self.id.is_empty()
+    }
+
+    /// Adds a free body at rest; gives its index.
+    pub fn add(&mut self, position: S::Vector, mass: f64, inertia: f64, length: f64) -> u32 {
+        let index = self.len();
+        self.id.push(index as u64);
+        self.position.push(position);
+        self.rotation.push(S::upright());
+        self.velocity.push(S::Vector::null());
+        self.spin.push(S::Spin::null());
+        self.mass.push(mass);
+        self.inertia.push(inertia);
+        self.length.push(length);
+        let mut inverse = S::Vector::null();
+        for k in 0..S::D {
+            inverse[k] = 1.0 / mass;
+        }
+        self.inverse_mass.push(inverse);
+        self.inverse_inertia.push(if inertia > 0.0 { 1.0 / inertia } else { 0.0 });
+        index as u32
+    }
+
+    /// Adds a homogeneous ball (kg/m^3).
+    pub fn add_ball(&mut self, position: S::Vector, radius: f64, density: f64) -> u32 {
+        let mass = density * S::ball_volume(radius);
+        self.add(position, mass, S::BALL_INERTIA * mass * radius * radius, radius)
+    }
+
+    /// Makes a body driven: imposed degrees of freedom lose their compliance.
+    pub fn drive(&mut self, driven: Driven) {
+        let b = driven.body as usize;
+        for k in 0..S::D {
+            if driven.dofs[k].imposed_velocity(0.0).is_some() {
+                self.inverse_mass[b][k] = 0.0;
+            }
+        }
+        if driven.dofs[S::D..].iter().any(|d| d.imposed_velocity(0.0).is_some()) {
+            self.inverse_inertia[b] = 0.0;
+        }
+        self.driven.push(driven);
+    }
+
+    /// Whether contacts cannot move the body at all.
+    pub fn immovable(&self, body: usize) -> bool {
+        self.inverse_mass[body] == S::Vector::null() && self.inverse_inertia[body] == 0.0
+    }
+
+    /// Kinetic energy (J). An imposed degree of freedom keeps its mass here.
+    pub fn kinetic_energy(&self) -> f64 {
+        (0..self.len())
+            .map(|b| {
+                let (v, w) = (&self.velocity[b], &self.spin[b]);
+                0.5 * (self.mass[b] * v.dot(v) + self.inertia[b] * w.dot(w))
+            })
+            .sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::{Plane, Solid};
+    use nalgebra::{Vector2, Vector3};
+
+    #[test]
+    fn balls_have_the_inertia_of_the_books() {
+        let mut disks = Bodies::<Plane>::default();
+        disks.add_ball(Vector2::new(0.0, 0.0), 0.5, 2.0);
+        let m = 2.0 * std::f64::consts::PI * 0.25;
+        assert!((disks.mass[0] - m).abs() < 1e-15 && (disks.inertia[0] - m / 8.0).abs() < 1e-15);
+        let mut spheres = Bodies::<Solid>::default();
+        spheres.add_ball(Vector3::zeros(), 0.5, 2.0);
+        let m = 2.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.125;
+        assert!((spheres.inertia[0] - 0.4 * m * 0.25).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,257 @@
+//! A rough plane in space: heights over a regular grid, solid below.
+
+use super::shape::{Surface, Touch};
+use super::space::Solid;
+use nalgebra::Vector3;
+
+/// Heights z over a regular grid of `nx` by `ny` points, two triangles a cell. With `periodic` the
+/// grid repeats: then point nx stands for point 0 again and is not stored.
+#[derive(Debug, Clone)]
+pub struct HeightField {
+    nx: usize,
+    ny: usize,
+    spacing: [f64; 2],
+    heights: Vec<f64>,
+    periodic: [bool; 2],
+    lowest: f64,
+    highest: f64,
+}
+
+/// Why heights are no surface.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum HeightFieldError {
+    /// Too few points.
+    #[error("a height field needs at least 2 by 2 points (3 along a periodic axis), got {0} by {1}")]
+    TooFew(usize, usize),
+    /// Sizes do not agree.
+    #[error("a height field of {0} by {1} points needs {2} heights, got {3}")]
+    Count(usize, usize, usize, usize),
+    /// A spacing or height that is not usable.
+    #[error("spacings of a height field must be positive and all heights finite")]
+    NotFinite,
+}
+
+
+impl HeightField {
+    /// Builds the surface; `heights[j * nx + i]` (m) stands at (i dx, j dy).
+    ///
+    /// # Errors
+    /// Wrong counts, spacings or heights that are not finite.
+    pub fn new(
+        nx: usize,
+        ny: usize,
+        spacing: [f64; 2],
+        heights: Vec<f64>,
+        periodic: [bool; 2],
+    ) -> Result<Self, HeightFieldError> {
+        let least = |p: bool| if p { 3 } else { 2 };
+        if nx < least(periodic[0]) || ny < least(periodic[1]) {
+            return Err(HeightFieldError::TooFew(nx, ny));
+        }
+        if heights.len() != nx * ny {
+            return Err(HeightFieldError::Count(nx, ny, nx * ny, heights.len()));
+        }
+        let usable = heights.iter().all(|z| z.is_finite())
+            && spacing.iter().all(|s| s.is_finite() && *s > 0.0);
+        if !usable {
+            return Err(HeightFieldError::NotFinite);
+        }
+        let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Ok(Self { nx, ny, spacing, heights, periodic, lowest, highest })
+    }
+
+    fn cells(&self, axis: usize) -> i64 {
+        let n = if axis == 0 { self.nx } else { self.ny } as i64;
+        if self.periodic[axis] { n } else { n - 1 }
+    }
+
+    /// Index of a grid point, images folded onto the one stored.
+    fn vertex(&self, i: i64, j: i64) -> usize {
+        let i = i.rem_euclid(self.nx as i64) as usize;
+        let j = j.rem_euclid(self.ny as i64) as usize;
+        j * self.nx + i
+    }
+
+    fn point(&self, i: i64, j: i64) -> Vector3<f64> {
+        let z = self.heights[self.vertex(i, j)];
+        Vector3::new(i as f64 * self.spacing[0], j as f64 * self.spacing[1], z)
+    }
+
+    /// How many triangles share a part: two an edge, six a vertex, fewer at the border.
+    fn sharing(&self, corners: &[(i64, i64)]) -> usize {
+        let inside = |i: i64, j: i64| {
+            (self.periodic[0] || (0..self.cells(0)).contains(&i))
+                && (self.periodic[1] || (0..self.cells(1)).contains(&j))
+        };
+        let mut count = 0;
+        let (i0, j0) = corners[0];
+        for i in i0 - 2..=i0 + 2 {
+            for j in j0 - 2..=j0 + 2 {
+                if !inside(i, j) {
+                    continue;
+                }
+                for t in triangles(i, j) {
+                    count += usize::from(corners.iter().all(|c| t.contains(c)));
+                }
+            }
+        }
+        count
+    }
+}
+
+fn triangles(i: i64, j: i64) -> [[(i64, i64); 3]; 2] {
+    [[(i, j), (i + 1, j), (i + 1, j + 1)], [(i, j), (i + 1, j + 1), (i, j + 1)]]
+}
+
+/// Nearest point of a triangle and the corners involved (one: vertex, two: edge, three: face).
+/// Ericson, Real-Time Collision Detection (2005), section 5.1.5.
+fn nearest(p: Vector3<f64>, a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -> (Vector3<f64>, [bool; 3]) {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return (a, [true, false, false]);
+    }
+    let bp = p - b;
+    let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return (b, [false, true, false]);
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return (a + ab * (d1 / (d1 - d3)), [true, true, false]);
+    }
+    let cp = p - c;
+    let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return (c, [false, false, true]);
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return (a + ac * (d2 / (d2 - d6)), [true, false, true]);
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        return (b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), [false, true, true]);
+    }
+    let denominator = 1.0 / (va + vb + vc);
+    (a + ab * (vb * denominator) + ac * (vc * denominator), [true; 3])
+}
+
+impl Surface<Solid> for HeightField {
+    fn touches(&self, centre: &Vector3<f64>, reach: f64, out: &mut Vec<Touch<Vector3<f64>>>) {
+        let start = out.len();
+        let range = |axis: usize| {
+            let (low, high) = (
+                ((centre[axis] - reach) / self.spacing[axis]).floor() as i64 - 1,
+                ((centre[axis] + reach) / self.spacing[axis]).floor() as i64 + 1,
+            );
+            if self.periodic[axis] { (low, high) } else { (low.max(0), high.min(self.cells(axis) - 1)) }
+        };
+        let ((i0, i1), (j0, j1)) = (range(0), range(1));
+        // Each part found, how many triangles found it, and where.
+        let mut found: Vec<(Vec<(i64, i64)>, usize, Vector3<f64>, Vector3<f64>)> = Vec::new();
+        for i in i0..=i1 {
+            for j in j0..=j1 {
+                for corners in triangles(i, j) {
+                    let [a, b, c] = corners.map(|(i, j)| self.point(i, j));
+                    let (foot, used): (Vector3<f64>, [bool; 3]) = nearest(*centre, a, b, c);
+                    let up = (b - a).cross(&(c - a)).normalize();
+                    let mut part: Vec<_> = (0..3).filter(|k| used[*k]).map(|k| corners[k]).collect();
+                    part.sort_unstable();
+                    match found.iter_mut().find(|f| f.0 == part) {
+                        Some(f) => f.1 += 1,
+                        None => found.push((part, 1, foot, up)),
+                    }
+                }
+            }
+        }
+        for (part, count, foot, up) in found {
+            let face = part.len() == 3;
+            // An edge or vertex counts when all triangles around it find it: else a face is nearer.
+            if !face && count < self.sharing(&part) {
+                continue;
+            }
+            let arm = centre - foot;
+            let inside = arm.dot(&up) < 0.0;
+            let distance = if inside { -arm.norm() } else { arm.norm() };
+            if distance.abs() >= reach {
+                continue;
+            }
+            let normal = if face || distance <= 0.0 { up } else { arm / distance };
+            let first = self.vertex(part[0].0, part[0].1) as u32;
+            let code = part.iter().fold(0u32, |code, (i, j)| {
+                code | 1 << (2 * (i - part[0].0) + (j - part[0].1)).rem_euclid(4)
+            });
+            out.push(Touch { foot, normal, distance, feature: first * 16 + code });
+        }
+        out[start..].sort_by_key(|t| t.feature);
+    }
+
+    fn near(&self, centre: &Vector3<f64>, reach: f64) -> bool {
+        let within = |axis: usize| {
+            let length = self.cells(axis) as f64 * self.spacing[axis];
+            self.periodic[axis] || (-reach..length + reach).contains(&centre[axis])
+        };
+        centre.z - reach <= self.highest && centre.z + reach >= self.lowest && within(0) && within(1)
+    }
+
+    fn outline(&self) -> Vec<Vec<Vector3<f64>>> {
+        let mut out = Vec::new();
+        for i in 0..self.cells(0) {
+            for j in 0..self.cells(1) {
+                for corners in triangles(i, j) {
+                    out.push(corners.iter().map(|(i, j)| self.point(*i, *j)).collect());
+                }
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn touches(field: &HeightField, at: [f64; 3], reach: f64) -> Vec<Touch<Vector3<f64>>> {
+        let mut out = Vec::new();
+        field.touches(&Vector3::from(at), reach, &mut out);
+        out
+    }
+
+    #[test]
+    fn a_flat_field_has_no_ghosts() {
+        let flat = HeightField::new(4, 4, [1.0, 1.0], vec![0.0; 16], [true, true]).unwrap();
+        for (x, y) in [(0.3, 0.1), (0.31, 0.62), (3.9, 3.97), (-5.3, 7.2), (1.5, 0.2)] {
+            let t = touches(&flat, [x, y, 0.8], 1.0);
+            assert_eq!(t.len(), 1, "{x} {y}: {t:?}");
+            assert!((t[0].normal - Vector3::z()).norm() < 1e-15 && (t[0].distance - 0.8).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_summit_is_one_contact() {
+        let mut z = vec![0.0; 25];
+        z[12] = 1.0;
+        let peak = HeightField::new(5, 5, [1.0, 1.0], z, [false, false]).unwrap();
+        let t = touches(&peak, [2.0, 2.0, 1.5], 0.6);
+        assert_eq!(t.len(), 1);
+        assert!((t[0].distance - 0.5).abs() < 1e-15 && (t[0].normal - Vector3::z()).norm() < 1e-15);
+    }
+
+    #[test]
+    fn a_valley_is_touched_on_both_sides() {
+        let z = (0..15).map(|k| ((k % 5) as f64 - 2.0).abs()).collect();
+        let valley = HeightField::new(5, 3, [1.0, 1.0], z, [false, false]).unwrap();
+        let t = touches(&valley, [2.0, 0.9, 0.7], 0.6);
+        assert_eq!(t.len(), 2, "{t:?}");
+        assert!((t[0].distance - 0.7 / 2f64.sqrt()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn bad_fields_are_refused() {
+        assert!(HeightField::new(1, 4, [1.0, 1.0], vec![0.0; 4], [false; 2]).is_err());
+        assert!(HeightField::new(2, 2, [1.0, 1.0], vec![0.0; 3], [false; 2]).is_err());
+        assert!(HeightField::new(2, 2, [0.0, 1.0], vec![0.0; 4], [false; 2]).is_err());
+    }
+}

@@ -1,0 +1,7 @@
+//! Shapes, distances and the search for neighbours.
+pub mod grid;
+pub mod height_field;
+pub mod periodic;
+pub mod polyline;
+pub mod shape;
+pub mod space;

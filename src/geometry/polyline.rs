@@ -1,0 +1,212 @@
+//! The profile of a first body in the plane: a chain of segments, solid on its right-hand side.
+
+use super::shape::{Surface, Touch};
+use super::space::Plane;
+use nalgebra::Vector2;
+use rstar::primitives::{GeomWithData, Line};
+use rstar::{AABB, RTree};
+
+type Segment = GeomWithData<Line<[f64; 2]>, u32>;
+
+/// An open chain of segments. Travelling along it, the solid is on the right, the open side on the
+/// left. With a period the chain repeats along x and its last point is the first one's image.
+#[derive(Debug)]
+pub struct Polyline {
+    points: Vec<Vector2<f64>>,
+    period: Option<f64>,
+    tree: RTree<Segment>,
+}
+
+/// Why a chain of points is no profile.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum ProfileError {
+    /// Fewer than two points.
+    #[error("a profile needs at least two points, got {0}")]
+    TooFew(usize),
+    /// Two consecutive points coincide.
+    #[error("points {0} and {1} of the profile coincide; remove one of them")]
+    Coincident(usize, usize),
+    /// The ends do not match the period.
+    #[error(
+        "a periodic profile must end one period after its start at the same height: it starts at \
+         ({0:e}, {1:e}), ends at ({2:e}, {3:e}) and the period is {4:e} m"
+    )]
+    Period(f64, f64, f64, f64, f64),
+    /// Not a number.
+    #[error("point {0} of the profile is not finite")]
+    NotFinite(usize),
+}
+
+impl Polyline {
+    /// Builds the chain from its points (m).
+    ///
+    /// # Errors
+    /// Too few, coincident or non-finite points, ends that do not match the period.
+    pub fn new(points: Vec<Vector2<f64>>, period: Option<f64>) -> Result<Self, ProfileError> {
+        if points.len() < 2 {
+            return Err(ProfileError::TooFew(points.len()));
+        }
+        if let Some(k) = points.iter().position(|p| !(p.x.is_finite() && p.y.is_finite())) {
+            return Err(ProfileError::NotFinite(k));
+        }
+        if let Some(k) = points.windows(2).position(|w| w[0] == w[1]) {
+            return Err(ProfileError::Coincident(k, k + 1));
+        }
+        let (first, last) = (points[0], points[points.len() - 1]);
+        if let Some(period) = period {
+            let mismatch = (last - first - Vector2::new(period, 0.0)).norm();
+            if mismatch > 1e-9 * period {
+                return Err(ProfileError::Period(first.x, first.y, last.x, last.y, period));
+            }
+        }
+        let images: &[f64] = if period.is_some() { &[-1.0, 0.0, 1.0] } else { &[0.0] };
+        let mut segments = Vec::new();
+        for image in images {
+            let shift = image * period.unwrap_or(0.0);
+            for (k, w) in points.windows(2).enumerate() {
+                let line = Line::new([w[0].x + shift, w[0].y], [w[1].x + shift, w[1].y]);
+                segments.push(Segment::new(line, k as u32));
+            }
+        }
+        Ok(Self { points, period, tree: RTree::bulk_load(segments) })
+    }
+
+    fn segments(&self) -> usize {
+        self.points.len() - 1
+    }
+
+    /// Into the period that begins at the first point.
+    fn wrapped(&self, centre: &Vector2<f64>) -> (Vector2<f64>, f64) {
+        let Some(period) = self.period else { return (*centre, 0.0) };
+        let shift = ((centre.x - self.points[0].x) / period).floor() * period;
+        (Vector2::new(centre.x - shift, centre.y), shift)
+    }
+
+    /// Whether the nearest point of the neighbour across a vertex is that same vertex.
+    fn vertex_is_nearest(&self, segment: usize, at_end: bool, from_vertex: Vector2<f64>) -> bool {
+        let n = self.segments();
+        let neighbour = if at_end { segment + 1 } else { segment.wrapping_sub(1) };
+        let neighbour = if neighbour < n {
+            neighbour
+        } else if self.period.is_some() {
+            if at_end { 0 } else { n - 1 }
+        } else {
+            return true;
+        };
+        let (a, b) = (self.points[neighbour], self.points[neighbour + 1]);
+        let along = if at_end { b - a } else { a - b };
+        from_vertex.dot(&along) <= 0.0
+    }
+}
+
+impl Surface<Plane> for Polyline {
+    fn touches(&self, centre: &Vector2<f64>, reach: f64, out: &mut Vec<Touch<Vector2<f64>>>) {
+        let (c, shift) = self.wrapped(centre);
+        let start = out.len();
+        let window = AABB::from_corners([c.x - reach, c.y - reach], [c.x + reach, c.y + reach]);
+        for segment in self.tree.locate_in_envelope_intersecting(window) {
+            let (a, b) = (Vector2::from(segment.geom().from), Vector2::from(segment.geom().to));
+            let k = segment.data;
+            let along = b - a;
+            let s = (c - a).dot(&along) / along.norm_squared();
+            if (0.0..=1.0).contains(&s) {
+                let normal = Vector2::new(-along.y, along.x) / along.norm();
+                let distance = (c - a).dot(&normal);
+                if distance.abs() < reach {
+                    let foot = c - normal * distance + Vector2::new(shift, 0.0);
+                    out.push(Touch { foot, normal, distance, feature: 2 * k });
+                }
+                continue;
+            }
+            // A vertex is touched once: by the segment that ends in it, or at the chain's start.
+            let at_end = s > 1.0;
+            if !at_end && (k > 0 || self.period.is_some()) {
+                continue;
+            }
+            let vertex = if at_end { b } else { a };
+            let distance = (c - vertex).norm();
+            if distance < reach && distance > 0.0 && self.vertex_is_nearest(k as usize, at_end, c - vertex) {
+                let normal = (c - vertex) / distance;
+                let foot = vertex + Vector2::new(shift, 0.0);
+                let feature = if at_end { 2 * k + 1 } else { u32::MAX };
+                out.push(Touch { foot, normal, distance, feature });
+            }
+        }
+        out[start..].sort_by_key(|t| t.feature);
+    }
+
+    fn near(&self, centre: &Vector2<f64>, reach: f64) -> bool {
+        let (c, _) = self.wrapped(centre);
+        let window = AABB::from_corners([c.x - reach, c.y - reach], [c.x + reach, c.y + reach]);
+        self.tree.locate_in_envelope_intersecting(window).next().is_some()
+    }
+
+    fn outline(&self) -> Vec<Vec<Vector2<f64>>> {
+        vec![self.points.clone()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn touches(profile: &Polyline, x: f64, y: f64, reach: f64) -> Vec<Touch<Vector2<f64>>> {
+        let mut out = Vec::new();
+        profile.touches(&Vector2::new(x, y), reach, &mut out);
+        out
+    }
+
+    fn chain(points: &[[f64; 2]], period: Option<f64>) -> Polyline {
+        Polyline::new(points.iter().map(|p| Vector2::from(*p)).collect(), period).unwrap()
+    }
+
+    #[test]
+    fn a_flat_seam_gives_one_contact() {
+        let flat = chain(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]], None);
+        for x in [0.2, 0.999, 1.0, 1.001, 1.7] {
+            let t = touches(&flat, x, 0.3, 0.5);
+            assert!(!t.is_empty() && t.len() <= 2, "{x}: {t:?}");
+            assert!(t.iter().all(|t| t.normal == Vector2::new(0.0, 1.0)));
+        }
+        assert_eq!(touches(&flat, 0.7, 0.3, 0.5).len(), 1);
+    }
+
+    #[test]
+    fn a_summit_is_touched_once_and_a_valley_twice() {
+        let roof = chain(&[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]], None);
+        let t = touches(&roof, 1.0, 1.4, 0.5);
+        assert_eq!(t.len(), 1);
+        assert!((t[0].distance - 0.4).abs() < 1e-15 && t[0].feature % 2 == 1);
+        let valley = chain(&[[0.0, 1.0], [1.0, 0.0], [2.0, 1.0]], None);
+        assert_eq!(touches(&valley, 1.0, 0.5, 0.6).len(), 2);
+    }
+
+    #[test]
+    fn the_inside_is_negative() {
+        let flat = chain(&[[0.0, 0.0], [2.0, 0.0]], None);
+        assert!((touches(&flat, 1.0, -0.1, 0.5)[0].distance + 0.1).abs() < 1e-15);
+    }
+
+    #[test]
+    fn periodic_images_have_one_name() {
+        let saw = chain(&[[0.0, 0.0], [0.5, 0.2], [1.0, 0.0]], Some(1.0));
+        for x in [0.1, 0.49, 0.5, 0.97, 0.0] {
+            let (near, far) = (touches(&saw, x, 0.35, 0.4), touches(&saw, x + 7.0, 0.35, 0.4));
+            assert_eq!(near.len(), far.len());
+            for (a, b) in near.iter().zip(&far) {
+                assert_eq!(a.feature, b.feature);
+                assert!((a.foot - b.foot + Vector2::new(7.0, 0.0)).norm() < 1e-12);
+            }
+        }
+        assert!(!touches(&saw, 1e-9, 0.1, 0.2).is_empty());
+    }
+
+    #[test]
+    fn bad_profiles_are_refused() {
+        let v = Vector2::new;
+        assert_eq!(Polyline::new(vec![v(0.0, 0.0)], None).unwrap_err(), ProfileError::TooFew(1));
+        assert!(Polyline::new(vec![v(0.0, 0.0), v(0.0, 0.0)], None).is_err());
+        assert!(Polyline::new(vec![v(0.0, 0.0), v(1.0, 0.1)], Some(1.0)).is_err());
+        assert!(Polyline::new(vec![v(0.0, f64::NAN), v(1.0, 0.1)], None).is_err());
+    }
+}

@@ -1,0 +1,121 @@
+//! What a ball can touch: balls, and surfaces carried by first bodies.
+
+use super::periodic::Periodic;
+use super::space::{Space, VectorLike};
+use std::fmt::Debug;
+
+/// A disk or a sphere carried by a body.
+#[derive(Clone, Debug)]
+pub struct Ball<S: Space> {
+    /// Index of the body.
+    pub body: u32,
+    /// Radius (m).
+    pub radius: f64,
+    /// Centre in the body's frame (m); null for a grain.
+    pub offset: S::Vector,
+    /// Index of the material.
+    pub material: u16,
+}
+
+/// Where a ball is nearest to a surface, in the surface's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch<V> {
+    /// Nearest point of the surface (m).
+    pub foot: V,
+    /// Unit normal, from the surface to the ball's centre.
+    pub normal: V,
+    /// Distance from the surface to the centre (m), negative when the centre is inside the solid.
+    pub distance: f64,
+    /// Name of the face, edge or vertex that is touched; stable in time.
+    pub feature: u32,
+}
+
+/// A boundary of a first body: solid on one side, open on the other.
+pub trait Surface<S: Space>: Debug + Send + Sync {
+    /// All places where a ball centred at `centre` is nearest to the surface within `reach` (m), in the
+    /// order of their features. No ghost contacts at seams between faces.
+    fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<Touch<S::Vector>>);
+    /// Whether a ball may be within `reach`: cheap, may say yes too often.
+    fn near(&self, centre: &S::Vector, reach: f64) -> bool;
+    /// Corners for pictures and files (m): polylines in 2D, polygons in 3D, in the surface's frame.
+    fn outline(&self) -> Vec<Vec<S::Vector>>;
+}
+
+/// A half-space: solid below the plane through the origin with outward unit normal.
+#[derive(Clone, Debug)]
+pub struct HalfSpace<S: Space> {
+    /// Outward unit normal.
+    pub normal: S::Vector,
+    /// Half the side of what pictures show of it (m).
+    pub shown: f64,
+}
+
+impl<S: Space> Surface<S> for HalfSpace<S> {
+    fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<Touch<S::Vector>>) {
+        let distance = centre.dot(&self.normal);
+        if distance < reach {
+            out.push(Touch {
+                foot: *centre - self.normal * distance,
+                normal: self.normal,
+                distance,
+                feature: 0,
+            });
+        }
+    }
+
+    fn near(&self, centre: &S::Vector, reach: f64) -> bool {
+        centre.dot(&self.normal) < reach
+    }
+
+    fn outline(&self) -> Vec<Vec<S::Vector>> {
+        let [t1, t2] = S::tangents(&self.normal);
+        let s = self.shown;
+        if S::D == 2 {
+            vec![vec![t1 * -s, t1 * s]]
+        } else {
+            let corner = |a: f64, b: f64| t1 * (a * s) + t2 * (b * s);
+            vec![vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)]]
+        }
+    }
+}
+
+/// A surface and the body that carries it. Its frame is the body's.
+#[derive(Debug)]
+pub struct Carried<S: Space> {
+    /// Index of the body.
+    pub body: u32,
+    /// Where the surface's frame stands in the body's (m).
+    pub offset: S::Vector,
+    /// The surface.
+    pub shape: Box<dyn Surface<S>>,
+    /// Index of the material.
+    pub material: u16,
+}
+
+/// Everything that can touch.
+#[derive(Debug)]
+pub struct Shapes<S: Space> {
+    /// Disks or spheres.
+    pub balls: Vec<Ball<S>>,
+    /// Surfaces of first bodies.
+    pub surfaces: Vec<Carried<S>>,
+    /// Periodic boundaries.
+    pub periodic: Periodic,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::Plane;
+    use nalgebra::Vector2;
+
+    #[test]
+    fn half_space_gives_signed_distance() {
+        let floor = HalfSpace::<Plane> { normal: Vector2::new(0.0, 1.0), shown: 1.0 };
+        let mut out = Vec::new();
+        floor.touches(&Vector2::new(3.0, 0.5), 1.0, &mut out);
+        floor.touches(&Vector2::new(3.0, -0.5), 1.0, &mut out);
+        assert_eq!((out[0].distance, out[1].distance), (0.5, -0.5));
+        assert_eq!(out[0].foot, Vector2::new(3.0, 0.0));
+    }
+}

@@ -1,0 +1,370 @@
+//! One source for two and three dimensions.
+//!
+//! Everything that steps, detects or solves is generic over [`Space`]; each dimension is compiled to
+//! its own code and carries none of the other's data.
+
+use nalgebra::{Matrix2, Matrix3, Vector1, Vector2, Vector3};
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
+
+/// Arithmetic shared by positions, velocities and spins of either dimension.
+pub trait VectorLike:
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + PartialEq
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + AddAssign
+    + SubAssign
+    + Neg<Output = Self>
+    + Mul<f64, Output = Self>
+    + Index<usize, Output = f64>
+    + IndexMut<usize>
+    + 'static
+{
+    /// Number of components.
+    const N: usize;
+    /// The null vector.
+    fn null() -> Self;
+    /// Scalar product.
+    fn dot(&self, other: &Self) -> f64;
+    /// Euclidean norm.
+    fn norm(&self) -> f64 {
+        self.dot(self).sqrt()
+    }
+    /// From a slice; missing components are zero.
+    fn from_slice(values: &[f64]) -> Self {
+        let mut v = Self::null();
+        for (k, x) in values.iter().take(Self::N).enumerate() {
+            v[k] = *x;
+        }
+        v
+    }
+    /// Component by component product.
+    fn scaled_by(&self, other: &Self) -> Self {
+        let mut v = *self;
+        for k in 0..Self::N {
+            v[k] *= other[k];
+        }
+        v
+    }
+    /// The components padded with zeros to three.
+    fn padded(&self) -> [f64; 3] {
+        let mut out = [0.0; 3];
+        for (k, slot) in out.iter_mut().enumerate().take(Self::N) {
+            *slot = self[k];
+        }
+        out
+    }
+    /// Whether every component is finite.
+    fn is_finite(&self) -> bool {
+        (0..Self::N).all(|k| self[k].is_finite())
+    }
+}
+
+macro_rules! vector_like {
+    ($type:ty, $n:literal) => {
+        impl VectorLike for $type {
+            const N: usize = $n;
+            #[inline(always)]
+            fn null() -> Self {
+                Self::zeros()
+            }
+            #[inline(always)]
+            fn dot(&self, other: &Self) -> f64 {
+                let mut sum = self[0] * other[0];
+                for k in 1..$n {
+                    sum += self[k] * other[k];
+                }
+                sum
+            }
+        }
+    };
+}
+vector_like!(Vector1<f64>, 1);
+vector_like!(Vector2<f64>, 2);
+vector_like!(Vector3<f64>, 3);
+
+/// Arithmetic of the small square matrices of contact blocks.
+pub trait MatrixLike:
+    Copy + Debug + Send + Sync + PartialEq + Add<Output = Self> + Sub<Output = Self> + 'static
+{
+    /// The vector it acts on.
+    type V: VectorLike;
+    /// Diagonal matrix.
+    fn diagonal(d: &Self::V) -> Self;
+    /// Matrix times vector.
+    fn apply(&self, v: &Self::V) -> Self::V;
+    /// Matrix times matrix.
+    fn times(&self, other: &Self) -> Self;
+    /// Dyadic product a b^T.
+    fn dyad(a: &Self::V, b: &Self::V) -> Self;
+    /// Inverse, if there is one.
+    fn inverse(&self) -> Option<Self>;
+    /// Transpose.
+    fn transposed(&self) -> Self;
+    /// Matrix times number.
+    fn scaled(&self, s: f64) -> Self;
+    /// Entry in row `i`, column `j`.
+    fn entry(&self, i: usize, j: usize) -> f64;
+}
+
+macro_rules! matrix_like {
+    ($type:ty, $vector:ty) => {
+        impl MatrixLike for $type {
+            type V = $vector;
+            #[inline(always)]
+            fn diagonal(d: &Self::V) -> Self {
+                Self::from_diagonal(d)
+            }
+            #[inline(always)]
+            fn apply(&self, v: &Self::V) -> Self::V {
+                self * v
+            }
+            #[inline(always)]
+            fn times(&self, other: &Self) -> Self {
+                self * other
+            }
+            #[inline(always)]
+            fn dyad(a: &Self::V, b: &Self::V) -> Self {
+                a * b.transpose()
+            }
+            #[inline(always)]
+            fn inverse(&self) -> Option<Self> {
+                self.try_inverse()
+            }
+            #[inline(always)]
+            fn transposed(&self) -> Self {
+                self.transpose()
+            }
+            #[inline(always)]
+            fn scaled(&self, s: f64) -> Self {
+                self * s
+            }
+            #[inline(always)]
+            fn entry(&self, i: usize, j: usize) -> f64 {
+                self[(i, j)]
+            }
+        }
+    };
+}
+matrix_like!(Matrix2<f64>, Vector2<f64>);
+matrix_like!(Matrix3<f64>, Vector3<f64>);
+
+/// A dimension of space.
+pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
+    /// Number of translations: 2 or 3.
+    const D: usize;
+    /// Positions, velocities, impulses.
+    type Vector: VectorLike;
+    /// Angular velocities and moments: one component in 2D, three in 3D.
+    type Spin: VectorLike;
+    /// Contact blocks of the Delassus operator.
+    type Matrix: MatrixLike<V = Self::Vector>;
+    /// Tangential part of a contact vector: one number along t1 in 2D; in 3D a vector normal to n, so
+    /// that no tangent frame is needed.
+    type Tangent: VectorLike;
+    /// Orientation of a body: an angle in 2D, a unit quaternion in 3D.
+    type Rotation: Copy + Debug + Send + Sync + PartialEq + 'static;
+
+    /// Velocity of a point at `arm` from the centre of a body that turns: omega x arm.
+    fn sweep(spin: &Self::Spin, arm: &Self::Vector) -> Self::Vector;
+    /// Moment of a force at `arm`: arm x force.
+    fn moment(arm: &Self::Vector, force: &Self::Vector) -> Self::Spin;
+    /// The matrix S with S p = (moment(arm, p)) x arm, for unit inverse inertia.
+    fn rotation_block(arm: &Self::Vector) -> Self::Matrix;
+    /// Tangential part of a vector at a contact of unit normal `n`.
+    fn tangential(n: &Self::Vector, v: &Self::Vector) -> Self::Tangent;
+    /// The vector of a tangential part.
+    fn lift(n: &Self::Vector, t: &Self::Tangent) -> Self::Vector;
+    /// omega x n as a tangential part.
+    fn roll(spin: &Self::Spin, n: &Self::Vector) -> Self::Tangent;
+    /// n x p_t as a spin.
+    fn twist(n: &Self::Vector, t: &Self::Tangent) -> Self::Spin;
+    /// No rotation.
+    fn upright() -> Self::Rotation;
+    /// Turns by the rotation vector `spin * time`.
+    fn turned(rotation: &Self::Rotation, angle: &Self::Spin) -> Self::Rotation;
+    /// From the body's frame to the world.
+    fn rotate(rotation: &Self::Rotation, v: &Self::Vector) -> Self::Vector;
+    /// From the world to the body's frame.
+    fn unrotate(rotation: &Self::Rotation, v: &Self::Vector) -> Self::Vector;
+    /// The rotation as numbers: angle, or quaternion (w, x, y, z).
+    fn rotation_numbers(rotation: &Self::Rotation) -> [f64; 4];
+    /// Two tangents which with `n` make a right-handed frame; in 2D the first is n turned by +90
+    /// degrees and the second is null.
+    fn tangents(n: &Self::Vector) -> [Self::Vector; 2];
+    /// Volume of a ball (2D: area of a disk times unit depth).
+    fn ball_volume(radius: f64) -> f64;
+    /// Moment of inertia of a homogeneous ball over m r^2: 1/2 for a disk, 2/5 for a sphere.
+    const BALL_INERTIA: f64;
+}
+
+/// The plane; masses and forces are per metre of depth.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct Plane;
+/// Three-dimensional space.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct Solid;
+
+impl Space for Plane {
+    const D: usize = 2;
+    type Vector = Vector2<f64>;
+    type Spin = Vector1<f64>;
+    type Matrix = Matrix2<f64>;
+    type Tangent = Vector1<f64>;
+    type Rotation = f64;
+    const BALL_INERTIA: f64 = 0.5;
+
+    #[inline(always)]
+    fn sweep(spin: &Self::Spin, arm: &Self::Vector) -> Self::Vector {
+        Vector2::new(-spin[0] * arm[1], spin[0] * arm[0])
+    }
+    #[inline(always)]
+    fn moment(arm: &Self::Vector, force: &Self::Vector) -> Self::Spin {
+        Vector1::new(arm[0] * force[1] - arm[1] * force[0])
+    }
+    fn rotation_block(arm: &Self::Vector) -> Self::Matrix {
+        let s = Vector2::new(-arm[1], arm[0]);
+        s * s.transpose()
+    }
+    #[inline(always)]
+    fn tangential(n: &Self::Vector, v: &Self::Vector) -> Self::Tangent {
+        Vector1::new(n[0] * v[1] - n[1] * v[0])
+    }
+    #[inline(always)]
+    fn lift(n: &Self::Vector, t: &Self::Tangent) -> Self::Vector {
+        Vector2::new(-n[1] * t[0], n[0] * t[0])
+    }
+    #[inline(always)]
+    fn roll(spin: &Self::Spin, _n: &Self::Vector) -> Self::Tangent {
+        *spin
+    }
+    #[inline(always)]
+    fn twist(_n: &Self::Vector, t: &Self::Tangent) -> Self::Spin {
+        *t
+    }
+    fn upright() -> f64 {
+        0.0
+    }
+    fn turned(rotation: &f64, angle: &Self::Spin) -> f64 {
+        rotation + angle[0]
+    }
+    fn rotate(rotation: &f64, v: &Self::Vector) -> Self::Vector {
+        let (s, c) = rotation.sin_cos();
+        Vector2::new(c * v[0] - s * v[1], s * v[0] + c * v[1])
+    }
+    fn unrotate(rotation: &f64, v: &Self::Vector) -> Self::Vector {
+        Self::rotate(&-rotation, v)
+    }
+    fn rotation_numbers(rotation: &f64) -> [f64; 4] {
+        [*rotation, 0.0, 0.0, 0.0]
+    }
+    #[inline(always)]
+    fn tangents(n: &Self::Vector) -> [Self::Vector; 2] {
+        [Vector2::new(-n[1], n[0]), Vector2::zeros()]
+    }
+    fn ball_volume(radius: f64) -> f64 {
+        std::f64::consts::PI * radius * radius
+    }
+}
+
+impl Space for Solid {
+    const D: usize = 3;
+    type Vector = Vector3<f64>;
+    type Spin = Vector3<f64>;
+    type Matrix = Matrix3<f64>;
+    type Tangent = Vector3<f64>;
+    type Rotation = nalgebra::UnitQuaternion<f64>;
+    const BALL_INERTIA: f64 = 0.4;
+
+    #[inline(always)]
+    fn sweep(spin: &Self::Spin, arm: &Self::Vector) -> Self::Vector {
+        spin.cross(arm)
+    }
+    #[inline(always)]
+    fn moment(arm: &Self::Vector, force: &Self::Vector) -> Self::Spin {
+        arm.cross(force)
+    }
+    fn rotation_block(arm: &Self::Vector) -> Self::Matrix {
+        Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()
+    }
+    #[inline(always)]
+    fn tangential(n: &Self::Vector, v: &Self::Vector) -> Self::Tangent {
+        v - n * n.dot(v)
+    }
+    #[inline(always)]
+    fn lift(_n: &Self::Vector, t: &Self::Tangent) -> Self::Vector {
+        *t
+    }
+    #[inline(always)]
+    fn roll(spin: &Self::Spin, n: &Self::Vector) -> Self::Tangent {
+        spin.cross(n)
+    }
+    #[inline(always)]
+    fn twist(n: &Self::Vector, t: &Self::Tangent) -> Self::Spin {
+        n.cross(t)
+    }
+    fn upright() -> Self::Rotation {
+        nalgebra::UnitQuaternion::identity()
+    }
+    fn turned(rotation: &Self::Rotation, angle: &Self::Spin) -> Self::Rotation {
+        nalgebra::UnitQuaternion::from_scaled_axis(*angle) * rotation
+    }
+    fn rotate(rotation: &Self::Rotation, v: &Self::Vector) -> Self::Vector {
+        rotation * v
+    }
+    fn unrotate(rotation: &Self::Rotation, v: &Self::Vector) -> Self::Vector {
+        rotation.inverse_transform_vector(v)
+    }
+    fn rotation_numbers(rotation: &Self::Rotation) -> [f64; 4] {
+        [rotation.w, rotation.i, rotation.j, rotation.k]
+    }
+    fn tangents(n: &Self::Vector) -> [Self::Vector; 2] {
+        // Duff et al., "Building an orthonormal basis, revisited", JCGT 6(1), 2017.
+        let sign = 1.0_f64.copysign(n[2]);
+        let a = -1.0 / (sign + n[2]);
+        let b = n[0] * n[1] * a;
+        [
+            Vector3::new(1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]),
+            Vector3::new(b, sign + n[1] * n[1] * a, -n[1]),
+        ]
+    }
+    fn ball_volume(radius: f64) -> f64 {
+        4.0 / 3.0 * std::f64::consts::PI * radius.powi(3)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moment_is_the_transpose_of_sweep() {
+        let (arm, f, w) = (
+            Vector3::new(1.0, -2.0, 0.5),
+            Vector3::new(0.3, 0.7, -1.1),
+            Vector3::new(-0.2, 0.4, 0.9),
+        );
+        let power = Solid::sweep(&w, &arm).dot(&f);
+        assert!((power - w.dot(&Solid::moment(&arm, &f))).abs() < 1e-14);
+        let block = Solid::sweep(&Solid::moment(&arm, &f), &arm);
+        assert!((block - Solid::rotation_block(&arm) * f).norm() < 1e-14);
+        let (arm, f, w) = (Vector2::new(1.0, -2.0), Vector2::new(0.3, 0.7), Vector1::new(0.6));
+        let power = Plane::sweep(&w, &arm).dot(&f);
+        assert!((power - w[0] * Plane::moment(&arm, &f)[0]).abs() < 1e-14);
+        let block = Plane::sweep(&Plane::moment(&arm, &f), &arm);
+        assert!((block - Plane::rotation_block(&arm) * f).norm() < 1e-14);
+    }
+
+    #[test]
+    fn frames_are_orthonormal() {
+        for n in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.6, 0.0, -0.8], [1.0, 0.0, 0.0]] {
+            let n = Vector3::from(n);
+            let [t1, t2] = Solid::tangents(&n);
+            assert!((n.cross(&t1) - t2).norm() < 1e-14 && t1.dot(&n).abs() < 1e-14);
+        }
+    }
+}

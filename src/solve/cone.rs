@@ -1,0 +1,64 @@
+//! The set of admissible impulses of one contact and the projection onto it.
+
+use crate::geometry::space::VectorLike;
+
+/// { (P, t) : P >= 0, |t| <= mu P + c }: Coulomb's cone for c = 0, Tresca's cylinder for mu = 0.
+/// P = p_n + h c_n and c = h c_t. Returns the nearest point (Euclidean).
+#[inline]
+pub fn project<T: VectorLike>(normal: f64, tangent: T, mu: f64, c: f64) -> (f64, T) {
+    let length = tangent.norm();
+    if normal >= 0.0 && length <= mu * normal + c {
+        return (normal, tangent);
+    }
+    let foot = (normal + mu * (length - c)) / (1.0 + mu * mu);
+    let (n, bound) = if length > c && foot > 0.0 {
+        (foot, mu * foot + c)
+    } else {
+        (0.0, length.min(c))
+    };
+    if length > 0.0 { (n, tangent * (bound / length)) } else { (n, tangent) }
+}
+
+/// The nearest vector not longer than `bound`.
+#[inline(always)]
+pub fn limit<T: VectorLike>(tangent: T, bound: f64) -> T {
+    let squared = tangent.dot(&tangent);
+    if squared <= bound * bound { tangent } else { tangent * (bound / squared.sqrt()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Vector1, Vector2};
+    use rand::{RngExt, SeedableRng};
+
+    /// Brute force over a fine sampling of the set's border and inside.
+    fn nearest_by_sampling(normal: f64, s: f64, mu: f64, c: f64) -> f64 {
+        let mut best = f64::INFINITY;
+        for i in 0..4000 {
+            let p = i as f64 * 1e-3;
+            let t = s.clamp(-(mu * p + c), mu * p + c);
+            best = best.min((p - normal).hypot(t - s));
+        }
+        best
+    }
+
+    #[test]
+    fn is_the_nearest_point() {
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(1);
+        for _ in 0..200 {
+            let (n, s) = (rng.random_range(-1.5..1.5), rng.random_range(-1.5..1.5));
+            let (mu, c) = (rng.random_range(0.0..1.5), rng.random_range(0.0..0.5));
+            let (pn, pt) = project(n, Vector1::new(s), mu, c);
+            assert!(pn >= 0.0 && pt.norm() <= mu * pn + c + 1e-15);
+            let distance = (pn - n).hypot(pt[0] - s);
+            assert!(distance <= nearest_by_sampling(n, s, mu, c) + 2e-6);
+        }
+    }
+
+    #[test]
+    fn is_the_identity_inside() {
+        let t = Vector2::new(0.1, 0.2);
+        assert_eq!(project(1.0, t, 0.5, 0.0), (1.0, t));
+    }
+}

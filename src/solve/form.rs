@@ -1,0 +1,172 @@
+//! What the stepper hands to a solver: bodies as lines of velocity, contacts in the standard form.
+
+use super::row::{FullRow, GeneralRow, Line, PlainRow, Row};
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
+
+/// One contact in the standard local form. Impulses are in N s, velocities in m/s.
+#[derive(Clone, Debug)]
+pub struct ContactForm<S: Space> {
+    /// The candidate and the antagonist (indices of bodies).
+    pub bodies: [u32; 2],
+    /// Unit normal, from the antagonist to the candidate.
+    pub normal: S::Vector,
+    /// From each body's centre to the contact point (m).
+    pub arms: [S::Vector; 2],
+    /// Both arms lie along the normal and both inverse masses are isotropic.
+    pub central: bool,
+    /// s_n: max(g, 0)/h or e_n u_n^- (m/s).
+    pub shift_n: f64,
+    /// s_t: e_t u_t^- (m/s).
+    pub shift_t: S::Tangent,
+    /// Friction coefficient mu.
+    pub friction: f64,
+    /// h c_n (N s).
+    pub tension: f64,
+    /// h c_t (N s).
+    pub cohesion: f64,
+    /// The single-valued part, where there is one.
+    pub elastic: Option<Elastic<S>>,
+    /// The impulse to start from, in world axes (N s).
+    pub impulse: S::Vector,
+}
+
+/// p_el = -(a + B u), with the normal part switched off where it would push (`tension_only`).
+#[derive(Clone, Copy, Debug)]
+pub struct Elastic<S: Space> {
+    /// Normal impulse of the bond at u = 0, positive pulls (N s).
+    pub a_n: f64,
+    /// Tangential impulse of the bond at u = 0 (N s).
+    pub a_t: S::Tangent,
+    /// Normal stiffness and damping over the step (kg).
+    pub b_n: f64,
+    /// Tangential stiffness and damping over the step (kg).
+    pub b_t: f64,
+    /// The normal part acts only while it pulls.
+    pub tension_only: bool,
+}
+
+/// What a solver gives back for one contact.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactSolution<S: Space> {
+    /// Total impulse p in world axes (N s).
+    pub impulse: S::Vector,
+    /// Normal part of p_sc (N s).
+    pub unilateral_n: f64,
+    /// Tangential part of p_sc (N s).
+    pub unilateral_t: S::Tangent,
+}
+
+/// Where a contact's row stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    Plain(u32),
+    Full(u32),
+    General(u32),
+}
+
+/// The contact problem of one step. Build it with [`Problem::new`], then [`Problem::push`] contacts.
+#[derive(Debug, Default)]
+pub struct Problem<S: Space> {
+    /// Velocities in place, one line a body.
+    pub lines: Vec<Line<S>>,
+    /// Free velocities, as the lines.
+    pub free: Vec<(S::Vector, S::Spin)>,
+    pub(super) lengths: Vec<f64>,
+    pub(super) masses: Vec<(S::Vector, f64)>,
+    /// Contacts of two balls (or a ball and an immovable body), without memory: the fast path.
+    pub(super) plain: Vec<PlainRow<S>>,
+    /// The same with bonds, cohesion or tangential restitution.
+    pub(super) full: Vec<FullRow<S>>,
+    /// Contacts with levers or bodies that are free along some axes only.
+    pub(super) general: Vec<GeneralRow<S>>,
+    pub(super) places: Vec<Place>,
+    /// Starts of the colours of `plain` and `full`.
+    pub(super) groups: [Vec<usize>; 2],
+}
+
+impl<S: Space> Problem<S> {
+    /// Empties the problem, keeping its memory.
+    pub fn clear(&mut self) {
+        self.lines.clear();
+        self.free.clear();
+        self.lengths.clear();
+        self.masses.clear();
+        self.plain.clear();
+        self.full.clear();
+        self.general.clear();
+        self.places.clear();
+    }
+
+    /// Adds a body by its free velocity, inverse masses, inverse inertia and length for spins.
+    pub fn push_body(&mut self, v: S::Vector, w: S::Spin, inverse_mass: S::Vector, inverse_inertia: f64, length: f64) {
+        let isotropic = inverse_mass[0];
+        self.lines.push(Line {
+            v,
+            s: w * length,
+            im: isotropic,
+            is: inverse_inertia * length * length,
+        });
+        self.free.push((v, w));
+        self.lengths.push(length);
+        self.masses.push((inverse_mass, inverse_inertia));
+    }
+
+    /// Adds a contact.
+    pub fn push(&mut self, contact: &ContactForm<S>) {
+        let plain = contact.elastic.is_none()
+            && contact.tension == 0.0
+            && contact.cohesion == 0.0
+            && contact.shift_t == S::Tangent::null();
+        if contact.central {
+            let (i, j) = (contact.bodies[0] as usize, contact.bodies[1] as usize);
+            let (a, b) = (&self.lines[i], &self.lines[j]);
+            let w_n = a.im + b.im;
+            let w_t = w_n + a.is + b.is;
+            if plain {
+                self.places.push(Place::Plain(self.plain.len() as u32));
+                self.plain.push(PlainRow::new(contact, w_n, w_t));
+            } else {
+                self.places.push(Place::Full(self.full.len() as u32));
+                self.full.push(FullRow::new(contact, w_n, w_t));
+            }
+        } else {
+            self.places.push(Place::General(self.general.len() as u32));
+            let block = self.block(contact);
+            let row = GeneralRow::new(contact, block, |b| {
+                let (mass, inertia) = self.masses[b];
+                (mass, inertia, self.lengths[b])
+            });
+            self.general.push(row);
+        }
+    }
+
+    /// The diagonal block of W in world axes.
+    fn block(&self, contact: &ContactForm<S>) -> S::Matrix {
+        let mut w = S::Matrix::diagonal(&S::Vector::null());
+        for (body, arm) in contact.bodies.iter().zip(&contact.arms) {
+            let (mass, inertia) = &self.masses[*body as usize];
+            w = w + S::Matrix::diagonal(mass) + S::rotation_block(arm).scaled(*inertia);
+        }
+        w
+    }
+
+    /// Number of contacts.
+    pub fn contacts(&self) -> usize {
+        self.places.len()
+    }
+
+    /// The solution of the `k`-th contact pushed.
+    pub fn solution(&self, k: usize) -> ContactSolution<S> {
+        match self.places[k] {
+            Place::Plain(r) => self.plain[r as usize].solution(),
+            Place::Full(r) => self.full[r as usize].solution(),
+            Place::General(r) => self.general[r as usize].solution(),
+        }
+    }
+
+    /// Velocity and angular velocity of a body after the solve.
+    pub fn velocity(&self, body: usize) -> (S::Vector, S::Spin) {
+        let line = &self.lines[body];
+        (line.v, line.s * (1.0 / self.lengths[body]))
+    }
+}

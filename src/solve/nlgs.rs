@@ -1,0 +1,259 @@
+//! Non-linear Gauss-Seidel: contact by contact, velocities updated in place, warm started.
+
+use super::colour::{self, COLOURS};
+use super::error::Sums;
+use super::form::{Place, Problem};
+use super::row::{Line, Row};
+use crate::geometry::space::Space;
+use rayon::prelude::*;
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Error to reach, see [`super::error`].
+    pub tolerance: f64,
+    /// Sweeps at most.
+    pub max_iterations: u32,
+    /// Sweeps between two convergence tests.
+    pub test_every: u32,
+    /// Split colours over threads.
+    pub parallel: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { tolerance: 1e-4, max_iterations: 10_000, test_every: 10, parallel: false }
+    }
+}
+
+/// What a solve reports.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Report {
+    /// Sweeps done.
+    pub iterations: u32,
+    /// Error, recomputed from the impulses at the end.
+    pub error: f64,
+    /// Whether the error is within the tolerance.
+    pub converged: bool,
+    /// The contact with the largest residual, as pushed; none when there is no contact.
+    pub worst: Option<usize>,
+}
+
+/// Contacts a thread takes at a time. Sums are formed by chunk and added in order.
+const CHUNK: usize = 512;
+
+/// Solves the problem in place.
+pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
+    if problem.contacts() == 0 {
+        return Report { converged: true, ..Report::default() };
+    }
+    sort(problem);
+    let free = free_velocity(problem);
+    problem.reload();
+    let mut report = Report::default();
+    let every = options.test_every.max(1);
+    while report.iterations < options.max_iterations {
+        let last = (report.iterations + every).min(options.max_iterations);
+        while report.iterations < last {
+            sweep(problem, options.parallel);
+            report.iterations += 1;
+        }
+        if measure(problem, options.parallel).error(free) <= options.tolerance {
+            break;
+        }
+    }
+    // The velocities have gathered rounding: recompute them from the impulses and judge those.
+    problem.reload();
+    let sums = measure(problem, options.parallel);
+    report.error = sums.error(free);
+    report.converged = report.error <= options.tolerance * (1.0 + 1e-6);
+    report.worst = problem.pushed(sums.worst_at);
+    report
+}
+
+impl<S: Space> Problem<S> {
+    /// v = v_free + M^-1 H p.
+    fn reload(&mut self) {
+        for ((line, free), length) in self.lines.iter_mut().zip(&self.free).zip(&self.lengths) {
+            line.v = free.0;
+            line.s = free.1 * *length;
+        }
+        let lines = Lines::new(&mut self.lines);
+        load(&self.plain, &lines);
+        load(&self.full, &lines);
+        load(&self.general, &lines);
+    }
+
+    /// The index by which the contact at a place of the sweep was pushed.
+    fn pushed(&self, at: usize) -> Option<usize> {
+        let (a, b) = (self.plain.len(), self.full.len());
+        let place = if at < a {
+            Place::Plain(at as u32)
+        } else if at < a + b {
+            Place::Full((at - a) as u32)
+        } else {
+            Place::General((at - a - b) as u32)
+        };
+        self.places.iter().position(|p| *p == place)
+    }
+}
+
+/// Velocities reached by several threads, each at bodies of its own.
+struct Lines<S: Space> {
+    first: *mut Line<S>,
+    len: usize,
+}
+
+// SAFETY: contacts solved at the same time share no movable body (see `colour`), and lines of
+// immovable bodies are read only; so no line is written while another thread reads or writes it.
+unsafe impl<S: Space> Sync for Lines<S> {}
+
+impl<S: Space> Lines<S> {
+    fn new(lines: &mut [Line<S>]) -> Self {
+        Self { first: lines.as_mut_ptr(), len: lines.len() }
+    }
+
+    /// Runs `f` on the lines of two bodies and stores those of movable bodies.
+    #[inline(always)]
+    fn with(&self, bodies: [u32; 2], always: bool, f: impl FnOnce(&mut Line<S>, &mut Line<S>)) {
+        let [i, j] = bodies.map(|b| b as usize);
+        debug_assert!(i < self.len && j < self.len && i != j);
+        // SAFETY: indices are those of bodies pushed before the contact, and see `Sync` above.
+        unsafe {
+            let (a, b) = (self.first.add(i), self.first.add(j));
+            let (mut x, mut y) = (*a, *b);
+            f(&mut x, &mut y);
+            if always || x.im > 0.0 {
+                (*a).v = x.v;
+                (*a).s = x.s;
+            }
+            if always || y.im > 0.0 {
+                (*b).v = y.v;
+                (*b).s = y.s;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn read(&self, bodies: [u32; 2]) -> (Line<S>, Line<S>) {
+        let [i, j] = bodies.map(|b| b as usize);
+        debug_assert!(i < self.len && j < self.len);
+        // SAFETY: indices are those of bodies pushed; nothing is written while errors are measured.
+        unsafe { (*self.first.add(i), *self.first.add(j)) }
+    }
+}
+
+/// Puts the rows of each kind in the order of their colours.
+fn sort<S: Space>(problem: &mut Problem<S>) {
+    let Problem { plain, full, places, groups, lines, .. } = problem;
+    let count = lines.len();
+    let movable = |b: u32| lines[b as usize].im > 0.0;
+    let (moved_plain, starts) = permute(plain, movable, count);
+    groups[0] = starts;
+    let (moved_full, starts) = permute(full, movable, count);
+    groups[1] = starts;
+    for place in places.iter_mut() {
+        *place = match *place {
+            Place::Plain(r) => Place::Plain(moved_plain[r as usize]),
+            Place::Full(r) => Place::Full(moved_full[r as usize]),
+            general => general,
+        };
+    }
+}
+
+fn permute<S: Space, R: Row<S>>(
+    rows: &mut Vec<R>,
+    movable: impl Fn(u32) -> bool,
+    count: usize,
+) -> (Vec<u32>, Vec<usize>) {
+    let bodies: Vec<[u32; 2]> = rows.iter().map(Row::bodies).collect();
+    let (order, starts) = colour::order(&bodies, movable, count);
+    let mut to = vec![0u32; order.len()];
+    for (k, old) in order.iter().enumerate() {
+        to[*old as usize] = k as u32;
+    }
+    *rows = order.iter().map(|k| rows[*k as usize].clone()).collect();
+    (to, starts)
+}
+
+fn load<S: Space, R: Row<S>>(rows: &[R], lines: &Lines<S>) {
+    for row in rows {
+        lines.with(row.bodies(), true, |a, b| row.load(a, b));
+    }
+}
+
+fn sweep<S: Space>(problem: &mut Problem<S>, parallel: bool) {
+    let lines = Lines::new(&mut problem.lines);
+    pass(&mut problem.plain, &problem.groups[0], &lines, parallel);
+    pass(&mut problem.full, &problem.groups[1], &lines, parallel);
+    // First bodies have many contacts, which share them: these run in order.
+    for row in &mut problem.general {
+        lines.with(row.bodies(), true, |a, b| row.update(a, b));
+    }
+}
+
+fn pass<S: Space, R: Row<S>>(rows: &mut [R], starts: &[usize], lines: &Lines<S>, parallel: bool) {
+    if !parallel {
+        // The order of the colours, without a pause between them.
+        for row in rows {
+            let bodies = row.bodies();
+            lines.with(bodies, false, |a, b| row.update(a, b));
+        }
+        return;
+    }
+    for (k, group) in starts.windows(2).enumerate() {
+        let rows = &mut rows[group[0]..group[1]];
+        let update = |row: &mut R| lines.with(row.bodies(), false, |a, b| row.update(a, b));
+        if k < COLOURS && rows.len() > CHUNK {
+            rows.par_chunks_mut(CHUNK).for_each(|chunk| chunk.iter_mut().for_each(update));
+        } else {
+            rows.iter_mut().for_each(update);
+        }
+    }
+}
+
+fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sums {
+    let lines = Lines::new(&mut problem.lines);
+    let mut sums = Sums::default();
+    let (a, b) = (problem.plain.len(), problem.full.len());
+    measure_rows(&problem.plain, &lines, 0, parallel, &mut sums);
+    measure_rows(&problem.full, &lines, a, parallel, &mut sums);
+    measure_rows(&problem.general, &lines, a + b, parallel, &mut sums);
+    sums
+}
+
+fn measure_rows<S: Space, R: Row<S>>(
+    rows: &[R],
+    lines: &Lines<S>,
+    offset: usize,
+    parallel: bool,
+    sums: &mut Sums,
+) {
+    let chunk = |(c, rows): (usize, &[R])| {
+        let mut sums = Sums::default();
+        for (k, row) in rows.iter().enumerate() {
+            let (a, b) = lines.read(row.bodies());
+            let r = row.residual(&a, &b);
+            sums.add(r.squared, r.velocity, offset + c * CHUNK + k);
+        }
+        sums
+    };
+    let parts: Vec<Sums> = if parallel {
+        rows.par_chunks(CHUNK).enumerate().map(chunk).collect()
+    } else {
+        rows.chunks(CHUNK).enumerate().map(chunk).collect()
+    };
+    for part in &parts {
+        sums.merge(part);
+    }
+}
+
+/// |u_free|^2 over all contacts.
+fn free_velocity<S: Space>(problem: &mut Problem<S>) -> f64 {
+    for ((line, free), length) in problem.lines.iter_mut().zip(&problem.free).zip(&problem.lengths) {
+        line.v = free.0;
+        line.s = free.1 * *length;
+    }
+    let sums = measure(problem, false);
+    sums.velocity
+}
