@@ -7,3 +7,7 @@
 pub mod geometry;
 pub mod bodies;
 pub mod solve;
+pub mod contact;
+pub mod laws;
+pub mod record;
+pub mod step;

@@ -183,6 +183,12 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     fn roll(spin: &Self::Spin, n: &Self::Vector) -> Self::Tangent;
     /// n x p_t as a spin.
     fn twist(n: &Self::Vector, t: &Self::Tangent) -> Self::Spin;
+    /// Carries a tangential part over to a new normal, keeping its length.
+    fn transport(n: &Self::Vector, t: &Self::Tangent) -> Self::Tangent;
+    /// A tangential part from its components along [`Space::tangents`].
+    fn from_components(n: &Self::Vector, t1: f64, t2: f64) -> Self::Tangent;
+    /// The components of a tangential part along [`Space::tangents`].
+    fn components(n: &Self::Vector, t: &Self::Tangent) -> [f64; 2];
     /// No rotation.
     fn upright() -> Self::Rotation;
     /// Turns by the rotation vector `spin * time`.
@@ -246,6 +252,16 @@ impl Space for Plane {
     fn twist(_n: &Self::Vector, t: &Self::Tangent) -> Self::Spin {
         *t
     }
+    #[inline(always)]
+    fn transport(_n: &Self::Vector, t: &Self::Tangent) -> Self::Tangent {
+        *t
+    }
+    fn from_components(_n: &Self::Vector, t1: f64, _t2: f64) -> Self::Tangent {
+        Vector1::new(t1)
+    }
+    fn components(_n: &Self::Vector, t: &Self::Tangent) -> [f64; 2] {
+        [t[0], 0.0]
+    }
     fn upright() -> f64 {
         0.0
     }
@@ -306,6 +322,19 @@ impl Space for Solid {
     #[inline(always)]
     fn twist(n: &Self::Vector, t: &Self::Tangent) -> Self::Spin {
         n.cross(t)
+    }
+    fn transport(n: &Self::Vector, t: &Self::Tangent) -> Self::Tangent {
+        let flat = t - n * n.dot(t);
+        let (length, kept) = (t.norm(), flat.norm());
+        if kept > 0.0 { flat * (length / kept) } else { Vector3::zeros() }
+    }
+    fn from_components(n: &Self::Vector, t1: f64, t2: f64) -> Self::Tangent {
+        let [e1, e2] = Self::tangents(n);
+        e1 * t1 + e2 * t2
+    }
+    fn components(n: &Self::Vector, t: &Self::Tangent) -> [f64; 2] {
+        let [e1, e2] = Self::tangents(n);
+        [e1.dot(t), e2.dot(t)]
     }
     fn upright() -> Self::Rotation {
         nalgebra::UnitQuaternion::identity()

@@ -49,6 +49,9 @@ extern "C" {
 #define FW_FLAG_TENSION_ONLY (UINT64_C(1) << 2)
 /* Flag (cohesion): the law has an opening and a stored energy, so a damage law can follow it. */
 #define FW_FLAG_OPENING (UINT64_C(1) << 3)
+/* Flag (contact): prepare depends on the parameters only, so the host may call it once for one
+ * contact and use the answer for all. */
+#define FW_FLAG_CONSTANT (UINT64_C(1) << 4)
 
 /* Checks parameters beyond their ranges (relations between them). May be null. */
 typedef int32_t (*fw_validate)(const double *parameters, fw_message *message);

@@ -50,6 +50,9 @@ pub const FLAG_3D_ONLY: u64 = 1 << 1;
 pub const FLAG_TENSION_ONLY: u64 = 1 << 2;
 /// Flag (cohesion): the law has an opening and a stored energy, so a damage law can follow it.
 pub const FLAG_OPENING: u64 = 1 << 3;
+/// Flag (contact): `prepare` depends on the parameters only, so the host may call it once for one
+/// contact and use the answer for all.
+pub const FLAG_CONSTANT: u64 = 1 << 4;
 
 /// Describes one parameter or one internal variable. Frozen within a major version.
 #[repr(C)]

@@ -43,6 +43,7 @@ fn rust_layout() -> Vec<(String, u64)> {
         ("FW_FLAG_3D_ONLY", FLAG_3D_ONLY as u64),
         ("FW_FLAG_TENSION_ONLY", FLAG_TENSION_ONLY as u64),
         ("FW_FLAG_OPENING", FLAG_OPENING as u64),
+        ("FW_FLAG_CONSTANT", FLAG_CONSTANT as u64),
     ] {
         out.push((name.to_owned(), value));
     }

@@ -1,0 +1,7 @@
+//! The contact network: who touches whom, where, and what each contact remembers.
+pub mod detect;
+pub mod memory;
+pub mod network;
+
+pub use memory::{Bond, Memory};
+pub use network::{Contact, Key, Network};

@@ -1,0 +1,141 @@
+//! Contacts of the current step and what carries over from the last one.
+
+use super::memory::Memory;
+use crate::geometry::space::Space;
+use std::collections::HashSet;
+
+/// The name of a contact, stable in time: candidate ball, antagonist (a ball, or a surface with
+/// [`Key::SURFACE`] set) and, on a surface, the face, edge or vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Key {
+    /// Index of the candidate ball.
+    pub candidate: u32,
+    /// Index of the antagonist.
+    pub antagonist: u32,
+    /// Feature of a surface, 0 for a ball.
+    pub feature: u32,
+}
+
+impl Key {
+    /// Marks an antagonist that is a surface.
+    pub const SURFACE: u32 = 1 << 31;
+
+    /// The surface's index, when the antagonist is one.
+    pub fn surface(&self) -> Option<usize> {
+        (self.antagonist & Self::SURFACE != 0).then_some((self.antagonist & !Self::SURFACE) as usize)
+    }
+
+    /// The same pair, whatever the feature.
+    pub fn pair(&self) -> (u32, u32) {
+        (self.candidate, self.antagonist)
+    }
+}
+
+/// A candidate pair within the alert distance, or held by a bond.
+#[derive(Clone, Debug)]
+pub struct Contact<S: Space> {
+    /// Its name.
+    pub key: Key,
+    /// Bodies: candidate, antagonist.
+    pub bodies: [u32; 2],
+    /// Index of the interface law.
+    pub law: u16,
+    /// See [`crate::solve::ContactForm::central`].
+    pub central: bool,
+    /// Whether a bond of this pair broke.
+    pub broken: bool,
+    /// Place in the memory of its interface law, or [`Contact::NO_MEMORY`].
+    pub slot: u32,
+    /// Gap (m), positive when open.
+    pub gap: f64,
+    /// Unit normal, from the antagonist to the candidate.
+    pub normal: S::Vector,
+    /// From each body's centre to the contact point (m).
+    pub arms: [S::Vector; 2],
+    /// Reduced radius r1 r2/(r1 + r2) (m).
+    pub radius: f64,
+    /// Impulse of the last solve in world axes (N s).
+    pub impulse: S::Vector,
+    /// When the contact formed (s).
+    pub born: f64,
+}
+
+impl<S: Space> Contact<S> {
+    /// No memory: plain frictional contact.
+    pub const NO_MEMORY: u32 = u32::MAX;
+
+    /// The slot of its memory, if any.
+    pub fn memory(&self) -> Option<usize> {
+        (self.slot != Self::NO_MEMORY).then_some(self.slot as usize)
+    }
+}
+
+/// All contacts, sorted by key, and the neighbour list they come from.
+#[derive(Debug)]
+pub struct Network<S: Space> {
+    /// Contacts of this step, sorted by key.
+    pub contacts: Vec<Contact<S>>,
+    /// Bonds and internal variables, one memory for each interface law.
+    pub memory: Vec<Memory<S>>,
+    /// Pairs whose bond broke: they stay broken when they part and meet again.
+    pub broken_pairs: HashSet<(u32, u32)>,
+    /// Distance within which a pair is a contact (m).
+    pub alert: f64,
+    /// How far the neighbour list looks beyond the alert distance (m).
+    pub skin: f64,
+    /// Energy of bonds torn because their contact left all reach (J); the ledger takes it.
+    pub torn_energy: f64,
+    /// How often the neighbour list was rebuilt.
+    pub rebuilds: u64,
+    pub(super) candidates: Vec<(u32, u32)>,
+    pub(super) seen_at: Vec<S::Vector>,
+    pub(super) old: Vec<Contact<S>>,
+}
+
+impl<S: Space> Network<S> {
+    /// An empty network for so many interface laws.
+    pub fn new(alert: f64, skin: f64, variables: &[usize]) -> Self {
+        Self {
+            contacts: Vec::new(),
+            memory: variables.iter().map(|n| Memory::new(*n)).collect(),
+            broken_pairs: HashSet::new(),
+            alert,
+            skin,
+            torn_energy: 0.0,
+            rebuilds: 0,
+            candidates: Vec::new(),
+            seen_at: Vec::new(),
+            old: Vec::new(),
+        }
+    }
+
+    /// The bond of a contact, broken or not.
+    pub fn bond(&self, contact: &Contact<S>) -> Option<&super::Bond<S>> {
+        contact.memory().map(|slot| &self.memory[contact.law as usize].bonds[slot])
+    }
+
+    /// Bonds made so far.
+    pub fn bonds_made(&self) -> u64 {
+        self.memory.iter().map(|m| m.made).sum()
+    }
+
+    /// Bonds broken so far.
+    pub fn bonds_broken(&self) -> u64 {
+        self.memory.iter().map(|m| m.broken).sum()
+    }
+
+    /// Mean damage over all bonds ever made, broken ones counting 1.
+    pub fn mean_damage(&self) -> f64 {
+        let made = self.bonds_made();
+        if made == 0 {
+            return 0.0;
+        }
+        let intact: f64 = self.memory.iter().map(Memory::intact_damage).sum();
+        (self.bonds_broken() as f64 + intact) / made as f64
+    }
+
+    /// Energy stored in bonds (J).
+    pub fn elastic_energy(&self) -> f64 {
+        self.memory.iter().map(Memory::energy).sum()
+    }
+}

@@ -1,0 +1,201 @@
+//! The columns of a batch: gathered from the network, handed to plugins, read back.
+
+use super::interface::Loaded;
+use fretwork_abi::FwBatch;
+use std::ptr::{null, null_mut};
+
+/// Time and scheme of the step, as plugins see them.
+#[derive(Clone, Copy, Debug)]
+pub struct StepInfo {
+    /// Dimension of space.
+    pub dimension: u32,
+    /// Time at the start of the step (s).
+    pub time: f64,
+    /// Step (s).
+    pub h: f64,
+    /// Theta of the scheme.
+    pub theta: f64,
+}
+
+/// Vectors in the local frame, one column a component.
+pub type Triple = [Vec<f64>; 3];
+
+/// The columns of one batch; memory is kept from step to step.
+#[derive(Debug, Default)]
+pub struct Columns {
+    /// Number of contacts.
+    pub n: usize,
+    /// Gap (m).
+    pub gap: Vec<f64>,
+    /// Area (m^2).
+    pub area: Vec<f64>,
+    /// Reduced radius (m).
+    pub radius: Vec<f64>,
+    /// Age (s).
+    pub age: Vec<f64>,
+    /// Opening (m).
+    pub opening: Triple,
+    /// Relative velocity (m/s).
+    pub velocity: Triple,
+    /// Impulse (N s).
+    pub impulse: Triple,
+    /// Damage.
+    pub damage: Vec<f64>,
+    /// Undamaged stored energy (J/m^2).
+    pub energy_intact: Vec<f64>,
+    /// Undamaged traction (Pa).
+    pub intact: Triple,
+    /// Slip over the step (m).
+    pub slip: Vec<f64>,
+    /// Friction work over the step (J).
+    pub friction_work: Vec<f64>,
+    /// Internal variables at the start of the step.
+    pub state: Vec<Vec<f64>>,
+    /// Internal variables at the end of the step.
+    pub state_next: Vec<Vec<f64>>,
+    /// Outputs.
+    pub out: Outputs,
+}
+
+/// Columns written by plugins, named as in the ABI.
+#[derive(Debug, Default)]
+#[allow(missing_docs)]
+pub struct Outputs {
+    pub friction: Vec<f64>,
+    pub restitution_n: Vec<f64>,
+    pub restitution_t: Vec<f64>,
+    pub tension_strength: Vec<f64>,
+    pub shear_cohesion: Vec<f64>,
+    pub rolling: Vec<f64>,
+    pub spinning: Vec<f64>,
+    pub traction: Triple,
+    pub stiffness_n: Vec<f64>,
+    pub stiffness_t: Vec<f64>,
+    pub damping_n: Vec<f64>,
+    pub damping_t: Vec<f64>,
+    pub energy: Vec<f64>,
+    pub damage: Vec<f64>,
+    pub volume: Vec<f64>,
+}
+
+impl Columns {
+    /// Empties the inputs.
+    pub fn clear(&mut self) {
+        self.n = 0;
+        for column in [
+            &mut self.gap,
+            &mut self.area,
+            &mut self.radius,
+            &mut self.age,
+            &mut self.damage,
+            &mut self.energy_intact,
+            &mut self.slip,
+            &mut self.friction_work,
+        ] {
+            column.clear();
+        }
+        for triple in [&mut self.opening, &mut self.velocity, &mut self.impulse, &mut self.intact] {
+            triple.iter_mut().for_each(Vec::clear);
+        }
+        self.state.clear();
+        self.state_next.clear();
+    }
+
+    /// Sizes the outputs to `n` zeros.
+    pub fn size_outputs(&mut self) {
+        let (n, out) = (self.n, &mut self.out);
+        for column in [
+            &mut out.friction,
+            &mut out.restitution_n,
+            &mut out.restitution_t,
+            &mut out.tension_strength,
+            &mut out.shear_cohesion,
+            &mut out.rolling,
+            &mut out.spinning,
+            &mut out.stiffness_n,
+            &mut out.stiffness_t,
+            &mut out.damping_n,
+            &mut out.damping_t,
+            &mut out.energy,
+            &mut out.damage,
+            &mut out.volume,
+        ] {
+            column.clear();
+            column.resize(n, 0.0);
+        }
+        for column in &mut out.traction {
+            column.clear();
+            column.resize(n, 0.0);
+        }
+    }
+
+    /// Runs `call` with the batch of these columns.
+    pub fn with_batch<R>(
+        &mut self,
+        loaded: &Loaded,
+        info: &StepInfo,
+        degradation: f64,
+        call: impl FnOnce(&FwBatch) -> R,
+    ) -> R {
+        let n = self.n;
+        let column = |v: &Vec<f64>| if v.len() == n { v.as_ptr() } else { null() };
+        let mut output = |v: &mut Vec<f64>| if v.len() == n { v.as_mut_ptr() } else { null_mut() };
+        let (first, count) = (loaded.first_variable, loaded.variables());
+        let state: Vec<*const f64> = self.state.iter().skip(first).take(count).map(column).collect();
+        let next: Vec<*mut f64> = self.state_next.iter_mut().skip(first).take(count).map(&mut output).collect();
+        let out = &mut self.out;
+        let third = |v: &Vec<f64>| if info.dimension == 3 { column(v) } else { null() };
+        let traction_t2 = if info.dimension == 3 { output(&mut out.traction[2]) } else { null_mut() };
+        let batch = FwBatch {
+            size: size_of::<FwBatch>(),
+            n,
+            dimension: info.dimension,
+            reserved: 0,
+            time: info.time,
+            h: info.h,
+            theta: info.theta,
+            degradation,
+            parameters: loaded.parameters.as_ptr(),
+            state: state.as_ptr(),
+            state_next: next.as_ptr(),
+            gap: column(&self.gap),
+            area: column(&self.area),
+            radius: column(&self.radius),
+            age: column(&self.age),
+            opening_n: column(&self.opening[0]),
+            opening_t1: column(&self.opening[1]),
+            opening_t2: third(&self.opening[2]),
+            velocity_n: column(&self.velocity[0]),
+            velocity_t1: column(&self.velocity[1]),
+            velocity_t2: third(&self.velocity[2]),
+            impulse_n: column(&self.impulse[0]),
+            impulse_t1: column(&self.impulse[1]),
+            impulse_t2: third(&self.impulse[2]),
+            damage: column(&self.damage),
+            energy_intact: column(&self.energy_intact),
+            intact_n: column(&self.intact[0]),
+            intact_t1: column(&self.intact[1]),
+            intact_t2: third(&self.intact[2]),
+            slip: column(&self.slip),
+            friction_work: column(&self.friction_work),
+            out_friction: output(&mut out.friction),
+            out_restitution_n: output(&mut out.restitution_n),
+            out_restitution_t: output(&mut out.restitution_t),
+            out_tension_strength: output(&mut out.tension_strength),
+            out_shear_cohesion: output(&mut out.shear_cohesion),
+            out_rolling: output(&mut out.rolling),
+            out_spinning: output(&mut out.spinning),
+            out_traction_n: output(&mut out.traction[0]),
+            out_traction_t1: output(&mut out.traction[1]),
+            out_traction_t2: traction_t2,
+            out_stiffness_n: output(&mut out.stiffness_n),
+            out_stiffness_t: output(&mut out.stiffness_t),
+            out_damping_n: output(&mut out.damping_n),
+            out_damping_t: output(&mut out.damping_t),
+            out_energy: output(&mut out.energy),
+            out_damage: output(&mut out.damage),
+            out_volume: output(&mut out.volume),
+        };
+        call(&batch)
+    }
+}

@@ -1,0 +1,154 @@
+//! An interface law: one plugin in each of four slots, with parameters.
+
+use super::library::{LawError, Plugin};
+use fretwork_abi::{FLAG_CONSTANT, FLAG_OPENING, FLAG_TENSION_ONLY};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A plugin with the values of its parameters, in the order of its schema.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The plugin.
+    pub plugin: Arc<Plugin>,
+    /// Values, one a parameter.
+    pub parameters: Vec<f64>,
+    /// Its first column among the interface's internal variables.
+    pub first_variable: usize,
+}
+
+impl Loaded {
+    /// Number of internal variables.
+    pub fn variables(&self) -> usize {
+        self.plugin.variables.len()
+    }
+
+    /// Whether a flag is set.
+    pub fn has(&self, flag: u64) -> bool {
+        self.plugin.flags & flag != 0
+    }
+}
+
+/// When bonds are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum BondRule {
+    /// Every contact within the alert distance at the first step.
+    #[default]
+    Start,
+    /// None.
+    Never,
+}
+
+/// The area on which tractions act, from the reduced radius r = r1 r2/(r1 + r2): `factor` r times unit
+/// depth in 2D, `factor` pi r^2 in 3D. The factor 1 is what LMGC90's benchmark scene uses.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AreaRule {
+    /// Factor.
+    pub factor: f64,
+}
+
+impl Default for AreaRule {
+    fn default() -> Self {
+        Self { factor: 1.0 }
+    }
+}
+
+impl AreaRule {
+    /// The area (m^2) of a contact of reduced radius `radius` (m).
+    #[inline]
+    pub fn area(&self, dimension: usize, radius: f64) -> f64 {
+        if dimension == 2 { self.factor * radius } else { self.factor * std::f64::consts::PI * radius * radius }
+    }
+}
+
+/// The law of a pair of materials.
+#[derive(Clone, Debug)]
+pub struct Interface {
+    /// Name in the case.
+    pub name: String,
+    /// Friction, restitution, rolling.
+    pub contact: Loaded,
+    /// Traction against opening.
+    pub cohesion: Option<Loaded>,
+    /// Growth of damage.
+    pub damage: Option<Loaded>,
+    /// What is removed.
+    pub wear: Option<Loaded>,
+    /// When bonds are made.
+    pub bonds: BondRule,
+    /// Area of a contact.
+    pub area: AreaRule,
+}
+
+impl Interface {
+    /// The plugins in use.
+    pub fn loaded(&self) -> impl Iterator<Item = &Loaded> {
+        std::iter::once(&self.contact)
+            .chain(self.cohesion.iter())
+            .chain(self.damage.iter())
+            .chain(self.wear.iter())
+    }
+
+    /// Numbers the internal variables and checks that the slots fit together.
+    ///
+    /// # Errors
+    /// A damage law without a cohesion law that has an opening.
+    pub fn compose(mut self) -> Result<Self, LawError> {
+        let mut next = 0;
+        for loaded in [Some(&mut self.contact), self.cohesion.as_mut(), self.damage.as_mut(), self.wear.as_mut()]
+            .into_iter()
+            .flatten()
+        {
+            loaded.first_variable = next;
+            next += loaded.variables();
+        }
+        if let Some(damage) = &self.damage {
+            match &self.cohesion {
+                None => {
+                    return Err(LawError::Pairing {
+                        reason: format!(
+                            "the damage law `{}` of interface `{}` has no cohesion to damage; give the interface a cohesion law",
+                            damage.plugin.name, self.name
+                        ),
+                    });
+                }
+                Some(c) if !c.has(FLAG_OPENING) || c.plugin.degradation <= 0.0 => {
+                    return Err(LawError::Pairing {
+                        reason: format!(
+                            "the cohesion law `{}` of interface `{}` has no opening that the damage law `{}` could follow; choose another cohesion or drop the damage",
+                            c.plugin.name, self.name, damage.plugin.name
+                        ),
+                    });
+                }
+                Some(_) => {}
+            }
+        }
+        Ok(self)
+    }
+
+    /// Number of internal variables over all slots.
+    pub fn variables(&self) -> usize {
+        self.loaded().map(Loaded::variables).sum()
+    }
+
+    /// Initial values of the internal variables.
+    pub fn initial(&self) -> Vec<f64> {
+        self.loaded()
+            .flat_map(|l| l.plugin.variables.iter().map(|v| v.default))
+            .collect()
+    }
+
+    /// Whether contacts become bonds at the start.
+    pub fn bonds_at_start(&self) -> bool {
+        self.cohesion.is_some() && self.bonds == BondRule::Start
+    }
+
+    /// Whether the normal stiffness only pulls.
+    pub fn tension_only(&self) -> bool {
+        self.cohesion.as_ref().is_some_and(|c| c.has(FLAG_TENSION_ONLY))
+    }
+
+    /// Whether friction and restitution are the same for all contacts and steps.
+    pub fn constant_contact(&self) -> bool {
+        self.contact.has(FLAG_CONSTANT)
+    }
+}

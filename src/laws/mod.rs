@@ -1,0 +1,11 @@
+//! Interface laws: libraries found by name, composed by the case, called in batches.
+pub mod columns;
+pub mod interface;
+pub mod library;
+pub mod pass;
+pub mod search;
+
+pub use interface::{AreaRule, BondRule, Interface, Loaded};
+pub use library::{Call, Kind, LawError, Plugin};
+pub use pass::{Site, Totals};
+pub use search::SearchPath;

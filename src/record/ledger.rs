@@ -1,0 +1,81 @@
+//! The energy ledger: what was put in, what is stored, what was dissipated, and what does not add up.
+
+use crate::laws::Totals;
+use serde::Serialize;
+
+/// Energies since the start (J; per metre of depth in 2D).
+///
+/// With theta = 1/2 the balance closes to rounding and to the solver's tolerance:
+/// kinetic + potential + elastic + fracture + friction + impact + adhesion + viscous + scheme
+/// - external work = initial energy.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Energy {
+    /// Kinetic energy now.
+    pub kinetic: f64,
+    /// Potential energy in gravity now, zero at the start.
+    pub potential: f64,
+    /// Energy stored in bonds now.
+    pub elastic: f64,
+    /// Released by damage.
+    pub fracture: f64,
+    /// Dissipated by friction.
+    pub friction: f64,
+    /// Dissipated by impacts.
+    pub impact: f64,
+    /// Spent against cohesion without opening.
+    pub adhesion: f64,
+    /// Dissipated by damping of bonds.
+    pub viscous: f64,
+    /// Dissipated by the scheme, (theta - 1/2) |v+ - v|_M^2; zero at theta = 1/2.
+    pub scheme: f64,
+    /// Work of imposed forces and motions.
+    pub external_work: f64,
+    /// What does not add up.
+    pub residual: f64,
+    /// Kinetic energy at the start.
+    pub initial_kinetic: f64,
+    /// Largest scale the balance has seen: the work done or the energy held.
+    pub scale: f64,
+}
+
+/// What the bodies did over one step (J).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BodyWork {
+    /// Change of potential energy.
+    pub potential: f64,
+    /// Work of imposed forces and motions.
+    pub external: f64,
+    /// Dissipated by the scheme.
+    pub scheme: f64,
+}
+
+impl Energy {
+    /// Books one step.
+    pub fn book(&mut self, totals: &Totals, work: &BodyWork, kinetic: f64, elastic: f64) {
+        self.kinetic = kinetic;
+        self.elastic = elastic;
+        self.potential += work.potential;
+        self.external_work += work.external;
+        self.scheme += work.scheme;
+        self.fracture += totals.fracture;
+        self.friction += totals.friction;
+        self.impact += totals.impact;
+        self.adhesion += totals.adhesion;
+        self.viscous += totals.viscous;
+        let sinks = self.fracture + self.friction + self.impact + self.adhesion + self.viscous + self.scheme;
+        let held = self.kinetic - self.initial_kinetic + self.potential + self.elastic;
+        self.residual = held + sinks - self.external_work;
+        let seen = [self.external_work, self.potential, self.kinetic, self.initial_kinetic, sinks];
+        self.scale = seen.iter().fold(self.scale, |m, x| m.max(x.abs()));
+    }
+
+    /// Energy turned into heat and surfaces.
+    pub fn dissipated(&self) -> f64 {
+        self.fracture + self.friction + self.impact + self.adhesion + self.viscous
+    }
+
+    /// Residual over the largest energy seen; zero when nothing moved.
+    pub fn relative_residual(&self) -> f64 {
+        if self.scale > 0.0 { self.residual.abs() / self.scale } else { 0.0 }
+    }
+}

@@ -1,0 +1,18 @@
+//! The time step.
+//!
+//! ```text
+//!       ┌──────► detect (broad, narrow) ─► contact network (memory: bonds, D, slip)
+//!       │                                        │
+//!       │                         laws: prepare (batch, plugin ABI)
+//!       │                                        ▼
+//!       │                         solve: standard local form ─► p
+//!       │                                        │
+//!       │                         laws: commit (damage, broken, wear, dissipation)
+//!       └── advance bodies ◄─────────────────────┤
+//!                                                ▼
+//!                               record (ledgers, statistics, files)
+//! ```
+pub mod motion;
+pub mod simulation;
+
+pub use simulation::{Scheme, Simulation, StepError, StepReport};

@@ -1,0 +1,115 @@
+//! The bodies' part of the Moreau-Jean theta-scheme: half moves, free velocities, work.
+
+use crate::bodies::Bodies;
+use crate::geometry::space::{Space, VectorLike};
+use crate::record::ledger::BodyWork;
+
+/// Moves positions and orientations by `time` at the velocities at hand.
+pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64) {
+    for b in 0..bodies.len() {
+        let v = bodies.velocity[b];
+        bodies.position[b] += v * time;
+        let w = bodies.spin[b];
+        if w != S::Spin::null() {
+            bodies.rotation[b] = S::turned(&bodies.rotation[b], &(w * time));
+        }
+    }
+}
+
+/// v_free = v + h M^-1 F, and the imposed velocities at the end of the step. Forces are taken at the
+/// step's theta-point.
+pub fn free_velocities<S: Space>(
+    bodies: &Bodies<S>,
+    gravity: &S::Vector,
+    time: f64,
+    h: f64,
+    theta: f64,
+) -> Vec<(S::Vector, S::Spin)> {
+    let mut free: Vec<(S::Vector, S::Spin)> = (0..bodies.len())
+        .map(|b| {
+            let mut v = bodies.velocity[b];
+            for k in 0..S::D {
+                if bodies.inverse_mass[b][k] > 0.0 {
+                    v[k] += h * gravity[k];
+                }
+            }
+            (v, bodies.spin[b])
+        })
+        .collect();
+    for driven in &bodies.driven {
+        let b = driven.body as usize;
+        let (v, w) = &mut free[b];
+        for (k, dof) in driven.dofs.iter().enumerate() {
+            let imposed = dof.imposed_velocity(time + h);
+            let force = dof.force(time + theta * h);
+            if k < S::D {
+                match imposed {
+                    Some(velocity) => v[k] = velocity,
+                    None => v[k] += h * bodies.inverse_mass[b][k] * force,
+                }
+            } else {
+                match imposed {
+                    Some(velocity) => w[k - S::D] = velocity,
+                    None => w[k - S::D] += h * bodies.inverse_inertia[b] * force,
+                }
+            }
+        }
+    }
+    free
+}
+
+/// State of the bodies at the start of a step, kept to book the step's work.
+pub struct Before<S: Space> {
+    velocity: Vec<S::Vector>,
+    spin: Vec<S::Spin>,
+}
+
+impl<S: Space> Before<S> {
+    /// Remembers the velocities.
+    pub fn new(bodies: &Bodies<S>) -> Self {
+        Self { velocity: bodies.velocity.clone(), spin: bodies.spin.clone() }
+    }
+
+    /// The work done over the step. `received` are contact impulses and moments on the driven bodies
+    /// in their order (N s, N m s).
+    ///
+    /// An imposed degree of freedom receives J = m (v+ - v) - h F - (H p), which works at v_theta.
+    pub fn work(
+        &self,
+        bodies: &Bodies<S>,
+        received: &[(S::Vector, S::Spin)],
+        gravity: &S::Vector,
+        time: f64,
+        h: f64,
+        theta: f64,
+    ) -> BodyWork {
+        let mut work = BodyWork::default();
+        for b in 0..bodies.len() {
+            let (v, w) = (self.velocity[b], self.spin[b]);
+            let average = v * (1.0 - theta) + bodies.velocity[b] * theta;
+            work.potential -= h * bodies.mass[b] * gravity.dot(&average);
+            let (dv, dw) = (bodies.velocity[b] - v, bodies.spin[b] - w);
+            work.scheme += (theta - 0.5) * (bodies.mass[b] * dv.dot(&dv) + bodies.inertia[b] * dw.dot(&dw));
+        }
+        for (driven, (impulse, moment)) in bodies.driven.iter().zip(received) {
+            let b = driven.body as usize;
+            for (k, dof) in driven.dofs.iter().enumerate() {
+                let (old, new, inertia, received, weight) = if k < S::D {
+                    let g = h * bodies.mass[b] * gravity[k];
+                    (self.velocity[b][k], bodies.velocity[b][k], bodies.mass[b], impulse[k], g)
+                } else {
+                    let k = k - S::D;
+                    (self.spin[b][k], bodies.spin[b][k], bodies.inertia[b], moment[k], 0.0)
+                };
+                let average = (1.0 - theta) * old + theta * new;
+                work.external += average
+                    * if dof.imposed_velocity(time + h).is_some() {
+                        inertia * (new - old) - weight - received
+                    } else {
+                        h * dof.force(time + theta * h)
+                    };
+            }
+        }
+        work
+    }
+}

@@ -1,0 +1,289 @@
+//! The stepper: one step, as the data flows.
+
+use super::motion::{self, Before};
+use crate::bodies::Bodies;
+use crate::contact::detect::{LawTable, detect};
+use crate::contact::{Contact, Network};
+use crate::geometry::shape::Shapes;
+use crate::geometry::space::{Space, VectorLike};
+use crate::laws::columns::StepInfo;
+use crate::laws::pass::Passes;
+use crate::laws::{Interface, LawError, Site, Totals};
+use crate::record::ledger::Energy;
+use crate::solve::{self, ContactForm, Problem};
+use std::time::{Duration, Instant};
+
+/// The time scheme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scheme {
+    /// Step (s).
+    pub h: f64,
+    /// Theta in \[1/2, 1\]: 1/2 conserves energy, 1 damps.
+    pub theta: f64,
+}
+
+/// Why a step could not be done.
+#[derive(Debug, thiserror::Error)]
+pub enum StepError {
+    /// A law refused.
+    #[error("step {step} at t = {time:.6e} s: {source}")]
+    Law {
+        /// Number of the step.
+        step: u64,
+        /// Time at its start (s).
+        time: f64,
+        /// What the law said.
+        source: LawError,
+    },
+    /// A velocity is not finite.
+    #[error(
+        "step {step} at t = {time:.6e} s: the velocity of body {body} is not finite; use a smaller step or softer parameters"
+    )]
+    NotFinite {
+        /// Number of the step.
+        step: u64,
+        /// Time at its start (s).
+        time: f64,
+        /// Identity of the body.
+        body: u64,
+    },
+}
+
+/// Where the time of a step went.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timing {
+    /// Detection.
+    pub detect: Duration,
+    /// The laws, prepare and commit.
+    pub laws: Duration,
+    /// The solver.
+    pub solve: Duration,
+}
+
+/// What one step did.
+#[derive(Clone, Debug, Default)]
+pub struct StepReport {
+    /// The solver's report.
+    pub solver: solve::Report,
+    /// Sums over contacts.
+    pub totals: Totals,
+    /// Contacts that carry an impulse.
+    pub active: usize,
+    /// Time spent.
+    pub timing: Timing,
+}
+
+/// A scene that steps.
+#[derive(Debug)]
+pub struct Simulation<S: Space> {
+    /// Grains and first bodies.
+    pub bodies: Bodies<S>,
+    /// What can touch.
+    pub shapes: Shapes<S>,
+    /// Interface laws.
+    pub laws: Vec<Interface>,
+    /// Which law governs which materials.
+    pub table: LawTable,
+    /// The contacts.
+    pub network: Network<S>,
+    /// Acceleration of gravity (m/s^2).
+    pub gravity: S::Vector,
+    /// The time scheme.
+    pub scheme: Scheme,
+    /// The solver's options.
+    pub solver: solve::Options,
+    /// Time at the end of the last step (s).
+    pub time: f64,
+    /// Steps done.
+    pub steps: u64,
+    /// The energy ledger.
+    pub energy: Energy,
+    /// Contact impulses and moments on the driven bodies in the last step, in their order.
+    pub received: Vec<(S::Vector, S::Spin)>,
+    passes: Passes,
+    problem: Problem<S>,
+    forms: Vec<ContactForm<S>>,
+}
+
+impl<S: Space> Simulation<S> {
+    /// A scene at rest at time zero.
+    pub fn new(
+        bodies: Bodies<S>,
+        shapes: Shapes<S>,
+        laws: Vec<Interface>,
+        table: LawTable,
+        alert: f64,
+        skin: f64,
+    ) -> Self {
+        let variables: Vec<usize> = laws.iter().map(Interface::variables).collect();
+        let kinetic = bodies.kinetic_energy();
+        let received = vec![(S::Vector::null(), S::Spin::null()); bodies.driven.len()];
+        Self {
+            bodies,
+            shapes,
+            laws,
+            table,
+            network: Network::new(alert, skin, &variables),
+            gravity: S::Vector::null(),
+            scheme: Scheme { h: 1e-3, theta: 0.5 },
+            solver: solve::Options::default(),
+            time: 0.0,
+            steps: 0,
+            energy: Energy { kinetic, initial_kinetic: kinetic, ..Energy::default() },
+            received,
+            passes: Passes::default(),
+            problem: Problem::default(),
+            forms: Vec::new(),
+        }
+    }
+
+    /// One step of h.
+    ///
+    /// # Errors
+    /// A law's error, or velocities that are not finite; the state is then that of the failed step.
+    pub fn step(&mut self) -> Result<StepReport, StepError> {
+        let mut report = StepReport::default();
+        let Scheme { h, theta } = self.scheme;
+        let info = StepInfo { dimension: S::D as u32, time: self.time, h, theta };
+        let start = Before::new(&self.bodies);
+
+        let clock = Instant::now();
+        motion::advance(&mut self.bodies, (1.0 - theta) * h);
+        detect(&mut self.network, &self.shapes, &self.bodies, &self.table, self.time);
+        if self.steps == 0 {
+            self.passes.make_bonds(&self.laws, &mut self.network);
+        }
+        report.timing.detect = clock.elapsed();
+
+        let clock = Instant::now();
+        let before = self.relative_velocities();
+        let free = motion::free_velocities(&self.bodies, &self.gravity, self.time, h, theta);
+        self.geometry_of_forms(h);
+        let prepared = self.passes.prepare(&self.laws, &self.network, &before, &info, &mut self.forms);
+        prepared.map_err(|e| self.law_error(e))?;
+        report.timing.laws = clock.elapsed();
+
+        let clock = Instant::now();
+        self.pose(&free);
+        report.solver = solve::solve(&mut self.problem, &self.solver);
+        self.adopt_velocities()?;
+        report.timing.solve = clock.elapsed();
+
+        let clock = Instant::now();
+        let sites = self.sites(&before);
+        let committed = self.passes.commit(&self.laws, &mut self.network, &sites, &info);
+        report.totals = committed.map_err(|e| self.law_error(e))?;
+        report.timing.laws += clock.elapsed();
+
+        motion::advance(&mut self.bodies, theta * h);
+        self.book(&start, &report.totals);
+        report.active = sites.iter().filter(|s| s.solution.impulse != S::Vector::null()).count();
+        self.time += h;
+        self.steps += 1;
+        Ok(report)
+    }
+
+    fn law_error(&self, source: LawError) -> StepError {
+        StepError::Law { step: self.steps + 1, time: self.time, source }
+    }
+
+    /// Velocity of a contact's candidate relative to its antagonist, at the velocities at hand.
+    fn relative_velocity(&self, contact: &Contact<S>) -> S::Vector {
+        let [i, j] = contact.bodies.map(|b| b as usize);
+        let bodies = &self.bodies;
+        bodies.velocity[i] + S::sweep(&bodies.spin[i], &contact.arms[0])
+            - bodies.velocity[j]
+            - S::sweep(&bodies.spin[j], &contact.arms[1])
+    }
+
+    fn relative_velocities(&self) -> Vec<S::Vector> {
+        self.network.contacts.iter().map(|c| self.relative_velocity(c)).collect()
+    }
+
+    /// The part of the forms that geometry gives.
+    fn geometry_of_forms(&mut self, h: f64) {
+        self.forms.clear();
+        let network = &self.network;
+        self.forms.extend(network.contacts.iter().map(|contact| {
+            // An unbroken bond fills the gap at which it was made.
+            let filled = network.bond(contact).filter(|b| b.intact()).map_or(0.0, |b| b.gap);
+            ContactForm {
+                bodies: contact.bodies,
+                normal: contact.normal,
+                arms: contact.arms,
+                central: contact.central,
+                shift_n: (contact.gap - filled).max(0.0) / h,
+                shift_t: S::Tangent::null(),
+                friction: 0.0,
+                tension: 0.0,
+                cohesion: 0.0,
+                elastic: None,
+                impulse: contact.impulse,
+            }
+        }));
+    }
+
+    /// Hands bodies and contacts to the solver.
+    fn pose(&mut self, free: &[(S::Vector, S::Spin)]) {
+        let (bodies, problem) = (&self.bodies, &mut self.problem);
+        problem.clear();
+        for (b, (v, w)) in free.iter().enumerate() {
+            problem.push_body(*v, *w, bodies.inverse_mass[b], bodies.inverse_inertia[b], bodies.length[b]);
+        }
+        for form in &self.forms {
+            problem.push(form);
+        }
+    }
+
+    fn adopt_velocities(&mut self) -> Result<(), StepError> {
+        for b in 0..self.bodies.len() {
+            let (v, w) = self.problem.velocity(b);
+            if !(v.is_finite() && w.is_finite()) {
+                return Err(StepError::NotFinite {
+                    step: self.steps + 1,
+                    time: self.time,
+                    body: self.bodies.id[b],
+                });
+            }
+            self.bodies.velocity[b] = v;
+            self.bodies.spin[b] = w;
+        }
+        Ok(())
+    }
+
+    fn sites(&self, before: &[S::Vector]) -> Vec<Site<S>> {
+        let theta = self.scheme.theta;
+        let contacts = self.network.contacts.iter().zip(before).enumerate();
+        contacts
+            .map(|(k, (contact, before))| Site {
+                before: *before,
+                average: *before * (1.0 - theta) + self.relative_velocity(contact) * theta,
+                solution: self.problem.solution(k),
+            })
+            .collect()
+    }
+
+    /// Books the step in the energy ledger.
+    fn book(&mut self, start: &Before<S>, totals: &Totals) {
+        let mut received = vec![(S::Vector::null(), S::Spin::null()); self.bodies.driven.len()];
+        let mut place = vec![usize::MAX; self.bodies.len()];
+        for (d, driven) in self.bodies.driven.iter().enumerate() {
+            place[driven.body as usize] = d;
+        }
+        for contact in &self.network.contacts {
+            for (side, sign) in [(0, 1.0), (1, -1.0)] {
+                let d = place[contact.bodies[side] as usize];
+                if d != usize::MAX {
+                    let impulse = contact.impulse * sign;
+                    received[d].0 += impulse;
+                    received[d].1 += S::moment(&contact.arms[side], &impulse);
+                }
+            }
+        }
+        let Scheme { h, theta } = self.scheme;
+        let work = start.work(&self.bodies, &received, &self.gravity, self.time, h, theta);
+        let (kinetic, elastic) = (self.bodies.kinetic_energy(), self.network.elastic_energy());
+        self.energy.book(totals, &work, kinetic, elastic);
+        self.received = received;
+    }
+}
