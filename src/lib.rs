@@ -4,10 +4,10 @@
 //! The folders mirror the step: a [`scene`] makes [`bodies`] with [`geometry`]; each [`step`] detects
 //! [`contact`]s, asks the [`laws`], [`solve`]s, commits, and [`record`]s.
 
-pub mod geometry;
 pub mod bodies;
-pub mod solve;
 pub mod contact;
+pub mod geometry;
 pub mod laws;
 pub mod record;
+pub mod solve;
 pub mod step;

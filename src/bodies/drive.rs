@@ -46,12 +46,19 @@ impl TimeFunction {
     pub fn value(&self, t: f64) -> f64 {
         match self {
             Self::Constant(x) => *x,
-            Self::Ramp { from, to, start, end } => {
-                from + (to - from) * ((t - start) / (end - start)).clamp(0.0, 1.0)
-            }
-            Self::Sine { amplitude, frequency, phase, offset, start } => {
-                offset + amplitude * (TAU * frequency * (t - start).max(0.0) + phase).sin()
-            }
+            Self::Ramp {
+                from,
+                to,
+                start,
+                end,
+            } => from + (to - from) * ((t - start) / (end - start)).clamp(0.0, 1.0),
+            Self::Sine {
+                amplitude,
+                frequency,
+                phase,
+                offset,
+                start,
+            } => offset + amplitude * (TAU * frequency * (t - start).max(0.0) + phase).sin(),
             Self::Table(points) => {
                 let k = points.partition_point(|p| p.0 <= t);
                 if k == 0 {
@@ -70,10 +77,25 @@ impl TimeFunction {
     pub fn rate(&self, t: f64) -> f64 {
         match self {
             Self::Constant(_) => 0.0,
-            Self::Ramp { from, to, start, end } => {
-                if t > *start && t <= *end { (to - from) / (end - start) } else { 0.0 }
+            Self::Ramp {
+                from,
+                to,
+                start,
+                end,
+            } => {
+                if t > *start && t <= *end {
+                    (to - from) / (end - start)
+                } else {
+                    0.0
+                }
             }
-            Self::Sine { amplitude, frequency, phase, start, .. } => {
+            Self::Sine {
+                amplitude,
+                frequency,
+                phase,
+                start,
+                ..
+            } => {
                 if t < *start {
                     return 0.0;
                 }
@@ -101,17 +123,32 @@ impl TimeFunction {
     pub fn fault(&self) -> Option<String> {
         let finite = |values: &[f64]| values.iter().all(|v| v.is_finite());
         match self {
-            Self::Constant(x) if !x.is_finite() => Some(format!("a constant must be finite, got {x}")),
-            Self::Ramp { from, to, start, end } => {
+            Self::Constant(x) if !x.is_finite() => {
+                Some(format!("a constant must be finite, got {x}"))
+            }
+            Self::Ramp {
+                from,
+                to,
+                start,
+                end,
+            } => {
                 if !finite(&[*from, *to, *start, *end]) {
                     Some("the numbers of a ramp must be finite".into())
                 } else if end <= start {
-                    Some(format!("a ramp must end after it starts, got start {start} and end {end}"))
+                    Some(format!(
+                        "a ramp must end after it starts, got start {start} and end {end}"
+                    ))
                 } else {
                     None
                 }
             }
-            Self::Sine { amplitude, frequency, phase, offset, start } => {
+            Self::Sine {
+                amplitude,
+                frequency,
+                phase,
+                offset,
+                start,
+            } => {
                 if !finite(&[*amplitude, *frequency, *phase, *offset, *start]) {
                     Some("the numbers of a sine must be finite".into())
                 } else if *frequency < 0.0 {
@@ -165,7 +202,11 @@ impl Dof {
 
     /// The force imposed at a time.
     pub fn force(&self, t: f64) -> f64 {
-        if let Self::Force(f) = self { f.value(t) } else { 0.0 }
+        if let Self::Force(f) = self {
+            f.value(t)
+        } else {
+            0.0
+        }
     }
 
     /// The time function, if there is one.
@@ -195,8 +236,19 @@ mod tests {
     #[test]
     fn rates_are_the_derivatives() {
         let functions = [
-            TimeFunction::Ramp { from: 1.0, to: 3.0, start: 0.5, end: 1.5 },
-            TimeFunction::Sine { amplitude: 2.0, frequency: 0.3, phase: 0.2, offset: 1.0, start: 0.1 },
+            TimeFunction::Ramp {
+                from: 1.0,
+                to: 3.0,
+                start: 0.5,
+                end: 1.5,
+            },
+            TimeFunction::Sine {
+                amplitude: 2.0,
+                frequency: 0.3,
+                phase: 0.2,
+                offset: 1.0,
+                start: 0.1,
+            },
             TimeFunction::Table(vec![(0.0, 0.0), (0.7, 2.0), (1.4, -1.0)]),
         ];
         for f in functions {
@@ -211,8 +263,21 @@ mod tests {
 
     #[test]
     fn bad_functions_say_why() {
-        assert!(TimeFunction::Table(vec![(0.0, 1.0), (0.0, 2.0)]).fault().is_some());
-        assert!(TimeFunction::Ramp { from: 0.0, to: 1.0, start: 1.0, end: 1.0 }.fault().is_some());
+        assert!(
+            TimeFunction::Table(vec![(0.0, 1.0), (0.0, 2.0)])
+                .fault()
+                .is_some()
+        );
+        assert!(
+            TimeFunction::Ramp {
+                from: 0.0,
+                to: 1.0,
+                start: 1.0,
+                end: 1.0
+            }
+            .fault()
+            .is_some()
+        );
         assert!(TimeFunction::Constant(f64::NAN).fault().is_some());
     }
 }

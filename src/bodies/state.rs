@@ -75,14 +75,20 @@ impl<S: Space> Bodies<S> {
             inverse[k] = 1.0 / mass;
         }
         self.inverse_mass.push(inverse);
-        self.inverse_inertia.push(if inertia > 0.0 { 1.0 / inertia } else { 0.0 });
+        self.inverse_inertia
+            .push(if inertia > 0.0 { 1.0 / inertia } else { 0.0 });
         index as u32
     }
 
     /// Adds a homogeneous ball (kg/m^3).
     pub fn add_ball(&mut self, position: S::Vector, radius: f64, density: f64) -> u32 {
         let mass = density * S::ball_volume(radius);
-        self.add(position, mass, S::BALL_INERTIA * mass * radius * radius, radius)
+        self.add(
+            position,
+            mass,
+            S::BALL_INERTIA * mass * radius * radius,
+            radius,
+        )
     }
 
     /// Makes a body driven: imposed degrees of freedom lose their compliance.
@@ -93,7 +99,10 @@ impl<S: Space> Bodies<S> {
                 self.inverse_mass[b][k] = 0.0;
             }
         }
-        if driven.dofs[S::D..].iter().any(|d| d.imposed_velocity(0.0).is_some()) {
+        if driven.dofs[S::D..]
+            .iter()
+            .any(|d| d.imposed_velocity(0.0).is_some())
+        {
             self.inverse_inertia[b] = 0.0;
         }
         self.driven.push(driven);

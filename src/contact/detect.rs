@@ -16,7 +16,10 @@ pub struct LawTable {
 impl LawTable {
     /// No pair has a law yet.
     pub fn new(materials: usize) -> Self {
-        Self { materials, laws: vec![None; materials * materials] }
+        Self {
+            materials,
+            laws: vec![None; materials * materials],
+        }
     }
 
     /// Sets the law of a pair, in both orders.
@@ -61,7 +64,15 @@ pub fn detect<S: Space>(
     std::mem::swap(&mut network.contacts, &mut network.old);
     network.contacts.clear();
     let candidates = std::mem::take(&mut network.candidates);
-    let mut narrow = Narrow { shapes, bodies, centres: &centres, laws, time, at: 0, touches: Vec::new() };
+    let mut narrow = Narrow {
+        shapes,
+        bodies,
+        centres: &centres,
+        laws,
+        time,
+        at: 0,
+        touches: Vec::new(),
+    };
     for &(a, b) in &candidates {
         if b & Key::SURFACE == 0 {
             narrow.balls(network, a, b);
@@ -81,10 +92,14 @@ fn must_rebuild<S: Space>(network: &Network<S>, bodies: &Bodies<S>) -> bool {
         return true;
     }
     let limit = 0.25 * network.skin * network.skin;
-    bodies.position.iter().zip(&network.seen_at).any(|(x, seen)| {
-        let d = *x - *seen;
-        d.dot(&d) > limit
-    })
+    bodies
+        .position
+        .iter()
+        .zip(&network.seen_at)
+        .any(|(x, seen)| {
+            let d = *x - *seen;
+            d.dot(&d) > limit
+        })
 }
 
 fn rebuild<S: Space>(
@@ -173,8 +188,14 @@ impl<S: Space> Narrow<'_, S> {
     }
 
     fn balls(&mut self, network: &mut Network<S>, a: u32, b: u32) {
-        let (p, q) = (&self.shapes.balls[a as usize], &self.shapes.balls[b as usize]);
-        let d = self.shapes.periodic.shortest(self.centres[a as usize] - self.centres[b as usize]);
+        let (p, q) = (
+            &self.shapes.balls[a as usize],
+            &self.shapes.balls[b as usize],
+        );
+        let d = self
+            .shapes
+            .periodic
+            .shortest(self.centres[a as usize] - self.centres[b as usize]);
         let old = self.old_of(network, (a, b)).next();
         let sum = p.radius + q.radius;
         let squared = d.dot(&d);
@@ -186,24 +207,41 @@ impl<S: Space> Narrow<'_, S> {
             return;
         }
         let length = squared.sqrt();
-        let normal = if length > 0.0 { d * (1.0 / length) } else { S::Vector::from_slice(&[1.0]) };
+        let normal = if length > 0.0 {
+            d * (1.0 / length)
+        } else {
+            S::Vector::from_slice(&[1.0])
+        };
         let (i, j) = (p.body as usize, q.body as usize);
-        let isotropic = |b: usize| (1..S::D).all(|k| self.bodies.inverse_mass[b][k] == self.bodies.inverse_mass[b][0]);
+        let isotropic = |b: usize| {
+            (1..S::D).all(|k| self.bodies.inverse_mass[b][k] == self.bodies.inverse_mass[b][0])
+        };
         let simple = |ball: &Ball<S>, b: usize| {
-            (ball.offset == S::Vector::null() && self.bodies.length[b] == ball.radius && isotropic(b))
+            (ball.offset == S::Vector::null()
+                && self.bodies.length[b] == ball.radius
+                && isotropic(b))
                 || (self.bodies.immovable(b) && self.bodies.spin[b] == S::Spin::null())
         };
-        let Some(law) = self.laws.get(p.material, q.material) else { return };
+        let Some(law) = self.laws.get(p.material, q.material) else {
+            return;
+        };
         let foot = self.centres[a as usize] - normal * p.radius;
         let central = simple(p, i) && simple(q, j);
         let arms = if central {
             [normal * -p.radius, normal * q.radius]
         } else {
             let other = self.centres[b as usize] + normal * q.radius;
-            [foot - self.bodies.position[i], other - self.bodies.position[j]]
+            [
+                foot - self.bodies.position[i],
+                other - self.bodies.position[j],
+            ]
         };
         let found = Contact {
-            key: Key { candidate: a, antagonist: b, feature: 0 },
+            key: Key {
+                candidate: a,
+                antagonist: b,
+                feature: 0,
+            },
             bodies: [p.body, q.body],
             law,
             central,
@@ -229,17 +267,25 @@ impl<S: Space> Narrow<'_, S> {
         let margin = network.alert + if bonded { network.skin } else { 0.0 };
         let mut touches = std::mem::take(&mut self.touches);
         touches.clear();
-        surface.shape.touches(&local, ball.radius + margin, &mut touches);
-        let Some(law) = self.laws.get(ball.material, surface.material) else { return };
+        surface
+            .shape
+            .touches(&local, ball.radius + margin, &mut touches);
+        let Some(law) = self.laws.get(ball.material, surface.material) else {
+            return;
+        };
         let mut taken = vec![false; old.len()];
         let (i, j) = (ball.body as usize, surface.body as usize);
         for touch in &touches {
             // The same feature, or the nearest of those that are no longer touched.
-            let same = old.clone().find(|k| network.old[*k].key.feature == touch.feature);
+            let same = old
+                .clone()
+                .find(|k| network.old[*k].key.feature == touch.feature);
             let matched = same.or_else(|| {
                 old.clone().find(|k| {
                     !taken[k - old.start]
-                        && !touches.iter().any(|t| t.feature == network.old[*k].key.feature)
+                        && !touches
+                            .iter()
+                            .any(|t| t.feature == network.old[*k].key.feature)
                 })
             });
             let gap = touch.distance - ball.radius;
@@ -255,10 +301,16 @@ impl<S: Space> Narrow<'_, S> {
             let centred = ball.offset == S::Vector::null() && self.bodies.length[i] == ball.radius;
             let arm = self.centres[a as usize] - normal * ball.radius - self.bodies.position[i];
             let found = Contact {
-                key: Key { candidate: a, antagonist: b, feature: touch.feature },
+                key: Key {
+                    candidate: a,
+                    antagonist: b,
+                    feature: touch.feature,
+                },
                 bodies: [ball.body, surface.body],
                 law,
-                central: still && centred && self.bodies.inverse_mass[i][0] == self.bodies.inverse_mass[i][S::D - 1],
+                central: still
+                    && centred
+                    && self.bodies.inverse_mass[i][0] == self.bodies.inverse_mass[i][S::D - 1],
                 broken: false,
                 slot: Contact::<S>::NO_MEMORY,
                 gap,

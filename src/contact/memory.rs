@@ -89,11 +89,19 @@ impl<S: Space> Memory<S> {
 
     /// Sum of the damage of the bonds that hold.
     pub fn intact_damage(&self) -> f64 {
-        self.bonds.iter().filter(|b| b.intact()).map(|b| b.damage).sum()
+        self.bonds
+            .iter()
+            .filter(|b| b.intact())
+            .map(|b| b.damage)
+            .sum()
     }
 
     /// Energy stored (J).
     pub fn energy(&self) -> f64 {
-        self.bonds.iter().filter(|b| b.intact()).map(|b| b.energy).sum()
+        self.bonds
+            .iter()
+            .filter(|b| b.intact())
+            .map(|b| b.energy)
+            .sum()
     }
 }

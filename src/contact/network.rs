@@ -22,7 +22,8 @@ impl Key {
 
     /// The surface's index, when the antagonist is one.
     pub fn surface(&self) -> Option<usize> {
-        (self.antagonist & Self::SURFACE != 0).then_some((self.antagonist & !Self::SURFACE) as usize)
+        (self.antagonist & Self::SURFACE != 0)
+            .then_some((self.antagonist & !Self::SURFACE) as usize)
     }
 
     /// The same pair, whatever the feature.
@@ -111,7 +112,9 @@ impl<S: Space> Network<S> {
 
     /// The bond of a contact, broken or not.
     pub fn bond(&self, contact: &Contact<S>) -> Option<&super::Bond<S>> {
-        contact.memory().map(|slot| &self.memory[contact.law as usize].bonds[slot])
+        contact
+            .memory()
+            .map(|slot| &self.memory[contact.law as usize].bonds[slot])
     }
 
     /// Bonds made so far.

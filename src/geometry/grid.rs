@@ -61,7 +61,9 @@ impl Grid {
             Some(period) => (0.0, period),
             None => centres
                 .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x[k]), hi.max(x[k]))),
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
+                    (lo.min(x[k]), hi.max(x[k]))
+                }),
         };
         // A sparse scene gets wider cells rather than more memory.
         loop {
@@ -85,7 +87,14 @@ impl Grid {
             }
             width *= 1.5;
         }
-        let mut grid = Self { counts, origin, size, dimension: V::N, starts: Vec::new(), sorted: Vec::new() };
+        let mut grid = Self {
+            counts,
+            origin,
+            size,
+            dimension: V::N,
+            starts: Vec::new(),
+            sorted: Vec::new(),
+        };
         let cells: Vec<u32> = centres
             .iter()
             .map(|x| grid.index(grid.cell(&periodic.wrapped(*x))) as u32)
@@ -136,8 +145,16 @@ impl Grid {
             let mut list = [c; 3];
             let mut len = 1;
             let wraps = periodic.period[k].is_some();
-            let below = if c > 0 { Some(c - 1) } else { wraps.then_some(n - 1) };
-            let above = if c + 1 < n { Some(c + 1) } else { wraps.then_some(0) };
+            let below = if c > 0 {
+                Some(c - 1)
+            } else {
+                wraps.then_some(n - 1)
+            };
+            let above = if c + 1 < n {
+                Some(c + 1)
+            } else {
+                wraps.then_some(0)
+            };
             for neighbour in [below, above].into_iter().flatten() {
                 if !list[..len].contains(&neighbour) {
                     list[len] = neighbour;
@@ -162,7 +179,12 @@ mod tests {
     use nalgebra::{Vector2, Vector3};
     use rand::{RngExt, SeedableRng};
 
-    fn brute<V: VectorLike>(x: &[V], r: &[f64], reach: f64, periodic: &Periodic) -> Vec<(u32, u32)> {
+    fn brute<V: VectorLike>(
+        x: &[V],
+        r: &[f64],
+        reach: f64,
+        periodic: &Periodic,
+    ) -> Vec<(u32, u32)> {
         let mut out = Vec::new();
         for a in 0..x.len() {
             for b in a + 1..x.len() {
@@ -178,20 +200,38 @@ mod tests {
     fn finds_what_all_pairs_finds() {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(7);
         for period in [None, Some(1.0), Some(3.0), Some(10.0)] {
-            let periodic = Periodic { period: [period, None, None] };
+            let periodic = Periodic {
+                period: [period, None, None],
+            };
             let r: Vec<f64> = (0..200).map(|_| rng.random_range(0.05..0.2)).collect();
             let x2: Vec<_> = (0..200)
                 .map(|_| Vector2::new(rng.random_range(-2.0..12.0), rng.random_range(0.0..4.0)))
                 .collect();
-            assert_eq!(pairs(&x2, &r, 0.05, &periodic, |_, _| true), brute(&x2, &r, 0.05, &periodic));
-            let x3: Vec<_> = x2.iter().map(|p| Vector3::new(p.x, p.y * 0.3, p.x * 0.1)).collect();
-            assert_eq!(pairs(&x3, &r, 0.05, &periodic, |_, _| true), brute(&x3, &r, 0.05, &periodic));
+            assert_eq!(
+                pairs(&x2, &r, 0.05, &periodic, |_, _| true),
+                brute(&x2, &r, 0.05, &periodic)
+            );
+            let x3: Vec<_> = x2
+                .iter()
+                .map(|p| Vector3::new(p.x, p.y * 0.3, p.x * 0.1))
+                .collect();
+            assert_eq!(
+                pairs(&x3, &r, 0.05, &periodic, |_, _| true),
+                brute(&x3, &r, 0.05, &periodic)
+            );
         }
     }
 
     #[test]
     fn a_sparse_scene_takes_bounded_memory() {
-        let x = [Vector2::new(0.0, 0.0), Vector2::new(1e9, 1e9), Vector2::new(1e9, 1e9 + 1e-3)];
-        assert_eq!(pairs(&x, &[1e-3; 3], 0.0, &Periodic::default(), |_, _| true), vec![(1, 2)]);
+        let x = [
+            Vector2::new(0.0, 0.0),
+            Vector2::new(1e9, 1e9),
+            Vector2::new(1e9, 1e9 + 1e-3),
+        ];
+        assert_eq!(
+            pairs(&x, &[1e-3; 3], 0.0, &Periodic::default(), |_, _| true),
+            vec![(1, 2)]
+        );
     }
 }

@@ -21,7 +21,9 @@ pub struct HeightField {
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum HeightFieldError {
     /// Too few points.
-    #[error("a height field needs at least 2 by 2 points (3 along a periodic axis), got {0} by {1}")]
+    #[error(
+        "a height field needs at least 2 by 2 points (3 along a periodic axis), got {0} by {1}"
+    )]
     TooFew(usize, usize),
     /// Sizes do not agree.
     #[error("a height field of {0} by {1} points needs {2} heights, got {3}")]
@@ -30,7 +32,6 @@ pub enum HeightFieldError {
     #[error("spacings of a height field must be positive and all heights finite")]
     NotFinite,
 }
-
 
 impl HeightField {
     /// Builds the surface; `heights[j * nx + i]` (m) stands at (i dx, j dy).
@@ -58,7 +59,15 @@ impl HeightField {
         }
         let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
         let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        Ok(Self { nx, ny, spacing, heights, periodic, lowest, highest })
+        Ok(Self {
+            nx,
+            ny,
+            spacing,
+            heights,
+            periodic,
+            lowest,
+            highest,
+        })
     }
 
     fn cells(&self, axis: usize) -> i64 {
@@ -101,12 +110,20 @@ impl HeightField {
 }
 
 fn triangles(i: i64, j: i64) -> [[(i64, i64); 3]; 2] {
-    [[(i, j), (i + 1, j), (i + 1, j + 1)], [(i, j), (i + 1, j + 1), (i, j + 1)]]
+    [
+        [(i, j), (i + 1, j), (i + 1, j + 1)],
+        [(i, j), (i + 1, j + 1), (i, j + 1)],
+    ]
 }
 
 /// Nearest point of a triangle and the corners involved (one: vertex, two: edge, three: face).
 /// Ericson, Real-Time Collision Detection (2005), section 5.1.5.
-fn nearest(p: Vector3<f64>, a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -> (Vector3<f64>, [bool; 3]) {
+fn nearest(
+    p: Vector3<f64>,
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+    c: Vector3<f64>,
+) -> (Vector3<f64>, [bool; 3]) {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
     if d1 <= 0.0 && d2 <= 0.0 {
@@ -132,10 +149,16 @@ fn nearest(p: Vector3<f64>, a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -
     }
     let va = d3 * d6 - d5 * d4;
     if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        return (b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), [false, true, true]);
+        return (
+            b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))),
+            [false, true, true],
+        );
     }
     let denominator = 1.0 / (va + vb + vc);
-    (a + ab * (vb * denominator) + ac * (vc * denominator), [true; 3])
+    (
+        a + ab * (vb * denominator) + ac * (vc * denominator),
+        [true; 3],
+    )
 }
 
 impl Surface<Solid> for HeightField {
@@ -146,7 +169,11 @@ impl Surface<Solid> for HeightField {
                 ((centre[axis] - reach) / self.spacing[axis]).floor() as i64 - 1,
                 ((centre[axis] + reach) / self.spacing[axis]).floor() as i64 + 1,
             );
-            if self.periodic[axis] { (low, high) } else { (low.max(0), high.min(self.cells(axis) - 1)) }
+            if self.periodic[axis] {
+                (low, high)
+            } else {
+                (low.max(0), high.min(self.cells(axis) - 1))
+            }
         };
         let ((i0, i1), (j0, j1)) = (range(0), range(1));
         // Each part found, how many triangles found it, and where.
@@ -157,7 +184,8 @@ impl Surface<Solid> for HeightField {
                     let [a, b, c] = corners.map(|(i, j)| self.point(i, j));
                     let (foot, used): (Vector3<f64>, [bool; 3]) = nearest(*centre, a, b, c);
                     let up = (b - a).cross(&(c - a)).normalize();
-                    let mut part: Vec<_> = (0..3).filter(|k| used[*k]).map(|k| corners[k]).collect();
+                    let mut part: Vec<_> =
+                        (0..3).filter(|k| used[*k]).map(|k| corners[k]).collect();
                     part.sort_unstable();
                     match found.iter_mut().find(|f| f.0 == part) {
                         Some(f) => f.1 += 1,
@@ -178,12 +206,21 @@ impl Surface<Solid> for HeightField {
             if distance.abs() >= reach {
                 continue;
             }
-            let normal = if face || distance <= 0.0 { up } else { arm / distance };
+            let normal = if face || distance <= 0.0 {
+                up
+            } else {
+                arm / distance
+            };
             let first = self.vertex(part[0].0, part[0].1) as u32;
             let code = part.iter().fold(0u32, |code, (i, j)| {
                 code | 1 << (2 * (i - part[0].0) + (j - part[0].1)).rem_euclid(4)
             });
-            out.push(Touch { foot, normal, distance, feature: first * 16 + code });
+            out.push(Touch {
+                foot,
+                normal,
+                distance,
+                feature: first * 16 + code,
+            });
         }
         out[start..].sort_by_key(|t| t.feature);
     }
@@ -193,7 +230,10 @@ impl Surface<Solid> for HeightField {
             let length = self.cells(axis) as f64 * self.spacing[axis];
             self.periodic[axis] || (-reach..length + reach).contains(&centre[axis])
         };
-        centre.z - reach <= self.highest && centre.z + reach >= self.lowest && within(0) && within(1)
+        centre.z - reach <= self.highest
+            && centre.z + reach >= self.lowest
+            && within(0)
+            && within(1)
     }
 
     fn outline(&self) -> Vec<Vec<Vector3<f64>>> {
@@ -222,10 +262,18 @@ mod tests {
     #[test]
     fn a_flat_field_has_no_ghosts() {
         let flat = HeightField::new(4, 4, [1.0, 1.0], vec![0.0; 16], [true, true]).unwrap();
-        for (x, y) in [(0.3, 0.1), (0.31, 0.62), (3.9, 3.97), (-5.3, 7.2), (1.5, 0.2)] {
+        for (x, y) in [
+            (0.3, 0.1),
+            (0.31, 0.62),
+            (3.9, 3.97),
+            (-5.3, 7.2),
+            (1.5, 0.2),
+        ] {
             let t = touches(&flat, [x, y, 0.8], 1.0);
             assert_eq!(t.len(), 1, "{x} {y}: {t:?}");
-            assert!((t[0].normal - Vector3::z()).norm() < 1e-15 && (t[0].distance - 0.8).abs() < 1e-15);
+            assert!(
+                (t[0].normal - Vector3::z()).norm() < 1e-15 && (t[0].distance - 0.8).abs() < 1e-15
+            );
         }
     }
 

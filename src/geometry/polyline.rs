@@ -46,7 +46,10 @@ impl Polyline {
         if points.len() < 2 {
             return Err(ProfileError::TooFew(points.len()));
         }
-        if let Some(k) = points.iter().position(|p| !(p.x.is_finite() && p.y.is_finite())) {
+        if let Some(k) = points
+            .iter()
+            .position(|p| !(p.x.is_finite() && p.y.is_finite()))
+        {
             return Err(ProfileError::NotFinite(k));
         }
         if let Some(k) = points.windows(2).position(|w| w[0] == w[1]) {
@@ -56,10 +59,16 @@ impl Polyline {
         if let Some(period) = period {
             let mismatch = (last - first - Vector2::new(period, 0.0)).norm();
             if mismatch > 1e-9 * period {
-                return Err(ProfileError::Period(first.x, first.y, last.x, last.y, period));
+                return Err(ProfileError::Period(
+                    first.x, first.y, last.x, last.y, period,
+                ));
             }
         }
-        let images: &[f64] = if period.is_some() { &[-1.0, 0.0, 1.0] } else { &[0.0] };
+        let images: &[f64] = if period.is_some() {
+            &[-1.0, 0.0, 1.0]
+        } else {
+            &[0.0]
+        };
         let mut segments = Vec::new();
         for image in images {
             let shift = image * period.unwrap_or(0.0);
@@ -68,7 +77,11 @@ impl Polyline {
                 segments.push(Segment::new(line, k as u32));
             }
         }
-        Ok(Self { points, period, tree: RTree::bulk_load(segments) })
+        Ok(Self {
+            points,
+            period,
+            tree: RTree::bulk_load(segments),
+        })
     }
 
     fn segments(&self) -> usize {
@@ -77,7 +90,9 @@ impl Polyline {
 
     /// Into the period that begins at the first point.
     fn wrapped(&self, centre: &Vector2<f64>) -> (Vector2<f64>, f64) {
-        let Some(period) = self.period else { return (*centre, 0.0) };
+        let Some(period) = self.period else {
+            return (*centre, 0.0);
+        };
         let shift = ((centre.x - self.points[0].x) / period).floor() * period;
         (Vector2::new(centre.x - shift, centre.y), shift)
     }
@@ -85,7 +100,11 @@ impl Polyline {
     /// Whether the nearest point of the neighbour across a vertex is that same vertex.
     fn vertex_is_nearest(&self, segment: usize, at_end: bool, from_vertex: Vector2<f64>) -> bool {
         let n = self.segments();
-        let neighbour = if at_end { segment + 1 } else { segment.wrapping_sub(1) };
+        let neighbour = if at_end {
+            segment + 1
+        } else {
+            segment.wrapping_sub(1)
+        };
         let neighbour = if neighbour < n {
             neighbour
         } else if self.period.is_some() {
@@ -105,7 +124,10 @@ impl Surface<Plane> for Polyline {
         let start = out.len();
         let window = AABB::from_corners([c.x - reach, c.y - reach], [c.x + reach, c.y + reach]);
         for segment in self.tree.locate_in_envelope_intersecting(window) {
-            let (a, b) = (Vector2::from(segment.geom().from), Vector2::from(segment.geom().to));
+            let (a, b) = (
+                Vector2::from(segment.geom().from),
+                Vector2::from(segment.geom().to),
+            );
             let k = segment.data;
             let along = b - a;
             let s = (c - a).dot(&along) / along.norm_squared();
@@ -114,7 +136,12 @@ impl Surface<Plane> for Polyline {
                 let distance = (c - a).dot(&normal);
                 if distance.abs() < reach {
                     let foot = c - normal * distance + Vector2::new(shift, 0.0);
-                    out.push(Touch { foot, normal, distance, feature: 2 * k });
+                    out.push(Touch {
+                        foot,
+                        normal,
+                        distance,
+                        feature: 2 * k,
+                    });
                 }
                 continue;
             }
@@ -125,11 +152,19 @@ impl Surface<Plane> for Polyline {
             }
             let vertex = if at_end { b } else { a };
             let distance = (c - vertex).norm();
-            if distance < reach && distance > 0.0 && self.vertex_is_nearest(k as usize, at_end, c - vertex) {
+            if distance < reach
+                && distance > 0.0
+                && self.vertex_is_nearest(k as usize, at_end, c - vertex)
+            {
                 let normal = (c - vertex) / distance;
                 let foot = vertex + Vector2::new(shift, 0.0);
                 let feature = if at_end { 2 * k + 1 } else { u32::MAX };
-                out.push(Touch { foot, normal, distance, feature });
+                out.push(Touch {
+                    foot,
+                    normal,
+                    distance,
+                    feature,
+                });
             }
         }
         out[start..].sort_by_key(|t| t.feature);
@@ -138,7 +173,10 @@ impl Surface<Plane> for Polyline {
     fn near(&self, centre: &Vector2<f64>, reach: f64) -> bool {
         let (c, _) = self.wrapped(centre);
         let window = AABB::from_corners([c.x - reach, c.y - reach], [c.x + reach, c.y + reach]);
-        self.tree.locate_in_envelope_intersecting(window).next().is_some()
+        self.tree
+            .locate_in_envelope_intersecting(window)
+            .next()
+            .is_some()
     }
 
     fn outline(&self) -> Vec<Vec<Vector2<f64>>> {
@@ -191,7 +229,10 @@ mod tests {
     fn periodic_images_have_one_name() {
         let saw = chain(&[[0.0, 0.0], [0.5, 0.2], [1.0, 0.0]], Some(1.0));
         for x in [0.1, 0.49, 0.5, 0.97, 0.0] {
-            let (near, far) = (touches(&saw, x, 0.35, 0.4), touches(&saw, x + 7.0, 0.35, 0.4));
+            let (near, far) = (
+                touches(&saw, x, 0.35, 0.4),
+                touches(&saw, x + 7.0, 0.35, 0.4),
+            );
             assert_eq!(near.len(), far.len());
             for (a, b) in near.iter().zip(&far) {
                 assert_eq!(a.feature, b.feature);
@@ -204,7 +245,10 @@ mod tests {
     #[test]
     fn bad_profiles_are_refused() {
         let v = Vector2::new;
-        assert_eq!(Polyline::new(vec![v(0.0, 0.0)], None).unwrap_err(), ProfileError::TooFew(1));
+        assert_eq!(
+            Polyline::new(vec![v(0.0, 0.0)], None).unwrap_err(),
+            ProfileError::TooFew(1)
+        );
         assert!(Polyline::new(vec![v(0.0, 0.0), v(0.0, 0.0)], None).is_err());
         assert!(Polyline::new(vec![v(0.0, 0.0), v(1.0, 0.1)], Some(1.0)).is_err());
         assert!(Polyline::new(vec![v(0.0, f64::NAN), v(1.0, 0.1)], None).is_err());

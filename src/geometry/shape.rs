@@ -74,7 +74,12 @@ impl<S: Space> Surface<S> for HalfSpace<S> {
             vec![vec![t1 * -s, t1 * s]]
         } else {
             let corner = |a: f64, b: f64| t1 * (a * s) + t2 * (b * s);
-            vec![vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)]]
+            vec![vec![
+                corner(-1.0, -1.0),
+                corner(1.0, -1.0),
+                corner(1.0, 1.0),
+                corner(-1.0, 1.0),
+            ]]
         }
     }
 }
@@ -111,7 +116,10 @@ mod tests {
 
     #[test]
     fn half_space_gives_signed_distance() {
-        let floor = HalfSpace::<Plane> { normal: Vector2::new(0.0, 1.0), shown: 1.0 };
+        let floor = HalfSpace::<Plane> {
+            normal: Vector2::new(0.0, 1.0),
+            shown: 1.0,
+        };
         let mut out = Vec::new();
         floor.touches(&Vector2::new(3.0, 0.5), 1.0, &mut out);
         floor.touches(&Vector2::new(3.0, -0.5), 1.0, &mut out);

@@ -326,7 +326,11 @@ impl Space for Solid {
     fn transport(n: &Self::Vector, t: &Self::Tangent) -> Self::Tangent {
         let flat = t - n * n.dot(t);
         let (length, kept) = (t.norm(), flat.norm());
-        if kept > 0.0 { flat * (length / kept) } else { Vector3::zeros() }
+        if kept > 0.0 {
+            flat * (length / kept)
+        } else {
+            Vector3::zeros()
+        }
     }
     fn from_components(n: &Self::Vector, t1: f64, t2: f64) -> Self::Tangent {
         let [e1, e2] = Self::tangents(n);
@@ -381,7 +385,11 @@ mod tests {
         assert!((power - w.dot(&Solid::moment(&arm, &f))).abs() < 1e-14);
         let block = Solid::sweep(&Solid::moment(&arm, &f), &arm);
         assert!((block - Solid::rotation_block(&arm) * f).norm() < 1e-14);
-        let (arm, f, w) = (Vector2::new(1.0, -2.0), Vector2::new(0.3, 0.7), Vector1::new(0.6));
+        let (arm, f, w) = (
+            Vector2::new(1.0, -2.0),
+            Vector2::new(0.3, 0.7),
+            Vector1::new(0.6),
+        );
         let power = Plane::sweep(&w, &arm).dot(&f);
         assert!((power - w[0] * Plane::moment(&arm, &f)[0]).abs() < 1e-14);
         let block = Plane::sweep(&Plane::moment(&arm, &f), &arm);
@@ -390,7 +398,12 @@ mod tests {
 
     #[test]
     fn frames_are_orthonormal() {
-        for n in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.6, 0.0, -0.8], [1.0, 0.0, 0.0]] {
+        for n in [
+            [0.0, 0.0, 1.0],
+            [0.0, 0.0, -1.0],
+            [0.6, 0.0, -0.8],
+            [1.0, 0.0, 0.0],
+        ] {
             let n = Vector3::from(n);
             let [t1, t2] = Solid::tangents(&n);
             assert!((n.cross(&t1) - t2).norm() < 1e-14 && t1.dot(&n).abs() < 1e-14);

@@ -94,7 +94,12 @@ impl Columns {
         ] {
             column.clear();
         }
-        for triple in [&mut self.opening, &mut self.velocity, &mut self.impulse, &mut self.intact] {
+        for triple in [
+            &mut self.opening,
+            &mut self.velocity,
+            &mut self.impulse,
+            &mut self.intact,
+        ] {
             triple.iter_mut().for_each(Vec::clear);
         }
         self.state.clear();
@@ -139,13 +144,41 @@ impl Columns {
     ) -> R {
         let n = self.n;
         let column = |v: &Vec<f64>| if v.len() == n { v.as_ptr() } else { null() };
-        let mut output = |v: &mut Vec<f64>| if v.len() == n { v.as_mut_ptr() } else { null_mut() };
+        let mut output = |v: &mut Vec<f64>| {
+            if v.len() == n {
+                v.as_mut_ptr()
+            } else {
+                null_mut()
+            }
+        };
         let (first, count) = (loaded.first_variable, loaded.variables());
-        let state: Vec<*const f64> = self.state.iter().skip(first).take(count).map(column).collect();
-        let next: Vec<*mut f64> = self.state_next.iter_mut().skip(first).take(count).map(&mut output).collect();
+        let state: Vec<*const f64> = self
+            .state
+            .iter()
+            .skip(first)
+            .take(count)
+            .map(column)
+            .collect();
+        let next: Vec<*mut f64> = self
+            .state_next
+            .iter_mut()
+            .skip(first)
+            .take(count)
+            .map(&mut output)
+            .collect();
         let out = &mut self.out;
-        let third = |v: &Vec<f64>| if info.dimension == 3 { column(v) } else { null() };
-        let traction_t2 = if info.dimension == 3 { output(&mut out.traction[2]) } else { null_mut() };
+        let third = |v: &Vec<f64>| {
+            if info.dimension == 3 {
+                column(v)
+            } else {
+                null()
+            }
+        };
+        let traction_t2 = if info.dimension == 3 {
+            output(&mut out.traction[2])
+        } else {
+            null_mut()
+        };
         let batch = FwBatch {
             size: size_of::<FwBatch>(),
             n,

@@ -56,7 +56,11 @@ impl AreaRule {
     /// The area (m^2) of a contact of reduced radius `radius` (m).
     #[inline]
     pub fn area(&self, dimension: usize, radius: f64) -> f64 {
-        if dimension == 2 { self.factor * radius } else { self.factor * std::f64::consts::PI * radius * radius }
+        if dimension == 2 {
+            self.factor * radius
+        } else {
+            self.factor * std::f64::consts::PI * radius * radius
+        }
     }
 }
 
@@ -94,9 +98,14 @@ impl Interface {
     /// A damage law without a cohesion law that has an opening.
     pub fn compose(mut self) -> Result<Self, LawError> {
         let mut next = 0;
-        for loaded in [Some(&mut self.contact), self.cohesion.as_mut(), self.damage.as_mut(), self.wear.as_mut()]
-            .into_iter()
-            .flatten()
+        for loaded in [
+            Some(&mut self.contact),
+            self.cohesion.as_mut(),
+            self.damage.as_mut(),
+            self.wear.as_mut(),
+        ]
+        .into_iter()
+        .flatten()
         {
             loaded.first_variable = next;
             next += loaded.variables();
@@ -144,7 +153,9 @@ impl Interface {
 
     /// Whether the normal stiffness only pulls.
     pub fn tension_only(&self) -> bool {
-        self.cohesion.as_ref().is_some_and(|c| c.has(FLAG_TENSION_ONLY))
+        self.cohesion
+            .as_ref()
+            .is_some_and(|c| c.has(FLAG_TENSION_ONLY))
     }
 
     /// Whether friction and restitution are the same for all contacts and steps.

@@ -108,9 +108,18 @@ impl Passes {
             for (k, at) in self.members.iter().enumerate() {
                 let friction = answer(&self.columns.out, if constant { 0 } else { k });
                 let area = contact_area(law, network, &network.contacts[*at]);
-                apply_friction(&mut forms[*at], &friction, &network.contacts[*at], &before[*at], area, info);
+                apply_friction(
+                    &mut forms[*at],
+                    &friction,
+                    &network.contacts[*at],
+                    &before[*at],
+                    area,
+                    info,
+                );
             }
-            let Some(cohesion) = &law.cohesion else { continue };
+            let Some(cohesion) = &law.cohesion else {
+                continue;
+            };
             self.select(network, |c| {
                 c.law as usize == index && network.bond(c).is_some_and(|b| b.intact())
             });
@@ -186,7 +195,9 @@ impl Passes {
         let mut works = Vec::with_capacity(self.members.len());
         for at in &self.members {
             let (contact, site) = (&network.contacts[*at], &sites[*at]);
-            let Some(slot) = contact.memory() else { continue };
+            let Some(slot) = contact.memory() else {
+                continue;
+            };
             let bond = &mut network.memory[index].bonds[slot];
             let n = &contact.normal;
             let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
@@ -209,7 +220,10 @@ impl Passes {
             self.columns.damage.iter_mut().for_each(|d| *d = 0.0);
             self.run(cohesion, info, 0.0, Call::Energy)?;
             self.run(cohesion, info, 0.0, Call::Prepare)?;
-            std::mem::swap(&mut self.columns.energy_intact, &mut self.columns.out.energy);
+            std::mem::swap(
+                &mut self.columns.energy_intact,
+                &mut self.columns.out.energy,
+            );
             std::mem::swap(&mut self.columns.intact, &mut self.columns.out.traction);
             self.columns.damage.copy_from_slice(&damage_before);
             self.columns.size_outputs();
@@ -232,7 +246,9 @@ impl Passes {
         let members = std::mem::take(&mut self.members);
         for (k, at) in members.iter().enumerate() {
             let contact = &mut network.contacts[*at];
-            let Some(slot) = contact.memory() else { continue };
+            let Some(slot) = contact.memory() else {
+                continue;
+            };
             let memory = &mut network.memory[index];
             for (column, next) in memory.variables.iter_mut().zip(&self.columns.state_next) {
                 column[slot] = next[k];
@@ -293,16 +309,35 @@ impl Passes {
 
     fn select<S: Space>(&mut self, network: &Network<S>, keep: impl Fn(&Contact<S>) -> bool) {
         self.members.clear();
-        let kept = network.contacts.iter().enumerate().filter(|(_, c)| keep(c)).map(|(k, _)| k);
+        let kept = network
+            .contacts
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| keep(c))
+            .map(|(k, _)| k);
         self.members.extend(kept);
     }
 
-    fn run(&mut self, loaded: &Loaded, info: &StepInfo, degradation: f64, call: Call) -> Result<(), LawError> {
-        self.columns.with_batch(loaded, info, degradation, |batch| loaded.plugin.call(call, batch))
+    fn run(
+        &mut self,
+        loaded: &Loaded,
+        info: &StepInfo,
+        degradation: f64,
+        call: Call,
+    ) -> Result<(), LawError> {
+        self.columns.with_batch(loaded, info, degradation, |batch| {
+            loaded.plugin.call(call, batch)
+        })
     }
 
     /// Columns at the start of the step.
-    fn gather<S: Space>(&mut self, law: &Interface, network: &Network<S>, before: &[S::Vector], info: &StepInfo) {
+    fn gather<S: Space>(
+        &mut self,
+        law: &Interface,
+        network: &Network<S>,
+        before: &[S::Vector],
+        info: &StepInfo,
+    ) {
         self.columns.clear();
         for at in &self.members {
             let contact = &network.contacts[*at];
@@ -313,12 +348,29 @@ impl Passes {
     }
 
     /// Columns at the end of the step: new openings, u_th, this step's impulses.
-    fn gather_after<S: Space>(&mut self, law: &Interface, network: &Network<S>, sites: &[Site<S>], info: &StepInfo) {
+    fn gather_after<S: Space>(
+        &mut self,
+        law: &Interface,
+        network: &Network<S>,
+        sites: &[Site<S>],
+        info: &StepInfo,
+    ) {
         self.columns.clear();
         for at in &self.members {
             let (contact, site) = (&network.contacts[*at], &sites[*at]);
-            gather_contact(&mut self.columns, law, network, contact, &site.average, info);
-            push_vector::<S>(&mut self.columns.impulse, &contact.normal, &site.solution.impulse);
+            gather_contact(
+                &mut self.columns,
+                law,
+                network,
+                contact,
+                &site.average,
+                info,
+            );
+            push_vector::<S>(
+                &mut self.columns.impulse,
+                &contact.normal,
+                &site.solution.impulse,
+            );
         }
         self.gather_state(law, network);
     }
@@ -332,7 +384,9 @@ impl Passes {
                 .map(|at| {
                     let contact = &network.contacts[*at];
                     let memory = &network.memory[contact.law as usize];
-                    contact.memory().map_or(0.0, |slot| memory.variables[v][slot])
+                    contact
+                        .memory()
+                        .map_or(0.0, |slot| memory.variables[v][slot])
                 })
                 .collect();
             self.columns.state_next.push(column.clone());

@@ -62,10 +62,21 @@ impl Energy {
         self.impact += totals.impact;
         self.adhesion += totals.adhesion;
         self.viscous += totals.viscous;
-        let sinks = self.fracture + self.friction + self.impact + self.adhesion + self.viscous + self.scheme;
+        let sinks = self.fracture
+            + self.friction
+            + self.impact
+            + self.adhesion
+            + self.viscous
+            + self.scheme;
         let held = self.kinetic - self.initial_kinetic + self.potential + self.elastic;
         self.residual = held + sinks - self.external_work;
-        let seen = [self.external_work, self.potential, self.kinetic, self.initial_kinetic, sinks];
+        let seen = [
+            self.external_work,
+            self.potential,
+            self.kinetic,
+            self.initial_kinetic,
+            sinks,
+        ];
         self.scale = seen.iter().fold(self.scale, |m, x| m.max(x.abs()));
     }
 
@@ -76,6 +87,10 @@ impl Energy {
 
     /// Residual over the largest energy seen; zero when nothing moved.
     pub fn relative_residual(&self) -> f64 {
-        if self.scale > 0.0 { self.residual.abs() / self.scale } else { 0.0 }
+        if self.scale > 0.0 {
+            self.residual.abs() / self.scale
+        } else {
+            0.0
+        }
     }
 }

@@ -6,7 +6,11 @@ pub const COLOURS: usize = 24;
 
 /// Sorts contacts by colour. Returns the permutation (`order[k]` is the old index of the k-th) and the
 /// starts of the groups: `COLOURS` parallel ones and one serial, so `COLOURS + 2` numbers.
-pub fn order(bodies: &[[u32; 2]], movable: impl Fn(u32) -> bool, count: usize) -> (Vec<u32>, Vec<usize>) {
+pub fn order(
+    bodies: &[[u32; 2]],
+    movable: impl Fn(u32) -> bool,
+    count: usize,
+) -> (Vec<u32>, Vec<usize>) {
     let mut used = vec![0u32; count];
     let mut sizes = [0usize; COLOURS + 1];
     let mut colour_of = Vec::with_capacity(bodies.len());
@@ -15,7 +19,11 @@ pub fn order(bodies: &[[u32; 2]], movable: impl Fn(u32) -> bool, count: usize) -
         let (a, b) = (movable(*i), movable(*j));
         let taken = if a { used[*i as usize] } else { 0 } | if b { used[*j as usize] } else { 0 };
         let free = !taken & all;
-        let colour = if free == 0 { COLOURS } else { free.trailing_zeros() as usize };
+        let colour = if free == 0 {
+            COLOURS
+        } else {
+            free.trailing_zeros() as usize
+        };
         if colour < COLOURS {
             if a {
                 used[*i as usize] |= 1 << colour;

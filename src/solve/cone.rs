@@ -16,14 +16,22 @@ pub fn project<T: VectorLike>(normal: f64, tangent: T, mu: f64, c: f64) -> (f64,
     } else {
         (0.0, length.min(c))
     };
-    if length > 0.0 { (n, tangent * (bound / length)) } else { (n, tangent) }
+    if length > 0.0 {
+        (n, tangent * (bound / length))
+    } else {
+        (n, tangent)
+    }
 }
 
 /// The nearest vector not longer than `bound`.
 #[inline(always)]
 pub fn limit<T: VectorLike>(tangent: T, bound: f64) -> T {
     let squared = tangent.dot(&tangent);
-    if squared <= bound * bound { tangent } else { tangent * (bound / squared.sqrt()) }
+    if squared <= bound * bound {
+        tangent
+    } else {
+        tangent * (bound / squared.sqrt())
+    }
 }
 
 #[cfg(test)]

@@ -7,8 +7,7 @@
 //! maximum is zero. A scene scaled in length, mass or time has the same figure.
 
 /// The formula, for reports.
-pub const FORMULA: &str =
-    "|p - proj_K(p - rho (u + mu |u_t| n))| / rho over max(|u|, |u_free|), rho = 1/lambda_max(W_cc)";
+pub const FORMULA: &str = "|p - proj_K(p - rho (u + mu |u_t| n))| / rho over max(|u|, |u_free|), rho = 1/lambda_max(W_cc)";
 
 /// Sums over contacts; added in a fixed order, whatever the number of threads.
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,6 +48,10 @@ impl Sums {
     pub fn error(&self, free: f64) -> f64 {
         let scale = self.velocity.max(free).sqrt();
         let residual = self.residual.sqrt();
-        if scale > 0.0 { residual / scale } else { residual }
+        if scale > 0.0 {
+            residual / scale
+        } else {
+            residual
+        }
     }
 }

@@ -65,7 +65,7 @@ pub(super) enum Place {
 }
 
 /// The contact problem of one step. Build it with [`Problem::new`], then [`Problem::push`] contacts.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Problem<S: Space> {
     /// Velocities in place, one line a body.
     pub lines: Vec<Line<S>>,
@@ -84,6 +84,22 @@ pub struct Problem<S: Space> {
     pub(super) groups: [Vec<usize>; 2],
 }
 
+impl<S: Space> Default for Problem<S> {
+    fn default() -> Self {
+        Self {
+            lines: Vec::new(),
+            free: Vec::new(),
+            lengths: Vec::new(),
+            masses: Vec::new(),
+            plain: Vec::new(),
+            full: Vec::new(),
+            general: Vec::new(),
+            places: Vec::new(),
+            groups: [Vec::new(), Vec::new()],
+        }
+    }
+}
+
 impl<S: Space> Problem<S> {
     /// Empties the problem, keeping its memory.
     pub fn clear(&mut self) {
@@ -98,7 +114,14 @@ impl<S: Space> Problem<S> {
     }
 
     /// Adds a body by its free velocity, inverse masses, inverse inertia and length for spins.
-    pub fn push_body(&mut self, v: S::Vector, w: S::Spin, inverse_mass: S::Vector, inverse_inertia: f64, length: f64) {
+    pub fn push_body(
+        &mut self,
+        v: S::Vector,
+        w: S::Spin,
+        inverse_mass: S::Vector,
+        inverse_inertia: f64,
+        length: f64,
+    ) {
         let isotropic = inverse_mass[0];
         self.lines.push(Line {
             v,

@@ -6,8 +6,8 @@
 //!   opposite to the sliding velocity u_t + s_t.
 //!
 //! Body velocities are updated in place: applying an impulse costs O(1) a contact.
-pub mod cone;
 pub mod colour;
+pub mod cone;
 pub mod error;
 pub mod form;
 pub mod nlgs;

@@ -22,7 +22,12 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { tolerance: 1e-4, max_iterations: 10_000, test_every: 10, parallel: false }
+        Self {
+            tolerance: 1e-4,
+            max_iterations: 10_000,
+            test_every: 10,
+            parallel: false,
+        }
     }
 }
 
@@ -45,7 +50,10 @@ const CHUNK: usize = 512;
 /// Solves the problem in place.
 pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     if problem.contacts() == 0 {
-        return Report { converged: true, ..Report::default() };
+        return Report {
+            converged: true,
+            ..Report::default()
+        };
     }
     sort(problem);
     let free = free_velocity(problem);
@@ -110,7 +118,10 @@ unsafe impl<S: Space> Sync for Lines<S> {}
 
 impl<S: Space> Lines<S> {
     fn new(lines: &mut [Line<S>]) -> Self {
-        Self { first: lines.as_mut_ptr(), len: lines.len() }
+        Self {
+            first: lines.as_mut_ptr(),
+            len: lines.len(),
+        }
     }
 
     /// Runs `f` on the lines of two bodies and stores those of movable bodies.
@@ -145,7 +156,14 @@ impl<S: Space> Lines<S> {
 
 /// Puts the rows of each kind in the order of their colours.
 fn sort<S: Space>(problem: &mut Problem<S>) {
-    let Problem { plain, full, places, groups, lines, .. } = problem;
+    let Problem {
+        plain,
+        full,
+        places,
+        groups,
+        lines,
+        ..
+    } = problem;
     let count = lines.len();
     let movable = |b: u32| lines[b as usize].im > 0.0;
     let (moved_plain, starts) = permute(plain, movable, count);
@@ -205,7 +223,8 @@ fn pass<S: Space, R: Row<S>>(rows: &mut [R], starts: &[usize], lines: &Lines<S>,
         let rows = &mut rows[group[0]..group[1]];
         let update = |row: &mut R| lines.with(row.bodies(), false, |a, b| row.update(a, b));
         if k < COLOURS && rows.len() > CHUNK {
-            rows.par_chunks_mut(CHUNK).for_each(|chunk| chunk.iter_mut().for_each(update));
+            rows.par_chunks_mut(CHUNK)
+                .for_each(|chunk| chunk.iter_mut().for_each(update));
         } else {
             rows.iter_mut().for_each(update);
         }
@@ -250,7 +269,12 @@ fn measure_rows<S: Space, R: Row<S>>(
 
 /// |u_free|^2 over all contacts.
 fn free_velocity<S: Space>(problem: &mut Problem<S>) -> f64 {
-    for ((line, free), length) in problem.lines.iter_mut().zip(&problem.free).zip(&problem.lengths) {
+    for ((line, free), length) in problem
+        .lines
+        .iter_mut()
+        .zip(&problem.free)
+        .zip(&problem.lengths)
+    {
         line.v = free.0;
         line.s = free.1 * *length;
     }

@@ -128,7 +128,10 @@ impl<S: Space> Row<S> for PlainRow<S> {
         } else {
             0.0
         };
-        Residual { squared, velocity: un * un + ut.dot(&ut) }
+        Residual {
+            squared,
+            velocity: un * un + ut.dot(&ut),
+        }
     }
 
     fn solution(&self) -> ContactSolution<S> {
@@ -248,7 +251,10 @@ impl<S: Space> Row<S> for FullRow<S> {
         } else {
             0.0
         };
-        Residual { squared, velocity: un * un + ut.dot(&ut) }
+        Residual {
+            squared,
+            velocity: un * un + ut.dot(&ut),
+        }
     }
 
     fn solution(&self) -> ContactSolution<S> {
@@ -284,7 +290,12 @@ impl<S: Space> Block<S> {
         let (a, c) = (t1.dot(&w.apply(&t1)), t2.dot(&w.apply(&t2)));
         let cross = t1.dot(&w.apply(&t2));
         let largest = 0.5 * (a + c) + (0.25 * (a - c) * (a - c) + cross * cross).sqrt();
-        Self { m, w, iwn: inverse(n.dot(&w.apply(n))), iwt: inverse(largest) }
+        Self {
+            m,
+            w,
+            iwn: inverse(n.dot(&w.apply(n))),
+            iwt: inverse(largest),
+        }
     }
 }
 
@@ -327,7 +338,9 @@ impl<S: Space> GeneralRow<S> {
             tension_only: false,
         });
         let pulled = Block::new(block, &n, elastic.b_n, elastic.b_t);
-        let slack = elastic.tension_only.then(|| Block::new(block, &n, 0.0, elastic.b_t));
+        let slack = elastic
+            .tension_only
+            .then(|| Block::new(block, &n, 0.0, elastic.b_t));
         Self {
             bodies: contact.bodies,
             n,
@@ -398,7 +411,10 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         let (n, e) = (self.n, self.elastic);
         let f = self.relative(a, b) - self.block.apply(&self.p);
         let at = S::lift(&n, &e.a_t);
-        let with = self.pulled.m.apply(&(f - self.block.apply(&(n * e.a_n + at))));
+        let with = self
+            .pulled
+            .m
+            .apply(&(f - self.block.apply(&(n * e.a_n + at))));
         let (mut sn, mut st) = self.solve(&self.pulled, &with);
         let mut u = self.pulled.w.apply(&(n * sn + S::lift(&n, &st))) + with;
         if let Some(slack) = &self.slack {
@@ -429,14 +445,29 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         let squared = if rho > 0.0 {
             let pn = n.dot(&self.p) - en + self.tension;
             let pt = S::tangential(n, &self.p) - et;
-            natural_map(pn, pt, un + self.shift_n, ut + self.shift_t, rho, self.mu, self.cohesion)
+            natural_map(
+                pn,
+                pt,
+                un + self.shift_n,
+                ut + self.shift_t,
+                rho,
+                self.mu,
+                self.cohesion,
+            )
         } else {
             0.0
         };
-        Residual { squared, velocity: u.dot(&u) }
+        Residual {
+            squared,
+            velocity: u.dot(&u),
+        }
     }
 
     fn solution(&self) -> ContactSolution<S> {
-        ContactSolution { impulse: self.p, unilateral_n: self.sn, unilateral_t: self.st }
+        ContactSolution {
+            impulse: self.p,
+            unilateral_n: self.sn,
+            unilateral_t: self.st,
+        }
     }
 }

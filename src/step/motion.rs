@@ -67,7 +67,10 @@ pub struct Before<S: Space> {
 impl<S: Space> Before<S> {
     /// Remembers the velocities.
     pub fn new(bodies: &Bodies<S>) -> Self {
-        Self { velocity: bodies.velocity.clone(), spin: bodies.spin.clone() }
+        Self {
+            velocity: bodies.velocity.clone(),
+            spin: bodies.spin.clone(),
+        }
     }
 
     /// The work done over the step. `received` are contact impulses and moments on the driven bodies
@@ -89,17 +92,30 @@ impl<S: Space> Before<S> {
             let average = v * (1.0 - theta) + bodies.velocity[b] * theta;
             work.potential -= h * bodies.mass[b] * gravity.dot(&average);
             let (dv, dw) = (bodies.velocity[b] - v, bodies.spin[b] - w);
-            work.scheme += (theta - 0.5) * (bodies.mass[b] * dv.dot(&dv) + bodies.inertia[b] * dw.dot(&dw));
+            work.scheme +=
+                (theta - 0.5) * (bodies.mass[b] * dv.dot(&dv) + bodies.inertia[b] * dw.dot(&dw));
         }
         for (driven, (impulse, moment)) in bodies.driven.iter().zip(received) {
             let b = driven.body as usize;
             for (k, dof) in driven.dofs.iter().enumerate() {
                 let (old, new, inertia, received, weight) = if k < S::D {
                     let g = h * bodies.mass[b] * gravity[k];
-                    (self.velocity[b][k], bodies.velocity[b][k], bodies.mass[b], impulse[k], g)
+                    (
+                        self.velocity[b][k],
+                        bodies.velocity[b][k],
+                        bodies.mass[b],
+                        impulse[k],
+                        g,
+                    )
                 } else {
                     let k = k - S::D;
-                    (self.spin[b][k], bodies.spin[b][k], bodies.inertia[b], moment[k], 0.0)
+                    (
+                        self.spin[b][k],
+                        bodies.spin[b][k],
+                        bodies.inertia[b],
+                        moment[k],
+                        0.0,
+                    )
                 };
                 let average = (1.0 - theta) * old + theta * new;
                 work.external += average

@@ -125,11 +125,18 @@ impl<S: Space> Simulation<S> {
             table,
             network: Network::new(alert, skin, &variables),
             gravity: S::Vector::null(),
-            scheme: Scheme { h: 1e-3, theta: 0.5 },
+            scheme: Scheme {
+                h: 1e-3,
+                theta: 0.5,
+            },
             solver: solve::Options::default(),
             time: 0.0,
             steps: 0,
-            energy: Energy { kinetic, initial_kinetic: kinetic, ..Energy::default() },
+            energy: Energy {
+                kinetic,
+                initial_kinetic: kinetic,
+                ..Energy::default()
+            },
             received,
             passes: Passes::default(),
             problem: Problem::default(),
@@ -144,12 +151,23 @@ impl<S: Space> Simulation<S> {
     pub fn step(&mut self) -> Result<StepReport, StepError> {
         let mut report = StepReport::default();
         let Scheme { h, theta } = self.scheme;
-        let info = StepInfo { dimension: S::D as u32, time: self.time, h, theta };
+        let info = StepInfo {
+            dimension: S::D as u32,
+            time: self.time,
+            h,
+            theta,
+        };
         let start = Before::new(&self.bodies);
 
         let clock = Instant::now();
         motion::advance(&mut self.bodies, (1.0 - theta) * h);
-        detect(&mut self.network, &self.shapes, &self.bodies, &self.table, self.time);
+        detect(
+            &mut self.network,
+            &self.shapes,
+            &self.bodies,
+            &self.table,
+            self.time,
+        );
         if self.steps == 0 {
             self.passes.make_bonds(&self.laws, &mut self.network);
         }
@@ -159,7 +177,9 @@ impl<S: Space> Simulation<S> {
         let before = self.relative_velocities();
         let free = motion::free_velocities(&self.bodies, &self.gravity, self.time, h, theta);
         self.geometry_of_forms(h);
-        let prepared = self.passes.prepare(&self.laws, &self.network, &before, &info, &mut self.forms);
+        let prepared =
+            self.passes
+                .prepare(&self.laws, &self.network, &before, &info, &mut self.forms);
         prepared.map_err(|e| self.law_error(e))?;
         report.timing.laws = clock.elapsed();
 
@@ -171,20 +191,29 @@ impl<S: Space> Simulation<S> {
 
         let clock = Instant::now();
         let sites = self.sites(&before);
-        let committed = self.passes.commit(&self.laws, &mut self.network, &sites, &info);
+        let committed = self
+            .passes
+            .commit(&self.laws, &mut self.network, &sites, &info);
         report.totals = committed.map_err(|e| self.law_error(e))?;
         report.timing.laws += clock.elapsed();
 
         motion::advance(&mut self.bodies, theta * h);
         self.book(&start, &report.totals);
-        report.active = sites.iter().filter(|s| s.solution.impulse != S::Vector::null()).count();
+        report.active = sites
+            .iter()
+            .filter(|s| s.solution.impulse != S::Vector::null())
+            .count();
         self.time += h;
         self.steps += 1;
         Ok(report)
     }
 
     fn law_error(&self, source: LawError) -> StepError {
-        StepError::Law { step: self.steps + 1, time: self.time, source }
+        StepError::Law {
+            step: self.steps + 1,
+            time: self.time,
+            source,
+        }
     }
 
     /// Velocity of a contact's candidate relative to its antagonist, at the velocities at hand.
@@ -197,7 +226,11 @@ impl<S: Space> Simulation<S> {
     }
 
     fn relative_velocities(&self) -> Vec<S::Vector> {
-        self.network.contacts.iter().map(|c| self.relative_velocity(c)).collect()
+        self.network
+            .contacts
+            .iter()
+            .map(|c| self.relative_velocity(c))
+            .collect()
     }
 
     /// The part of the forms that geometry gives.
@@ -206,7 +239,10 @@ impl<S: Space> Simulation<S> {
         let network = &self.network;
         self.forms.extend(network.contacts.iter().map(|contact| {
             // An unbroken bond fills the gap at which it was made.
-            let filled = network.bond(contact).filter(|b| b.intact()).map_or(0.0, |b| b.gap);
+            let filled = network
+                .bond(contact)
+                .filter(|b| b.intact())
+                .map_or(0.0, |b| b.gap);
             ContactForm {
                 bodies: contact.bodies,
                 normal: contact.normal,
@@ -228,7 +264,13 @@ impl<S: Space> Simulation<S> {
         let (bodies, problem) = (&self.bodies, &mut self.problem);
         problem.clear();
         for (b, (v, w)) in free.iter().enumerate() {
-            problem.push_body(*v, *w, bodies.inverse_mass[b], bodies.inverse_inertia[b], bodies.length[b]);
+            problem.push_body(
+                *v,
+                *w,
+                bodies.inverse_mass[b],
+                bodies.inverse_inertia[b],
+                bodies.length[b],
+            );
         }
         for form in &self.forms {
             problem.push(form);

@@ -53,195 +53,87 @@ extern "C" {
  * contact and use the answer for all. */
 #define FW_FLAG_CONSTANT (UINT64_C(1) << 4)
 
+/* Describes one parameter or one internal variable. Frozen within a major version. */
+typedef struct fw_field {
+    const char *name; /* Name, NUL-terminated, [a-z][a-z0-9_]*. */
+    const char *unit; /* SI unit, NUL-terminated, empty for a pure number. */
+    const char *doc; /* One line for the user, NUL-terminated. */
+    double default_value; /* Default value of a parameter, initial value of a variable. */
+    double minimum; /* Smallest accepted value (may be minus infinity). */
+    double maximum; /* Largest accepted value (may be infinity). */
+    uint64_t flags; /* For a variable: 1 to write it to the results. Otherwise 0. */
+} fw_field;
+
+/* The host's buffer for a sentence. */
+typedef struct fw_message {
+    size_t size; /* Size of this struct in bytes, set by the host. */
+    char *text; /* Where the plugin writes NUL-terminated UTF-8. */
+    size_t capacity; /* Bytes at text, the NUL included. */
+    int64_t contact; /* Index in the batch of the contact at fault, or -1; set by the plugin. */
+} fw_message;
+
+/* One batch of contacts that share an interface law. Columns have n values and belong to the host.
+ * 
+ * A column that a call does not use is null. Inputs are read-only; out_* and state_next columns
+ * are written by the call. Vectors are in the local frame (n, t1, t2), n from the antagonist to the
+ * candidate; in two dimensions the t2 columns are null. */
+typedef struct fw_batch {
+    size_t size; /* Size of this struct in bytes, set by the host. */
+    size_t n; /* Number of contacts. */
+    uint32_t dimension; /* 2 or 3. */
+    uint32_t reserved; /* Zero. */
+    double time; /* Time at the start of the step (s). */
+    double h; /* Time step (s). */
+    double theta; /* Theta of the scheme. */
+    double degradation; /* Exponent m of the cohesion law's degradation, psi = (1 - D)^m psi_0 (damage calls). */
+    const double *parameters; /* Parameters in the order of the plugin's schema. */
+    const double *const *state; /* Internal variables at the start of the step, one column each. */
+    double *const *state_next; /* Internal variables at the end of the step, one column each (initialise, commit). */
+    const double *gap; /* Gap at detection (m), positive when open. */
+    const double *area; /* Contact area (m^2; in 2D length times unit depth). */
+    const double *radius; /* Reduced radius r1 r2/(r1 + r2) (m); the radius itself against a flat body. */
+    const double *age; /* Time since the contact formed (s). */
+    const double *opening_n; /* Bond elongation (m): at the start of the step in prepare, at its end in commit. */
+    const double *opening_t1; /* Tangential opening along t1 (m). */
+    const double *opening_t2; /* Tangential opening along t2 (m). */
+    const double *velocity_n; /* Relative velocity (m/s): u^- in prepare, u_th in commit. */
+    const double *velocity_t1; /* Tangential relative velocity along t1 (m/s). */
+    const double *velocity_t2; /* Tangential relative velocity along t2 (m/s). */
+    const double *impulse_n; /* Impulse (N s): the last step's in prepare, this step's in commit. */
+    const double *impulse_t1; /* Tangential impulse along t1 (N s). */
+    const double *impulse_t2; /* Tangential impulse along t2 (N s). */
+    const double *damage; /* Damage D in [0, 1]; 1 for a contact without bond. */
+    const double *energy_intact; /* Stored energy of the undamaged bond at this opening, psi_0 (J/m^2) (damage). */
+    const double *intact_n; /* Traction of the undamaged bond at this opening (Pa) (damage). */
+    const double *intact_t1; /* Tangential traction of the undamaged bond along t1 (Pa) (damage). */
+    const double *intact_t2; /* Tangential traction of the undamaged bond along t2 (Pa) (damage). */
+    const double *slip; /* Slip distance over this step, h |u_t| (m) (wear). */
+    const double *friction_work; /* Energy dissipated by friction over this step (J) (wear). */
+    double *out_friction; /* Contact: friction coefficient mu. */
+    double *out_restitution_n; /* Contact: normal restitution e_n. */
+    double *out_restitution_t; /* Contact: tangential restitution e_t. */
+    double *out_tension_strength; /* Contact, cohesion: tension strength c_n over the area (Pa). */
+    double *out_shear_cohesion; /* Contact, cohesion: shear cohesion c_t over the area (Pa). */
+    double *out_rolling; /* Contact: rolling friction length (m). */
+    double *out_spinning; /* Contact: spinning friction length (m). */
+    double *out_traction_n; /* Cohesion: traction at the current opening and damage, positive pulls together (Pa). */
+    double *out_traction_t1; /* Cohesion: tangential traction along t1 (Pa). */
+    double *out_traction_t2; /* Cohesion: tangential traction along t2 (Pa). */
+    double *out_stiffness_n; /* Cohesion: normal stiffness, tangent or secant, not negative (Pa/m). */
+    double *out_stiffness_t; /* Cohesion: tangential stiffness (Pa/m). */
+    double *out_damping_n; /* Cohesion: normal damping (Pa s/m). */
+    double *out_damping_t; /* Cohesion: tangential damping (Pa s/m). */
+    double *out_energy; /* Cohesion, call energy: energy stored at this opening and damage (J/m^2). */
+    double *out_damage; /* Damage: D at the end of the step. */
+    double *out_volume; /* Wear: volume removed over this step (m^3). */
+} fw_batch;
+
 /* Checks parameters beyond their ranges (relations between them). May be null. */
 typedef int32_t (*fw_validate)(const double *parameters, fw_message *message);
 /* A call over a batch. May be null where the kind does not need it. */
 typedef int32_t (*fw_call)(const fw_batch *batch, fw_message *message);
 
-/* Major version: a host refuses a plugin of another major.
- * const ABI_MAJOR: u32 = 1;
- * Minor version: grows when structs grow at their end.
- * const ABI_MINOR: u32 = 0;
- * Name of the one exported function, of type [FwEntry].
- * const ENTRY_SYMBOL: &str = "fretwork_plugin";
- * 
- * Kind of plugin: friction, restitution, rolling (fills the non-smooth part of the local form).
- * const KIND_CONTACT: i32 = 1;
- * Kind of plugin: traction against opening.
- * const KIND_COHESION: i32 = 2;
- * Kind of plugin: how the damage D grows, when a bond breaks.
- * const KIND_DAMAGE: i32 = 3;
- * Kind of plugin: what is removed, from slip, force and energy.
- * const KIND_WEAR: i32 = 4;
- * 
- * Status: done.
- * const STATUS_OK: i32 = 0;
- * Status: the call failed, the message says why; the run stops with exit code 1.
- * const STATUS_ERROR: i32 = 1;
- * Status of validate: a parameter is out of what the law accepts; exit code 2.
- * const STATUS_BAD_PARAMETER: i32 = 2;
- * Status: the law could not follow so large a step; the message proposes a smaller one.
- * const STATUS_REDUCE_STEP: i32 = 3;
- * Status: the plugin panicked; set by the Rust wrapper.
- * const STATUS_PANIC: i32 = 4;
- * 
- * Flag: the law is written for two-dimensional scenes only.
- * const FLAG_2D_ONLY: u64 = 1;
- * Flag: the law is written for three-dimensional scenes only.
- * const FLAG_3D_ONLY: u64 = 1 << 1;
- * Flag (cohesion): the normal stiffness pulls only; compression is the contact's.
- * const FLAG_TENSION_ONLY: u64 = 1 << 2;
- * Flag (cohesion): the law has an opening and a stored energy, so a damage law can follow it.
- * const FLAG_OPENING: u64 = 1 << 3;
- * 
- * Describes one parameter or one internal variable. Frozen within a major version.
- * pr(C)]
- * rive(Clone, Copy, Debug)]
- * struct FwField {
- * /// Name, NUL-terminated, [a-z][a-z0-9_]*.
- * pub name: *const c_char,
- * /// SI unit, NUL-terminated, empty for a pure number.
- * pub unit: *const c_char,
- * /// One line for the user, NUL-terminated.
- * pub doc: *const c_char,
- * /// Default value of a parameter, initial value of a variable.
- * pub default: f64,
- * /// Smallest accepted value (may be minus infinity).
- * pub minimum: f64,
- * /// Largest accepted value (may be infinity).
- * pub maximum: f64,
- * /// For a variable: 1 to write it to the results. Otherwise 0.
- * pub flags: u64,
- * 
- * 
- * The host's buffer for a sentence.
- * pr(C)]
- * rive(Clone, Copy, Debug)]
- * struct FwMessage {
- * /// Size of this struct in bytes, set by the host.
- * pub size: usize,
- * /// Where the plugin writes NUL-terminated UTF-8.
- * pub text: *mut c_char,
- * /// Bytes at text, the NUL included.
- * pub capacity: usize,
- * /// Index in the batch of the contact at fault, or -1; set by the plugin.
- * pub contact: i64,
- * 
- * 
- * One batch of contacts that share an interface law. Columns have n values and belong to the host.
- * 
- * A column that a call does not use is null. Inputs are read-only; out_* and state_next columns
- * are written by the call. Vectors are in the local frame (n, t1, t2), n from the antagonist to the
- * candidate; in two dimensions the t2 columns are null.
- * pr(C)]
- * rive(Clone, Copy, Debug)]
- * struct FwBatch {
- * /// Size of this struct in bytes, set by the host.
- * pub size: usize,
- * /// Number of contacts.
- * pub n: usize,
- * /// 2 or 3.
- * pub dimension: u32,
- * /// Zero.
- * pub reserved: u32,
- * /// Time at the start of the step (s).
- * pub time: f64,
- * /// Time step (s).
- * pub h: f64,
- * /// Theta of the scheme.
- * pub theta: f64,
- * /// Exponent m of the cohesion law's degradation, psi = (1 - D)^m psi_0 (damage calls).
- * pub degradation: f64,
- * /// Parameters in the order of the plugin's schema.
- * pub parameters: *const f64,
- * /// Internal variables at the start of the step, one column each.
- * pub state: *const *const f64,
- * /// Internal variables at the end of the step, one column each (initialise, commit).
- * pub state_next: *const *mut f64,
- * /// Gap at detection (m), positive when open.
- * pub gap: *const f64,
- * /// Contact area (m^2; in 2D length times unit depth).
- * pub area: *const f64,
- * /// Reduced radius r1 r2/(r1 + r2) (m); the radius itself against a flat body.
- * pub radius: *const f64,
- * /// Time since the contact formed (s).
- * pub age: *const f64,
- * /// Bond elongation (m): at the start of the step in prepare, at its end in commit.
- * pub opening_n: *const f64,
- * /// Tangential opening along t1 (m).
- * pub opening_t1: *const f64,
- * /// Tangential opening along t2 (m).
- * pub opening_t2: *const f64,
- * /// Relative velocity (m/s): u^- in prepare, u_th in commit.
- * pub velocity_n: *const f64,
- * /// Tangential relative velocity along t1 (m/s).
- * pub velocity_t1: *const f64,
- * /// Tangential relative velocity along t2 (m/s).
- * pub velocity_t2: *const f64,
- * /// Impulse (N s): the last step's in prepare, this step's in commit.
- * pub impulse_n: *const f64,
- * /// Tangential impulse along t1 (N s).
- * pub impulse_t1: *const f64,
- * /// Tangential impulse along t2 (N s).
- * pub impulse_t2: *const f64,
- * /// Damage D in [0, 1]; 1 for a contact without bond.
- * pub damage: *const f64,
- * /// Stored energy of the undamaged bond at this opening, psi_0 (J/m^2) (damage).
- * pub energy_intact: *const f64,
- * /// Traction of the undamaged bond at this opening (Pa) (damage).
- * pub intact_n: *const f64,
- * /// Tangential traction of the undamaged bond along t1 (Pa) (damage).
- * pub intact_t1: *const f64,
- * /// Tangential traction of the undamaged bond along t2 (Pa) (damage).
- * pub intact_t2: *const f64,
- * /// Slip distance over this step, h |u_t| (m) (wear).
- * pub slip: *const f64,
- * /// Energy dissipated by friction over this step (J) (wear).
- * pub friction_work: *const f64,
- * /// Contact: friction coefficient mu.
- * pub out_friction: *mut f64,
- * /// Contact: normal restitution e_n.
- * pub out_restitution_n: *mut f64,
- * /// Contact: tangential restitution e_t.
- * pub out_restitution_t: *mut f64,
- * /// Contact, cohesion: tension strength c_n over the area (Pa).
- * pub out_tension_strength: *mut f64,
- * /// Contact, cohesion: shear cohesion c_t over the area (Pa).
- * pub out_shear_cohesion: *mut f64,
- * /// Contact: rolling friction length (m).
- * pub out_rolling: *mut f64,
- * /// Contact: spinning friction length (m).
- * pub out_spinning: *mut f64,
- * /// Cohesion: traction at the current opening and damage, positive pulls together (Pa).
- * pub out_traction_n: *mut f64,
- * /// Cohesion: tangential traction along t1 (Pa).
- * pub out_traction_t1: *mut f64,
- * /// Cohesion: tangential traction along t2 (Pa).
- * pub out_traction_t2: *mut f64,
- * /// Cohesion: normal stiffness, tangent or secant, not negative (Pa/m).
- * pub out_stiffness_n: *mut f64,
- * /// Cohesion: tangential stiffness (Pa/m).
- * pub out_stiffness_t: *mut f64,
- * /// Cohesion: normal damping (Pa s/m).
- * pub out_damping_n: *mut f64,
- * /// Cohesion: tangential damping (Pa s/m).
- * pub out_damping_t: *mut f64,
- * /// Cohesion, call energy: energy stored at this opening and damage (J/m^2).
- * pub out_energy: *mut f64,
- * /// Damage: D at the end of the step.
- * pub out_damage: *mut f64,
- * /// Wear: volume removed over this step (m^3).
- * pub out_volume: *mut f64,
- * 
- * 
- * Checks parameters beyond their ranges (relations between them). May be null.
- * type FwValidate =
- * Option<unsafe extern "C" fn(parameters: *const f64, message: *mut FwMessage) -> i32>;
- * A call over a batch. May be null where the kind does not need it.
- * type FwCall =
- * Option<unsafe extern "C" fn(batch: *const FwBatch, message: *mut FwMessage) -> i32>;
- * 
- * What a plugin is: returned by its entry function, static for the life of the program. */
+/* What a plugin is: returned by its entry function, static for the life of the program. */
 typedef struct fw_plugin {
     size_t size; /* Size of this struct in bytes, as the plugin was built. */
     uint32_t abi_major; /* Major version the plugin was built for. */

@@ -18,14 +18,85 @@ fn rust_layout() -> Vec<(String, u64)> {
     layout!(
         out, FwField, "fw_field", name, unit, doc, default, minimum, maximum, flags
     );
+    layout!(out, FwMessage, "fw_message", size, text, capacity, contact);
     layout!(
-        out, FwMessage, "fw_message", size, text, capacity, contact
+        out,
+        FwBatch,
+        "fw_batch",
+        size,
+        n,
+        dimension,
+        reserved,
+        time,
+        h,
+        theta,
+        degradation,
+        parameters,
+        state,
+        state_next,
+        gap,
+        area,
+        radius,
+        age,
+        opening_n,
+        opening_t1,
+        opening_t2,
+        velocity_n,
+        velocity_t1,
+        velocity_t2,
+        impulse_n,
+        impulse_t1,
+        impulse_t2,
+        damage,
+        energy_intact,
+        intact_n,
+        intact_t1,
+        intact_t2,
+        slip,
+        friction_work,
+        out_friction,
+        out_restitution_n,
+        out_restitution_t,
+        out_tension_strength,
+        out_shear_cohesion,
+        out_rolling,
+        out_spinning,
+        out_traction_n,
+        out_traction_t1,
+        out_traction_t2,
+        out_stiffness_n,
+        out_stiffness_t,
+        out_damping_n,
+        out_damping_t,
+        out_energy,
+        out_damage,
+        out_volume
     );
     layout!(
-        out, FwBatch, "fw_batch", size, n, dimension, reserved, time, h, theta, degradation, parameters, state, state_next, gap, area, radius, age, opening_n, opening_t1, opening_t2, velocity_n, velocity_t1, velocity_t2, impulse_n, impulse_t1, impulse_t2, damage, energy_intact, intact_n, intact_t1, intact_t2, slip, friction_work, out_friction, out_restitution_n, out_restitution_t, out_tension_strength, out_shear_cohesion, out_rolling, out_spinning, out_traction_n, out_traction_t1, out_traction_t2, out_stiffness_n, out_stiffness_t, out_damping_n, out_damping_t, out_energy, out_damage, out_volume
-    );
-    layout!(
-        out, FwPlugin, "fw_plugin", size, abi_major, abi_minor, kind, reserved, flags, name, version, doc, reference, n_parameters, parameters, n_variables, variables, degradation, validate, initialise, prepare, solve_local, commit, energy
+        out,
+        FwPlugin,
+        "fw_plugin",
+        size,
+        abi_major,
+        abi_minor,
+        kind,
+        reserved,
+        flags,
+        name,
+        version,
+        doc,
+        reference,
+        n_parameters,
+        parameters,
+        n_variables,
+        variables,
+        degradation,
+        validate,
+        initialise,
+        prepare,
+        solve_local,
+        commit,
+        energy
     );
     for (name, value) in [
         ("FW_ABI_MAJOR", ABI_MAJOR as u64),
@@ -55,7 +126,8 @@ fn header_matches_crate() {
     let expected = rust_layout();
     let dir = std::env::temp_dir().join(format!("fretwork-abi-{}", std::process::id()));
     std::fs::create_dir_all(&dir).unwrap();
-    let mut program = String::from("#include <stdio.h>\n#include \"fretwork.h\"\nint main(void) {\n");
+    let mut program =
+        String::from("#include <stdio.h>\n#include \"fretwork.h\"\nint main(void) {\n");
     for (expression, _) in &expected {
         program += &format!("printf(\"%llu\\n\", (unsigned long long)({expression}));\n");
     }
@@ -64,7 +136,9 @@ fn header_matches_crate() {
     std::fs::write(&source, program).unwrap();
     let include = concat!(env!("CARGO_MANIFEST_DIR"), "/include");
     let compiled = Command::new("cc")
-        .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-I", include, "-o"])
+        .args([
+            "-std=c99", "-Wall", "-Wextra", "-Werror", "-I", include, "-o",
+        ])
         .arg(&binary)
         .arg(&source)
         .status()

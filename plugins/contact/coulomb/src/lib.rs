@@ -1,0 +1,31 @@
+//! Coulomb friction with Newton's restitution.
+use fretwork_law::{ContactLaw, Friction, Law, Site, abi, export, parameters};
+
+parameters! {
+    /// |p_t| <= mu p_n, opposite to the sliding; u+ = -e u- for closed contacts.
+    pub struct Coulomb {
+        mu: "" = 0.3, 0.0, f64::INFINITY, "friction coefficient";
+        restitution_n: "" = 0.0, 0.0, 1.0, "normal restitution (Newton)";
+        restitution_t: "" = 0.0, 0.0, 1.0, "tangential restitution (Newton)";
+    }
+}
+
+impl Law for Coulomb {
+    const NAME: &'static str = "coulomb";
+    const DOC: &'static str = "Coulomb friction with Newton's restitution";
+    const REFERENCE: &'static str = "J. J. Moreau, Eur. J. Mech. A/Solids 13(4) (1994) 93-114";
+    const FLAGS: u64 = abi::FLAG_CONSTANT;
+}
+
+impl ContactLaw for Coulomb {
+    fn friction(&self, _site: &Site, _state: &[f64]) -> Friction {
+        Friction {
+            mu: self.mu,
+            restitution_n: self.restitution_n,
+            restitution_t: self.restitution_t,
+            ..Friction::default()
+        }
+    }
+}
+
+export!(contact Coulomb);

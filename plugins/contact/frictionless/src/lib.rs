@@ -1,0 +1,27 @@
+//! Unilateral contact without friction.
+use fretwork_law::{ContactLaw, Friction, Law, Site, abi, export, parameters};
+
+parameters! {
+    /// Signorini's condition alone.
+    pub struct Frictionless {
+        restitution_n: "" = 0.0, 0.0, 1.0, "normal restitution (Newton)";
+    }
+}
+
+impl Law for Frictionless {
+    const NAME: &'static str = "frictionless";
+    const DOC: &'static str = "unilateral contact without friction";
+    const REFERENCE: &'static str = "M. Jean, Comput. Methods Appl. Mech. Engrg 177 (1999) 235-257";
+    const FLAGS: u64 = abi::FLAG_CONSTANT;
+}
+
+impl ContactLaw for Frictionless {
+    fn friction(&self, _site: &Site, _state: &[f64]) -> Friction {
+        Friction {
+            restitution_n: self.restitution_n,
+            ..Friction::default()
+        }
+    }
+}
+
+export!(contact Frictionless);

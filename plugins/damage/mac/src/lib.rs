@@ -1,0 +1,182 @@
+//! The rate law of Monerie, Acary and Cangemi: b dD/dt = <Y - w>_+, Y = -d psi/d D.
+use fretwork_law::{DamageLaw, Intact, Law, Site, export, parameters};
+
+parameters! {
+    /// With b = 0 a bond dissipates exactly w as it opens. It then fades like 1/u^2 and never reaches
+    /// D = 1 by itself: below `beta_broken` it counts as broken, and the energy still stored, at most
+    /// beta_broken w/2, is released as fracture energy.
+    pub struct Mac {
+        w: "J/m^2" = 0.1, 0.0, 1e30, "Dupre's energy: fracture energy of the bond";
+        b: "J s/m^2" = 0.0, 0.0, 1e30, "viscosity of damage";
+        beta_broken: "" = 1e-3, 0.0, 1.0, "intensity of adhesion below which the bond is broken";
+    }
+}
+
+impl Law for Mac {
+    const NAME: &'static str = "mac";
+    const DOC: &'static str = "rate law b dD/dt = <Y - w>, with fracture energy w and viscosity b";
+    const REFERENCE: &'static str = "Y. Monerie, V. Acary, Rev. Eur. Elements Finis 10 (2001) 141-159; Raous, Cangemi, Cocou (1999)";
+}
+
+impl Mac {
+    /// D at the end of a step of h seconds, implicit: b (D - D_i)/h = Y(D) - w.
+    fn damage(&self, d: f64, h: f64, intact: &Intact) -> f64 {
+        if intact.release_rate(d) <= self.w {
+            return d;
+        }
+        let m = intact.degradation;
+        if m == 2.0 {
+            let beta = (h * self.w + self.b * (1.0 - d)) / (self.b + h * 2.0 * intact.energy);
+            return 1.0 - beta;
+        }
+        if m <= 1.0 {
+            // Y does not fall as D grows: without viscosity the bond snaps.
+            return if self.b > 0.0 {
+                d + h * (intact.energy * m - self.w) / self.b
+            } else {
+                1.0
+            };
+        }
+        // Y(D) - w - b (D - D_i)/h falls from above zero at D_i to below zero at 1.
+        let (mut low, mut high) = (d, 1.0);
+        for _ in 0..100 {
+            let mid = 0.5 * (low + high);
+            if intact.release_rate(mid) - self.w > self.b * (mid - d) / h {
+                low = mid;
+            } else {
+                high = mid;
+            }
+        }
+        0.5 * (low + high)
+    }
+}
+
+impl DamageLaw for Mac {
+    fn grow(&self, site: &Site, intact: &Intact, _state: &[f64], _next: &mut [f64]) -> f64 {
+        let d = self
+            .damage(site.damage, site.h, intact)
+            .clamp(site.damage, 1.0);
+        if 1.0 - d < self.beta_broken { 1.0 } else { d }
+    }
+}
+
+export!(damage Mac);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pulls a MAC bond (C = 1e12 Pa/m) at a speed to an opening; gives (peak, area to the end).
+    fn pull(law: &Mac, speed: f64, h: f64, reach: f64) -> (f64, f64) {
+        let (c, mut d, mut peak, mut area, mut last, mut u) = (1e12, 0.0, 0.0f64, 0.0, 0.0, 0.0);
+        while u < reach {
+            u += speed * h;
+            let intact = Intact {
+                energy: 0.5 * c * u * u,
+                traction: [c * u, 0.0, 0.0],
+                degradation: 2.0,
+            };
+            d = law.grow(
+                &Site {
+                    damage: d,
+                    h,
+                    ..Site::default()
+                },
+                &intact,
+                &[],
+                &mut [],
+            );
+            let sigma = (1.0 - d) * (1.0 - d) * c * u;
+            area += 0.5 * (sigma + last) * speed * h;
+            last = sigma;
+            peak = peak.max(sigma);
+        }
+        (peak, area)
+    }
+
+    #[test]
+    fn without_viscosity_peak_and_area_are_closed_forms() {
+        let law = Mac {
+            w: 0.1,
+            b: 0.0,
+            beta_broken: 0.0,
+        };
+        let (peak, area) = pull(&law, 0.045, 2e-9, 3.16228e-6);
+        assert!((peak / 0.316228e6 - 1.0).abs() < 1e-3, "{peak}");
+        assert!((area / 0.0994998 - 1.0).abs() < 1e-3, "{area}");
+    }
+
+    /// Values of the continuum limit for du/dt = 0.045 m/s, opening to 100 um.
+    #[test]
+    fn with_viscosity_it_meets_the_ode() {
+        for (b, peak, area) in [
+            (1e-6, 0.36159e6, 0.16741),
+            (1e-5, 0.52941e6, 0.44568),
+            (1e-4, 0.98853e6, 1.71835),
+        ] {
+            let law = Mac {
+                w: 0.1,
+                b,
+                beta_broken: 0.0,
+            };
+            let (p, a) = pull(&law, 0.045, 5e-9, 100e-6);
+            assert!(
+                (p / peak - 1.0).abs() < 1e-2 && (a / area - 1.0).abs() < 1e-2,
+                "b {b}: {p} {a}"
+            );
+        }
+    }
+
+    #[test]
+    fn damage_never_falls_and_waits_for_the_threshold() {
+        let law = Mac {
+            w: 0.1,
+            b: 0.0,
+            beta_broken: 1e-3,
+        };
+        let weak = Intact {
+            energy: 0.01,
+            degradation: 2.0,
+            ..Intact::default()
+        };
+        let at = |damage| {
+            law.grow(
+                &Site {
+                    damage,
+                    h: 1e-6,
+                    ..Site::default()
+                },
+                &weak,
+                &[],
+                &mut [],
+            )
+        };
+        assert_eq!((at(0.0), at(0.4), at(1.0)), (0.0, 0.4, 1.0));
+    }
+
+    #[test]
+    fn a_brittle_bond_snaps_at_w() {
+        let law = Mac {
+            w: 0.1,
+            b: 0.0,
+            beta_broken: 1e-3,
+        };
+        let at = |energy| {
+            let intact = Intact {
+                energy,
+                degradation: 1.0,
+                ..Intact::default()
+            };
+            law.grow(
+                &Site {
+                    h: 1e-6,
+                    ..Site::default()
+                },
+                &intact,
+                &[],
+                &mut [],
+            )
+        };
+        assert_eq!((at(0.0999), at(0.1001)), (0.0, 1.0));
+    }
+}

@@ -1,0 +1,69 @@
+//! Brittle failure on a Mohr-Coulomb threshold with a tension cut-off.
+use fretwork_law::{DamageLaw, Intact, Law, Site, export, parameters};
+
+parameters! {
+    /// D goes from 0 to 1 at once when the traction the bond would carry leaves the strength envelope.
+    pub struct MohrCoulombBrittle {
+        tensile_strength: "Pa" = 1e8, 0.0, 1e30, "normal traction at which the bond breaks";
+        cohesion: "Pa" = 1e8, 0.0, 1e30, "shear traction at which it breaks without pressure";
+        friction: "" = 0.5, 0.0, 100.0, "growth of the shear strength with the pressure";
+    }
+}
+
+impl Law for MohrCoulombBrittle {
+    const NAME: &'static str = "mohr-coulomb-brittle";
+    const DOC: &'static str = "breaks when t_n > tensile_strength or |t_t| > cohesion + friction p";
+    const REFERENCE: &'static str =
+        "law BondedMohrCoulomb of MELODY: G. Mollon, Comput. Part. Mech. 5 (2018) 467-479";
+}
+
+impl DamageLaw for MohrCoulombBrittle {
+    fn grow(&self, site: &Site, intact: &Intact, _state: &[f64], _next: &mut [f64]) -> f64 {
+        let [n, t1, t2] = intact.traction;
+        let shear = t1.hypot(t2);
+        let broken =
+            n > self.tensile_strength || shear > self.cohesion + self.friction * site.pressure();
+        if broken { 1.0 } else { site.damage }
+    }
+}
+
+export!(damage MohrCoulombBrittle);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn breaks_on_the_envelope() {
+        let law = MohrCoulombBrittle {
+            tensile_strength: 10.0,
+            cohesion: 5.0,
+            friction: 0.5,
+        };
+        let at = |t: [f64; 3], p: f64| {
+            let site = Site {
+                impulse: [p, 0.0, 0.0],
+                area: 1.0,
+                h: 1.0,
+                ..Site::default()
+            };
+            law.grow(
+                &site,
+                &Intact {
+                    traction: t,
+                    ..Intact::default()
+                },
+                &[],
+                &mut [],
+            )
+        };
+        assert_eq!(
+            (at([9.9, 0.0, 0.0], 0.0), at([10.1, 0.0, 0.0], 0.0)),
+            (0.0, 1.0)
+        );
+        assert_eq!(
+            (at([0.0, 3.0, 4.1], 0.0), at([0.0, 3.0, 4.1], 1.0)),
+            (1.0, 0.0)
+        );
+    }
+}

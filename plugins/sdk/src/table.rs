@@ -1,0 +1,157 @@
+//! The macros that describe parameters and export a law.
+
+use fretwork_abi::FwPlugin;
+
+/// A table that may stand in a static.
+pub struct Table(pub FwPlugin);
+
+// SAFETY: the table is never written; its pointers are to static text and functions.
+unsafe impl Sync for Table {}
+
+/// Builds the schema of internal variables at compile time.
+pub const fn variables<const N: usize>(list: &[crate::Variable]) -> [fretwork_abi::FwField; N] {
+    let blank = fretwork_abi::FwField {
+        name: c"".as_ptr(),
+        unit: c"".as_ptr(),
+        doc: c"".as_ptr(),
+        default: 0.0,
+        minimum: f64::NEG_INFINITY,
+        maximum: f64::INFINITY,
+        flags: 0,
+    };
+    let mut out = [blank; N];
+    let mut k = 0;
+    while k < N {
+        out[k].name = list[k].name.as_ptr().cast();
+        out[k].unit = list[k].unit.as_ptr().cast();
+        out[k].doc = list[k].doc.as_ptr().cast();
+        out[k].default = list[k].initial;
+        out[k].flags = list[k].output as u64;
+        k += 1;
+    }
+    out
+}
+
+/// Copies text with a NUL at its end, at compile time.
+pub const fn terminated<const N: usize>(text: &str) -> [u8; N] {
+    let mut out = [0; N];
+    let bytes = text.as_bytes();
+    let mut k = 0;
+    while k < bytes.len() {
+        out[k] = bytes[k];
+        k += 1;
+    }
+    out
+}
+
+/// Declares the parameters of a law: `name: "unit" = default, minimum, maximum, "doc";`.
+#[macro_export]
+macro_rules! parameters {
+    ($(#[$meta:meta])* pub struct $law:ident {
+        $($name:ident : $unit:literal = $default:expr, $min:expr, $max:expr, $doc:literal;)*
+    }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct $law {
+            $(#[doc = $doc] pub $name: f64,)*
+        }
+
+        impl $crate::Parameters for $law {
+            const FIELDS: &'static [$crate::abi::FwField] = &[
+                $($crate::abi::FwField {
+                    name: concat!(stringify!($name), "\0").as_ptr().cast(),
+                    unit: concat!($unit, "\0").as_ptr().cast(),
+                    doc: concat!($doc, "\0").as_ptr().cast(),
+                    default: $default,
+                    minimum: $min,
+                    maximum: $max,
+                    flags: 0,
+                },)*
+            ];
+            #[allow(unused_mut, unused_variables, unused_assignments)]
+            fn read(values: &[f64]) -> Self {
+                let mut next = values.iter().copied();
+                Self { $($name: next.next().unwrap_or($default),)* }
+            }
+        }
+
+        impl Default for $law {
+            fn default() -> Self {
+                Self { $($name: $default,)* }
+            }
+        }
+    };
+}
+
+/// Exports a law as the plugin of this library: `export!(contact Coulomb);`, `export!(cohesion Mac);`,
+/// `export!(damage Mac);`, `export!(wear Archard);`.
+#[macro_export]
+macro_rules! export {
+    (contact $law:ty) => {
+        $crate::export!(@table $law, KIND_CONTACT, 0.0,
+            prepare: Some($crate::border::contact_prepare::<$law>),
+            commit: if <$law as $crate::Law>::VARIABLES.is_empty() { None } else { Some($crate::border::contact_commit::<$law>) },
+            energy: None);
+    };
+    (cohesion $law:ty) => {
+        $crate::export!(@table $law, KIND_COHESION, <$law as $crate::CohesionLaw>::DEGRADATION,
+            prepare: Some($crate::border::cohesion_prepare::<$law>),
+            commit: if <$law as $crate::Law>::VARIABLES.is_empty() { None } else { Some($crate::border::cohesion_commit::<$law>) },
+            energy: Some($crate::border::cohesion_energy::<$law>));
+    };
+    (damage $law:ty) => {
+        $crate::export!(@table $law, KIND_DAMAGE, 0.0,
+            prepare: None, commit: Some($crate::border::damage_commit::<$law>), energy: None);
+    };
+    (wear $law:ty) => {
+        $crate::export!(@table $law, KIND_WEAR, 0.0,
+            prepare: None, commit: Some($crate::border::wear_commit::<$law>), energy: None);
+    };
+    (@table $law:ty, $kind:ident, $degradation:expr, prepare: $prepare:expr, commit: $commit:expr, energy: $energy:expr) => {
+        const _: () = {
+            use $crate::{Law, Parameters};
+            const VARIABLES: usize = <$law>::VARIABLES.len();
+            static SCHEMA: $crate::table::Fields<VARIABLES> =
+                $crate::table::Fields($crate::table::variables(<$law>::VARIABLES));
+            static NAME: [u8; <$law>::NAME.len() + 1] = $crate::table::terminated(<$law>::NAME);
+            static VERSION: [u8; <$law>::VERSION.len() + 1] = $crate::table::terminated(<$law>::VERSION);
+            static DOC: [u8; <$law>::DOC.len() + 1] = $crate::table::terminated(<$law>::DOC);
+            static REFERENCE: [u8; <$law>::REFERENCE.len() + 1] = $crate::table::terminated(<$law>::REFERENCE);
+            static TABLE: $crate::table::Table = $crate::table::Table($crate::abi::FwPlugin {
+                size: core::mem::size_of::<$crate::abi::FwPlugin>(),
+                abi_major: $crate::abi::ABI_MAJOR,
+                abi_minor: $crate::abi::ABI_MINOR,
+                kind: $crate::abi::$kind,
+                reserved: 0,
+                flags: <$law>::FLAGS,
+                name: NAME.as_ptr().cast(),
+                version: VERSION.as_ptr().cast(),
+                doc: DOC.as_ptr().cast(),
+                reference: REFERENCE.as_ptr().cast(),
+                n_parameters: <$law>::FIELDS.len(),
+                parameters: <$law>::FIELDS.as_ptr(),
+                n_variables: VARIABLES,
+                variables: SCHEMA.0.as_ptr(),
+                degradation: $degradation,
+                validate: Some($crate::border::validate::<$law>),
+                initialise: None,
+                prepare: $prepare,
+                solve_local: None,
+                commit: $commit,
+                energy: $energy,
+            });
+
+            /// The plugin's entry.
+            #[unsafe(no_mangle)]
+            pub extern "C" fn fretwork_plugin() -> *const $crate::abi::FwPlugin {
+                &TABLE.0
+            }
+        };
+    };
+}
+
+/// A schema that may stand in a static.
+pub struct Fields<const N: usize>(pub [fretwork_abi::FwField; N]);
+
+// SAFETY: never written; its pointers are to static text.
+unsafe impl<const N: usize> Sync for Fields<N> {}

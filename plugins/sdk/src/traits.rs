@@ -1,0 +1,194 @@
+//! What a law's author writes, for one contact.
+
+use fretwork_abi::FwField;
+
+/// A struct of parameters; made by [`crate::parameters!`].
+pub trait Parameters: Sized {
+    /// The schema.
+    const FIELDS: &'static [FwField];
+    /// From values in the order of the schema.
+    fn read(values: &[f64]) -> Self;
+}
+
+/// An internal variable of a law.
+#[derive(Clone, Copy, Debug)]
+pub struct Variable {
+    /// Name, NUL-terminated.
+    pub name: &'static str,
+    /// SI unit, NUL-terminated.
+    pub unit: &'static str,
+    /// One line, NUL-terminated.
+    pub doc: &'static str,
+    /// Value on a new contact.
+    pub initial: f64,
+    /// Write it to the results.
+    pub output: bool,
+}
+
+/// What every law says of itself.
+pub trait Law: Parameters {
+    /// Name by which cases ask for it, of a-z, 0-9 and `-`.
+    const NAME: &'static str;
+    /// One line for the user.
+    const DOC: &'static str;
+    /// Paper or DOI.
+    const REFERENCE: &'static str;
+    /// The law's own version.
+    const VERSION: &'static str = "1.0.0";
+    /// `FLAG_*` of the ABI.
+    const FLAGS: u64 = 0;
+    /// Internal variables, at most [`crate::border::MOST_VARIABLES`].
+    const VARIABLES: &'static [Variable] = &[];
+
+    /// Checks relations between parameters; their ranges are checked by the host.
+    ///
+    /// # Errors
+    /// A sentence for the user.
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// What a law knows of a contact. Vectors are (n, t1, t2), SI units.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Site {
+    /// Gap (m), positive when open.
+    pub gap: f64,
+    /// Area (m^2).
+    pub area: f64,
+    /// Reduced radius (m).
+    pub radius: f64,
+    /// Time since the contact formed (s).
+    pub age: f64,
+    /// Bond elongation (m).
+    pub opening: [f64; 3],
+    /// Relative velocity (m/s).
+    pub velocity: [f64; 3],
+    /// Impulse (N s).
+    pub impulse: [f64; 3],
+    /// Damage D; 1 without a bond.
+    pub damage: f64,
+    /// Time step (s).
+    pub h: f64,
+    /// Time at the start of the step (s).
+    pub time: f64,
+    /// 2 or 3.
+    pub dimension: u32,
+}
+
+impl Site {
+    /// Length of the tangential opening (m).
+    pub fn tangential_opening(&self) -> f64 {
+        self.opening[1].hypot(self.opening[2])
+    }
+
+    /// Normal opening where it is positive, else zero (m).
+    pub fn normal_opening(&self) -> f64 {
+        self.opening[0].max(0.0)
+    }
+
+    /// Compressive pressure over the area (Pa), zero in tension.
+    pub fn pressure(&self) -> f64 {
+        let force = self.h * self.area;
+        if force > 0.0 {
+            (self.impulse[0] / force).max(0.0)
+        } else {
+            0.0
+        }
+    }
+}
+
+/// What a contact law gives.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Friction {
+    /// Friction coefficient.
+    pub mu: f64,
+    /// Normal restitution.
+    pub restitution_n: f64,
+    /// Tangential restitution.
+    pub restitution_t: f64,
+    /// Tension strength c_n (Pa).
+    pub tension_strength: f64,
+    /// Shear cohesion c_t (Pa).
+    pub shear_cohesion: f64,
+    /// Rolling friction length (m).
+    pub rolling: f64,
+    /// Spinning friction length (m).
+    pub spinning: f64,
+}
+
+/// What a cohesion law gives: traction at the current opening and damage, with its stiffness.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Traction {
+    /// Traction (Pa); a positive normal part pulls together.
+    pub traction: [f64; 3],
+    /// Normal stiffness, tangent or secant (Pa/m).
+    pub stiffness_n: f64,
+    /// Tangential stiffness (Pa/m).
+    pub stiffness_t: f64,
+    /// Normal damping (Pa s/m).
+    pub damping_n: f64,
+    /// Tangential damping (Pa s/m).
+    pub damping_t: f64,
+    /// Attraction without opening, c_n (Pa).
+    pub tension_strength: f64,
+    /// Shear cohesion, c_t (Pa).
+    pub shear_cohesion: f64,
+}
+
+/// The undamaged bond at this opening, for damage laws.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Intact {
+    /// Stored energy psi_0 (J/m^2).
+    pub energy: f64,
+    /// Traction (Pa).
+    pub traction: [f64; 3],
+    /// Exponent m of psi = (1 - D)^m psi_0.
+    pub degradation: f64,
+}
+
+impl Intact {
+    /// The driving force Y = -d psi/d D = m (1 - D)^(m - 1) psi_0 (J/m^2).
+    pub fn release_rate(&self, damage: f64) -> f64 {
+        self.degradation * (1.0 - damage).powf(self.degradation - 1.0) * self.energy
+    }
+}
+
+/// Friction, restitution, rolling.
+pub trait ContactLaw: Law {
+    /// At the start of a step.
+    fn friction(&self, site: &Site, state: &[f64]) -> Friction;
+    /// New internal variables at the end of a step; they are unchanged by default.
+    fn commit(&self, _site: &Site, _state: &[f64], _next: &mut [f64]) {}
+}
+
+/// Traction against opening.
+pub trait CohesionLaw: Law {
+    /// m of psi = (1 - D)^m psi_0; 0 where damage does not enter.
+    const DEGRADATION: f64;
+    /// Traction and stiffness at the site's opening and damage.
+    fn traction(&self, site: &Site, state: &[f64]) -> Traction;
+    /// Energy stored at the site's opening and damage (J/m^2).
+    fn energy(&self, site: &Site, state: &[f64]) -> f64;
+    /// New internal variables at the end of a step.
+    fn commit(&self, _site: &Site, _state: &[f64], _next: &mut [f64]) {}
+}
+
+/// Growth of damage.
+pub trait DamageLaw: Law {
+    /// D at the end of the step, from the opening at its end. The host keeps it from falling.
+    fn grow(&self, site: &Site, intact: &Intact, state: &[f64], next: &mut [f64]) -> f64;
+}
+
+/// What is removed.
+pub trait WearLaw: Law {
+    /// Volume removed over the step (m^3), from the slip (m) and the friction work (J) over it.
+    fn volume(
+        &self,
+        site: &Site,
+        slip: f64,
+        friction_work: f64,
+        state: &[f64],
+        next: &mut [f64],
+    ) -> f64;
+}

@@ -1,0 +1,30 @@
+//! Wear by dissipated energy: dV = alpha dE_d.
+use fretwork_law::{Law, Site, WearLaw, export, parameters};
+
+parameters! {
+    /// Volume proportional to the energy that friction dissipates.
+    pub struct DissipatedEnergy {
+        alpha: "m^3/J" = 1e-14, 0.0, 1.0, "energy wear coefficient";
+    }
+}
+
+impl Law for DissipatedEnergy {
+    const NAME: &'static str = "dissipated-energy";
+    const DOC: &'static str = "volume alpha E_d, E_d the work of friction";
+    const REFERENCE: &'static str = "S. Fouvry, P. Kapsa, L. Vincent, Wear 200 (1996) 186-205";
+}
+
+impl WearLaw for DissipatedEnergy {
+    fn volume(
+        &self,
+        _site: &Site,
+        _slip: f64,
+        work: f64,
+        _state: &[f64],
+        _next: &mut [f64],
+    ) -> f64 {
+        self.alpha * work.max(0.0)
+    }
+}
+
+export!(wear DissipatedEnergy);

@@ -1,0 +1,480 @@
+//! A plugin: a shared library opened at run time, checked, and called.
+
+use fretwork_abi as abi;
+use sha2::{Digest, Sha256};
+use std::ffi::{CStr, c_char};
+use std::path::{Path, PathBuf};
+use std::{fmt, ptr};
+
+/// What a plugin is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Kind {
+    /// Friction, restitution, rolling.
+    Contact,
+    /// Traction against opening.
+    Cohesion,
+    /// Growth of damage.
+    Damage,
+    /// What is removed.
+    Wear,
+}
+
+impl Kind {
+    /// All kinds.
+    pub const ALL: [Self; 4] = [Self::Contact, Self::Cohesion, Self::Damage, Self::Wear];
+
+    /// The word used in cases and file names.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Contact => "contact",
+            Self::Cohesion => "cohesion",
+            Self::Damage => "damage",
+            Self::Wear => "wear",
+        }
+    }
+
+    fn from_code(code: i32) -> Option<Self> {
+        match code {
+            abi::KIND_CONTACT => Some(Self::Contact),
+            abi::KIND_COHESION => Some(Self::Cohesion),
+            abi::KIND_DAMAGE => Some(Self::Damage),
+            abi::KIND_WEAR => Some(Self::Wear),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
+/// Why a law cannot be used, or failed.
+#[derive(Debug, thiserror::Error)]
+pub enum LawError {
+    /// The library cannot be loaded, or is no plugin of ours.
+    #[error("cannot use the plugin {}: {reason}", path.display())]
+    Unusable {
+        /// The library.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        reason: String,
+    },
+    /// No such law on the search path.
+    #[error("there is no {kind} law named `{name}` on the search path; available: {available}")]
+    Unknown {
+        /// Kind asked for.
+        kind: Kind,
+        /// Name asked for.
+        name: String,
+        /// What there is.
+        available: String,
+        /// The nearest name.
+        nearest: Option<String>,
+    },
+    /// The parameters do not suit the law.
+    #[error("the {kind} law `{name}` refuses its parameters: {reason}")]
+    Parameters {
+        /// Kind.
+        kind: Kind,
+        /// Name.
+        name: String,
+        /// What the law said.
+        reason: String,
+    },
+    /// Slots that do not fit together.
+    #[error("{reason}")]
+    Pairing {
+        /// Why.
+        reason: String,
+    },
+    /// A call failed.
+    #[error("the {kind} law `{name}` failed in {call:?}{}: {reason}", contact.map_or(String::new(), |c| format!(" at contact {c} of its batch")))]
+    Failed {
+        /// Kind.
+        kind: Kind,
+        /// Name.
+        name: String,
+        /// The call.
+        call: Call,
+        /// Index in the batch.
+        contact: Option<usize>,
+        /// What the law said.
+        reason: String,
+    },
+}
+
+/// A parameter or an internal variable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Name.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// One line.
+    pub doc: String,
+    /// Default or initial value.
+    pub default: f64,
+    /// Smallest accepted.
+    pub minimum: f64,
+    /// Largest accepted.
+    pub maximum: f64,
+    /// Whether a variable is written to the results.
+    pub output: bool,
+}
+
+/// A call over a batch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Call {
+    /// New contacts.
+    Initialise,
+    /// Start of a step.
+    Prepare,
+    /// End of a step.
+    Commit,
+    /// Stored energy.
+    Energy,
+}
+
+/// A checked plugin. Its library stays open for the life of the program.
+#[derive(Debug)]
+pub struct Plugin {
+    /// Kind.
+    pub kind: Kind,
+    /// Name by which cases ask for it.
+    pub name: String,
+    /// Its own version.
+    pub version: String,
+    /// One line.
+    pub doc: String,
+    /// Paper or DOI.
+    pub reference: String,
+    /// `FLAG_*` of the ABI.
+    pub flags: u64,
+    /// m of psi = (1 - D)^m psi_0.
+    pub degradation: f64,
+    /// Schema of the parameters.
+    pub parameters: Vec<Field>,
+    /// Schema of the internal variables.
+    pub variables: Vec<Field>,
+    /// The library.
+    pub path: PathBuf,
+    /// SHA-256 of the library, in hexadecimal.
+    pub sha256: String,
+    table: abi::FwPlugin,
+}
+
+// SAFETY: the table is read only, and the ABI requires that every function may be called from any
+// thread at any time (pure, no globals).
+unsafe impl Send for Plugin {}
+// SAFETY: as above.
+unsafe impl Sync for Plugin {}
+
+/// Longest message a plugin can leave (bytes).
+const MESSAGE: usize = 512;
+
+impl Plugin {
+    /// Opens a library and checks all that can be checked before its first call.
+    ///
+    /// # Errors
+    /// A sentence with the file and what is wrong with it.
+    pub fn open(path: &Path) -> Result<Self, LawError> {
+        let refuse = |reason: String| LawError::Unusable {
+            path: path.to_owned(),
+            reason,
+        };
+        let bytes = std::fs::read(path).map_err(|e| refuse(format!("it cannot be read ({e})")))?;
+        let sha256 = Sha256::digest(&bytes)
+            .iter()
+            .map(|b| format!("{b:02x}"))
+            .collect();
+        // SAFETY: opening runs the library's initialisers: the user put it on the search path.
+        let library = unsafe { open_local(path) }.map_err(|e| {
+            refuse(format!(
+                "it is not a loadable library ({e}); build it as a `cdylib`"
+            ))
+        })?;
+        // SAFETY: the ABI gives this symbol this type; a library with another one breaks its promise.
+        let table = unsafe {
+            let entry = library
+                .get::<abi::FwEntry>(abi::ENTRY_SYMBOL)
+                .map_err(|_| {
+                    refuse(format!(
+                        "it does not export `{}`; it is not a Fretwork plugin",
+                        abi::ENTRY_SYMBOL
+                    ))
+                })?;
+            entry()
+        };
+        // Never unloaded: threads may hold its code or its thread-local data.
+        std::mem::forget(library);
+        if table.is_null() {
+            return Err(refuse(format!("`{}` returned null", abi::ENTRY_SYMBOL)));
+        }
+        // SAFETY: the table begins with its size and version, checked before anything else is read.
+        let table = unsafe { read_table(table) }.map_err(&refuse)?;
+        let kind = Kind::from_code(table.kind)
+            .ok_or_else(|| refuse(format!("its kind {} is unknown; use 1 to 4", table.kind)))?;
+        // SAFETY: the ABI promises NUL-terminated static text.
+        let text =
+            |p, what: &str| unsafe { text(p) }.map_err(|e| refuse(format!("its {what} {e}")));
+        let name = text(table.name, "name")?;
+        if !super::search::name_is_valid(&name) {
+            return Err(refuse(format!(
+                "its name `{name}` must be made of a-z, 0-9, - and _"
+            )));
+        }
+        let plugin = Self {
+            kind,
+            version: text(table.version, "version")?,
+            doc: text(table.doc, "doc")?,
+            reference: text(table.reference, "reference")?,
+            flags: table.flags,
+            degradation: table.degradation,
+            // SAFETY: counts and arrays come from one table.
+            parameters: unsafe { fields(table.parameters, table.n_parameters, "parameter") }
+                .map_err(&refuse)?,
+            // SAFETY: as above.
+            variables: unsafe { fields(table.variables, table.n_variables, "variable") }
+                .map_err(&refuse)?,
+            path: path.to_owned(),
+            sha256,
+            name,
+            table,
+        };
+        plugin.check().map_err(refuse)?;
+        Ok(plugin)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let needed: &[(&str, bool)] = match self.kind {
+            Kind::Contact => &[("prepare", self.table.prepare.is_some())],
+            Kind::Cohesion => &[
+                ("prepare", self.table.prepare.is_some()),
+                ("energy", self.table.energy.is_some()),
+            ],
+            Kind::Damage | Kind::Wear => &[("commit", self.table.commit.is_some())],
+        };
+        if let Some((function, _)) = needed.iter().find(|n| !n.1) {
+            return Err(format!(
+                "a {} law needs the function `{function}`, which is null",
+                self.kind
+            ));
+        }
+        if !(self.degradation.is_finite() && self.degradation >= 0.0) {
+            return Err(format!(
+                "its degradation exponent {} must be finite and not negative",
+                self.degradation
+            ));
+        }
+        for (k, field) in self.parameters.iter().enumerate() {
+            if self.parameters[..k].iter().any(|f| f.name == field.name) {
+                return Err(format!("its parameter `{}` is declared twice", field.name));
+            }
+            if !(field.minimum..=field.maximum).contains(&field.default) {
+                return Err(format!(
+                    "the default {} of `{}` is out of its range",
+                    field.default, field.name
+                ));
+            }
+        }
+        for (k, field) in self.variables.iter().enumerate() {
+            if self.variables[..k].iter().any(|f| f.name == field.name) {
+                return Err(format!("its variable `{}` is declared twice", field.name));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the law has something to do at the end of a step.
+    pub fn commits(&self) -> bool {
+        self.table.commit.is_some()
+    }
+
+    /// Checks values of the parameters against the schema and the law's own judgement.
+    ///
+    /// # Errors
+    /// A sentence naming the parameter.
+    pub fn validate(&self, values: &[f64]) -> Result<(), LawError> {
+        let refuse = |reason: String| LawError::Parameters {
+            kind: self.kind,
+            name: self.name.clone(),
+            reason,
+        };
+        if values.len() != self.parameters.len() {
+            return Err(refuse(format!(
+                "it takes {} values, got {}",
+                self.parameters.len(),
+                values.len()
+            )));
+        }
+        for (field, value) in self.parameters.iter().zip(values) {
+            if !value.is_finite() || !(field.minimum..=field.maximum).contains(value) {
+                return Err(refuse(format!(
+                    "`{}` must lie in [{}, {}] {}, got {value}",
+                    field.name, field.minimum, field.maximum, field.unit
+                )));
+            }
+        }
+        let Some(validate) = self.table.validate else {
+            return Ok(());
+        };
+        let mut buffer = [0 as c_char; MESSAGE];
+        let mut message = message_over(&mut buffer);
+        // SAFETY: the ABI's signature; the buffers outlive the call.
+        let status = unsafe { validate(values.as_ptr(), &mut message) };
+        if status == abi::STATUS_OK {
+            Ok(())
+        } else {
+            Err(refuse(said(&buffer, status)))
+        }
+    }
+
+    /// Runs one of the law's functions; nothing happens where the law has none.
+    ///
+    /// # Errors
+    /// What the law said, with the index of the contact in the batch.
+    pub fn call(&self, call: Call, batch: &abi::FwBatch) -> Result<(), LawError> {
+        let function = match call {
+            Call::Initialise => self.table.initialise,
+            Call::Prepare => self.table.prepare,
+            Call::Commit => self.table.commit,
+            Call::Energy => self.table.energy,
+        };
+        let Some(function) = function else {
+            return Ok(());
+        };
+        let mut buffer = [0 as c_char; MESSAGE];
+        let mut message = message_over(&mut buffer);
+        // SAFETY: the batch's columns have `n` values or are null and outlive the call.
+        let status = unsafe { function(batch, &mut message) };
+        if status == abi::STATUS_OK {
+            return Ok(());
+        }
+        Err(LawError::Failed {
+            kind: self.kind,
+            name: self.name.clone(),
+            call,
+            contact: usize::try_from(message.contact).ok(),
+            reason: said(&buffer, status),
+        })
+    }
+}
+
+fn message_over(buffer: &mut [c_char; MESSAGE]) -> abi::FwMessage {
+    abi::FwMessage {
+        size: size_of::<abi::FwMessage>(),
+        text: buffer.as_mut_ptr(),
+        capacity: MESSAGE,
+        contact: -1,
+    }
+}
+
+/// The message, or what the status means.
+fn said(buffer: &[c_char; MESSAGE], status: i32) -> String {
+    let bytes: Vec<u8> = buffer
+        .iter()
+        .take(MESSAGE - 1)
+        .map(|c| *c as u8)
+        .take_while(|b| *b != 0)
+        .collect();
+    let text = String::from_utf8_lossy(&bytes).trim().to_owned();
+    if !text.is_empty() {
+        return text;
+    }
+    match status {
+        abi::STATUS_ERROR => "it reported an error without a message".into(),
+        abi::STATUS_BAD_PARAMETER => "it refused a parameter without a message".into(),
+        abi::STATUS_REDUCE_STEP => "it asks for a smaller time step".into(),
+        abi::STATUS_PANIC => "it panicked".into(),
+        other => format!("it returned the unknown status {other}"),
+    }
+}
+
+#[cfg(unix)]
+unsafe fn open_local(path: &Path) -> Result<libloading::Library, libloading::Error> {
+    use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
+    // SAFETY: see the caller.
+    unsafe { Library::open(Some(path), RTLD_NOW | RTLD_LOCAL).map(Into::into) }
+}
+
+#[cfg(not(unix))]
+unsafe fn open_local(path: &Path) -> Result<libloading::Library, libloading::Error> {
+    // SAFETY: see the caller.
+    unsafe { libloading::Library::new(path) }
+}
+
+/// Copies what both sides know of the table.
+unsafe fn read_table(table: *const abi::FwPlugin) -> Result<abi::FwPlugin, String> {
+    // SAFETY: size and versions stand first in every version of the table.
+    let (size, major) = unsafe {
+        (
+            ptr::addr_of!((*table).size).read(),
+            ptr::addr_of!((*table).abi_major).read(),
+        )
+    };
+    if major != abi::ABI_MAJOR {
+        return Err(format!(
+            "it was built for version {major} of the plugin interface and this program speaks version {}; rebuild it with the header of this release",
+            abi::ABI_MAJOR
+        ));
+    }
+    // The table of version 1.0 is the whole of today's struct.
+    let least = size_of::<abi::FwPlugin>();
+    if size < least {
+        return Err(format!(
+            "its table has {size} bytes, at least {least} are needed; rebuild it with fretwork.h"
+        ));
+    }
+    // SAFETY: the plugin says that at least this much is there.
+    Ok(unsafe { ptr::read(table) })
+}
+
+unsafe fn text(pointer: *const c_char) -> Result<String, String> {
+    if pointer.is_null() {
+        return Err("is null".into());
+    }
+    // SAFETY: not null, and NUL-terminated by the ABI.
+    let text = unsafe { CStr::from_ptr(pointer) };
+    text.to_str()
+        .map(str::to_owned)
+        .map_err(|_| "is not valid UTF-8".into())
+}
+
+unsafe fn fields(first: *const abi::FwField, n: usize, what: &str) -> Result<Vec<Field>, String> {
+    const MOST: usize = 256;
+    if n > MOST {
+        return Err(format!(
+            "it declares {n} {what}s; at most {MOST} are accepted"
+        ));
+    }
+    if n > 0 && first.is_null() {
+        return Err(format!("it declares {n} {what}s but their table is null"));
+    }
+    (0..n)
+        .map(|k| {
+            // SAFETY: the plugin declares `n` fields.
+            let f = unsafe { &*first.add(k) };
+            // SAFETY: NUL-terminated by the ABI.
+            let read =
+                |p| unsafe { text(p) }.map_err(|e| format!("the text of its {what} {k} {e}"));
+            let name = read(f.name)?;
+            if name.is_empty() {
+                return Err(format!("its {what} {k} has no name"));
+            }
+            if !f.default.is_finite() || f.minimum.is_nan() || f.maximum.is_nan() {
+                return Err(format!("the numbers of its {what} `{name}` are not finite"));
+            }
+            Ok(Field {
+                unit: read(f.unit)?,
+                doc: read(f.doc)?,
+                name,
+                default: f.default,
+                minimum: f.minimum,
+                maximum: f.maximum,
+                output: f.flags & 1 != 0,
+            })
+        })
+        .collect()
+}

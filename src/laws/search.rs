@@ -1,0 +1,168 @@
+//! Where plugins are found: by kind and name, on a search path. A case cannot name a file.
+
+use super::library::{Kind, LawError, Plugin};
+use std::path::{Path, PathBuf};
+
+/// Environment variable with further folders.
+pub const VARIABLE: &str = "FRETWORK_PLUGIN_PATH";
+
+/// Folders in which plugins are looked for, in order.
+#[derive(Clone, Debug)]
+pub struct SearchPath {
+    folders: Vec<PathBuf>,
+}
+
+/// Whether a law's name is made of a-z, 0-9, `-` and `_` and begins with a letter or digit.
+pub fn name_is_valid(name: &str) -> bool {
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit();
+    name.chars().next().is_some_and(plain) && name.chars().all(|c| plain(c) || c == '-' || c == '_')
+}
+
+/// The file that holds a law: `libfretwork_KIND_NAME.so`, with `-` in the name written `_`.
+pub fn file_name(kind: Kind, name: &str) -> String {
+    use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+    format!(
+        "{DLL_PREFIX}fretwork_{kind}_{}{DLL_SUFFIX}",
+        name.replace('-', "_")
+    )
+}
+
+impl SearchPath {
+    /// The shipped folders beside the program, then `extra`, then the environment variable's.
+    pub fn new(extra: &[PathBuf]) -> Self {
+        let mut folders = shipped();
+        folders.extend_from_slice(extra);
+        if let Some(value) = std::env::var_os(VARIABLE) {
+            folders.extend(std::env::split_paths(&value).filter(|p| !p.as_os_str().is_empty()));
+        }
+        Self { folders }
+    }
+
+    /// The folders, in order.
+    pub fn folders(&self) -> &[PathBuf] {
+        &self.folders
+    }
+
+    /// Opens the law of this kind and name; the first folder that has it wins.
+    ///
+    /// # Errors
+    /// No such law (with the nearest name), or a library that cannot be used.
+    pub fn find(&self, kind: Kind, name: &str) -> Result<Plugin, LawError> {
+        let path = name_is_valid(name)
+            .then(|| {
+                self.folders
+                    .iter()
+                    .map(|f| f.join(file_name(kind, name)))
+                    .find(|p| p.is_file())
+            })
+            .flatten();
+        let Some(path) = path else {
+            return Err(self.unknown(kind, name));
+        };
+        let plugin = Plugin::open(&path)?;
+        if plugin.kind != kind || plugin.name != name {
+            let reason = format!(
+                "its file name promises the {kind} law `{name}` but it holds the {} law `{}`; rename the file",
+                plugin.kind, plugin.name
+            );
+            return Err(LawError::Unusable { path, reason });
+        }
+        Ok(plugin)
+    }
+
+    /// All laws on the path by their file names (with `_` as `-`), unopened, sorted.
+    pub fn available(&self) -> Vec<(Kind, String, PathBuf)> {
+        let mut out: Vec<(Kind, String, PathBuf)> = Vec::new();
+        for folder in &self.folders {
+            let Ok(entries) = std::fs::read_dir(folder) else {
+                continue;
+            };
+            for path in entries.flatten().map(|e| e.path()) {
+                if let Some((kind, name)) = parse(&path) {
+                    if !out.iter().any(|(k, n, _)| *k == kind && *n == name) {
+                        out.push((kind, name, path));
+                    }
+                }
+            }
+        }
+        out.sort();
+        out
+    }
+
+    fn unknown(&self, kind: Kind, name: &str) -> LawError {
+        let names: Vec<String> = self
+            .available()
+            .into_iter()
+            .filter(|a| a.0 == kind)
+            .map(|a| a.1)
+            .collect();
+        let nearest = names
+            .iter()
+            .map(|n| (strsim::damerau_levenshtein(n, &name.replace('_', "-")), n))
+            .min()
+            .filter(|(d, n)| *d <= n.len().max(3) / 2)
+            .map(|(_, n)| n.clone());
+        let available = if names.is_empty() {
+            "none".into()
+        } else {
+            names.join(", ")
+        };
+        LawError::Unknown {
+            kind,
+            name: name.into(),
+            available,
+            nearest,
+        }
+    }
+}
+
+fn parse(path: &Path) -> Option<(Kind, String)> {
+    use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+    let file = path.file_name()?.to_str()?;
+    let stem = file
+        .strip_prefix(DLL_PREFIX)?
+        .strip_suffix(DLL_SUFFIX)?
+        .strip_prefix("fretwork_")?;
+    Kind::ALL.into_iter().find_map(|kind| {
+        let name = stem.strip_prefix(kind.word())?.strip_prefix('_')?;
+        Some((kind, name.replace('_', "-")))
+    })
+}
+
+/// Beside the program, where cargo puts libraries, and where an installation would.
+fn shipped() -> Vec<PathBuf> {
+    let Some(here) = std::env::current_exe()
+        .ok()
+        .and_then(|p| p.parent().map(Path::to_owned))
+    else {
+        return Vec::new();
+    };
+    let mut out = vec![here.clone(), here.join("deps")];
+    if let Some(above) = here.parent() {
+        out.push(above.join("deps"));
+        out.push(above.join("lib").join("fretwork"));
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_cannot_reach_other_folders() {
+        for bad in ["../mac", "a/b", "", "Mac", ".mac", "mac\\x", "-mac"] {
+            assert!(!name_is_valid(bad), "{bad}");
+        }
+        assert!(name_is_valid("mohr-coulomb-brittle"));
+    }
+
+    #[test]
+    fn file_names_are_read_back() {
+        let path = PathBuf::from(file_name(Kind::Damage, "mohr-coulomb-brittle"));
+        assert_eq!(
+            parse(&path),
+            Some((Kind::Damage, "mohr-coulomb-brittle".into()))
+        );
+    }
+}
