@@ -11,3 +11,5 @@ pub mod laws;
 pub mod record;
 pub mod solve;
 pub mod step;
+pub mod scene;
+pub mod report;

@@ -1,0 +1,285 @@
+//! Axes of a chart: round tick values, and SI prefixes in place of exponents.
+
+use super::canvas::ReportError;
+
+/// What an axis shows. Data are given in the unit itself; the chart picks the
+/// prefix (data in `m` of the order of 1e-5 are shown in µm).
+#[derive(Clone, Debug, Default)]
+pub struct Axis {
+    /// Quantity, for example `displacement δ`.
+    pub name: String,
+    /// SI unit without prefix (`m`, `N`, `Pa`, `s`, `J`, `W`, `N/m`, `m/s`), or
+    /// empty for a pure number. Other units are shown with a power of ten.
+    pub unit: String,
+    /// Logarithmic scale: values that are not positive are left out.
+    pub log: bool,
+}
+
+impl Axis {
+    /// A linear axis.
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            unit: unit.into(),
+            log: false,
+        }
+    }
+
+    /// The same axis on a logarithmic scale.
+    pub fn log(mut self) -> Self {
+        self.log = true;
+        self
+    }
+
+    /// Exponent of ten to divide by, and the label, when the largest
+    /// magnitude shown is `largest`.
+    fn scaled(&self, largest: f64) -> (i32, String) {
+        let (exponent, unit) = if self.log || !(largest > 0.0 && largest.is_finite()) {
+            (0, self.unit.clone())
+        } else {
+            let magnitude = (largest * (1.0 + 1e-12)).log10().floor() as i32;
+            match prefix(&self.unit, magnitude) {
+                Some((exponent, prefix)) => (exponent, format!("{prefix}{}", self.unit)),
+                None if (-2..=4).contains(&magnitude) => (0, self.unit.clone()),
+                None => {
+                    let exponent = 3 * magnitude.div_euclid(3);
+                    let sign = if self.unit.is_empty() { "×" } else { "" };
+                    let power = format!("{sign}10{} {}", superscript(exponent), self.unit);
+                    (exponent, power.trim_end().to_owned())
+                }
+            }
+        };
+        let label = match unit.as_str() {
+            "" => self.name.clone(),
+            unit => format!("{} ({unit})", self.name),
+        };
+        (exponent, label)
+    }
+}
+
+/// The SI prefix for a magnitude, when the unit is one that takes prefixes.
+fn prefix(unit: &str, magnitude: i32) -> Option<(i32, &'static str)> {
+    let base = unit.split('/').next().unwrap_or_default();
+    let takes = ["m", "N", "Pa", "s", "J", "W", "Hz", "K", "N·m", "V", "A"];
+    if !takes.contains(&base) {
+        return None;
+    }
+    // Kiloseconds and kilokelvins are nobody's habit.
+    let highest = if matches!(base, "s" | "K") { 0 } else { 12 };
+    let exponent = (3 * magnitude.div_euclid(3)).min(highest);
+    let prefix = match exponent {
+        -15 => "f",
+        -12 => "p",
+        -9 => "n",
+        -6 => "µ",
+        -3 => "m",
+        0 => "",
+        3 => "k",
+        6 => "M",
+        9 => "G",
+        12 => "T",
+        _ => return None,
+    };
+    // Four digits of seconds read well; more do not.
+    (magnitude - exponent < 5).then_some((exponent, prefix))
+}
+
+/// `10` raised: the exponent in superscript digits.
+fn superscript(exponent: i32) -> String {
+    exponent
+        .to_string()
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4' => '⁴',
+            '5' => '⁵',
+            '6' => '⁶',
+            '7' => '⁷',
+            '8' => '⁸',
+            '9' => '⁹',
+            _ => '⁰',
+        })
+        .collect()
+}
+
+/// An axis fitted to its data: shown range, tick values and labels.
+#[derive(Clone, Debug)]
+pub(super) struct Scale {
+    exponent: i32,
+    log: bool,
+    /// Range in shown values (divided by the power of ten, or its logarithm).
+    pub range: (f64, f64),
+    /// Tick positions in shown values, with what is written at each.
+    pub ticks: Vec<(f64, String)>,
+    /// Name with the unit shown.
+    pub label: String,
+}
+
+impl Scale {
+    /// Fits an axis to values in its unit, or to a range asked for.
+    pub fn fit(
+        axis: &Axis,
+        values: impl Iterator<Item = f64>,
+        asked: Option<(f64, f64)>,
+        ticks: usize,
+    ) -> Result<Self, ReportError> {
+        let usable = |v: f64| v.is_finite() && (!axis.log || v > 0.0);
+        let (mut low, mut high) = match asked {
+            Some((from, to)) if usable(from) && usable(to) && from < to => (from, to),
+            Some((from, to)) => {
+                return Err(ReportError::Range {
+                    axis: axis.name.clone(),
+                    from,
+                    to,
+                    log: axis.log,
+                });
+            }
+            None => values
+                .filter(|v| usable(*v))
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
+                    (a.min(v), b.max(v))
+                }),
+        };
+        if low > high {
+            (low, high) = if axis.log { (0.1, 10.0) } else { (0.0, 1.0) };
+        }
+        let (exponent, label) = axis.scaled(low.abs().max(high.abs()));
+        let mut scale = Self {
+            exponent,
+            log: axis.log,
+            range: (0.0, 1.0),
+            ticks: Vec::new(),
+            label,
+        };
+        let (mut a, mut b) = (scale.shown(low), scale.shown(high));
+        if asked.is_none() {
+            let width = b - a;
+            // A constant (up to rounding) gets a window of its own size.
+            let pad = if width > 1e-9 * a.abs().max(b.abs()) {
+                0.04 * width
+            } else if axis.log || a == 0.0 {
+                1.0
+            } else {
+                0.1 * a.abs()
+            };
+            (a, b) = (a - pad, b + pad);
+        }
+        scale.range = (a, b);
+        scale.ticks = if axis.log {
+            decades(a, b, ticks)
+        } else {
+            round_ticks(a, b, ticks)
+        };
+        Ok(scale)
+    }
+
+    /// Value to draw for a value in the unit; NaN when it cannot be shown.
+    pub fn shown(&self, value: f64) -> f64 {
+        if self.log {
+            if value > 0.0 { value.log10() } else { f64::NAN }
+        } else {
+            value / 10f64.powi(self.exponent)
+        }
+    }
+}
+
+/// Ticks at 1, 2 or 5 times a power of ten, about `count` of them.
+fn round_ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
+    let rough = (high - low) / count.max(1) as f64;
+    let power = 10f64.powf(rough.log10().floor());
+    let step = power
+        * match rough / power {
+            r if r < 1.5 => 1.0,
+            r if r < 3.5 => 2.0,
+            r if r < 7.5 => 5.0,
+            _ => 10.0,
+        };
+    let decimals = (-(step * 1.0001).log10().floor()).clamp(0.0, 9.0) as usize;
+    let slack = 1e-6 * step;
+    let (first, last) = (
+        ((low - slack) / step).ceil() as i64,
+        ((high + slack) / step).floor() as i64,
+    );
+    (first..=last)
+        .take(4 * count + 4)
+        .map(|i| (i as f64 * step, number(i as f64 * step, decimals)))
+        .collect()
+}
+
+/// Ticks at powers of ten, or at round values when there is less than a decade.
+fn decades(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
+    let (first, last) = (low.ceil() as i32, high.floor() as i32);
+    let stride = ((last - first) / count.max(1) as i32 + 1).max(1);
+    if last - first >= 1 {
+        return (first..=last)
+            .filter(|e| e.rem_euclid(stride) == 0)
+            .map(|e| (f64::from(e), format!("10{}", superscript(e))))
+            .collect();
+    }
+    round_ticks(10f64.powf(low), 10f64.powf(high), count)
+        .into_iter()
+        .filter(|(v, _)| *v > 0.0)
+        .map(|(v, label)| (v.log10(), label))
+        .collect()
+}
+
+/// A number with a true minus sign.
+fn number(value: f64, decimals: usize) -> String {
+    let text = format!("{:.decimals$}", value + 0.0);
+    match text.strip_prefix('-') {
+        Some(digits) if digits.chars().any(|c| c.is_ascii_digit() && c != '0') => {
+            format!("−{digits}")
+        }
+        Some(digits) => digits.to_owned(),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn label(unit: &str, largest: f64) -> String {
+        Axis::new("q", unit).scaled(largest).1
+    }
+
+    #[test]
+    fn prefixes_follow_the_magnitude() {
+        assert_eq!(label("m", 1.5e-5), "q (µm)");
+        assert_eq!(label("m", 1e-3), "q (mm)");
+        assert_eq!(label("N", 4.2e4), "q (kN)");
+        assert_eq!(label("Pa", 8e8), "q (MPa)");
+        assert_eq!(label("N/m", 3e6), "q (MN/m)");
+        assert_eq!(label("s", 2e-3), "q (ms)");
+        assert_eq!(label("s", 3600.0), "q (s)");
+        assert_eq!(label("", 0.7), "q");
+        assert_eq!(label("", 3e-6), "q (×10⁻⁶)");
+        assert_eq!(label("kg", 3e-6), "q (10⁻⁶ kg)");
+        assert_eq!(label("m", 0.0), "q (m)");
+    }
+
+    #[test]
+    fn ticks_are_round_and_signed() {
+        let labels: Vec<_> = round_ticks(-1.1, 1.1, 5).into_iter().map(|t| t.1).collect();
+        assert_eq!(labels, ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
+        assert_eq!(round_ticks(0.0, 100.0, 5)[1].1, "20");
+        let log = Axis::new("t", "s").log();
+        let scale = Scale::fit(&log, [1e-3, -1.0, 10.0].into_iter(), None, 6).unwrap();
+        assert_eq!(scale.ticks[0].1, "10⁻³");
+    }
+
+    #[test]
+    fn constants_and_nothing_have_a_range() {
+        let axis = Axis::new("φ", "");
+        for values in [vec![], vec![0.0], vec![-3.0, -3.0], vec![f64::NAN]] {
+            let scale = Scale::fit(&axis, values.into_iter(), None, 5).unwrap();
+            assert!(scale.range.0 < scale.range.1);
+            assert!(scale.ticks.len() > 1);
+        }
+        let error = Scale::fit(&axis, [].into_iter(), Some((2.0, 1.0)), 5).unwrap_err();
+        assert!(error.to_string().contains("2 to 1 of axis 'φ'"), "{error}");
+    }
+}

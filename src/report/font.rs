@@ -1,0 +1,203 @@
+//! Text as vector outlines, from fonts carried in the binary: pictures come out
+//! the same on every machine, with or without fonts installed.
+
+use std::sync::OnceLock;
+
+use ab_glyph::{Font, FontRef, GlyphId, OutlineCurve};
+use epaint_default_fonts::{HACK_REGULAR, UBUNTU_LIGHT};
+use tiny_skia::{Path, PathBuilder};
+
+use super::canvas::Rgb;
+
+/// Where the given point lies on the line of text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// How one line of text is set.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TextStyle {
+    /// Em size in pixels.
+    pub size: f32,
+    pub colour: Rgb,
+    pub anchor: Anchor,
+    /// The light face is thin at small sizes; its outline is thickened by this
+    /// fraction of the em, so one face serves as regular and as semi-bold.
+    pub weight: f32,
+    /// Reads upwards, for the name of a vertical axis.
+    pub upwards: bool,
+    /// Halo that keeps the text readable over a drawing.
+    pub halo: Option<Rgb>,
+}
+
+impl TextStyle {
+    /// Regular text starting at its point.
+    pub fn new(size: f32, colour: Rgb) -> Self {
+        Self {
+            size,
+            colour,
+            anchor: Anchor::Start,
+            weight: 0.022,
+            upwards: false,
+            halo: None,
+        }
+    }
+
+    pub fn anchored(mut self, anchor: Anchor) -> Self {
+        self.anchor = anchor;
+        self
+    }
+
+    pub fn bold(mut self) -> Self {
+        self.weight = 0.06;
+        self
+    }
+
+    pub fn upwards(mut self) -> Self {
+        self.upwards = true;
+        self
+    }
+
+    pub fn halo(mut self, colour: Rgb) -> Self {
+        self.halo = Some(colour);
+        self
+    }
+}
+
+/// The text face, then the face that has the symbols it lacks.
+pub(super) fn faces() -> &'static [FontRef<'static>] {
+    static FACES: OnceLock<Vec<FontRef<'static>>> = OnceLock::new();
+    FACES.get_or_init(|| {
+        [UBUNTU_LIGHT, HACK_REGULAR]
+            .into_iter()
+            .filter_map(|bytes| FontRef::try_from_slice(bytes).ok())
+            .collect()
+    })
+}
+
+/// The first face that has the character, else the first face's blank box.
+fn glyph(character: char) -> Option<(usize, GlyphId)> {
+    let faces = faces();
+    faces
+        .iter()
+        .map(|face| face.glyph_id(character))
+        .enumerate()
+        .find(|(_, id)| id.0 != 0)
+        .or_else(|| faces.first().map(|face| (0, face.glyph_id(character))))
+}
+
+/// Glyphs of a line with their pen positions, and the width of it, in pixels.
+fn set_line(text: &str, size: f32) -> (Vec<(usize, GlyphId, f32)>, f32) {
+    let mut pen = 0.0;
+    let mut previous = None;
+    let mut glyphs = Vec::with_capacity(text.len());
+    for (face_index, id) in text.chars().filter_map(glyph) {
+        let Some(face) = faces().get(face_index) else {
+            continue;
+        };
+        let scale = size / face.units_per_em().unwrap_or(1000.0);
+        if let Some((before_face, before)) = previous
+            && before_face == face_index
+        {
+            pen += scale * face.kern_unscaled(before, id);
+        }
+        glyphs.push((face_index, id, pen));
+        pen += scale * face.h_advance_unscaled(id);
+        previous = Some((face_index, id));
+    }
+    (glyphs, pen)
+}
+
+/// Width of a line of text in pixels, at an em size in pixels.
+pub(super) fn text_width(text: &str, size: f32) -> f32 {
+    set_line(text, size).1
+}
+
+/// Outline of a line of text, its anchor on the baseline at the origin.
+pub(super) fn text_path(text: &str, style: &TextStyle) -> Option<Path> {
+    let (glyphs, width) = set_line(text, style.size);
+    let start = match style.anchor {
+        Anchor::Start => 0.0,
+        Anchor::Middle => -width / 2.0,
+        Anchor::End => -width,
+    };
+    let mut builder = PathBuilder::new();
+    for (face_index, id, pen) in glyphs {
+        let Some(face) = faces().get(face_index) else {
+            continue;
+        };
+        let Some(outline) = face.outline(id) else {
+            continue;
+        };
+        let scale = style.size / face.units_per_em().unwrap_or(1000.0);
+        let place = |p: ab_glyph::Point| {
+            let (x, y) = (start + pen + scale * p.x, -scale * p.y);
+            if style.upwards { (y, -x) } else { (x, y) }
+        };
+        let mut last = None;
+        for curve in &outline.curves {
+            let (from, to) = match *curve {
+                OutlineCurve::Line(a, b) => (a, b),
+                OutlineCurve::Quad(a, _, b) => (a, b),
+                OutlineCurve::Cubic(a, _, _, b) => (a, b),
+            };
+            // The font gives one list of curves: a jump starts a new contour.
+            if last != Some(from) {
+                if last.is_some() {
+                    builder.close();
+                }
+                let (x, y) = place(from);
+                builder.move_to(x, y);
+            }
+            let (x, y) = place(to);
+            match *curve {
+                OutlineCurve::Line(..) => builder.line_to(x, y),
+                OutlineCurve::Quad(_, c, _) => {
+                    let (cx, cy) = place(c);
+                    builder.quad_to(cx, cy, x, y);
+                }
+                OutlineCurve::Cubic(_, c, d, _) => {
+                    let ((cx, cy), (dx, dy)) = (place(c), place(d));
+                    builder.cubic_to(cx, cy, dx, dy, x, y);
+                }
+            }
+            last = Some(to);
+        }
+        if last.is_some() {
+            builder.close();
+        }
+    }
+    builder.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_symbol_of_the_axes_has_a_glyph() {
+        for c in "δµφμσθ→·×−⁰¹²³⁴⁵⁶⁷⁸⁹⁻°≈≤½".chars() {
+            let (_, id) = glyph(c).unwrap();
+            assert_ne!(id.0, 0, "no glyph for {c}");
+        }
+    }
+
+    #[test]
+    fn width_grows_with_text_and_size() {
+        assert_eq!(text_width("", 20.0), 0.0);
+        assert!(text_width("rail", 20.0) < text_width("rail wheel", 20.0));
+        let (small, large) = (text_width("rail", 10.0), text_width("rail", 20.0));
+        assert!((2.0 * small - large).abs() < 1e-3);
+    }
+
+    #[test]
+    fn anchored_text_is_centred() {
+        let style = TextStyle::new(30.0, [0, 0, 0]).anchored(Anchor::Middle);
+        let bounds = text_path("HoH", &style).unwrap().bounds();
+        assert!((bounds.left() + bounds.right()).abs() < 1.0);
+        assert!(text_path(" ", &style).is_none());
+    }
+}

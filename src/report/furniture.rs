@@ -1,0 +1,172 @@
+//! What surrounds the field of a frame: legend, scale bar, arrows, caption.
+
+use tiny_skia::PathBuilder;
+
+use super::canvas::{Canvas, INK, WHITE, mix};
+use super::font::{Anchor, TextStyle, text_width};
+use super::frame::{BROKEN, DAMAGED, Link, LinkState, PLAIN, SOUND};
+
+/// Names the colours of the links that are present, from a point on the
+/// middle of the line.
+pub(super) fn legend(page: &mut Canvas, links: &[Link], [left, middle]: [f32; 2], u: f32) {
+    let em = 23.0 * u;
+    let has = |of: fn(&LinkState) -> bool| links.iter().any(|l| of(&l.state));
+    let damaged = has(|s| matches!(s, LinkState::Intact { damage } if *damage > 0.0));
+    let bond = if damaged {
+        "intact bond (sound to damaged)"
+    } else {
+        "intact bond"
+    };
+    let last = if damaged { DAMAGED } else { SOUND };
+    let entries = [
+        (
+            has(|s| matches!(s, LinkState::Intact { .. })),
+            bond,
+            [SOUND, last],
+            7.0,
+        ),
+        (
+            has(|s| *s == LinkState::Broken),
+            "broken bond",
+            [BROKEN; 2],
+            7.0,
+        ),
+        (has(|s| *s == LinkState::Plain), "contact", [PLAIN; 2], 3.0),
+    ];
+    let mut x = left;
+    for (_, label, ends, thick) in entries.into_iter().filter(|e| e.0) {
+        let length = (56.0 * u).round();
+        for i in 0..length as i32 {
+            let colour = mix(ends[0], ends[1], f64::from(i) / f64::from(length));
+            page.rect(
+                [x + i as f32, middle - thick * u / 2.0, 1.0, thick * u],
+                colour,
+            );
+        }
+        x += length + 14.0 * u;
+        page.text(label, [x, middle + 0.34 * em], &TextStyle::new(em, INK));
+        x = (x + text_width(label, em) + 40.0 * u).round();
+    }
+}
+
+/// A bar of round length that ends at a point; `scale` in pixels a metre.
+pub(super) fn scale_bar(page: &mut Canvas, [right, middle]: [f32; 2], scale: f64, u: f32) {
+    let (metres, label) = round_length(190.0 * f64::from(u) / scale);
+    let length = (metres * scale) as f32;
+    let (left, thick) = (right - length, 3.0 * u);
+    page.rect([left, middle - thick / 2.0, length, thick], INK);
+    for x in [left, right - thick] {
+        page.rect([x, middle - 8.0 * u, thick, 16.0 * u], INK);
+    }
+    let style = TextStyle::new(23.0 * u, INK).anchored(Anchor::End);
+    page.text(&label, [left - 14.0 * u, middle + 0.34 * 23.0 * u], &style);
+}
+
+/// The longest of 1, 2, 5 times a power of ten within a length in metres.
+fn round_length(longest: f64) -> (f64, String) {
+    let power = longest.log10().floor();
+    let factor = match longest / 10f64.powf(power) {
+        r if r >= 5.0 => 5.0,
+        r if r >= 2.0 => 2.0,
+        _ => 1.0,
+    };
+    let metres = factor * 10f64.powf(power);
+    let (value, unit) = match metres {
+        m if m >= 0.999 => (m, "m"),
+        m if m >= 0.999e-3 => (m * 1e3, "mm"),
+        m if m >= 0.999e-6 => (m * 1e6, "µm"),
+        m => (m * 1e9, "nm"),
+    };
+    let digits = (value * 1e3).round() / 1e3;
+    (metres, format!("{digits} {unit}"))
+}
+
+/// An arrow with a white rim, and its label beside the tail.
+pub(super) fn arrow(field: &mut Canvas, from: [f32; 2], to: [f32; 2], label: &str, u: f32) {
+    let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+    let length = dx.hypot(dy);
+    if !(length > 0.0 && length.is_finite()) {
+        return;
+    }
+    let (x, y) = (dx / length, dy / length);
+    let head = (24.0 * u).min(0.6 * length);
+    let neck = [to[0] - head * x, to[1] - head * y];
+    let wing = |s: f32| [neck[0] - s * 0.42 * head * y, neck[1] + s * 0.42 * head * x];
+    let tip = [to, wing(1.0), wing(-1.0)];
+    field.stroke(&[from, neck], false, 9.0 * u, WHITE, None);
+    field.stroke(&tip, true, 4.0 * u, WHITE, None);
+    field.stroke(&[from, neck], false, 4.5 * u, INK, None);
+    field.polygon(&tip, INK);
+    let em = 25.0 * u;
+    // Beside a steep arrow, behind the tail of a flat one.
+    let (at, anchor) = if y.abs() > x.abs() {
+        (
+            [from[0] + 14.0 * u, from[1] + 0.9 * em * y.signum().max(0.4)],
+            Anchor::Start,
+        )
+    } else {
+        let anchor = if x > 0.0 { Anchor::End } else { Anchor::Start };
+        ([from[0] - x * 12.0 * u, from[1] + 0.34 * em], anchor)
+    };
+    let style = TextStyle::new(em, INK).anchored(anchor).halo(WHITE);
+    field.text(label, at, &style);
+}
+
+/// Adds a straight bar to a path. All bars turn the same way round, so that
+/// crossing ones do not cut holes in one another.
+pub(super) fn push_bar(path: &mut PathBuilder, a: [f32; 2], b: [f32; 2], width: f32) {
+    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+    let length = dx.hypot(dy);
+    if !(length > 0.0 && length.is_finite()) {
+        return;
+    }
+    let (nx, ny) = (-dy / length * width / 2.0, dx / length * width / 2.0);
+    path.move_to(a[0] + nx, a[1] + ny);
+    path.line_to(b[0] + nx, b[1] + ny);
+    path.line_to(b[0] - nx, b[1] - ny);
+    path.line_to(a[0] - nx, a[1] - ny);
+    path.close();
+}
+
+/// Centroid of a polygon with an area.
+pub(super) fn centroid(points: &[[f32; 2]]) -> Option<[f32; 2]> {
+    let (mut area, mut sum) = (0.0, [0.0, 0.0]);
+    for (i, b) in points.iter().enumerate() {
+        let a = points[(i + points.len() - 1) % points.len()];
+        let cross = a[0] * b[1] - b[0] * a[1];
+        area += 3.0 * cross;
+        sum = [
+            sum[0] + cross * (a[0] + b[0]),
+            sum[1] + cross * (a[1] + b[1]),
+        ];
+    }
+    (area != 0.0).then(|| [sum[0] / area, sum[1] / area])
+}
+
+/// Facts joined in as few lines as fit.
+pub(super) fn caption_lines(facts: &[String], size: f32, room: f32) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for fact in facts {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line}   ·   {fact}"), size) <= room => {
+                line.push_str("   ·   ");
+                line.push_str(fact);
+            }
+            _ => lines.push(fact.clone()),
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_have_round_lengths() {
+        assert_eq!(round_length(6.3e-5).1, "50 µm");
+        assert_eq!(round_length(2.1e-3).1, "2 mm");
+        assert_eq!(round_length(1.0e-6).1, "1 µm");
+        assert_eq!(round_length(3.0e-8).1, "20 nm");
+    }
+}

@@ -1,0 +1,2 @@
+//! Cases and materials: read, checked, and made into a scene that steps.
+pub mod source;
