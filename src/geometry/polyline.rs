@@ -57,7 +57,8 @@ impl Polyline {
         }
         let (first, last) = (points[0], points[points.len() - 1]);
         if let Some(period) = period {
-            let mismatch = (last - first - Vector2::new(period, 0.0)).norm();
+            let along = if last.x > first.x { period } else { -period };
+            let mismatch = (last - first - Vector2::new(along, 0.0)).norm();
             if mismatch > 1e-9 * period {
                 return Err(ProfileError::Period(
                     first.x, first.y, last.x, last.y, period,
@@ -93,7 +94,8 @@ impl Polyline {
         let Some(period) = self.period else {
             return (*centre, 0.0);
         };
-        let shift = ((centre.x - self.points[0].x) / period).floor() * period;
+        let start = self.points[0].x.min(self.points[self.points.len() - 1].x);
+        let shift = ((centre.x - start) / period).floor() * period;
         (Vector2::new(centre.x - shift, centre.y), shift)
     }
 

@@ -29,11 +29,13 @@ impl Loaded {
 }
 
 /// When bonds are made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum BondRule {
     /// Every contact within the alert distance at the first step.
     #[default]
     Start,
+    /// Every contact within the alert distance at this time (s): after a compaction, say.
+    At(f64),
     /// None.
     Never,
 }
@@ -146,9 +148,14 @@ impl Interface {
             .collect()
     }
 
-    /// Whether contacts become bonds at the start.
-    pub fn bonds_at_start(&self) -> bool {
-        self.cohesion.is_some() && self.bonds == BondRule::Start
+    /// When contacts become bonds (s), if they do.
+    pub fn bonding_time(&self) -> Option<f64> {
+        let time = match self.bonds {
+            BondRule::Start => 0.0,
+            BondRule::At(time) => time,
+            BondRule::Never => return None,
+        };
+        self.cohesion.is_some().then_some(time)
     }
 
     /// Whether the normal stiffness only pulls.

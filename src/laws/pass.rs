@@ -47,6 +47,8 @@ pub struct Totals {
 pub struct Passes {
     columns: Columns,
     members: Vec<usize>,
+    /// Interfaces whose bonds have been made.
+    bonded: Vec<bool>,
 }
 
 /// Friction and restitution of one contact.
@@ -60,14 +62,28 @@ struct Friction {
 }
 
 impl Passes {
-    /// Makes the bonds of the start.
-    pub fn make_bonds<S: Space>(&self, laws: &[Interface], network: &mut Network<S>) {
-        for contact in &mut network.contacts {
-            let law = &laws[contact.law as usize];
-            if law.bonds_at_start() && contact.memory().is_none() {
+    /// Makes the bonds of the interfaces whose time has come.
+    pub fn make_bonds<S: Space>(
+        &mut self,
+        laws: &[Interface],
+        network: &mut Network<S>,
+        time: f64,
+    ) {
+        self.bonded.resize(laws.len(), false);
+        for (index, law) in laws.iter().enumerate() {
+            if self.bonded[index] || law.bonding_time().is_none_or(|t| time < t) {
+                continue;
+            }
+            self.bonded[index] = true;
+            let initial = law.initial();
+            for contact in network
+                .contacts
+                .iter_mut()
+                .filter(|c| c.law as usize == index)
+            {
                 let area = law.area.area(S::D, contact.radius);
-                let memory = &mut network.memory[contact.law as usize];
-                contact.slot = memory.allocate(true, contact.gap, area, &law.initial());
+                let memory = &mut network.memory[index];
+                contact.slot = memory.allocate(true, contact.gap, area, &initial);
             }
         }
     }

@@ -1,2 +1,13 @@
 //! Cases and materials: read, checked, and made into a scene that steps.
+pub mod build;
+pub mod case;
+pub mod check;
+pub mod interfaces;
+pub mod material;
+pub mod profile;
+pub mod sample;
+pub mod scene_file;
 pub mod source;
+
+pub use build::{Built, Loaded, Scene, load};
+pub use source::InputError;

@@ -168,9 +168,8 @@ impl<S: Space> Simulation<S> {
             &self.table,
             self.time,
         );
-        if self.steps == 0 {
-            self.passes.make_bonds(&self.laws, &mut self.network);
-        }
+        self.passes
+            .make_bonds(&self.laws, &mut self.network, self.time);
         report.timing.detect = clock.elapsed();
 
         let clock = Instant::now();

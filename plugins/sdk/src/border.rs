@@ -1,7 +1,9 @@
 //! The border: from the host's columns to one contact and back. All `unsafe` of a law is here.
 
 use crate::traits::{CohesionLaw, ContactLaw, DamageLaw, Intact, Law, Site, WearLaw};
+use core::cell::Cell;
 use core::ffi::c_char;
+use core::mem::{MaybeUninit, offset_of};
 use fretwork_abi::{
     FwBatch, FwMessage, STATUS_BAD_PARAMETER, STATUS_ERROR, STATUS_OK, STATUS_PANIC,
 };
@@ -22,158 +24,186 @@ fn tell(message: *mut FwMessage, contact: i64, text: &str) {
         if to.is_null() || capacity == 0 {
             return;
         }
-        let n = text.len().min(capacity - 1);
+        let mut n = text.len().min(capacity - 1);
+        while !text.is_char_boundary(n) {
+            n -= 1;
+        }
         core::ptr::copy_nonoverlapping(text.as_ptr().cast::<c_char>(), to, n);
         *to.add(n) = 0;
     }
 }
 
-fn guarded(message: *mut FwMessage, body: impl FnOnce() -> i32) -> i32 {
-    catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|cause| {
+/// Runs `body`, which keeps the index of the contact at hand in the cell; a panic ends here.
+fn guarded(message: *mut FwMessage, body: impl FnOnce(&Cell<i64>) -> i32) -> i32 {
+    let contact = Cell::new(-1);
+    catch_unwind(AssertUnwindSafe(|| body(&contact))).unwrap_or_else(|cause| {
         let said = cause
             .downcast_ref::<&str>()
             .map(|s| (*s).to_owned())
             .or_else(|| cause.downcast_ref::<String>().cloned())
             .unwrap_or_default();
-        tell(message, -1, &format!("the law panicked: {said}"));
+        tell(message, contact.get(), &format!("the law panicked: {said}"));
         STATUS_PANIC
     })
 }
 
-/// The host's batch, read no further than its size says.
-struct Batch<'a> {
-    raw: &'a FwBatch,
-    size: usize,
+/// The host's batch as far as its size goes. What an older host does not have is zero, so that a
+/// column beyond its end is a null one; what a newer host has more is not looked at.
+///
+/// # Safety
+/// `raw` is null or valid for the bytes its first field says.
+unsafe fn known(raw: *const FwBatch) -> Option<FwBatch> {
+    if raw.is_null() {
+        return None;
+    }
+    // SAFETY: not null, and every version begins with its size.
+    let size = unsafe { (&raw const (*raw).size).read() };
+    if size < offset_of!(FwBatch, gap) {
+        return None;
+    }
+    // Half a pointer at the end would be worse than none.
+    let size = size.min(size_of::<FwBatch>()) & !(align_of::<FwBatch>() - 1);
+    let mut batch = MaybeUninit::<FwBatch>::zeroed();
+    // SAFETY: both sides have `size` bytes; zeros are valid numbers and null pointers.
+    unsafe {
+        core::ptr::copy_nonoverlapping(raw.cast::<u8>(), batch.as_mut_ptr().cast::<u8>(), size);
+        Some(batch.assume_init())
+    }
 }
 
-macro_rules! column {
-    ($batch:expr, $field:ident) => {
-        if core::mem::offset_of!(FwBatch, $field) < $batch.size {
-            $batch.raw.$field
-        } else {
-            core::ptr::null_mut() as _
-        }
-    };
-}
-
+/// # Safety
+/// The column is null or has more than `k` values.
 #[inline(always)]
 unsafe fn at(column: *const f64, k: usize) -> f64 {
-    // SAFETY: a column is null or has n > k values.
     if column.is_null() {
         0.0
     } else {
+        // SAFETY: by the contract above.
         unsafe { *column.add(k) }
     }
 }
 
+/// # Safety
+/// As [`at`], and nobody else uses the column during the call.
 #[inline(always)]
 unsafe fn put(column: *mut f64, k: usize, value: f64) {
     if !column.is_null() {
-        // SAFETY: as above; output columns belong to this call alone.
+        // SAFETY: by the contract above.
         unsafe { *column.add(k) = value }
     }
 }
 
-impl Batch<'_> {
-    #[inline(always)]
-    fn site(&self, k: usize) -> Site {
-        let b = self;
-        // SAFETY: k < n.
-        unsafe {
-            Site {
-                gap: at(column!(b, gap), k),
-                area: at(column!(b, area), k),
-                radius: at(column!(b, radius), k),
-                age: at(column!(b, age), k),
-                opening: [
-                    at(column!(b, opening_n), k),
-                    at(column!(b, opening_t1), k),
-                    at(column!(b, opening_t2), k),
-                ],
-                velocity: [
-                    at(column!(b, velocity_n), k),
-                    at(column!(b, velocity_t1), k),
-                    at(column!(b, velocity_t2), k),
-                ],
-                impulse: [
-                    at(column!(b, impulse_n), k),
-                    at(column!(b, impulse_t1), k),
-                    at(column!(b, impulse_t2), k),
-                ],
-                damage: at(column!(b, damage), k),
-                h: b.raw.h,
-                time: b.raw.time,
-                dimension: b.raw.dimension,
-            }
+/// # Safety
+/// The batch is the host's and `k` is below its `n`.
+#[inline(always)]
+unsafe fn site(b: &FwBatch, k: usize) -> Site {
+    // SAFETY: a column is null or has n > k values.
+    unsafe {
+        Site {
+            gap: at(b.gap, k),
+            area: at(b.area, k),
+            radius: at(b.radius, k),
+            age: at(b.age, k),
+            opening: [at(b.opening_n, k), at(b.opening_t1, k), at(b.opening_t2, k)],
+            velocity: [
+                at(b.velocity_n, k),
+                at(b.velocity_t1, k),
+                at(b.velocity_t2, k),
+            ],
+            impulse: [at(b.impulse_n, k), at(b.impulse_t1, k), at(b.impulse_t2, k)],
+            damage: at(b.damage, k),
+            h: b.h,
+            theta: b.theta,
+            time: b.time,
+            dimension: b.dimension,
         }
     }
 }
 
-/// Runs `each` over the contacts of a batch, with the law and the internal variables.
-fn over<L: Law>(
+/// The parameters as a slice.
+///
+/// # Safety
+/// `values` is null or has one value a parameter of the schema.
+unsafe fn parameters<'a, L: Law>(values: *const f64) -> Option<&'a [f64]> {
+    match L::FIELDS.len() {
+        0 => Some(&[]),
+        _ if values.is_null() => None,
+        // SAFETY: by the contract above.
+        count => Some(unsafe { core::slice::from_raw_parts(values, count) }),
+    }
+}
+
+/// Says which value of a contact is not finite, and where.
+#[cold]
+fn not_finite(message: *mut FwMessage, b: &FwBatch, k: usize, what: &str) -> i32 {
+    // SAFETY: only called with a contact of the batch.
+    let site = unsafe { site(b, k) };
+    tell(
+        message,
+        k as i64,
+        &format!("the law gave a value of `{what}` that is not finite, at {site:?}"),
+    );
+    STATUS_ERROR
+}
+
+/// Runs `each` over the contacts of a batch, with the law and the internal variables. It answers with
+/// the name of an output that is not finite. New internal variables are kept in a `COMMIT` only.
+fn over<L: Law, const COMMIT: bool>(
     raw: *const FwBatch,
     message: *mut FwMessage,
-    mut each: impl FnMut(&L, &Batch, usize, &Site, &[f64], &mut [f64]) -> bool,
+    each: impl Fn(&L, &FwBatch, usize, &Site, &[f64], &mut [f64]) -> Option<&'static str>,
 ) -> i32 {
-    guarded(message, || {
-        let variables = L::VARIABLES.len();
-        if raw.is_null() || variables > MOST_VARIABLES {
-            tell(
-                message,
-                -1,
-                "the batch is null, or the law has too many internal variables",
-            );
+    const { assert!(L::VARIABLES.len() <= MOST_VARIABLES) };
+    guarded(message, |contact| {
+        // SAFETY: the host passes a valid batch.
+        let Some(batch) = (unsafe { known(raw) }) else {
+            tell(message, -1, "the batch is null or shorter than version 1.0");
             return STATUS_ERROR;
-        }
-        // SAFETY: the host passes a valid batch; `size` is its first field.
-        let raw = unsafe { &*raw };
-        let batch = Batch {
-            raw,
-            size: raw.size,
         };
-        let count = L::FIELDS.len();
-        let values: &[f64] = if count == 0 {
-            &[]
-        } else {
-            // SAFETY: one value a parameter of the schema.
-            unsafe { core::slice::from_raw_parts(raw.parameters, count) }
+        // SAFETY: the batch has the parameters of this plugin's schema.
+        let Some(values) = (unsafe { parameters::<L>(batch.parameters) }) else {
+            tell(message, -1, "the batch has no parameters");
+            return STATUS_ERROR;
         };
         let law = L::read(values);
-        let (mut state, mut next) = ([0.0; MOST_VARIABLES], [0.0; MOST_VARIABLES]);
-        for k in 0..raw.n {
-            for v in 0..variables {
+        let variables = L::VARIABLES.len();
+        let mut state = [0.0; MOST_VARIABLES];
+        for k in 0..batch.n {
+            contact.set(k as i64);
+            for (v, value) in state.iter_mut().enumerate().take(variables) {
                 // SAFETY: one column a variable of the schema, or null.
-                state[v] = unsafe {
-                    if raw.state.is_null() {
-                        0.0
-                    } else {
-                        at(*raw.state.add(v), k)
+                *value = unsafe {
+                    match batch.state.is_null() {
+                        true => 0.0,
+                        false => at(*batch.state.add(v), k),
                     }
                 };
-                next[v] = state[v];
             }
-            let site = batch.site(k);
-            let fine = each(
+            let mut next = state;
+            // SAFETY: k < n.
+            let here = unsafe { site(&batch, k) };
+            let wrong = each(
                 &law,
                 &batch,
                 k,
-                &site,
+                &here,
                 &state[..variables],
                 &mut next[..variables],
             );
-            if !fine || next[..variables].iter().any(|x| !x.is_finite()) {
-                tell(
-                    message,
-                    k as i64,
-                    &format!("the law gave a value that is not finite, at {site:?}"),
-                );
-                return STATUS_ERROR;
+            if let Some(what) = wrong {
+                return not_finite(message, &batch, k, what);
             }
-            for (v, value) in next.iter().enumerate().take(variables) {
-                // SAFETY: as above; `state_next` columns belong to this call.
-                unsafe {
-                    if !raw.state_next.is_null() {
-                        put(*raw.state_next.add(v), k, *value);
+            if COMMIT {
+                for (v, value) in next.iter().enumerate().take(variables) {
+                    if !value.is_finite() {
+                        let name = L::VARIABLES[v].name.to_str().unwrap_or("state_next");
+                        return not_finite(message, &batch, k, name);
+                    }
+                    // SAFETY: as above; `state_next` columns belong to this call.
+                    unsafe {
+                        if !batch.state_next.is_null() {
+                            put(*batch.state_next.add(v), k, *value);
+                        }
                     }
                 }
             }
@@ -182,16 +212,24 @@ fn over<L: Law>(
     })
 }
 
-macro_rules! write {
+/// Writes outputs of contact `k`; gives the name of the first that is not finite.
+macro_rules! give {
     ($batch:ident, $k:ident, $($field:ident = $value:expr),* $(,)?) => {{
-        let mut fine = true;
+        let values: [f64; _] = [$($value),*];
+        let mut next = values.iter();
         $(
-            let value: f64 = $value;
-            fine &= value.is_finite();
-            // SAFETY: k < n; output columns belong to this call.
-            unsafe { put(column!($batch, $field), $k, value) };
+            if let Some(value) = next.next() {
+                // SAFETY: k < n; output columns belong to this call.
+                unsafe { put($batch.$field, $k, *value) };
+            }
         )*
-        fine
+        if values.iter().all(|v| v.is_finite()) {
+            None
+        } else {
+            const NAMES: &[&str] = &[$(stringify!($field)),*];
+            let first = values.iter().position(|v| !v.is_finite());
+            first.map(|v| NAMES[v])
+        }
     }};
 }
 
@@ -200,13 +238,11 @@ macro_rules! write {
 /// # Safety
 /// As the ABI says: `values` has one value a parameter, `message` is valid or null.
 pub unsafe extern "C" fn validate<L: Law>(values: *const f64, message: *mut FwMessage) -> i32 {
-    guarded(message, || {
-        let count = L::FIELDS.len();
+    guarded(message, |_| {
         // SAFETY: one value a parameter of the schema.
-        let values = if count == 0 {
-            &[]
-        } else {
-            unsafe { core::slice::from_raw_parts(values, count) }
+        let Some(values) = (unsafe { parameters::<L>(values) }) else {
+            tell(message, -1, "no parameters were given");
+            return STATUS_ERROR;
         };
         match L::read(values).validate() {
             Ok(()) => STATUS_OK,
@@ -226,9 +262,9 @@ pub unsafe extern "C" fn contact_prepare<L: ContactLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L>(batch, message, |law, b, k, site, state, _| {
+    over::<L, false>(batch, message, |law, b, k, site, state, _| {
         let f = law.friction(site, state);
-        write!(
+        give!(
             b,
             k,
             out_friction = f.mu,
@@ -250,9 +286,9 @@ pub unsafe extern "C" fn contact_commit<L: ContactLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L>(batch, message, |law, _, _, site, state, next| {
+    over::<L, true>(batch, message, |law, _, _, site, state, next| {
         law.commit(site, state, next);
-        true
+        None
     })
 }
 
@@ -264,9 +300,9 @@ pub unsafe extern "C" fn cohesion_prepare<L: CohesionLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L>(batch, message, |law, b, k, site, state, _| {
+    over::<L, false>(batch, message, |law, b, k, site, state, _| {
         let t = law.traction(site, state);
-        write!(
+        give!(
             b,
             k,
             out_traction_n = t.traction[0],
@@ -290,8 +326,8 @@ pub unsafe extern "C" fn cohesion_energy<L: CohesionLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L>(batch, message, |law, b, k, site, state, _| {
-        write!(b, k, out_energy = law.energy(site, state))
+    over::<L, false>(batch, message, |law, b, k, site, state, _| {
+        give!(b, k, out_energy = law.energy(site, state))
     })
 }
 
@@ -303,9 +339,9 @@ pub unsafe extern "C" fn cohesion_commit<L: CohesionLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L>(batch, message, |law, _, _, site, state, next| {
+    over::<L, true>(batch, message, |law, _, _, site, state, next| {
         law.commit(site, state, next);
-        true
+        None
     })
 }
 
@@ -317,20 +353,16 @@ pub unsafe extern "C" fn damage_commit<L: DamageLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L>(batch, message, |law, b, k, site, state, next| {
+    over::<L, true>(batch, message, |law, b, k, site, state, next| {
         // SAFETY: k < n.
         let intact = unsafe {
             Intact {
-                energy: at(column!(b, energy_intact), k),
-                traction: [
-                    at(column!(b, intact_n), k),
-                    at(column!(b, intact_t1), k),
-                    at(column!(b, intact_t2), k),
-                ],
-                degradation: b.raw.degradation,
+                energy: at(b.energy_intact, k),
+                traction: [at(b.intact_n, k), at(b.intact_t1, k), at(b.intact_t2, k)],
+                degradation: b.degradation,
             }
         };
-        write!(b, k, out_damage = law.grow(site, &intact, state, next))
+        give!(b, k, out_damage = law.grow(site, &intact, state, next))
     })
 }
 
@@ -342,9 +374,9 @@ pub unsafe extern "C" fn wear_commit<L: WearLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L>(batch, message, |law, b, k, site, state, next| {
+    over::<L, true>(batch, message, |law, b, k, site, state, next| {
         // SAFETY: k < n.
-        let (slip, work) = unsafe { (at(column!(b, slip), k), at(column!(b, friction_work), k)) };
-        write!(b, k, out_volume = law.volume(site, slip, work, state, next))
+        let (slip, work) = unsafe { (at(b.slip, k), at(b.friction_work, k)) };
+        give!(b, k, out_volume = law.volume(site, slip, work, state, next))
     })
 }

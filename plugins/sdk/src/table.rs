@@ -22,9 +22,9 @@ pub const fn variables<const N: usize>(list: &[crate::Variable]) -> [fretwork_ab
     let mut out = [blank; N];
     let mut k = 0;
     while k < N {
-        out[k].name = list[k].name.as_ptr().cast();
-        out[k].unit = list[k].unit.as_ptr().cast();
-        out[k].doc = list[k].doc.as_ptr().cast();
+        out[k].name = list[k].name.as_ptr();
+        out[k].unit = list[k].unit.as_ptr();
+        out[k].doc = list[k].doc.as_ptr();
         out[k].default = list[k].initial;
         out[k].flags = list[k].output as u64;
         k += 1;
@@ -68,6 +68,7 @@ macro_rules! parameters {
                     flags: 0,
                 },)*
             ];
+            const PACKAGE_VERSION: &'static str = env!("CARGO_PKG_VERSION");
             #[allow(unused_mut, unused_variables, unused_assignments)]
             fn read(values: &[f64]) -> Self {
                 let mut next = values.iter().copied();

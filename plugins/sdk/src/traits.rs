@@ -1,24 +1,27 @@
 //! What a law's author writes, for one contact.
 
+use core::ffi::CStr;
 use fretwork_abi::FwField;
 
 /// A struct of parameters; made by [`crate::parameters!`].
 pub trait Parameters: Sized {
     /// The schema.
     const FIELDS: &'static [FwField];
+    /// Version of the package that declares it.
+    const PACKAGE_VERSION: &'static str;
     /// From values in the order of the schema.
     fn read(values: &[f64]) -> Self;
 }
 
-/// An internal variable of a law.
+/// An internal variable of a law: its texts are C strings, `c"slip"`.
 #[derive(Clone, Copy, Debug)]
 pub struct Variable {
-    /// Name, NUL-terminated.
-    pub name: &'static str,
-    /// SI unit, NUL-terminated.
-    pub unit: &'static str,
-    /// One line, NUL-terminated.
-    pub doc: &'static str,
+    /// Name, `[a-z][a-z0-9_]*`.
+    pub name: &'static CStr,
+    /// SI unit, empty for a pure number.
+    pub unit: &'static CStr,
+    /// One line for the user.
+    pub doc: &'static CStr,
     /// Value on a new contact.
     pub initial: f64,
     /// Write it to the results.
@@ -33,8 +36,8 @@ pub trait Law: Parameters {
     const DOC: &'static str;
     /// Paper or DOI.
     const REFERENCE: &'static str;
-    /// The law's own version.
-    const VERSION: &'static str = "1.0.0";
+    /// The law's own version; that of its package by default.
+    const VERSION: &'static str = Self::PACKAGE_VERSION;
     /// `FLAG_*` of the ABI.
     const FLAGS: u64 = 0;
     /// Internal variables, at most [`crate::border::MOST_VARIABLES`].
@@ -70,6 +73,8 @@ pub struct Site {
     pub damage: f64,
     /// Time step (s).
     pub h: f64,
+    /// Theta of the time scheme.
+    pub theta: f64,
     /// Time at the start of the step (s).
     pub time: f64,
     /// 2 or 3.
@@ -78,16 +83,19 @@ pub struct Site {
 
 impl Site {
     /// Length of the tangential opening (m).
+    #[inline]
     pub fn tangential_opening(&self) -> f64 {
         self.opening[1].hypot(self.opening[2])
     }
 
     /// Normal opening where it is positive, else zero (m).
+    #[inline]
     pub fn normal_opening(&self) -> f64 {
         self.opening[0].max(0.0)
     }
 
     /// Compressive pressure over the area (Pa), zero in tension.
+    #[inline]
     pub fn pressure(&self) -> f64 {
         let force = self.h * self.area;
         if force > 0.0 {
@@ -149,6 +157,7 @@ pub struct Intact {
 
 impl Intact {
     /// The driving force Y = -d psi/d D = m (1 - D)^(m - 1) psi_0 (J/m^2).
+    #[inline]
     pub fn release_rate(&self, damage: f64) -> f64 {
         self.degradation * (1.0 - damage).powf(self.degradation - 1.0) * self.energy
     }

@@ -103,15 +103,24 @@ impl InputError {
         if span.is_empty() {
             span.end = (span.start + 1).min(text.len());
         }
-        let config = Config::default().with_color(colour).with_index_type(IndexType::Byte);
-        let label = self.0.expected.as_ref().map_or("here".to_owned(), |e| format!("expected {e}"));
+        let config = Config::default()
+            .with_color(colour)
+            .with_index_type(IndexType::Byte);
+        let label = self
+            .0
+            .expected
+            .as_ref()
+            .map_or("here".to_owned(), |e| format!("expected {e}"));
         let report = Report::build(ReportKind::Error, (file, span.clone()))
             .with_config(config)
             .with_message(&self.0.message)
             .with_label(Label::new((file, span)).with_message(label))
             .finish();
         let mut picture = Vec::new();
-        if report.write((file, Text::from(text.as_str())), &mut picture).is_ok() {
+        if report
+            .write((file, Text::from(text.as_str())), &mut picture)
+            .is_ok()
+        {
             out.push('\n');
             out.push_str(String::from_utf8_lossy(&picture).trim_end());
         }

@@ -32,11 +32,18 @@ impl Source {
         let unreadable = |e: std::io::Error| InputError::unreadable(path, &e);
         let size = std::fs::metadata(path).map_err(unreadable)?.len();
         if size > MOST_BYTES {
-            return Err(InputError::about(path.display(), format!("is too large ({size} bytes); the most is {MOST_BYTES}")));
+            return Err(InputError::about(
+                path.display(),
+                format!("is too large ({size} bytes); the most is {MOST_BYTES}"),
+            ));
         }
         let bytes = std::fs::read(path).map_err(unreadable)?;
-        let text = String::from_utf8(bytes)
-            .map_err(|e| InputError::about(path.display(), format!("is not UTF-8 text (byte {})", e.utf8_error().valid_up_to())))?;
+        let text = String::from_utf8(bytes).map_err(|e| {
+            InputError::about(
+                path.display(),
+                format!("is not UTF-8 text (byte {})", e.utf8_error().valid_up_to()),
+            )
+        })?;
         Self::from_text(&path.display().to_string(), text)
     }
 
@@ -46,7 +53,11 @@ impl Source {
     /// Nested too deeply.
     pub fn from_text(name: &str, text: String) -> Result<Self, InputError> {
         match tree::read(&text) {
-            Ok(tree) => Ok(Self { name: name.to_owned(), text, tree }),
+            Ok(tree) => Ok(Self {
+                name: name.to_owned(),
+                text,
+                tree,
+            }),
             Err(tree::TooDeep(at)) => {
                 let message = format!("nested more than {} levels deep", tree::MOST_LEVELS);
                 Err(InputError::at(name, &text, at..at + 1, message))
@@ -70,27 +81,46 @@ impl Source {
         };
         let (path, value) = (path.trim(), value.trim());
         if path.is_empty() || value.is_empty() {
-            return Err(InputError::about(subject, "needs a key and a value").expected("key.path=value"));
+            return Err(
+                InputError::about(subject, "needs a key and a value").expected("key.path=value")
+            );
         }
         let parts: Vec<&str> = path.split('.').collect();
         let (node, used) = self.tree.follow(&parts, &self.text);
         if used == parts.len() {
             let old = &self.text[node.span.clone()];
-            let word = value.chars().all(|c| c.is_alphanumeric() || "-_./ ".contains(c));
+            let word = value
+                .chars()
+                .all(|c| c.is_alphanumeric() || "-_./ ".contains(c));
             let quoted = old.starts_with('"') && !value.starts_with('"') && word;
-            let new = if quoted { format!("\"{value}\"") } else { value.to_owned() };
+            let new = if quoted {
+                format!("\"{value}\"")
+            } else {
+                value.to_owned()
+            };
             self.text.replace_range(node.span.clone(), &new);
-        } else if let (true, Inside::Members { open, quoted, .. }) = (used + 1 == parts.len(), &node.inside) {
+        } else if let (true, Inside::Members { open, quoted, .. }) =
+            (used + 1 == parts.len(), &node.inside)
+        {
             // A member with a default: serde refuses it if there is no such.
             let key = parts[used];
-            let new = if *quoted { format!("\"{key}\": {value},") } else { format!("{key}: {value},") };
+            let new = if *quoted {
+                format!("\"{key}\": {value},")
+            } else {
+                format!("{key}: {value},")
+            };
             self.text.insert_str(*open, &new);
         } else {
             let names = node.children(&self.text);
             let near = nearest(parts[used], names.iter().map(String::as_str));
-            let place = if used == 0 { "the case".to_owned() } else { format!("`{}`", parts[..used].join(".")) };
+            let place = if used == 0 {
+                "the case".to_owned()
+            } else {
+                format!("`{}`", parts[..used].join("."))
+            };
             let message = format!("there is no `{}` in {place}", parts[used]);
-            let error = InputError::about(subject, message).expected(format!("one of {}", names.join(", ")));
+            let error = InputError::about(subject, message)
+                .expected(format!("one of {}", names.join(", ")));
             return Err(error.did_you_mean(near));
         }
         let changed = Self::from_text(&self.name, std::mem::take(&mut self.text))?;
@@ -115,7 +145,9 @@ impl Source {
         let mut span = node.span.clone();
         if used < parts.len() || matches!(node.inside, Inside::Members { .. }) {
             // Point at the head, not at pages of text.
-            let head = self.text[span.clone()].find(['\n', '{', '[']).unwrap_or(span.len());
+            let head = self.text[span.clone()]
+                .find(['\n', '{', '['])
+                .unwrap_or(span.len());
             span.end = span.start + head.clamp(1, span.len().max(1));
         }
         InputError::at(&self.name, &self.text, span, message)
@@ -132,9 +164,17 @@ impl Source {
 
     fn offset(&self, position: Position) -> usize {
         let line = position.line.saturating_sub(1);
-        let start: usize = self.text.split_inclusive('\n').take(line).map(str::len).sum();
+        let start: usize = self
+            .text
+            .split_inclusive('\n')
+            .take(line)
+            .map(str::len)
+            .sum();
         let rest = &self.text[start.min(self.text.len())..];
-        let column = rest.char_indices().nth(position.col.saturating_sub(1)).map_or(rest.len(), |c| c.0);
+        let column = rest
+            .char_indices()
+            .nth(position.col.saturating_sub(1))
+            .map_or(rest.len(), |c| c.0);
         start + column
     }
 
@@ -155,30 +195,44 @@ impl Source {
         let at = |span, message: String| InputError::at(&self.name, &self.text, span, message);
         let list = |names: &[&str]| format!("one of {}", names.join(", "));
         match &error.code {
-            RonError::NoSuchStructField { expected, found, outer } => {
+            RonError::NoSuchStructField {
+                expected,
+                found,
+                outer,
+            } => {
                 let place = outer.as_ref().map_or(String::new(), |o| format!(" in {o}"));
-                at(self.token(found, &range), format!("unknown field `{found}`{place}"))
-                    .expected(list(expected))
-                    .did_you_mean(nearest(found, expected.iter().copied()))
+                at(
+                    self.token(found, &range),
+                    format!("unknown field `{found}`{place}"),
+                )
+                .expected(list(expected))
+                .did_you_mean(nearest(found, expected.iter().copied()))
             }
-            RonError::NoSuchEnumVariant { expected, found, .. } => {
-                at(self.token(found, &range), format!("unknown choice `{found}`"))
-                    .expected(list(expected))
-                    .did_you_mean(nearest(found, expected.iter().copied()))
-            }
+            RonError::NoSuchEnumVariant {
+                expected, found, ..
+            } => at(
+                self.token(found, &range),
+                format!("unknown choice `{found}`"),
+            )
+            .expected(list(expected))
+            .did_you_mean(nearest(found, expected.iter().copied())),
             RonError::MissingStructField { field, outer } => {
                 let place = outer.as_ref().map_or(String::new(), |o| format!(" in {o}"));
                 at(range, format!("the field `{field}` is missing{place}"))
             }
-            RonError::DuplicateStructField { field, .. } => {
-                at(self.token(field, &range), format!("the field `{field}` is given twice"))
-            }
-            RonError::InvalidValueForType { expected, found } => {
-                at(self.value_before(&range), format!("wrong value: found {found}")).expected(expected.clone())
-            }
+            RonError::DuplicateStructField { field, .. } => at(
+                self.token(field, &range),
+                format!("the field `{field}` is given twice"),
+            ),
+            RonError::InvalidValueForType { expected, found } => at(
+                self.value_before(&range),
+                format!("wrong value: found {found}"),
+            )
+            .expected(expected.clone()),
             RonError::Message(message) => at(self.value_before(&range), message.clone()),
             other => {
-                let blank = self.text[range.start..].len() - self.text[range.start..].trim_start().len();
+                let blank =
+                    self.text[range.start..].len() - self.text[range.start..].trim_start().len();
                 let start = range.start + blank;
                 at(start..range.end.max(start), other.to_string())
             }
@@ -190,11 +244,15 @@ impl Source {
         fn last(node: &Node, end: usize, best: &mut Option<Range<usize>>) {
             match &node.inside {
                 Inside::Scalar => {
-                    if node.span.start <= end && best.as_ref().is_none_or(|b| node.span.start > b.start) {
+                    if node.span.start <= end
+                        && best.as_ref().is_none_or(|b| node.span.start > b.start)
+                    {
                         *best = Some(node.span.clone());
                     }
                 }
-                Inside::Members { members, .. } => members.iter().for_each(|m| last(&m.2, end, best)),
+                Inside::Members { members, .. } => {
+                    members.iter().for_each(|m| last(&m.2, end, best))
+                }
                 Inside::Items(items) => items.iter().for_each(|n| last(n, end, best)),
             }
         }
@@ -220,7 +278,12 @@ pub struct Fault {
 impl Fault {
     /// A fault at a path.
     pub fn new(path: impl Into<String>, message: impl Into<String>) -> Self {
-        Self { path: path.into(), message: message.into(), expected: None, nearest: None }
+        Self {
+            path: path.into(),
+            message: message.into(),
+            expected: None,
+            nearest: None,
+        }
     }
 
     /// Adds what was expected.
@@ -240,7 +303,11 @@ impl Fault {
     /// Puts a path in front of its own.
     #[must_use]
     pub fn under(mut self, parent: &str) -> Self {
-        self.path = if self.path.is_empty() { parent.to_owned() } else { format!("{parent}.{}", self.path) };
+        self.path = if self.path.is_empty() {
+            parent.to_owned()
+        } else {
+            format!("{parent}.{}", self.path)
+        };
         self
     }
 }
@@ -280,42 +347,71 @@ mod tests {
         }
         let case: Case = s.parse().unwrap();
         assert_eq!((case.name.as_str(), case.step, case.seed), ("b c", 2e-3, 4));
-        assert_eq!(case.drive, Some(Drive::Sine { amplitude: 7.0, frequency: 50.0 }));
+        assert_eq!(
+            case.drive,
+            Some(Drive::Sine {
+                amplitude: 7.0,
+                frequency: 50.0
+            })
+        );
         s.set("drive=Constant(3.0)").unwrap();
         assert_eq!(s.parse::<Case>().unwrap().drive, Some(Drive::Constant(3.0)));
     }
 
     #[test]
     fn set_says_what_is_wrong() {
-        assert!(source().set("step").unwrap_err().to_string().contains("has no `=`"));
+        assert!(
+            source()
+                .set("step")
+                .unwrap_err()
+                .to_string()
+                .contains("has no `=`")
+        );
         let e = source().set("driv.amplitude=1").unwrap_err().to_string();
         assert!(e.contains("did you mean `drive`?"), "{e}");
     }
 
     fn refused(text: &str) -> String {
-        Source::from_text("case.ron", text.into()).unwrap().parse::<Case>().unwrap_err().to_string()
+        Source::from_text("case.ron", text.into())
+            .unwrap()
+            .parse::<Case>()
+            .unwrap_err()
+            .to_string()
     }
 
     #[test]
     fn errors_stand_at_their_token() {
         let e = refused(&TEXT.replace("step:", "stepp:"));
-        assert!(e.starts_with("case.ron:3:3: error: unknown field `stepp`"), "{e}");
+        assert!(
+            e.starts_with("case.ron:3:3: error: unknown field `stepp`"),
+            "{e}"
+        );
         assert!(e.contains("did you mean `step`?"), "{e}");
         let e = refused(&TEXT.replace("Sine", "Sin"));
-        assert!(e.starts_with("case.ron:4:10: error: unknown choice `Sin`"), "{e}");
+        assert!(
+            e.starts_with("case.ron:4:10: error: unknown choice `Sin`"),
+            "{e}"
+        );
         let e = refused(&TEXT.replace("1e-3", "\"x\""));
         assert!(e.starts_with("case.ron:3:9: "), "{e}");
         let e = refused(&TEXT.replace("  step: 1e-3,\n", ""));
         assert!(e.contains("the field `step` is missing"), "{e}");
         assert!(refused("(name: ").starts_with("case.ron:1:"));
-        let deep = Source::from_text("d", "[".repeat(1000)).unwrap_err().to_string();
+        let deep = Source::from_text("d", "[".repeat(1000))
+            .unwrap_err()
+            .to_string();
         assert!(deep.contains("levels deep"), "{deep}");
     }
 
     #[test]
     fn faults_point_at_paths() {
-        let e = source().locate(Fault::new("drive.frequency", "must not be 50").expected("less")).to_string();
-        assert!(e.starts_with("case.ron:4:42: error: must not be 50; expected less"), "{e}");
+        let e = source()
+            .locate(Fault::new("drive.frequency", "must not be 50").expected("less"))
+            .to_string();
+        assert!(
+            e.starts_with("case.ron:4:42: error: must not be 50; expected less"),
+            "{e}"
+        );
         let e = source().error_at("drive.phase.deep", "x").to_string();
         assert!(e.starts_with("case.ron:4:10"), "{e}");
     }

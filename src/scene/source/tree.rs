@@ -20,7 +20,11 @@ pub enum Inside {
     /// A number, text, word.
     Scalar,
     /// Named members, with the span of each name and the byte after the opening bracket.
-    Members { members: Vec<(String, Range<usize>, Node)>, open: usize, quoted: bool },
+    Members {
+        members: Vec<(String, Range<usize>, Node)>,
+        open: usize,
+        quoted: bool,
+    },
     /// A list or tuple.
     Items(Vec<Node>),
 }
@@ -34,7 +38,10 @@ pub struct TooDeep(pub usize);
 /// # Errors
 /// More than [`MOST_LEVELS`] levels.
 pub fn read(text: &str) -> Result<Node, TooDeep> {
-    let mut scanner = Scanner { bytes: text.as_bytes(), at: 0 };
+    let mut scanner = Scanner {
+        bytes: text.as_bytes(),
+        at: 0,
+    };
     scanner.skip();
     while scanner.peek() == Some(b'#') {
         // #![enable(...)]
@@ -160,14 +167,20 @@ impl Scanner<'_> {
                 }
             }
             _ => {
-                while self.peek().is_some_and(|c| !c.is_ascii_whitespace() && !b",)]}:".contains(&c)) {
+                while self
+                    .peek()
+                    .is_some_and(|c| !c.is_ascii_whitespace() && !b",)]}:".contains(&c))
+                {
                     self.at += 1;
                 }
                 Inside::Scalar
             }
         };
         let end = self.at.min(self.bytes.len());
-        Ok(Node { span: start.min(end)..end, inside })
+        Ok(Node {
+            span: start.min(end)..end,
+            inside,
+        })
     }
 
     fn bracket(&mut self, close: u8, level: usize) -> Result<Inside, TooDeep> {
@@ -199,7 +212,9 @@ impl Scanner<'_> {
             self.skip();
             if self.peek() == Some(b':') && close != b']' {
                 self.at += 1;
-                let name = String::from_utf8_lossy(&self.bytes[first.span.clone()]).trim_matches('"').to_owned();
+                let name = String::from_utf8_lossy(&self.bytes[first.span.clone()])
+                    .trim_matches('"')
+                    .to_owned();
                 let value = self.value(level + 1)?;
                 members.push((name, first.span, value));
             } else {
@@ -213,7 +228,11 @@ impl Scanner<'_> {
         if members.is_empty() && (close != b'}' && !items.is_empty() || close == b']') {
             return Ok(Inside::Items(items));
         }
-        Ok(Inside::Members { members, open, quoted: close == b'}' })
+        Ok(Inside::Members {
+            members,
+            open,
+            quoted: close == b'}',
+        })
     }
 }
 
@@ -228,7 +247,8 @@ impl Node {
                     return items.get(k);
                 }
                 let named = items.iter().find(|item| {
-                    item.child("name", text).is_some_and(|n| text[n.span.clone()].trim_matches('"') == name)
+                    item.child("name", text)
+                        .is_some_and(|n| text[n.span.clone()].trim_matches('"') == name)
                 });
                 // Some(x), Sine(...): a single value is transparent.
                 named.or_else(|| match items.as_slice() {

@@ -1,8 +1,10 @@
 //! A linear elastic bond: traction (1 - D) k x.
+#![forbid(unsafe_code)]
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, export, parameters};
 
 parameters! {
-    /// Pulls in tension and resists sliding both ways; compression is the contact's.
+    /// Pulls in tension and resists sliding both ways; compression is the contact's. There the traction
+    /// goes on along the same line, which gives the host its zero; only the pulling part acts.
     pub struct ElasticBond {
         k_n: "Pa/m" = 1e14, 0.0, 1e30, "normal stiffness";
         k_t: "Pa/m" = 1e14, 0.0, 1e30, "tangential stiffness";
@@ -15,8 +17,7 @@ impl Law for ElasticBond {
     const NAME: &'static str = "elastic-bond";
     const DOC: &'static str =
         "linear elastic bond, traction (1 - D) k x, psi = (1 - D) (k_n <x_n>^2 + k_t |x_t|^2)/2";
-    const REFERENCE: &'static str =
-        "G. Mollon, Tribol. Lett. 67 (2019), law BondedMohrCoulomb of MELODY";
+    const REFERENCE: &'static str = "bond of BondedMohrCoulomb of MELODY: G. Mollon, Comput. Part. Mech. 5 (2018), doi:10.1007/s40571-018-0187-6";
     const FLAGS: u64 = abi::FLAG_TENSION_ONLY | abi::FLAG_OPENING;
 }
 

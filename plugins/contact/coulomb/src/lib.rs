@@ -1,4 +1,5 @@
 //! Coulomb friction with Newton's restitution.
+#![forbid(unsafe_code)]
 use fretwork_law::{ContactLaw, Friction, Law, Site, abi, export, parameters};
 
 parameters! {
@@ -29,3 +30,19 @@ impl ContactLaw for Coulomb {
 }
 
 export!(contact Coulomb);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gives_its_parameters() {
+        let law = Coulomb {
+            mu: 0.4,
+            restitution_n: 0.5,
+            restitution_t: 0.1,
+        };
+        let f = law.friction(&Site::default(), &[]);
+        assert_eq!((f.mu, f.restitution_n, f.restitution_t), (0.4, 0.5, 0.1));
+    }
+}

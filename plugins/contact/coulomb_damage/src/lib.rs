@@ -1,4 +1,5 @@
 //! Friction that grows as the bond is damaged.
+#![forbid(unsafe_code)]
 use fretwork_law::{ContactLaw, Friction, Law, Site, export, parameters};
 
 parameters! {

@@ -1,4 +1,5 @@
 //! Unilateral contact without friction.
+#![forbid(unsafe_code)]
 use fretwork_law::{ContactLaw, Friction, Law, Site, abi, export, parameters};
 
 parameters! {
@@ -25,3 +26,15 @@ impl ContactLaw for Frictionless {
 }
 
 export!(contact Frictionless);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gives_its_parameters() {
+        let law = Frictionless { restitution_n: 0.5 };
+        let f = law.friction(&Site::default(), &[]);
+        assert_eq!((f.mu, f.restitution_n, f.tension_strength), (0.0, 0.5, 0.0));
+    }
+}

@@ -1,10 +1,13 @@
 //! The rate law of Monerie, Acary and Cangemi: b dD/dt = <Y - w>_+, Y = -d psi/d D.
+#![forbid(unsafe_code)]
 use fretwork_law::{DamageLaw, Intact, Law, Site, export, parameters};
 
 parameters! {
-    /// With b = 0 a bond dissipates exactly w as it opens. It then fades like 1/u^2 and never reaches
-    /// D = 1 by itself: below `beta_broken` it counts as broken, and the energy still stored, at most
-    /// beta_broken w/2, is released as fracture energy.
+    /// With b = 0 and a cohesion of exponent m = 2 a bond that opens for ever dissipates exactly w. Its
+    /// intensity of adhesion fades like 1/u^2 and never reaches 0 by itself: below `beta_broken` the bond
+    /// counts as broken (0 turns this off). The energy still stored, at that moment at most
+    /// beta_broken w/2, must be booked as fracture energy by the host, and the bond has then dissipated
+    /// w (1 - beta_broken/2).
     pub struct Mac {
         w: "J/m^2" = 0.1, 0.0, 1e30, "Dupre's energy: fracture energy of the bond";
         b: "J s/m^2" = 0.0, 0.0, 1e30, "viscosity of damage";
@@ -15,13 +18,13 @@ parameters! {
 impl Law for Mac {
     const NAME: &'static str = "mac";
     const DOC: &'static str = "rate law b dD/dt = <Y - w>, with fracture energy w and viscosity b";
-    const REFERENCE: &'static str = "Y. Monerie, V. Acary, Rev. Eur. Elements Finis 10 (2001) 141-159; Raous, Cangemi, Cocou (1999)";
+    const REFERENCE: &'static str = "Y. Monerie, V. Acary, Formulation dynamique d'un modele de zone cohesive tridimensionnel, Rev. Eur. Elements Finis 10 (2001); M. Raous, L. Cangemi, M. Cocou, Comput. Methods Appl. Mech. Engrg 177 (1999) 383-399";
 }
 
 impl Mac {
-    /// D at the end of a step of h seconds, implicit: b (D - D_i)/h = Y(D) - w.
+    /// D at the end of a step of h seconds, implicit for m >= 1: b (D - D_i)/h = Y(D) - w.
     fn damage(&self, d: f64, h: f64, intact: &Intact) -> f64 {
-        if intact.release_rate(d) <= self.w {
+        if d >= 1.0 || intact.release_rate(d) <= self.w {
             return d;
         }
         let m = intact.degradation;
@@ -32,14 +35,14 @@ impl Mac {
         if m <= 1.0 {
             // Y does not fall as D grows: without viscosity the bond snaps.
             return if self.b > 0.0 {
-                d + h * (intact.energy * m - self.w) / self.b
+                d + h * (intact.release_rate(d) - self.w) / self.b
             } else {
                 1.0
             };
         }
         // Y(D) - w - b (D - D_i)/h falls from above zero at D_i to below zero at 1.
         let (mut low, mut high) = (d, 1.0);
-        for _ in 0..100 {
+        while high - low > f64::EPSILON {
             let mid = 0.5 * (low + high);
             if intact.release_rate(mid) - self.w > self.b * (mid - d) / h {
                 low = mid;
@@ -178,5 +181,61 @@ mod tests {
             )
         };
         assert_eq!((at(0.0999), at(0.1001)), (0.0, 1.0));
+    }
+
+    /// Grows D over one step of 1 us from `damage`, under psi_0 = 0.3 J/m^2.
+    fn step(law: &Mac, damage: f64, degradation: f64) -> f64 {
+        let intact = Intact {
+            energy: 0.3,
+            degradation,
+            ..Intact::default()
+        };
+        let site = Site {
+            damage,
+            h: 1e-6,
+            ..Site::default()
+        };
+        law.grow(&site, &intact, &[], &mut [])
+    }
+
+    #[test]
+    fn other_exponents_solve_the_implicit_equation() {
+        for (m, b) in [(1.5, 1e-6), (3.0, 1e-6), (3.0, 0.0), (2.5, 1e-7)] {
+            let law = Mac {
+                w: 0.1,
+                b,
+                beta_broken: 0.0,
+            };
+            let d = step(&law, 0.2, m);
+            let y = m * (1.0 - d).powf(m - 1.0) * 0.3;
+            assert!((b * (d - 0.2) / 1e-6 - (y - 0.1)).abs() < 1e-12, "{m} {b}");
+        }
+        let law = Mac {
+            b: 1e-6,
+            ..Mac::default()
+        };
+        let (exact, near) = (step(&law, 0.2, 2.0), step(&law, 0.2, 2.0 + 1e-9));
+        assert!((exact - near).abs() < 1e-8);
+        // m = 1: D = D_i + h (psi_0 - w)/b.
+        assert!((step(&law, 0.2, 1.0) - 0.4).abs() < 1e-12);
+    }
+
+    /// The cut at `beta_broken` costs beta_broken w/2 and no more.
+    #[test]
+    fn the_cut_is_where_the_doc_says() {
+        let law = Mac::default();
+        let broken = |beta: f64| {
+            let intact = Intact {
+                energy: 0.5 * law.w / beta,
+                degradation: 2.0,
+                ..Intact::default()
+            };
+            let site = Site {
+                h: 1e-6,
+                ..Site::default()
+            };
+            law.grow(&site, &intact, &[], &mut []) == 1.0
+        };
+        assert!(broken(0.999e-3) && !broken(1.001e-3));
     }
 }

@@ -1,8 +1,10 @@
 //! Brittle failure on a Mohr-Coulomb threshold with a tension cut-off.
+#![forbid(unsafe_code)]
 use fretwork_law::{DamageLaw, Intact, Law, Site, export, parameters};
 
 parameters! {
-    /// D goes from 0 to 1 at once when the traction the bond would carry leaves the strength envelope.
+    /// D goes to 1 at once when the traction the undamaged bond would carry leaves the strength envelope:
+    /// t_n > tensile_strength, or |t_t| > cohesion + friction p, with p the pressure of this step.
     pub struct MohrCoulombBrittle {
         tensile_strength: "Pa" = 1e8, 0.0, 1e30, "normal traction at which the bond breaks";
         cohesion: "Pa" = 1e8, 0.0, 1e30, "shear traction at which it breaks without pressure";
@@ -13,8 +15,7 @@ parameters! {
 impl Law for MohrCoulombBrittle {
     const NAME: &'static str = "mohr-coulomb-brittle";
     const DOC: &'static str = "breaks when t_n > tensile_strength or |t_t| > cohesion + friction p";
-    const REFERENCE: &'static str =
-        "law BondedMohrCoulomb of MELODY: G. Mollon, Comput. Part. Mech. 5 (2018) 467-479";
+    const REFERENCE: &'static str = "law BondedMohrCoulomb of MELODY: G. Mollon, Comput. Part. Mech. 5 (2018), doi:10.1007/s40571-018-0187-6";
 }
 
 impl DamageLaw for MohrCoulombBrittle {

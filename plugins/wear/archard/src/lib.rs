@@ -1,4 +1,5 @@
 //! Archard's law: V = k F s, k = K/H.
+#![forbid(unsafe_code)]
 use fretwork_law::{Law, Site, WearLaw, export, parameters};
 
 parameters! {

@@ -1,4 +1,5 @@
 //! Wear by dissipated energy: dV = alpha dE_d.
+#![forbid(unsafe_code)]
 use fretwork_law::{Law, Site, WearLaw, export, parameters};
 
 parameters! {
@@ -28,3 +29,16 @@ impl WearLaw for DissipatedEnergy {
 }
 
 export!(wear DissipatedEnergy);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn volume_is_alpha_times_the_work_that_is_lost() {
+        let law = DissipatedEnergy { alpha: 5e-14 };
+        let volume = |work| law.volume(&Site::default(), 1e-6, work, &[], &mut []);
+        assert!((volume(0.14) / 7e-15 - 1.0).abs() < 1e-14);
+        assert_eq!(volume(-0.14), 0.0);
+    }
+}

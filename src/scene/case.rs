@@ -1,0 +1,431 @@
+//! A case file: what the user writes.
+
+use crate::bodies::{Dof, TimeFunction};
+use crate::laws::BondRule;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// A case, as RON. Every number can be changed with `--set key.path=value`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Case {
+    /// Title.
+    pub name: String,
+    /// What it shows, and where its numbers come from.
+    #[serde(default)]
+    pub doc: String,
+    /// 2 or 3.
+    pub dimension: u32,
+    /// Seed of everything random.
+    #[serde(default)]
+    pub seed: u64,
+    /// Step and end.
+    pub time: TimeSpec,
+    /// Acceleration of gravity (m/s^2), one number an axis.
+    #[serde(default)]
+    pub gravity: Vec<f64>,
+    /// Length of the periodic cell along an axis (m).
+    #[serde(default)]
+    pub periodic: PeriodicSpec,
+    /// Detection.
+    #[serde(default)]
+    pub detection: DetectionSpec,
+    /// The solver.
+    #[serde(default)]
+    pub solver: SolverSpec,
+    /// Name in this case, and name of the file in `materials/`.
+    pub materials: BTreeMap<String, String>,
+    /// Interface laws between materials.
+    pub interfaces: Vec<InterfaceSpec>,
+    /// First bodies.
+    #[serde(default)]
+    pub bodies: Vec<BodySpec>,
+    /// Grains.
+    #[serde(default)]
+    pub grains: Vec<GrainSpec>,
+    /// What is measured as a friction test.
+    #[serde(default)]
+    pub friction: Option<FrictionSpec>,
+    /// What is written, and how often.
+    #[serde(default)]
+    pub output: OutputSpec,
+}
+
+/// Time step and end of the run.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TimeSpec {
+    /// h (s).
+    pub step: f64,
+    /// End (s).
+    pub end: f64,
+    /// Theta of the scheme, 1/2 to 1.
+    #[serde(default = "half")]
+    pub theta: f64,
+}
+
+fn half() -> f64 {
+    0.5
+}
+
+/// Periodic lengths (m).
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PeriodicSpec {
+    /// Along x.
+    pub x: Option<f64>,
+    /// Along y.
+    pub y: Option<f64>,
+    /// Along z.
+    pub z: Option<f64>,
+}
+
+/// Detection distances (m); by default a fraction of the smallest radius.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DetectionSpec {
+    /// Pairs nearer than this are contacts.
+    pub alert: Option<f64>,
+    /// How much farther the neighbour list looks.
+    pub skin: Option<f64>,
+}
+
+/// Options of the solver.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SolverSpec {
+    /// Error to reach.
+    pub tolerance: f64,
+    /// Sweeps at most in a step.
+    pub max_iterations: u32,
+    /// Sweeps between convergence tests.
+    pub test_every: u32,
+}
+
+impl Default for SolverSpec {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-4,
+            max_iterations: 10_000,
+            test_every: 10,
+        }
+    }
+}
+
+/// The law between two materials: four slots, each a plugin's name.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InterfaceSpec {
+    /// Name.
+    pub name: String,
+    /// The two materials, by their names in this case.
+    pub between: (String, String),
+    /// File in `materials/` with parameters of laws.
+    #[serde(default)]
+    pub parameters_from: Option<String>,
+    /// Contact law.
+    pub contact: String,
+    /// Cohesion law.
+    #[serde(default)]
+    pub cohesion: Option<String>,
+    /// Damage law.
+    #[serde(default)]
+    pub damage: Option<String>,
+    /// Wear law.
+    #[serde(default)]
+    pub wear: Option<String>,
+    /// Parameters given here win over those of the file.
+    #[serde(default)]
+    pub parameters: SlotValues,
+    /// When bonds are made.
+    #[serde(default)]
+    pub bonds: BondRule,
+    /// Factor of the contact's area, see `AreaRule`.
+    #[serde(default = "one")]
+    pub area_factor: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// Values by slot and parameter.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SlotValues {
+    /// Of the contact law.
+    pub contact: BTreeMap<String, f64>,
+    /// Of the cohesion law.
+    pub cohesion: BTreeMap<String, f64>,
+    /// Of the damage law.
+    pub damage: BTreeMap<String, f64>,
+    /// Of the wear law.
+    pub wear: BTreeMap<String, f64>,
+}
+
+/// A first body.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodySpec {
+    /// Name.
+    pub name: String,
+    /// Material, by its name in this case.
+    pub material: String,
+    /// What it is made of.
+    pub shapes: Vec<ShapeSpec>,
+    /// Position of its frame (m); the origin by default.
+    #[serde(default)]
+    pub position: Vec<f64>,
+    /// Mass (kg; kg/m in 2D). From density and balls where not given.
+    #[serde(default)]
+    pub mass: Option<f64>,
+    /// Moment of inertia (kg m^2; per metre in 2D).
+    #[serde(default)]
+    pub inertia: Option<f64>,
+    /// Degrees of freedom; fixed where not given.
+    #[serde(default)]
+    pub dofs: DofSpec,
+}
+
+/// Degrees of freedom of a first body.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DofSpec {
+    /// Translation along x.
+    pub x: Dof,
+    /// Translation along y.
+    pub y: Dof,
+    /// Translation along z (3D).
+    pub z: Dof,
+    /// Rotation about x (3D).
+    pub rx: Dof,
+    /// Rotation about y (3D).
+    pub ry: Dof,
+    /// Rotation about z (the only one in 2D).
+    pub rz: Dof,
+}
+
+impl Default for DofSpec {
+    fn default() -> Self {
+        let fixed = || Dof::Fixed;
+        Self {
+            x: fixed(),
+            y: fixed(),
+            z: fixed(),
+            rx: fixed(),
+            ry: fixed(),
+            rz: fixed(),
+        }
+    }
+}
+
+/// On which side of a profile the solid is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum Side {
+    /// Solid below, open above: a rail.
+    Below,
+    /// Solid above, open below: a wheel.
+    Above,
+}
+
+/// A part of a first body.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum ShapeSpec {
+    /// Solid behind a plane; `at` is a point of it (m), `normal` points to the open side.
+    HalfSpace {
+        /// Outward normal.
+        normal: Vec<f64>,
+        /// A point of the plane.
+        #[serde(default)]
+        at: Vec<f64>,
+    },
+    /// A profile by its points, left to right (2D).
+    Profile {
+        /// Points (m).
+        points: Vec<(f64, f64)>,
+        /// Where the solid is.
+        side: Side,
+    },
+    /// A self-affine rough profile over the period of x (2D): random phases, spectrum |q|^(-1-2H).
+    RoughProfile {
+        /// Points along the period.
+        points: usize,
+        /// Root-mean-square height (m).
+        rms: f64,
+        /// Hurst exponent.
+        #[serde(default = "hurst")]
+        hurst: f64,
+        /// Longest wavelength (m); the period by default.
+        #[serde(default)]
+        longest: Option<f64>,
+        /// Shortest wavelength (m).
+        shortest: f64,
+        /// Mean height (m).
+        #[serde(default)]
+        height: f64,
+        /// Where the solid is.
+        side: Side,
+    },
+    /// Balls fixed to the body: (position relative to the body's frame, radius).
+    Balls(Vec<(Vec<f64>, f64)>),
+    /// The cluster of this name in a scene file.
+    Cluster {
+        /// Path relative to the case.
+        file: String,
+        /// Name in the file.
+        name: String,
+    },
+    /// Heights over a regular grid (3D), solid below; periodic where the cell is.
+    HeightField {
+        /// Points along x and y.
+        points: (usize, usize),
+        /// Spacing (m).
+        spacing: (f64, f64),
+        /// Heights (m), row by row; or none with `rms`.
+        #[serde(default)]
+        heights: Vec<f64>,
+        /// Root-mean-square of random heights (m).
+        #[serde(default)]
+        rms: Option<f64>,
+    },
+}
+
+fn hurst() -> f64 {
+    0.8
+}
+
+/// Grains.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum GrainSpec {
+    /// One by one.
+    List {
+        /// Material.
+        material: String,
+        /// Balls.
+        grains: Vec<OneGrain>,
+    },
+    /// A hexagonal (2D) or cubic (3D) lattice, radii drawn uniformly between two, shuffled by the seed;
+    /// no overlaps. Fills the box from its low corner up.
+    Lattice {
+        /// Material.
+        material: String,
+        /// How many at most.
+        count: usize,
+        /// Smallest and largest radius (m).
+        radius: (f64, f64),
+        /// Low corner of the box (m).
+        low: Vec<f64>,
+        /// High corner of the box (m).
+        high: Vec<f64>,
+    },
+    /// The free balls of a scene file, and its fixed walls as half-spaces of material `walls`.
+    Scene {
+        /// Path relative to the case.
+        file: String,
+        /// Material of the grains.
+        material: String,
+        /// Material of the walls.
+        #[serde(default)]
+        walls: Option<String>,
+    },
+}
+
+/// One grain.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OneGrain {
+    /// Centre (m).
+    pub at: Vec<f64>,
+    /// Radius (m).
+    pub radius: f64,
+    /// Velocity (m/s).
+    #[serde(default)]
+    pub velocity: Vec<f64>,
+    /// Angular velocity (rad/s): one number in 2D, three in 3D.
+    #[serde(default)]
+    pub spin: Vec<f64>,
+}
+
+/// A friction test: the body that rubs, along which axis, pressed along which.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FrictionSpec {
+    /// Name of the body.
+    pub body: String,
+    /// Axis of sliding: 0, 1 or 2.
+    #[serde(default)]
+    pub along: usize,
+    /// Axis of the normal load.
+    #[serde(default = "axis_y")]
+    pub normal: usize,
+    /// When the motion starts to count (s).
+    #[serde(default)]
+    pub start: f64,
+    /// Length of a cycle (s); by default the period of the body's sine.
+    #[serde(default)]
+    pub period: Option<f64>,
+}
+
+fn axis_y() -> usize {
+    1
+}
+
+/// What is written.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct OutputSpec {
+    /// Pictures over the run.
+    pub frames: u32,
+    /// Recorded states in `results.h5` over the run.
+    pub views: u32,
+    /// Steps between two rows of the statistics.
+    pub every: u64,
+    /// Draw the figures at the end.
+    pub figures: bool,
+    /// Width of a frame (pixels).
+    pub width: u32,
+}
+
+impl Default for OutputSpec {
+    fn default() -> Self {
+        Self {
+            frames: 12,
+            views: 20,
+            every: 1,
+            figures: true,
+            width: 1400,
+        }
+    }
+}
+
+impl BodySpec {
+    /// The degrees of freedom in the order of the dimension.
+    pub fn ordered(&self, dimension: usize) -> Vec<Dof> {
+        let d = self.dofs.clone();
+        if dimension == 2 {
+            vec![d.x, d.y, d.rz]
+        } else {
+            vec![d.x, d.y, d.z, d.rx, d.ry, d.rz]
+        }
+    }
+
+    /// Names of the degrees of freedom, as [`BodySpec::ordered`].
+    pub fn names(dimension: usize) -> &'static [&'static str] {
+        if dimension == 2 {
+            &["x", "y", "rz"]
+        } else {
+            &["x", "y", "z", "rx", "ry", "rz"]
+        }
+    }
+
+    /// The time functions in use.
+    pub fn functions(&self, dimension: usize) -> Vec<(String, TimeFunction)> {
+        let dofs = self.ordered(dimension);
+        let named = dofs.iter().zip(Self::names(dimension));
+        named
+            .filter_map(|(d, n)| d.function().map(|f| ((*n).to_owned(), f.clone())))
+            .collect()
+    }
+}

@@ -1,0 +1,180 @@
+//! What a case must satisfy before it runs.
+
+use super::case::{BodySpec, Case};
+use super::source::Fault;
+use crate::contact::detect::detect;
+use crate::geometry::space::Space;
+use crate::step::Simulation;
+
+/// Numbers that make no sense.
+///
+/// # Errors
+/// The first one found, with its path.
+pub fn numbers(case: &Case) -> Result<(), Fault> {
+    let positive = |path: &str, x: f64| {
+        if x.is_finite() && x > 0.0 {
+            Ok(())
+        } else {
+            Err(Fault::new(path, format!("must be positive, got {x}")))
+        }
+    };
+    if case.dimension != 2 && case.dimension != 3 {
+        return Err(Fault::new(
+            "dimension",
+            format!("dimension {} is not possible", case.dimension),
+        )
+        .expected("2 or 3"));
+    }
+    let dimension = case.dimension as usize;
+    positive("time.step", case.time.step)?;
+    positive("time.end", case.time.end)?;
+    if !(0.5..=1.0).contains(&case.time.theta) {
+        return Err(Fault::new("time.theta", format!("got {}", case.time.theta))
+            .expected("a number between 0.5 and 1"));
+    }
+    if case.time.end / case.time.step > 1e12 {
+        return Err(Fault::new(
+            "time.step",
+            "the run would take more than 1e12 steps; use a larger step or an earlier end",
+        ));
+    }
+    let s = &case.solver;
+    if !(s.tolerance.is_finite() && s.tolerance >= 0.0) {
+        return Err(Fault::new(
+            "solver.tolerance",
+            format!("must not be negative, got {}", s.tolerance),
+        ));
+    }
+    if s.max_iterations == 0 {
+        return Err(Fault::new("solver.max_iterations", "must be at least 1"));
+    }
+    for (name, period) in [
+        ("x", case.periodic.x),
+        ("y", case.periodic.y),
+        ("z", case.periodic.z),
+    ] {
+        if let Some(period) = period {
+            positive(&format!("periodic.{name}"), period)?;
+        }
+    }
+    if case.periodic.z.is_some() && dimension == 2 {
+        return Err(Fault::new("periodic.z", "there is no z in two dimensions"));
+    }
+    for (name, distance) in [
+        ("alert", case.detection.alert),
+        ("skin", case.detection.skin),
+    ] {
+        if let Some(distance) = distance {
+            positive(&format!("detection.{name}"), distance)?;
+        }
+    }
+    if case.materials.is_empty() {
+        return Err(Fault::new(
+            "materials",
+            "a case needs at least one material",
+        ));
+    }
+    for (k, body) in case.bodies.iter().enumerate() {
+        body_numbers(body, dimension).map_err(|f| f.under(&format!("bodies.{k}")))?;
+        if case.bodies[..k].iter().any(|b| b.name == body.name) {
+            return Err(Fault::new(
+                format!("bodies.{k}.name"),
+                format!("two bodies are named `{}`", body.name),
+            ));
+        }
+    }
+    friction(case, dimension)
+}
+
+fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), Fault> {
+    for (name, value) in [("mass", body.mass), ("inertia", body.inertia)] {
+        if let Some(value) = value {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(Fault::new(name, format!("must be positive, got {value}")));
+            }
+        }
+    }
+    for (name, function) in body.functions(dimension) {
+        if let Some(fault) = function.fault() {
+            return Err(Fault::new(format!("dofs.{name}"), fault));
+        }
+    }
+    Ok(())
+}
+
+fn friction(case: &Case, dimension: usize) -> Result<(), Fault> {
+    let Some(test) = &case.friction else {
+        return Ok(());
+    };
+    if !case.bodies.iter().any(|b| b.name == test.body) {
+        let names: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
+        return Err(
+            Fault::new("friction.body", format!("there is no body `{}`", test.body))
+                .expected(format!("one of {}", names.join(", ")))
+                .nearest(super::source::nearest(&test.body, names.iter().copied())),
+        );
+    }
+    for (name, axis) in [("along", test.along), ("normal", test.normal)] {
+        if axis >= dimension {
+            return Err(Fault::new(
+                format!("friction.{name}"),
+                format!("axis {axis} does not exist"),
+            )
+            .expected(format!("a number below {dimension}")));
+        }
+    }
+    if test.along == test.normal {
+        return Err(Fault::new("friction.normal", "must differ from `along`"));
+    }
+    if test.period.is_some_and(|p| !(p.is_finite() && p > 0.0)) {
+        return Err(Fault::new("friction.period", "must be positive"));
+    }
+    Ok(())
+}
+
+/// Grains that overlap at the start: more than 1 % of the smallest radius is refused, less is the
+/// rounding of a sample that was settled elsewhere.
+///
+/// # Errors
+/// The worst pair.
+pub fn overlaps<S: Space>(simulation: &mut Simulation<S>, smallest: f64) -> Result<(), Fault> {
+    let s = simulation;
+    detect(&mut s.network, &s.shapes, &s.bodies, &s.table, 0.0);
+    let worst = s
+        .network
+        .contacts
+        .iter()
+        .min_by(|a, b| a.gap.total_cmp(&b.gap));
+    let Some(worst) = worst.filter(|c| c.gap < -0.01 * smallest) else {
+        return Ok(());
+    };
+    let name = |body: u32| {
+        let driven = s.bodies.driven.iter().find(|d| d.body == body);
+        let at = s.bodies.position[body as usize];
+        match driven {
+            Some(d) => format!("the body `{}`", d.name),
+            None => format!(
+                "the grain at {:?} m",
+                (0..S::D)
+                    .map(|k| crate::geometry::space::VectorLike::padded(&at)[k])
+                    .collect::<Vec<_>>()
+            ),
+        }
+    };
+    let message = format!(
+        "{} and {} overlap by {:.3e} m at the start; move them apart or make them smaller",
+        name(worst.bodies[0]),
+        name(worst.bodies[1]),
+        -worst.gap
+    );
+    let path = if worst
+        .bodies
+        .iter()
+        .all(|b| s.bodies.driven.iter().any(|d| d.body == *b))
+    {
+        "bodies"
+    } else {
+        "grains"
+    };
+    Err(Fault::new(path, message))
+}

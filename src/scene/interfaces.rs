@@ -1,0 +1,212 @@
+//! From the case's words to interface laws: plugins found, parameters resolved and checked.
+
+use super::case::{Case, InterfaceSpec};
+use super::material::{InterfaceParameters, Shelf, Sourced};
+use super::source::{Fault, InputError, Source, nearest};
+use crate::contact::detect::LawTable;
+use crate::laws::{AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath};
+use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The laws of a case and which materials they govern.
+pub struct Laws {
+    /// Interfaces, in the case's order.
+    pub interfaces: Vec<Interface>,
+    /// By materials, in the order of the case's map.
+    pub table: LawTable,
+    /// Texts of the parameter files read.
+    pub files: Vec<(String, String)>,
+}
+
+/// Builds the laws.
+///
+/// # Errors
+/// Unknown names, values out of range, slots that do not fit: at their place in the case.
+pub fn build(
+    case: &Case,
+    source: &Source,
+    shelf: &Shelf,
+    path: &SearchPath,
+) -> Result<Laws, InputError> {
+    let materials: Vec<&String> = case.materials.keys().collect();
+    let mut out = Laws {
+        interfaces: Vec::new(),
+        table: LawTable::new(materials.len()),
+        files: Vec::new(),
+    };
+    for (k, spec) in case.interfaces.iter().enumerate() {
+        let here = format!("interfaces.{k}");
+        let at = |f: Fault| source.locate(f.under(&here));
+        let mut pair = [0u16; 2];
+        for (side, name) in [&spec.between.0, &spec.between.1].into_iter().enumerate() {
+            let found = materials.iter().position(|m| *m == name).ok_or_else(|| {
+                at(Fault::new(
+                    format!("between.{side}"),
+                    format!("the case has no material `{name}`"),
+                )
+                .expected(format!(
+                    "one of {}",
+                    case.materials
+                        .keys()
+                        .cloned()
+                        .collect::<Vec<_>>()
+                        .join(", ")
+                ))
+                .nearest(nearest(name, case.materials.keys().map(String::as_str))))
+            })?;
+            pair[side] = found as u16;
+        }
+        if out.table.get(pair[0], pair[1]).is_some() {
+            return Err(at(Fault::new(
+                "between",
+                "this pair of materials has an interface already",
+            )));
+        }
+        if !(spec.area_factor.is_finite() && spec.area_factor > 0.0) {
+            return Err(at(Fault::new("area_factor", "must be positive")));
+        }
+        let parameters = read_parameters(spec, shelf, &mut out.files, &at)?;
+        let interface = compose(case, spec, &parameters, path).map_err(&at)?;
+        out.table.set(pair[0], pair[1], k as u16);
+        out.interfaces.push(interface);
+    }
+    Ok(out)
+}
+
+fn read_parameters(
+    spec: &InterfaceSpec,
+    shelf: &Shelf,
+    files: &mut Vec<(String, String)>,
+    at: &impl Fn(Fault) -> InputError,
+) -> Result<InterfaceParameters, InputError> {
+    let Some(name) = &spec.parameters_from else {
+        return Ok(InterfaceParameters::default());
+    };
+    let file = shelf.read(name).map_err(|e| match e {
+        Err(error) => error,
+        Ok(missing) => at(Fault::new(
+            "parameters_from",
+            format!("there is no file `{name}.ron` in materials/"),
+        )
+        .expected(format!("one of {}", missing.available))
+        .nearest(missing.nearest.as_deref())),
+    })?;
+    let parsed = file.parse()?;
+    if !files.iter().any(|f| f.0 == *name) {
+        files.push((name.clone(), file.text().to_owned()));
+    }
+    Ok(parsed)
+}
+
+type ByLaw = BTreeMap<String, BTreeMap<String, Sourced>>;
+
+fn compose(
+    case: &Case,
+    spec: &InterfaceSpec,
+    file: &InterfaceParameters,
+    path: &SearchPath,
+) -> Result<Interface, Fault> {
+    let load = |kind: Kind, name: &str, file: &ByLaw, own: &BTreeMap<String, f64>| {
+        load(case, kind, name, file.get(name), own, path)
+    };
+    let (p, own) = (file, &spec.parameters);
+    let optional = |kind, name: &Option<String>, file: &ByLaw, own| {
+        name.as_ref().map(|n| load(kind, n, file, own)).transpose()
+    };
+    if let BondRule::At(time) = spec.bonds {
+        if !(time.is_finite() && time >= 0.0) {
+            return Err(Fault::new(
+                "bonds",
+                "the time at which bonds are made must not be negative",
+            ));
+        }
+    }
+    let interface = Interface {
+        name: spec.name.clone(),
+        contact: load(Kind::Contact, &spec.contact, &p.contact, &own.contact)?,
+        cohesion: optional(Kind::Cohesion, &spec.cohesion, &p.cohesion, &own.cohesion)?,
+        damage: optional(Kind::Damage, &spec.damage, &p.damage, &own.damage)?,
+        wear: optional(Kind::Wear, &spec.wear, &p.wear, &own.wear)?,
+        bonds: spec.bonds,
+        area: AreaRule {
+            factor: spec.area_factor,
+        },
+    };
+    interface
+        .compose()
+        .map_err(|e| Fault::new("damage", e.to_string()))
+}
+
+fn load(
+    case: &Case,
+    kind: Kind,
+    name: &str,
+    file: Option<&BTreeMap<String, Sourced>>,
+    own: &BTreeMap<String, f64>,
+    path: &SearchPath,
+) -> Result<Loaded, Fault> {
+    let slot = kind.word();
+    let plugin = path.find(kind, name).map_err(|e| match &e {
+        LawError::Unknown {
+            available, nearest, ..
+        } => Fault::new(slot, format!("there is no {kind} law named `{name}`"))
+            .expected(format!("one of {available}"))
+            .nearest(nearest.as_deref()),
+        other => Fault::new(slot, other.to_string()),
+    })?;
+    for (flag, only, dimension) in [(FLAG_2D_ONLY, "two", 2), (FLAG_3D_ONLY, "three", 3)] {
+        if plugin.flags & flag != 0 && case.dimension != dimension {
+            let message = format!(
+                "the {kind} law `{name}` is for {only} dimensions only, the case has {}",
+                case.dimension
+            );
+            return Err(Fault::new(slot, message));
+        }
+    }
+    let given: BTreeMap<&str, (f64, bool)> = file
+        .iter()
+        .flat_map(|m| m.iter().map(|(n, s)| (n.as_str(), (s.value, false))))
+        .chain(own.iter().map(|(n, v)| (n.as_str(), (*v, true))))
+        .collect();
+    let names = || plugin.parameters.iter().map(|p| p.name.as_str());
+    for (parameter, (value, in_case)) in &given {
+        // What stands in the parameter file is shown at the law's name in the case.
+        let at = if *in_case {
+            format!("parameters.{slot}.{parameter}")
+        } else {
+            slot.to_owned()
+        };
+        let Some(field) = plugin.parameters.iter().find(|p| p.name == *parameter) else {
+            return Err(Fault::new(
+                at,
+                format!("the {kind} law `{name}` has no parameter `{parameter}`"),
+            )
+            .expected(format!("one of {}", names().collect::<Vec<_>>().join(", ")))
+            .nearest(nearest(parameter, names())));
+        };
+        if !value.is_finite() || !(field.minimum..=field.maximum).contains(value) {
+            return Err(Fault::new(
+                at,
+                format!("`{parameter}` of the {kind} law `{name}` is {value}"),
+            )
+            .expected(format!(
+                "a value between {} and {} {}",
+                field.minimum, field.maximum, field.unit
+            )));
+        }
+    }
+    let parameters: Vec<f64> = plugin
+        .parameters
+        .iter()
+        .map(|f| given.get(f.name.as_str()).map_or(f.default, |v| v.0))
+        .collect();
+    plugin
+        .validate(&parameters)
+        .map_err(|e| Fault::new(slot, e.to_string()))?;
+    Ok(Loaded {
+        plugin: Arc::<Plugin>::new(plugin),
+        parameters,
+        first_variable: 0,
+    })
+}
