@@ -3,6 +3,7 @@
 use fretwork_abi as abi;
 use sha2::{Digest, Sha256};
 use std::ffi::{CStr, c_char};
+use std::mem::{MaybeUninit, offset_of};
 use std::path::{Path, PathBuf};
 use std::{fmt, ptr};
 
@@ -62,7 +63,7 @@ pub enum LawError {
         reason: String,
     },
     /// No such law on the search path.
-    #[error("there is no {kind} law named `{name}` on the search path; available: {available}")]
+    #[error("there is no {kind} law named `{name}` on the search path (available: {available}); {}", advice(name, nearest.as_deref()))]
     Unknown {
         /// Kind asked for.
         kind: Kind,
@@ -103,6 +104,19 @@ pub enum LawError {
         /// What the law said.
         reason: String,
     },
+}
+
+fn advice(name: &str, nearest: Option<&str>) -> String {
+    match nearest {
+        Some(nearest) => format!("did you mean `{nearest}`?"),
+        None if !super::search::name_is_valid(name) => {
+            "a law is named by a-z, 0-9, `-` and `_`, never by a path".into()
+        }
+        None => format!(
+            "name the folder of its library with --plugin-path or in {}",
+            super::search::VARIABLE
+        ),
+    }
 }
 
 /// A parameter or an internal variable.
@@ -209,8 +223,11 @@ impl Plugin {
         };
         // Never unloaded: threads may hold its code or its thread-local data.
         std::mem::forget(library);
-        if table.is_null() {
-            return Err(refuse(format!("`{}` returned null", abi::ENTRY_SYMBOL)));
+        if table.is_null() || !table.is_aligned() {
+            return Err(refuse(format!(
+                "`{}` returned null or a misaligned address; return the address of a static table",
+                abi::ENTRY_SYMBOL
+            )));
         }
         // SAFETY: the table begins with its size and version, checked before anything else is read.
         let table = unsafe { read_table(table) }.map_err(&refuse)?;
@@ -222,7 +239,7 @@ impl Plugin {
         let name = text(table.name, "name")?;
         if !super::search::name_is_valid(&name) {
             return Err(refuse(format!(
-                "its name `{name}` must be made of a-z, 0-9, - and _"
+                "its name `{name}` must be made of a-z, 0-9, - and _, and begin with a letter or digit"
             )));
         }
         let plugin = Self {
@@ -258,7 +275,7 @@ impl Plugin {
         };
         if let Some((function, _)) = needed.iter().find(|n| !n.1) {
             return Err(format!(
-                "a {} law needs the function `{function}`, which is null",
+                "a {} law needs the function `{function}`, which is null; set it in the table",
                 self.kind
             ));
         }
@@ -274,8 +291,8 @@ impl Plugin {
             }
             if !(field.minimum..=field.maximum).contains(&field.default) {
                 return Err(format!(
-                    "the default {} of `{}` is out of its range",
-                    field.default, field.name
+                    "the default {} of `{}` is out of its range [{}, {}]",
+                    field.default, field.name, field.minimum, field.maximum
                 ));
             }
         }
@@ -420,15 +437,21 @@ unsafe fn read_table(table: *const abi::FwPlugin) -> Result<abi::FwPlugin, Strin
             abi::ABI_MAJOR
         ));
     }
-    // The table of version 1.0 is the whole of today's struct.
-    let least = size_of::<abi::FwPlugin>();
+    // Where the table of version 1.0 ended; later versions grow beyond.
+    let least = offset_of!(abi::FwPlugin, energy) + size_of::<abi::FwCall>();
     if size < least {
         return Err(format!(
             "its table has {size} bytes, at least {least} are needed; rebuild it with fretwork.h"
         ));
     }
-    // SAFETY: the plugin says that at least this much is there.
-    Ok(unsafe { ptr::read(table) })
+    let known = size.min(size_of::<abi::FwPlugin>());
+    let mut copy = MaybeUninit::<abi::FwPlugin>::zeroed();
+    // SAFETY: the plugin says that this much is there, and it is no more than our struct; zeros are
+    // valid for every field (null pointers, absent functions).
+    unsafe {
+        ptr::copy_nonoverlapping(table.cast::<u8>(), copy.as_mut_ptr().cast(), known);
+        Ok(copy.assume_init())
+    }
 }
 
 unsafe fn text(pointer: *const c_char) -> Result<String, String> {
@@ -460,11 +483,14 @@ unsafe fn fields(first: *const abi::FwField, n: usize, what: &str) -> Result<Vec
             let read =
                 |p| unsafe { text(p) }.map_err(|e| format!("the text of its {what} {k} {e}"));
             let name = read(f.name)?;
-            if name.is_empty() {
-                return Err(format!("its {what} {k} has no name"));
+            let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+            if !name.starts_with(|c: char| c.is_ascii_lowercase()) || !name.chars().all(plain) {
+                return Err(format!(
+                    "the name `{name}` of its {what} {k} must be made of a-z, 0-9 and _ and begin with a letter"
+                ));
             }
             if !f.default.is_finite() || f.minimum.is_nan() || f.maximum.is_nan() {
-                return Err(format!("the numbers of its {what} `{name}` are not finite"));
+                return Err(format!("its {what} `{name}` has a default that is not finite or a range that is not a number"));
             }
             Ok(Field {
                 unit: read(f.unit)?,

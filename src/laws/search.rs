@@ -78,10 +78,10 @@ impl SearchPath {
                 continue;
             };
             for path in entries.flatten().map(|e| e.path()) {
-                if let Some((kind, name)) = parse(&path) {
-                    if !out.iter().any(|(k, n, _)| *k == kind && *n == name) {
-                        out.push((kind, name, path));
-                    }
+                if let Some((kind, name)) = parse(&path)
+                    && !out.iter().any(|(k, n, _)| *k == kind && *n == name)
+                {
+                    out.push((kind, name, path));
                 }
             }
         }
@@ -96,9 +96,10 @@ impl SearchPath {
             .filter(|a| a.0 == kind)
             .map(|a| a.1)
             .collect();
+        let wanted = name.to_lowercase().replace('_', "-");
         let nearest = names
             .iter()
-            .map(|n| (strsim::damerau_levenshtein(n, &name.replace('_', "-")), n))
+            .map(|n| (strsim::damerau_levenshtein(n, &wanted), n))
             .min()
             .filter(|(d, n)| *d <= n.len().max(3) / 2)
             .map(|(_, n)| n.clone());
@@ -125,7 +126,8 @@ fn parse(path: &Path) -> Option<(Kind, String)> {
         .strip_prefix("fretwork_")?;
     Kind::ALL.into_iter().find_map(|kind| {
         let name = stem.strip_prefix(kind.word())?.strip_prefix('_')?;
-        Some((kind, name.replace('_', "-")))
+        // No law's file has a dash: cargo's names with a hash do.
+        (name_is_valid(name) && !name.contains('-')).then(|| (kind, name.replace('_', "-")))
     })
 }
 
@@ -164,5 +166,7 @@ mod tests {
             parse(&path),
             Some((Kind::Damage, "mohr-coulomb-brittle".into()))
         );
+        let hashed = file_name(Kind::Damage, "mac").replace("mac", "mac-0a1b2c");
+        assert_eq!(parse(&PathBuf::from(hashed)), None);
     }
 }

@@ -716,6 +716,7 @@ impl<S: Dimensional> Builder<'_, S> {
         };
         simulation.solver = solve::Options {
             tolerance: case.solver.tolerance,
+            norm: case.solver.norm,
             max_iterations: case.solver.max_iterations,
             test_every: case.solver.test_every,
             parallel: false,

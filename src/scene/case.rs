@@ -2,6 +2,7 @@
 
 use crate::bodies::{Dof, TimeFunction};
 use crate::laws::BondRule;
+use crate::solve::error::Norm;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -96,6 +97,8 @@ pub struct DetectionSpec {
 pub struct SolverSpec {
     /// Error to reach.
     pub tolerance: f64,
+    /// How the error is measured: `Balance` or `Velocity`, see [`crate::solve::error`].
+    pub norm: Norm,
     /// Sweeps at most in a step.
     pub max_iterations: u32,
     /// Sweeps between convergence tests.
@@ -106,6 +109,7 @@ impl Default for SolverSpec {
     fn default() -> Self {
         Self {
             tolerance: 1e-4,
+            norm: Norm::Balance,
             max_iterations: 10_000,
             test_every: 10,
         }

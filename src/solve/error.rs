@@ -1,13 +1,53 @@
 //! The error of a solution: the natural map of the De Saxce form, free of scale.
 //!
-//! error = ( sum_c |p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c| e_n))|^2 / rho_c^2 )^1/2
-//!         / max( |u|, |u_free| ),     rho_c = 1 / lambda_max(W_cc),
+//! The residual of a contact is a velocity,
+//! r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c| e_n))) / rho_c,   rho_c = 1 / lambda_max(W_cc).
 //!
-//! with Euclidean norms over the whole vector of contacts, all in velocity, and no division when the
-//! maximum is zero. A scene scaled in length, mass or time has the same figure.
+//! [`Norm::Velocity`]: error = |r| / max(|u|, |u_free|), Euclidean over all contacts. The strictest:
+//! it asks that velocities are right, whatever the load.
+//!
+//! [`Norm::Balance`]: error = max( |r| / max(|u|, |u_free|, |p/rho|), f^2 ),
+//! f = |sum_c p_c . r_c| / |v - v_free|_M^2. The first part is the field's figure (its maximum holds the
+//! impulses too) made free of scale. Averaged over contacts it looks small while the load has not yet
+//! crossed a packing; the second part sees that: f is the share of the step's work that is out of
+//! balance, so f^2 is the kinetic energy of what is not carried, relative to what is.
+//!
+//! A scene scaled in length, mass or time has the same figures.
 
-/// The formula, for reports.
-pub const FORMULA: &str = "|p - proj_K(p - rho (u + mu |u_t| n))| / rho over max(|u|, |u_free|), rho = 1/lambda_max(W_cc)";
+use serde::Deserialize;
+
+/// How the residual is measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum Norm {
+    /// Against the load that the contacts carry, and globally in balance.
+    #[default]
+    Balance,
+    /// Against the velocities at hand.
+    Velocity,
+}
+
+impl Norm {
+    /// The formula, for reports.
+    pub fn formula(self) -> &'static str {
+        match self {
+            Self::Balance => {
+                "max(|r|/max(|u|, |u_free|, |p/rho|), (sum p.r / |v - v_free|_M^2)^2), r = (p - proj_K(p - rho (u + mu |u_t| n)))/rho"
+            }
+            Self::Velocity => {
+                "|r|/max(|u|, |u_free|), r = (p - proj_K(p - rho (u + mu |u_t| n)))/rho"
+            }
+        }
+    }
+}
+
+/// What residuals are measured against.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Scale {
+    /// |u_free|^2 (m^2/s^2).
+    pub free: f64,
+    /// |v - v_free|_M^2 (J).
+    pub work: f64,
+}
 
 /// Sums over contacts; added in a fixed order, whatever the number of threads.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,6 +56,10 @@ pub struct Sums {
     pub residual: f64,
     /// Sum of squared relative velocities (m^2/s^2).
     pub velocity: f64,
+    /// Sum of squared impulses in velocity (m^2/s^2).
+    pub impulse: f64,
+    /// Sum of p . r (J).
+    pub power: f64,
     /// Largest squared residual (m^2/s^2).
     pub worst: f64,
     /// Index of the contact that has it (in the order of the sweep).
@@ -25,11 +69,13 @@ pub struct Sums {
 impl Sums {
     /// Adds one contact.
     #[inline(always)]
-    pub fn add(&mut self, residual: f64, velocity: f64, at: usize) {
-        self.residual += residual;
-        self.velocity += velocity;
-        if residual > self.worst {
-            self.worst = residual;
+    pub fn add(&mut self, r: &super::row::Residual, at: usize) {
+        self.residual += r.squared;
+        self.velocity += r.velocity;
+        self.impulse += r.impulse;
+        self.power += r.power;
+        if r.squared > self.worst {
+            self.worst = r.squared;
             self.worst_at = at;
         }
     }
@@ -38,20 +84,24 @@ impl Sums {
     pub fn merge(&mut self, other: &Self) {
         self.residual += other.residual;
         self.velocity += other.velocity;
+        self.impulse += other.impulse;
+        self.power += other.power;
         if other.worst > self.worst {
             self.worst = other.worst;
             self.worst_at = other.worst_at;
         }
     }
 
-    /// The error, given the sum of squared free velocities (m^2/s^2).
-    pub fn error(&self, free: f64) -> f64 {
-        let scale = self.velocity.max(free).sqrt();
-        let residual = self.residual.sqrt();
-        if scale > 0.0 {
-            residual / scale
-        } else {
-            residual
+    /// The error. Where there is nothing to measure against, the residual itself.
+    pub fn error(&self, norm: Norm, scale: &Scale) -> f64 {
+        let over = |x: f64, scale: f64| if scale > 0.0 { x / scale } else { x };
+        let velocity = self.velocity.max(scale.free);
+        match norm {
+            Norm::Velocity => over(self.residual.sqrt(), velocity.sqrt()),
+            Norm::Balance => {
+                let local = over(self.residual.sqrt(), velocity.max(self.impulse).sqrt());
+                local.max(over(self.power, scale.work).powi(2))
+            }
         }
     }
 }

@@ -1,17 +1,19 @@
 //! Non-linear Gauss-Seidel: contact by contact, velocities updated in place, warm started.
 
 use super::colour::{self, COLOURS};
-use super::error::Sums;
+use super::error::{Norm, Scale, Sums};
 use super::form::{Place, Problem};
 use super::row::{Line, Row};
-use crate::geometry::space::Space;
+use crate::geometry::space::{Space, VectorLike};
 use rayon::prelude::*;
 
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Error to reach, see [`super::error`].
+    /// Error to reach.
     pub tolerance: f64,
+    /// How the error is measured, see [`super::error`].
+    pub norm: Norm,
     /// Sweeps at most.
     pub max_iterations: u32,
     /// Sweeps between two convergence tests.
@@ -24,6 +26,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             tolerance: 1e-4,
+            norm: Norm::Balance,
             max_iterations: 10_000,
             test_every: 10,
             parallel: false,
@@ -66,14 +69,16 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
             sweep(problem, options.parallel);
             report.iterations += 1;
         }
-        if measure(problem, options.parallel).error(free) <= options.tolerance {
+        if measure(problem, options.parallel).error(options.norm, &scale(problem, free))
+            <= options.tolerance
+        {
             break;
         }
     }
     // The velocities have gathered rounding: recompute them from the impulses and judge those.
     problem.reload();
     let sums = measure(problem, options.parallel);
-    report.error = sums.error(free);
+    report.error = sums.error(options.norm, &scale(problem, free));
     report.converged = report.error <= options.tolerance * (1.0 + 1e-6);
     report.worst = problem.pushed(sums.worst_at);
     report
@@ -253,7 +258,7 @@ fn measure_rows<S: Space, R: Row<S>>(
         for (k, row) in rows.iter().enumerate() {
             let (a, b) = lines.read(row.bodies());
             let r = row.residual(&a, &b);
-            sums.add(r.squared, r.velocity, offset + c * CHUNK + k);
+            sums.add(&r, offset + c * CHUNK + k);
         }
         sums
     };
@@ -265,6 +270,29 @@ fn measure_rows<S: Space, R: Row<S>>(
     for part in &parts {
         sums.merge(part);
     }
+}
+
+/// What the error is measured against, at the velocities at hand.
+fn scale<S: Space>(problem: &Problem<S>, free: f64) -> Scale {
+    let mut work = 0.0;
+    let bodies = problem
+        .lines
+        .iter()
+        .zip(&problem.free)
+        .zip(problem.masses.iter().zip(&problem.lengths));
+    for ((line, (v, w)), ((inverse_mass, _), length)) in bodies {
+        let dv = line.v - *v;
+        for k in 0..S::D {
+            if inverse_mass[k] > 0.0 {
+                work += dv[k] * dv[k] / inverse_mass[k];
+            }
+        }
+        if line.is > 0.0 {
+            let ds = line.s - *w * *length;
+            work += ds.dot(&ds) / line.is;
+        }
+    }
+    Scale { free, work }
 }
 
 /// |u_free|^2 over all contacts.

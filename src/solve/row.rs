@@ -22,12 +22,16 @@ pub struct Line<S: Space> {
 }
 
 /// What the convergence test reads off one contact.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Residual {
     /// |p - proj(p - rho (u + mu |u_t| n))|^2 / rho^2 (m^2/s^2).
     pub squared: f64,
     /// |u|^2 (m^2/s^2).
     pub velocity: f64,
+    /// |p / rho|^2 (m^2/s^2).
+    pub impulse: f64,
+    /// p . r, r the residual velocity (J).
+    pub power: f64,
 }
 
 /// A contact in the solver.
@@ -59,10 +63,23 @@ fn push<S: Space>(n: &S::Vector, dn: f64, dt: S::Tangent, a: &mut Line<S>, b: &m
 
 /// The natural map of the De Saxce form in velocity, for a shifted impulse (P_n, p_t).
 #[inline]
-fn natural_map<T: VectorLike>(pn: f64, pt: T, un: f64, ut: T, rho: f64, mu: f64, c: f64) -> f64 {
+fn natural_map<T: VectorLike>(
+    pn: f64,
+    pt: T,
+    un: f64,
+    ut: T,
+    rho: f64,
+    mu: f64,
+    c: f64,
+) -> Residual {
     let (zn, zt) = cone::project(pn - rho * (un + mu * ut.norm()), pt - ut * rho, mu, c);
-    let (dn, dt) = (pn - zn, pt - zt);
-    (dn * dn + dt.dot(&dt)) / (rho * rho)
+    let (rn, rt) = ((pn - zn) / rho, (pt - zt) * (1.0 / rho));
+    Residual {
+        squared: rn * rn + rt.dot(&rt),
+        velocity: un * un + ut.dot(&ut),
+        impulse: (pn * pn + pt.dot(&pt)) / (rho * rho),
+        power: pn * rn + pt.dot(&rt),
+    }
 }
 
 /// Frictional contact without memory.
@@ -123,14 +140,10 @@ impl<S: Space> Row<S> for PlainRow<S> {
     fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual {
         let (un, ut) = relative(&self.n, a, b);
         let rho = self.iwn.min(self.iwt);
-        let squared = if rho > 0.0 {
+        if rho > 0.0 {
             natural_map(self.pn, self.pt, un + self.shift, ut, rho, self.mu, 0.0)
         } else {
-            0.0
-        };
-        Residual {
-            squared,
-            velocity: un * un + ut.dot(&ut),
+            Residual::default()
         }
     }
 
@@ -244,16 +257,12 @@ impl<S: Space> Row<S> for FullRow<S> {
         let (en, et) = self.bond(un, &ut);
         let dn = 1.0 + self.wn * e.b_n;
         let rho = (self.iwn * dn).min(self.iwt * (1.0 + self.wt * e.b_t));
-        let squared = if self.iwn > 0.0 {
+        if self.iwn > 0.0 {
             let (pn, pt) = (self.pn - en + self.tension, self.pt - et);
             let (un, ut) = (un + self.shift_n, ut + self.shift_t);
             natural_map(pn, pt, un, ut, rho, self.mu, self.cohesion)
         } else {
-            0.0
-        };
-        Residual {
-            squared,
-            velocity: un * un + ut.dot(&ut),
+            Residual::default()
         }
     }
 
@@ -442,7 +451,7 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         let (en, et) = self.bond(&u);
         let rho = self.pulled.iwn.min(self.pulled.iwt);
         let (un, ut) = (n.dot(&u), S::tangential(n, &u));
-        let squared = if rho > 0.0 {
+        if rho > 0.0 {
             let pn = n.dot(&self.p) - en + self.tension;
             let pt = S::tangential(n, &self.p) - et;
             natural_map(
@@ -455,11 +464,7 @@ impl<S: Space> Row<S> for GeneralRow<S> {
                 self.cohesion,
             )
         } else {
-            0.0
-        };
-        Residual {
-            squared,
-            velocity: u.dot(&u),
+            Residual::default()
         }
     }
 

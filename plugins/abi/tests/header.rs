@@ -110,11 +110,11 @@ fn rust_layout() -> Vec<(String, u64)> {
         ("FW_BAD_PARAMETER", STATUS_BAD_PARAMETER as u64),
         ("FW_REDUCE_STEP", STATUS_REDUCE_STEP as u64),
         ("FW_PANIC", STATUS_PANIC as u64),
-        ("FW_FLAG_2D_ONLY", FLAG_2D_ONLY as u64),
-        ("FW_FLAG_3D_ONLY", FLAG_3D_ONLY as u64),
-        ("FW_FLAG_TENSION_ONLY", FLAG_TENSION_ONLY as u64),
-        ("FW_FLAG_OPENING", FLAG_OPENING as u64),
-        ("FW_FLAG_CONSTANT", FLAG_CONSTANT as u64),
+        ("FW_FLAG_2D_ONLY", FLAG_2D_ONLY),
+        ("FW_FLAG_3D_ONLY", FLAG_3D_ONLY),
+        ("FW_FLAG_TENSION_ONLY", FLAG_TENSION_ONLY),
+        ("FW_FLAG_OPENING", FLAG_OPENING),
+        ("FW_FLAG_CONSTANT", FLAG_CONSTANT),
     ] {
         out.push((name.to_owned(), value));
     }

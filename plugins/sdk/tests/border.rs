@@ -115,7 +115,7 @@ fn nothing_is_read_beyond_the_size() {
     batch.out_friction = mu.as_mut_ptr();
     batch.size = offset_of!(FwBatch, damage) + 4;
     // SAFETY: columns have one value or are null.
-    let mut run = |b: &FwBatch| call(80, |m| unsafe { border::contact_prepare::<Toy>(b, m) }).0;
+    let run = |b: &FwBatch| call(80, |m| unsafe { border::contact_prepare::<Toy>(b, m) }).0;
     assert_eq!(run(&batch), STATUS_OK);
     assert_eq!(mu, [9.0], "the output lies beyond the size");
     batch.size = size_of::<FwBatch>() + 64;

@@ -39,8 +39,8 @@ impl CohesionLaw for ElasticBond {
     }
 
     fn energy(&self, site: &Site, _state: &[f64]) -> f64 {
-        let (n, t) = (site.normal_opening(), site.tangential_opening());
-        0.5 * (1.0 - site.damage) * (self.k_n * n * n + self.k_t * t * t)
+        let (n, [_, t1, t2]) = (site.normal_opening(), site.opening);
+        0.5 * (1.0 - site.damage) * (self.k_n * n * n + self.k_t * (t1 * t1 + t2 * t2))
     }
 }
 

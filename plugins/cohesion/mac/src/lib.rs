@@ -35,8 +35,8 @@ impl CohesionLaw for Mac {
 
     fn energy(&self, site: &Site, _state: &[f64]) -> f64 {
         let beta = 1.0 - site.damage;
-        let (n, t) = (site.normal_opening(), site.tangential_opening());
-        0.5 * beta * beta * (self.c_n * n * n + self.c_t * t * t)
+        let (n, [_, t1, t2]) = (site.normal_opening(), site.opening);
+        0.5 * beta * beta * (self.c_n * n * n + self.c_t * (t1 * t1 + t2 * t2))
     }
 }
 

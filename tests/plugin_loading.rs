@@ -1,0 +1,323 @@
+//! What the loader accepts, what it refuses and with which words: small plugins in C, made here.
+use fretwork::laws::{Call, Kind, LawError, Plugin, SearchPath, search};
+use fretwork_abi::FwBatch;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const INCLUDE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/plugins/abi/include");
+
+/// A folder of its own for each test, removed at its end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("fretwork-{test}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    /// Compiles C text into the library `file`.
+    fn compile(&self, file: &str, text: &str) -> PathBuf {
+        let (source, library) = (self.0.join(format!("{file}.c")), self.0.join(file));
+        std::fs::write(&source, text).unwrap();
+        let compiled = Command::new("cc")
+            .args(["-std=c99", "-Wall", "-Werror", "-shared", "-fPIC", "-I"])
+            .arg(INCLUDE)
+            .arg("-o")
+            .args([&library, &source])
+            .status()
+            .expect("a C compiler named cc");
+        assert!(compiled.success(), "{text}");
+        library
+    }
+
+    /// A damage law with `fields` of the table set over those of a good one.
+    fn law(&self, name: &str, fields: &str) -> PathBuf {
+        self.compile(
+            &search::file_name(Kind::Damage, name),
+            &source(name, fields, "return &table;"),
+        )
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        std::fs::remove_dir_all(&self.0).ok();
+    }
+}
+
+/// C text of a damage law: D is `rate` where the gap is not negative, an error elsewhere.
+fn source(name: &str, fields: &str, entry: &str) -> String {
+    format!(
+        r#"
+#include <math.h>
+#include <string.h>
+#include "fretwork.h"
+static const fw_field parameters[] = {{
+    {{"rate", "1/s", "how fast", 0.5, 0.0, 1.0, 0}},
+    {{"limit", "", "where it ends", 1.0, 0.0, 1.0, 0}},
+}};
+static const fw_field twice[] = {{
+    {{"rate", "1/s", "how fast", 0.5, 0.0, 1.0, 0}},
+    {{"rate", "1/s", "again", 0.5, 0.0, 1.0, 0}},
+}};
+static const fw_field outside[] = {{{{"rate", "", "", 2.0, 0.0, 1.0, 0}}}};
+static const fw_field endless[] = {{{{"rate", "", "", INFINITY, 0.0, INFINITY, 0}}}};
+static const fw_field nameless[] = {{{{"Rate 1", "", "", 0.0, 0.0, 1.0, 0}}}};
+static const fw_field textless[] = {{{{"rate", 0, "", 0.0, 0.0, 1.0, 0}}}};
+static const fw_field (*const unused[])[1] = {{&outside, &endless, &nameless, &textless}};
+static const void *const unused_too[] = {{twice, unused}};
+static int32_t validate(const double *p, fw_message *m) {{
+    (void)unused_too;
+    if (p[0] <= p[1]) return FW_OK;
+    strncpy(m->text, "rate must not exceed limit", m->capacity);
+    return FW_BAD_PARAMETER;
+}}
+static int32_t commit(const fw_batch *b, fw_message *m) {{
+    for (size_t k = 0; k < b->n; k++) {{
+        if (b->gap[k] == -7.0) return 77;
+        if (b->gap[k] < 0.0) {{
+            m->contact = (int64_t)k;
+            strncpy(m->text, "the gap is negative", m->capacity);
+            return FW_ERROR;
+        }}
+        b->out_damage[k] = b->parameters[0];
+    }}
+    return FW_OK;
+}}
+struct longer {{ fw_plugin plugin; double tail[4]; }};
+static const struct longer newer = {{{{
+    .size = sizeof(struct longer), .abi_major = FW_ABI_MAJOR, .abi_minor = FW_ABI_MINOR + 1,
+    .kind = FW_KIND_DAMAGE, .name = "{name}", .version = "2.1", .doc = "d", .reference = "r",
+    .n_parameters = 2, .parameters = parameters, .validate = validate, .commit = commit,
+}}, {{1.0, 2.0, 3.0, 4.0}}}};
+static const char *const latin = "caf\xe9";
+static fw_plugin table;
+const fw_plugin *fretwork_plugin(void) {{
+    (void)latin;
+    table = newer.plugin;
+    table.size = sizeof table;
+    table.abi_minor = FW_ABI_MINOR;
+    {fields}
+    {entry}
+}}
+"#
+    )
+}
+
+fn reason(path: &Path) -> String {
+    match Plugin::open(path) {
+        Ok(_) => panic!("{} was accepted", path.display()),
+        Err(e) => {
+            let said = e.to_string();
+            assert!(said.contains(&path.display().to_string()), "{said}");
+            said
+        }
+    }
+}
+
+#[test]
+fn a_good_plugin_loads_and_answers() {
+    let folder = Folder::new("good");
+    let plugin = Plugin::open(&folder.law("good", "")).unwrap();
+    assert_eq!((plugin.kind, plugin.name.as_str()), (Kind::Damage, "good"));
+    assert_eq!(plugin.version, "2.1");
+    assert_eq!(plugin.sha256.len(), 64);
+    assert_eq!(plugin.parameters[0].unit, "1/s");
+    assert_eq!(plugin.parameters[1].default, 1.0);
+
+    assert!(plugin.validate(&[0.2, 0.3]).is_ok());
+    for (values, part) in [
+        (&[0.4, 0.3][..], "rate must not exceed limit"),
+        (&[2.0, 1.0], "`rate` must lie in [0, 1]"),
+        (&[f64::NAN, 1.0], "`rate`"),
+        (&[0.1], "takes 2 values, got 1"),
+    ] {
+        let said = plugin.validate(values).unwrap_err().to_string();
+        assert!(said.contains(part), "{said}");
+    }
+
+    let run = |gap: [f64; 2]| {
+        let (parameters, mut damage) = ([0.25, 1.0], [0.0; 2]);
+        // SAFETY: zeros are valid numbers and null pointers.
+        let mut batch: FwBatch = unsafe { std::mem::zeroed() };
+        (batch.size, batch.n) = (size_of::<FwBatch>(), 2);
+        (batch.gap, batch.parameters) = (gap.as_ptr(), parameters.as_ptr());
+        batch.out_damage = damage.as_mut_ptr();
+        plugin.call(Call::Commit, &batch).map(|()| damage)
+    };
+    assert_eq!(run([0.0, 1.0]).unwrap(), [0.25, 0.25]);
+    match run([0.0, -1.0]).unwrap_err() {
+        LawError::Failed {
+            contact, reason, ..
+        } => assert_eq!((contact, reason.as_str()), (Some(1), "the gap is negative")),
+        other => panic!("{other}"),
+    }
+    let strange = run([-7.0, 0.0]).unwrap_err().to_string();
+    assert!(strange.contains("unknown status 77"), "{strange}");
+}
+
+#[test]
+fn a_newer_minor_with_a_longer_table_loads() {
+    let folder = Folder::new("newer");
+    let text = source("newer", "", "return &newer.plugin;");
+    let plugin = Plugin::open(&folder.compile("newer.so", &text)).unwrap();
+    assert_eq!(plugin.name, "newer");
+    assert!(plugin.validate(&[0.2, 0.3]).is_ok());
+}
+
+#[test]
+fn tables_that_break_the_rules_are_refused() {
+    let folder = Folder::new("refused");
+    for (name, fields, part) in [
+        ("major", "table.abi_major = 2;", "version 2"),
+        ("short", "table.size = 96;", "96 bytes"),
+        ("kind", "table.kind = 9;", "kind 9 is unknown"),
+        ("function", "table.commit = 0;", "`commit`, which is null"),
+        (
+            "prepare",
+            "table.kind = FW_KIND_CONTACT;",
+            "`prepare`, which is null",
+        ),
+        (
+            "energy",
+            "table.kind = FW_KIND_COHESION; table.prepare = commit;",
+            "`energy`, which is null",
+        ),
+        ("noname", "table.name = \"\";", "name ``"),
+        ("nullname", "table.name = 0;", "name is null"),
+        ("badname", "table.name = \"../x\";", "name `../x`"),
+        ("utf", "table.doc = latin;", "doc is not valid UTF-8"),
+        ("noversion", "table.version = 0;", "version is null"),
+        (
+            "twice",
+            "table.parameters = twice;",
+            "`rate` is declared twice",
+        ),
+        (
+            "twice2",
+            "table.variables = twice; table.n_variables = 2;",
+            "variable `rate` is declared twice",
+        ),
+        (
+            "outside",
+            "table.parameters = outside; table.n_parameters = 1;",
+            "default 2 of `rate` is out of its range",
+        ),
+        (
+            "endless",
+            "table.parameters = endless; table.n_parameters = 1;",
+            "not finite",
+        ),
+        (
+            "nameless",
+            "table.parameters = nameless; table.n_parameters = 1;",
+            "`Rate 1`",
+        ),
+        (
+            "textless",
+            "table.parameters = textless; table.n_parameters = 1;",
+            "parameter 0 is null",
+        ),
+        ("noschema", "table.parameters = 0;", "their table is null"),
+        ("many", "table.n_parameters = (size_t)-1;", "at most 256"),
+        (
+            "exponent",
+            "table.degradation = -1.0;",
+            "degradation exponent -1",
+        ),
+    ] {
+        let said = reason(&folder.law(name, fields));
+        assert!(said.contains(part), "{name}: {said}");
+    }
+    let null = source("null", "", "return 0;");
+    let said = reason(&folder.compile("null.so", &null));
+    assert!(said.contains("returned null"), "{said}");
+}
+
+#[test]
+fn what_is_no_plugin_is_refused() {
+    let folder = Folder::new("foreign");
+    let foreign = folder.compile("foreign.so", "int answer(void) { return 42; }\n");
+    assert!(reason(&foreign).contains("does not export `fretwork_plugin`"));
+    let text = folder.0.join("text.so");
+    std::fs::write(&text, "not a library").unwrap();
+    assert!(reason(&text).contains("not a loadable library"));
+    assert!(reason(&folder.0.join("absent.so")).contains("cannot be read"));
+}
+
+#[test]
+fn the_search_goes_by_kind_and_name() {
+    let folder = Folder::new("search");
+    let (first, second) = (folder.0.join("first"), folder.0.join("second"));
+    for place in [&first, &second] {
+        std::fs::create_dir_all(place).unwrap();
+    }
+    let library = folder.law("slow-rot", "table.version = \"first\";");
+    let file = search::file_name(Kind::Damage, "slow-rot");
+    std::fs::copy(&library, first.join(&file)).unwrap();
+    let other = folder.law("slow-rot", "table.version = \"second\";");
+    std::fs::copy(&other, second.join(&file)).unwrap();
+    // The same library under the name of another kind.
+    std::fs::copy(
+        &library,
+        first.join(search::file_name(Kind::Wear, "slow-rot")),
+    )
+    .unwrap();
+    std::fs::write(first.join("libfretwork_strange_thing.so"), "x").unwrap();
+
+    let path = SearchPath::new(&[first.clone(), second.clone(), folder.0.join("absent")]);
+    let found = path.find(Kind::Damage, "slow-rot").unwrap();
+    assert_eq!(
+        (found.version.as_str(), found.path),
+        ("first", first.join(&file))
+    );
+    let back = SearchPath::new(&[second, first.clone()]);
+    let found = back.find(Kind::Damage, "slow-rot").unwrap();
+    assert_eq!(found.version, "second");
+
+    let wrong = path.find(Kind::Wear, "slow-rot").unwrap_err().to_string();
+    assert!(wrong.contains("promises the wear law"), "{wrong}");
+    match path.find(Kind::Damage, "slow-rut").unwrap_err() {
+        LawError::Unknown {
+            nearest, available, ..
+        } => {
+            assert_eq!(nearest.as_deref(), Some("slow-rot"));
+            assert!(available.contains("slow-rot"), "{available}");
+        }
+        other => panic!("{other}"),
+    }
+    // Nothing but a plain name is looked up, even where the file is there.
+    for bad in ["../first/slow-rot", "SLOW-ROT", "", ".", "slow-rot.so"] {
+        let refused = path.find(Kind::Damage, bad);
+        assert!(matches!(refused, Err(LawError::Unknown { .. })), "{bad}");
+    }
+}
+
+#[test]
+fn the_shipped_laws_are_found_and_agree_with_their_names() {
+    let path = SearchPath::new(&[]);
+    for (kind, name) in [
+        (Kind::Contact, "coulomb"),
+        (Kind::Contact, "coulomb-damage"),
+        (Kind::Contact, "frictionless"),
+        (Kind::Cohesion, "elastic-bond"),
+        (Kind::Cohesion, "mac"),
+        (Kind::Damage, "mac"),
+        (Kind::Damage, "mohr-coulomb-brittle"),
+        (Kind::Wear, "archard"),
+        (Kind::Wear, "dissipated-energy"),
+    ] {
+        let plugin = path.find(kind, name).unwrap();
+        let defaults: Vec<f64> = plugin.parameters.iter().map(|p| p.default).collect();
+        plugin.validate(&defaults).unwrap();
+        assert!(!plugin.reference.is_empty() && !plugin.doc.is_empty());
+        for parameter in &plugin.parameters {
+            assert!(!parameter.doc.is_empty(), "{name}: {}", parameter.name);
+        }
+        assert!(
+            path.available().iter().any(|a| a.0 == kind && a.1 == name),
+            "{name}"
+        );
+    }
+}
