@@ -1,1 +1,5 @@
-fn main() {}
+//! The command line of Fretwork.
+
+fn main() -> std::process::ExitCode {
+    fretwork::cli::main()
+}

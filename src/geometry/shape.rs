@@ -71,7 +71,8 @@ impl<S: Space> Surface<S> for HalfSpace<S> {
         let [t1, t2] = S::tangents(&self.normal);
         let s = self.shown;
         if S::D == 2 {
-            vec![vec![t1 * -s, t1 * s]]
+            // Solid on the right, as with profiles.
+            vec![vec![t1 * s, t1 * -s]]
         } else {
             let corner = |a: f64, b: f64| t1 * (a * s) + t2 * (b * s);
             vec![vec![

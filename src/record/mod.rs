@@ -1,2 +1,13 @@
-//! What a run leaves behind: ledgers, statistics, the results file, the summary.
+//! What a run leaves behind: ledgers, statistics, pictures, the results file, the summary.
+pub mod figures;
+pub mod friction;
 pub mod ledger;
+pub mod picture;
+pub mod results;
+pub mod run;
+pub mod statistics;
+pub mod summary;
+pub mod views;
+
+pub use run::{Progress, RunError, RunOptions, run};
+pub use summary::Summary;

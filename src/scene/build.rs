@@ -171,7 +171,10 @@ impl Loaded {
             case: &self.case,
             source: &self.source,
             folder: self.path.parent().map(Path::to_owned).unwrap_or_default(),
-            densities,
+            densities: densities
+                .into_iter()
+                .map(|(n, (k, d))| (n, (k, d * self.case.inertia_scaling)))
+                .collect(),
             files: BTreeMap::new(),
             bodies: Bodies::default(),
             shapes: Shapes {
@@ -200,6 +203,12 @@ impl Loaded {
             materials,
             names,
         })
+    }
+
+    /// Density of a material of the case (kg/m^3), without any scaling of inertia.
+    pub fn density(&self, name: &str) -> Option<f64> {
+        let (densities, _) = self.materials(&Shelf::beside(&self.path)).ok()?;
+        densities.get(name).map(|d| d.1)
     }
 
     /// Densities by material, and the texts of the files.

@@ -38,6 +38,7 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
             "the run would take more than 1e12 steps; use a larger step or an earlier end",
         ));
     }
+    positive("inertia_scaling", case.inertia_scaling)?;
     let s = &case.solver;
     if !(s.tolerance.is_finite() && s.tolerance >= 0.0) {
         return Err(Fault::new(

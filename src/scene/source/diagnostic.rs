@@ -1,72 +1,128 @@
-//! An error in an input: what, where, what was expected, the nearest valid name.
+//! An error in an input: where it stands, what was expected, what may have been meant.
 
-use ariadne::{Config, IndexType, Label, Report, ReportKind, Source as Text};
 use std::fmt;
 use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
-/// What is wrong with an input; shown with file, line and column.
-#[derive(Clone, Debug)]
-pub struct InputError(Box<Details>);
+use ariadne::{Config, IndexType, Label, Report, ReportKind};
 
-#[derive(Clone, Debug)]
-struct Details {
-    file: String,
-    text: Option<String>,
+use super::nearest::nearest;
+
+/// Longer lines (in characters) are not shown: nobody finds the place in them.
+const LONGEST_LINE: usize = 400;
+
+/// Beyond this many lines only the one-line form is given.
+const MOST_LINES: usize = 200_000;
+
+/// What is wrong with an input, and where.
+///
+/// Displayed as one line, `file:line:column: error: message; expected ...; help`,
+/// then the source line with the place marked; see [`InputError::render`].
+#[derive(Debug, Clone, thiserror::Error)]
+#[error("{}", self.render(false))]
+pub struct InputError {
+    /// The file, or the argument, that is at fault.
+    pub file: String,
+    /// The line, from 1; 0 when the error is not at a place in a file.
+    pub line: usize,
+    /// The column in characters, from 1; 0 when there is no line.
+    pub column: usize,
+    /// What is wrong.
+    pub message: String,
+    /// What was expected instead.
+    pub expected: Option<String>,
+    /// What to do about it, such as "did you mean `mu`?".
+    pub help: Option<String>,
+    context: Box<Context>,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Context {
+    text: Option<Arc<str>>,
     span: Range<usize>,
-    message: String,
-    expected: Option<String>,
-    help: Option<String>,
+    /// The `--set` argument that brought the text, and the place in it.
+    set: Option<(String, Range<usize>)>,
+    note: Option<String>,
 }
 
 impl InputError {
-    /// At bytes of a text.
+    /// An error at the bytes `span` of a text.
     pub fn at(file: &str, text: &str, span: Range<usize>, message: impl Into<String>) -> Self {
-        let end = span.end.min(text.len());
-        Self(Box::new(Details {
-            file: file.to_owned(),
-            text: Some(text.to_owned()),
-            span: span.start.min(end)..end,
-            message: message.into(),
-            expected: None,
-            help: None,
-        }))
+        Self::within(file, text.into(), span, message.into())
     }
 
-    /// About a whole file or an argument.
+    /// The same with a text that is shared, not copied.
+    pub(super) fn within(file: &str, text: Arc<str>, span: Range<usize>, message: String) -> Self {
+        let start = boundary(&text, span.start);
+        let span = start..boundary(&text, span.end).max(start);
+        let before = &text[..start];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Self {
+            file: file.into(),
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+            message,
+            expected: None,
+            help: None,
+            context: Box::new(Context {
+                text: Some(text),
+                span,
+                ..Context::default()
+            }),
+        }
+    }
+
+    /// An error about a whole file or argument.
     pub fn about(subject: impl fmt::Display, message: impl Into<String>) -> Self {
-        Self(Box::new(Details {
+        Self {
             file: subject.to_string(),
-            text: None,
-            span: 0..0,
+            line: 0,
+            column: 0,
             message: message.into(),
             expected: None,
             help: None,
-        }))
+            context: Box::default(),
+        }
     }
 
-    /// A file that cannot be read.
-    pub fn unreadable(path: &Path, error: &std::io::Error) -> Self {
+    /// An error in a command line argument, given as it was written.
+    pub fn argument(argument: impl fmt::Display, message: impl Into<String>) -> Self {
+        Self::about(argument, message)
+    }
+
+    /// A file that cannot be read; offers a file of a similar name.
+    pub fn file(path: &Path, error: &std::io::Error) -> Self {
+        use std::io::ErrorKind;
         let why = match error.kind() {
-            std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
-            std::io::ErrorKind::PermissionDenied => "permission to read it is missing".to_owned(),
-            std::io::ErrorKind::IsADirectory => "it is a folder, not a file".to_owned(),
+            ErrorKind::NotFound => "there is no such file".to_owned(),
+            ErrorKind::PermissionDenied => "permission to read it is missing".to_owned(),
+            ErrorKind::IsADirectory => "it is a folder, not a file".to_owned(),
             _ => error.to_string(),
         };
-        Self::about(path.display(), format!("cannot be read: {why}"))
+        let refused = Self::about(path.display(), format!("cannot be read: {why}"));
+        match similar_file(path).filter(|_| error.kind() == ErrorKind::NotFound) {
+            Some(similar) => refused.help(format!("did you mean `{similar}`?")),
+            None => refused,
+        }
+    }
+
+    /// The same as [`InputError::file`].
+    pub fn unreadable(path: &Path, error: &std::io::Error) -> Self {
+        Self::file(path, error)
     }
 
     /// Adds what was expected.
     #[must_use]
     pub fn expected(mut self, expected: impl Into<String>) -> Self {
-        self.0.expected = Some(expected.into());
+        self.expected = Some(expected.into());
         self
     }
 
-    /// Adds a proposal.
+    /// Adds what to do about it.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.0.help = Some(help.into());
+        self.help = Some(help.into());
         self
     }
 
@@ -79,105 +135,204 @@ impl InputError {
         }
     }
 
-    /// Line and column, from 1, in characters.
-    pub fn position(&self) -> Option<(usize, usize)> {
-        let text = self.0.text.as_deref()?;
-        let before = text.get(..self.0.span.start)?;
-        let line = before.matches('\n').count() + 1;
-        let column = before.rsplit('\n').next().map_or(0, |l| l.chars().count()) + 1;
-        Some((line, column))
+    /// Adds a remark, shown below the source line.
+    #[must_use]
+    pub fn note(mut self, note: impl Into<String>) -> Self {
+        self.context.note = Some(note.into());
+        self
     }
 
-    /// The message alone.
+    /// Says that the text came from a `--set` argument, from these bytes of it.
+    #[must_use]
+    pub(super) fn brought_by(mut self, argument: &str, span: Range<usize>) -> Self {
+        self.context.set = Some((argument.to_owned(), span));
+        self
+    }
+
+    /// The message without the place.
     pub fn message(&self) -> &str {
-        &self.0.message
+        &self.message
     }
 
-    /// One line for machines, then the place in the text for people.
-    pub fn render(&self, colour: bool) -> String {
-        let mut out = self.to_string();
-        let Some(text) = &self.0.text else { return out };
-        let file = self.0.file.as_str();
-        // ariadne wants a character to point at.
-        let mut span = self.0.span.clone();
-        if span.is_empty() {
-            span.end = (span.start + 1).min(text.len());
+    /// Line and column, if the error is at a place in a file.
+    pub fn position(&self) -> Option<(usize, usize)> {
+        (self.line > 0).then_some((self.line, self.column))
+    }
+
+    /// The bytes of the file at fault, if the error is at a place in a file.
+    pub fn span(&self) -> Option<Range<usize>> {
+        (self.line > 0).then(|| self.context.span.clone())
+    }
+
+    /// The `--set` argument that brought the text at fault.
+    pub fn set(&self) -> Option<&str> {
+        self.context.set.as_ref().map(|(set, _)| set.as_str())
+    }
+
+    /// The error on one line.
+    pub fn compact(&self) -> String {
+        self.one_line("error")
+    }
+
+    fn one_line(&self, kind: &str) -> String {
+        let mut line = match self.position() {
+            Some((line, column)) => format!("{}:{line}:{column}: ", self.file),
+            None => format!("{}: ", self.file),
+        };
+        line.push_str(&format!("{kind}: {}", self.message));
+        if let Some(set) = self.set() {
+            line.push_str(&format!(" (from `--set {set}`)"));
         }
-        let config = Config::default()
-            .with_color(colour)
-            .with_index_type(IndexType::Byte);
-        let label = self
-            .0
-            .expected
-            .as_ref()
-            .map_or("here".to_owned(), |e| format!("expected {e}"));
-        let report = Report::build(ReportKind::Error, (file, span.clone()))
-            .with_config(config)
-            .with_message(&self.0.message)
-            .with_label(Label::new((file, span)).with_message(label))
-            .finish();
-        let mut picture = Vec::new();
-        if report
-            .write((file, Text::from(text.as_str())), &mut picture)
-            .is_ok()
+        for part in [
+            self.expected
+                .as_ref()
+                .map(|expected| format!("expected {expected}")),
+            self.help.clone(),
+        ]
+        .iter()
+        .flatten()
         {
+            line.push_str("; ");
+            line.push_str(part);
+        }
+        line.chars()
+            .map(|c| if c.is_control() { ' ' } else { c })
+            .collect()
+    }
+
+    /// The error on one line, then the place in the text; with colours if asked.
+    pub fn render(&self, colour: bool) -> String {
+        let mut out = if colour {
+            let line = self.compact();
+            line.replacen(" error: ", " \x1b[1;31merror:\x1b[0m ", 1)
+        } else {
+            self.compact()
+        };
+        let label = match &self.expected {
+            Some(expected) => format!("expected {expected}"),
+            None => "here".to_owned(),
+        };
+        let context = &*self.context;
+        let mut pictures = Vec::new();
+        if let Some((set, span)) = &context.set {
+            let argument = format!("--set {set}");
+            let span = span.start + 6..span.end + 6;
+            pictures.push(picture(
+                "command line",
+                &argument,
+                &span,
+                &label,
+                None,
+                colour,
+            ));
+            if let Some(text) = &context.text {
+                pictures.push(picture(
+                    &self.file,
+                    text,
+                    &context.span,
+                    "set here",
+                    context.note.as_deref(),
+                    colour,
+                ));
+            }
+        } else if let Some(text) = &context.text {
+            pictures.push(picture(
+                &self.file,
+                text,
+                &context.span,
+                &label,
+                context.note.as_deref(),
+                colour,
+            ));
+        }
+        for drawn in pictures.iter().flatten() {
             out.push('\n');
-            out.push_str(String::from_utf8_lossy(&picture).trim_end());
+            out.push_str(drawn);
         }
         out
     }
 }
 
-impl fmt::Display for InputError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let d = &self.0;
-        match self.position() {
-            Some((line, column)) => write!(f, "{}:{line}:{column}: error: {}", d.file, d.message)?,
-            None => write!(f, "{}: error: {}", d.file, d.message)?,
-        }
-        if let Some(expected) = &d.expected {
-            write!(f, "; expected {expected}")?;
-        }
-        if let Some(help) = &d.help {
-            write!(f, "; {help}")?;
-        }
-        Ok(())
+/// The line of a place with the place marked, as ariadne draws it.
+fn picture(
+    file: &str,
+    text: &str,
+    span: &Range<usize>,
+    label: &str,
+    note: Option<&str>,
+    colour: bool,
+) -> Option<String> {
+    let begin = boundary(text, span.start);
+    let start = text[..begin].rfind('\n').map_or(0, |newline| newline + 1);
+    let end = text[begin..]
+        .find('\n')
+        .map_or(text.len(), |length| begin + length);
+    // Only this line is handed over as it is, with what ariadne would take for a line
+    // break, or a terminal for a command, blanked: one character for one.
+    let clean = |c: char| match c {
+        '\t' => c,
+        '\u{2028}' | '\u{2029}' => ' ',
+        c if c.is_control() => ' ',
+        c => c,
+    };
+    let mut line: String = text[start..end].chars().map(clean).collect();
+    if line.chars().count() > LONGEST_LINE {
+        return None;
     }
+    // Something to point at beyond the end of the line.
+    line.push(' ');
+    let from = text[start..begin].chars().count();
+    let stop = boundary(text, span.end).clamp(begin, end);
+    let to = from + text[begin..stop].chars().count().max(1);
+    let number = text[..start].matches('\n').count();
+    if number > MOST_LINES {
+        return None;
+    }
+    // ariadne numbers the lines it is given, so that those before must be there.
+    line.insert_str(0, &"\n".repeat(number));
+    let (from, to) = (from + number, to + number);
+    let config = Config::default()
+        .with_color(colour)
+        .with_index_type(IndexType::Char);
+    let mut report = Report::build(ReportKind::Error, (file, from..to))
+        .with_config(config)
+        .with_label(Label::new((file, from..to)).with_message(label));
+    if let Some(note) = note {
+        report = report.with_note(note);
+    }
+    let lines = ariadne::Source::from(line);
+    let mut drawn = Vec::new();
+    report.finish().write((file, lines), &mut drawn).ok()?;
+    let drawn = String::from_utf8(drawn).ok()?;
+    // The first line repeats what the one-line form has just said.
+    let (_, body) = drawn.split_once('\n')?;
+    let lines: Vec<&str> = body.lines().map(str::trim_end).collect();
+    Some(lines.join("\n").trim_end().to_owned())
 }
 
-impl std::error::Error for InputError {}
-
-/// The candidate that a misspelt name most likely means, if any is near.
-pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let fold = |s: &str| s.to_lowercase().replace(['-', '_', ' '], "");
-    let wanted = fold(name);
-    candidates
-        .into_iter()
-        .map(|c| (strsim::damerau_levenshtein(&fold(c), &wanted), c))
-        .min()
-        .filter(|(distance, c)| *distance <= (c.chars().count().max(3)) / 2)
-        .map(|(_, c)| c)
+/// The last character boundary at or before `at`.
+fn boundary(text: &str, at: usize) -> usize {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn columns_count_characters() {
-        let text = "(\n  µ: 1,\n  é: x,\n)";
-        let at = text.find('x').unwrap();
-        let error = InputError::at("a.ron", text, at..at + 1, "wrong");
-        assert_eq!(error.position(), Some((3, 6)));
-        assert_eq!(error.to_string(), "a.ron:3:6: error: wrong");
-        assert!(error.render(false).contains("é: x"));
-    }
-
-    #[test]
-    fn near_names_are_offered_and_far_ones_not() {
-        let names = ["frequency", "amplitude", "elastic-bond"];
-        assert_eq!(nearest("amplitud", names), Some("amplitude"));
-        assert_eq!(nearest("Elastic_Bond", names), Some("elastic-bond"));
-        assert_eq!(nearest("zzz", names), None);
-    }
+/// A file beside the missing one, with a name close to its.
+fn similar_file(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_str()?;
+    let folder = path.parent()?;
+    let listed = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    let names: Vec<String> = std::fs::read_dir(listed)
+        .ok()?
+        .take(10_000)
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .collect();
+    let similar = nearest(name, names.iter().map(String::as_str))?;
+    Some(folder.join(similar).display().to_string())
 }

@@ -1,334 +1,391 @@
-//! Where things stand in a RON text: a tree of nodes with byte spans, addressed by dotted paths.
+//! The tree of a RON text: where every value stands, and lookup by dotted path.
 
 use std::ops::Range;
 
-/// Deepest nesting accepted.
-pub const MOST_LEVELS: usize = 64;
+use super::{nearest::nearest, scan};
 
-/// A value in the text.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Node {
-    /// Bytes of the value, its variant's name included.
+/// The deepest nesting accepted; more is refused before anything recurses into it.
+pub const MAX_DEPTH: usize = 128;
+
+/// What a text holds, as far as it is well formed.
+#[derive(Debug, Clone, Default)]
+pub struct Tree {
+    /// The value of the text, if there is one.
+    pub root: Option<Node>,
+    /// The first place where the text is malformed.
+    pub fault: Option<Fault>,
+    /// Where the nesting passed [`MAX_DEPTH`]; nothing is read beyond it.
+    pub too_deep: Option<usize>,
+}
+
+/// A place where the text is malformed.
+#[derive(Debug, Clone)]
+pub struct Fault {
+    /// How far the scanner had come when it noticed.
+    pub at: usize,
+    /// What to point at.
     pub span: Range<usize>,
-    /// What stands inside.
-    pub inside: Inside,
+    /// What is wrong, as a sentence.
+    pub message: String,
 }
 
-/// The content of a node.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Inside {
-    /// A number, text, word.
-    Scalar,
-    /// Named members, with the span of each name and the byte after the opening bracket.
-    Members {
-        members: Vec<(String, Range<usize>, Node)>,
-        open: usize,
-        quoted: bool,
-    },
-    /// A list or tuple.
-    Items(Vec<Node>),
+/// A value and the bytes it takes, its name and brackets included.
+#[derive(Debug, Clone)]
+pub struct Node {
+    /// The bytes of the value.
+    pub span: Range<usize>,
+    /// What the value is.
+    pub kind: Kind,
 }
 
-/// The text is nested too deeply (byte where it happens).
-#[derive(Debug, PartialEq)]
-pub struct TooDeep(pub usize);
+/// What a value is.
+#[derive(Debug, Clone)]
+pub enum Kind {
+    /// A number, `inf` and `NaN` included.
+    Number,
+    /// A string, raw or not.
+    Text,
+    /// A character.
+    Char,
+    /// A boolean, a unit variant, `None`.
+    Word,
+    /// Values in brackets.
+    Group(Box<Group>),
+    /// Byte strings, and what could not be read.
+    Other,
+}
 
-/// Reads a text as far as it can be understood; `ron` reports what is malformed.
-///
-/// # Errors
-/// More than [`MOST_LEVELS`] levels.
-pub fn read(text: &str) -> Result<Node, TooDeep> {
-    let mut scanner = Scanner {
-        bytes: text.as_bytes(),
-        at: 0,
-    };
-    scanner.skip();
-    while scanner.peek() == Some(b'#') {
-        // #![enable(...)]
-        while scanner.peek().is_some_and(|c| c != b']') {
-            scanner.at += 1;
+/// Values in brackets.
+#[derive(Debug, Clone)]
+pub struct Group {
+    /// Which brackets, and whether the entries are named.
+    pub shape: Shape,
+    /// The name before the bracket.
+    pub name: Option<Range<usize>>,
+    /// Where the opening bracket stands.
+    pub open: usize,
+    /// The values, in the order of the text.
+    pub entries: Vec<Entry>,
+}
+
+/// The form of a [`Group`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// `(a: 1)`
+    Struct,
+    /// `(1, 2)`, `Some(1)`, `()`
+    Tuple,
+    /// `[1, 2]`
+    List,
+    /// `{ "k": 1 }`
+    Map,
+}
+
+/// One value of a [`Group`].
+#[derive(Debug, Clone)]
+pub struct Entry {
+    /// The field name or map key.
+    pub key: Option<Range<usize>>,
+    /// The value.
+    pub value: Node,
+}
+
+/// A path that leads nowhere, and how far it leads.
+#[derive(Debug)]
+pub struct Missing<'t> {
+    /// The deepest value that exists.
+    pub parent: Option<&'t Node>,
+    /// How many components led there.
+    pub depth: usize,
+    /// What the value offers as the next component.
+    pub choices: Vec<String>,
+}
+
+impl Missing<'_> {
+    /// The path with its first wrong component put right, if something is close.
+    pub fn correction(&self, path: &[String]) -> Option<Vec<String>> {
+        let wrong = path.get(self.depth)?;
+        let right = nearest(wrong, self.choices.iter().map(String::as_str))?;
+        let mut corrected = path.to_vec();
+        corrected[self.depth] = right.to_owned();
+        Some(corrected)
+    }
+}
+
+/// Splits `a.b."c.d"` into its components; nothing when one is empty or unclosed.
+pub fn split_path(path: &str) -> Option<Vec<String>> {
+    let mut parts = Vec::new();
+    let mut rest = path.trim();
+    loop {
+        let (part, after) = if let Some(quoted) = rest.strip_prefix('"') {
+            quoted.split_once('"')?
+        } else {
+            rest.split_at(rest.find('.').unwrap_or(rest.len()))
+        };
+        if part.trim().is_empty() {
+            return None;
         }
-        scanner.at += 1;
-        scanner.skip();
+        parts.push(part.trim().to_owned());
+        if after.is_empty() {
+            return Some(parts);
+        }
+        rest = after.strip_prefix('.')?;
     }
-    scanner.value(0)
 }
 
-struct Scanner<'a> {
-    bytes: &'a [u8],
-    at: usize,
-}
-
-fn is_word(c: u8) -> bool {
-    c.is_ascii_alphanumeric() || c == b'_'
-}
-
-impl Scanner<'_> {
-    fn peek(&self) -> Option<u8> {
-        self.bytes.get(self.at).copied()
-    }
-
-    fn starts(&self, text: &str) -> bool {
-        self.bytes[self.at.min(self.bytes.len())..].starts_with(text.as_bytes())
-    }
-
-    /// White space and comments.
-    fn skip(&mut self) {
-        loop {
-            if self.starts("//") {
-                while self.peek().is_some_and(|c| c != b'\n') {
-                    self.at += 1;
-                }
-            } else if self.starts("/*") {
-                let mut depth = 0;
-                while self.at < self.bytes.len() {
-                    if self.starts("/*") {
-                        depth += 1;
-                        self.at += 2;
-                    } else if self.starts("*/") {
-                        depth -= 1;
-                        self.at += 2;
-                        if depth == 0 {
-                            break;
-                        }
-                    } else {
-                        self.at += 1;
-                    }
-                }
-            } else if self.peek().is_some_and(|c| c.is_ascii_whitespace()) {
-                self.at += 1;
+/// The components joined again, quoted where they need it.
+pub fn join_path(parts: &[String]) -> String {
+    let quoted: Vec<String> = parts
+        .iter()
+        .map(|part| {
+            if part.contains('.') {
+                format!("\"{part}\"")
             } else {
-                return;
+                part.clone()
             }
-        }
+        })
+        .collect();
+    quoted.join(".")
+}
+
+impl Tree {
+    /// Reads `text`; never fails, see [`Tree::fault`] and [`Tree::too_deep`].
+    pub fn of(text: &str) -> Tree {
+        scan::scan(text)
     }
 
-    fn word(&mut self) -> String {
-        let start = self.at;
-        while self.peek().is_some_and(is_word) {
-            self.at += 1;
+    /// The value at a path of components, or how far the path leads.
+    ///
+    /// Components are field names, map keys, indices, and in a list also the
+    /// `name` of an element. `Some(x)` counts as `x`; the value of a one-tuple
+    /// is its `.0`, and the components of that value may follow directly.
+    pub fn find(&self, text: &str, path: &[String]) -> Result<&Node, Missing<'_>> {
+        let mut node = self.root.as_ref().ok_or(Missing {
+            parent: None,
+            depth: 0,
+            choices: Vec::new(),
+        })?;
+        for (depth, part) in path.iter().enumerate() {
+            node = node.step(text, part).ok_or_else(|| Missing {
+                parent: Some(node),
+                depth,
+                choices: node.choices(text),
+            })?;
         }
-        String::from_utf8_lossy(&self.bytes[start..self.at]).into_owned()
+        Ok(node)
     }
 
-    fn string(&mut self) {
-        self.at += 1;
-        while let Some(c) = self.peek() {
-            self.at += 1;
-            match c {
-                b'\\' => self.at += 1,
-                b'"' => return,
-                _ => {}
-            }
+    /// The value that ends exactly at `offset`.
+    pub(super) fn ending_at(&self, offset: usize) -> Option<&Node> {
+        let mut node = self.root.as_ref()?;
+        while node.span.end != offset {
+            node = node.child(|child| child.start < offset && offset <= child.end)?;
         }
+        Some(node)
     }
 
-    fn raw_string(&mut self) {
-        self.at += 1;
-        let start = self.at;
-        while self.peek() == Some(b'#') {
-            self.at += 1;
+    /// The innermost value around `offset`.
+    pub(super) fn around(&self, offset: usize) -> Option<&Node> {
+        let mut node = self.root.as_ref()?;
+        if !node.span.contains(&offset) {
+            return None;
         }
-        let end = format!("\"{}", "#".repeat(self.at - start));
-        self.at += 1;
-        while self.at < self.bytes.len() && !self.starts(&end) {
-            self.at += 1;
+        while let Some(child) = node.child(|child| child.contains(&offset)) {
+            node = child;
         }
-        self.at += end.len();
+        Some(node)
     }
 
-    fn value(&mut self, level: usize) -> Result<Node, TooDeep> {
-        if level > MOST_LEVELS {
-            return Err(TooDeep(self.at));
+    /// The dotted path of the value with this span; empty for the root.
+    pub(super) fn path_of(&self, text: &str, span: &Range<usize>) -> Vec<String> {
+        let mut path = Vec::new();
+        let mut node = self.root.as_ref();
+        while let Some(Kind::Group(group)) = node.map(|node| &node.kind) {
+            let holds = |child: &Range<usize>| child.start <= span.start && span.end <= child.end;
+            let entries = &group.entries;
+            let Some(index) = entries.iter().position(|entry| holds(&entry.value.span)) else {
+                break;
+            };
+            if !group.is_some(text) {
+                path.push(group.component(text, index));
+            }
+            node = Some(&entries[index].value);
         }
-        self.skip();
-        let start = self.at;
-        let inside = match self.peek() {
-            Some(b'"') => {
-                self.string();
-                Inside::Scalar
-            }
-            Some(b'r') if self.starts("r\"") || self.starts("r#") => {
-                self.raw_string();
-                Inside::Scalar
-            }
-            Some(b'(') => self.bracket(b')', level)?,
-            Some(b'[') => self.bracket(b']', level)?,
-            Some(b'{') => self.bracket(b'}', level)?,
-            Some(c) if c.is_ascii_alphabetic() || c == b'_' => {
-                self.word();
-                let end = self.at;
-                self.skip();
-                if self.peek() == Some(b'(') {
-                    self.bracket(b')', level)?
-                } else {
-                    self.at = end;
-                    Inside::Scalar
-                }
-            }
-            _ => {
-                while self
-                    .peek()
-                    .is_some_and(|c| !c.is_ascii_whitespace() && !b",)]}:".contains(&c))
-                {
-                    self.at += 1;
-                }
-                Inside::Scalar
+        path
+    }
+
+    /// The last key or name in the text before `limit` which reads `word`.
+    pub(super) fn last_word(&self, text: &str, word: &str, limit: usize) -> Option<Range<usize>> {
+        let mut stack: Vec<&Node> = self.root.iter().collect();
+        let mut best: Option<Range<usize>> = None;
+        let mut offer = |span: &Range<usize>| {
+            let later = best.as_ref().is_none_or(|best| best.start < span.start);
+            if later && span.start <= limit && plain(&text[span.clone()]) == word {
+                best = Some(span.clone());
             }
         };
-        let end = self.at.min(self.bytes.len());
-        Ok(Node {
-            span: start.min(end)..end,
-            inside,
-        })
-    }
-
-    fn bracket(&mut self, close: u8, level: usize) -> Result<Inside, TooDeep> {
-        self.at += 1;
-        let open = self.at;
-        let mut members = Vec::new();
-        let mut items = Vec::new();
-        loop {
-            self.skip();
-            match self.peek() {
-                None => break,
-                Some(c) if c == close => {
-                    self.at += 1;
-                    break;
+        while let Some(node) = stack.pop() {
+            match &node.kind {
+                Kind::Group(group) => {
+                    group.name.iter().for_each(&mut offer);
+                    for entry in &group.entries {
+                        entry.key.iter().for_each(&mut offer);
+                        stack.push(&entry.value);
+                    }
                 }
-                Some(b',') => {
-                    self.at += 1;
-                    continue;
-                }
-                Some(b')' | b']' | b'}' | b':') => {
-                    // Malformed: ron will say so.
-                    self.at += 1;
-                    continue;
-                }
-                Some(_) => {}
-            }
-            let before = self.at;
-            let first = self.value(level + 1)?;
-            self.skip();
-            if self.peek() == Some(b':') && close != b']' {
-                self.at += 1;
-                let name = String::from_utf8_lossy(&self.bytes[first.span.clone()])
-                    .trim_matches('"')
-                    .to_owned();
-                let value = self.value(level + 1)?;
-                members.push((name, first.span, value));
-            } else {
-                items.push(first);
-            }
-            if self.at == before {
-                self.at += 1;
+                _ => offer(&node.span),
             }
         }
-        self.at = self.at.min(self.bytes.len());
-        if members.is_empty() && (close != b'}' && !items.is_empty() || close == b']') {
-            return Ok(Inside::Items(items));
-        }
-        Ok(Inside::Members {
-            members,
-            open,
-            quoted: close == b'}',
-        })
+        best
     }
 }
 
 impl Node {
-    /// The member or item of this name: a member, an index, or the item whose `name` member is this.
-    pub fn child<'a>(&'a self, name: &str, text: &str) -> Option<&'a Node> {
-        match &self.inside {
-            Inside::Scalar => None,
-            Inside::Members { members, .. } => members.iter().find(|m| m.0 == name).map(|m| &m.2),
-            Inside::Items(items) => {
-                if let Ok(k) = name.parse::<usize>() {
-                    return items.get(k);
-                }
-                let named = items.iter().find(|item| {
-                    item.child("name", text)
-                        .is_some_and(|n| text[n.span.clone()].trim_matches('"') == name)
-                });
-                // Some(x), Sine(...): a single value is transparent.
-                named.or_else(|| match items.as_slice() {
-                    [only] => only.child(name, text),
-                    _ => None,
-                })
-            }
+    /// The group, if the value is one.
+    pub fn group(&self) -> Option<&Group> {
+        match &self.kind {
+            Kind::Group(group) => Some(group),
+            _ => None,
         }
     }
 
-    /// The names one step down.
-    pub fn children(&self, text: &str) -> Vec<String> {
-        match &self.inside {
-            Inside::Scalar => Vec::new(),
-            Inside::Members { members, .. } => members.iter().map(|m| m.0.clone()).collect(),
-            Inside::Items(items) => items
-                .iter()
-                .enumerate()
-                .map(|(k, item)| match item.child("name", text) {
-                    Some(n) => text[n.span.clone()].trim_matches('"').to_owned(),
-                    None => k.to_string(),
-                })
-                .collect(),
-        }
-    }
-
-    /// Follows a dotted path as far as it goes: the deepest node and how many components were used.
-    pub fn follow<'a>(&'a self, path: &[&str], text: &str) -> (&'a Node, usize) {
+    /// The value inside any number of `Some(...)`.
+    pub fn peel(&self, text: &str) -> &Node {
         let mut node = self;
-        for (k, name) in path.iter().enumerate() {
-            match node.child(name, text) {
-                Some(child) => node = child,
-                None => return (node, k),
-            }
+        while let Some(group) = node.group().filter(|group| group.is_some(text)) {
+            node = &group.entries[0].value;
         }
-        (node, path.len())
+        node
+    }
+
+    /// What to point at: the whole value, or its head when it takes several lines.
+    pub fn head(&self, text: &str) -> Range<usize> {
+        match self.group() {
+            Some(group) if text[self.span.clone()].contains('\n') => {
+                self.span.start..group.open + 1
+            }
+            _ => self.span.clone(),
+        }
+    }
+
+    /// The text of a string without its quotes and escapes, or of a word.
+    pub fn string(&self, text: &str) -> Option<String> {
+        let written = &text[self.span.clone()];
+        match self.kind {
+            Kind::Text => ron::from_str(written).ok(),
+            Kind::Word => Some(plain(written).to_owned()),
+            _ => None,
+        }
+    }
+
+    fn child(&self, wanted: impl Fn(&Range<usize>) -> bool) -> Option<&Node> {
+        let values = self.group()?.entries.iter().map(|entry| &entry.value);
+        values.into_iter().find(|value| wanted(&value.span))
+    }
+
+    fn step(&self, text: &str, part: &str) -> Option<&Node> {
+        let mut node = self.peel(text);
+        loop {
+            let group = node.group()?;
+            let at = |index: usize| group.entries.get(index).map(|entry| &entry.value);
+            let index = part.parse::<usize>().ok();
+            return match group.shape {
+                Shape::Struct | Shape::Map => group.position(text, part).and_then(at),
+                Shape::List => index
+                    .and_then(at)
+                    .or_else(|| group.position(text, part).and_then(at)),
+                Shape::Tuple => match (index.and_then(at), group.entries.as_slice()) {
+                    (Some(found), _) => Some(found),
+                    (None, [only]) => {
+                        node = only.value.peel(text);
+                        continue;
+                    }
+                    _ => None,
+                },
+            };
+        }
+    }
+
+    /// A field of this struct, or of the struct in this one-tuple.
+    fn field(&self, text: &str, name: &str) -> Option<&Node> {
+        let mut node = self;
+        loop {
+            let group = node.group()?;
+            node = match (group.shape, group.entries.as_slice()) {
+                (Shape::Struct, entries) => {
+                    let named = |entry: &&Entry| {
+                        entry
+                            .key
+                            .as_ref()
+                            .is_some_and(|key| &text[key.clone()] == name)
+                    };
+                    return entries.iter().find(named).map(|entry| &entry.value);
+                }
+                (Shape::Tuple, [only]) => &only.value,
+                _ => return None,
+            };
+        }
+    }
+
+    /// What may follow this value in a path.
+    pub(super) fn choices(&self, text: &str) -> Vec<String> {
+        let node = self.peel(text);
+        let Some(group) = node.group() else {
+            return Vec::new();
+        };
+        let own = (0..group.entries.len()).map(|index| group.component(text, index));
+        let mut choices: Vec<String> = own.collect();
+        if let (Shape::Tuple, [only]) = (group.shape, group.entries.as_slice()) {
+            choices.extend(only.value.choices(text));
+        }
+        choices
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const CASE: &str = "#![enable(implicit_some)]\n// (a comment: {\nCase(\n  a: 1.5, /* [ */ b: \"x ( y\",\n  list: [(name: \"wheel\", m: 2), (name: \"rail\", m: 3)],\n  f: Sine(amplitude: 2e-5, frequency: 50),\n  g: Some(Ramp((from: 1))), h: {\"mu\": 0.3},\n)";
-
-    fn at(path: &str) -> &'static str {
-        let tree = read(CASE).unwrap();
-        let parts: Vec<&str> = path.split('.').collect();
-        let (node, used) = tree.follow(&parts, CASE);
-        assert_eq!(used, parts.len(), "{path}");
-        &CASE[node.span.clone()]
+impl Group {
+    /// Whether this is `Some(x)`.
+    pub fn is_some(&self, text: &str) -> bool {
+        let named = self
+            .name
+            .as_ref()
+            .is_some_and(|name| &text[name.clone()] == "Some");
+        named && self.shape == Shape::Tuple && self.entries.len() == 1
     }
 
-    #[test]
-    fn paths_lead_to_values() {
-        assert_eq!(at("a"), "1.5");
-        assert_eq!(at("b"), "\"x ( y\"");
-        assert_eq!(at("list.1.m"), "3");
-        assert_eq!(at("list.wheel.m"), "2");
-        assert_eq!(at("f.frequency"), "50");
-        assert_eq!(at("g.from"), "1");
-        assert_eq!(at("h.mu"), "0.3");
+    /// The index of the entry with this key, or in a list with this `name`.
+    fn position(&self, text: &str, part: &str) -> Option<usize> {
+        (0..self.entries.len()).find(|&index| {
+            let entry = &self.entries[index];
+            let written = entry.key.as_ref().map(|key| &text[key.clone()]);
+            written == Some(part) || self.label(text, index).as_deref() == Some(part)
+        })
     }
 
-    #[test]
-    fn depth_is_bounded() {
-        assert!(read(&"(".repeat(100_000)).is_err());
+    /// The component that leads to an entry.
+    fn component(&self, text: &str, index: usize) -> String {
+        self.label(text, index).unwrap_or_else(|| index.to_string())
     }
 
-    #[test]
-    fn garbage_is_survived() {
-        use rand::{RngExt, SeedableRng};
-        let mut rng = rand_pcg::Pcg64::seed_from_u64(3);
-        for _ in 0..5000 {
-            let mut bytes = CASE.as_bytes().to_vec();
-            for _ in 0..rng.random_range(1..6) {
-                let k = rng.random_range(0..bytes.len());
-                bytes[k] = b"(){}[],:\"#/*r\\ a0"[rng.random_range(0..17)];
+    /// The key of an entry, or in a list the `name` of the element.
+    fn label(&self, text: &str, index: usize) -> Option<String> {
+        let entry = self.entries.get(index)?;
+        match (&entry.key, self.shape) {
+            (Some(key), _) => {
+                let written = &text[key.clone()];
+                let unquoted = || ron::from_str::<String>(written).ok();
+                written
+                    .contains('"')
+                    .then(unquoted)
+                    .flatten()
+                    .or_else(|| Some(plain(written).to_owned()))
             }
-            let _ = read(&String::from_utf8_lossy(&bytes));
+            (None, Shape::List) => entry.value.field(text, "name")?.string(text),
+            (None, _) => None,
         }
     }
+}
+
+/// An identifier without the `r#` of the raw form.
+pub(super) fn plain(word: &str) -> &str {
+    word.strip_prefix("r#").unwrap_or(word)
 }

@@ -1,0 +1,212 @@
+//! `fretwork check`: what a scene activates, its size and dimensionless groups; runs nothing.
+
+use super::{CaseArgs, Failure, say};
+use crate::contact::Contact;
+use crate::geometry::space::{Space, VectorLike};
+use crate::scene::build::Built;
+use crate::scene::{Loaded, Scene, load};
+use crate::solve::row::Line;
+use clap::Args;
+use std::fmt::Write as _;
+
+#[derive(Args, Debug)]
+pub struct CheckArgs {
+    #[command(flatten)]
+    case: CaseArgs,
+}
+
+pub fn check(args: &CheckArgs) -> Result<(), Failure> {
+    let loaded = load(&args.case.case, &args.case.sets)?;
+    let text = match loaded.build(&args.case.plugins.search()?)? {
+        Scene::Plane(built) => describe(&loaded, &built),
+        Scene::Solid(built) => describe(&loaded, &built),
+    };
+    say(text.trim_end());
+    Ok(())
+}
+
+fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
+    let (case, s) = (&loaded.case, &built.simulation);
+    let mut out = format!("{}: {}\n", loaded.path.display(), case.name);
+    let mut line = |label: &str, value: String| {
+        let _ = writeln!(out, "  {label:<20} {value}");
+    };
+    let steps = (case.time.end / case.time.step).round();
+    line("dimension", S::D.to_string());
+    line(
+        "steps",
+        format!(
+            "{steps} of {:e} s, theta {}",
+            case.time.step, case.time.theta
+        ),
+    );
+    let radii: Vec<f64> = s.shapes.balls.iter().map(|b| b.radius).collect();
+    let (low, high) = radii
+        .iter()
+        .fold((f64::INFINITY, 0.0f64), |(l, h), r| (l.min(*r), h.max(*r)));
+    if !radii.is_empty() {
+        line(
+            "balls",
+            format!("{}, radius {low:.3e} to {high:.3e} m", radii.len()),
+        );
+    }
+    let names: Vec<&str> = s.bodies.driven.iter().map(|d| d.name.as_str()).collect();
+    line(
+        "first bodies",
+        format!(
+            "{} ({}), {} surfaces",
+            names.len(),
+            names.join(", "),
+            s.shapes.surfaces.len()
+        ),
+    );
+    let axes: Vec<&str> = ["x", "y", "z"]
+        .into_iter()
+        .enumerate()
+        .filter(|(k, _)| s.shapes.periodic.period[*k].is_some())
+        .map(|a| a.1)
+        .collect();
+    line(
+        "periodic",
+        if axes.is_empty() {
+            "no".into()
+        } else {
+            axes.join(", ")
+        },
+    );
+    line(
+        "gravity",
+        if s.gravity.norm() > 0.0 {
+            format!("{:.3e} m/s^2", s.gravity.norm())
+        } else {
+            "off".into()
+        },
+    );
+    line("contacts at start", s.network.contacts.len().to_string());
+    line(
+        "solver",
+        format!(
+            "Gauss-Seidel, tolerance {:e}, at most {} sweeps, tested every {}",
+            s.solver.tolerance, s.solver.max_iterations, s.solver.test_every
+        ),
+    );
+    line("error", case.solver.norm.formula().into());
+    for law in &s.laws {
+        let laws: Vec<String> = law
+            .loaded()
+            .map(|l| format!("{} {}", l.plugin.kind, l.plugin.name))
+            .collect();
+        line(
+            "interface",
+            format!(
+                "{}: {}; bonds {:?}; {} internal variables",
+                law.name,
+                laws.join(", "),
+                law.bonds,
+                law.variables()
+            ),
+        );
+    }
+    line(
+        "memory",
+        format!(
+            "{} bytes a body in the solver, {} a contact",
+            size_of::<Line<S>>(),
+            size_of::<Contact<S>>()
+        ),
+    );
+    groups(loaded, built, high, &mut line);
+    out
+}
+
+/// Dimensionless groups of a friction test.
+fn groups<S: Space>(
+    loaded: &Loaded,
+    built: &Built<S>,
+    largest: f64,
+    line: &mut impl FnMut(&str, String),
+) {
+    let (case, s) = (&loaded.case, &built.simulation);
+    let Some(test) = &case.friction else { return };
+    let Some(driven) = s.bodies.driven.iter().find(|d| d.name == test.body) else {
+        return;
+    };
+    let samples = |f: &dyn Fn(f64) -> f64| {
+        (0..=1000)
+            .map(|k| f(case.time.end * f64::from(k) / 1000.0).abs())
+            .fold(0.0, f64::max)
+    };
+    let speed = samples(&|t| driven.dofs[test.along].imposed_velocity(t).unwrap_or(0.0));
+    let force = samples(&|t| driven.dofs[test.normal].force(t));
+    let step = speed * case.time.step;
+    line(
+        "fastest slide",
+        format!(
+            "{speed:.3e} m/s, {step:.2e} m a step ({:.2e} of the largest radius)",
+            step / largest
+        ),
+    );
+    let Some(period) = s.shapes.periodic.period[test.along] else {
+        return;
+    };
+    let area = if S::D == 2 {
+        period
+    } else {
+        period * s.shapes.periodic.period[3 - test.along - test.normal].unwrap_or(period)
+    };
+    let pressure = force / area;
+    if pressure <= 0.0 {
+        return;
+    }
+    line("pressure", format!("{pressure:.3e} Pa"));
+    let grains = s
+        .shapes
+        .balls
+        .iter()
+        .filter(|b| !s.bodies.driven.iter().any(|d| d.body == b.body));
+    let (volume, mass) = grains.fold((0.0, 0.0), |(v, m), b| {
+        (
+            v + S::ball_volume(b.radius),
+            m + s.bodies.mass[b.body as usize],
+        )
+    });
+    if volume > 0.0 {
+        let density = mass / volume;
+        let thickness = volume / 0.8 / area;
+        let inertial = speed / thickness * 2.0 * largest * (density / pressure).sqrt();
+        line(
+            "layer",
+            format!("about {thickness:.2e} m thick at a solid fraction of 0.8"),
+        );
+        line(
+            "inertial number",
+            format!(
+                "{inertial:.2e} with inertia scaled by {:e} (quasi-static below 1e-3)",
+                case.inertia_scaling
+            ),
+        );
+    }
+    for law in &s.laws {
+        if let (Some(c), Some(d)) = (&law.cohesion, &law.damage) {
+            let value = |l: &crate::laws::Loaded, n: &str| {
+                l.plugin
+                    .parameters
+                    .iter()
+                    .position(|p| p.name == n)
+                    .map(|k| l.parameters[k])
+            };
+            if let (Some(stiffness), Some(w)) = (value(c, "c_n"), value(d, "w")) {
+                let strength = (stiffness * w).sqrt();
+                line(
+                    "cohesion",
+                    format!(
+                        "{}: strength {strength:.3e} Pa = {:.2} of the pressure, opening at peak {:.2e} m",
+                        law.name,
+                        strength / pressure,
+                        (w / stiffness).sqrt()
+                    ),
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! A friction test: loops Q-delta, friction coefficient cycle by cycle, from forces and from heat.
+
+use crate::record::ledger::Energy;
+use serde::Serialize;
+
+/// What one step of the test measured.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sample {
+    /// Time at the end of the step (s).
+    pub time: f64,
+    /// Tangential force that moves the body, the mean over the step (N; N/m in 2D).
+    pub q: f64,
+    /// Normal force, positive in compression.
+    pub p: f64,
+    /// Sliding over the step (m), signed.
+    pub slide: f64,
+    /// Work of the tangential drive over the step (J).
+    pub work: f64,
+}
+
+/// One cycle, or the part of the run that counts.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Cycle {
+    /// Number, from 1.
+    pub cycle: u32,
+    /// Whether it was run to its end.
+    pub complete: bool,
+    /// Work of the tangential force over the cycle, E_d (J; J/m in 2D).
+    pub work: f64,
+    /// Mean normal force (N; N/m).
+    pub normal_force: f64,
+    /// Largest tangential force (N; N/m).
+    pub tangential_amplitude: f64,
+    /// Length of the path (m).
+    pub path: f64,
+    /// integral Q d delta / integral P |d delta|: the friction coefficient from forces.
+    pub friction_coefficient: f64,
+    /// (heat + change of stored energy - other work) / integral P |d delta|: from the energy ledger.
+    pub friction_from_dissipation: f64,
+    /// Bonds broken in it.
+    pub broken: u64,
+    /// Damage ratio at its end.
+    pub damage_ratio: f64,
+    /// A = E_d / (4 Q delta).
+    pub energy_ratio: f64,
+}
+
+/// Follows the cycles of a test.
+#[derive(Clone, Debug)]
+pub struct Cycles {
+    start: f64,
+    period: Option<f64>,
+    end: f64,
+    /// Cycles so far, the current one last.
+    pub list: Vec<Cycle>,
+    pressure_path: f64,
+    pressure_time: f64,
+    time: f64,
+    position: f64,
+    lowest: f64,
+    highest: f64,
+    energy_before: Option<Snapshot>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Snapshot {
+    dissipated: f64,
+    stored: f64,
+    external: f64,
+    broken: u64,
+}
+
+impl Snapshot {
+    fn new(e: &Energy, broken: u64) -> Self {
+        Self {
+            dissipated: e.dissipated() + e.scheme,
+            stored: e.kinetic + e.potential + e.elastic,
+            external: e.external_work,
+            broken,
+        }
+    }
+}
+
+impl Cycles {
+    /// Cycles of length `period` from `start` on; without a period the second half of what remains
+    /// until `end` is one cycle.
+    pub fn new(start: f64, period: Option<f64>, end: f64) -> Self {
+        let start = if period.is_some() {
+            start
+        } else {
+            0.5 * (start + end)
+        };
+        Self {
+            start,
+            period,
+            end,
+            list: Vec::new(),
+            pressure_path: 0.0,
+            pressure_time: 0.0,
+            time: 0.0,
+            position: 0.0,
+            lowest: 0.0,
+            highest: 0.0,
+            energy_before: None,
+        }
+    }
+
+    /// Number of the cycle at a time, from 1; 0 before the start.
+    pub fn number(&self, time: f64) -> u32 {
+        if time <= self.start {
+            return 0;
+        }
+        match self.period {
+            // A step that ends on the border belongs to the cycle it closes.
+            Some(period) => ((time - self.start) / period - 1e-9).floor().max(0.0) as u32 + 1,
+            None => 1,
+        }
+    }
+
+    /// How many cycles the run has in all.
+    pub fn total(&self) -> u32 {
+        self.number(self.end)
+    }
+
+    /// Adds a step: `before` is the energy ledger at its start, `after` at its end.
+    pub fn add(
+        &mut self,
+        sample: &Sample,
+        h: f64,
+        before: &Energy,
+        after: &Energy,
+        broken: (u64, u64),
+        damage: f64,
+    ) {
+        let number = self.number(sample.time);
+        if number == 0 {
+            return;
+        }
+        if self.list.last().is_none_or(|c| c.cycle != number) {
+            if let Some(last) = self.list.last_mut() {
+                last.complete = true;
+            }
+            self.list.push(Cycle {
+                cycle: number,
+                ..Cycle::default()
+            });
+            (self.pressure_path, self.pressure_time, self.time) = (0.0, 0.0, 0.0);
+            (self.position, self.lowest, self.highest) = (0.0, 0.0, 0.0);
+            self.energy_before = Some(Snapshot::new(before, broken.0));
+        }
+        let (Some(cycle), Some(start)) = (self.list.last_mut(), self.energy_before) else {
+            return;
+        };
+        self.pressure_path += sample.p * sample.slide.abs();
+        self.pressure_time += sample.p * h;
+        self.time += h;
+        self.position += sample.slide;
+        self.lowest = self.lowest.min(self.position);
+        self.highest = self.highest.max(self.position);
+        cycle.path += sample.slide.abs();
+        cycle.work += sample.work;
+        cycle.tangential_amplitude = cycle.tangential_amplitude.max(sample.q.abs());
+        cycle.normal_force = self.pressure_time / self.time;
+        let now = Snapshot::new(after, broken.1);
+        let other = (now.external - start.external) - cycle.work;
+        let heat = (now.dissipated - start.dissipated) + (now.stored - start.stored) - other;
+        let over = |x: f64, y: f64| if y > 0.0 { x / y } else { 0.0 };
+        cycle.friction_coefficient = over(cycle.work, self.pressure_path);
+        cycle.friction_from_dissipation = over(heat, self.pressure_path);
+        cycle.broken = now.broken - start.broken;
+        cycle.damage_ratio = damage;
+        let amplitude = 0.5 * (self.highest - self.lowest);
+        cycle.energy_ratio = over(cycle.work, 4.0 * cycle.tangential_amplitude * amplitude);
+        let end = self
+            .period
+            .map_or(self.end, |p| self.start + f64::from(number) * p);
+        cycle.complete = sample.time >= end - 1e-6 * h;
+    }
+
+    /// The last complete cycle, or the last.
+    pub fn last(&self) -> Option<&Cycle> {
+        self.list
+            .iter()
+            .rev()
+            .find(|c| c.complete)
+            .or(self.list.last())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_coulomb_loop_has_the_friction_put_in() {
+        let (mu, p, a, f, h) = (0.4, 1e3, 5e-5, 10.0, 1e-5);
+        let mut cycles = Cycles::new(0.0, Some(1.0 / f), 0.2);
+        let (mut energy, mut t) = (Energy::default(), 0.0);
+        while t < 0.2 - 0.5 * h {
+            let v =
+                a * std::f64::consts::TAU * f * (std::f64::consts::TAU * f * (t + 0.5 * h)).cos();
+            let q = mu * p * v.signum();
+            let before = energy;
+            energy.friction += q * v * h;
+            energy.external_work += q * v * h;
+            t += h;
+            let sample = Sample {
+                time: t,
+                q,
+                p,
+                slide: v * h,
+                work: q * v * h,
+            };
+            cycles.add(&sample, h, &before, &energy, (0, 0), 0.0);
+        }
+        assert_eq!(cycles.list.len(), 2);
+        for c in &cycles.list {
+            assert!((c.friction_coefficient / mu - 1.0).abs() < 1e-9 && c.complete);
+            assert!((c.friction_from_dissipation / mu - 1.0).abs() < 1e-9);
+            // A rectangular loop: E_d = 4 mu P delta.
+            assert!((c.work / (4.0 * mu * p * a) - 1.0).abs() < 1e-6);
+            assert!((c.energy_ratio - 1.0).abs() < 1e-3);
+        }
+    }
+}

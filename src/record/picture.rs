@@ -1,0 +1,255 @@
+//! The state of a simulation as pictures and as points, lines and outlines for files.
+
+use crate::contact::{Contact, Key};
+use crate::geometry::space::{Space, VectorLike};
+use crate::report::{Disk, Frame, Link, LinkState, Outline, ReportError, View, project_spheres};
+use crate::step::Simulation;
+use std::path::Path;
+
+/// What a frame shows of the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    window: [f64; 4],
+    width: u32,
+}
+
+impl Camera {
+    /// Looks at the whole scene as it stands.
+    pub fn new<S: Space>(simulation: &Simulation<S>, width: u32) -> Self {
+        let periodic = &simulation.shapes.periodic;
+        let mut w = [
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+        ];
+        for (centre, radius) in balls(simulation) {
+            let at = if S::D == 2 {
+                let c = periodic.wrapped(centre);
+                [c[0], c[1]]
+            } else {
+                view().project(centre.padded()).0
+            };
+            for k in 0..2 {
+                w[2 * k] = w[2 * k].min(at[k] - radius);
+                w[2 * k + 1] = w[2 * k + 1].max(at[k] + radius);
+            }
+        }
+        if !w.iter().all(|x| x.is_finite()) {
+            w = [-1.0, 1.0, -1.0, 1.0];
+        }
+        if let (2, Some(period)) = (S::D, periodic.period[0]) {
+            (w[0], w[1]) = (0.0, period);
+        }
+        let (wide, high) = (w[1] - w[0], w[3] - w[2]);
+        let margin = 0.04 * wide.max(high);
+        if periodic.period[0].is_none() {
+            w[0] -= margin;
+            w[1] += margin;
+        }
+        w[2] -= margin;
+        w[3] += margin;
+        Self { window: w, width }
+    }
+
+    /// Draws a frame.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn draw<S: Space>(
+        &self,
+        simulation: &Simulation<S>,
+        title: &str,
+        caption: Vec<String>,
+        path: &Path,
+    ) -> Result<(), ReportError> {
+        let (disks, links, bodies) = if S::D == 2 {
+            (
+                disks(simulation, self.window),
+                links(simulation, self.window),
+                outlines(simulation, self.window),
+            )
+        } else {
+            (spheres(simulation), Vec::new(), Vec::new())
+        };
+        Frame {
+            title: title.to_owned(),
+            caption,
+            window: self.window,
+            bodies: &bodies,
+            disks: &disks,
+            links: &links,
+            arrows: &[],
+            shaded: S::D == 3,
+            width_px: self.width,
+        }
+        .draw(path)
+    }
+}
+
+fn view() -> View {
+    View::new(0.6, 0.4)
+}
+
+fn balls<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (S::Vector, f64)> + '_ {
+    s.shapes
+        .balls
+        .iter()
+        .map(|b| (crate::contact::detect::centre(b, &s.bodies), b.radius))
+}
+
+/// The images of a point that show in the window.
+fn images(x: f64, reach: f64, window: [f64; 4], period: Option<f64>) -> Vec<f64> {
+    let Some(period) = period else { return vec![x] };
+    let x = x - period * (x / period).floor();
+    [x - period, x, x + period]
+        .into_iter()
+        .filter(|x| x + reach > window[0] && x - reach < window[1])
+        .collect()
+}
+
+fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Disk> {
+    let period = s.shapes.periodic.period[0];
+    let mut out = Vec::with_capacity(s.shapes.balls.len());
+    for (ball, (centre, radius)) in s.shapes.balls.iter().zip(balls(s)) {
+        let angle = S::rotation_numbers(&s.bodies.rotation[ball.body as usize])[0];
+        let first = s.bodies.driven.iter().any(|d| d.body == ball.body);
+        for x in images(centre[0], radius, window, period) {
+            out.push(Disk {
+                centre: [x, centre[1]],
+                radius,
+                angle,
+                shade: if first { 0.9 } else { 0.25 },
+            });
+        }
+    }
+    out
+}
+
+fn spheres<S: Space>(s: &Simulation<S>) -> Vec<Disk> {
+    let list: Vec<([f64; 3], f64, f64)> = balls(s)
+        .map(|(c, r)| (s.shapes.periodic.wrapped(c).padded(), r, 0.3))
+        .collect();
+    project_spheres(&list, &view())
+}
+
+/// The state of a contact in pictures and files.
+pub fn state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> LinkState {
+    match s.network.bond(contact) {
+        Some(bond) if bond.intact() => LinkState::Intact {
+            damage: bond.damage,
+        },
+        _ if contact.broken => LinkState::Broken,
+        _ => LinkState::Plain,
+    }
+}
+
+/// The two ends of a contact: the candidate's centre, and the antagonist's centre or the foot on a
+/// surface.
+pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
+    let ball = &s.shapes.balls[contact.key.candidate as usize];
+    let a = crate::contact::detect::centre(ball, &s.bodies);
+    let length = match contact.key.surface() {
+        Some(_) => ball.radius + contact.gap,
+        None => {
+            let other = &s.shapes.balls[(contact.key.antagonist & !Key::SURFACE) as usize];
+            ball.radius + other.radius + contact.gap
+        }
+    };
+    (a, a - contact.normal * length)
+}
+
+fn links<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Link> {
+    let period = s.shapes.periodic.period[0];
+    let loaded: Vec<f64> = s
+        .network
+        .contacts
+        .iter()
+        .map(|c| c.impulse.norm())
+        .filter(|p| *p > 0.0)
+        .collect();
+    let mean = loaded.iter().sum::<f64>() / loaded.len().max(1) as f64;
+    let mut out = Vec::new();
+    for contact in &s.network.contacts {
+        let state = state(s, contact);
+        let force = contact.impulse.norm();
+        // A plain candidate pair that carries nothing is no interaction.
+        if state == LinkState::Plain && force == 0.0 {
+            continue;
+        }
+        let (a, b) = ends(s, contact);
+        let width = if mean > 0.0 {
+            (force / mean).clamp(0.3, 3.0)
+        } else {
+            0.5
+        };
+        for x in images(a[0], (b - a).norm(), window, period) {
+            out.push(Link {
+                a: [x, a[1]],
+                b: [b[0] - a[0] + x, b[1]],
+                state,
+                width,
+            });
+        }
+    }
+    out
+}
+
+/// First bodies as closed polygons that reach out of the window.
+fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
+    let period = s.shapes.periodic.period[0];
+    let far = 2.0 * ((window[1] - window[0]) + (window[3] - window[2]));
+    let mut out = Vec::new();
+    for surface in &s.shapes.surfaces {
+        let b = surface.body as usize;
+        let (position, rotation) = (s.bodies.position[b], s.bodies.rotation[b]);
+        let name = s
+            .bodies
+            .driven
+            .iter()
+            .find(|d| d.body == surface.body)
+            .map_or(String::new(), |d| d.name.clone());
+        for chain in surface.shape.outline() {
+            let world = |p: &S::Vector| {
+                let x = position + S::rotate(&rotation, &(surface.offset + *p));
+                [x[0], x[1]]
+            };
+            let points: Vec<[f64; 2]> = chain.iter().map(world).collect();
+            let (Some(first), Some(last)) = (points.first(), points.last()) else {
+                continue;
+            };
+            let spans = period.is_some_and(|p| ((last[0] - first[0]).abs() / p - 1.0).abs() < 1e-6);
+            let mut polygon = Vec::new();
+            match period.filter(|_| spans) {
+                Some(period) => {
+                    let shift = period * (first[0].min(last[0]) / period).floor();
+                    let copies: &[f64] = if last[0] > first[0] {
+                        &[-1.0, 0.0, 1.0]
+                    } else {
+                        &[1.0, 0.0, -1.0]
+                    };
+                    for copy in copies {
+                        polygon.extend(points.iter().map(|p| [p[0] - shift + copy * period, p[1]]));
+                    }
+                }
+                None => polygon.clone_from(&points),
+            }
+            // The solid is on the right of the chain.
+            let (a, z) = (polygon[0], polygon[polygon.len() - 1]);
+            let (dx, dy) = (z[0] - a[0], z[1] - a[1]);
+            let length = dx.hypot(dy).max(f64::MIN_POSITIVE);
+            let (nx, ny) = (dy / length * far, -dx / length * far);
+            polygon.push([z[0] + nx, z[1] + ny]);
+            polygon.push([a[0] + nx, a[1] + ny]);
+            out.push(Outline {
+                points: polygon,
+                label: if name.starts_with("wall_") {
+                    String::new()
+                } else {
+                    name.clone()
+                },
+            });
+        }
+    }
+    out
+}

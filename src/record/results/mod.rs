@@ -1,0 +1,195 @@
+//! `results.h5`: one self-contained file, readable while it is written and after a crash.
+//!
+//! ```text
+//! /            attributes: program, version, case, seed, dimension
+//! /case        the case as text, `--set` applied          /materials/NAME   their texts
+//! /plugins     kind, name, version, sha256, path          /statistics/NAME  one column each, with unit
+//! /views/grains, /views/contacts, /views/bodies           temporal VTKHDF PolyData
+//! /VTKHDF      the grains' view, for ParaView             contacts.vtkhdf, bodies.vtkhdf: links to the others
+//! ```
+
+mod store;
+mod view;
+
+pub use store::ResultsError;
+pub use view::{Cells, Part};
+
+use super::statistics::Column;
+use super::summary::PluginStamp;
+use std::path::Path;
+use store::{Growing, Store};
+use view::View;
+
+/// What is known before the first step.
+#[derive(Clone, Debug, Default)]
+pub struct Header {
+    /// Title of the case.
+    pub case_name: String,
+    /// The case.
+    pub case_text: String,
+    /// Material files: name and text.
+    pub materials: Vec<(String, String)>,
+    /// Laws.
+    pub plugins: Vec<PluginStamp>,
+    /// Seed.
+    pub seed: u64,
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Version of the program.
+    pub version: String,
+    /// Columns of the statistics.
+    pub statistics: Vec<Column>,
+    /// Fields of grains, contacts and bodies.
+    pub fields: [Vec<Column>; 3],
+}
+
+/// Rows of statistics held back before they are written.
+const HELD: usize = 64;
+
+/// The results file of a run.
+#[derive(Debug)]
+pub struct Results {
+    store: Option<Store>,
+    statistics: Vec<Growing>,
+    held: Vec<Vec<f64>>,
+    views: Vec<View>,
+}
+
+impl Results {
+    /// Creates the file and writes what is known.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn create(path: &Path, header: &Header) -> Result<Self, ResultsError> {
+        let mut store = Store::create(path)?;
+        for (name, text) in [
+            ("program", "fretwork"),
+            ("version", &header.version),
+            ("case", &header.case_name),
+            (
+                "units",
+                "SI; in two dimensions masses, forces and energies are per metre of depth",
+            ),
+        ] {
+            store.text_attribute("/", name, text)?;
+        }
+        store.integer_attribute("/", "seed", &[header.seed as i64])?;
+        store.integer_attribute("/", "dimension", &[header.dimension as i64])?;
+        store.texts("/case", &[&header.case_text])?;
+        store.group("/materials")?;
+        for (name, text) in &header.materials {
+            store.texts(&format!("/materials/{name}"), &[text])?;
+        }
+        store.group("/plugins")?;
+        type Get = fn(&PluginStamp) -> &str;
+        let columns: [(&str, Get); 5] = [
+            ("kind", |p| &p.kind),
+            ("name", |p| &p.name),
+            ("version", |p| &p.version),
+            ("sha256", |p| &p.sha256),
+            ("path", |p| &p.path),
+        ];
+        for (name, get) in columns {
+            let texts: Vec<&str> = header.plugins.iter().map(get).collect();
+            if !texts.is_empty() {
+                store.texts(&format!("/plugins/{name}"), &texts)?;
+            }
+        }
+        store.group("/statistics")?;
+        let mut statistics = Vec::new();
+        for c in &header.statistics {
+            statistics.push(store.growing::<f64>(
+                &format!("/statistics/{}", c.name),
+                1,
+                c.unit,
+                c.doc,
+            )?);
+        }
+        store.group("/views")?;
+        let bodies = if header.dimension == 2 {
+            Cells::Lines
+        } else {
+            Cells::Polygons
+        };
+        let mut views = Vec::new();
+        for (name, cells, fields) in [
+            ("grains", Cells::Vertices, &header.fields[0]),
+            ("contacts", Cells::Lines, &header.fields[1]),
+            ("bodies", bodies, &header.fields[2]),
+        ] {
+            views.push(View::declare(
+                &mut store,
+                &format!("/views/{name}"),
+                cells,
+                fields,
+            )?);
+        }
+        store.link("/VTKHDF", "/views/grains")?;
+        store.start()?;
+        Ok(Self {
+            store: Some(store),
+            statistics,
+            held: vec![Vec::new(); header.statistics.len()],
+            views,
+        })
+    }
+
+    /// Appends a row of statistics.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn append_statistics(&mut self, row: &[f64]) -> Result<(), ResultsError> {
+        for (column, value) in self.held.iter_mut().zip(row) {
+            column.push(*value);
+        }
+        if self.held.first().is_some_and(|c| c.len() >= HELD) {
+            self.write_statistics()?;
+        }
+        Ok(())
+    }
+
+    fn write_statistics(&mut self) -> Result<(), ResultsError> {
+        let Some(store) = &mut self.store else {
+            return Ok(());
+        };
+        for (column, values) in self.statistics.iter_mut().zip(&mut self.held) {
+            store.append(column, values)?;
+            values.clear();
+        }
+        store.flush()
+    }
+
+    /// Appends a state: grains, contacts, bodies.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn append_views(&mut self, time: f64, parts: &[Part; 3]) -> Result<(), ResultsError> {
+        let Some(store) = &mut self.store else {
+            return Ok(());
+        };
+        for (view, part) in self.views.iter_mut().zip(parts) {
+            view.append(store, time, part)?;
+        }
+        self.write_statistics()
+    }
+
+    /// Ends the file and writes its companions beside it.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn finish(&mut self, folder: &Path) -> Result<(), ResultsError> {
+        self.write_statistics()?;
+        let Some(mut store) = self.store.take() else {
+            return Ok(());
+        };
+        for view in &self.views {
+            view.finish(&mut store)?;
+        }
+        store.close()?;
+        for name in ["contacts", "bodies"] {
+            let path = folder.join(format!("{name}.vtkhdf"));
+            store::companion(&path, "results.h5", &format!("/views/{name}"))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,201 @@
+//! A view: points, lines or polygons with data, step after step, as temporal VTKHDF PolyData.
+//!
+//! Layout: Kitware, VTKHDF file format, version 2.0 (the four kinds of cells must all be there).
+
+use super::store::{Growing, ResultsError, Store};
+use crate::record::statistics::Column;
+
+/// The cells of VTK's PolyData, in its order.
+const KINDS: [&str; 4] = ["Vertices", "Lines", "Polygons", "Strips"];
+
+/// What a view is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cells {
+    /// One vertex a point; data on points.
+    Vertices,
+    /// Chains of points; data on cells.
+    Lines,
+    /// Polygons; data on cells.
+    Polygons,
+}
+
+impl Cells {
+    fn kind(self) -> usize {
+        match self {
+            Self::Vertices => 0,
+            Self::Lines => 1,
+            Self::Polygons => 2,
+        }
+    }
+}
+
+/// One state of a view.
+#[derive(Clone, Debug, Default)]
+pub struct Part {
+    /// Coordinates, three a point (m).
+    pub points: Vec<f64>,
+    /// Points of each cell.
+    pub cells: Vec<Vec<i64>>,
+    /// One column a field, one value a point (vertices) or cell.
+    pub data: Vec<Vec<f64>>,
+}
+
+/// A view in the file.
+#[derive(Debug)]
+pub struct View {
+    cells: Cells,
+    points: Growing,
+    number_of_points: Growing,
+    numbers: [[Growing; 2]; 4],
+    connectivity: [Growing; 4],
+    offsets: [Growing; 4],
+    data: Vec<Growing>,
+    values: Growing,
+    steps: [Growing; 3],
+    cell_offsets: Growing,
+    connectivity_offsets: Growing,
+    data_offsets: Vec<Growing>,
+    count: i64,
+    path: String,
+}
+
+impl View {
+    /// Declares a view in a group of its own.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn declare(
+        store: &mut Store,
+        path: &str,
+        cells: Cells,
+        fields: &[Column],
+    ) -> Result<Self, ResultsError> {
+        store.group(path)?;
+        store.integer_attribute(path, "Version", &[2, 0])?;
+        store.ascii_attribute(path, "Type", "PolyData")?;
+        let place = if cells == Cells::Vertices {
+            "PointData"
+        } else {
+            "CellData"
+        };
+        store.group(&format!("{path}/{place}"))?;
+        store.group(&format!("{path}/Steps"))?;
+        store.group(&format!("{path}/Steps/{place}Offsets"))?;
+        store.integer_attribute(&format!("{path}/Steps"), "NSteps", &[0])?;
+        let whole = |store: &mut Store, name: &str, width: u64| {
+            store.growing::<i64>(&format!("{path}/{name}"), width, "", "")
+        };
+        let number_of_points = whole(store, "NumberOfPoints", 1)?;
+        let mut numbers = Vec::new();
+        for kind in KINDS {
+            store.group(&format!("{path}/{kind}"))?;
+            let mut one = |name: &str| whole(store, &format!("{kind}/{name}"), 1);
+            numbers.push([
+                one("NumberOfCells")?,
+                one("NumberOfConnectivityIds")?,
+                one("Offsets")?,
+                one("Connectivity")?,
+            ]);
+        }
+        let all: [[Growing; 4]; 4] = [numbers[0], numbers[1], numbers[2], numbers[3]];
+        let steps = [
+            whole(store, "Steps/PartOffsets", 1)?,
+            whole(store, "Steps/NumberOfParts", 1)?,
+            whole(store, "Steps/PointOffsets", 1)?,
+        ];
+        let cell_offsets = whole(store, "Steps/CellOffsets", 4)?;
+        let connectivity_offsets = whole(store, "Steps/ConnectivityIdOffsets", 4)?;
+        let values =
+            store.growing::<f64>(&format!("{path}/Steps/Values"), 1, "s", "time of the state")?;
+        let points = store.growing::<f64>(&format!("{path}/Points"), 3, "m", "coordinates")?;
+        let (mut data, mut data_offsets) = (Vec::new(), Vec::new());
+        for field in fields {
+            data.push(store.growing::<f64>(
+                &format!("{path}/{place}/{}", field.name),
+                1,
+                field.unit,
+                field.doc,
+            )?);
+            data_offsets.push(store.growing::<i64>(
+                &format!("{path}/Steps/{place}Offsets/{}", field.name),
+                1,
+                "",
+                "",
+            )?);
+        }
+        Ok(Self {
+            cells,
+            points,
+            number_of_points,
+            numbers: all.map(|n| [n[0], n[1]]),
+            connectivity: all.map(|n| n[3]),
+            offsets: all.map(|n| n[2]),
+            data,
+            values,
+            steps,
+            cell_offsets,
+            connectivity_offsets,
+            data_offsets,
+            count: 0,
+            path: path.to_owned(),
+        })
+    }
+
+    /// Appends a state.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn append(
+        &mut self,
+        store: &mut Store,
+        time: f64,
+        part: &Part,
+    ) -> Result<(), ResultsError> {
+        // Where this part begins: before anything of it is appended.
+        let first_cells: Vec<i64> = (0..4)
+            .map(|k| self.offsets[k].rows() as i64 - self.count)
+            .collect();
+        let first_ids: Vec<i64> = (0..4).map(|k| self.connectivity[k].rows() as i64).collect();
+        let first_point = self.points.rows() as i64;
+        for (column, offsets) in self.data.iter_mut().zip(&mut self.data_offsets) {
+            let first = column.rows() as i64;
+            store.append(offsets, &[first])?;
+        }
+        for (column, values) in self.data.iter_mut().zip(&part.data) {
+            store.append(column, values)?;
+        }
+        store.append(&mut self.points, &part.points)?;
+        store.append(&mut self.number_of_points, &[part.points.len() as i64 / 3])?;
+        for kind in 0..4 {
+            let mine = kind == self.cells.kind();
+            let (mut ids, mut offsets) = (Vec::new(), vec![0i64]);
+            if mine {
+                for cell in &part.cells {
+                    ids.extend_from_slice(cell);
+                    offsets.push(ids.len() as i64);
+                }
+            }
+            store.append(&mut self.numbers[kind][0], &[offsets.len() as i64 - 1])?;
+            store.append(&mut self.numbers[kind][1], &[ids.len() as i64])?;
+            store.append(&mut self.offsets[kind], &offsets)?;
+            store.append(&mut self.connectivity[kind], &ids)?;
+        }
+        let [parts, number, points] = &mut self.steps;
+        store.append(parts, &[self.count])?;
+        store.append(number, &[1i64])?;
+        store.append(points, &[first_point])?;
+        store.append(&mut self.cell_offsets, &first_cells)?;
+        store.append(&mut self.connectivity_offsets, &first_ids)?;
+        store.append(&mut self.values, &[time])?;
+        self.count += 1;
+        Ok(())
+    }
+
+    /// Writes the number of states, which readers of a finished file trust.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn finish(&self, store: &mut Store) -> Result<(), ResultsError> {
+        store.integer_attribute(&format!("{}/Steps", self.path), "NSteps", &[self.count])
+    }
+}

@@ -1,0 +1,551 @@
+//! Runs a scene to its end and records it.
+
+use super::friction::{Cycles, Sample};
+use super::picture::Camera;
+use super::results::{Results, ResultsError};
+use super::statistics::{Column, Table};
+use super::summary::{PluginStamp, SolverSummary, Summary, Wear};
+use super::{figures, views};
+use crate::bodies::TimeFunction;
+use crate::geometry::space::Space;
+use crate::record::ledger::Energy;
+use crate::report::ReportError;
+use crate::scene::build::{Built, Dimensional, Loaded};
+use crate::step::{Simulation, StepError, StepReport};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Why a run failed. What was computed is on disk.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The step.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// A file or folder.
+    #[error("cannot write {}: {reason}; choose another folder with --out or make room", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// The results file.
+    #[error(transparent)]
+    Results(#[from] ResultsError),
+    /// A picture.
+    #[error(transparent)]
+    Picture(#[from] ReportError),
+}
+
+/// What a run tells of itself as it goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Steps done and in all.
+    pub steps: (u64, u64),
+    /// Cycle and cycles in all; 0 before the first.
+    pub cycle: (u32, u32),
+    /// Contacts.
+    pub contacts: usize,
+    /// Sweeps of the last step.
+    pub iterations: u32,
+    /// Error of the last step.
+    pub error: f64,
+    /// Whether it converged.
+    pub converged: bool,
+    /// Damage ratio.
+    pub damage_ratio: f64,
+}
+
+/// How to run.
+#[derive(Clone, Debug)]
+pub struct RunOptions {
+    /// Folder of the results.
+    pub out: PathBuf,
+    /// Threads; one gives the same bits as many.
+    pub threads: usize,
+}
+
+/// Runs to the end. `progress` is called after every step.
+///
+/// # Errors
+/// A failed step or an unwritable file; the summary is written even then.
+pub fn run<S: Dimensional>(
+    loaded: &Loaded,
+    built: Built<S>,
+    options: &RunOptions,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Summary, RunError> {
+    let frames = options.out.join("frames");
+    std::fs::create_dir_all(&frames).map_err(|e| unwritable(&frames, &e))?;
+    let mut recorder = Recorder::new(loaded, built, options)?;
+    let outcome = recorder.go(progress);
+    if let Err(e) = &outcome {
+        recorder.summary.stopped = Some(e.to_string());
+    }
+    let finished = recorder.finish();
+    outcome.and(finished)?;
+    Ok(recorder.summary)
+}
+
+fn unwritable(path: &Path, e: &dyn std::fmt::Display) -> RunError {
+    RunError::Write {
+        path: path.to_owned(),
+        reason: e.to_string(),
+    }
+}
+
+struct Recorder<'a, S: Space> {
+    loaded: &'a Loaded,
+    out: PathBuf,
+    simulation: Simulation<S>,
+    table: Table,
+    results: Results,
+    camera: Camera,
+    cycles: Option<(Cycles, usize)>,
+    slide: f64,
+    worn: (f64, f64),
+    internal_flow: f64,
+    iterations: u64,
+    total: u64,
+    clock: Instant,
+    density: f64,
+    summary: Summary,
+}
+
+impl<'a, S: Dimensional> Recorder<'a, S> {
+    fn new(loaded: &'a Loaded, built: Built<S>, options: &RunOptions) -> Result<Self, RunError> {
+        let case = &loaded.case;
+        let mut simulation = built.simulation;
+        simulation.solver.parallel = options.threads > 1;
+        let cycles = case.friction.as_ref().and_then(|test| {
+            let place = simulation
+                .bodies
+                .driven
+                .iter()
+                .position(|d| d.name == test.body)?;
+            let dof = &simulation.bodies.driven[place].dofs[test.along];
+            let period = test
+                .period
+                .or(dof.function().and_then(TimeFunction::period));
+            let start = match dof.function() {
+                Some(TimeFunction::Sine { start, .. }) => test.start.max(*start),
+                _ => test.start,
+            };
+            Some((Cycles::new(start, period, case.time.end), place))
+        });
+        let columns = columns(&simulation, cycles.is_some());
+        let table_path = options.out.join("statistics.csv");
+        let table =
+            Table::create(&table_path, columns.clone()).map_err(|e| unwritable(&table_path, &e))?;
+        let mut plugins: Vec<PluginStamp> = Vec::new();
+        for p in simulation
+            .laws
+            .iter()
+            .flat_map(|l| l.loaded())
+            .map(|l| &l.plugin)
+        {
+            let stamp = PluginStamp {
+                kind: p.kind.to_string(),
+                name: p.name.clone(),
+                version: p.version.clone(),
+                sha256: p.sha256.clone(),
+                path: p.path.display().to_string(),
+            };
+            if !plugins.contains(&stamp) {
+                plugins.push(stamp);
+            }
+        }
+        let summary = Summary {
+            case: case.name.clone(),
+            plugins,
+            threads: options.threads,
+            seed: case.seed,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            solver: SolverSummary {
+                tolerance: case.solver.tolerance,
+                error_formula: case.solver.norm.formula().to_owned(),
+                ..SolverSummary::default()
+            },
+            ..Summary::default()
+        };
+        let header = views::header(loaded, &built.materials, &summary, &columns, S::D);
+        let results = Results::create(&options.out.join("results.h5"), &header)?;
+        let total = (case.time.end / case.time.step).round().max(1.0) as u64;
+        let first = simulation
+            .shapes
+            .surfaces
+            .first()
+            .map(|s| s.body)
+            .or(simulation.bodies.driven.first().map(|d| d.body));
+        Ok(Self {
+            camera: Camera::new(&simulation, case.output.width),
+            out: options.out.clone(),
+            table,
+            results,
+            cycles,
+            slide: 0.0,
+            worn: (0.0, 0.0),
+            internal_flow: 0.0,
+            iterations: 0,
+            total,
+            clock: Instant::now(),
+            density: density_of(loaded, first.is_some()),
+            summary,
+            simulation,
+            loaded,
+        })
+    }
+
+    fn go(&mut self, progress: &mut dyn FnMut(&Progress)) -> Result<(), RunError> {
+        let output = &self.loaded.case.output;
+        self.views()?;
+        self.frame(0)?;
+        for step in 1..=self.total {
+            let before = self.simulation.energy;
+            let broken = self.simulation.network.bonds_broken();
+            let report = self.simulation.step()?;
+            self.follow(&report, &before, broken);
+            if step % output.every.max(1) == 0 || step == self.total {
+                let row = self.row(&report);
+                self.table
+                    .push(&row)
+                    .map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
+                self.results.append_statistics(&row)?;
+            }
+            if due(step, self.total, output.views) {
+                self.views()?;
+            }
+            if due(step, self.total, output.frames) {
+                self.frame(step)?;
+            }
+            progress(&self.progress(step, &report));
+        }
+        Ok(())
+    }
+
+    fn damage_ratio(&self) -> f64 {
+        let n = &self.simulation.network;
+        if n.bonds_made() > 0 {
+            n.bonds_broken() as f64 / n.bonds_made() as f64
+        } else {
+            0.0
+        }
+    }
+
+    /// Q, P and the slide of the friction test in the last step.
+    fn sample(&self) -> Option<Sample> {
+        let test = self.loaded.case.friction.as_ref()?;
+        let (_, place) = self.cycles.as_ref()?;
+        let s = &self.simulation;
+        let (h, theta) = (s.scheme.h, s.scheme.theta);
+        let driven = &s.bodies.driven[*place];
+        let impulse = s.received[*place].0;
+        let v = s.bodies.velocity[driven.body as usize][test.along];
+        let dof = &driven.dofs[test.along];
+        // The velocity at the start of the step, imposed: by the same function.
+        let old = dof.imposed_velocity(s.time - h).unwrap_or(v);
+        let average = (1.0 - theta) * if s.steps == 1 { 0.0 } else { old } + theta * v;
+        let q = -impulse[test.along] / h;
+        Some(Sample {
+            time: s.time,
+            q,
+            p: impulse[test.normal].abs() / h,
+            slide: h * average,
+            work: q * h * average,
+        })
+    }
+
+    fn follow(&mut self, report: &StepReport, before: &Energy, broken: u64) {
+        let sample = self.sample();
+        let damage = self.damage_ratio();
+        let s = &self.simulation;
+        let h = s.scheme.h;
+        if let (Some(sample), Some((cycles, _))) = (sample, &mut self.cycles) {
+            self.slide += sample.slide;
+            cycles.add(
+                &sample,
+                h,
+                before,
+                &s.energy,
+                (broken, s.network.bonds_broken()),
+                damage,
+            );
+        }
+        self.worn.0 += report.totals.worn_first;
+        self.worn.1 += report.totals.worn_third;
+        let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
+        self.internal_flow += h * internal_flow(s, along) / self.loaded.case.inertia_scaling;
+        let solver = &mut self.summary.solver;
+        self.iterations += u64::from(report.solver.iterations);
+        solver.iterations_max = solver.iterations_max.max(report.solver.iterations);
+        solver.error_max = solver.error_max.max(report.solver.error);
+        if !report.solver.converged {
+            if solver.unconverged_steps == 0 {
+                solver.first_unconverged = s.steps;
+            }
+            solver.unconverged_steps += 1;
+        }
+    }
+
+    fn row(&self, report: &StepReport) -> Vec<f64> {
+        let (s, e) = (&self.simulation, &self.simulation.energy);
+        let n = &s.network;
+        let cycle = self.cycles.as_ref().map_or(0, |(c, _)| c.number(s.time));
+        let mut row = vec![
+            s.steps as f64,
+            s.time,
+            f64::from(cycle),
+            n.contacts.len() as f64,
+            report.active as f64,
+            f64::from(report.solver.iterations),
+            report.solver.error,
+            f64::from(u8::from(report.solver.converged)),
+            (n.bonds_made() - n.bonds_broken()) as f64,
+            n.bonds_broken() as f64,
+            self.damage_ratio(),
+            n.mean_damage(),
+            e.kinetic,
+            e.potential,
+            e.elastic,
+            e.fracture,
+            e.friction,
+            e.impact,
+            e.adhesion,
+            e.viscous,
+            e.external_work,
+            e.residual,
+            self.worn.0,
+            self.worn.1,
+        ];
+        if let Some(sample) = self.sample() {
+            row.extend([
+                self.slide,
+                sample.q,
+                sample.p,
+                if sample.p > 0.0 {
+                    sample.q.abs() / sample.p
+                } else {
+                    0.0
+                },
+            ]);
+        }
+        for (d, driven) in s
+            .bodies
+            .driven
+            .iter()
+            .enumerate()
+            .filter(|(_, d)| shown(&d.name))
+        {
+            let b = driven.body as usize;
+            let force = s.received[d].0 * (1.0 / s.scheme.h);
+            for values in [s.bodies.position[b], s.bodies.velocity[b], force] {
+                row.extend((0..S::D).map(|k| values[k]));
+            }
+        }
+        row
+    }
+
+    fn views(&mut self) -> Result<(), RunError> {
+        Ok(views::append(&mut self.results, &self.simulation)?)
+    }
+
+    fn frame(&mut self, step: u64) -> Result<(), RunError> {
+        if self.loaded.case.output.frames == 0 {
+            return Ok(());
+        }
+        let mut caption = vec![format!("t = {:.4e} s", self.simulation.time)];
+        if let Some((cycles, _)) = &self.cycles {
+            caption.push(format!(
+                "cycle {} of {}",
+                cycles.number(self.simulation.time),
+                cycles.total()
+            ));
+            if let Some(c) = cycles.list.last() {
+                caption.push(format!("friction {:.3}", c.friction_coefficient));
+            }
+        }
+        if self.simulation.network.bonds_made() > 0 {
+            caption.push(format!("damage ratio {:.3}", self.damage_ratio()));
+        }
+        let path = self.out.join("frames").join(format!("frame_{step:08}.png"));
+        Ok(self
+            .camera
+            .draw(&self.simulation, &self.loaded.case.name, caption, &path)?)
+    }
+
+    fn progress(&self, step: u64, report: &StepReport) -> Progress {
+        Progress {
+            steps: (step, self.total),
+            cycle: self
+                .cycles
+                .as_ref()
+                .map_or((0, 0), |(c, _)| (c.number(self.simulation.time), c.total())),
+            contacts: self.simulation.network.contacts.len(),
+            iterations: report.solver.iterations,
+            error: report.solver.error,
+            converged: report.solver.converged,
+            damage_ratio: self.damage_ratio(),
+        }
+    }
+
+    /// Writes what a run leaves behind, whatever it reached.
+    fn finish(&mut self) -> Result<(), RunError> {
+        let (s, n) = (&self.simulation, &self.simulation.network);
+        let summary = &mut self.summary;
+        summary.steps = s.steps;
+        summary.time = s.time;
+        summary.wall_seconds = self.clock.elapsed().as_secs_f64();
+        summary.bodies = s.bodies.len();
+        summary.contacts = n.contacts.len();
+        summary.bonds = n.bonds_made();
+        summary.broken = n.bonds_broken();
+        summary.damage_ratio = if n.bonds_made() > 0 {
+            n.bonds_broken() as f64 / n.bonds_made() as f64
+        } else {
+            0.0
+        };
+        summary.mean_damage = n.mean_damage();
+        if let Some((cycles, _)) = &self.cycles {
+            summary.friction_coefficient = cycles.last().map(|c| c.friction_coefficient);
+            summary.friction_from_dissipation = cycles.last().map(|c| c.friction_from_dissipation);
+            summary.cycles.clone_from(&cycles.list);
+        }
+        summary.energy = s.energy;
+        summary.energy_residual_relative = s.energy.relative_residual();
+        let time = s.time.max(f64::MIN_POSITIVE);
+        summary.wear = Wear {
+            Qs: self.worn.0 * self.density / time,
+            Qi: self.internal_flow / time,
+            Qe: 0.0,
+            Qw: 0.0,
+            volume_first_bodies: self.worn.0,
+            volume_third_body: self.worn.1,
+        };
+        summary.solver.iterations_mean = self.iterations as f64 / s.steps.max(1) as f64;
+        self.table
+            .flush()
+            .map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
+        let text = serde_json::to_string_pretty(&self.summary).unwrap_or_default();
+        let path = self.out.join("summary.json");
+        std::fs::write(&path, text + "\n").map_err(|e| unwritable(&path, &e))?;
+        self.results.finish(&self.out)?;
+        if self.loaded.case.output.figures {
+            figures::draw(
+                &self.out,
+                &self.loaded.case.name,
+                &self.table,
+                self.cycles.as_ref().map(|c| &c.0),
+                S::D,
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether event k of `count` over the run falls on this step.
+fn due(step: u64, total: u64, count: u32) -> bool {
+    let number = |step: u64| u128::from(step) * u128::from(count) / u128::from(total.max(1));
+    count > 0 && number(step) > number(step - 1)
+}
+
+/// Walls that a scene file brought are not worth columns.
+fn shown(name: &str) -> bool {
+    !name.starts_with("wall_")
+}
+
+/// Mass of the third body that crosses a section a second: sum m |v| / L along the sliding.
+fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
+    let grains = || {
+        (0..s.bodies.len())
+            .filter(|b| s.bodies.inverse_mass[*b][along] > 0.0 && s.bodies.length[*b] > 0.0)
+    };
+    let length = s.shapes.periodic.period[along].unwrap_or_else(|| {
+        let x = |b: usize| s.bodies.position[b][along];
+        let (low, high) = grains().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), b| {
+            (l.min(x(b)), h.max(x(b)))
+        });
+        high - low
+    });
+    if !(length.is_finite() && length > 0.0) {
+        return 0.0;
+    }
+    let driven = |b: usize| s.bodies.driven.iter().any(|d| d.body as usize == b);
+    grains()
+        .filter(|b| !driven(*b))
+        .map(|b| s.bodies.mass[b] * s.bodies.velocity[b][along].abs())
+        .sum::<f64>()
+        / length
+}
+
+/// Density of the first bodies, for wear as a mass.
+fn density_of(loaded: &Loaded, any: bool) -> f64 {
+    let material = loaded.case.bodies.first().map(|b| b.material.as_str());
+    match (any, material) {
+        (true, Some(name)) => loaded.density(name).unwrap_or(0.0),
+        _ => 0.0,
+    }
+}
+
+fn columns<S: Space>(s: &Simulation<S>, friction: bool) -> Vec<Column> {
+    let newton = if S::D == 2 { "N/m" } else { "N" };
+    let joule = if S::D == 2 { "J/m" } else { "J" };
+    let volume = if S::D == 2 { "m^3/m" } else { "m^3" };
+    let c = Column::new;
+    let mut out = vec![
+        c("step", "", "number of the step"),
+        c("time", "s", "time at its end"),
+        c("cycle", "", "cycle of the friction test"),
+        c("contacts", "", "contacts within the alert distance"),
+        c("active", "", "contacts that carry an impulse"),
+        c("iterations", "", "sweeps of the solver"),
+        c("error", "", "error of the solution"),
+        c("converged", "", "1 if the tolerance was reached"),
+        c("bonds_intact", "", "bonds that hold"),
+        c("bonds_broken", "", "bonds that broke"),
+        c("damage_ratio", "", "broken bonds over bonds made"),
+        c("mean_damage", "", "mean damage over bonds made"),
+        c("kinetic", joule, "kinetic energy"),
+        c("potential", joule, "potential energy since the start"),
+        c("elastic", joule, "energy stored in bonds"),
+        c("fracture", joule, "fracture energy since the start"),
+        c("friction", joule, "energy dissipated by friction"),
+        c("impact", joule, "energy dissipated by impacts"),
+        c(
+            "adhesion",
+            joule,
+            "energy spent against cohesion without opening",
+        ),
+        c("viscous", joule, "energy dissipated by damping of bonds"),
+        c("external_work", joule, "work of imposed forces and motions"),
+        c("residual", joule, "what does not add up"),
+        c("worn_first", volume, "volume worn off first bodies"),
+        c("worn_third", volume, "volume worn between grains"),
+    ];
+    if friction {
+        out.extend([
+            c("delta", "m", "displacement of the body under test"),
+            c("Q", newton, "tangential force that moves it"),
+            c("P", newton, "normal force"),
+            c("mu", "", "|Q|/P"),
+        ]);
+    }
+    let axes = ["x", "y", "z"];
+    for driven in s.bodies.driven.iter().filter(|d| shown(&d.name)) {
+        for (what, unit, doc) in [
+            ("", "m", "position of the body"),
+            ("v", "m/s", "velocity of the body"),
+            ("f", newton, "contact force on the body"),
+        ] {
+            out.extend(
+                axes.iter()
+                    .take(S::D)
+                    .map(|a| c_named(&driven.name, what, a, unit, doc)),
+            );
+        }
+    }
+    out
+}
+
+fn c_named(body: &str, what: &str, axis: &str, unit: &'static str, doc: &'static str) -> Column {
+    Column::new(format!("{body}_{what}{axis}"), unit, doc)
+}

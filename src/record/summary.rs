@@ -1,0 +1,214 @@
+//! `summary.json`, and the summary a tribologist reads at the end.
+
+use super::friction::Cycle;
+use super::ledger::Energy;
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// A plugin that was loaded.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PluginStamp {
+    /// Slot.
+    pub kind: String,
+    /// Name.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+    /// SHA-256 of the library.
+    pub sha256: String,
+    /// Where it was found.
+    pub path: String,
+}
+
+/// What the solver did.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct SolverSummary {
+    /// Mean sweeps a step.
+    pub iterations_mean: f64,
+    /// Most sweeps in a step.
+    pub iterations_max: u32,
+    /// Largest error at the end of a step.
+    pub error_max: f64,
+    /// Steps that did not reach the tolerance.
+    pub unconverged_steps: u64,
+    /// The first of them, 0 if none.
+    pub first_unconverged: u64,
+    /// Tolerance.
+    pub tolerance: f64,
+    /// How the error is formed.
+    pub error_formula: String,
+}
+
+/// Flows of matter, as mean mass flows over the run (kg/s; kg/(m s) in 2D).
+#[derive(Clone, Debug, Default, Serialize)]
+#[allow(non_snake_case)]
+pub struct Wear {
+    /// Source: mass worn off first bodies by the wear law.
+    pub Qs: f64,
+    /// Internal: mass of the third body that crosses a section, mean of |m v_x|/L.
+    pub Qi: f64,
+    /// Ejected: zero in a periodic contact.
+    pub Qe: f64,
+    /// Lost: ejected and not recirculated.
+    pub Qw: f64,
+    /// Volume worn off first bodies by the wear law (m^3; m^3/m).
+    pub volume_first_bodies: f64,
+    /// Volume worn between grains (m^3; m^3/m).
+    pub volume_third_body: f64,
+}
+
+/// The whole run.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Summary {
+    /// Title of the case.
+    pub case: String,
+    /// Steps done.
+    pub steps: u64,
+    /// Time reached (s).
+    pub time: f64,
+    /// Time it took (s).
+    pub wall_seconds: f64,
+    /// Bodies.
+    pub bodies: usize,
+    /// Contacts at the end.
+    pub contacts: usize,
+    /// Bonds made.
+    pub bonds: u64,
+    /// Bonds broken.
+    pub broken: u64,
+    /// Broken over made.
+    pub damage_ratio: f64,
+    /// Mean damage over all bonds.
+    pub mean_damage: f64,
+    /// From forces, over the last complete cycle, or the second half; null without a friction test.
+    pub friction_coefficient: Option<f64>,
+    /// The same from the energy ledger.
+    pub friction_from_dissipation: Option<f64>,
+    /// Cycle by cycle.
+    pub cycles: Vec<Cycle>,
+    /// Energy ledger (J; J/m).
+    pub energy: Energy,
+    /// Residual over the largest energy seen.
+    pub energy_residual_relative: f64,
+    /// Wear.
+    pub wear: Wear,
+    /// The solver.
+    pub solver: SolverSummary,
+    /// Laws.
+    pub plugins: Vec<PluginStamp>,
+    /// Threads.
+    pub threads: usize,
+    /// Seed.
+    pub seed: u64,
+    /// Version of the program.
+    pub version: String,
+    /// Why the run stopped before its end, if it did.
+    pub stopped: Option<String>,
+}
+
+impl Summary {
+    /// Some lines for a terminal.
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        let mut line = |label: &str, value: String| {
+            let _ = writeln!(out, "  {label:<22} {value}");
+        };
+        let rate = self.steps as f64 / self.wall_seconds.max(1e-9);
+        line(
+            "steps",
+            format!(
+                "{} to t = {:.4e} s in {:.1} s ({rate:.0} a second)",
+                self.steps, self.time, self.wall_seconds
+            ),
+        );
+        line(
+            "contacts",
+            format!("{} between {} bodies", self.contacts, self.bodies),
+        );
+        if self.bonds > 0 {
+            line(
+                "bonds",
+                format!(
+                    "{} of {} broken, damage ratio {:.4}, mean damage {:.4}",
+                    self.broken, self.bonds, self.damage_ratio, self.mean_damage
+                ),
+            );
+        }
+        if let (Some(mu), Some(heat)) = (self.friction_coefficient, self.friction_from_dissipation)
+        {
+            line(
+                "friction coefficient",
+                format!("{mu:.4} from forces, {heat:.4} from dissipation"),
+            );
+        }
+        for c in &self.cycles {
+            let unfinished = if c.complete { "" } else { " (unfinished)" };
+            line(
+                &format!("cycle {}{unfinished}", c.cycle),
+                format!(
+                    "mu {:.4}, E_d {:.4e} J/m, mean P {:.4e} N/m, E_d/(4 Q delta) {:.3}, {} bonds broken",
+                    c.friction_coefficient, c.work, c.normal_force, c.energy_ratio, c.broken
+                ),
+            );
+        }
+        let e = &self.energy;
+        line(
+            "dissipated",
+            format!(
+                "friction {:.4e}, fracture {:.4e}, impact {:.4e}, viscous {:.4e} J",
+                e.friction,
+                e.fracture,
+                e.impact,
+                e.viscous + e.adhesion + e.scheme
+            ),
+        );
+        line(
+            "energy residual",
+            format!(
+                "{:.3e} J, {:.2e} of the largest energy",
+                e.residual, self.energy_residual_relative
+            ),
+        );
+        let w = &self.wear;
+        line(
+            "wear",
+            format!(
+                "{:.4e} m3 off first bodies, {:.4e} m3 between grains; Qs {:.3e}, Qi {:.3e}, Qe {:.3e}, Qw {:.3e} kg/s",
+                w.volume_first_bodies, w.volume_third_body, w.Qs, w.Qi, w.Qe, w.Qw
+            ),
+        );
+        let s = &self.solver;
+        line(
+            "solver",
+            format!(
+                "{:.1} iterations a step, {} at most; error at most {:.2e} (tolerance {:.0e})",
+                s.iterations_mean, s.iterations_max, s.error_max, s.tolerance
+            ),
+        );
+        if s.unconverged_steps > 0 {
+            line(
+                "NOT CONVERGED",
+                format!(
+                    "{} steps, the first is step {}; raise solver.max_iterations or take a smaller step",
+                    s.unconverged_steps, s.first_unconverged
+                ),
+            );
+        }
+        for p in &self.plugins {
+            line(
+                "law",
+                format!(
+                    "{} {} {} ({})",
+                    p.kind,
+                    p.name,
+                    p.version,
+                    &p.sha256[..12.min(p.sha256.len())]
+                ),
+            );
+        }
+        if let Some(why) = &self.stopped {
+            line("STOPPED", why.clone());
+        }
+        out
+    }
+}

@@ -1,0 +1,162 @@
+//! The state of a simulation as the views of `results.h5`.
+
+use super::picture;
+use super::results::{Header, Part, Results, ResultsError};
+use super::statistics::Column;
+use super::summary::Summary;
+use crate::contact::detect::centre;
+use crate::geometry::space::{Space, VectorLike};
+use crate::report::LinkState;
+use crate::scene::build::Loaded;
+use crate::step::Simulation;
+
+/// What the file says before the first step.
+pub fn header(
+    loaded: &Loaded,
+    materials: &[(String, String)],
+    summary: &Summary,
+    statistics: &[Column],
+    dimension: usize,
+) -> Header {
+    let c = Column::new;
+    let newton = if dimension == 2 { "N/m" } else { "N" };
+    Header {
+        case_name: loaded.case.name.clone(),
+        case_text: loaded.source.text().to_owned(),
+        materials: materials.to_vec(),
+        plugins: summary.plugins.clone(),
+        seed: loaded.case.seed,
+        dimension,
+        version: summary.version.clone(),
+        statistics: statistics.to_vec(),
+        fields: [
+            vec![
+                c("id", "", "identity of the body"),
+                c("radius", "m", "radius"),
+                c("material", "", "index of the material"),
+                c("first_body", "", "1 for balls of a first body"),
+                c("velocity_x", "m/s", "velocity"),
+                c("velocity_y", "m/s", "velocity"),
+                c("velocity_z", "m/s", "velocity"),
+                c("spin", "rad/s", "angular velocity, its norm in 3D"),
+            ],
+            vec![
+                c("state", "", "0 contact, 1 intact bond, 2 broken bond"),
+                c("damage", "", "damage D; 1 where there is no bond"),
+                c("gap", "m", "gap"),
+                c(
+                    "force_normal",
+                    newton,
+                    "normal force, positive in compression",
+                ),
+                c("force_tangential", newton, "norm of the tangential force"),
+                c("opening_normal", "m", "elongation of the bond"),
+                c("opening_tangential", "m", "norm of its tangential opening"),
+                c("law", "", "index of the interface"),
+            ],
+            vec![c("body", "", "identity of the body")],
+        ],
+    }
+}
+
+/// Appends the state at hand.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn append<S: Space>(results: &mut Results, s: &Simulation<S>) -> Result<(), ResultsError> {
+    results.append_views(s.time, &[grains(s), contacts(s), bodies(s)])
+}
+
+fn grains<S: Space>(s: &Simulation<S>) -> Part {
+    let mut part = Part {
+        data: vec![Vec::new(); 8],
+        ..Part::default()
+    };
+    for (k, ball) in s.shapes.balls.iter().enumerate() {
+        let b = ball.body as usize;
+        part.points
+            .extend(s.shapes.periodic.wrapped(centre(ball, &s.bodies)).padded());
+        part.cells.push(vec![k as i64]);
+        let first = s.bodies.driven.iter().any(|d| d.body == ball.body);
+        let v = s.bodies.velocity[b].padded();
+        let spin = if S::D == 2 {
+            s.bodies.spin[b][0]
+        } else {
+            s.bodies.spin[b].norm()
+        };
+        let values = [
+            s.bodies.id[b] as f64,
+            ball.radius,
+            f64::from(ball.material),
+            f64::from(u8::from(first)),
+            v[0],
+            v[1],
+            v[2],
+            spin,
+        ];
+        push(&mut part, &values);
+    }
+    part
+}
+
+fn contacts<S: Space>(s: &Simulation<S>) -> Part {
+    let mut part = Part {
+        data: vec![Vec::new(); 8],
+        ..Part::default()
+    };
+    for (k, contact) in s.network.contacts.iter().enumerate() {
+        let (a, b) = picture::ends(s, contact);
+        let at = s.shapes.periodic.wrapped(a);
+        part.points.extend(at.padded());
+        part.points.extend((b - a + at).padded());
+        part.cells.push(vec![2 * k as i64, 2 * k as i64 + 1]);
+        let (state, damage) = match picture::state(s, contact) {
+            LinkState::Intact { damage } => (1.0, damage),
+            LinkState::Broken => (2.0, 1.0),
+            LinkState::Plain => (0.0, 1.0),
+        };
+        let n = &contact.normal;
+        let force = contact.impulse * (1.0 / s.scheme.h);
+        let bond = s.network.bond(contact);
+        let values = [
+            state,
+            damage,
+            contact.gap,
+            n.dot(&force),
+            S::tangential(n, &force).norm(),
+            bond.map_or(0.0, |b| b.opening_n),
+            bond.map_or(0.0, |b| b.opening_t.norm()),
+            f64::from(contact.law),
+        ];
+        push(&mut part, &values);
+    }
+    part
+}
+
+fn bodies<S: Space>(s: &Simulation<S>) -> Part {
+    let mut part = Part {
+        data: vec![Vec::new(); 1],
+        ..Part::default()
+    };
+    for surface in &s.shapes.surfaces {
+        let b = surface.body as usize;
+        for chain in surface.shape.outline() {
+            let first = part.points.len() as i64 / 3;
+            for p in &chain {
+                let x =
+                    s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &(surface.offset + *p));
+                part.points.extend(x.padded());
+            }
+            part.cells
+                .push((first..first + chain.len() as i64).collect());
+            push(&mut part, &[s.bodies.id[b] as f64]);
+        }
+    }
+    part
+}
+
+fn push(part: &mut Part, values: &[f64]) {
+    for (column, value) in part.data.iter_mut().zip(values) {
+        column.push(*value);
+    }
+}

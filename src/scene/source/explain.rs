@@ -1,0 +1,320 @@
+//! What ron refused, said in the terms of the file.
+
+use std::ops::Range;
+
+use ron::error::{Error as RonError, Position, SpannedError};
+
+use super::set::{one_of, shorten};
+use super::tree::{Kind, Node, Shape, join_path, plain};
+use super::{InputError, MAX_DEPTH, Source, nearest};
+
+impl Source {
+    /// The byte of a position ron reports (lines and columns in characters).
+    pub(super) fn offset(&self, position: &Position) -> usize {
+        let lines = self.text.split_inclusive('\n');
+        let before = lines.take(position.line.saturating_sub(1));
+        let start: usize = before.map(str::len).sum();
+        let mut columns = self.text[start..].char_indices();
+        let column = columns.nth(position.col.saturating_sub(1));
+        column.map_or(self.text.len(), |(column, _)| start + column)
+    }
+
+    /// An error of ron, at the token which caused it.
+    pub(super) fn explain(&self, error: &SpannedError) -> InputError {
+        let told = self.tell(error);
+        // A bracket left open makes what follows look wrong: name it as well.
+        match &self.tree.fault {
+            Some(fault) if fault.message != told.message => {
+                let cause = self.error_in(&fault.span, "");
+                let (line, column) = cause.position().unwrap_or_default();
+                told.note(format!("{line}:{column}: {}", fault.message))
+            }
+            _ => told,
+        }
+    }
+
+    fn tell(&self, error: &SpannedError) -> InputError {
+        let start = self.offset(&error.span.start);
+        let end = self.offset(&error.span.end).max(start);
+        match &error.code {
+            RonError::NoSuchStructField {
+                expected,
+                found,
+                outer,
+            } => {
+                let span = self.word(found, end);
+                let place = self.owner(outer.as_deref(), &span);
+                let known = if expected.is_empty() {
+                    "no field".to_owned()
+                } else {
+                    one_of(expected)
+                };
+                self.error_in(&span, format!("unknown field `{found}`{place}"))
+                    .expected(known)
+                    .did_you_mean(nearest(found, expected.iter().copied()))
+            }
+            RonError::NoSuchEnumVariant {
+                expected,
+                found,
+                outer,
+            } => {
+                let span = self.word(found, end);
+                let place = outer.as_ref().map(|outer| format!(" in {outer}"));
+                let message = format!("unknown variant `{found}`{}", place.unwrap_or_default());
+                self.error_in(&span, message)
+                    .expected(one_of(expected))
+                    .did_you_mean(nearest(found, expected.iter().copied()))
+            }
+            RonError::DuplicateStructField { field, outer } => {
+                let span = self.word(field, end);
+                let place = self.owner(outer.as_deref(), &span);
+                self.error_in(&span, format!("the field `{field}` is given twice{place}"))
+            }
+            RonError::MissingStructField { field, outer } => {
+                self.missing(field, outer.as_deref(), end)
+            }
+            RonError::InvalidValueForType { expected, found } => {
+                let message = format!("wrong value: found {}", shorten(found));
+                self.error_in(&self.judged(start, end), message)
+                    .expected(expected.clone())
+            }
+            RonError::ExpectedDifferentLength { expected, found } => {
+                let elements = if *found == 1 { "element" } else { "elements" };
+                let around = self.tree.around(end).or_else(|| self.tree.ending_at(end));
+                let span = around.map_or(start..end, |node| node.head(&self.text));
+                self.error_in(&span, format!("wrong length: found {found} {elements}"))
+                    .expected(expected.clone())
+            }
+            RonError::Message(message) => self.judgement(message, start, end),
+            RonError::ExpectedDifferentStructName { expected, found } => {
+                let span = self.word(found, end);
+                self.error_in(&span, format!("wrong struct name `{found}`"))
+                    .expected(format!("`{expected}(...)` or `(...)`"))
+                    .did_you_mean(nearest(found, [*expected]))
+            }
+            RonError::ExceededRecursionLimit => {
+                let message = format!("values are nested more than {MAX_DEPTH} levels deep");
+                self.error_in(&(end..end + 1), message)
+            }
+            other => self.syntax(other, start, end),
+        }
+    }
+
+    /// The last mention of a word up to `limit`.
+    fn word(&self, word: &str, limit: usize) -> Range<usize> {
+        let found = self.tree.last_word(&self.text, plain(word), limit);
+        found.unwrap_or_else(|| {
+            let text = self.text.get(..limit).unwrap_or_default();
+            let at = text.rfind(word).filter(|_| !word.is_empty());
+            at.map_or(limit..limit, |at| at..at + word.len())
+        })
+    }
+
+    /// ` in Name`, from the type, the name written, or the path of the struct.
+    fn owner(&self, outer: Option<&str>, inside: &Range<usize>) -> String {
+        let outer = outer.map(str::to_owned);
+        let written = || {
+            let node = self.tree.around(inside.start)?;
+            let name = node.group()?.name.clone()?;
+            Some(plain(&self.text[name]).to_owned())
+        };
+        let path = || {
+            let node = self.tree.around(inside.start)?;
+            self.path_to(&node.span)
+        };
+        let place = outer.or_else(written).or_else(path);
+        place
+            .map(|place| format!(" in {place}"))
+            .unwrap_or_default()
+    }
+
+    fn path_to(&self, span: &Range<usize>) -> Option<String> {
+        let path = self.tree.path_of(&self.text, span);
+        (!path.is_empty()).then(|| format!("`{}`", join_path(&path)))
+    }
+
+    fn missing(&self, field: &str, outer: Option<&str>, end: usize) -> InputError {
+        // ron stands at the closing bracket by now; the head says more.
+        let around = self.tree.around(end).filter(|node| node.group().is_some());
+        let Some(node) = around.or_else(|| self.tree.ending_at(end)) else {
+            let place = outer
+                .map(|outer| format!(" in {outer}"))
+                .unwrap_or_default();
+            return self.error_in(
+                &(end..end),
+                format!("the field `{field}` is missing{place}"),
+            );
+        };
+        let inside = node.span.end.saturating_sub(1)..node.span.end;
+        let place = self.owner(outer, &inside);
+        let message = format!("the field `{field}` is missing{place}");
+        let error = self.error_in(&node.head(&self.text), message);
+        // A misspelt field shows as missing where unknown fields are let through.
+        let written = node.choices(&self.text);
+        let near = nearest(field, written.iter().map(String::as_str));
+        match near.filter(|near| *near != field) {
+            Some(near) => error.help(format!("is `{near}` meant to be `{field}`?")),
+            None => error,
+        }
+    }
+
+    /// The value a type has just judged: the one that ends here, or stands here.
+    fn judged(&self, start: usize, end: usize) -> Range<usize> {
+        let node = self.tree.ending_at(end).or_else(|| self.tree.around(end));
+        node.map_or(start..end, |node| node.head(&self.text))
+    }
+
+    /// A refusal by a type, which may read on from the name of the field.
+    fn judgement(&self, message: &str, start: usize, end: usize) -> InputError {
+        let span = self.judged(start, end);
+        let predicate = ["must ", "is ", "has ", "cannot "];
+        let follows = predicate.iter().any(|word| message.starts_with(word));
+        let node = self.tree.ending_at(end);
+        let path = node
+            .filter(|_| follows)
+            .and_then(|node| self.path_to(&node.span));
+        match path {
+            Some(path) => self.error_in(&span, format!("{path} {message}")),
+            None => self.error_in(&span, message),
+        }
+    }
+
+    fn syntax(&self, code: &RonError, start: usize, end: usize) -> InputError {
+        if let Some(fault) = self.tree.fault.as_ref().filter(|fault| fault.at <= end) {
+            return self.error_in(&fault.span, fault.message.clone());
+        }
+        let text = &self.text;
+        // Past the white space ron left before the token.
+        let rest = text[end..].trim_start();
+        let token = if rest.is_empty() {
+            end
+        } else {
+            text.len() - rest.len()
+        };
+        let node = self
+            .tree
+            .around(end)
+            .filter(|node| node.group().is_none() || node.span.start == end);
+        let node = node.or_else(|| {
+            self.tree
+                .around(token)
+                .filter(|node| node.span.start == token)
+        });
+        let spare = matches!(
+            code,
+            RonError::ExpectedComma
+                | RonError::ExpectedArrayEnd
+                | RonError::ExpectedStructLikeEnd
+                | RonError::ExpectedOptionEnd
+                | RonError::ExpectedMapEnd
+                | RonError::TrailingCharacters
+        );
+        if let Some(node) = node {
+            let within = node.span.start < end && matches!(node.kind, Kind::Number);
+            if within && spare {
+                return self.wrong_type(node, "an integer");
+            }
+            if let Some(expected) = expected_type(code) {
+                return self.wrong_type(node, &expected);
+            }
+        }
+        if let RonError::IntegerOutOfBounds = code {
+            let span = self.judged(start, end);
+            let written = text[span.clone()].to_owned();
+            let negative = written.starts_with('-');
+            let error = self.error_in(
+                &span,
+                format!("the number `{}` is out of range", shorten(&written)),
+            );
+            return if negative {
+                error.expected("a number from 0 up, or closer to 0")
+            } else {
+                error
+            };
+        }
+        let next = text[token..].chars().next();
+        let width = next.map_or(0, char::len_utf8);
+        let span = node.map_or(token..token + width, |node| node.head(text));
+        if spare && next.is_some() {
+            let surplus = "one value too many, or a bracket that closes too late";
+            return self.error_in(&span, surplus);
+        }
+        match (expected_type(code), next) {
+            (Some(expected), Some(')' | ']' | '}' | ',')) => self
+                .error_in(&span, "a value is missing")
+                .expected(expected),
+            (Some(expected), Some(found)) => self
+                .error_in(&span, format!("found `{found}`"))
+                .expected(expected),
+            (Some(expected), None) => self
+                .error_in(&span, "the text ends too early")
+                .expected(expected),
+            (None, _) => self.error_in(&span, sentence(code)),
+        }
+    }
+
+    fn wrong_type(&self, node: &Node, expected: &str) -> InputError {
+        let written = shorten(&self.text[node.span.clone()]);
+        let found = match &node.kind {
+            Kind::Number => format!("the number `{written}`"),
+            Kind::Text => format!("the text `{written}`"),
+            Kind::Char => format!("the character `{written}`"),
+            Kind::Word => format!("the word `{written}`"),
+            Kind::Other => format!("`{written}`"),
+            Kind::Group(group) => match group.shape {
+                Shape::List => "a list".to_owned(),
+                Shape::Map => "a map".to_owned(),
+                Shape::Tuple | Shape::Struct => match &group.name {
+                    Some(name) => format!("`{}(...)`", &self.text[name.clone()]),
+                    None => "a group in parentheses".to_owned(),
+                },
+            },
+        };
+        let path = self.path_to(&node.span);
+        let place = path.map(|path| format!(" for {path}")).unwrap_or_default();
+        let error = self.error_in(
+            &node.head(&self.text),
+            format!("wrong type{place}: found {found}"),
+        );
+        let quotes = matches!(node.kind, Kind::Word) && expected == "a text in quotes";
+        let unquoted = matches!(node.kind, Kind::Text) && expected.starts_with("a name");
+        let error = error.expected(expected);
+        if quotes {
+            error.help(format!("write `\"{written}\"`"))
+        } else if unquoted {
+            error.help(format!("write `{}`", written.trim_matches('"')))
+        } else {
+            error
+        }
+    }
+}
+
+/// What the type at this place is written as.
+fn expected_type(code: &RonError) -> Option<String> {
+    Some(match code {
+        RonError::ExpectedBoolean => "`true` or `false`".into(),
+        RonError::ExpectedFloat => "a number".into(),
+        RonError::ExpectedInteger | RonError::InvalidIntegerDigit { .. } => "an integer".into(),
+        RonError::ExpectedChar => "a character in single quotes".into(),
+        RonError::ExpectedString => "a text in quotes".into(),
+        RonError::ExpectedArray => "a list `[...]`".into(),
+        RonError::ExpectedMap => "a map `{...}`".into(),
+        RonError::ExpectedStructLike => "`(...)`".into(),
+        RonError::ExpectedNamedStructLike("") => "`(...)`".into(),
+        RonError::ExpectedNamedStructLike(name) => format!("`{name}(...)` or `(...)`"),
+        RonError::ExpectedOption => "`Some(...)` or `None`".into(),
+        RonError::ExpectedUnit => "`()`".into(),
+        RonError::ExpectedIdentifier => "a name without quotes".into(),
+        _ => return None,
+    })
+}
+
+/// ron's own words, as the rest of a line.
+fn sentence(code: &RonError) -> String {
+    let words = code.to_string();
+    let mut letters = words.chars();
+    match letters.next() {
+        Some(first) => first.to_lowercase().chain(letters).collect(),
+        None => "malformed text".to_owned(),
+    }
+}

@@ -1,0 +1,161 @@
+//! Which bytes of the text in use came from the file, and which from a `--set`.
+
+use std::ops::Range;
+
+/// A stretch of the text in use.
+#[derive(Debug, Clone)]
+struct Piece {
+    length: usize,
+    from: Origin,
+}
+
+/// Where a stretch of the text came from.
+#[derive(Debug, Clone)]
+enum Origin {
+    /// From the file, beginning at this byte.
+    File(usize),
+    /// From a `--set`.
+    Set {
+        /// Which one.
+        set: usize,
+        /// The bytes of its argument.
+        argument: Range<usize>,
+        /// The bytes of the file it replaced.
+        landed: Range<usize>,
+    },
+}
+
+/// Where a span of the text in use belongs.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Place {
+    /// The bytes of the file.
+    pub span: Range<usize>,
+    /// The `--set` which brought the text, and the bytes of its argument.
+    pub set: Option<(usize, Range<usize>)>,
+}
+
+/// The text in use, as stretches of the file and of `--set` arguments.
+///
+/// It turns places in the changed text back into places in the file, whose line
+/// numbers are the only ones the reader of an error can look up.
+#[derive(Debug, Clone)]
+pub(super) struct Pieces(Vec<Piece>);
+
+impl Pieces {
+    /// A file of this length, unchanged.
+    pub fn whole(length: usize) -> Self {
+        let from = Origin::File(0);
+        Self(vec![Piece { length, from }])
+    }
+
+    /// Where a span of the text in use belongs.
+    pub fn place(&self, span: &Range<usize>) -> Place {
+        let (start, first) = self.piece_at(span.start);
+        match &first.from {
+            Origin::Set {
+                set,
+                argument,
+                landed,
+            } => {
+                let exact = argument.len() == first.length;
+                let shift =
+                    |at: usize| argument.start + at.saturating_sub(start).min(argument.len());
+                let within = if exact {
+                    shift(span.start)..shift(span.end).max(shift(span.start))
+                } else {
+                    argument.clone()
+                };
+                Place {
+                    span: landed.clone(),
+                    set: Some((*set, within)),
+                }
+            }
+            Origin::File(file) => {
+                let begin = file + (span.start - start).min(first.length);
+                let (last_start, last) = self.piece_at(span.end.saturating_sub(1).max(span.start));
+                let end = match &last.from {
+                    Origin::File(file) => {
+                        file + (span.end - last_start.min(span.end)).min(last.length)
+                    }
+                    Origin::Set { landed, .. } => landed.end,
+                };
+                Place {
+                    span: begin..end.max(begin),
+                    set: None,
+                }
+            }
+        }
+    }
+
+    /// The piece around a byte (the last one, for the end of the text) and its start.
+    fn piece_at(&self, at: usize) -> (usize, &Piece) {
+        let mut start = 0;
+        for piece in &self.0 {
+            if at < start + piece.length {
+                return (start, piece);
+            }
+            start += piece.length;
+        }
+        const NOTHING: &Piece = &Piece {
+            length: 0,
+            from: Origin::File(0),
+        };
+        let last = self.0.last().unwrap_or(NOTHING);
+        (start - last.length, last)
+    }
+
+    /// Puts text of a `--set` in the place of `range`: lengths, and bytes of the argument.
+    pub fn replace(&mut self, range: &Range<usize>, set: usize, parts: &[(usize, Range<usize>)]) {
+        let landed = self.place(range).span;
+        let mut pieces = Vec::with_capacity(self.0.len() + parts.len() + 1);
+        let mut after = Vec::new();
+        let mut start = 0;
+        for piece in &self.0 {
+            let end = start + piece.length;
+            if start < range.start {
+                pieces.push(piece.part(0, range.start.min(end) - start));
+            }
+            if end > range.end {
+                let cut = range.end.max(start) - start;
+                after.push(piece.part(cut, piece.length - cut));
+            }
+            start = end;
+        }
+        pieces.extend(parts.iter().map(|(length, argument)| Piece {
+            length: *length,
+            from: Origin::Set {
+                set,
+                argument: argument.clone(),
+                landed: landed.clone(),
+            },
+        }));
+        pieces.extend(after);
+        self.0 = pieces;
+    }
+}
+
+impl Piece {
+    fn part(&self, skip: usize, length: usize) -> Piece {
+        let from = match &self.from {
+            Origin::File(start) => Origin::File(start + skip),
+            Origin::Set {
+                set,
+                argument,
+                landed,
+            } => {
+                let begin = argument.start + skip;
+                let exact = argument.len() == self.length;
+                Origin::Set {
+                    set: *set,
+                    argument: if exact {
+                        begin..begin + length
+                    } else {
+                        argument.clone()
+                    },
+                    landed: landed.clone(),
+                }
+            }
+        };
+        Piece { length, from }
+    }
+}

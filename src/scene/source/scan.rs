@@ -1,0 +1,370 @@
+//! The scanner: RON text to a [`Tree`], tolerant of anything.
+
+use std::ops::Range;
+
+use super::tree::{Entry, Fault, Group, Kind, MAX_DEPTH, Node, Shape, Tree};
+
+/// Scans `text`; what is malformed is noted as the first fault and stepped over.
+pub(super) fn scan(text: &str) -> Tree {
+    let mut scanner = Scanner {
+        text,
+        at: 0,
+        fault: None,
+        too_deep: None,
+    };
+    scanner.headers();
+    let root = scanner.value(0);
+    scanner.blank();
+    if root.is_some() && scanner.at < text.len() {
+        scanner.fault(scanner.here(), "unexpected text after the end of the value");
+    }
+    Tree {
+        root,
+        fault: scanner.fault,
+        too_deep: scanner.too_deep,
+    }
+}
+
+/// Whether `c` may start an identifier.
+pub(super) fn starts_word(c: char) -> bool {
+    c == '_' || c.is_alphabetic()
+}
+
+fn continues_word(c: char) -> bool {
+    c == '_' || c.is_alphanumeric()
+}
+
+/// The white space of RON.
+fn is_blank(c: char) -> bool {
+    matches!(
+        c,
+        ' ' | '\t'..='\r' | '\u{85}' | '\u{200E}' | '\u{200F}' | '\u{2028}' | '\u{2029}'
+    )
+}
+
+struct Scanner<'a> {
+    text: &'a str,
+    at: usize,
+    fault: Option<Fault>,
+    too_deep: Option<usize>,
+}
+
+impl<'a> Scanner<'a> {
+    fn rest(&self) -> &'a str {
+        &self.text[self.at..]
+    }
+
+    fn peek(&self) -> Option<char> {
+        self.rest().chars().next()
+    }
+
+    /// The span of the next character.
+    fn here(&self) -> Range<usize> {
+        self.at..self.at + self.peek().map_or(0, char::len_utf8)
+    }
+
+    /// Only the first fault counts: later ones are mostly its echoes.
+    fn fault(&mut self, span: Range<usize>, message: impl Into<String>) {
+        if self.fault.is_none() {
+            self.fault = Some(Fault {
+                at: self.at,
+                span,
+                message: message.into(),
+            });
+        }
+    }
+
+    fn skip_while(&mut self, keep: impl Fn(char) -> bool) {
+        let rest = self.rest();
+        self.at += rest.find(|c| !keep(c)).unwrap_or(rest.len());
+    }
+
+    /// Steps over white space and comments.
+    fn blank(&mut self) {
+        loop {
+            self.skip_while(is_blank);
+            if self.rest().starts_with("//") {
+                self.skip_while(|c| c != '\n');
+            } else if self.rest().starts_with("/*") {
+                self.block_comment();
+            } else {
+                return;
+            }
+        }
+    }
+
+    fn block_comment(&mut self) {
+        let start = self.at;
+        let mut depth = 0_usize;
+        while let Some(found) = self.rest().find(['/', '*']) {
+            self.at += found;
+            if self.rest().starts_with("/*") {
+                depth += 1;
+                self.at += 2;
+            } else if self.rest().starts_with("*/") {
+                self.at += 2;
+                depth = depth.saturating_sub(1);
+                if depth == 0 {
+                    return;
+                }
+            } else {
+                self.at += 1;
+            }
+        }
+        self.at = start;
+        self.fault(start..start + 2, "this comment is never closed by `*/`");
+        self.at = self.text.len();
+    }
+
+    /// Steps over `#![enable(...)]` and its like.
+    fn headers(&mut self) {
+        loop {
+            self.blank();
+            if !self.rest().starts_with('#') {
+                return;
+            }
+            let start = self.at;
+            loop {
+                match self.peek() {
+                    Some('"') => self.string(),
+                    Some(']') => {
+                        self.at += 1;
+                        break;
+                    }
+                    Some(c) => self.at += c.len_utf8(),
+                    None => {
+                        self.fault(start..start + 1, "this `#![...]` header is never closed");
+                        return;
+                    }
+                }
+            }
+        }
+    }
+
+    fn value(&mut self, depth: usize) -> Option<Node> {
+        self.blank();
+        let start = self.at;
+        let kind = match self.peek()? {
+            ')' | ']' | '}' | ',' | ':' => return None,
+            '(' | '[' | '{' => return self.group(start, None, depth),
+            '"' => {
+                self.string();
+                Kind::Text
+            }
+            '\'' => self.character(),
+            '0'..='9' | '+' | '-' | '.' => {
+                self.skip_while(|c| continues_word(c) || matches!(c, '.' | '+' | '-'));
+                Kind::Number
+            }
+            'r' if self.raw_string(1) => Kind::Text,
+            'b' if self.rest().starts_with("br") && self.raw_string(2) => Kind::Other,
+            'b' if self.rest().starts_with("b\"") => {
+                self.at += 1;
+                self.string();
+                Kind::Other
+            }
+            'b' if self.rest().starts_with("b'") => {
+                self.at += 1;
+                self.character();
+                Kind::Other
+            }
+            c if starts_word(c) => {
+                self.word();
+                let name = start..self.at;
+                self.blank();
+                if self.peek() == Some('(') {
+                    return self.group(start, Some(name), depth);
+                }
+                self.at = name.end;
+                match &self.text[name] {
+                    "inf" | "NaN" | "inff32" | "inff64" | "NaNf32" | "NaNf64" => Kind::Number,
+                    _ => Kind::Word,
+                }
+            }
+            c => {
+                self.fault(self.here(), format!("unexpected character {c:?}"));
+                self.at += c.len_utf8();
+                self.skip_while(|c| !is_blank(c) && !"()[]{},:\"'".contains(c));
+                Kind::Other
+            }
+        };
+        Some(Node {
+            span: start..self.at,
+            kind,
+        })
+    }
+
+    /// An identifier, raw (`r#name`) or plain; the caller saw its first character.
+    fn word(&mut self) {
+        if self.rest().starts_with("r#") {
+            self.at += 2;
+            self.skip_while(|c| continues_word(c) || matches!(c, '.' | '+' | '-'));
+        } else {
+            self.skip_while(continues_word);
+        }
+    }
+
+    fn string(&mut self) {
+        let start = self.at;
+        let bytes = self.text.as_bytes();
+        let mut at = start + 1;
+        while let Some(byte) = bytes.get(at) {
+            at += match byte {
+                b'"' => {
+                    self.at = at + 1;
+                    return;
+                }
+                b'\\' => 2,
+                _ => 1,
+            };
+        }
+        self.fault(start..start + 1, "this string is never closed by `\"`");
+        self.at = self.text.len();
+    }
+
+    /// Reads `#*"..."#*` after a prefix; false, without moving, when none is there.
+    fn raw_string(&mut self, prefix: usize) -> bool {
+        let body = &self.rest()[prefix..];
+        let hashes = body.bytes().take_while(|&byte| byte == b'#').count();
+        if !body[hashes..].starts_with('"') {
+            return false;
+        }
+        let open = prefix + hashes + 1;
+        let close = format!("\"{}", &body[..hashes]);
+        if let Some(found) = self.rest()[open..].find(&close) {
+            self.at += open + found + close.len();
+        } else {
+            let span = self.at..self.at + open;
+            self.fault(span, format!("this string is never closed by `{close}`"));
+            self.at = self.text.len();
+        }
+        true
+    }
+
+    fn character(&mut self) -> Kind {
+        let rest = self.rest();
+        let body = &rest[1..];
+        let length = if let Some(escape) = body.strip_prefix('\\') {
+            let kind = escape.chars().next().map_or(0, char::len_utf8);
+            escape[kind..].find('\'').map(|found| 1 + kind + found)
+        } else {
+            body.chars().next().map(char::len_utf8)
+        };
+        match length {
+            Some(length) if length <= 12 && body[length..].starts_with('\'') => {
+                self.at += length + 2;
+                Kind::Char
+            }
+            _ => {
+                self.fault(self.here(), "this character is never closed by `'`");
+                self.at += 1;
+                Kind::Other
+            }
+        }
+    }
+
+    /// A bracketed group; the next character opens it.
+    fn group(&mut self, start: usize, name: Option<Range<usize>>, depth: usize) -> Option<Node> {
+        if depth >= MAX_DEPTH {
+            self.too_deep.get_or_insert(self.at);
+            self.at = self.text.len();
+            return None;
+        }
+        let open = self.at;
+        let (opener, closer, mut shape) = match self.peek()? {
+            '[' => ('[', ']', Shape::List),
+            '{' => ('{', '}', Shape::Map),
+            _ => ('(', ')', Shape::Tuple),
+        };
+        self.at += 1;
+        let mut entries = Vec::new();
+        loop {
+            self.blank();
+            match self.peek() {
+                None => {
+                    let message = format!("this `{opener}` is never closed by `{closer}`");
+                    self.fault(open..open + 1, message);
+                    break;
+                }
+                Some(c) if c == closer => {
+                    self.at += 1;
+                    break;
+                }
+                Some(c @ (')' | ']' | '}')) => {
+                    let message = format!("`{c}` does not close the `{opener}` before it");
+                    self.fault(self.here(), message);
+                    // Left in place: it most probably closes a group further out.
+                    break;
+                }
+                Some(c @ (',' | ':')) => {
+                    self.fault(self.here(), format!("nothing stands before this `{c}`"));
+                    self.at += 1;
+                    continue;
+                }
+                Some(_) => {}
+            }
+            if let Some(entry) = self.entry(shape, depth + 1) {
+                if entry.key.is_some() && shape == Shape::Tuple {
+                    shape = Shape::Struct;
+                }
+                entries.push(entry);
+            }
+            self.blank();
+            match self.peek() {
+                Some(',') => self.at += 1,
+                Some(')' | ']' | '}') | None => {}
+                Some(_) => self.fault(self.here(), "a comma is missing before this"),
+            }
+        }
+        entries.shrink_to_fit();
+        Some(Node {
+            span: start..self.at,
+            kind: Kind::Group(Box::new(Group {
+                shape,
+                name,
+                open,
+                entries,
+            })),
+        })
+    }
+
+    /// One element: `name: value` in parentheses, `key: value` in braces, or a value.
+    fn entry(&mut self, shape: Shape, depth: usize) -> Option<Entry> {
+        let start = self.at;
+        let key = match shape {
+            Shape::List => None,
+            Shape::Map => Some(self.value(depth)?.span),
+            Shape::Tuple | Shape::Struct => self.field_name(),
+        };
+        if key.is_some() {
+            self.blank();
+            if self.peek() == Some(':') {
+                self.at += 1;
+            } else {
+                self.fault(self.here(), "a colon is missing before this");
+            }
+        } else {
+            self.at = start;
+        }
+        let Some(value) = self.value(depth) else {
+            if let Some(key) = key {
+                let message = format!("no value stands after `{}:`", &self.text[key.clone()]);
+                self.fault(key, message);
+            }
+            return None;
+        };
+        Some(Entry { key, value })
+    }
+
+    /// The span of a field name followed by a colon, or nothing.
+    fn field_name(&mut self) -> Option<Range<usize>> {
+        let start = self.at;
+        if !self.peek().is_some_and(starts_word) || self.rest().starts_with("r\"") {
+            return None;
+        }
+        self.word();
+        let name = start..self.at;
+        self.blank();
+        (self.peek() == Some(':')).then_some(name)
+    }
+}

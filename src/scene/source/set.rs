@@ -1,0 +1,339 @@
+//! `--set key.path=value`: what it changes in the text.
+
+use std::ops::Range;
+
+use super::tree::{Kind, Node, Shape, Tree, join_path, split_path};
+use super::{InputError, Source, scan};
+
+/// A `--set` argument taken apart; ranges are bytes of the argument.
+struct Assignment<'a> {
+    argument: &'a str,
+    path: Vec<String>,
+    key: Range<usize>,
+    value: Range<usize>,
+}
+
+impl<'a> Assignment<'a> {
+    fn parse(argument: &'a str) -> Result<Self, InputError> {
+        let wrong = |message: &str| {
+            InputError::argument(format!("--set {argument}"), message).expected("key.path=value")
+        };
+        let Some(equals) = equals_sign(argument) else {
+            return Err(wrong("there is no `=` between a key and a value"));
+        };
+        let trimmed = |range: Range<usize>| {
+            let part = &argument[range.clone()];
+            let start = range.start + part.len() - part.trim_start().len();
+            start..start + part.trim().len()
+        };
+        let key = trimmed(0..equals);
+        let value = trimmed(equals + 1..argument.len());
+        if key.is_empty() {
+            return Err(wrong("there is no key before the `=`"));
+        }
+        if value.is_empty() {
+            let error = wrong("there is no value after the `=`");
+            return Err(error.help("write `\"\"` for an empty text"));
+        }
+        let Some(path) = split_path(&argument[key.clone()]) else {
+            return Err(wrong("a part of the key is empty"));
+        };
+        Ok(Self {
+            argument,
+            path,
+            key,
+            value,
+        })
+    }
+
+    fn value(&self) -> &'a str {
+        &self.argument[self.value.clone()]
+    }
+
+    /// Whether the value is a name, and could be a text whose quotes the shell took.
+    fn is_word(&self) -> bool {
+        let tree = scan::scan(self.value());
+        let word = matches!(tree.root.map(|root| root.kind), Some(Kind::Word));
+        word && !matches!(self.value(), "true" | "false")
+    }
+
+    /// Whether the value is no RON at all, such as a path, and could be a text.
+    fn is_bare(&self) -> bool {
+        !self
+            .value()
+            .contains(['(', ')', '[', ']', '{', '}', '"', ','])
+            && !is_value(self.value())
+    }
+
+    /// The value, if it is one complete RON value.
+    fn complete(&self) -> Result<String, InputError> {
+        let value = self.value();
+        if is_value(value) {
+            return Ok(value.to_owned());
+        }
+        let tree = scan::scan(value);
+        let fault = tree.fault.map(|fault| fault.message);
+        let why = match tree.too_deep {
+            Some(_) => "it is nested too deeply".to_owned(),
+            None => fault.unwrap_or_else(|| "it is more than one value".to_owned()),
+        };
+        let error = self.fail(format!("`{}` is not a value: {why}", shorten(value)));
+        Err(error.expected("one number, text, name, list or struct"))
+    }
+
+    fn fail(&self, message: impl Into<String>) -> InputError {
+        InputError::argument(format!("--set {}", self.argument), message)
+    }
+}
+
+/// The first `=` outside quotes: a quoted map key may hold one.
+fn equals_sign(argument: &str) -> Option<usize> {
+    let mut quoted = false;
+    argument.bytes().position(|byte| {
+        quoted ^= byte == b'"';
+        byte == b'=' && !quoted
+    })
+}
+
+/// Whether the text is one complete RON value, with nothing after it.
+fn is_value(text: &str) -> bool {
+    let tree = scan::scan(text);
+    let whole = tree.root.is_some_and(|root| root.span == (0..text.len()));
+    whole && tree.fault.is_none() && tree.too_deep.is_none()
+}
+
+/// `text` as a RON string.
+fn quote(text: &str) -> String {
+    let escaped = text.replace('\\', "\\\\").replace('"', "\\\"");
+    format!("\"{escaped}\"")
+}
+
+impl Source {
+    /// Applies `key.path=value`: replaces a value, or adds the last part of the
+    /// key as a new field of its parent. The value is RON text; a bare word in
+    /// the place of a text is quoted.
+    ///
+    /// # Errors
+    /// A malformed argument, a key whose parent is not in the text, a value
+    /// which is not one complete RON value.
+    pub fn set(&mut self, argument: &str) -> Result<(), InputError> {
+        let wanted = Assignment::parse(argument)?;
+        if let Some(refusal) = self.refuse_depth() {
+            return Err(refusal);
+        }
+        if let Some(fault) = &self.tree.fault {
+            let error = self.error_in(&fault.span, fault.message.clone());
+            return Err(error.note(format!("`--set {argument}` needs a well formed text")));
+        }
+        match self.tree.find(&self.text, &wanted.path) {
+            Ok(node) => {
+                let (span, new) = replacement(&self.text, node, &wanted)?;
+                self.edit(&wanted, span, &[(&new, &wanted.value)]);
+            }
+            Err(_) => {
+                let (at, before, after) = self.insertion(&wanted)?;
+                let new = if wanted.is_bare() {
+                    quote(wanted.value())
+                } else {
+                    wanted.complete()?
+                };
+                let parts = [
+                    (before.as_str(), &wanted.key),
+                    (&new, &wanted.value),
+                    (after, &wanted.value),
+                ];
+                self.edit(&wanted, at..at, &parts);
+            }
+        }
+        Ok(())
+    }
+
+    /// Quotes the value of the `--set` that brought `offset`, unless it has quotes.
+    pub(super) fn quote_set_at(&mut self, offset: usize) -> bool {
+        let Some((set, _)) = self.pieces.place(&(offset..offset)).set else {
+            return false;
+        };
+        let node = self.tree.around(offset);
+        let Some(node) = node.filter(|node| matches!(node.kind, Kind::Word | Kind::Number)) else {
+            return false;
+        };
+        let span = node.span.clone();
+        let Some((_, argument)) = self.pieces.place(&span).set else {
+            return false;
+        };
+        let new = quote(&self.text[span.clone()]);
+        self.pieces.replace(&span, set, &[(new.len(), argument)]);
+        self.text.replace_range(span, &new);
+        self.tree = Tree::of(&self.text);
+        true
+    }
+
+    fn edit(
+        &mut self,
+        wanted: &Assignment<'_>,
+        span: Range<usize>,
+        parts: &[(&str, &Range<usize>)],
+    ) {
+        let new: String = parts.iter().map(|(text, _)| *text).collect();
+        let lengths: Vec<(usize, Range<usize>)> = parts
+            .iter()
+            .filter(|(text, _)| !text.is_empty())
+            .map(|(text, range)| (text.len(), (*range).clone()))
+            .collect();
+        self.pieces.replace(&span, self.sets.len(), &lengths);
+        self.text.replace_range(span, &new);
+        self.tree = Tree::of(&self.text);
+        self.sets.push(wanted.argument.to_owned());
+    }
+
+    /// Where a new field goes, and the text before and after its value.
+    fn insertion(
+        &self,
+        wanted: &Assignment<'_>,
+    ) -> Result<(usize, String, &'static str), InputError> {
+        let text = &self.text;
+        let (last, parents) = match wanted.path.split_last() {
+            Some(split) => split,
+            None => return Err(wanted.fail("the key is empty")),
+        };
+        let parent = match self.tree.find(text, parents) {
+            Ok(parent) => parent.inner(text),
+            Err(missing) => {
+                let reached = join_path(&wanted.path[..missing.depth]);
+                let place = if reached.is_empty() {
+                    "the file".to_owned()
+                } else {
+                    format!("`{reached}`")
+                };
+                let wrong = &wanted.path[missing.depth];
+                let mut error = wanted.fail(format!("there is no `{wrong}` in {place}"));
+                if !missing.choices.is_empty() {
+                    error = error.expected(one_of(&missing.choices));
+                }
+                return Err(match missing.correction(&wanted.path) {
+                    Some(right) => error.help(format!("did you mean `{}`?", join_path(&right))),
+                    None if reached.is_empty() => error,
+                    None => error.help(format!("the nearest that is there is `{reached}`")),
+                });
+            }
+        };
+        let place = if parents.is_empty() {
+            "the file".to_owned()
+        } else {
+            format!("`{}`", join_path(parents))
+        };
+        let Some(group) = parent.group() else {
+            let held = &text[parent.span.clone()];
+            let message = format!(
+                "{place} is `{}`, which has no `{last}` to set",
+                shorten(held)
+            );
+            return Err(wanted.fail(message));
+        };
+        let key = match group.shape {
+            Shape::Struct => last.clone(),
+            Shape::Tuple if group.entries.is_empty() => last.clone(),
+            Shape::Map => {
+                let quoted = |span: &Range<usize>| text[span.clone()].contains('"');
+                let keys = || group.entries.iter().filter_map(|entry| entry.key.as_ref());
+                // A map without texts for keys has numbers or words, taken as they are.
+                if keys().next().is_none() || keys().any(quoted) {
+                    quote(last)
+                } else {
+                    last.clone()
+                }
+            }
+            Shape::Tuple | Shape::List => {
+                let choices = parent.choices(text);
+                let count = group.entries.len();
+                let error = wanted.fail(format!("{place} has {count} elements, and no `{last}`"));
+                let path: Vec<String> = wanted.path.clone();
+                let near = super::nearest(last, choices.iter().map(String::as_str)).map(|near| {
+                    let mut right = path;
+                    right.pop();
+                    right.push(near.to_owned());
+                    format!("did you mean `{}`?", join_path(&right))
+                });
+                let error = if choices.is_empty() {
+                    error
+                } else {
+                    error.expected(one_of(&choices))
+                };
+                return Err(match near {
+                    Some(near) => error.help(near),
+                    None => error,
+                });
+            }
+        };
+        let (at, before) = match group.entries.last() {
+            Some(entry) => (entry.value.span.end, format!(", {key}: ")),
+            None => (group.open + 1, format!("{key}: ")),
+        };
+        // An empty group may hold a comment up to its bracket; a comma is harmless.
+        let after = if group.entries.is_empty() { "," } else { "" };
+        Ok((at, before, after))
+    }
+}
+
+impl Node {
+    /// The value inside `Some(...)` and one-tuples, as far as they go.
+    fn inner(&self, text: &str) -> &Node {
+        let mut node = self.peel(text);
+        while let Some(group) = node.group() {
+            match (group.shape, group.entries.as_slice()) {
+                (Shape::Tuple, [only]) => node = only.value.peel(text),
+                _ => break,
+            }
+        }
+        node
+    }
+}
+
+/// The bytes to replace, and the text to put there.
+fn replacement(
+    text: &str,
+    node: &Node,
+    wanted: &Assignment<'_>,
+) -> Result<(Range<usize>, String), InputError> {
+    let value = wanted.value();
+    let option = value == "None" || value.starts_with("Some(");
+    let held = node.peel(text);
+    // The `Some` around an old value stays, unless the new value brings its own.
+    let target = if option { node } else { held };
+    let is_text = matches!(held.kind, Kind::Text);
+    let unquoted = wanted.is_word() || wanted.is_bare();
+    let new = if is_text && unquoted && !option {
+        quote(value)
+    } else {
+        wanted.complete()?
+    };
+    Ok((target.span.clone(), new))
+}
+
+/// `one of `a`, `b``.
+pub(super) fn one_of<S: AsRef<str>>(names: &[S]) -> String {
+    const MOST: usize = 24;
+    let quoted: Vec<String> = names
+        .iter()
+        .take(MOST)
+        .map(|name| format!("`{}`", name.as_ref()))
+        .collect();
+    let more = if names.len() > MOST { ", ..." } else { "" };
+    let lead = if names.len() == 1 { "" } else { "one of " };
+    format!("{lead}{}{more}", quoted.join(", "))
+}
+
+/// Text for a message: one line, not too long.
+pub(super) fn shorten(text: &str) -> String {
+    const MOST: usize = 40;
+    let line = text.lines().next().unwrap_or_default().trim_end();
+    let mut short: String = line
+        .chars()
+        .take(MOST)
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    if short.len() < text.len() {
+        short.push_str("...");
+    }
+    short
+}
