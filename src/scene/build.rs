@@ -719,6 +719,7 @@ impl<S: Dimensional> Builder<'_, S> {
             Simulation::new(self.bodies, self.shapes, laws, table, alert, skin),
         );
         simulation.gravity = gravity;
+        simulation.correction = case.solver.correction;
         simulation.scheme = Scheme {
             h: case.time.step,
             theta: case.time.theta,

@@ -46,6 +46,9 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
             format!("must not be negative, got {}", s.tolerance),
         ));
     }
+    if !(0.0..=1.0).contains(&s.correction) {
+        return Err(Fault::new("solver.correction", format!("got {}", s.correction)).expected("a number between 0 and 1"));
+    }
     if s.max_iterations == 0 {
         return Err(Fault::new("solver.max_iterations", "must be at least 1"));
     }

@@ -382,9 +382,10 @@ impl<S: Space> GeneralRow<S> {
         b.s -= S::moment(&self.arms[1], p) * self.inverse_spins[1];
     }
 
-    /// Solves the contact with block `w`: alternates the normal and the tangential part.
+    /// Solves the contact with block `w`: alternates the normal and the tangential part. Two rounds: the
+    /// sweeps that follow do the rest, since each begins where the last one ended.
     fn solve(&self, block: &Block<S>, f: &S::Vector) -> (f64, S::Tangent) {
-        const ALTERNATIONS: usize = 20;
+        const ALTERNATIONS: usize = 2;
         let n = &self.n;
         let (mut sn, mut st) = (self.sn, self.st);
         for _ in 0..ALTERNATIONS {

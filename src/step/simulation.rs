@@ -96,6 +96,8 @@ pub struct Simulation<S: Space> {
     pub time: f64,
     /// Steps done.
     pub steps: u64,
+    /// Share of a penetration that a step takes back, 0 to 1; see [`crate::scene::case::SolverSpec`].
+    pub correction: f64,
     /// The energy ledger.
     pub energy: Energy,
     /// Contact impulses and moments on the driven bodies in the last step, in their order.
@@ -103,6 +105,11 @@ pub struct Simulation<S: Space> {
     passes: Passes,
     problem: Problem<S>,
     forms: Vec<ContactForm<S>>,
+}
+
+/// The gap a step may close, or the part of a penetration it must take back (m).
+fn quasi_shock(gap: f64, correction: f64) -> f64 {
+    if gap > 0.0 { gap } else { correction * gap }
 }
 
 impl<S: Space> Simulation<S> {
@@ -132,6 +139,7 @@ impl<S: Space> Simulation<S> {
             solver: solve::Options::default(),
             time: 0.0,
             steps: 0,
+            correction: 0.0,
             energy: Energy {
                 kinetic,
                 initial_kinetic: kinetic,
@@ -234,6 +242,7 @@ impl<S: Space> Simulation<S> {
 
     /// The part of the forms that geometry gives.
     fn geometry_of_forms(&mut self, h: f64) {
+        let correction = self.correction;
         self.forms.clear();
         let network = &self.network;
         self.forms.extend(network.contacts.iter().map(|contact| {
@@ -247,7 +256,7 @@ impl<S: Space> Simulation<S> {
                 normal: contact.normal,
                 arms: contact.arms,
                 central: contact.central,
-                shift_n: (contact.gap - filled).max(0.0) / h,
+                shift_n: quasi_shock(contact.gap - filled, correction) / h,
                 shift_t: S::Tangent::null(),
                 friction: 0.0,
                 tension: 0.0,
