@@ -1,6 +1,6 @@
 //! Positions, velocities and inertia of all bodies, in columns.
 
-use super::drive::Driven;
+use super::drive::{Dof, Driven};
 use crate::geometry::space::{Space, VectorLike};
 
 /// All bodies of a scene, in columns; grains and first bodies alike. In 2D masses are per metre.
@@ -111,6 +111,15 @@ impl<S: Space> Bodies<S> {
     /// Whether contacts cannot move the body at all.
     pub fn immovable(&self, body: usize) -> bool {
         self.inverse_mass[body] == S::Vector::null() && self.inverse_inertia[body] == 0.0
+    }
+
+    /// Which bodies never move: all their degrees of freedom are fixed.
+    pub fn still(&self) -> Vec<bool> {
+        let mut still = vec![false; self.len()];
+        for driven in &self.driven {
+            still[driven.body as usize] = driven.dofs.iter().all(|d| *d == Dof::Fixed);
+        }
+        still
     }
 
     /// Kinetic energy (J). An imposed degree of freedom keeps its mass here.

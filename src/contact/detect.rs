@@ -112,8 +112,8 @@ fn rebuild<S: Space>(
     let radii: Vec<f64> = shapes.balls.iter().map(|b| b.radius).collect();
     let reach = network.alert + network.skin;
     let balls = &shapes.balls;
-    let immovable: Vec<bool> = (0..bodies.len()).map(|b| bodies.immovable(b)).collect();
-    let touch = |i: u32, j: u32| i != j && !(immovable[i as usize] && immovable[j as usize]);
+    let still = bodies.still();
+    let touch = |i: u32, j: u32| i != j && !(still[i as usize] && still[j as usize]);
     let mut pairs = grid::pairs(centres, &radii, reach, &shapes.periodic, |a, b| {
         let (a, b) = (&balls[a as usize], &balls[b as usize]);
         touch(a.body, b.body) && laws.get(a.material, b.material).is_some()

@@ -456,10 +456,15 @@ fn apply_friction<S: Space>(
     form.friction = friction.mu;
     form.tension = info.h * area * friction.tension;
     form.cohesion = info.h * area * friction.cohesion;
-    // Newton's restitution for closed contacts that approach; the quasi-shock shift otherwise.
+    // Newton's restitution: closed contacts bounce off the velocity they come with, open ones are free
+    // (a quasi-shock would take the approach away before the impact).
     let un = contact.normal.dot(before);
-    if contact.gap <= 0.0 && friction.e_n > 0.0 && un < 0.0 {
-        form.shift_n = friction.e_n * un;
+    if friction.e_n > 0.0 {
+        if contact.gap > 0.0 {
+            form.shift_n = f64::INFINITY;
+        } else if un < 0.0 {
+            form.shift_n = friction.e_n * un;
+        }
     }
     if contact.gap <= 0.0 && friction.e_t > 0.0 {
         form.shift_t = S::tangential(&contact.normal, before) * friction.e_t;

@@ -157,6 +157,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         }
         let summary = Summary {
             case: case.name.clone(),
+            dimension: S::D,
             plugins,
             threads: options.threads,
             seed: case.seed,

@@ -62,6 +62,8 @@ pub struct Wear {
 pub struct Summary {
     /// Title of the case.
     pub case: String,
+    /// 2 or 3.
+    pub dimension: usize,
     /// Steps done.
     pub steps: u64,
     /// Time reached (s).
@@ -110,6 +112,7 @@ impl Summary {
     /// Some lines for a terminal.
     pub fn text(&self) -> String {
         let mut out = String::new();
+        let (joule, newton, volume) = if self.dimension == 3 { ("J", "N", "m3") } else { ("J/m", "N/m", "m3/m") };
         let mut line = |label: &str, value: String| {
             let _ = writeln!(out, "  {label:<22} {value}");
         };
@@ -146,7 +149,7 @@ impl Summary {
             line(
                 &format!("cycle {}{unfinished}", c.cycle),
                 format!(
-                    "mu {:.4}, E_d {:.4e} J/m, mean P {:.4e} N/m, E_d/(4 Q delta) {:.3}, {} bonds broken",
+                    "mu {:.4}, E_d {:.4e} {joule}, mean P {:.4e} {newton}, E_d/(4 Q delta) {:.3}, {} bonds broken",
                     c.friction_coefficient, c.work, c.normal_force, c.energy_ratio, c.broken
                 ),
             );
@@ -155,7 +158,7 @@ impl Summary {
         line(
             "dissipated",
             format!(
-                "friction {:.4e}, fracture {:.4e}, impact {:.4e}, viscous {:.4e} J",
+                "friction {:.4e}, fracture {:.4e}, impact {:.4e}, viscous {:.4e} {joule}",
                 e.friction,
                 e.fracture,
                 e.impact,
@@ -165,7 +168,7 @@ impl Summary {
         line(
             "energy residual",
             format!(
-                "{:.3e} J, {:.2e} of the largest energy",
+                "{:.3e} {joule}, {:.2e} of the largest energy",
                 e.residual, self.energy_residual_relative
             ),
         );
@@ -173,7 +176,7 @@ impl Summary {
         line(
             "wear",
             format!(
-                "{:.4e} m3 off first bodies, {:.4e} m3 between grains; Qs {:.3e}, Qi {:.3e}, Qe {:.3e}, Qw {:.3e} kg/s",
+                "{:.4e} {volume} off first bodies, {:.4e} {volume} between grains; Qs {:.3e}, Qi {:.3e}, Qe {:.3e}, Qw {:.3e} kg/s",
                 w.volume_first_bodies, w.volume_third_body, w.Qs, w.Qi, w.Qe, w.Qw
             ),
         );

@@ -176,6 +176,7 @@ impl Loaded {
                 .map(|(n, (k, d))| (n, (k, d * self.case.inertia_scaling)))
                 .collect(),
             files: BTreeMap::new(),
+            origins: Vec::new(),
             bodies: Bodies::default(),
             shapes: Shapes {
                 balls: Vec::new(),
@@ -255,7 +256,43 @@ struct Builder<'a, S: Space> {
     files: BTreeMap<String, SceneFile>,
     bodies: Bodies<S>,
     shapes: Shapes<S>,
+    /// Where the case writes each body: the place in `grains`, in that list, or in `bodies`.
+    origins: Vec<Origin>,
 }
+
+/// The place of a body in the case.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Origin {
+    /// Of one of `grains`, and which of its list where it has one.
+    Grain(usize, Option<usize>),
+    /// One of `bodies`.
+    Body(usize),
+}
+
+impl Origin {
+    /// Its dotted path.
+    pub fn path(self) -> String {
+        match self {
+            Self::Grain(k, None) => format!("grains.{k}"),
+            Self::Grain(k, Some(g)) => format!("grains.{k}.grains.{g}"),
+            Self::Body(k) => format!("bodies.{k}"),
+        }
+    }
+}
+
+/// A grain to be: place, radius, material, density, velocity, spin, and where the case has it.
+type Seed<S> = (
+    <S as Space>::Vector,
+    f64,
+    u16,
+    f64,
+    <S as Space>::Vector,
+    <S as Space>::Spin,
+    Origin,
+);
+
+/// More grains than memory holds are a slip of the keyboard.
+const MOST_GRAINS: usize = 10_000_000;
 
 impl<S: Dimensional> Builder<'_, S> {
     fn fail(&self, path: impl Into<String>, message: impl Into<String>) -> InputError {
@@ -313,7 +350,7 @@ impl<S: Dimensional> Builder<'_, S> {
     }
 
     fn grains(&mut self) -> Result<(), InputError> {
-        let mut found: Vec<(S::Vector, f64, u16, f64, S::Vector, S::Spin)> = Vec::new();
+        let mut found: Vec<Seed<S>> = Vec::new();
         for (k, spec) in self.case.grains.iter().enumerate() {
             let here = format!("grains.{k}");
             match spec {
@@ -330,6 +367,12 @@ impl<S: Dimensional> Builder<'_, S> {
                                 format!("a spin has {} components here", S::Spin::N),
                             ));
                         }
+                        if grain.spin.iter().any(|x| !x.is_finite()) {
+                            return Err(self.fail(
+                                format!("{here}.spin"),
+                                "the components must be finite numbers",
+                            ));
+                        }
                         found.push((
                             at,
                             radius,
@@ -337,6 +380,7 @@ impl<S: Dimensional> Builder<'_, S> {
                             density,
                             velocity,
                             S::Spin::from_slice(&grain.spin),
+                            Origin::Grain(k, Some(g)),
                         ));
                     }
                 }
@@ -356,8 +400,25 @@ impl<S: Dimensional> Builder<'_, S> {
                             self.fail(format!("{here}.radius"), "the smallest radius comes first")
                         );
                     }
-                    self.vector(&format!("{here}.low"), low)?;
-                    self.vector(&format!("{here}.high"), high)?;
+                    for (name, corner) in [("low", low), ("high", high)] {
+                        let path = format!("{here}.{name}");
+                        self.vector(&path, corner)?;
+                        if corner.is_empty() {
+                            return Err(self.source.locate(
+                                Fault::new(path, "a corner of the box is empty")
+                                    .expected(format!("{} numbers", S::D)),
+                            ));
+                        }
+                    }
+                    if *count > MOST_GRAINS {
+                        return Err(self.source.locate(
+                            Fault::new(
+                                format!("{here}.count"),
+                                format!("{count} grains are too many"),
+                            )
+                            .expected(format!("at most {MOST_GRAINS}")),
+                        ));
+                    }
                     let periodic = self.shapes.periodic.period[0].is_some();
                     let list =
                         sample::lattice(S::D, periodic, *count, *radius, low, high, self.case.seed);
@@ -370,11 +431,10 @@ impl<S: Dimensional> Builder<'_, S> {
                         ));
                     }
                     let none = (S::Vector::null(), S::Spin::null());
-                    found.extend(
-                        list.into_iter().map(|(x, r)| {
-                            (S::Vector::from_slice(&x), r, m, density, none.0, none.1)
-                        }),
-                    );
+                    found.extend(list.into_iter().map(|(x, r)| {
+                        let at = S::Vector::from_slice(&x);
+                        (at, r, m, density, none.0, none.1, Origin::Grain(k, None))
+                    }));
                 }
                 GrainSpec::Scene {
                     file,
@@ -384,11 +444,10 @@ impl<S: Dimensional> Builder<'_, S> {
                     let (m, density) = self.material(&format!("{here}.material"), material)?;
                     let scene = self.scene_file(file)?;
                     let none = (S::Vector::null(), S::Spin::null());
-                    found.extend(
-                        scene.balls.iter().map(|(x, r)| {
-                            (S::Vector::from_slice(x), *r, m, density, none.0, none.1)
-                        }),
-                    );
+                    found.extend(scene.balls.iter().map(|(x, r)| {
+                        let at = S::Vector::from_slice(x);
+                        (at, *r, m, density, none.0, none.1, Origin::Grain(k, None))
+                    }));
                     if let Some(walls) = walls {
                         let (m, _) = self.material(&format!("{here}.walls"), walls)?;
                         for (w, wall) in scene.walls.iter().enumerate() {
@@ -402,6 +461,7 @@ impl<S: Dimensional> Builder<'_, S> {
                                 Box::new(shape),
                                 m,
                             );
+                            self.origins.push(Origin::Grain(k, None));
                         }
                     }
                 }
@@ -418,8 +478,9 @@ impl<S: Dimensional> Builder<'_, S> {
         if width > 0.0 {
             found.sort_by_cached_key(|g| cell(&g.0));
         }
-        for (at, radius, material, density, velocity, spin) in found {
+        for (at, radius, material, density, velocity, spin, origin) in found {
             let body = self.bodies.add_ball(at, radius, density);
+            self.origins.push(origin);
             self.bodies.velocity[body as usize] = velocity;
             self.bodies.spin[body as usize] = spin;
             self.shapes.balls.push(Ball {
@@ -447,6 +508,7 @@ impl<S: Dimensional> Builder<'_, S> {
     fn first_bodies(&mut self) -> Result<(), InputError> {
         for (k, spec) in self.case.bodies.iter().enumerate() {
             self.first_body(&format!("bodies.{k}"), spec)?;
+            self.origins.push(Origin::Body(k));
         }
         Ok(())
     }
@@ -637,11 +699,12 @@ impl<S: Dimensional> Builder<'_, S> {
                 let valid = *points >= 3
                     && *rms >= 0.0
                     && *shortest > 0.0
+                    && longest.is_none_or(|l| l > 0.0)
                     && rms.is_finite()
                     && hurst.is_finite();
                 if !valid || *points > 10_000_000 {
                     return Err(bad(
-                        "a rough profile needs at least 3 points, rms >= 0 and shortest > 0".into(),
+                        "a rough profile needs 3 to 10,000,000 points, rms >= 0, shortest > 0 and longest > 0".into(),
                     ));
                 }
                 // Rail and wheel must not be each other's image.
@@ -673,12 +736,12 @@ impl<S: Dimensional> Builder<'_, S> {
                 heights,
                 rms,
             } => {
+                let count = points.0.checked_mul(points.1).unwrap_or(usize::MAX);
+                if count > 10_000_000 {
+                    return Err(bad("a height field has at most 10,000,000 points".into()));
+                }
                 let heights = match rms {
-                    Some(rms) => profile::noise(
-                        points.0.saturating_mul(points.1).min(10_000_000),
-                        *rms,
-                        self.case.seed ^ 0x5eed,
-                    ),
+                    Some(rms) => profile::noise(count, *rms, self.case.seed ^ 0x5eed),
                     None => heights.clone(),
                 };
                 let p = self.shapes.periodic.period;
@@ -731,7 +794,8 @@ impl<S: Dimensional> Builder<'_, S> {
             test_every: case.solver.test_every,
             parallel: false,
         };
-        super::check::overlaps(&mut simulation, smallest).map_err(|f| source.locate(f))?;
+        super::check::overlaps(&mut simulation, smallest, &self.origins)
+            .map_err(|f| source.locate(f))?;
         Ok(simulation)
     }
 

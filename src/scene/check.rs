@@ -1,7 +1,9 @@
 //! What a case must satisfy before it runs.
 
+use super::build::Origin;
 use super::case::{BodySpec, Case};
 use super::source::Fault;
+use crate::bodies::Dof;
 use crate::contact::detect::detect;
 use crate::geometry::space::Space;
 use crate::step::Simulation;
@@ -47,7 +49,10 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
         ));
     }
     if !(0.0..=1.0).contains(&s.correction) {
-        return Err(Fault::new("solver.correction", format!("got {}", s.correction)).expected("a number between 0 and 1"));
+        return Err(
+            Fault::new("solver.correction", format!("got {}", s.correction))
+                .expected("a number between 0 and 1"),
+        );
     }
     if s.max_iterations == 0 {
         return Err(Fault::new("solver.max_iterations", "must be at least 1"));
@@ -87,6 +92,10 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
             ));
         }
     }
+    if case.output.frames > 0 && !(200..=16_384).contains(&case.output.width) {
+        let message = format!("a frame cannot be {} pixels wide", case.output.width);
+        return Err(Fault::new("output.width", message).expected("200 to 16384 pixels"));
+    }
     friction(case, dimension)
 }
 
@@ -95,6 +104,18 @@ fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), Fault> {
         if let Some(value) = value {
             if !(value.is_finite() && value > 0.0) {
                 return Err(Fault::new(name, format!("must be positive, got {value}")));
+            }
+        }
+    }
+    if dimension == 2 {
+        let d = &body.dofs;
+        for (name, dof) in [("z", &d.z), ("rx", &d.rx), ("ry", &d.ry)] {
+            if *dof != Dof::Fixed {
+                return Err(Fault::new(
+                    format!("dofs.{name}"),
+                    format!("there is no {name} in two dimensions"),
+                )
+                .expected("x, y or rz"));
             }
         }
     }
@@ -127,6 +148,12 @@ fn friction(case: &Case, dimension: usize) -> Result<(), Fault> {
             .expected(format!("a number below {dimension}")));
         }
     }
+    if !test.start.is_finite() {
+        return Err(Fault::new(
+            "friction.start",
+            format!("must be finite, got {}", test.start),
+        ));
+    }
     if test.along == test.normal {
         return Err(Fault::new("friction.normal", "must differ from `along`"));
     }
@@ -141,7 +168,11 @@ fn friction(case: &Case, dimension: usize) -> Result<(), Fault> {
 ///
 /// # Errors
 /// The worst pair.
-pub fn overlaps<S: Space>(simulation: &mut Simulation<S>, smallest: f64) -> Result<(), Fault> {
+pub(super) fn overlaps<S: Space>(
+    simulation: &mut Simulation<S>,
+    smallest: f64,
+    origins: &[Origin],
+) -> Result<(), Fault> {
     let s = simulation;
     detect(&mut s.network, &s.shapes, &s.bodies, &s.table, 0.0);
     let worst = s
@@ -171,14 +202,17 @@ pub fn overlaps<S: Space>(simulation: &mut Simulation<S>, smallest: f64) -> Resu
         name(worst.bodies[1]),
         -worst.gap
     );
-    let path = if worst
-        .bodies
-        .iter()
-        .all(|b| s.bodies.driven.iter().any(|d| d.body == *b))
-    {
-        "bodies"
-    } else {
-        "grains"
-    };
+    // The place of the grain that was written last, or of the body where no grain is in it.
+    let at = worst.bodies.iter().max_by_key(|b| {
+        let driven = s.bodies.driven.iter().any(|d| d.body == **b);
+        let place = match origins.get(**b as usize) {
+            Some(Origin::Grain(k, g)) => (*k, g.unwrap_or(0)),
+            Some(Origin::Body(k)) => (*k, 0),
+            None => (0, 0),
+        };
+        (!driven, place)
+    });
+    let origin = at.and_then(|b| origins.get(*b as usize));
+    let path = origin.map_or_else(|| "grains".to_owned(), |o| o.path());
     Err(Fault::new(path, message))
 }

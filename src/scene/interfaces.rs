@@ -66,8 +66,11 @@ pub fn build(
         if !(spec.area_factor.is_finite() && spec.area_factor > 0.0) {
             return Err(at(Fault::new("area_factor", "must be positive")));
         }
-        let parameters = read_parameters(spec, shelf, &mut out.files, &at)?;
-        let interface = compose(case, spec, &parameters, path).map_err(&at)?;
+        let (parameters, file) = read_parameters(spec, shelf, &mut out.files, &at)?;
+        let interface = compose(case, spec, &parameters, path).map_err(|wrong| match &file {
+            Some(file) if wrong.in_file => file.locate(wrong.fault),
+            _ => at(wrong.fault),
+        })?;
         out.table.set(pair[0], pair[1], k as u16);
         out.interfaces.push(interface);
     }
@@ -79,9 +82,9 @@ fn read_parameters(
     shelf: &Shelf,
     files: &mut Vec<(String, String)>,
     at: &impl Fn(Fault) -> InputError,
-) -> Result<InterfaceParameters, InputError> {
+) -> Result<(InterfaceParameters, Option<Source>), InputError> {
     let Some(name) = &spec.parameters_from else {
-        return Ok(InterfaceParameters::default());
+        return Ok((InterfaceParameters::default(), None));
     };
     let file = shelf.read(name).map_err(|e| match e {
         Err(error) => error,
@@ -96,7 +99,22 @@ fn read_parameters(
     if !files.iter().any(|f| f.0 == *name) {
         files.push((name.clone(), file.text().to_owned()));
     }
-    Ok(parsed)
+    Ok((parsed, Some(file)))
+}
+
+/// What does not fit, in the case or in its parameter file.
+struct Wrong {
+    fault: Fault,
+    in_file: bool,
+}
+
+impl From<Fault> for Wrong {
+    fn from(fault: Fault) -> Self {
+        Self {
+            fault,
+            in_file: false,
+        }
+    }
 }
 
 type ByLaw = BTreeMap<String, BTreeMap<String, Sourced>>;
@@ -106,7 +124,7 @@ fn compose(
     spec: &InterfaceSpec,
     file: &InterfaceParameters,
     path: &SearchPath,
-) -> Result<Interface, Fault> {
+) -> Result<Interface, Wrong> {
     let load = |kind: Kind, name: &str, file: &ByLaw, own: &BTreeMap<String, f64>| {
         load(case, kind, name, file.get(name), own, path)
     };
@@ -119,7 +137,8 @@ fn compose(
             return Err(Fault::new(
                 "bonds",
                 "the time at which bonds are made must not be negative",
-            ));
+            )
+            .into());
         }
     }
     let interface = Interface {
@@ -135,7 +154,7 @@ fn compose(
     };
     interface
         .compose()
-        .map_err(|e| Fault::new("damage", e.to_string()))
+        .map_err(|e| Fault::new("damage", e.to_string()).into())
 }
 
 fn load(
@@ -145,7 +164,7 @@ fn load(
     file: Option<&BTreeMap<String, Sourced>>,
     own: &BTreeMap<String, f64>,
     path: &SearchPath,
-) -> Result<Loaded, Fault> {
+) -> Result<Loaded, Wrong> {
     let slot = kind.word();
     let plugin = path.find(kind, name).map_err(|e| match &e {
         LawError::Unknown {
@@ -161,7 +180,7 @@ fn load(
                 "the {kind} law `{name}` is for {only} dimensions only, the case has {}",
                 case.dimension
             );
-            return Err(Fault::new(slot, message));
+            return Err(Fault::new(slot, message).into());
         }
     }
     let given: BTreeMap<&str, (f64, bool)> = file
@@ -171,29 +190,37 @@ fn load(
         .collect();
     let names = || plugin.parameters.iter().map(|p| p.name.as_str());
     for (parameter, (value, in_case)) in &given {
-        // What stands in the parameter file is shown at the law's name in the case.
         let at = if *in_case {
             format!("parameters.{slot}.{parameter}")
         } else {
-            slot.to_owned()
+            format!("{slot}.{name}.{parameter}.value")
+        };
+        let wrong = |fault: Fault| Wrong {
+            fault,
+            in_file: !in_case,
         };
         let Some(field) = plugin.parameters.iter().find(|p| p.name == *parameter) else {
-            return Err(Fault::new(
-                at,
-                format!("the {kind} law `{name}` has no parameter `{parameter}`"),
-            )
-            .expected(format!("one of {}", names().collect::<Vec<_>>().join(", ")))
-            .nearest(nearest(parameter, names())));
+            return Err(wrong(
+                Fault::new(
+                    at,
+                    format!("the {kind} law `{name}` has no parameter `{parameter}`"),
+                )
+                .expected(format!("one of {}", names().collect::<Vec<_>>().join(", ")))
+                .nearest(nearest(parameter, names())),
+            ));
         };
         if !value.is_finite() || !(field.minimum..=field.maximum).contains(value) {
-            return Err(Fault::new(
-                at,
-                format!("`{parameter}` of the {kind} law `{name}` is {value}"),
-            )
-            .expected(format!(
-                "a value between {} and {} {}",
+            let range = format!(
+                "a value between {:e} and {:e} {}",
                 field.minimum, field.maximum, field.unit
-            )));
+            );
+            return Err(wrong(
+                Fault::new(
+                    at,
+                    format!("`{parameter}` of the {kind} law `{name}` is {value}"),
+                )
+                .expected(range.trim_end()),
+            ));
         }
     }
     let parameters: Vec<f64> = plugin

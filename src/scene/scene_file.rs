@@ -1,6 +1,6 @@
 //! The plain-text scenes of `cases/benchmarks/`: balls, clusters and fixed walls.
 
-use super::source::InputError;
+use super::source::{InputError, Source};
 use std::path::Path;
 
 /// A wall: a point of its surface and the normal to the open side.
@@ -28,7 +28,8 @@ pub struct SceneFile {
 /// # Errors
 /// With the line that is wrong.
 pub fn read(path: &Path, dimension: usize) -> Result<SceneFile, InputError> {
-    let text = std::fs::read_to_string(path).map_err(|e| InputError::unreadable(path, &e))?;
+    let source = Source::read(path)?;
+    let text = source.text();
     let name = path.display().to_string();
     let mut out = SceneFile::default();
     let mut boxes: Vec<Vec<f64>> = Vec::new();
@@ -41,12 +42,7 @@ pub fn read(path: &Path, dimension: usize) -> Result<SceneFile, InputError> {
             .split_whitespace()
             .collect();
         let fail = |message: String| {
-            InputError::at(
-                &name,
-                &text,
-                offset..offset + line.trim_end().len(),
-                message,
-            )
+            InputError::at(&name, text, offset..offset + line.trim_end().len(), message)
         };
         let numbers = |words: &[&str], n: usize| -> Result<Vec<f64>, InputError> {
             let parsed: Option<Vec<f64>> = words
@@ -74,14 +70,26 @@ pub fn read(path: &Path, dimension: usize) -> Result<SceneFile, InputError> {
                     )));
                 }
             }
+            ["wall", _, kind @ ("JONCx" | "PLANx"), ..]
+                if (*kind == "JONCx") != (dimension == 2) =>
+            {
+                return Err(fail(format!(
+                    "a {kind} wall does not exist in {dimension} dimensions"
+                )));
+            }
             ["wall", _, "JONCx", rest @ ..] => boxes.push(numbers(rest, 5)?),
             ["wall", _, "PLANx", rest @ ..] => {
                 let v = numbers(rest, 9)?;
-                let at = (0..3).map(|k| v[k] + v[5] * v[6 + k]).collect();
-                out.walls.push(Wall {
-                    at,
-                    normal: v[6..].to_vec(),
-                });
+                let length = v[6].hypot(v[7]).hypot(v[8]);
+                if !(length > 0.0 && length.is_finite()) {
+                    return Err(fail("the normal of a wall must not be null".into()));
+                }
+                // A unit normal stays as it is written, to the last bit.
+                let unit = (length - 1.0).abs() < 1e-9;
+                let scale = if unit { 1.0 } else { 1.0 / length };
+                let normal: Vec<f64> = v[6..].iter().map(|x| x * scale).collect();
+                let at = (0..3).map(|k| v[k] + v[5] * normal[k]).collect();
+                out.walls.push(Wall { at, normal });
             }
             ["body", _, "disk" | "sphere", rest @ ..] => out.balls.push(ball(rest)?),
             ["cluster", name, rest @ ..] => {

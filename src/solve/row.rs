@@ -61,18 +61,19 @@ fn push<S: Space>(n: &S::Vector, dn: f64, dt: S::Tangent, a: &mut Line<S>, b: &m
     b.s -= twist * b.is;
 }
 
-/// The natural map of the De Saxce form in velocity, for a shifted impulse (P_n, p_t).
+/// The natural map of the De Saxce form in velocity, for a shifted impulse (P_n, p_t), a velocity and
+/// its shift.
 #[inline]
 fn natural_map<T: VectorLike>(
-    pn: f64,
-    pt: T,
-    un: f64,
-    ut: T,
+    (pn, pt): (f64, T),
+    (un, ut): (f64, T),
+    (sn, st): (f64, T),
     rho: f64,
     mu: f64,
     c: f64,
 ) -> Residual {
-    let (zn, zt) = cone::project(pn - rho * (un + mu * ut.norm()), pt - ut * rho, mu, c);
+    let slide = ut + st;
+    let (zn, zt) = cone::project(pn - rho * (un + sn + mu * slide.norm()), pt - slide * rho, mu, c);
     let (rn, rt) = ((pn - zn) / rho, (pt - zt) * (1.0 / rho));
     Residual {
         squared: rn * rn + rt.dot(&rt),
@@ -141,7 +142,7 @@ impl<S: Space> Row<S> for PlainRow<S> {
         let (un, ut) = relative(&self.n, a, b);
         let rho = self.iwn.min(self.iwt);
         if rho > 0.0 {
-            natural_map(self.pn, self.pt, un + self.shift, ut, rho, self.mu, 0.0)
+            natural_map((self.pn, self.pt), (un, ut), (self.shift, S::Tangent::null()), rho, self.mu, 0.0)
         } else {
             Residual::default()
         }
@@ -259,8 +260,7 @@ impl<S: Space> Row<S> for FullRow<S> {
         let rho = (self.iwn * dn).min(self.iwt * (1.0 + self.wt * e.b_t));
         if self.iwn > 0.0 {
             let (pn, pt) = (self.pn - en + self.tension, self.pt - et);
-            let (un, ut) = (un + self.shift_n, ut + self.shift_t);
-            natural_map(pn, pt, un, ut, rho, self.mu, self.cohesion)
+            natural_map((pn, pt), (un, ut), (self.shift_n, self.shift_t), rho, self.mu, self.cohesion)
         } else {
             Residual::default()
         }
@@ -455,15 +455,7 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         if rho > 0.0 {
             let pn = n.dot(&self.p) - en + self.tension;
             let pt = S::tangential(n, &self.p) - et;
-            natural_map(
-                pn,
-                pt,
-                un + self.shift_n,
-                ut + self.shift_t,
-                rho,
-                self.mu,
-                self.cohesion,
-            )
+            natural_map((pn, pt), (un, ut), (self.shift_n, self.shift_t), rho, self.mu, self.cohesion)
         } else {
             Residual::default()
         }

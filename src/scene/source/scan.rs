@@ -313,6 +313,11 @@ impl<'a> Scanner<'a> {
             match self.peek() {
                 Some(',') => self.at += 1,
                 Some(')' | ']' | '}') | None => {}
+                // A list has no names: it was left open before one.
+                Some(':') if shape == Shape::List => {
+                    let message = format!("this `{opener}` is not closed by `{closer}`");
+                    self.fault(open..open + 1, message);
+                }
                 Some(_) => self.fault(self.here(), "a comma is missing before this"),
             }
         }

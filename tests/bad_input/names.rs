@@ -1,0 +1,193 @@
+//! Names of laws, parameters and materials.
+
+use crate::trial::{PLANE, SOLID, Trial, refused, refused_with, with};
+
+#[test]
+fn an_unknown_plugin() {
+    refused(
+        &with(PLANE, r#"contact: "coulomb""#, r#"contact: ‸"columb""#),
+        &[
+            "no contact law named `columb`",
+            "expected one of",
+            "did you mean `coulomb`?",
+        ],
+    );
+}
+
+#[test]
+fn an_unknown_plugin_by_set() {
+    let more = ["--set", "interfaces.grains.cohesion=mak"];
+    refused_with(
+        &with(PLANE, r#"{"mu": 0.3})"#, r#"{"mu": 0.3})‸"#),
+        &more,
+        &[
+            "from `--set interfaces.grains.cohesion=mak`",
+            "did you mean `mac`?",
+        ],
+    );
+}
+
+#[test]
+fn an_unknown_parameter() {
+    refused(
+        &with(PLANE, r#"{"mu": 0.3}"#, r#"{"mo": ‸0.3}"#),
+        &[
+            "`coulomb` has no parameter `mo`",
+            "expected one of mu",
+            "did you mean `mu`?",
+        ],
+    );
+}
+
+#[test]
+fn a_parameter_out_of_range() {
+    refused(
+        &with(PLANE, r#""mu": 0.3"#, r#""mu": ‸-0.3"#),
+        &[
+            "`mu` of the contact law `coulomb` is -0.3",
+            "expected a value between 0e0 and",
+        ],
+    );
+}
+
+#[test]
+fn a_parameter_that_is_no_number() {
+    for bad in ["NaN", "inf", "-inf", "1e400"] {
+        refused(
+            &with(PLANE, r#""mu": 0.3"#, &format!(r#""mu": ‸{bad}"#)),
+            &[
+                "`mu` of the contact law `coulomb` is",
+                "expected a value between",
+            ],
+        );
+    }
+}
+
+#[test]
+fn a_wrong_value_in_a_parameter_file() {
+    for (name, value, words) in [
+        ("mu", "-1.0", ["is -1", "expected a value between"]),
+        ("mju", "0.4", ["no parameter `mju`", "did you mean `mu`?"]),
+    ] {
+        let trial = Trial::new();
+        let laws = format!(
+            "(contact: {{\"coulomb\": {{\n  \"{name}\": (value: ‸{value}, source: \"none\")}}}})"
+        );
+        let place = trial.write_marked("materials/laws.ron", &laws).1.unwrap();
+        let case = trial.write("case.ron", with(PLANE, r#"{"mu": 0.3}"#, "{}"));
+        let said = trial.refuses(&case, &[], &words);
+        // A parameter whose name is wrong is shown where it stands, too.
+        assert!(said.starts_with(&place), "not at {place}\n{said}");
+    }
+}
+
+#[test]
+fn a_missing_material_file() {
+    refused(
+        &with(PLANE, r#""grain": "stone""#, r#""grain": ‸"stonne""#),
+        &[
+            "no file `stonne.ron`",
+            "expected one of laws, stone",
+            "did you mean `stone`?",
+        ],
+    );
+    refused(
+        &with(
+            PLANE,
+            r#"parameters_from: "laws""#,
+            r#"parameters_from: ‸"lavs""#,
+        ),
+        &["no file `lavs.ron`", "did you mean `laws`?"],
+    );
+}
+
+#[test]
+fn a_material_file_that_reaches_elsewhere() {
+    refused(
+        &with(
+            PLANE,
+            r#""grain": "stone""#,
+            r#""grain": ‸"../materials/stone""#,
+        ),
+        &["no file `../materials/stone.ron`"],
+    );
+}
+
+#[test]
+fn a_density_that_is_none() {
+    for bad in ["-2600.0", "NaN", "0"] {
+        let trial = Trial::new();
+        let stone = format!("(doc: \"\",\n density: (value: ‸{bad}, source: \"\"))");
+        let place = trial.write_marked("materials/stone.ron", &stone).1.unwrap();
+        let case = trial.write("case.ron", PLANE);
+        let said = trial.refuses(&case, &[], &["a density must be positive"]);
+        assert!(said.starts_with(&place), "not at {place}\n{said}");
+    }
+}
+
+#[test]
+fn an_unknown_material() {
+    let words = [
+        "no material `grian`",
+        "expected one of grain",
+        "did you mean `grain`?",
+    ];
+    refused(
+        &with(PLANE, r#"("grain", "grain")"#, r#"("grain", ‸"grian")"#),
+        &words,
+    );
+    refused(
+        &with(
+            PLANE,
+            r#"List(material: "grain""#,
+            r#"List(material: ‸"grian""#,
+        ),
+        &words,
+    );
+    refused(
+        &with(
+            PLANE,
+            r#"(name: "floor", material: "grain""#,
+            r#"(name: "floor", material: ‸"grian""#,
+        ),
+        &words,
+    );
+}
+
+#[test]
+fn a_damage_law_without_cohesion() {
+    refused(
+        &with(
+            PLANE,
+            r#"contact: "coulomb","#,
+            r#"contact: "coulomb", damage: ‸"mac","#,
+        ),
+        &[
+            "the damage law `mac` of interface `grains` has no cohesion",
+            "give the interface a cohesion law",
+        ],
+    );
+}
+
+#[test]
+fn a_law_for_three_dimensions_in_two() {
+    let trial = Trial::new();
+    trial.compile_law("solid-only", "FW_FLAG_3D_ONLY");
+    let folder = trial.path("");
+    let more = ["--plugin-path", folder.to_str().unwrap()];
+    let changed = with(PLANE, r#"contact: "coulomb""#, r#"contact: ‸"solid-only""#);
+    let changed = with(&changed, r#"{"mu": 0.3}"#, "{}");
+    let (case, place) = trial.write_marked("case.ron", &changed);
+    let words = ["the contact law `solid-only` is for three dimensions only, the case has 2"];
+    let said = trial.refuses(&case, &more, &words);
+    assert!(said.starts_with(&place.unwrap()), "{said}");
+    // In three dimensions it is welcome.
+    let case = with(SOLID, r#"contact: "coulomb""#, r#"contact: "solid-only""#);
+    trial.write("case.ron", case);
+    let output = trial.call(&["check", "case.ron", more[0], more[1]]);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}

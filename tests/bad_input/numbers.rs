@@ -1,0 +1,95 @@
+//! Numbers of the case, and its bodies.
+
+use crate::trial::{PLANE, refused, with};
+
+#[test]
+fn a_step_that_is_none() {
+    for bad in ["0.0", "-1e-3", "NaN"] {
+        refused(
+            &with(PLANE, "step: 1e-3", &format!("step: ‸{bad}")),
+            &["must be positive, got"],
+        );
+    }
+}
+
+#[test]
+fn theta_out_of_range() {
+    for bad in ["0.4", "1.5", "NaN"] {
+        refused(
+            &with(PLANE, "theta: 0.5", &format!("theta: ‸{bad}")),
+            &["expected a number between 0.5 and 1"],
+        );
+    }
+}
+
+#[test]
+fn a_fourth_dimension() {
+    refused(
+        &with(PLANE, "dimension: 2", "dimension: ‸4"),
+        &["expected 2 or 3"],
+    );
+}
+
+#[test]
+fn a_table_whose_times_do_not_rise() {
+    refused(
+        &with(
+            PLANE,
+            "y: Force(Table([(0.0, -1.0), (1.0, -2.0)]))",
+            "y: ‸Force(Table([(0.0, -1.0), (0.0, -2.0)]))",
+        ),
+        &["the times of a table must rise"],
+    );
+}
+
+#[test]
+fn a_free_body_without_mass() {
+    refused(
+        &with(
+            &with(PLANE, "mass: 1.0,", ""),
+            "(\n            name: \"lid\"",
+            "‸(\n            name: \"lid\"",
+        ),
+        &["the body `lid` moves under forces, so it needs a `mass`"],
+    );
+}
+
+#[test]
+fn two_bodies_of_one_name() {
+    refused(
+        &with(PLANE, r#"name: "lid""#, r#"name: ‸"floor""#),
+        &["two bodies are named `floor`"],
+    );
+}
+
+#[test]
+fn a_friction_test_of_an_unknown_body() {
+    refused(
+        &with(
+            PLANE,
+            r#"friction: (body: "lid""#,
+            r#"friction: (body: ‸"lit""#,
+        ),
+        &[
+            "there is no body `lit`",
+            "expected one of floor, lid",
+            "did you mean `lid`?",
+        ],
+    );
+}
+
+#[test]
+fn a_motion_that_the_plane_does_not_have() {
+    refused(
+        &with(PLANE, "dofs: (x:", "dofs: (z: ‸Velocity(Constant(1.0)), x:"),
+        &["there is no z in two dimensions", "expected x, y or rz"],
+    );
+}
+
+#[test]
+fn a_frame_too_wide_to_draw() {
+    refused(
+        &with(PLANE, "frames: 0", "frames: 1, width: ‸100000"),
+        &["expected 200 to 16384 pixels"],
+    );
+}

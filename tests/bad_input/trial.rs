@@ -1,0 +1,203 @@
+//! One trial of the program: a folder with a case and materials, a call, and what it must say.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Stands before the token at fault; no part of the case.
+pub const MARK: char = '‸';
+
+/// A valid case in the plane: three grains above a floor, a lid pressed by a table of time.
+pub const PLANE: &str = r#"(
+    name: "grains between a floor and a lid",
+    dimension: 2,
+    time: (step: 1e-3, end: 0.002, theta: 0.5),
+    gravity: [0.0, -9.81],
+    periodic: (x: 0.4),
+    materials: {"grain": "stone"},
+    interfaces: [
+        (
+            name: "grains",
+            between: ("grain", "grain"),
+            parameters_from: "laws",
+            contact: "coulomb",
+            parameters: (contact: {"mu": 0.3}),
+        ),
+    ],
+    bodies: [
+        (name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 1.0])]),
+        (
+            name: "lid",
+            material: "grain",
+            shapes: [HalfSpace(normal: [0.0, -1.0])],
+            position: [0.0, 0.1],
+            mass: 1.0,
+            dofs: (x: Displacement(Sine(amplitude: 1e-4, frequency: 20.0)), y: Force(Table([(0.0, -1.0), (1.0, -2.0)]))),
+        ),
+    ],
+    grains: [
+        List(material: "grain", grains: [
+            (at: [0.05, 0.011], radius: 0.01),
+            (at: [0.1, 0.011], radius: 0.01),
+            (at: [0.15, 0.011], radius: 0.01),
+        ]),
+    ],
+    friction: (body: "lid", along: 0, normal: 1),
+    output: (frames: 0, views: 0, figures: false),
+)
+"#;
+
+/// A valid case in space: a grain above a rough floor.
+pub const SOLID: &str = r#"(
+    name: "a grain on a rough floor",
+    dimension: 3,
+    time: (step: 1e-3, end: 0.002),
+    gravity: [0.0, 0.0, -9.81],
+    materials: {"grain": "stone"},
+    interfaces: [(name: "grains", between: ("grain", "grain"), contact: "coulomb")],
+    bodies: [
+        (name: "floor", material: "grain", shapes: [HeightField(points: (4, 4), spacing: (0.1, 0.1), rms: 1e-4)]),
+    ],
+    grains: [List(material: "grain", grains: [(at: [0.15, 0.15, 0.02], radius: 0.01)])],
+    output: (frames: 0, views: 0, figures: false),
+)
+"#;
+
+/// A friction law in C.
+const LAW: &str = r#"
+#include "fretwork.h"
+static int32_t prepare(const fw_batch *b, fw_message *m) {
+    (void)m;
+    for (size_t k = 0; k < b->n; k++) b->out_friction[k] = b->parameters[0];
+    return FW_OK;
+}
+static const fw_field parameters[] = {{"mu", "", "friction coefficient", 0.3, 0.0, 10.0, 0}};
+static const fw_plugin table = {
+    .size = sizeof(fw_plugin), .abi_major = FW_ABI_MAJOR, .abi_minor = FW_ABI_MINOR,
+    .kind = FW_KIND_CONTACT, .flags = FLAGS, .name = NAME, .version = "1.0",
+    .doc = "a test", .reference = "none", .n_parameters = 1, .parameters = parameters,
+    .prepare = prepare,
+};
+const fw_plugin *fretwork_plugin(void) { return &table; }
+"#;
+
+const STONE: &str = r#"(doc: "stone", density: (value: 2600.0, unit: "kg/m^3", source: "quartz"))"#;
+const LAWS: &str =
+    r#"(doc: "laws", contact: {"coulomb": {"mu": (value: 0.4, source: "a guess")}})"#;
+
+/// `case` with its one `old` replaced by `new`.
+pub fn with(case: &str, old: &str, new: &str) -> String {
+    assert_eq!(case.matches(old).count(), 1, "`{old}` in the case");
+    case.replace(old, new)
+}
+
+/// A folder of its own for each trial, removed at its end: `case.ron`, `materials/` beside it.
+pub struct Trial {
+    folder: PathBuf,
+}
+
+impl Trial {
+    pub fn new() -> Self {
+        static COUNT: AtomicUsize = AtomicUsize::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("fretwork-bad-input-{}-{number}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(folder.join("materials")).unwrap();
+        let trial = Self { folder };
+        trial.write("materials/stone.ron", STONE);
+        trial.write("materials/laws.ron", LAWS);
+        trial
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.path(name);
+        std::fs::write(&path, content).unwrap();
+        path
+    }
+
+    /// Writes a text without its mark; `path:line:column` of the mark, if there is one.
+    pub fn write_marked(&self, name: &str, marked: &str) -> (PathBuf, Option<String>) {
+        let path = self.write(name, marked.replace(MARK, ""));
+        let place = marked.find(MARK).map(|at| {
+            let before = &marked[..at];
+            let line = before.matches('\n').count() + 1;
+            let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+            format!("{}:{line}:{column}: error: ", path.display())
+        });
+        (path, place)
+    }
+
+    /// Compiles a contact law of this name and these flags into the trial's folder.
+    pub fn compile_law(&self, name: &str, flags: &str) {
+        use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+        let source = self.write("law.c", LAW);
+        let file = name.replace('-', "_");
+        let library = self.path(&format!("{DLL_PREFIX}fretwork_contact_{file}{DLL_SUFFIX}"));
+        let compiled = Command::new("cc")
+            .args(["-std=c99", "-Wall", "-Werror", "-shared", "-fPIC", "-I"])
+            .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/plugins/abi/include"))
+            .args([format!("-DNAME=\"{name}\""), format!("-DFLAGS={flags}")])
+            .arg("-o")
+            .args([&library, &source])
+            .status()
+            .expect("a C compiler named cc");
+        assert!(compiled.success());
+    }
+
+    /// Calls the program; no variable of the caller's reaches it.
+    pub fn call(&self, arguments: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_fretwork"))
+            .args(arguments)
+            .current_dir(&self.folder)
+            .env_remove("FRETWORK_PLUGIN_PATH")
+            .env("NO_COLOR", "1")
+            .output()
+            .unwrap()
+    }
+
+    /// `run` of a case that must be refused with all of `words`, before anything is written.
+    pub fn refuses(&self, case: &Path, more: &[&str], words: &[&str]) -> String {
+        let mut arguments = vec!["run", case.to_str().unwrap()];
+        arguments.extend_from_slice(more);
+        let said = refusal(&self.call(&arguments), words);
+        assert!(!self.path("results").exists(), "nothing may be written");
+        said
+    }
+}
+
+impl Drop for Trial {
+    fn drop(&mut self) {
+        std::fs::remove_dir_all(&self.folder).ok();
+    }
+}
+
+/// Standard error of a call that must have ended with exit code 2, without a panic, saying `words`.
+pub fn refusal(output: &Output, words: &[&str]) -> String {
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!said.contains("panicked"), "{said}");
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    for word in words {
+        assert!(said.contains(word), "no `{word}` in: {said}");
+    }
+    said
+}
+
+/// Runs a marked case: it must be refused at the mark, on the first line, with all of `words`.
+#[track_caller]
+pub fn refused(marked: &str, words: &[&str]) {
+    refused_with(marked, &[], words);
+}
+
+/// The same with further arguments.
+#[track_caller]
+pub fn refused_with(marked: &str, more: &[&str], words: &[&str]) {
+    let trial = Trial::new();
+    let (case, place) = trial.write_marked("case.ron", marked);
+    let said = trial.refuses(&case, more, words);
+    let place = place.expect("a mark in the case");
+    assert!(said.starts_with(&place), "not at {place}\n{said}");
+}

@@ -1,0 +1,75 @@
+//! Runs `cases/verification/` and compares with closed forms.
+//!
+//! `cargo test --release --test verification -- --nocapture` prints the table: case, quantity, expected,
+//! obtained, tolerance. Every expected value is a formula written here.
+
+mod bonds;
+mod dynamics;
+mod energy;
+
+use fretwork::geometry::space::{Plane, Solid};
+use fretwork::laws::SearchPath;
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::load;
+use fretwork::step::Simulation;
+use std::path::Path;
+
+/// Acceleration of gravity in the cases (m/s^2).
+const G: f64 = 9.81;
+
+/// The table.
+#[derive(Default)]
+struct Table {
+    failed: Vec<String>,
+}
+
+impl Table {
+    /// Compares with a relative tolerance, or an absolute one where zero is expected.
+    fn compare(&mut self, case: &str, quantity: &str, expected: f64, obtained: f64, tolerance: f64) {
+        let scale = if expected == 0.0 { 1.0 } else { expected.abs() };
+        let fine = (obtained - expected).abs() <= tolerance * scale;
+        let line = format!(
+            "{case:<24} {quantity:<40} {expected:>15.8e} {obtained:>15.8e} {tolerance:>8.0e} {}",
+            if fine { "ok" } else { "FAILED" }
+        );
+        println!("{line}");
+        if !fine {
+            self.failed.push(line);
+        }
+    }
+}
+
+fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
+    let file = format!("{}/cases/verification/{case}.ron", env!("CARGO_MANIFEST_DIR"));
+    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
+    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<S>(&SearchPath::new(&[])).unwrap_or_else(|e| panic!("{e}"));
+    built.simulation
+}
+
+fn plane(case: &str, sets: &[&str]) -> Simulation<Plane> {
+    scene(case, sets)
+}
+
+fn solid(case: &str, sets: &[&str]) -> Simulation<Solid> {
+    scene(case, sets)
+}
+
+/// Steps until a time and calls `seen` after each.
+fn until<S: Dimensional>(s: &mut Simulation<S>, end: f64, mut seen: impl FnMut(&Simulation<S>)) {
+    while s.time < end - 0.5 * s.scheme.h {
+        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+        assert!(report.solver.converged, "step {} did not converge: {:?}", s.steps, report.solver);
+        seen(s);
+    }
+}
+
+#[test]
+fn closed_forms_are_met() {
+    let mut table = Table::default();
+    println!("case                     quantity                                        expected        obtained      tol");
+    dynamics::all(&mut table);
+    bonds::all(&mut table);
+    energy::all(&mut table);
+    assert!(table.failed.is_empty(), "\n{}", table.failed.join("\n"));
+}
