@@ -181,7 +181,7 @@ fn groups<S: Space>(
         line(
             "inertial number",
             format!(
-                "{inertial:.2e} with inertia scaled by {:e} (quasi-static below 1e-3)",
+                "{inertial:.2e} with inertia scaled by {:e} (friction rises by about 1.1 times this, da Cruz 2005)",
                 case.inertia_scaling
             ),
         );

@@ -58,7 +58,7 @@ pub fn detect<S: Space>(
     time: f64,
 ) {
     let centres: Vec<S::Vector> = shapes.balls.iter().map(|b| centre(b, bodies)).collect();
-    if must_rebuild(network, bodies) {
+    if must_rebuild(network, shapes, bodies, &centres) {
         rebuild(network, shapes, bodies, laws, &centres);
     }
     std::mem::swap(&mut network.contacts, &mut network.old);
@@ -87,17 +87,41 @@ pub fn detect<S: Space>(
     }
 }
 
-fn must_rebuild<S: Space>(network: &Network<S>, bodies: &Bodies<S>) -> bool {
-    if network.seen_at.len() != bodies.len() {
+/// Where the neighbour list watches: the balls' centres, then the frames of the surfaces.
+fn watched<'a, S: Space>(
+    shapes: &'a Shapes<S>,
+    bodies: &'a Bodies<S>,
+    centres: &'a [S::Vector],
+) -> impl Iterator<Item = S::Vector> + 'a {
+    let frames = shapes
+        .surfaces
+        .iter()
+        .map(|s| bodies.position[s.body as usize]);
+    centres.iter().copied().chain(frames)
+}
+
+fn must_rebuild<S: Space>(
+    network: &Network<S>,
+    shapes: &Shapes<S>,
+    bodies: &Bodies<S>,
+    centres: &[S::Vector],
+) -> bool {
+    if network.seen_at.len() != centres.len() + shapes.surfaces.len() {
+        return true;
+    }
+    // A surface that turns sweeps more than its frame moves.
+    if shapes
+        .surfaces
+        .iter()
+        .any(|s| bodies.spin[s.body as usize] != S::Spin::null())
+    {
         return true;
     }
     let limit = 0.25 * network.skin * network.skin;
-    bodies
-        .position
-        .iter()
+    watched(shapes, bodies, centres)
         .zip(&network.seen_at)
         .any(|(x, seen)| {
-            let d = *x - *seen;
+            let d = x - *seen;
             d.dot(&d) > limit
         })
 }
@@ -136,7 +160,8 @@ fn rebuild<S: Space>(
     pairs.sort_unstable();
     pairs.dedup();
     network.candidates = pairs;
-    network.seen_at.clone_from(&bodies.position);
+    network.seen_at.clear();
+    network.seen_at.extend(watched(shapes, bodies, centres));
     network.rebuilds += 1;
 }
 

@@ -109,6 +109,9 @@ impl HeightField {
     }
 }
 
+/// A part of the surface, how many triangles found it, the nearest point, and a normal there.
+type Found = (Vec<(i64, i64)>, usize, Vector3<f64>, Vector3<f64>);
+
 fn triangles(i: i64, j: i64) -> [[(i64, i64); 3]; 2] {
     [
         [(i, j), (i + 1, j), (i + 1, j + 1)],
@@ -177,7 +180,7 @@ impl Surface<Solid> for HeightField {
         };
         let ((i0, i1), (j0, j1)) = (range(0), range(1));
         // Each part found, how many triangles found it, and where.
-        let mut found: Vec<(Vec<(i64, i64)>, usize, Vector3<f64>, Vector3<f64>)> = Vec::new();
+        let mut found: Vec<Found> = Vec::new();
         for i in i0..=i1 {
             for j in j0..=j1 {
                 for corners in triangles(i, j) {

@@ -34,6 +34,8 @@ pub trait VectorLike:
     fn norm(&self) -> f64 {
         self.dot(self).sqrt()
     }
+    /// The nearest vector not longer than `bound` (not negative).
+    fn limited(self, bound: f64) -> Self;
     /// From a slice; missing components are zero.
     fn from_slice(values: &[f64]) -> Self {
         let mut v = Self::null();
@@ -74,11 +76,22 @@ macro_rules! vector_like {
             }
             #[inline(always)]
             fn dot(&self, other: &Self) -> f64 {
-                let mut sum = self[0] * other[0];
-                for k in 1..$n {
-                    sum += self[k] * other[k];
+                let products = self.iter().zip(other.iter()).map(|(a, b)| a * b);
+                products.reduce(|sum, x| sum + x).unwrap_or(0.0)
+            }
+            #[inline(always)]
+            fn limited(mut self, bound: f64) -> Self {
+                if $n == 1 {
+                    // One number needs neither a root nor a branch.
+                    self[0] = self[0].max(-bound).min(bound);
+                    return self;
                 }
-                sum
+                let squared = VectorLike::dot(&self, &self);
+                if squared <= bound * bound {
+                    self
+                } else {
+                    self * (bound / squared.sqrt())
+                }
             }
         }
     };

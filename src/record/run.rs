@@ -368,6 +368,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         if self.simulation.network.bonds_made() > 0 {
             caption.push(format!("damage ratio {:.3}", self.damage_ratio()));
         }
+        self.camera = Camera::new(&self.simulation, self.loaded.case.output.width);
         let path = self.out.join("frames").join(format!("frame_{step:08}.png"));
         Ok(self
             .camera

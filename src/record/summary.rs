@@ -112,7 +112,11 @@ impl Summary {
     /// Some lines for a terminal.
     pub fn text(&self) -> String {
         let mut out = String::new();
-        let (joule, newton, volume) = if self.dimension == 3 { ("J", "N", "m3") } else { ("J/m", "N/m", "m3/m") };
+        let (joule, newton, volume) = if self.dimension == 3 {
+            ("J", "N", "m3")
+        } else {
+            ("J/m", "N/m", "m3/m")
+        };
         let mut line = |label: &str, value: String| {
             let _ = writeln!(out, "  {label:<22} {value}");
         };

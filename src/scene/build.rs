@@ -291,6 +291,9 @@ type Seed<S> = (
     Origin,
 );
 
+/// A surface and its offset in the frame of its body.
+type Placed<S> = (<S as Space>::Vector, Box<dyn Surface<S>>);
+
 /// More grains than memory holds are a slip of the keyboard.
 const MOST_GRAINS: usize = 10_000_000;
 
@@ -517,7 +520,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let (material, density) = self.material(&format!("{here}.material"), &spec.material)?;
         let position = self.vector(&format!("{here}.position"), &spec.position)?;
         let mut balls: Vec<(S::Vector, f64)> = Vec::new();
-        let mut surfaces: Vec<(S::Vector, Box<dyn Surface<S>>)> = Vec::new();
+        let mut surfaces: Vec<Placed<S>> = Vec::new();
         for (s, shape) in spec.shapes.iter().enumerate() {
             let here = format!("{here}.shapes.{s}");
             match shape {
@@ -648,11 +651,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(())
     }
 
-    fn surface(
-        &self,
-        here: &str,
-        shape: &ShapeSpec,
-    ) -> Result<(S::Vector, Box<dyn Surface<S>>), InputError> {
+    fn surface(&self, here: &str, shape: &ShapeSpec) -> Result<Placed<S>, InputError> {
         let period = self.shapes.periodic.period[0];
         let null = S::Vector::null();
         let bad = |message: String| self.fail(here, message);
@@ -736,7 +735,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 heights,
                 rms,
             } => {
-                let count = points.0.checked_mul(points.1).unwrap_or(usize::MAX);
+                let count = points.0.saturating_mul(points.1);
                 if count > 10_000_000 {
                     return Err(bad("a height field has at most 10,000,000 points".into()));
                 }

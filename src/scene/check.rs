@@ -101,10 +101,10 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
 
 fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), Fault> {
     for (name, value) in [("mass", body.mass), ("inertia", body.inertia)] {
-        if let Some(value) = value {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(Fault::new(name, format!("must be positive, got {value}")));
-            }
+        if let Some(value) = value
+            && !(value.is_finite() && value > 0.0)
+        {
+            return Err(Fault::new(name, format!("must be positive, got {value}")));
         }
     }
     if dimension == 2 {

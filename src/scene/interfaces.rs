@@ -132,14 +132,14 @@ fn compose(
     let optional = |kind, name: &Option<String>, file: &ByLaw, own| {
         name.as_ref().map(|n| load(kind, n, file, own)).transpose()
     };
-    if let BondRule::At(time) = spec.bonds {
-        if !(time.is_finite() && time >= 0.0) {
-            return Err(Fault::new(
-                "bonds",
-                "the time at which bonds are made must not be negative",
-            )
-            .into());
-        }
+    if let BondRule::At(time) = spec.bonds
+        && !(time.is_finite() && time >= 0.0)
+    {
+        return Err(Fault::new(
+            "bonds",
+            "the time at which bonds are made must not be negative",
+        )
+        .into());
     }
     let interface = Interface {
         name: spec.name.clone(),

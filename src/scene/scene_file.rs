@@ -12,13 +12,16 @@ pub struct Wall {
     pub normal: Vec<f64>,
 }
 
+/// A ball: centre and radius (m).
+pub type Place = (Vec<f64>, f64);
+
 /// What a scene file holds.
 #[derive(Clone, Debug, Default)]
 pub struct SceneFile {
-    /// Free balls: centre and radius (m).
-    pub balls: Vec<(Vec<f64>, f64)>,
+    /// Free balls.
+    pub balls: Vec<Place>,
     /// Rigid clusters: name and balls.
-    pub clusters: Vec<(String, Vec<(Vec<f64>, f64)>)>,
+    pub clusters: Vec<(String, Vec<Place>)>,
     /// Fixed walls.
     pub walls: Vec<Wall>,
 }

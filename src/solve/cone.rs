@@ -23,17 +23,6 @@ pub fn project<T: VectorLike>(normal: f64, tangent: T, mu: f64, c: f64) -> (f64,
     }
 }
 
-/// The nearest vector not longer than `bound`.
-#[inline(always)]
-pub fn limit<T: VectorLike>(tangent: T, bound: f64) -> T {
-    let squared = tangent.dot(&tangent);
-    if squared <= bound * bound {
-        tangent
-    } else {
-        tangent * (bound / squared.sqrt())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

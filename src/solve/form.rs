@@ -45,6 +45,19 @@ pub struct Elastic<S: Space> {
     pub tension_only: bool,
 }
 
+impl<S: Space> Elastic<S> {
+    /// No bond.
+    pub fn none() -> Self {
+        Self {
+            a_n: 0.0,
+            a_t: S::Tangent::null(),
+            b_n: 0.0,
+            b_t: 0.0,
+            tension_only: false,
+        }
+    }
+}
+
 /// What a solver gives back for one contact.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactSolution<S: Space> {
@@ -64,7 +77,7 @@ pub(super) enum Place {
     General(u32),
 }
 
-/// The contact problem of one step. Build it with [`Problem::new`], then [`Problem::push`] contacts.
+/// The contact problem of one step. Push the bodies, then the contacts.
 #[derive(Debug)]
 pub struct Problem<S: Space> {
     /// Velocities in place, one line a body.

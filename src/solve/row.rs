@@ -73,7 +73,12 @@ fn natural_map<T: VectorLike>(
     c: f64,
 ) -> Residual {
     let slide = ut + st;
-    let (zn, zt) = cone::project(pn - rho * (un + sn + mu * slide.norm()), pt - slide * rho, mu, c);
+    let (zn, zt) = cone::project(
+        pn - rho * (un + sn + mu * slide.norm()),
+        pt - slide * rho,
+        mu,
+        c,
+    );
     let (rn, rt) = ((pn - zn) / rho, (pt - zt) * (1.0 / rho));
     Residual {
         squared: rn * rn + rt.dot(&rt),
@@ -127,7 +132,7 @@ impl<S: Space> Row<S> for PlainRow<S> {
     fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>) {
         let (un, ut) = relative(&self.n, a, b);
         let pn = (self.pn - (un + self.shift) * self.iwn).max(0.0);
-        let pt = cone::limit(self.pt - ut * self.iwt, self.mu * pn);
+        let pt = (self.pt - ut * self.iwt).limited(self.mu * pn);
         push(&self.n, pn - self.pn, pt - self.pt, a, b);
         self.pn = pn;
         self.pt = pt;
@@ -142,7 +147,14 @@ impl<S: Space> Row<S> for PlainRow<S> {
         let (un, ut) = relative(&self.n, a, b);
         let rho = self.iwn.min(self.iwt);
         if rho > 0.0 {
-            natural_map((self.pn, self.pt), (un, ut), (self.shift, S::Tangent::null()), rho, self.mu, 0.0)
+            natural_map(
+                (self.pn, self.pt),
+                (un, ut),
+                (self.shift, S::Tangent::null()),
+                rho,
+                self.mu,
+                0.0,
+            )
         } else {
             Residual::default()
         }
@@ -158,62 +170,75 @@ impl<S: Space> Row<S> for PlainRow<S> {
 }
 
 /// Contact of two balls with a single-valued part, cohesion or tangential restitution.
+///
+/// With the bond, u (1 + W B) = W p_sc + f - W a, f = u - W p. What does not change in the sweeps is
+/// kept: `wa` = W a, `sd` = s (1 + W B), `gain` = 1/(1 + W B).
 #[derive(Clone, Debug)]
 pub(super) struct FullRow<S: Space> {
     bodies: [u32; 2],
     n: S::Vector,
     pn: f64,
     pt: S::Tangent,
-    shift_n: f64,
-    shift_t: S::Tangent,
-    wn: f64,
-    wt: f64,
-    iwn: f64,
-    iwt: f64,
+    sn: f64,
+    st: S::Tangent,
+    normal: Linear<f64>,
+    tangent: Linear<S::Tangent>,
     mu: f64,
     tension: f64,
     cohesion: f64,
-    elastic: Elastic<S>,
-    sn: f64,
-    st: S::Tangent,
+    tension_only: bool,
+}
+
+/// One direction of a contact with a bond.
+#[derive(Clone, Copy, Debug)]
+struct Linear<T> {
+    w: f64,
+    iw: f64,
+    a: T,
+    b: f64,
+    shift: T,
+    wa: T,
+    sd: T,
+    gain: f64,
 }
 
 impl<S: Space> FullRow<S> {
     pub fn new(contact: &ContactForm<S>, w_n: f64, w_t: f64) -> Self {
         let n = contact.normal;
+        let e = contact.elastic.unwrap_or_else(Elastic::none);
+        let (dn, dt) = (1.0 + w_n * e.b_n, 1.0 + w_t * e.b_t);
         Self {
             bodies: contact.bodies,
             n,
             pn: n.dot(&contact.impulse),
             pt: S::tangential(&n, &contact.impulse),
-            shift_n: contact.shift_n,
-            shift_t: contact.shift_t,
-            wn: w_n,
-            wt: w_t,
-            iwn: inverse(w_n),
-            iwt: inverse(w_t),
+            sn: 0.0,
+            st: S::Tangent::null(),
+            normal: Linear {
+                w: w_n,
+                iw: inverse(w_n),
+                a: e.a_n,
+                b: e.b_n,
+                shift: contact.shift_n,
+                wa: w_n * e.a_n,
+                sd: contact.shift_n * dn,
+                gain: 1.0 / dn,
+            },
+            tangent: Linear {
+                w: w_t,
+                iw: inverse(w_t),
+                a: e.a_t,
+                b: e.b_t,
+                shift: contact.shift_t,
+                wa: e.a_t * w_t,
+                sd: contact.shift_t * dt,
+                gain: 1.0 / dt,
+            },
             mu: contact.friction,
             tension: contact.tension,
             cohesion: contact.cohesion,
-            elastic: contact.elastic.unwrap_or(Elastic {
-                a_n: 0.0,
-                a_t: S::Tangent::null(),
-                b_n: 0.0,
-                b_t: 0.0,
-                tension_only: false,
-            }),
-            sn: 0.0,
-            st: S::Tangent::null(),
+            tension_only: e.tension_only,
         }
-    }
-
-    /// The bond's impulse at a velocity.
-    #[inline(always)]
-    fn bond(&self, un: f64, ut: &S::Tangent) -> (f64, S::Tangent) {
-        let e = &self.elastic;
-        let en = -(e.a_n + e.b_n * un);
-        let en = if e.tension_only { en.min(0.0) } else { en };
-        (en, -(e.a_t + *ut * e.b_t))
     }
 }
 
@@ -225,21 +250,21 @@ impl<S: Space> Row<S> for FullRow<S> {
 
     #[inline(always)]
     fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>) {
-        let e = self.elastic;
+        let (n, t) = (&self.normal, &self.tangent);
         let (un, ut) = relative(&self.n, a, b);
-        let (fn_, ft) = (un - self.wn * self.pn, ut - self.pt * self.wt);
-        // With the bond's pull: u (1 + W B) = W p_sc + f - W a.
-        let (gn, dn) = (fn_ - self.wn * e.a_n, 1.0 + self.wn * e.b_n);
-        let mut sn = (-(gn + self.shift_n * dn) * self.iwn).max(-self.tension);
-        let mut en = -(e.a_n + e.b_n * ((self.wn * sn + gn) / dn));
-        if e.tension_only && en > 0.0 {
-            sn = (-(fn_ + self.shift_n) * self.iwn).max(-self.tension);
-            en = 0.0;
-        }
-        let (gt, dt) = (ft - e.a_t * self.wt, 1.0 + self.wt * e.b_t);
+        let free = un - n.w * self.pn;
+        let pulled = free - n.wa;
+        // Both answers are formed and one is chosen: the branch would be guessed wrong too often.
+        let with = (-(pulled + n.sd) * n.iw).max(-self.tension);
+        let pull = -(n.a + n.b * ((n.w * with + pulled) * n.gain));
+        let without = (-(free + n.shift) * n.iw).max(-self.tension);
+        let slack = self.tension_only & (pull > 0.0);
+        let sn = std::hint::select_unpredictable(slack, without, with);
+        let en = std::hint::select_unpredictable(slack, 0.0, pull);
+        let pulled = ut - self.pt * t.w - t.wa;
         let bound = self.mu * (sn + self.tension) + self.cohesion;
-        let st = cone::limit((gt + self.shift_t * dt) * -self.iwt, bound);
-        let et = -(e.a_t + (st * self.wt + gt) * (e.b_t / dt));
+        let st = ((pulled + t.sd) * -t.iw).limited(bound);
+        let et = -(t.a + (st * t.w + pulled) * (t.b * t.gain));
         let (pn, pt) = (sn + en, st + et);
         push(&self.n, pn - self.pn, pt - self.pt, a, b);
         self.pn = pn;
@@ -253,17 +278,24 @@ impl<S: Space> Row<S> for FullRow<S> {
     }
 
     fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual {
-        let e = &self.elastic;
-        let (un, ut) = relative(&self.n, a, b);
-        let (en, et) = self.bond(un, &ut);
-        let dn = 1.0 + self.wn * e.b_n;
-        let rho = (self.iwn * dn).min(self.iwt * (1.0 + self.wt * e.b_t));
-        if self.iwn > 0.0 {
-            let (pn, pt) = (self.pn - en + self.tension, self.pt - et);
-            natural_map((pn, pt), (un, ut), (self.shift_n, self.shift_t), rho, self.mu, self.cohesion)
-        } else {
-            Residual::default()
+        let (n, t) = (&self.normal, &self.tangent);
+        if n.iw == 0.0 {
+            return Residual::default();
         }
+        let (un, ut) = relative(&self.n, a, b);
+        let en = -(n.a + n.b * un);
+        let en = if self.tension_only { en.min(0.0) } else { en };
+        let et = -(t.a + ut * t.b);
+        let rho = (n.iw / n.gain).min(t.iw / t.gain);
+        let shifted = (self.pn - en + self.tension, self.pt - et);
+        natural_map(
+            shifted,
+            (un, ut),
+            (n.shift, t.shift),
+            rho,
+            self.mu,
+            self.cohesion,
+        )
     }
 
     fn solution(&self) -> ContactSolution<S> {
@@ -339,13 +371,7 @@ impl<S: Space> GeneralRow<S> {
     ) -> Self {
         let n = contact.normal;
         let [i, j] = contact.bodies.map(|b| inertia(b as usize));
-        let elastic = contact.elastic.unwrap_or(Elastic {
-            a_n: 0.0,
-            a_t: S::Tangent::null(),
-            b_n: 0.0,
-            b_t: 0.0,
-            tension_only: false,
-        });
+        let elastic = contact.elastic.unwrap_or_else(Elastic::none);
         let pulled = Block::new(block, &n, elastic.b_n, elastic.b_t);
         let slack = elastic
             .tension_only
@@ -395,7 +421,7 @@ impl<S: Space> GeneralRow<S> {
             let u = block.w.apply(&(*n * sn + S::lift(n, &st))) + *f;
             let ut = S::tangential(n, &u) + self.shift_t;
             let bound = self.mu * (sn + self.tension) + self.cohesion;
-            st = cone::limit(st - ut * block.iwt, bound);
+            st = (st - ut * block.iwt).limited(bound);
             let change = (sn - old_n).abs() + (st - old_t).norm();
             if change <= 1e-14 * (sn.abs() + st.norm()) {
                 break;
@@ -427,12 +453,12 @@ impl<S: Space> Row<S> for GeneralRow<S> {
             .apply(&(f - self.block.apply(&(n * e.a_n + at))));
         let (mut sn, mut st) = self.solve(&self.pulled, &with);
         let mut u = self.pulled.w.apply(&(n * sn + S::lift(&n, &st))) + with;
-        if let Some(slack) = &self.slack {
-            if -(e.a_n + e.b_n * n.dot(&u)) > 0.0 {
-                let without = slack.m.apply(&(f - self.block.apply(&at)));
-                (sn, st) = self.solve(slack, &without);
-                u = slack.w.apply(&(n * sn + S::lift(&n, &st))) + without;
-            }
+        if let Some(slack) = &self.slack
+            && -(e.a_n + e.b_n * n.dot(&u)) > 0.0
+        {
+            let without = slack.m.apply(&(f - self.block.apply(&at)));
+            (sn, st) = self.solve(slack, &without);
+            u = slack.w.apply(&(n * sn + S::lift(&n, &st))) + without;
         }
         let (en, et) = self.bond(&u);
         let p = n * (sn + en) + S::lift(&n, &(st + et));
@@ -455,7 +481,14 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         if rho > 0.0 {
             let pn = n.dot(&self.p) - en + self.tension;
             let pt = S::tangential(n, &self.p) - et;
-            natural_map((pn, pt), (un, ut), (self.shift_n, self.shift_t), rho, self.mu, self.cohesion)
+            natural_map(
+                (pn, pt),
+                (un, ut),
+                (self.shift_n, self.shift_t),
+                rho,
+                self.mu,
+                self.cohesion,
+            )
         } else {
             Residual::default()
         }

@@ -17,7 +17,12 @@ pub fn all(table: &mut Table) {
 
 /// Traction on the grip along its motion (Pa).
 fn traction(s: &Simulation<Plane>) -> f64 {
-    let grip = s.bodies.driven.iter().position(|d| d.name == "grip").unwrap();
+    let grip = s
+        .bodies
+        .driven
+        .iter()
+        .position(|d| d.name == "grip")
+        .unwrap();
     let v = s.bodies.velocity[s.bodies.driven[grip].body as usize];
     -s.received[grip].0.dot(&v) / v.norm() / s.scheme.h / AREA
 }
@@ -77,8 +82,20 @@ fn viscosity(table: &mut Table) {
         let (expected_peak, expected_area) = ode(b);
         let set = format!("interfaces.grain.parameters.damage.b={b:?}");
         let (peak, work) = pull("bond_mode_1", &[&set], 100e-6);
-        table.compare("bond_mode_1", &format!("peak, b {b:e} J s/m^2 (Pa)"), expected_peak, peak, 1e-2);
-        table.compare("bond_mode_1", &format!("area to 100 um, b {b:e} (J/m^2)"), expected_area, work, 1e-2);
+        table.compare(
+            "bond_mode_1",
+            &format!("peak, b {b:e} J s/m^2 (Pa)"),
+            expected_peak,
+            peak,
+            1e-2,
+        );
+        table.compare(
+            "bond_mode_1",
+            &format!("area to 100 um, b {b:e} (J/m^2)"),
+            expected_area,
+            work,
+            1e-2,
+        );
     }
 }
 
@@ -87,7 +104,10 @@ fn unload(table: &mut Table) {
     let mut s = plane("bond_unload", &[]);
     let bond = |s: &Simulation<Plane>| {
         // There is no bond before the first step.
-        s.network.memory[0].bonds.first().map_or((0.0, 0.0), |b| (b.opening_n, b.damage))
+        s.network.memory[0]
+            .bonds
+            .first()
+            .map_or((0.0, 0.0), |b| (b.opening_n, b.damage))
     };
     let (mut most, mut at_turn, mut worst, mut gained) = (0.0f64, f64::NAN, 0.0f64, 0.0f64);
     while s.time < 7e-5 - 0.5 * s.scheme.h {
@@ -99,7 +119,12 @@ fn unload(table: &mut Table) {
             at_turn = damage;
             gained = gained.max(now - damage);
             // The step's traction is the secant at its theta-point.
-            let grip = s.bodies.driven.iter().position(|d| d.name == "grip").unwrap();
+            let grip = s
+                .bodies
+                .driven
+                .iter()
+                .position(|d| d.name == "grip")
+                .unwrap();
             let got = -s.received[grip].0.y / s.scheme.h / AREA;
             let expected = (1.0 - damage).powi(2) * C * 0.5 * (before + after);
             worst = worst.max((got / expected - 1.0).abs());
@@ -108,9 +133,27 @@ fn unload(table: &mut Table) {
     }
     let case = "bond_unload";
     table.compare(case, "secant while unloaded, worst error", 0.0, worst, 1e-9);
-    table.compare(case, "damage gained below the largest opening", 0.0, gained, 1e-12);
+    table.compare(
+        case,
+        "damage gained below the largest opening",
+        0.0,
+        gained,
+        1e-12,
+    );
     // beta = w/(C u^2) at 2 u0.
-    table.compare(case, "damage at 2 u0", 1.0 - W / (C * (2.0 * u0).powi(2)), at_turn.min(1.0), 1e-2);
+    table.compare(
+        case,
+        "damage at 2 u0",
+        1.0 - W / (C * (2.0 * u0).powi(2)),
+        at_turn.min(1.0),
+        1e-2,
+    );
     let (end, damage) = bond(&s);
-    table.compare(case, "damage at the end", 1.0 - W / (C * end * end), damage, 1e-6);
+    table.compare(
+        case,
+        "damage at the end",
+        1.0 - W / (C * end * end),
+        damage,
+        1e-6,
+    );
 }

@@ -16,7 +16,9 @@ pub fn all(table: &mut Table) {
 
 /// The body that is no floor: the last one added, or the first grain.
 fn mover<S: Space>(s: &Simulation<S>) -> usize {
-    (0..s.bodies.len()).find(|b| !s.bodies.immovable(*b)).unwrap()
+    (0..s.bodies.len())
+        .find(|b| !s.bodies.immovable(*b))
+        .unwrap()
 }
 
 fn bouncing_ball(table: &mut Table) {
@@ -39,7 +41,13 @@ fn bouncing_ball(table: &mut Table) {
     });
     let case = "bouncing_ball";
     table.compare(case, "first apex e^2 h0 (m)", e * e * h0, apexes[0], 1e-2);
-    table.compare(case, "third apex e^6 h0 (m)", e.powi(6) * h0, apexes[2], 1e-2);
+    table.compare(
+        case,
+        "third apex e^6 h0 (m)",
+        e.powi(6) * h0,
+        apexes[2],
+        1e-2,
+    );
     let end = (2.0 * h0 / G).sqrt() * (1.0 + e) / (1.0 - e);
     table.compare(case, "end of the bounces (s)", end, last_bounce, 1e-2);
 }
@@ -50,10 +58,19 @@ fn incline(table: &mut Table) {
         let mut s = plane("incline", sets);
         let block = mover(&s);
         until(&mut s, 0.5, |_| {});
-        (s.bodies.velocity[block].x / s.time, s.bodies.position[block].x)
+        (
+            s.bodies.velocity[block].x / s.time,
+            s.bodies.position[block].x,
+        )
     };
     let expected = G * (angle.sin() - 0.3 * angle.cos());
-    table.compare("incline", "acceleration, mu 0.3 (m/s^2)", expected, run(&[]).0, 1e-4);
+    table.compare(
+        "incline",
+        "acceleration, mu 0.3 (m/s^2)",
+        expected,
+        run(&[]).0,
+        1e-4,
+    );
     let stuck = run(&["interfaces.grain.parameters.contact.mu=0.6"]).1;
     table.compare("incline", "slide, mu 0.6 (m)", 0.0, stuck, 1e-9);
     let critical = 0.3f64.atan().to_degrees();
@@ -63,7 +80,13 @@ fn incline(table: &mut Table) {
         let (acceleration, x) = run(&[&set]);
         if slips {
             let expected = G * (a.sin() - 0.3 * a.cos());
-            table.compare("incline", "slips 0.1 degrees above atan mu", expected, acceleration, 1e-3);
+            table.compare(
+                "incline",
+                "slips 0.1 degrees above atan mu",
+                expected,
+                acceleration,
+                1e-3,
+            );
         } else {
             table.compare("incline", "sticks 0.1 degrees below atan mu", 0.0, x, 1e-9);
         }
@@ -82,12 +105,21 @@ fn slide_to_stop(table: &mut Table) {
             stopped = s.time;
         }
     });
-    table.compare("slide_to_stop", "v^2/(2 mu g) (m)", v * v / (2.0 * mu * G), s.bodies.position[block].x, 5e-3);
+    table.compare(
+        "slide_to_stop",
+        "v^2/(2 mu g) (m)",
+        v * v / (2.0 * mu * G),
+        s.bodies.position[block].x,
+        5e-3,
+    );
     table.compare("slide_to_stop", "v/(mu g) (s)", v / (mu * G), stopped, 5e-3);
 }
 
 /// Velocity, time and place where rolling begins.
-fn rolling<S: fretwork::scene::build::Dimensional>(s: &mut Simulation<S>, axis: usize) -> (f64, f64, f64) {
+fn rolling<S: fretwork::scene::build::Dimensional>(
+    s: &mut Simulation<S>,
+    axis: usize,
+) -> (f64, f64, f64) {
     let (ball, r) = (mover(s), 0.1);
     let mut at = None;
     until(s, 0.2, |s| {
@@ -103,14 +135,28 @@ fn rolling<S: fretwork::scene::build::Dimensional>(s: &mut Simulation<S>, axis: 
 fn slide_to_roll(table: &mut Table) {
     let (v, mu) = (1.0, 0.3);
     for (case, k, got) in [
-        ("slide_to_roll_disk", 0.5, rolling(&mut plane("slide_to_roll_disk", &[]), 0)),
-        ("slide_to_roll_sphere", 0.4, rolling(&mut solid("slide_to_roll_sphere", &[]), 1)),
+        (
+            "slide_to_roll_disk",
+            0.5,
+            rolling(&mut plane("slide_to_roll_disk", &[]), 0),
+        ),
+        (
+            "slide_to_roll_sphere",
+            0.4,
+            rolling(&mut solid("slide_to_roll_sphere", &[]), 1),
+        ),
     ] {
         // Inertia k m r^2: slip ends when v - mu g t = mu g t/k.
         let t = v / (mu * G * (1.0 + 1.0 / k));
         table.compare(case, "rolling velocity (m/s)", v / (1.0 + k), got.0, 5e-3);
         table.compare(case, "time (s)", t, got.1, 5e-3);
-        table.compare(case, "distance (m)", v * t - 0.5 * mu * G * t * t, got.2, 5e-3);
+        table.compare(
+            case,
+            "distance (m)",
+            v * t - 0.5 * mu * G * t * t,
+            got.2,
+            5e-3,
+        );
     }
 }
 
@@ -120,26 +166,54 @@ fn roll_down(table: &mut Table) {
         let mut s = plane("roll_down_disk", sets);
         let b = mover(&s);
         until(&mut s, 0.5, |_| {});
-        (s.bodies.velocity[b].x / s.time, 0.1 * s.bodies.spin[b].norm() / s.time)
+        (
+            s.bodies.velocity[b].x / s.time,
+            0.1 * s.bodies.spin[b].norm() / s.time,
+        )
     };
     let sphere = |sets: &[&str]| {
         let mut s = solid("roll_down_sphere", sets);
         let b = mover(&s);
         until(&mut s, 0.5, |_| {});
-        (s.bodies.velocity[b].x / s.time, 0.1 * s.bodies.spin[b].norm() / s.time)
+        (
+            s.bodies.velocity[b].x / s.time,
+            0.1 * s.bodies.spin[b].norm() / s.time,
+        )
     };
     for (case, k, run) in [
-        ("roll_down_disk", 0.5, &disk as &dyn Fn(&[&str]) -> (f64, f64)),
+        (
+            "roll_down_disk",
+            0.5,
+            &disk as &dyn Fn(&[&str]) -> (f64, f64),
+        ),
         ("roll_down_sphere", 0.4, &sphere),
     ] {
-        table.compare(case, "g sin/(1 + k) (m/s^2)", G * angle.sin() / (1.0 + k), run(&[]).0, 1e-3);
+        table.compare(
+            case,
+            "g sin/(1 + k) (m/s^2)",
+            G * angle.sin() / (1.0 + k),
+            run(&[]).0,
+            1e-3,
+        );
         // Rolling without slip needs mu >= k/(1 + k) tan.
         let limit = k / (1.0 + k) * angle.tan();
         let mu = 0.99 * limit;
         let set = format!("interfaces.grain.parameters.contact.mu={mu:?}");
         let (a, spin) = run(&[&set]);
-        table.compare(case, "slips below k/(1+k) tan: a (m/s^2)", G * (angle.sin() - mu * angle.cos()), a, 1e-3);
-        table.compare(case, "and its spin: mu g cos/k (m/s^2)", mu * G * angle.cos() / k, spin, 1e-3);
+        table.compare(
+            case,
+            "slips below k/(1+k) tan: a (m/s^2)",
+            G * (angle.sin() - mu * angle.cos()),
+            a,
+            1e-3,
+        );
+        table.compare(
+            case,
+            "and its spin: mu g cos/k (m/s^2)",
+            mu * G * angle.cos() / k,
+            spin,
+            1e-3,
+        );
     }
 }
 
@@ -163,8 +237,12 @@ fn column(table: &mut Table) {
     let mut s: Simulation<Plane> = plane("column", &["solver.tolerance=1e-10"]);
     until(&mut s, 2e-3, |_| {});
     let weight = s.bodies.mass[mover(&s)] * G;
-    let mut forces: Vec<f64> =
-        s.network.contacts.iter().map(|c| c.normal.dot(&c.impulse) / s.scheme.h).collect();
+    let mut forces: Vec<f64> = s
+        .network
+        .contacts
+        .iter()
+        .map(|c| c.normal.dot(&c.impulse) / s.scheme.h)
+        .collect();
     forces.sort_by(f64::total_cmp);
     for (k, force) in forces.iter().enumerate() {
         let quantity = format!("force of contact {} over m g", 10 - k);

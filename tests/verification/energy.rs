@@ -15,7 +15,12 @@ pub fn all(table: &mut Table) {
 /// Bonds and friction under a moving lid, theta = 1/2.
 fn ledger(table: &mut Table) {
     let mut s = plane("energy", &["solver.tolerance=1e-9"]);
-    let top = s.bodies.driven.iter().position(|d| d.name == "top").unwrap();
+    let top = s
+        .bodies
+        .driven
+        .iter()
+        .position(|d| d.name == "top")
+        .unwrap();
     let (mut pull, mut pressure_path, h) = (0.0, 0.0, s.scheme.h);
     let mut before = 0.0;
     while s.time < 0.1 - 0.5 * h {
@@ -27,22 +32,42 @@ fn ledger(table: &mut Table) {
         pressure_path += s.received[top].0.y / h * slide.abs();
     }
     let e = &s.energy;
-    assert!(e.elastic > 0.0 && e.friction > 0.0, "bonds and friction are at work");
-    table.compare("energy", "residual over external work", 0.0, e.residual / e.external_work.abs(), 1e-6);
+    assert!(
+        e.elastic > 0.0 && e.friction > 0.0,
+        "bonds and friction are at work"
+    );
+    table.compare(
+        "energy",
+        "residual over external work",
+        0.0,
+        e.residual / e.external_work.abs(),
+        1e-6,
+    );
     // The lid's inertia along its motion is no friction: it is imposed, so its work is booked apart.
     let held = e.kinetic + e.potential + e.elastic - e.initial_kinetic;
     let heat = e.dissipated() + held - (e.external_work - pull);
     let tolerance = (e.residual.abs() + 1e-12 * e.scale) / pressure_path.abs();
-    table.compare("energy", "friction, forces less heat", 0.0, (pull - heat) / pressure_path, tolerance.max(1e-12));
+    table.compare(
+        "energy",
+        "friction, forces less heat",
+        0.0,
+        (pull - heat) / pressure_path,
+        tolerance.max(1e-12),
+    );
 }
 
 /// The shear cell: ledger, and the impulses on all bodies sum to zero.
 fn three_dimensions(table: &mut Table) {
     let file = format!("{}/cases/shear_cell_3d.ron", env!("CARGO_MANIFEST_DIR"));
-    let sets = ["time.end=0.07".to_owned(), "solver.correction=0.0".to_owned()];
+    let sets = [
+        "time.end=0.07".to_owned(),
+        "solver.correction=0.0".to_owned(),
+    ];
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let mut s: Simulation<Solid> =
-        loaded.build_in(&SearchPath::new(&[])).unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut s: Simulation<Solid> = loaded
+        .build_in(&SearchPath::new(&[]))
+        .unwrap_or_else(|e| panic!("{e}"))
+        .simulation;
     let mut momentum = 0.0f64;
     while s.time < 0.07 {
         let before: Vec<_> = s.bodies.velocity.clone();
@@ -57,7 +82,22 @@ fn three_dimensions(table: &mut Table) {
         let scale: f64 = s.received.iter().map(|r| r.0.norm()).sum::<f64>() + 1e-12;
         momentum = momentum.max((gained + lost).norm() / scale);
     }
-    assert!(s.energy.friction > 0.0 && s.network.contacts.len() > 500, "the cell is under load");
-    table.compare("shear_cell_3d", "momentum out of balance", 0.0, momentum, 1e-9);
-    table.compare("shear_cell_3d", "residual over largest energy", 0.0, s.energy.relative_residual(), 1e-9);
+    assert!(
+        s.energy.friction > 0.0 && s.network.contacts.len() > 500,
+        "the cell is under load"
+    );
+    table.compare(
+        "shear_cell_3d",
+        "momentum out of balance",
+        0.0,
+        momentum,
+        1e-9,
+    );
+    table.compare(
+        "shear_cell_3d",
+        "residual over largest energy",
+        0.0,
+        s.energy.relative_residual(),
+        1e-9,
+    );
 }

@@ -25,7 +25,14 @@ struct Table {
 
 impl Table {
     /// Compares with a relative tolerance, or an absolute one where zero is expected.
-    fn compare(&mut self, case: &str, quantity: &str, expected: f64, obtained: f64, tolerance: f64) {
+    fn compare(
+        &mut self,
+        case: &str,
+        quantity: &str,
+        expected: f64,
+        obtained: f64,
+        tolerance: f64,
+    ) {
         let scale = if expected == 0.0 { 1.0 } else { expected.abs() };
         let fine = (obtained - expected).abs() <= tolerance * scale;
         let line = format!(
@@ -40,10 +47,15 @@ impl Table {
 }
 
 fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
-    let file = format!("{}/cases/verification/{case}.ron", env!("CARGO_MANIFEST_DIR"));
+    let file = format!(
+        "{}/cases/verification/{case}.ron",
+        env!("CARGO_MANIFEST_DIR")
+    );
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&SearchPath::new(&[])).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded
+        .build_in::<S>(&SearchPath::new(&[]))
+        .unwrap_or_else(|e| panic!("{e}"));
     built.simulation
 }
 
@@ -59,7 +71,11 @@ fn solid(case: &str, sets: &[&str]) -> Simulation<Solid> {
 fn until<S: Dimensional>(s: &mut Simulation<S>, end: f64, mut seen: impl FnMut(&Simulation<S>)) {
     while s.time < end - 0.5 * s.scheme.h {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
-        assert!(report.solver.converged, "step {} did not converge: {:?}", s.steps, report.solver);
+        assert!(
+            report.solver.converged,
+            "step {} did not converge: {:?}",
+            s.steps, report.solver
+        );
         seen(s);
     }
 }
@@ -67,7 +83,9 @@ fn until<S: Dimensional>(s: &mut Simulation<S>, end: f64, mut seen: impl FnMut(&
 #[test]
 fn closed_forms_are_met() {
     let mut table = Table::default();
-    println!("case                     quantity                                        expected        obtained      tol");
+    println!(
+        "case                     quantity                                        expected        obtained      tol"
+    );
     dynamics::all(&mut table);
     bonds::all(&mut table);
     energy::all(&mut table);
