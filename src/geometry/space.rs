@@ -31,9 +31,7 @@ pub trait VectorLike:
     /// Scalar product.
     fn dot(&self, other: &Self) -> f64;
     /// Euclidean norm.
-    fn norm(&self) -> f64 {
-        self.dot(self).sqrt()
-    }
+    fn norm(&self) -> f64;
     /// The nearest vector not longer than `bound` (not negative).
     fn limited(self, bound: f64) -> Self;
     /// From a slice; missing components are zero.
@@ -78,6 +76,14 @@ macro_rules! vector_like {
             fn dot(&self, other: &Self) -> f64 {
                 let products = self.iter().zip(other.iter()).map(|(a, b)| a * b);
                 products.reduce(|sum, x| sum + x).unwrap_or(0.0)
+            }
+            #[inline(always)]
+            fn norm(&self) -> f64 {
+                if $n == 1 {
+                    self[0].abs()
+                } else {
+                    VectorLike::dot(self, self).sqrt()
+                }
             }
             #[inline(always)]
             fn limited(mut self, bound: f64) -> Self {

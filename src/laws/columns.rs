@@ -1,6 +1,7 @@
 //! The columns of a batch: gathered from the network, handed to plugins, read back.
 
 use super::interface::Loaded;
+use super::library::{Call, Kind};
 use fretwork_abi::FwBatch;
 use std::ptr::{null, null_mut};
 
@@ -76,6 +77,41 @@ pub struct Outputs {
     pub energy: Vec<f64>,
     pub damage: Vec<f64>,
     pub volume: Vec<f64>,
+}
+
+impl Outputs {
+    /// The first contact for which a call of this kind gave a value that is not finite.
+    pub fn not_finite(&self, kind: Kind, call: Call) -> Option<usize> {
+        let [n, t1, t2] = &self.traction;
+        let written: &[&Vec<f64>] = match (kind, call) {
+            (Kind::Contact, Call::Prepare) => &[
+                &self.friction,
+                &self.restitution_n,
+                &self.restitution_t,
+                &self.tension_strength,
+                &self.shear_cohesion,
+            ],
+            (Kind::Cohesion, Call::Prepare) => &[
+                n,
+                t1,
+                t2,
+                &self.stiffness_n,
+                &self.stiffness_t,
+                &self.damping_n,
+                &self.damping_t,
+                &self.tension_strength,
+                &self.shear_cohesion,
+            ],
+            (Kind::Cohesion, Call::Energy) => &[&self.energy],
+            (Kind::Damage, Call::Commit) => &[&self.damage],
+            (Kind::Wear, Call::Commit) => &[&self.volume],
+            _ => &[],
+        };
+        written
+            .iter()
+            .filter_map(|column| column.iter().position(|x| !x.is_finite()))
+            .min()
+    }
 }
 
 impl Columns {

@@ -341,9 +341,20 @@ impl Passes {
         degradation: f64,
         call: Call,
     ) -> Result<(), LawError> {
-        self.columns.with_batch(loaded, info, degradation, |batch| {
-            loaded.plugin.call(call, batch)
-        })
+        let plugin = &loaded.plugin;
+        self.columns
+            .with_batch(loaded, info, degradation, |batch| plugin.call(call, batch))?;
+        match self.columns.out.not_finite(plugin.kind, call) {
+            None => Ok(()),
+            Some(contact) => Err(LawError::Failed {
+                kind: plugin.kind,
+                name: plugin.name.clone(),
+                call,
+                contact: Some(contact),
+                reason: "it gave a value that is not finite; check its parameters and the law"
+                    .into(),
+            }),
+        }
     }
 
     /// Columns at the start of the step.

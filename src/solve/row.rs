@@ -79,11 +79,12 @@ fn natural_map<T: VectorLike>(
         mu,
         c,
     );
-    let (rn, rt) = ((pn - zn) / rho, (pt - zt) * (1.0 / rho));
+    let over = 1.0 / rho;
+    let (rn, rt) = ((pn - zn) * over, (pt - zt) * over);
     Residual {
         squared: rn * rn + rt.dot(&rt),
         velocity: un * un + ut.dot(&ut),
-        impulse: (pn * pn + pt.dot(&pt)) / (rho * rho),
+        impulse: (pn * pn + pt.dot(&pt)) * (over * over),
         power: pn * rn + pt.dot(&rt),
     }
 }
