@@ -107,6 +107,17 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
             ),
         );
     }
+    let materials: Vec<&String> = case.materials.keys().collect();
+    for (a, first) in materials.iter().enumerate() {
+        for (b, second) in materials.iter().enumerate().skip(a) {
+            if s.table.get(a as u16, b as u16).is_none() {
+                line(
+                    "no interface",
+                    format!("{first} and {second}: they do not touch each other"),
+                );
+            }
+        }
+    }
     line(
         "memory",
         format!(
