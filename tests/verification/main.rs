@@ -6,6 +6,7 @@
 mod bonds;
 mod dynamics;
 mod energy;
+mod sinks;
 
 use fretwork::geometry::space::{Plane, Solid};
 use fretwork::laws::SearchPath;
@@ -89,5 +90,6 @@ fn closed_forms_are_met() {
     dynamics::all(&mut table);
     bonds::all(&mut table);
     energy::all(&mut table);
+    sinks::all(&mut table);
     assert!(table.failed.is_empty(), "\n{}", table.failed.join("\n"));
 }

@@ -28,24 +28,50 @@ fn friction(table: &mut Table) {
     s.bodies.velocity[b].x = 1.0;
     until(&mut s, 0.4, |_| {});
     let heat = 0.5 * s.bodies.mass[b];
-    table.compare("slide_to_stop", "friction m v^2/2 (J/m)", heat, s.energy.friction, 1e-9);
+    table.compare(
+        "slide_to_stop",
+        "friction m v^2/2 (J/m)",
+        heat,
+        s.energy.friction,
+        1e-9,
+    );
     let mut s = plane("slide_to_roll_disk", &[]);
     until(&mut s, 0.2, |_| {});
     let heat = s.energy.initial_kinetic * 0.5 / 1.5;
-    table.compare("slide_to_roll_disk", "friction m v^2/6 (J/m)", heat, s.energy.friction, 1e-9);
+    table.compare(
+        "slide_to_roll_disk",
+        "friction m v^2/6 (J/m)",
+        heat,
+        s.energy.friction,
+        1e-9,
+    );
     let mut s = solid("slide_to_roll_sphere", &[]);
     until(&mut s, 0.2, |_| {});
     let heat = s.energy.initial_kinetic * 0.4 / 1.4;
-    table.compare("slide_to_roll_sphere", "friction m v^2/7 (J)", heat, s.energy.friction, 1e-9);
+    table.compare(
+        "slide_to_roll_sphere",
+        "friction m v^2/7 (J)",
+        heat,
+        s.energy.friction,
+        1e-9,
+    );
 }
 
 /// A ball that has come to rest has lost m g h0 in its impacts (row 1); e = 1 loses nothing (row 6).
 fn impacts(table: &mut Table) {
     let mut s = plane("bouncing_ball", &[]);
     until(&mut s, 4.3, |_| {});
-    let ball = (0..s.bodies.len()).find(|b| !s.bodies.immovable(*b)).unwrap();
+    let ball = (0..s.bodies.len())
+        .find(|b| !s.bodies.immovable(*b))
+        .unwrap();
     let heat = s.bodies.mass[ball] * G;
-    table.compare("bouncing_ball", "impact m g h0 (J/m)", heat, s.energy.impact, 1e-2);
+    table.compare(
+        "bouncing_ball",
+        "impact m g h0 (J/m)",
+        heat,
+        s.energy.impact,
+        1e-2,
+    );
     for (case, end) in [("cradle_touching", 5e-4), ("cradle_apart", 0.2)] {
         let mut s = plane(case, &[]);
         until(&mut s, end, |_| {});
@@ -79,16 +105,27 @@ fn column(table: &mut Table) {
     }
     carried.sort_by(|a, b| a.0.total_cmp(&b.0));
     table.compare("column", "contacts", 10.0, carried.len() as f64, 0.0);
-    let worst = carried.iter().enumerate().map(|(k, c)| (c.1 - (10 - k) as f64).abs());
+    let worst = carried
+        .iter()
+        .enumerate()
+        .map(|(k, c)| (c.1 - (10 - k) as f64).abs());
     let worst = worst.fold(0.0, f64::max);
-    table.compare("column", "n - k + 1 by height, worst error", 0.0, worst, 1e-8);
+    table.compare(
+        "column",
+        "n - k + 1 by height, worst error",
+        0.0,
+        worst,
+        1e-8,
+    );
 }
 
 /// Just above k/(1 + k) tan it rolls (row 5).
 fn rolling_limit(table: &mut Table) {
     fn slip<S: fretwork::scene::build::Dimensional>(mut s: Simulation<S>) -> f64 {
         until(&mut s, 0.5, |_| {});
-        let b = (0..s.bodies.len()).find(|b| !s.bodies.immovable(*b)).unwrap();
+        let b = (0..s.bodies.len())
+            .find(|b| !s.bodies.immovable(*b))
+            .unwrap();
         (s.bodies.velocity[b][0] - 0.1 * s.bodies.spin[b].norm()).abs()
     }
     let set = |k: f64| {
@@ -96,9 +133,21 @@ fn rolling_limit(table: &mut Table) {
         format!("interfaces.grain.parameters.contact.mu={mu:?}")
     };
     let disk = slip(plane("roll_down_disk", &[&set(0.5)]));
-    table.compare("roll_down_disk", "slip 1 % above the limit (m/s)", 0.0, disk, 1e-9);
+    table.compare(
+        "roll_down_disk",
+        "slip 1 % above the limit (m/s)",
+        0.0,
+        disk,
+        1e-9,
+    );
     let sphere = slip(solid("roll_down_sphere", &[&set(0.4)]));
-    table.compare("roll_down_sphere", "slip 1 % above the limit (m/s)", 0.0, sphere, 1e-9);
+    table.compare(
+        "roll_down_sphere",
+        "slip 1 % above the limit (m/s)",
+        0.0,
+        sphere,
+        1e-9,
+    );
 }
 
 /// What a lid did, from its contact forces and its path only (not from the ledger's external work).
@@ -144,10 +193,28 @@ fn lid(table: &mut Table) {
     });
     let e = &s.energy;
     assert!(e.friction > 0.0 && e.elastic > 0.0 && e.impact >= 0.0);
-    table.compare("energy", "bonds broken", 0.0, s.network.bonds_broken() as f64, 0.0);
-    table.compare("energy", "fracture energy, no damage law (J/m)", 0.0, e.fracture, 0.0);
+    table.compare(
+        "energy",
+        "bonds broken",
+        0.0,
+        s.network.bonds_broken() as f64,
+        0.0,
+    );
+    table.compare(
+        "energy",
+        "fracture energy, no damage law (J/m)",
+        0.0,
+        e.fracture,
+        0.0,
+    );
     let off = e.residual / e.external_work.abs();
-    table.compare("energy", "residual over work, tolerance 1e-12", 0.0, off, 1e-6);
+    table.compare(
+        "energy",
+        "residual over work, tolerance 1e-12",
+        0.0,
+        off,
+        1e-6,
+    );
     lid.compare(table, "energy", &s, b);
 }
 
@@ -162,13 +229,19 @@ fn shear(table: &mut Table) {
         .collect();
     let (mut lid, mut last) = (Lid::default(), s.bodies.position[b]);
     let (mut velocity, mut unbalanced) = (s.bodies.velocity.clone(), 0.0f64);
-    until(&mut s, 0.1, |s| {
+    until(&mut s, 0.6, |s| {
         let now = s.bodies.position[b];
         lid.add::<Solid>(&s.received[d].0, s.scheme.h, &(now - last), 2);
         last = now;
         // Without gravity grains gain what contacts give them, and driven bodies receive the opposite.
         let (mut sum, mut scale): (Vector3<f64>, f64) = (Vector3::zeros(), 0.0);
-        for (k, v) in s.bodies.velocity.iter().enumerate().filter(|(k, _)| !held[*k]) {
+        for (k, v) in s
+            .bodies
+            .velocity
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| !held[*k])
+        {
             sum += (v - velocity[k]) * s.bodies.mass[k];
         }
         for (impulse, _) in &s.received {
@@ -182,7 +255,13 @@ fn shear(table: &mut Table) {
     });
     let e = &s.energy;
     assert!(e.friction > 0.0 && e.impact >= 0.0 && s.network.contacts.len() > 32);
-    table.compare(case, "sum of impulses over those on walls", 0.0, unbalanced, 1e-9);
+    table.compare(
+        case,
+        "sum of impulses over those on walls",
+        0.0,
+        unbalanced,
+        1e-9,
+    );
     let off = e.residual / e.external_work.abs();
     table.compare(case, "residual over external work", 0.0, off, 1e-6);
     lid.compare(table, case, &s, b);
