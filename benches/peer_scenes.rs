@@ -42,11 +42,22 @@ fn main() {
         "x peer",
         "x sweep"
     );
+    // A word of the command line chooses the scenes whose name holds it.
+    let wanted = std::env::args().skip(1).find(|a| !a.starts_with('-'));
     for (name, peer_ms, peer_ns) in SCENES {
+        if wanted.as_ref().is_some_and(|w| !name.contains(w.as_str())) {
+            continue;
+        }
         let file = format!("{}/cases/benchmarks/{name}.ron", env!("CARGO_MANIFEST_DIR"));
         let loaded = load(
             Path::new(&file),
-            &["solver.max_iterations=200000".to_owned()],
+            &[
+                "solver.max_iterations=200000".to_owned(),
+                format!(
+                    "solver.relaxation={}",
+                    std::env::var("OM").unwrap_or("1.4".into())
+                ),
+            ],
         )
         .unwrap_or_else(|e| panic!("{e}"));
         let scene = loaded

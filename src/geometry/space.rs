@@ -278,6 +278,7 @@ impl Space for Plane {
     fn from_components(_n: &Self::Vector, t1: f64, _t2: f64) -> Self::Tangent {
         Vector1::new(t1)
     }
+    #[inline]
     fn components(_n: &Self::Vector, t: &Self::Tangent) -> [f64; 2] {
         [t[0], 0.0]
     }
@@ -355,6 +356,7 @@ impl Space for Solid {
         let [e1, e2] = Self::tangents(n);
         e1 * t1 + e2 * t2
     }
+    #[inline]
     fn components(n: &Self::Vector, t: &Self::Tangent) -> [f64; 2] {
         let [e1, e2] = Self::tangents(n);
         [e1.dot(t), e2.dot(t)]

@@ -142,6 +142,46 @@ impl Columns {
         self.state_next.clear();
     }
 
+    /// Keeps the first `n` contacts.
+    pub fn truncate(&mut self, n: usize) {
+        self.n = n;
+        let single = [
+            &mut self.gap,
+            &mut self.area,
+            &mut self.radius,
+            &mut self.age,
+            &mut self.damage,
+            &mut self.energy_intact,
+            &mut self.slip,
+            &mut self.friction_work,
+        ];
+        let triples = [
+            &mut self.opening,
+            &mut self.velocity,
+            &mut self.impulse,
+            &mut self.intact,
+        ];
+        let states = self.state.iter_mut().chain(&mut self.state_next);
+        for column in single
+            .into_iter()
+            .chain(triples.into_iter().flatten())
+            .chain(states)
+        {
+            column.truncate(n);
+        }
+    }
+
+    /// What the cohesion law said of the undamaged bond becomes an input of the damage law.
+    pub fn expose_intact(&mut self) {
+        std::mem::swap(&mut self.energy_intact, &mut self.out.energy);
+        std::mem::swap(&mut self.intact, &mut self.out.traction);
+        // The outputs are columns again, whatever the inputs held.
+        self.out.energy.resize(self.n, 0.0);
+        for column in &mut self.out.traction {
+            column.resize(self.n, 0.0);
+        }
+    }
+
     /// Sizes the outputs to `n` zeros.
     pub fn size_outputs(&mut self) {
         let (n, out) = (self.n, &mut self.out);

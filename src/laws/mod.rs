@@ -1,4 +1,5 @@
 //! Interface laws: libraries found by name, composed by the case, called in batches.
+mod bonds;
 pub mod columns;
 pub mod interface;
 pub mod library;

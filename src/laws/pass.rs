@@ -3,6 +3,7 @@
 //! Prepare writes friction, cohesion and the linearised bond of every contact into its standard local
 //! form; commit moves openings, lets damage grow, breaks bonds, removes matter, and books the energy.
 
+use super::bonds::Held;
 use super::columns::{Columns, StepInfo};
 use super::interface::{Interface, Loaded};
 use super::library::{Call, LawError};
@@ -17,6 +18,8 @@ pub struct Site<S: Space> {
     pub before: S::Vector,
     /// Theta-averaged relative velocity u_th (m/s).
     pub average: S::Vector,
+    /// The unilateral part may pull (h c_n > 0).
+    pub adheres: bool,
     /// The solver's answer.
     pub solution: ContactSolution<S>,
 }
@@ -45,8 +48,9 @@ pub struct Totals {
 /// Working memory of the passes.
 #[derive(Debug, Default)]
 pub struct Passes {
-    columns: Columns,
-    members: Vec<usize>,
+    pub(super) columns: Columns,
+    pub(super) members: Vec<usize>,
+    pub(super) held: Held,
     /// Interfaces whose bonds have been made.
     bonded: Vec<bool>,
 }
@@ -101,7 +105,17 @@ impl Passes {
         forms: &mut [ContactForm<S>],
     ) -> Result<(), LawError> {
         for (index, law) in laws.iter().enumerate() {
-            self.select(network, |c| c.law as usize == index);
+            // Intact bonds first: the cohesion law then takes the head of the same columns.
+            let bonded = |c: &Contact<S>| network.bond(c).is_some_and(|b| b.intact());
+            let head = if law.cohesion.is_some() {
+                self.select(network, |c| c.law as usize == index && bonded(c));
+                let head = self.members.len();
+                self.select_more(network, |c| c.law as usize == index && !bonded(c));
+                head
+            } else {
+                self.select(network, |c| c.law as usize == index);
+                0
+            };
             if self.members.is_empty() {
                 continue;
             }
@@ -136,13 +150,15 @@ impl Passes {
             let Some(cohesion) = &law.cohesion else {
                 continue;
             };
-            self.select(network, |c| {
-                c.law as usize == index && network.bond(c).is_some_and(|b| b.intact())
-            });
-            if self.members.is_empty() {
+            if head == 0 {
                 continue;
             }
-            self.gather(law, network, before, info);
+            self.members.truncate(head);
+            if constant {
+                self.gather(law, network, before, info);
+            } else {
+                self.columns.truncate(head);
+            }
             self.columns.size_outputs();
             self.run(cohesion, info, 0.0, Call::Prepare)?;
             for (k, at) in self.members.iter().enumerate() {
@@ -170,19 +186,19 @@ impl Passes {
             let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
             totals.friction -= site.solution.unilateral_t.dot(&ut);
             let work = -site.solution.unilateral_n * un;
-            if site.solution.unilateral_n >= 0.0 {
-                totals.impact += work;
-            } else {
+            if site.adheres && site.solution.unilateral_n < 0.0 {
                 totals.adhesion += work;
+            } else {
+                totals.impact += work;
             }
         }
         for (index, law) in laws.iter().enumerate() {
-            if let Some(cohesion) = &law.cohesion {
+            if law.cohesion.is_some() {
                 self.select(network, |c| {
                     c.law as usize == index && network.bond(c).is_some_and(|b| b.intact())
                 });
                 if !self.members.is_empty() {
-                    self.commit_bonds(index, law, cohesion, network, sites, info, &mut totals)?;
+                    self.commit_bonds(index, law, network, sites, info, &mut totals)?;
                 }
             }
             if let Some(wear) = &law.wear {
@@ -194,103 +210,6 @@ impl Passes {
         }
         totals.fracture += std::mem::take(&mut network.torn_energy);
         Ok(totals)
-    }
-
-    #[allow(clippy::too_many_arguments)]
-    fn commit_bonds<S: Space>(
-        &mut self,
-        index: usize,
-        law: &Interface,
-        cohesion: &Loaded,
-        network: &mut Network<S>,
-        sites: &[Site<S>],
-        info: &StepInfo,
-        totals: &mut Totals,
-    ) -> Result<(), LawError> {
-        // Move the openings; what the bond's impulse did beyond storing energy is damping.
-        let mut works = Vec::with_capacity(self.members.len());
-        for at in &self.members {
-            let (contact, site) = (&network.contacts[*at], &sites[*at]);
-            let Some(slot) = contact.memory() else {
-                continue;
-            };
-            let bond = &mut network.memory[index].bonds[slot];
-            let n = &contact.normal;
-            let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
-            bond.opening_n += info.h * un;
-            bond.opening_t += ut * info.h;
-            let s = &site.solution;
-            let (en, et) = (
-                n.dot(&s.impulse) - s.unilateral_n,
-                S::tangential(n, &s.impulse) - s.unilateral_t,
-            );
-            works.push(en * un + et.dot(&ut));
-        }
-        self.gather_after(law, network, sites, info);
-        self.columns.size_outputs();
-        self.run(cohesion, info, 0.0, Call::Energy)?;
-        let stored = self.columns.out.energy.clone();
-        let damage_before = self.columns.damage.clone();
-        if let Some(damage) = &law.damage {
-            // The damage law sees what the undamaged bond would carry and store.
-            self.columns.damage.iter_mut().for_each(|d| *d = 0.0);
-            self.run(cohesion, info, 0.0, Call::Energy)?;
-            self.run(cohesion, info, 0.0, Call::Prepare)?;
-            std::mem::swap(
-                &mut self.columns.energy_intact,
-                &mut self.columns.out.energy,
-            );
-            std::mem::swap(&mut self.columns.intact, &mut self.columns.out.traction);
-            self.columns.damage.copy_from_slice(&damage_before);
-            self.columns.size_outputs();
-            self.run(damage, info, cohesion.plugin.degradation, Call::Commit)?;
-            for (new, old) in self.columns.out.damage.iter().zip(&mut self.columns.damage) {
-                *old = new.clamp(*old, 1.0);
-            }
-        }
-        let after = self.columns.damage.clone();
-        let changed = after.iter().zip(&damage_before).any(|(a, b)| a != b);
-        let kept = if changed {
-            self.run(cohesion, info, 0.0, Call::Energy)?;
-            self.columns.out.energy.clone()
-        } else {
-            stored.clone()
-        };
-        if cohesion.plugin.commits() {
-            self.run(cohesion, info, 0.0, Call::Commit)?;
-        }
-        let members = std::mem::take(&mut self.members);
-        for (k, at) in members.iter().enumerate() {
-            let contact = &mut network.contacts[*at];
-            let Some(slot) = contact.memory() else {
-                continue;
-            };
-            let memory = &mut network.memory[index];
-            for (column, next) in memory.variables.iter_mut().zip(&self.columns.state_next) {
-                column[slot] = next[k];
-            }
-            let bond = &mut memory.bonds[slot];
-            let (held, left) = (stored[k] * bond.area, kept[k] * bond.area);
-            totals.viscous += -works[k] - (held - bond.energy);
-            bond.damage = after[k];
-            if bond.damage >= 1.0 {
-                totals.fracture += held;
-                totals.broken += 1;
-                memory.broken += 1;
-                bond.energy = 0.0;
-                contact.broken = true;
-                network.broken_pairs.insert(contact.key.pair());
-                if law.variables() == 0 {
-                    memory.release(slot as u32);
-                    contact.slot = Contact::<S>::NO_MEMORY;
-                }
-            } else {
-                totals.fracture += held - left;
-                bond.energy = left;
-            }
-        }
-        self.members = members;
-        Ok(())
     }
 
     fn commit_wear<S: Space>(
@@ -325,16 +244,16 @@ impl Passes {
 
     fn select<S: Space>(&mut self, network: &Network<S>, keep: impl Fn(&Contact<S>) -> bool) {
         self.members.clear();
-        let kept = network
-            .contacts
-            .iter()
-            .enumerate()
-            .filter(|(_, c)| keep(c))
-            .map(|(k, _)| k);
-        self.members.extend(kept);
+        self.select_more(network, keep);
     }
 
-    fn run(
+    fn select_more<S: Space>(&mut self, network: &Network<S>, keep: impl Fn(&Contact<S>) -> bool) {
+        let contacts = network.contacts.iter().enumerate();
+        self.members
+            .extend(contacts.filter(|(_, c)| keep(c)).map(|(k, _)| k));
+    }
+
+    pub(super) fn run(
         &mut self,
         loaded: &Loaded,
         info: &StepInfo,
@@ -375,7 +294,7 @@ impl Passes {
     }
 
     /// Columns at the end of the step: new openings, u_th, this step's impulses.
-    fn gather_after<S: Space>(
+    pub(super) fn gather_after<S: Space>(
         &mut self,
         law: &Interface,
         network: &Network<S>,
@@ -449,6 +368,7 @@ impl Passes {
     }
 }
 
+#[inline]
 fn contact_area<S: Space>(law: &Interface, network: &Network<S>, contact: &Contact<S>) -> f64 {
     match network.bond(contact) {
         Some(bond) => bond.area,
@@ -482,6 +402,7 @@ fn apply_friction<S: Space>(
     }
 }
 
+#[inline]
 fn push_vector<S: Space>(triple: &mut super::columns::Triple, n: &S::Vector, v: &S::Vector) {
     let [t1, t2] = S::components(n, &S::tangential(n, v));
     triple[0].push(n.dot(v));
@@ -489,6 +410,7 @@ fn push_vector<S: Space>(triple: &mut super::columns::Triple, n: &S::Vector, v: 
     triple[2].push(t2);
 }
 
+#[inline]
 fn gather_contact<S: Space>(
     columns: &mut Columns,
     law: &Interface,

@@ -791,6 +791,7 @@ impl<S: Dimensional> Builder<'_, S> {
             norm: case.solver.norm,
             max_iterations: case.solver.max_iterations,
             test_every: case.solver.test_every,
+            relaxation: case.solver.relaxation,
             parallel: false,
         };
         super::check::overlaps(&mut simulation, smallest, &self.origins)

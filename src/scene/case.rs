@@ -108,6 +108,8 @@ pub struct SolverSpec {
     pub max_iterations: u32,
     /// Sweeps between convergence tests.
     pub test_every: u32,
+    /// Over-relaxation, 1 to below 2: how much farther than its own solution a contact goes in a sweep.
+    pub relaxation: f64,
     /// Share of a penetration that a step takes back, 0 to 1. Rigid contacts under a load that changes
     /// slowly creep into each other by the solver's tolerance, step after step; 0.1 bounds that to ten
     /// steps' worth. Its work, which is small, is booked with the impacts.
@@ -121,6 +123,7 @@ impl Default for SolverSpec {
             norm: Norm::Balance,
             max_iterations: 10_000,
             test_every: 10,
+            relaxation: 1.4,
             correction: 0.0,
         }
     }

@@ -54,6 +54,12 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
                 .expected("a number between 0 and 1"),
         );
     }
+    if !(1.0..2.0).contains(&s.relaxation) {
+        return Err(
+            Fault::new("solver.relaxation", format!("got {}", s.relaxation))
+                .expected("a number from 1 (none) to below 2"),
+        );
+    }
     if s.max_iterations == 0 {
         return Err(Fault::new("solver.max_iterations", "must be at least 1"));
     }

@@ -92,16 +92,25 @@ impl Sums {
         }
     }
 
+    /// The part of the error that needs no sum over bodies.
+    fn local(&self, norm: Norm, free: f64) -> f64 {
+        let against = match norm {
+            Norm::Velocity => self.velocity.max(free),
+            Norm::Balance => self.velocity.max(free).max(self.impulse),
+        };
+        over(self.residual.sqrt(), against.sqrt())
+    }
+
     /// The error. Where there is nothing to measure against, the residual itself.
     pub fn error(&self, norm: Norm, scale: &Scale) -> f64 {
-        let over = |x: f64, scale: f64| if scale > 0.0 { x / scale } else { x };
-        let velocity = self.velocity.max(scale.free);
+        let local = self.local(norm, scale.free);
         match norm {
-            Norm::Velocity => over(self.residual.sqrt(), velocity.sqrt()),
-            Norm::Balance => {
-                let local = over(self.residual.sqrt(), velocity.max(self.impulse).sqrt());
-                local.max(over(self.power, scale.work).powi(2))
-            }
+            Norm::Velocity => local,
+            Norm::Balance => local.max(over(self.power, scale.work).powi(2)),
         }
     }
+}
+
+fn over(x: f64, scale: f64) -> f64 {
+    if scale > 0.0 { x / scale } else { x }
 }

@@ -194,10 +194,15 @@ impl<S: Space> Problem<S> {
     /// The solution of the `k`-th contact pushed.
     pub fn solution(&self, k: usize) -> ContactSolution<S> {
         match self.places[k] {
-            Place::Plain(r) => self.plain[r as usize].solution(),
-            Place::Full(r) => self.full[r as usize].solution(),
-            Place::General(r) => self.general[r as usize].solution(),
+            Place::Plain(r) => self.solved(&self.plain[r as usize]),
+            Place::Full(r) => self.solved(&self.full[r as usize]),
+            Place::General(r) => self.solved(&self.general[r as usize]),
         }
+    }
+
+    fn solved(&self, row: &impl Row<S>) -> ContactSolution<S> {
+        let [i, j] = row.bodies().map(|b| &self.lines[b as usize]);
+        row.solution(i, j)
     }
 
     /// Velocity and angular velocity of a body after the solve.

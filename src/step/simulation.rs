@@ -308,6 +308,7 @@ impl<S: Space> Simulation<S> {
             .map(|(k, (contact, before))| Site {
                 before: *before,
                 average: *before * (1.0 - theta) + self.relative_velocity(contact) * theta,
+                adheres: self.forms[k].tension > 0.0,
                 solution: self.problem.solution(k),
             })
             .collect()

@@ -1,0 +1,171 @@
+//! Contact of two balls with a bond, cohesion or tangential restitution: solved in closed form.
+
+use super::{Line, Residual, Row, inverse, natural_map, push, relative};
+use crate::geometry::space::{Space, VectorLike};
+use crate::solve::form::{ContactForm, ContactSolution, Elastic};
+
+/// A direction with w = W_cc, f = u - w p and p_el = -(a + b u): by elimination of u,
+/// s = q - f/w while the contact holds, and p_el = -(k + c (w s + f)),
+/// q = a - (1 + w b) shift/w, k = a/(1 + w b), c = b/(1 + w b).
+#[derive(Clone, Copy, Debug)]
+struct Direction<T> {
+    w: f64,
+    iw: f64,
+    q: T,
+    k: T,
+    c: f64,
+}
+
+/// What the convergence test needs beside; the sweep leaves it alone.
+#[derive(Clone, Copy, Debug)]
+struct Bond<T> {
+    a: T,
+    b: f64,
+    shift: T,
+}
+
+/// See the module.
+#[derive(Clone, Debug)]
+#[repr(C)]
+pub(in crate::solve) struct FullRow<S: Space> {
+    bodies: [u32; 2],
+    n: S::Vector,
+    pn: f64,
+    pt: S::Tangent,
+    normal: Direction<f64>,
+    tangent: Direction<S::Tangent>,
+    /// Slack bond (a bond that only pulls): s = q_0 - f/w.
+    q_slack: f64,
+    /// The bond's normal part is let go above this: 0 for one that only pulls, or infinity.
+    limit: f64,
+    mu: f64,
+    tension: f64,
+    /// mu h c_n + h c_t.
+    grip: f64,
+    cohesion: f64,
+    bond_n: Bond<f64>,
+    bond_t: Bond<S::Tangent>,
+}
+
+impl<S: Space> FullRow<S> {
+    pub fn new(contact: &ContactForm<S>, w_n: f64, w_t: f64) -> Self {
+        let n = contact.normal;
+        let e = contact.elastic.unwrap_or_else(Elastic::none);
+        let (dn, dt) = (1.0 + w_n * e.b_n, 1.0 + w_t * e.b_t);
+        let (iwn, iwt) = (inverse(w_n), inverse(w_t));
+        // Two immovable bodies carry nothing.
+        let movable = f64::from(u8::from(w_n > 0.0));
+        Self {
+            bodies: contact.bodies,
+            n,
+            pn: n.dot(&contact.impulse),
+            pt: S::tangential(&n, &contact.impulse),
+            normal: Direction {
+                w: w_n,
+                iw: iwn,
+                q: if w_n > 0.0 {
+                    e.a_n - contact.shift_n * dn * iwn
+                } else {
+                    0.0
+                },
+                k: e.a_n / dn * movable,
+                c: e.b_n / dn * movable,
+            },
+            tangent: Direction {
+                w: w_t,
+                iw: iwt,
+                q: e.a_t * movable - contact.shift_t * (dt * iwt),
+                k: e.a_t * (movable / dt),
+                c: e.b_t / dt * movable,
+            },
+            q_slack: if w_n > 0.0 {
+                -contact.shift_n * iwn
+            } else {
+                0.0
+            },
+            limit: if e.tension_only { 0.0 } else { f64::INFINITY },
+            mu: contact.friction,
+            tension: contact.tension,
+            grip: contact.friction * contact.tension + contact.cohesion,
+            cohesion: contact.cohesion,
+            bond_n: Bond {
+                a: e.a_n,
+                b: e.b_n,
+                shift: contact.shift_n,
+            },
+            bond_t: Bond {
+                a: e.a_t,
+                b: e.b_t,
+                shift: contact.shift_t,
+            },
+        }
+    }
+
+    /// The impulse of the bond at a relative velocity.
+    fn bond(&self, un: f64, ut: S::Tangent) -> (f64, S::Tangent) {
+        let pull = -(self.bond_n.a + self.bond_n.b * un);
+        let en = if pull > self.limit { 0.0 } else { pull };
+        (en, -(self.bond_t.a + ut * self.bond_t.b))
+    }
+}
+
+impl<S: Space> Row<S> for FullRow<S> {
+    #[inline(always)]
+    fn bodies(&self) -> [u32; 2] {
+        self.bodies
+    }
+
+    #[inline(always)]
+    fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64) {
+        let (n, t) = (&self.normal, &self.tangent);
+        let (un, ut) = relative(&self.n, a, b);
+        let f = un - n.w * self.pn;
+        // Both answers are formed and one is chosen: the branch would be guessed wrong too often.
+        let with = (n.q - f * n.iw).max(-self.tension);
+        let pull = -(n.k + n.c * (n.w * with + f));
+        let without = (self.q_slack - f * n.iw).max(-self.tension);
+        let slack = pull > self.limit;
+        let sn = std::hint::select_unpredictable(slack, without, with);
+        let en = std::hint::select_unpredictable(slack, 0.0, pull);
+        let f = ut - self.pt * t.w;
+        let st = (t.q - f * t.iw).limited(self.mu * sn + self.grip);
+        let et = -(t.k + (st * t.w + f) * t.c);
+        let (dn, dt) = (sn + en - self.pn, st + et - self.pt);
+        let (dn, dt) = (dn * relaxation, dt * relaxation);
+        push(&self.n, dn, dt, a, b);
+        self.pn += dn;
+        self.pt += dt;
+    }
+
+    fn load(&self, a: &mut Line<S>, b: &mut Line<S>) {
+        push(&self.n, self.pn, self.pt, a, b);
+    }
+
+    fn speed(&self, a: &Line<S>, b: &Line<S>) -> f64 {
+        let (un, ut) = relative(&self.n, a, b);
+        un * un + ut.dot(&ut)
+    }
+
+    fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual {
+        if self.normal.iw == 0.0 {
+            return Residual::default();
+        }
+        let (un, ut) = relative(&self.n, a, b);
+        let (en, et) = self.bond(un, ut);
+        // 1/W' of a direction is (1 + w b)/w.
+        let rho = (self.normal.iw + self.bond_n.b).min(self.tangent.iw + self.bond_t.b);
+        let shifted = (self.pn - en + self.tension, self.pt - et);
+        let shift = (self.bond_n.shift, self.bond_t.shift);
+        natural_map(shifted, (un, ut), shift, rho, self.mu, self.cohesion)
+    }
+
+    fn solution(&self, a: &Line<S>, b: &Line<S>) -> ContactSolution<S> {
+        let (un, ut) = relative(&self.n, a, b);
+        let (en, et) = self.bond(un, ut);
+        ContactSolution {
+            impulse: self.n * self.pn + S::lift(&self.n, &self.pt),
+            unilateral_n: self.pn - en,
+            unilateral_t: self.pt - et,
+        }
+    }
+}

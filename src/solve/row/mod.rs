@@ -1,0 +1,107 @@
+//! The packed records the sweep runs over, and the exact solution of one contact.
+//!
+//! A contact of two balls has W_nt = 0, W_nn = 1/m_i + 1/m_j and an isotropic W_tt, so its problem is
+//! solved in closed form: first the normal part, then the tangential one within the cone.
+
+mod full;
+mod general;
+mod plain;
+
+pub(super) use full::FullRow;
+pub(super) use general::GeneralRow;
+pub(super) use plain::PlainRow;
+
+use super::cone;
+use super::form::ContactSolution;
+use crate::geometry::space::{Space, VectorLike};
+
+/// Velocity of a body in the solver: 64 bytes in both dimensions.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Line<S: Space> {
+    /// Velocity of the centre (m/s).
+    pub v: S::Vector,
+    /// Angular velocity times the body's length (m/s).
+    pub s: S::Spin,
+    /// Inverse mass, where isotropic (1/kg).
+    pub im: f64,
+    /// Inverse inertia times the length squared (1/kg).
+    pub is: f64,
+}
+
+/// What the convergence test reads off one contact.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Residual {
+    /// |p - proj(p - rho (u + mu |u_t| n))|^2 / rho^2 (m^2/s^2).
+    pub squared: f64,
+    /// |u|^2 (m^2/s^2).
+    pub velocity: f64,
+    /// |p / rho|^2 (m^2/s^2).
+    pub impulse: f64,
+    /// p . r, r the residual velocity (J).
+    pub power: f64,
+}
+
+/// A contact in the solver.
+pub(super) trait Row<S: Space>: Clone + Send + Sync {
+    fn bodies(&self) -> [u32; 2];
+    /// Solves the contact for the velocities at hand, goes `relaxation` times as far, and updates them.
+    fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64);
+    /// Adds what the stored impulse does to the velocities.
+    fn load(&self, a: &mut Line<S>, b: &mut Line<S>);
+    /// |u|^2 at the velocities at hand.
+    fn speed(&self, a: &Line<S>, b: &Line<S>) -> f64;
+    fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual;
+    /// What the contact carries at the velocities at hand: the bond's part follows from them, the
+    /// unilateral part is the rest.
+    fn solution(&self, a: &Line<S>, b: &Line<S>) -> ContactSolution<S>;
+}
+
+#[inline(always)]
+fn relative<S: Space>(n: &S::Vector, a: &Line<S>, b: &Line<S>) -> (f64, S::Tangent) {
+    let d = a.v - b.v;
+    (n.dot(&d), S::tangential(n, &d) - S::roll(&(a.s + b.s), n))
+}
+
+#[inline(always)]
+fn push<S: Space>(n: &S::Vector, dn: f64, dt: S::Tangent, a: &mut Line<S>, b: &mut Line<S>) {
+    let impulse = *n * dn + S::lift(n, &dt);
+    let twist = S::twist(n, &dt);
+    a.v += impulse * a.im;
+    b.v -= impulse * b.im;
+    a.s -= twist * a.is;
+    b.s -= twist * b.is;
+}
+
+/// The natural map of the De Saxce form in velocity, for a shifted impulse (P_n, p_t), a velocity and
+/// its shift.
+#[inline]
+fn natural_map<T: VectorLike>(
+    (pn, pt): (f64, T),
+    (un, ut): (f64, T),
+    (sn, st): (f64, T),
+    rho: f64,
+    mu: f64,
+    c: f64,
+) -> Residual {
+    let slide = ut + st;
+    let (zn, zt) = cone::project(
+        pn - rho * (un + sn + mu * slide.norm()),
+        pt - slide * rho,
+        mu,
+        c,
+    );
+    let over = 1.0 / rho;
+    let (rn, rt) = ((pn - zn) * over, (pt - zt) * over);
+    Residual {
+        squared: rn * rn + rt.dot(&rt),
+        velocity: un * un + ut.dot(&ut),
+        impulse: (pn * pn + pt.dot(&pt)) * (over * over),
+        power: pn * rn + pt.dot(&rt),
+    }
+}
+
+/// Of two immovable bodies nothing can be solved: their impulse is zero.
+fn inverse(w: f64) -> f64 {
+    if w > 0.0 { 1.0 / w } else { 0.0 }
+}

@@ -1,0 +1,86 @@
+//! Contact of two balls without a bond: solved in closed form.
+
+use super::{Line, Residual, Row, inverse, natural_map, push, relative};
+use crate::geometry::space::{Space, VectorLike};
+use crate::solve::form::{ContactForm, ContactSolution};
+
+/// Frictional contact without memory.
+#[derive(Clone, Debug)]
+pub(in crate::solve) struct PlainRow<S: Space> {
+    bodies: [u32; 2],
+    n: S::Vector,
+    pn: f64,
+    pt: S::Tangent,
+    shift: f64,
+    iwn: f64,
+    iwt: f64,
+    mu: f64,
+}
+
+impl<S: Space> PlainRow<S> {
+    pub fn new(contact: &ContactForm<S>, w_n: f64, w_t: f64) -> Self {
+        let n = contact.normal;
+        Self {
+            bodies: contact.bodies,
+            n,
+            pn: n.dot(&contact.impulse),
+            pt: S::tangential(&n, &contact.impulse),
+            shift: contact.shift_n,
+            iwn: inverse(w_n),
+            iwt: inverse(w_t),
+            mu: contact.friction,
+        }
+    }
+}
+
+impl<S: Space> Row<S> for PlainRow<S> {
+    #[inline(always)]
+    fn bodies(&self) -> [u32; 2] {
+        self.bodies
+    }
+
+    #[inline(always)]
+    fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64) {
+        let (un, ut) = relative(&self.n, a, b);
+        let pn = (self.pn - (un + self.shift) * (self.iwn * relaxation)).max(0.0);
+        let pt = (self.pt - ut * (self.iwt * relaxation)).limited(self.mu * pn);
+        push(&self.n, pn - self.pn, pt - self.pt, a, b);
+        self.pn = pn;
+        self.pt = pt;
+    }
+
+    fn load(&self, a: &mut Line<S>, b: &mut Line<S>) {
+        push(&self.n, self.pn, self.pt, a, b);
+    }
+
+    fn speed(&self, a: &Line<S>, b: &Line<S>) -> f64 {
+        let (un, ut) = relative(&self.n, a, b);
+        un * un + ut.dot(&ut)
+    }
+
+    #[inline(always)]
+    fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual {
+        let (un, ut) = relative(&self.n, a, b);
+        let rho = self.iwn.min(self.iwt);
+        if rho > 0.0 {
+            natural_map(
+                (self.pn, self.pt),
+                (un, ut),
+                (self.shift, S::Tangent::null()),
+                rho,
+                self.mu,
+                0.0,
+            )
+        } else {
+            Residual::default()
+        }
+    }
+
+    fn solution(&self, _: &Line<S>, _: &Line<S>) -> ContactSolution<S> {
+        ContactSolution {
+            impulse: self.n * self.pn + S::lift(&self.n, &self.pt),
+            unilateral_n: self.pn,
+            unilateral_t: self.pt,
+        }
+    }
+}
