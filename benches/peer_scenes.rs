@@ -51,13 +51,7 @@ fn main() {
         let file = format!("{}/cases/benchmarks/{name}.ron", env!("CARGO_MANIFEST_DIR"));
         let loaded = load(
             Path::new(&file),
-            &[
-                "solver.max_iterations=200000".to_owned(),
-                format!(
-                    "solver.relaxation={}",
-                    std::env::var("OM").unwrap_or("1.4".into())
-                ),
-            ],
+            &["solver.max_iterations=200000".to_owned()],
         )
         .unwrap_or_else(|e| panic!("{e}"));
         let scene = loaded

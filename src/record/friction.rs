@@ -1,6 +1,6 @@
 //! A friction test: loops Q-delta, friction coefficient cycle by cycle, from forces and from heat.
 
-use crate::record::ledger::Energy;
+use super::layer::Balance;
 use serde::Serialize;
 
 /// What one step of the test measured.
@@ -35,7 +35,8 @@ pub struct Cycle {
     pub path: f64,
     /// integral Q d delta / integral P |d delta|: the friction coefficient from forces.
     pub friction_coefficient: f64,
-    /// (heat + change of stored energy - other work) / integral P |d delta|: from the energy ledger.
+    /// (heat + change of stored energy - other work) / integral P |d delta|: from the energy ledger, the
+    /// other work from the driven bodies' paths, see [`super::layer`].
     pub friction_from_dissipation: f64,
     /// Bonds broken in it.
     pub broken: u64,
@@ -59,26 +60,7 @@ pub struct Cycles {
     position: f64,
     lowest: f64,
     highest: f64,
-    energy_before: Option<Snapshot>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Snapshot {
-    dissipated: f64,
-    stored: f64,
-    external: f64,
-    broken: u64,
-}
-
-impl Snapshot {
-    fn new(e: &Energy, broken: u64) -> Self {
-        Self {
-            dissipated: e.dissipated() + e.scheme,
-            stored: e.kinetic + e.potential + e.elastic,
-            external: e.external_work,
-            broken,
-        }
-    }
+    before: Option<(Balance, u64)>,
 }
 
 impl Cycles {
@@ -101,7 +83,7 @@ impl Cycles {
             position: 0.0,
             lowest: 0.0,
             highest: 0.0,
-            energy_before: None,
+            before: None,
         }
     }
 
@@ -122,14 +104,13 @@ impl Cycles {
         self.number(self.end)
     }
 
-    /// Adds a step: `before` is the energy ledger at its start, `after` at its end.
+    /// Adds a step: balances and broken bonds at its start and at its end, and the damage ratio.
     pub fn add(
         &mut self,
         sample: &Sample,
         h: f64,
-        before: &Energy,
-        after: &Energy,
-        broken: (u64, u64),
+        before: (Balance, u64),
+        after: (Balance, u64),
         damage: f64,
     ) {
         let number = self.number(sample.time);
@@ -146,9 +127,9 @@ impl Cycles {
             });
             (self.pressure_path, self.pressure_time, self.time) = (0.0, 0.0, 0.0);
             (self.position, self.lowest, self.highest) = (0.0, 0.0, 0.0);
-            self.energy_before = Some(Snapshot::new(before, broken.0));
+            self.before = Some(before);
         }
-        let (Some(cycle), Some(start)) = (self.list.last_mut(), self.energy_before) else {
+        let (Some(cycle), Some(start)) = (self.list.last_mut(), self.before) else {
             return;
         };
         self.pressure_path += sample.p * sample.slide.abs();
@@ -161,13 +142,11 @@ impl Cycles {
         cycle.work += sample.work;
         cycle.tangential_amplitude = cycle.tangential_amplitude.max(sample.q.abs());
         cycle.normal_force = self.pressure_time / self.time;
-        let now = Snapshot::new(after, broken.1);
-        let other = (now.external - start.external) - cycle.work;
-        let heat = (now.dissipated - start.dissipated) + (now.stored - start.stored) - other;
+        let heat = (after.0.taken - start.0.taken) - (after.0.other - start.0.other);
         let over = |x: f64, y: f64| if y > 0.0 { x / y } else { 0.0 };
         cycle.friction_coefficient = over(cycle.work, self.pressure_path);
         cycle.friction_from_dissipation = over(heat, self.pressure_path);
-        cycle.broken = now.broken - start.broken;
+        cycle.broken = after.1 - start.1;
         cycle.damage_ratio = damage;
         let amplitude = 0.5 * (self.highest - self.lowest);
         cycle.energy_ratio = over(cycle.work, 4.0 * cycle.tangential_amplitude * amplitude);
@@ -191,35 +170,59 @@ impl Cycles {
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_coulomb_loop_has_the_friction_put_in() {
-        let (mu, p, a, f, h) = (0.4, 1e3, 5e-5, 10.0, 1e-5);
+    /// Two cycles of a sine at friction `mu`, the lid lifted and lowered with the stroke; `measured` is
+    /// what the force reads over what it is.
+    fn loops(mu: f64, lift: f64, measured: f64) -> Cycles {
+        let (p, a, f, h) = (1e3, 5e-5, 10.0, 1e-5);
+        let omega = std::f64::consts::TAU * f;
         let mut cycles = Cycles::new(0.0, Some(1.0 / f), 0.2);
-        let (mut energy, mut t) = (Energy::default(), 0.0);
+        let (mut balance, mut t) = (Balance::default(), 0.0);
         while t < 0.2 - 0.5 * h {
-            let v =
-                a * std::f64::consts::TAU * f * (std::f64::consts::TAU * f * (t + 0.5 * h)).cos();
-            let q = mu * p * v.signum();
-            let before = energy;
-            energy.friction += q * v * h;
-            energy.external_work += q * v * h;
+            let v = a * omega * (omega * (t + 0.5 * h)).cos();
+            // On slopes of `lift` the force gains what the normal force loses.
+            let q = mu * p * v.signum() + lift * p;
+            let before = balance;
+            balance.taken += mu * p * v.abs() * h;
+            balance.other -= p * lift * v * h;
             t += h;
             let sample = Sample {
                 time: t,
-                q,
+                q: measured * q,
                 p,
                 slide: v * h,
-                work: q * v * h,
+                work: measured * q * v * h,
             };
-            cycles.add(&sample, h, &before, &energy, (0, 0), 0.0);
+            cycles.add(&sample, h, (before, 0), (balance, 0), 0.0);
         }
         assert_eq!(cycles.list.len(), 2);
-        for c in &cycles.list {
+        cycles
+    }
+
+    #[test]
+    fn a_coulomb_loop_has_the_friction_put_in() {
+        let mu = 0.4;
+        for c in &loops(mu, 0.0, 1.0).list {
             assert!((c.friction_coefficient / mu - 1.0).abs() < 1e-9 && c.complete);
             assert!((c.friction_from_dissipation / mu - 1.0).abs() < 1e-9);
             // A rectangular loop: E_d = 4 mu P delta.
-            assert!((c.work / (4.0 * mu * p * a) - 1.0).abs() < 1e-6);
+            assert!((c.work / (4.0 * mu * 1e3 * 5e-5) - 1.0).abs() < 1e-6);
             assert!((c.energy_ratio - 1.0).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn a_lid_that_climbs_and_falls_has_the_same_friction() {
+        for c in &loops(0.4, 0.2, 1.0).list {
+            assert!((c.friction_coefficient / 0.4 - 1.0).abs() < 1e-6);
+            assert!((c.friction_from_dissipation / 0.4 - 1.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_wrong_force_does_not_reach_the_friction_from_heat() {
+        for c in &loops(0.4, 0.0, 2.0).list {
+            assert!((c.friction_coefficient / 0.8 - 1.0).abs() < 1e-9);
+            assert!((c.friction_from_dissipation / 0.4 - 1.0).abs() < 1e-9);
         }
     }
 }

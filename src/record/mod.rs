@@ -1,6 +1,7 @@
 //! What a run leaves behind: ledgers, statistics, pictures, the results file, the summary.
 pub mod figures;
 pub mod friction;
+pub mod layer;
 pub mod ledger;
 pub mod picture;
 pub mod results;

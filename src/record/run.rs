@@ -1,6 +1,7 @@
 //! Runs a scene to its end and records it.
 
 use super::friction::{Cycles, Sample};
+use super::layer::{Balance, Layer};
 use super::picture::Camera;
 use super::results::{Results, ResultsError};
 use super::statistics::{Column, Table};
@@ -8,7 +9,6 @@ use super::summary::{PluginStamp, SolverSummary, Summary, Wear};
 use super::{figures, views};
 use crate::bodies::TimeFunction;
 use crate::geometry::space::Space;
-use crate::record::ledger::Energy;
 use crate::report::ReportError;
 use crate::scene::build::{Built, Dimensional, Loaded};
 use crate::step::{Simulation, StepError, StepReport};
@@ -102,6 +102,8 @@ struct Recorder<'a, S: Space> {
     results: Results,
     camera: Camera,
     cycles: Option<(Cycles, usize)>,
+    layer: Layer<S>,
+    sample: Option<Sample>,
     slide: f64,
     worn: (f64, f64),
     internal_flow: f64,
@@ -184,6 +186,8 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             table,
             results,
             cycles,
+            layer: Layer::new(&simulation),
+            sample: None,
             slide: 0.0,
             worn: (0.0, 0.0),
             internal_flow: 0.0,
@@ -202,10 +206,9 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         self.views()?;
         self.frame(0)?;
         for step in 1..=self.total {
-            let before = self.simulation.energy;
-            let broken = self.simulation.network.bonds_broken();
+            let before = self.balance();
             let report = self.simulation.step()?;
-            self.follow(&report, &before, broken);
+            self.follow(&report, before);
             if step % output.every.max(1) == 0 || step == self.total {
                 let row = self.row(&report);
                 self.table
@@ -224,6 +227,12 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         Ok(())
     }
 
+    /// Energies of what lies between the driven bodies, and bonds broken so far.
+    fn balance(&self) -> (Balance, u64) {
+        let s = &self.simulation;
+        (self.layer.balance(s), s.network.bonds_broken())
+    }
+
     fn damage_ratio(&self) -> f64 {
         let n = &self.simulation.network;
         if n.bonds_made() > 0 {
@@ -233,44 +242,36 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         }
     }
 
-    /// Q, P and the slide of the friction test in the last step.
+    /// Q, P and the slide of the friction test in the last step, before the layer has followed it.
     fn sample(&self) -> Option<Sample> {
         let test = self.loaded.case.friction.as_ref()?;
         let (_, place) = self.cycles.as_ref()?;
         let s = &self.simulation;
-        let (h, theta) = (s.scheme.h, s.scheme.theta);
-        let driven = &s.bodies.driven[*place];
+        let h = s.scheme.h;
         let impulse = s.received[*place].0;
-        let v = s.bodies.velocity[driven.body as usize][test.along];
-        let dof = &driven.dofs[test.along];
-        // The velocity at the start of the step, imposed: by the same function.
-        let old = dof.imposed_velocity(s.time - h).unwrap_or(v);
-        let average = (1.0 - theta) * if s.steps == 1 { 0.0 } else { old } + theta * v;
+        let slide = h * self.layer.velocity(s, *place)[test.along];
         let q = -impulse[test.along] / h;
         Some(Sample {
             time: s.time,
             q,
             p: impulse[test.normal].abs() / h,
-            slide: h * average,
-            work: q * h * average,
+            slide,
+            work: q * slide,
         })
     }
 
-    fn follow(&mut self, report: &StepReport, before: &Energy, broken: u64) {
-        let sample = self.sample();
+    fn follow(&mut self, report: &StepReport, before: (Balance, u64)) {
+        self.sample = self.sample();
+        if let (Some((_, place)), Some(test)) = (&self.cycles, &self.loaded.case.friction) {
+            self.layer.follow(&self.simulation, (*place, test.along));
+        }
+        let after = self.balance();
         let damage = self.damage_ratio();
         let s = &self.simulation;
         let h = s.scheme.h;
-        if let (Some(sample), Some((cycles, _))) = (sample, &mut self.cycles) {
+        if let (Some(sample), Some((cycles, _))) = (self.sample, &mut self.cycles) {
             self.slide += sample.slide;
-            cycles.add(
-                &sample,
-                h,
-                before,
-                &s.energy,
-                (broken, s.network.bonds_broken()),
-                damage,
-            );
+            cycles.add(&sample, h, before, after, damage);
         }
         self.worn.0 += report.totals.worn_first;
         self.worn.1 += report.totals.worn_third;
@@ -318,7 +319,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             self.worn.0,
             self.worn.1,
         ];
-        if let Some(sample) = self.sample() {
+        if let Some(sample) = self.sample {
             row.extend([
                 self.slide,
                 sample.q,

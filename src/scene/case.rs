@@ -123,7 +123,7 @@ impl Default for SolverSpec {
             norm: Norm::Balance,
             max_iterations: 10_000,
             test_every: 10,
-            relaxation: 1.4,
+            relaxation: 1.45,
             correction: 0.0,
         }
     }

@@ -31,7 +31,7 @@ impl Default for Options {
             norm: Norm::Balance,
             max_iterations: 10_000,
             test_every: 10,
-            relaxation: 1.4,
+            relaxation: 1.45,
             parallel: false,
         }
     }
@@ -50,9 +50,6 @@ pub struct Report {
     pub worst: Option<usize>,
 }
 
-/// Growth of the residual at which over-relaxation is halved.
-const GROWTH: f64 = 2.0;
-
 /// Contacts a thread takes at a time. Sums are formed by chunk and added in order.
 const CHUNK: usize = 512;
 
@@ -69,7 +66,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     problem.reload();
     let every = options.test_every.max(1);
     let mut report = Report::default();
-    let (mut relaxation, mut least) = (options.relaxation, f64::INFINITY);
+    let (mut relaxation, mut caution) = (options.relaxation, Caution::default());
     loop {
         let last = (report.iterations + every).min(options.max_iterations);
         while report.iterations < last {
@@ -95,12 +92,45 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
                 return report;
             }
         }
-        // Friction has no theorem for over-relaxation: where it drives the error up, do less of it.
-        if sums.residual > GROWTH * GROWTH * least {
-            relaxation = 1.0 + 0.5 * (relaxation - 1.0);
-            least = sums.residual;
+        relaxation = caution.judge(sums.residual, relaxation);
+    }
+}
+
+/// Over-relaxation has no theorem under friction: where it drives the residual up, or round in circles,
+/// there is to be less of it.
+struct Caution {
+    least: f64,
+    tests: u32,
+}
+
+impl Default for Caution {
+    fn default() -> Self {
+        Self {
+            least: f64::INFINITY,
+            tests: 0,
         }
-        least = least.min(sums.residual);
+    }
+}
+
+impl Caution {
+    /// Growth of the squared residual that is too much.
+    const GROWTH: f64 = 4.0;
+    /// Tests without a fall of the squared residual by a hundredth that are too many.
+    const PATIENCE: u32 = 20;
+
+    /// The relaxation to go on with, by the squared residual at a test.
+    fn judge(&mut self, residual: f64, relaxation: f64) -> f64 {
+        if residual < 0.99 * self.least {
+            (self.least, self.tests) = (residual, 0);
+            return relaxation;
+        }
+        self.tests += 1;
+        if residual <= Self::GROWTH * self.least && self.tests < Self::PATIENCE {
+            return relaxation;
+        }
+        (self.least, self.tests) = (residual, 0);
+        let less = 1.0 + 0.5 * (relaxation - 1.0);
+        if less > 1.05 { less } else { 1.0 }
     }
 }
 

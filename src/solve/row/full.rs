@@ -53,7 +53,7 @@ impl<S: Space> FullRow<S> {
         let e = contact.elastic.unwrap_or_else(Elastic::none);
         let (dn, dt) = (1.0 + w_n * e.b_n, 1.0 + w_t * e.b_t);
         let (iwn, iwt) = (inverse(w_n), inverse(w_t));
-        // Two immovable bodies carry nothing.
+        // Two immovable bodies do not press on each other; their bond still pulls.
         let movable = f64::from(u8::from(w_n > 0.0));
         Self {
             bodies: contact.bodies,
@@ -68,15 +68,15 @@ impl<S: Space> FullRow<S> {
                 } else {
                     0.0
                 },
-                k: e.a_n / dn * movable,
-                c: e.b_n / dn * movable,
+                k: e.a_n / dn,
+                c: e.b_n / dn,
             },
             tangent: Direction {
                 w: w_t,
                 iw: iwt,
                 q: e.a_t * movable - contact.shift_t * (dt * iwt),
-                k: e.a_t * (movable / dt),
-                c: e.b_t / dt * movable,
+                k: e.a_t * (1.0 / dt),
+                c: e.b_t / dt,
             },
             q_slack: if w_n > 0.0 {
                 -contact.shift_n * iwn
