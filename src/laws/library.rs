@@ -352,7 +352,7 @@ impl Plugin {
     ///
     /// # Errors
     /// What the law said, with the index of the contact in the batch.
-    pub fn call(&self, call: Call, batch: &abi::FwBatch) -> Result<(), LawError> {
+    pub(super) fn call(&self, call: Call, batch: &abi::FwBatch) -> Result<(), LawError> {
         let function = match call {
             Call::Initialise => self.table.initialise,
             Call::Prepare => self.table.prepare,

@@ -141,6 +141,23 @@ fn compose(
         )
         .into());
     }
+    for (slot, law, given) in [
+        ("cohesion", &spec.cohesion, &own.cohesion),
+        ("damage", &spec.damage, &own.damage),
+        ("wear", &spec.wear, &own.wear),
+    ] {
+        if let (None, Some(name)) = (law, given.keys().next()) {
+            let fault = Fault::new(
+                format!("parameters.{slot}.{name}"),
+                format!("`{name}` is a parameter of the {slot} law, and there is no {slot} law"),
+            );
+            return Err(fault
+                .expected(format!(
+                    "`{slot}: \"NAME\"` in the interface, or no `{name}`"
+                ))
+                .into());
+        }
+    }
     let interface = Interface {
         name: spec.name.clone(),
         contact: load(Kind::Contact, &spec.contact, &p.contact, &own.contact)?,

@@ -40,6 +40,18 @@ fn an_unknown_parameter() {
 }
 
 #[test]
+fn a_parameter_of_a_law_that_is_not_there() {
+    refused(
+        &with(
+            PLANE,
+            r#"{"mu": 0.3})"#,
+            r#"{"mu": 0.3}, damage: {"w": ‸0.1})"#,
+        ),
+        &["`w` is a parameter of the damage law", "no damage law"],
+    );
+}
+
+#[test]
 fn a_parameter_out_of_range() {
     refused(
         &with(PLANE, r#""mu": 0.3"#, r#""mu": ‸-0.3"#),
