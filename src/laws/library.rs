@@ -352,7 +352,10 @@ impl Plugin {
     ///
     /// # Errors
     /// What the law said, with the index of the contact in the batch.
-    pub(super) fn call(&self, call: Call, batch: &abi::FwBatch) -> Result<(), LawError> {
+    ///
+    /// # Safety
+    /// The columns of the batch that the law uses hold `batch.n` values and outlive the call.
+    pub unsafe fn call(&self, call: Call, batch: &abi::FwBatch) -> Result<(), LawError> {
         let function = match call {
             Call::Initialise => self.table.initialise,
             Call::Prepare => self.table.prepare,
@@ -364,7 +367,7 @@ impl Plugin {
         };
         let mut buffer = [0 as c_char; MESSAGE];
         let mut message = message_over(&mut buffer);
-        // SAFETY: the batch's columns have `n` values or are null and outlive the call.
+        // SAFETY: by the contract of this function.
         let status = unsafe { function(batch, &mut message) };
         if status == abi::STATUS_OK {
             return Ok(());

@@ -262,7 +262,10 @@ impl Passes {
     ) -> Result<(), LawError> {
         let plugin = &loaded.plugin;
         self.columns
-            .with_batch(loaded, info, degradation, |batch| plugin.call(call, batch))?;
+            // SAFETY: columns of the batch have `n` values or are null, and live in `self`.
+            .with_batch(loaded, info, degradation, |batch| unsafe {
+                plugin.call(call, batch)
+            })?;
         match self.columns.out.not_finite(plugin.kind, call) {
             None => Ok(()),
             Some(contact) => Err(LawError::Failed {
