@@ -278,6 +278,7 @@ impl<S: Space> Narrow<'_, S> {
             radius: p.radius * q.radius / sum,
             impulse: S::Vector::null(),
             born: self.time,
+            pressed: 0.0,
         };
         admit(network, found, old);
     }
@@ -344,6 +345,7 @@ impl<S: Space> Narrow<'_, S> {
                 radius: ball.radius,
                 impulse: S::Vector::null(),
                 born: self.time,
+                pressed: 0.0,
             };
             admit(network, found, matched);
         }
@@ -367,6 +369,7 @@ fn admit<S: Space>(network: &mut Network<S>, mut found: Contact<S>, old: Option<
             let old = &network.old[k];
             found.impulse = old.impulse;
             found.born = old.born;
+            found.pressed = old.pressed;
             found.slot = old.slot;
             found.broken = old.broken;
             if let Some(slot) = found.memory() {

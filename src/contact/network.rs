@@ -59,6 +59,8 @@ pub struct Contact<S: Space> {
     pub impulse: S::Vector,
     /// When the contact formed (s).
     pub born: f64,
+    /// Time under a compressive impulse without a break (s).
+    pub pressed: f64,
 }
 
 impl<S: Space> Contact<S> {

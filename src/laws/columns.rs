@@ -50,6 +50,12 @@ pub struct Columns {
     pub slip: Vec<f64>,
     /// Friction work over the step (J).
     pub friction_work: Vec<f64>,
+    /// Time under a compressive impulse (s).
+    pub pressed: Vec<f64>,
+    /// Rotation of the bond (rad); empty unless the cohesion law resists rotation.
+    pub rotation: Triple,
+    /// Undamaged moment over the area (N m/m^2); as `rotation`.
+    pub intact_moment: Triple,
     /// Internal variables at the start of the step.
     pub state: Vec<Vec<f64>>,
     /// Internal variables at the end of the step.
@@ -77,12 +83,16 @@ pub struct Outputs {
     pub energy: Vec<f64>,
     pub damage: Vec<f64>,
     pub volume: Vec<f64>,
+    pub moment: Triple,
+    pub stiffness_twist: Vec<f64>,
+    pub stiffness_bend: Vec<f64>,
 }
 
 impl Outputs {
     /// The first contact for which a call of this kind gave a value that is not finite.
     pub fn not_finite(&self, kind: Kind, call: Call) -> Option<usize> {
         let [n, t1, t2] = &self.traction;
+        let [m, m1, m2] = &self.moment;
         let written: &[&Vec<f64>] = match (kind, call) {
             (Kind::Contact, Call::Prepare) => &[
                 &self.friction,
@@ -90,6 +100,8 @@ impl Outputs {
                 &self.restitution_t,
                 &self.tension_strength,
                 &self.shear_cohesion,
+                &self.rolling,
+                &self.spinning,
             ],
             (Kind::Cohesion, Call::Prepare) => &[
                 n,
@@ -101,9 +113,14 @@ impl Outputs {
                 &self.damping_t,
                 &self.tension_strength,
                 &self.shear_cohesion,
+                m,
+                m1,
+                m2,
+                &self.stiffness_twist,
+                &self.stiffness_bend,
             ],
             (Kind::Cohesion, Call::Energy) => &[&self.energy],
-            (Kind::Damage, Call::Commit) => &[&self.damage],
+            (Kind::Damage | Kind::Cohesion, Call::Commit) => &[&self.damage],
             (Kind::Wear, Call::Commit) => &[&self.volume],
             _ => &[],
         };
@@ -115,41 +132,13 @@ impl Outputs {
 }
 
 impl Columns {
-    /// Empties the inputs.
-    pub fn clear(&mut self) {
-        self.n = 0;
-        for column in [
-            &mut self.gap,
-            &mut self.area,
-            &mut self.radius,
-            &mut self.age,
-            &mut self.damage,
-            &mut self.energy_intact,
-            &mut self.slip,
-            &mut self.friction_work,
-        ] {
-            column.clear();
-        }
-        for triple in [
-            &mut self.opening,
-            &mut self.velocity,
-            &mut self.impulse,
-            &mut self.intact,
-        ] {
-            triple.iter_mut().for_each(Vec::clear);
-        }
-        self.state.clear();
-        self.state_next.clear();
-    }
-
-    /// Keeps the first `n` contacts.
-    pub fn truncate(&mut self, n: usize) {
-        self.n = n;
+    fn inputs(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
         let single = [
             &mut self.gap,
             &mut self.area,
             &mut self.radius,
             &mut self.age,
+            &mut self.pressed,
             &mut self.damage,
             &mut self.energy_intact,
             &mut self.slip,
@@ -160,24 +149,36 @@ impl Columns {
             &mut self.velocity,
             &mut self.impulse,
             &mut self.intact,
+            &mut self.rotation,
+            &mut self.intact_moment,
         ];
+        single.into_iter().chain(triples.into_iter().flatten())
+    }
+
+    /// Empties the inputs.
+    pub fn clear(&mut self) {
+        self.n = 0;
+        self.inputs().for_each(Vec::clear);
+        self.state.clear();
+        self.state_next.clear();
+    }
+
+    /// Keeps the first `n` contacts.
+    pub fn truncate(&mut self, n: usize) {
+        self.n = n;
+        self.inputs().for_each(|column| column.truncate(n));
         let states = self.state.iter_mut().chain(&mut self.state_next);
-        for column in single
-            .into_iter()
-            .chain(triples.into_iter().flatten())
-            .chain(states)
-        {
-            column.truncate(n);
-        }
+        states.for_each(|column| column.truncate(n));
     }
 
     /// What the cohesion law said of the undamaged bond becomes an input of the damage law.
     pub fn expose_intact(&mut self) {
         std::mem::swap(&mut self.energy_intact, &mut self.out.energy);
         std::mem::swap(&mut self.intact, &mut self.out.traction);
+        std::mem::swap(&mut self.intact_moment, &mut self.out.moment);
         // The outputs are columns again, whatever the inputs held.
         self.out.energy.resize(self.n, 0.0);
-        for column in &mut self.out.traction {
+        for column in self.out.traction.iter_mut().chain(&mut self.out.moment) {
             column.resize(self.n, 0.0);
         }
     }
@@ -200,11 +201,13 @@ impl Columns {
             &mut out.energy,
             &mut out.damage,
             &mut out.volume,
+            &mut out.stiffness_twist,
+            &mut out.stiffness_bend,
         ] {
             column.clear();
             column.resize(n, 0.0);
         }
-        for column in &mut out.traction {
+        for column in out.traction.iter_mut().chain(&mut out.moment) {
             column.clear();
             column.resize(n, 0.0);
         }
@@ -250,11 +253,16 @@ impl Columns {
                 null()
             }
         };
-        let traction_t2 = if info.dimension == 3 {
-            output(&mut out.traction[2])
-        } else {
-            null_mut()
+        let [twist, bend_1, bend_2] = &mut out.moment;
+        let mut spatial = |v: &mut Vec<f64>| {
+            if info.dimension == 3 {
+                output(v)
+            } else {
+                null_mut()
+            }
         };
+        let traction_t2 = spatial(&mut out.traction[2]);
+        let (moment_n, moment_t2) = (spatial(twist), spatial(bend_2));
         let batch = FwBatch {
             size: size_of::<FwBatch>(),
             n,
@@ -287,6 +295,13 @@ impl Columns {
             intact_t2: third(&self.intact[2]),
             slip: column(&self.slip),
             friction_work: column(&self.friction_work),
+            pressed: column(&self.pressed),
+            rotation_n: third(&self.rotation[0]),
+            rotation_t1: column(&self.rotation[1]),
+            rotation_t2: third(&self.rotation[2]),
+            intact_moment_n: third(&self.intact_moment[0]),
+            intact_moment_t1: column(&self.intact_moment[1]),
+            intact_moment_t2: third(&self.intact_moment[2]),
             out_friction: output(&mut out.friction),
             out_restitution_n: output(&mut out.restitution_n),
             out_restitution_t: output(&mut out.restitution_t),
@@ -304,6 +319,11 @@ impl Columns {
             out_energy: output(&mut out.energy),
             out_damage: output(&mut out.damage),
             out_volume: output(&mut out.volume),
+            out_moment_n: moment_n,
+            out_moment_t1: output(bend_1),
+            out_moment_t2: moment_t2,
+            out_stiffness_twist: output(&mut out.stiffness_twist),
+            out_stiffness_bend: output(&mut out.stiffness_bend),
         };
         call(&batch)
     }

@@ -183,6 +183,11 @@ impl Passes {
         for (contact, site) in network.contacts.iter_mut().zip(sites) {
             contact.impulse = site.solution.impulse;
             let n = &contact.normal;
+            contact.pressed = if n.dot(&contact.impulse) > 0.0 {
+                contact.pressed + info.h
+            } else {
+                0.0
+            };
             let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
             totals.friction -= site.solution.unilateral_t.dot(&ut);
             let work = -site.solution.unilateral_n * un;
@@ -426,6 +431,7 @@ fn gather_contact<S: Space>(
     columns.area.push(contact_area(law, network, contact));
     columns.radius.push(contact.radius);
     columns.age.push(info.time - contact.born);
+    columns.pressed.push(contact.pressed);
     push_vector::<S>(&mut columns.velocity, &contact.normal, velocity);
     let (opening, damage) = match network.bond(contact) {
         Some(bond) => {

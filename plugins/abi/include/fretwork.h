@@ -45,13 +45,21 @@ extern "C" {
 #define FW_FLAG_2D_ONLY (UINT64_C(1) << 0)
 /* Flag: the law is written for three-dimensional scenes only. */
 #define FW_FLAG_3D_ONLY (UINT64_C(1) << 1)
-/* Flag (cohesion): the normal stiffness pulls only; compression is the contact's. */
+/* Flag (cohesion): the normal stiffness pulls only; compression is the contact's. Below zero opening the
+ * law goes on along its line (a negative traction), which places the zero for the host; the host drops
+ * the push. */
 #define FW_FLAG_TENSION_ONLY (UINT64_C(1) << 2)
 /* Flag (cohesion): the law has an opening and a stored energy, so a damage law can follow it. */
 #define FW_FLAG_OPENING (UINT64_C(1) << 3)
 /* Flag (contact): prepare depends on the parameters only, so the host may call it once for one
  * contact and use the answer for all. */
 #define FW_FLAG_CONSTANT (UINT64_C(1) << 4)
+/* Flag (cohesion): the law resists bending and twist, so the host keeps the rotation of its bonds. */
+#define FW_FLAG_MOMENT (UINT64_C(1) << 5)
+/* Flag (cohesion): commit writes out_damage, so the law breaks without a damage law. */
+#define FW_FLAG_BREAKS (UINT64_C(1) << 6)
+/* Flag (cohesion): bonds may form in contact during a run, again after they broke. */
+#define FW_FLAG_FORMS (UINT64_C(1) << 7)
 
 /* Describes one parameter or one internal variable. Frozen within a major version. */
 typedef struct fw_field {
@@ -109,6 +117,13 @@ typedef struct fw_batch {
     const double *intact_t2; /* Tangential traction of the undamaged bond along t2 (Pa) (damage). */
     const double *slip; /* Slip distance over this step, h |u_t| (m) (wear). */
     const double *friction_work; /* Energy dissipated by friction over this step (J) (wear). */
+    const double *pressed; /* Time for which the contact has carried a compressive impulse without a break (s). */
+    const double *rotation_n; /* Rotation of the bond about n, twist (rad); null without FW_FLAG_MOMENT and in 2D. */
+    const double *rotation_t1; /* Rotation about t1, bending (rad). In 2D that about the axis out of the plane. */
+    const double *rotation_t2; /* Rotation about t2, bending (rad). In 2D null. */
+    const double *intact_moment_n; /* Moment of the undamaged bond over its area, as the rotations (N m/m^2) (damage). */
+    const double *intact_moment_t1; /* Bending moment about t1 over the area (N m/m^2) (damage). */
+    const double *intact_moment_t2; /* Bending moment about t2 over the area (N m/m^2) (damage). */
     double *out_friction; /* Contact: friction coefficient mu. */
     double *out_restitution_n; /* Contact: normal restitution e_n. */
     double *out_restitution_t; /* Contact: tangential restitution e_t. */
@@ -124,8 +139,13 @@ typedef struct fw_batch {
     double *out_damping_n; /* Cohesion: normal damping (Pa s/m). */
     double *out_damping_t; /* Cohesion: tangential damping (Pa s/m). */
     double *out_energy; /* Cohesion, call energy: energy stored at this opening and damage (J/m^2). */
-    double *out_damage; /* Damage: D at the end of the step. */
+    double *out_damage; /* Damage, and cohesion with FW_FLAG_BREAKS: D at the end of the step. */
     double *out_volume; /* Wear: volume removed over this step (m^3). */
+    double *out_moment_n; /* Cohesion with FW_FLAG_MOMENT: twisting moment over the area, against rotation_n (N m/m^2). */
+    double *out_moment_t1; /* Bending moment over the area, against rotation_t1 (N m/m^2). */
+    double *out_moment_t2; /* Bending moment over the area, against rotation_t2 (N m/m^2). */
+    double *out_stiffness_twist; /* Twisting stiffness over the area (N m/m^2 per rad). */
+    double *out_stiffness_bend; /* Bending stiffness over the area (N m/m^2 per rad). */
 } fw_batch;
 
 /* Checks parameters beyond their ranges (relations between them). May be null. */

@@ -46,10 +46,17 @@ pub const STATUS_PANIC: i32 = 4;
 pub const FLAG_2D_ONLY: u64 = 1;
 /// Flag: the law is written for three-dimensional scenes only.
 pub const FLAG_3D_ONLY: u64 = 1 << 1;
-/// Flag (cohesion): the normal stiffness pulls only; compression is the contact's.
+/// Flag (cohesion): the normal stiffness pulls only; compression is the contact's. Below zero opening the law
+/// goes on along its line (a negative traction), which places the zero for the host; the host drops the push.
 pub const FLAG_TENSION_ONLY: u64 = 1 << 2;
 /// Flag (cohesion): the law has an opening and a stored energy, so a damage law can follow it.
 pub const FLAG_OPENING: u64 = 1 << 3;
+/// Flag (cohesion): the law resists bending and twist, so the host keeps the rotation of its bonds.
+pub const FLAG_MOMENT: u64 = 1 << 5;
+/// Flag (cohesion): `commit` writes `out_damage`, so the law breaks without a damage law.
+pub const FLAG_BREAKS: u64 = 1 << 6;
+/// Flag (cohesion): bonds may form in contact during a run, again after they broke.
+pub const FLAG_FORMS: u64 = 1 << 7;
 /// Flag (contact): `prepare` depends on the parameters only, so the host may call it once for one
 /// contact and use the answer for all.
 pub const FLAG_CONSTANT: u64 = 1 << 4;
@@ -158,6 +165,20 @@ pub struct FwBatch {
     pub slip: *const f64,
     /// Energy dissipated by friction over this step (J) (wear).
     pub friction_work: *const f64,
+    /// Time for which the contact has carried a compressive impulse without a break (s).
+    pub pressed: *const f64,
+    /// Rotation of the bond about n, twist (rad); null without [`FLAG_MOMENT`]. In two dimensions null.
+    pub rotation_n: *const f64,
+    /// Rotation about t1, bending (rad). In two dimensions that about the axis out of the plane.
+    pub rotation_t1: *const f64,
+    /// Rotation about t2, bending (rad). In two dimensions null.
+    pub rotation_t2: *const f64,
+    /// Moment of the undamaged bond over its area, as the rotations (N m/m^2) (damage).
+    pub intact_moment_n: *const f64,
+    /// Bending moment about t1 over the area (N m/m^2) (damage).
+    pub intact_moment_t1: *const f64,
+    /// Bending moment about t2 over the area (N m/m^2) (damage).
+    pub intact_moment_t2: *const f64,
     /// Contact: friction coefficient mu.
     pub out_friction: *mut f64,
     /// Contact: normal restitution e_n.
@@ -188,10 +209,20 @@ pub struct FwBatch {
     pub out_damping_t: *mut f64,
     /// Cohesion, call `energy`: energy stored at this opening and damage (J/m^2).
     pub out_energy: *mut f64,
-    /// Damage: D at the end of the step.
+    /// Damage, and cohesion with [`FLAG_BREAKS`]: D at the end of the step.
     pub out_damage: *mut f64,
     /// Wear: volume removed over this step (m^3).
     pub out_volume: *mut f64,
+    /// Cohesion with [`FLAG_MOMENT`]: twisting moment over the area, against `rotation_n` (N m/m^2).
+    pub out_moment_n: *mut f64,
+    /// Bending moment over the area, against `rotation_t1` (N m/m^2).
+    pub out_moment_t1: *mut f64,
+    /// Bending moment over the area, against `rotation_t2` (N m/m^2).
+    pub out_moment_t2: *mut f64,
+    /// Twisting stiffness over the area (N m/m^2 per rad).
+    pub out_stiffness_twist: *mut f64,
+    /// Bending stiffness over the area (N m/m^2 per rad).
+    pub out_stiffness_bend: *mut f64,
 }
 
 /// Checks parameters beyond their ranges (relations between them). May be null.

@@ -54,6 +54,13 @@ fn rust_layout() -> Vec<(String, u64)> {
         intact_t2,
         slip,
         friction_work,
+        pressed,
+        rotation_n,
+        rotation_t1,
+        rotation_t2,
+        intact_moment_n,
+        intact_moment_t1,
+        intact_moment_t2,
         out_friction,
         out_restitution_n,
         out_restitution_t,
@@ -70,7 +77,12 @@ fn rust_layout() -> Vec<(String, u64)> {
         out_damping_t,
         out_energy,
         out_damage,
-        out_volume
+        out_volume,
+        out_moment_n,
+        out_moment_t1,
+        out_moment_t2,
+        out_stiffness_twist,
+        out_stiffness_bend
     );
     layout!(
         out,
@@ -115,6 +127,9 @@ fn rust_layout() -> Vec<(String, u64)> {
         ("FW_FLAG_TENSION_ONLY", FLAG_TENSION_ONLY),
         ("FW_FLAG_OPENING", FLAG_OPENING),
         ("FW_FLAG_CONSTANT", FLAG_CONSTANT),
+        ("FW_FLAG_MOMENT", FLAG_MOMENT),
+        ("FW_FLAG_BREAKS", FLAG_BREAKS),
+        ("FW_FLAG_FORMS", FLAG_FORMS),
     ] {
         out.push((name.to_owned(), value));
     }

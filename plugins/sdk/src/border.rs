@@ -104,6 +104,12 @@ unsafe fn site(b: &FwBatch, k: usize) -> Site {
             area: at(b.area, k),
             radius: at(b.radius, k),
             age: at(b.age, k),
+            pressed: at(b.pressed, k),
+            rotation: [
+                at(b.rotation_n, k),
+                at(b.rotation_t1, k),
+                at(b.rotation_t2, k),
+            ],
             opening: [at(b.opening_n, k), at(b.opening_t1, k), at(b.opening_t2, k)],
             velocity: [
                 at(b.velocity_n, k),
@@ -314,6 +320,11 @@ pub unsafe extern "C" fn cohesion_prepare<L: CohesionLaw>(
             out_damping_t = t.damping_t,
             out_tension_strength = t.tension_strength,
             out_shear_cohesion = t.shear_cohesion,
+            out_moment_n = t.moment[0],
+            out_moment_t1 = t.moment[1],
+            out_moment_t2 = t.moment[2],
+            out_stiffness_twist = t.stiffness_twist,
+            out_stiffness_bend = t.stiffness_bend,
         )
     })
 }
@@ -339,9 +350,8 @@ pub unsafe extern "C" fn cohesion_commit<L: CohesionLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L, true>(batch, message, |law, _, _, site, state, next| {
-        law.commit(site, state, next);
-        None
+    over::<L, true>(batch, message, |law, b, k, site, state, next| {
+        give!(b, k, out_damage = law.commit(site, state, next))
     })
 }
 
@@ -359,6 +369,11 @@ pub unsafe extern "C" fn damage_commit<L: DamageLaw>(
             Intact {
                 energy: at(b.energy_intact, k),
                 traction: [at(b.intact_n, k), at(b.intact_t1, k), at(b.intact_t2, k)],
+                moment: [
+                    at(b.intact_moment_n, k),
+                    at(b.intact_moment_t1, k),
+                    at(b.intact_moment_t2, k),
+                ],
                 degradation: b.degradation,
             }
         };

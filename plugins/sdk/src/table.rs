@@ -97,7 +97,7 @@ macro_rules! export {
     (cohesion $law:ty) => {
         $crate::export!(@table $law, KIND_COHESION, <$law as $crate::CohesionLaw>::DEGRADATION,
             prepare: Some($crate::border::cohesion_prepare::<$law>),
-            commit: if <$law as $crate::Law>::VARIABLES.is_empty() { None } else { Some($crate::border::cohesion_commit::<$law>) },
+            commit: if <$law as $crate::Law>::VARIABLES.is_empty() && <$law as $crate::Law>::FLAGS & $crate::abi::FLAG_BREAKS == 0 { None } else { Some($crate::border::cohesion_commit::<$law>) },
             energy: Some($crate::border::cohesion_energy::<$law>));
     };
     (damage $law:ty) => {

@@ -63,8 +63,13 @@ pub struct Site {
     pub radius: f64,
     /// Time since the contact formed (s).
     pub age: f64,
+    /// Time for which it has carried a compressive impulse without a break (s).
+    pub pressed: f64,
     /// Bond elongation (m).
     pub opening: [f64; 3],
+    /// Rotation of the bond (rad): twist about n, bending about t1 and t2; in two dimensions the second is
+    /// that about the axis out of the plane. Zero without `FLAG_MOMENT`.
+    pub rotation: [f64; 3],
     /// Relative velocity (m/s).
     pub velocity: [f64; 3],
     /// Impulse (N s).
@@ -142,6 +147,12 @@ pub struct Traction {
     pub tension_strength: f64,
     /// Shear cohesion, c_t (Pa).
     pub shear_cohesion: f64,
+    /// Moment over the area (N m/m^2) against the rotation, with `FLAG_MOMENT`.
+    pub moment: [f64; 3],
+    /// Twisting stiffness over the area (N m/m^2 per rad).
+    pub stiffness_twist: f64,
+    /// Bending stiffness over the area (N m/m^2 per rad).
+    pub stiffness_bend: f64,
 }
 
 /// The undamaged bond at this opening, for damage laws.
@@ -151,11 +162,64 @@ pub struct Intact {
     pub energy: f64,
     /// Traction (Pa).
     pub traction: [f64; 3],
+    /// Moment over the area (N m/m^2).
+    pub moment: [f64; 3],
     /// Exponent m of psi = (1 - D)^m psi_0.
     pub degradation: f64,
 }
 
 impl Intact {
+    /// The pulling part of the traction: (normal where positive, tangential length) (Pa).
+    #[inline]
+    pub fn pull(&self) -> [f64; 2] {
+        [
+            self.traction[0].max(0.0),
+            self.traction[1].hypot(self.traction[2]),
+        ]
+    }
+
+    /// Length of the pulling traction (Pa): sqrt(<t_n>^2 + |t_t|^2).
+    #[inline]
+    pub fn traction_length(&self) -> f64 {
+        let [n, t] = self.pull();
+        n.hypot(t)
+    }
+
+    /// The opening of a linear bond that carries this traction and stores this energy, 2 psi_0/|t| (m).
+    /// With one stiffness for both directions it is sqrt(<u_n>^2 + |u_t|^2).
+    #[inline]
+    pub fn opening(&self) -> f64 {
+        let t = self.traction_length();
+        if t > 0.0 { 2.0 * self.energy / t } else { 0.0 }
+    }
+
+    /// Stiffness |t|/opening (Pa/m); zero where nothing pulls.
+    #[inline]
+    pub fn stiffness(&self) -> f64 {
+        let t = self.traction_length();
+        if self.energy > 0.0 {
+            0.5 * t * t / self.energy
+        } else {
+            0.0
+        }
+    }
+
+    /// The damage at which the bond carries `traction`: (1 - D)^m |t_0| = traction; 0 where it carries less
+    /// undamaged.
+    #[inline]
+    pub fn damage_for(&self, traction: f64) -> f64 {
+        let t = self.traction_length();
+        if t <= traction || t <= 0.0 {
+            return 0.0;
+        }
+        let left = (traction / t).max(0.0);
+        if self.degradation == 1.0 {
+            1.0 - left
+        } else {
+            1.0 - left.powf(1.0 / self.degradation)
+        }
+    }
+
     /// The driving force Y = -d psi/d D = m (1 - D)^(m - 1) psi_0 (J/m^2).
     #[inline]
     pub fn release_rate(&self, damage: f64) -> f64 {
@@ -184,8 +248,11 @@ pub trait CohesionLaw: Law {
     fn traction(&self, site: &Site, state: &[f64]) -> Traction;
     /// Energy stored at the site's opening and damage (J/m^2).
     fn energy(&self, site: &Site, state: &[f64]) -> f64;
-    /// New internal variables at the end of a step.
-    fn commit(&self, _site: &Site, _state: &[f64], _next: &mut [f64]) {}
+    /// New internal variables and, with `FLAG_BREAKS`, D at the end of a step, from the opening at its end.
+    /// The host keeps D from falling. By default both stay.
+    fn commit(&self, site: &Site, _state: &[f64], _next: &mut [f64]) -> f64 {
+        site.damage
+    }
 }
 
 /// Growth of damage.

@@ -78,6 +78,7 @@ mod tests {
                 energy: 0.5 * c * u * u,
                 traction: [c * u, 0.0, 0.0],
                 degradation: 2.0,
+                ..Intact::default()
             };
             d = law.grow(
                 &Site {
