@@ -277,6 +277,7 @@ impl<S: Space> Narrow<'_, S> {
             arms,
             radius: p.radius * q.radius / sum,
             impulse: S::Vector::null(),
+            moment: S::Spin::null(),
             born: self.time,
             pressed: 0.0,
         };
@@ -344,6 +345,7 @@ impl<S: Space> Narrow<'_, S> {
                 arms: [arm, foot - self.bodies.position[j]],
                 radius: ball.radius,
                 impulse: S::Vector::null(),
+                moment: S::Spin::null(),
                 born: self.time,
                 pressed: 0.0,
             };
@@ -368,6 +370,7 @@ fn admit<S: Space>(network: &mut Network<S>, mut found: Contact<S>, old: Option<
         Some(k) => {
             let old = &network.old[k];
             found.impulse = old.impulse;
+            found.moment = old.moment;
             found.born = old.born;
             found.pressed = old.pressed;
             found.slot = old.slot;

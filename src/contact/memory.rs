@@ -13,6 +13,8 @@ pub struct Bond<S: Space> {
     pub gap: f64,
     /// Damage D in \[0, 1\]; 1 is broken.
     pub damage: f64,
+    /// The damage with which the step's impulse is formed: D at its start, or the coupling's trial.
+    pub used: f64,
     /// Area (m^2).
     pub area: f64,
     /// Energy stored (J).
@@ -22,10 +24,31 @@ pub struct Bond<S: Space> {
 }
 
 impl<S: Space> Bond<S> {
+    /// No bond: a slot for internal variables only.
+    fn none(area: f64) -> Self {
+        Self {
+            opening_n: 0.0,
+            opening_t: S::Tangent::null(),
+            gap: 0.0,
+            damage: 1.0,
+            used: 1.0,
+            area,
+            energy: 0.0,
+            live: true,
+        }
+    }
+
     /// Whether it still holds.
     pub fn intact(&self) -> bool {
         self.live && self.damage < 1.0
     }
+}
+
+/// Openings and rotations of all slots.
+#[derive(Debug)]
+pub struct Openings<S: Space> {
+    openings: Vec<(f64, S::Tangent)>,
+    rotations: Vec<S::Spin>,
 }
 
 /// The bonds of one interface law and the internal variables of its plugins.
@@ -35,6 +58,10 @@ pub struct Memory<S: Space> {
     pub bonds: Vec<Bond<S>>,
     /// Internal variables, one column each, one value a slot.
     pub variables: Vec<Vec<f64>>,
+    /// Whether bonds remember their rotation.
+    pub rotates: bool,
+    /// Rotations of the bonds (rad), one a slot; empty unless `rotates`.
+    pub rotations: Vec<S::Spin>,
     /// Bonds ever made.
     pub made: u64,
     /// Bonds that broke.
@@ -48,6 +75,8 @@ impl<S: Space> Memory<S> {
         Self {
             bonds: Vec::new(),
             variables: vec![Vec::new(); variables],
+            rotates: false,
+            rotations: Vec::new(),
             made: 0,
             broken: 0,
             free: Vec::new(),
@@ -56,29 +85,63 @@ impl<S: Space> Memory<S> {
 
     /// A slot for a contact with the given initial variables; an intact bond when `bonded`.
     pub fn allocate(&mut self, bonded: bool, gap: f64, area: f64, initial: &[f64]) -> u32 {
-        let bond = Bond {
-            opening_n: 0.0,
-            opening_t: S::Tangent::null(),
-            gap: if bonded { gap } else { 0.0 },
-            damage: if bonded { 0.0 } else { 1.0 },
-            area,
-            energy: 0.0,
-            live: true,
-        };
-        self.made += u64::from(bonded);
-        if let Some(slot) = self.free.pop() {
-            let k = slot as usize;
-            self.bonds[k] = bond;
-            for (column, value) in self.variables.iter_mut().zip(initial) {
-                column[k] = *value;
+        let slot = self.free.pop().unwrap_or_else(|| {
+            self.bonds.push(Bond::none(area));
+            self.variables.iter_mut().for_each(|c| c.push(0.0));
+            if self.rotates {
+                self.rotations.push(S::Spin::null());
             }
-            return slot;
+            (self.bonds.len() - 1) as u32
+        });
+        self.bonds[slot as usize] = Bond::none(area);
+        self.reset(slot as usize, initial);
+        if bonded {
+            self.bond(slot as usize, gap, area);
         }
-        self.bonds.push(bond);
+        slot
+    }
+
+    fn reset(&mut self, slot: usize, initial: &[f64]) {
         for (column, value) in self.variables.iter_mut().zip(initial) {
-            column.push(*value);
+            column[slot] = *value;
         }
-        (self.bonds.len() - 1) as u32
+        if self.rotates {
+            self.rotations[slot] = S::Spin::null();
+        }
+    }
+
+    /// Makes an intact bond in a slot whose bond there is none, or broke; its internal variables go on.
+    pub fn bond(&mut self, slot: usize, gap: f64, area: f64) {
+        self.bonds[slot] = Bond {
+            gap,
+            damage: 0.0,
+            used: 0.0,
+            ..Bond::none(area)
+        };
+        if self.rotates {
+            self.rotations[slot] = S::Spin::null();
+        }
+        self.made += 1;
+    }
+
+    /// Openings and rotations, to come back to after a trial.
+    pub fn clone_openings(&self) -> Openings<S> {
+        Openings {
+            openings: self
+                .bonds
+                .iter()
+                .map(|b| (b.opening_n, b.opening_t))
+                .collect(),
+            rotations: self.rotations.clone(),
+        }
+    }
+
+    /// Goes back to remembered openings.
+    pub fn restore_openings(&mut self, before: Openings<S>) {
+        for (bond, (n, t)) in self.bonds.iter_mut().zip(before.openings) {
+            (bond.opening_n, bond.opening_t) = (n, t);
+        }
+        self.rotations = before.rotations;
     }
 
     /// Gives a slot back.

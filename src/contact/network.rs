@@ -57,6 +57,8 @@ pub struct Contact<S: Space> {
     pub radius: f64,
     /// Impulse of the last solve in world axes (N s).
     pub impulse: S::Vector,
+    /// Moment of the last solve on the candidate (N m s); zero where nothing resists rotation.
+    pub moment: S::Spin,
     /// When the contact formed (s).
     pub born: f64,
     /// Time under a compressive impulse without a break (s).

@@ -221,6 +221,14 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     /// Two tangents which with `n` make a right-handed frame; in 2D the first is n turned by +90
     /// degrees and the second is null.
     fn tangents(n: &Self::Vector) -> [Self::Vector; 2];
+    /// A spin as twist about `n` and the rest, bending. In 2D all is bending.
+    fn split_spin(n: &Self::Vector, spin: &Self::Spin) -> (f64, Self::Spin);
+    /// The spin of a twist about `n`.
+    fn about(n: &Self::Vector, twist: f64) -> Self::Spin;
+    /// Components of a spin along n and [`Space::tangents`]; in 2D the second holds it all.
+    fn spin_components(n: &Self::Vector, spin: &Self::Spin) -> [f64; 3];
+    /// A spin from its components.
+    fn spin_from(n: &Self::Vector, components: [f64; 3]) -> Self::Spin;
     /// Volume of a ball (2D: area of a disk times unit depth).
     fn ball_volume(radius: f64) -> f64;
     /// Moment of inertia of a homogeneous ball over m r^2: 1/2 for a disk, 2/5 for a sphere.
@@ -301,6 +309,20 @@ impl Space for Plane {
     #[inline(always)]
     fn tangents(n: &Self::Vector) -> [Self::Vector; 2] {
         [Vector2::new(-n[1], n[0]), Vector2::zeros()]
+    }
+    #[inline(always)]
+    fn split_spin(_n: &Self::Vector, spin: &Self::Spin) -> (f64, Self::Spin) {
+        (0.0, *spin)
+    }
+    #[inline(always)]
+    fn about(_n: &Self::Vector, _twist: f64) -> Self::Spin {
+        Vector1::new(0.0)
+    }
+    fn spin_components(_n: &Self::Vector, spin: &Self::Spin) -> [f64; 3] {
+        [0.0, spin[0], 0.0]
+    }
+    fn spin_from(_n: &Self::Vector, components: [f64; 3]) -> Self::Spin {
+        Vector1::new(components[1])
     }
     fn ball_volume(radius: f64) -> f64 {
         std::f64::consts::PI * radius * radius
@@ -385,6 +407,23 @@ impl Space for Solid {
             Vector3::new(1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]),
             Vector3::new(b, sign + n[1] * n[1] * a, -n[1]),
         ]
+    }
+    #[inline(always)]
+    fn split_spin(n: &Self::Vector, spin: &Self::Spin) -> (f64, Self::Spin) {
+        let twist = n.dot(spin);
+        (twist, spin - n * twist)
+    }
+    #[inline(always)]
+    fn about(n: &Self::Vector, twist: f64) -> Self::Spin {
+        n * twist
+    }
+    fn spin_components(n: &Self::Vector, spin: &Self::Spin) -> [f64; 3] {
+        let [e1, e2] = Self::tangents(n);
+        [n.dot(spin), e1.dot(spin), e2.dot(spin)]
+    }
+    fn spin_from(n: &Self::Vector, components: [f64; 3]) -> Self::Spin {
+        let [e1, e2] = Self::tangents(n);
+        n * components[0] + e1 * components[1] + e2 * components[2]
     }
     fn ball_volume(radius: f64) -> f64 {
         4.0 / 3.0 * std::f64::consts::PI * radius.powi(3)

@@ -3,7 +3,7 @@
 use super::columns::StepInfo;
 use super::interface::Interface;
 use super::library::{Call, LawError};
-use super::pass::{Passes, Site, Totals};
+use super::pass::{Passes, Site, Totals, Turn};
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -12,63 +12,113 @@ use crate::geometry::space::{Space, VectorLike};
 pub(super) struct Held {
     /// Work done by the bond's impulse over the step (J).
     work: Vec<f64>,
-    /// Energy per area at the new opening and the old damage (J/m^2).
-    stored: Vec<f64>,
-    /// Energy per area at the new opening and the new damage (J/m^2).
-    kept: Vec<f64>,
+    /// Energy of the undamaged bond per area at the new opening (J/m^2).
+    intact: Vec<f64>,
     /// The new damage.
     damage: Vec<f64>,
 }
 
 impl Passes {
     /// Ends the step of the intact bonds of one interface, which are the members.
+    #[allow(clippy::too_many_arguments)]
     pub(super) fn commit_bonds<S: Space>(
         &mut self,
         index: usize,
         law: &Interface,
         network: &mut Network<S>,
         sites: &[Site<S>],
+        turns: &[Turn<S>],
         info: &StepInfo,
         totals: &mut Totals,
     ) -> Result<(), LawError> {
+        let mut held = std::mem::take(&mut self.held);
+        self.open(index, network, sites, turns, info, &mut held.work);
+        self.gather_after(law, network, sites, info);
+        self.grow(law, info, &mut held)?;
+        self.keep_state(index, network);
+        self.settle(index, law, network, &held, totals);
+        self.held = held;
+        Ok(())
+    }
+
+    /// The largest distance between the damage that the step's impulses were formed with and the one
+    /// that their openings give, which becomes the next to form impulses with, `share` of the way.
+    ///
+    /// # Errors
+    /// A law's own error, with the contact at fault.
+    pub fn trial<S: Space>(
+        &mut self,
+        laws: &[Interface],
+        network: &mut Network<S>,
+        sites: &[Site<S>],
+        turns: &[Turn<S>],
+        info: &StepInfo,
+        share: f64,
+    ) -> Result<f64, LawError> {
+        let mut worst = 0.0f64;
+        for (index, law) in laws.iter().enumerate().filter(|(_, l)| l.damages()) {
+            self.select(network, |c| {
+                c.law as usize == index && network.bond(c).is_some_and(|b| b.intact())
+            });
+            if self.members.is_empty() {
+                continue;
+            }
+            let before = network.memory[index].clone_openings();
+            let mut held = std::mem::take(&mut self.held);
+            self.open(index, network, sites, turns, info, &mut held.work);
+            self.gather_after(law, network, sites, info);
+            self.grow(law, info, &mut held)?;
+            network.memory[index].restore_openings(before);
+            for (k, at) in self.members.iter().enumerate() {
+                let Some(slot) = network.contacts[*at].memory() else {
+                    continue;
+                };
+                let bond = &mut network.memory[index].bonds[slot];
+                let change = held.damage[k] - bond.used;
+                worst = worst.max(change.abs());
+                // A bond that breaks, breaks: half a bond of infinite stiffness would never let go.
+                bond.used = if held.damage[k] >= 1.0 {
+                    1.0
+                } else {
+                    bond.used + share * change
+                };
+            }
+            self.held = held;
+        }
+        Ok(worst)
+    }
+
+    /// Damage at the openings in the columns, by the cohesion itself and by the damage law: the larger.
+    fn grow(&mut self, law: &Interface, info: &StepInfo, held: &mut Held) -> Result<(), LawError> {
         let Some(cohesion) = &law.cohesion else {
             return Ok(());
         };
-        let mut held = std::mem::take(&mut self.held);
-        self.open(index, network, sites, info, &mut held.work);
-        self.gather_after(law, network, sites, info);
         self.columns.size_outputs();
         held.damage.clone_from(&self.columns.damage);
-        if let Some(damage) = &law.damage {
-            // The damage law sees what the undamaged bond would carry and store; what the damaged one
-            // stores follows, psi = (1 - D)^m psi_0.
-            let m = cohesion.plugin.degradation;
+        let m = cohesion.plugin.degradation;
+        // What the damaged bond stores follows from the undamaged one, psi = (1 - D)^m psi_0.
+        if law.damages() {
             self.columns.damage.fill(0.0);
-            self.run(cohesion, info, 0.0, Call::Energy)?;
+        }
+        self.run(cohesion, info, 0.0, Call::Energy)?;
+        held.intact.clone_from(&self.columns.out.energy);
+        if law.damage.is_some() {
             self.run(cohesion, info, 0.0, Call::Prepare)?;
-            self.columns.damage.clone_from(&held.damage);
+        }
+        self.columns.damage.clone_from(&held.damage);
+        if cohesion.plugin.commits() {
+            self.columns.out.damage.clone_from(&held.damage);
+            self.run(cohesion, info, 0.0, Call::Commit)?;
+            if law.damages() {
+                raise(&mut held.damage, &self.columns.out.damage);
+            }
+        }
+        if let Some(damage) = &law.damage {
+            // The damage law sees what the undamaged bond would carry and store.
             self.columns.expose_intact();
             self.run(damage, info, m, Call::Commit)?;
-            let kept_of = |damage: &[f64], intact: &[f64], out: &mut Vec<f64>| {
-                out.clear();
-                out.extend(damage.iter().zip(intact).map(|(d, e)| left(*d, m) * e));
-            };
-            kept_of(&held.damage, &self.columns.energy_intact, &mut held.stored);
-            for (new, old) in self.columns.out.damage.iter().zip(&mut held.damage) {
-                *old = new.clamp(*old, 1.0);
-            }
-            kept_of(&held.damage, &self.columns.energy_intact, &mut held.kept);
-            self.columns.damage.clone_from(&held.damage);
-        } else {
-            self.run(cohesion, info, 0.0, Call::Energy)?;
-            held.stored.clone_from(&self.columns.out.energy);
-            held.kept.clone_from(&self.columns.out.energy);
+            raise(&mut held.damage, &self.columns.out.damage);
         }
-        if cohesion.plugin.commits() {
-            self.run(cohesion, info, 0.0, Call::Commit)?;
-        }
-        self.settle(index, law, network, &held, totals);
-        self.held = held;
         Ok(())
     }
 
@@ -78,16 +128,22 @@ impl Passes {
         index: usize,
         network: &mut Network<S>,
         sites: &[Site<S>],
+        turns: &[Turn<S>],
         info: &StepInfo,
         works: &mut Vec<f64>,
     ) {
         works.clear();
+        let Network {
+            contacts, memory, ..
+        } = network;
+        let memory = &mut memory[index];
         for at in &self.members {
-            let (contact, site) = (&network.contacts[*at], &sites[*at]);
+            let (contact, site) = (&contacts[*at], &sites[*at]);
             let Some(slot) = contact.memory() else {
+                works.push(0.0);
                 continue;
             };
-            let bond = &mut network.memory[index].bonds[slot];
+            let bond = &mut memory.bonds[slot];
             let n = &contact.normal;
             let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
             bond.opening_n += info.h * un;
@@ -99,9 +155,24 @@ impl Passes {
             );
             works.push(en * un + et.dot(&ut));
         }
+        if !memory.rotates {
+            return;
+        }
+        // Turns and members both follow the order of the contacts, members by interface.
+        let mut place = vec![usize::MAX; contacts.len()];
+        for (k, turn) in turns.iter().enumerate() {
+            place[turn.moment.contact as usize] = k;
+        }
+        for (at, work) in self.members.iter().zip(works) {
+            let (Some(turn), Some(slot)) = (turns.get(place[*at]), contacts[*at].memory()) else {
+                continue;
+            };
+            memory.rotations[slot] += turn.spin * info.h;
+            *work += (turn.moment.moment - turn.moment.friction).dot(&turn.spin);
+        }
     }
 
-    /// Stores damage, energy and internal variables; breaks what is wholly damaged.
+    /// Stores damage and energy; breaks what is wholly damaged.
     fn settle<S: Space>(
         &self,
         index: usize,
@@ -110,35 +181,53 @@ impl Passes {
         held: &Held,
         totals: &mut Totals,
     ) {
+        let m = law.cohesion.as_ref().map_or(0.0, |c| c.plugin.degradation);
+        let damages = law.damages();
+        let share = |damage: f64| if damages { left(damage, m) } else { 1.0 };
         for (k, at) in self.members.iter().enumerate() {
             let contact = &mut network.contacts[*at];
             let Some(slot) = contact.memory() else {
                 continue;
             };
             let memory = &mut network.memory[index];
-            for (column, next) in memory.variables.iter_mut().zip(&self.columns.state_next) {
-                column[slot] = next[k];
-            }
             let bond = &mut memory.bonds[slot];
-            let (stored, kept) = (held.stored[k] * bond.area, held.kept[k] * bond.area);
-            totals.viscous += -held.work[k] - (stored - bond.energy);
+            let intact = held.intact[k] * bond.area;
+            // The step was done with D = `used`: what it stored at that damage, at its start and end.
+            let (start, end) = if bond.used == bond.damage {
+                (bond.energy, intact * share(bond.damage))
+            } else {
+                let ratio = share(bond.used) / share(bond.damage);
+                (bond.energy * ratio, intact * share(bond.used))
+            };
+            totals.viscous += -held.work[k] - (end - start);
+            let kept = if held.damage[k] >= 1.0 {
+                0.0
+            } else {
+                intact * share(held.damage[k])
+            };
+            totals.fracture += (bond.energy - start) + (end - kept);
+            bond.energy = kept;
             bond.damage = held.damage[k];
+            bond.used = bond.damage;
             if bond.damage >= 1.0 {
-                totals.fracture += stored;
                 totals.broken += 1;
                 memory.broken += 1;
-                bond.energy = 0.0;
                 contact.broken = true;
+                contact.pressed = 0.0;
                 network.broken_pairs.insert(contact.key.pair());
                 if law.variables() == 0 {
                     memory.release(slot as u32);
                     contact.slot = Contact::<S>::NO_MEMORY;
                 }
-            } else {
-                totals.fracture += stored - kept;
-                bond.energy = kept;
             }
         }
+    }
+}
+
+/// Damage never falls.
+fn raise(damage: &mut [f64], new: &[f64]) {
+    for (old, new) in damage.iter_mut().zip(new) {
+        *old = new.clamp(*old, 1.0);
     }
 }
 

@@ -254,7 +254,7 @@ impl Columns {
             }
         };
         let [twist, bend_1, bend_2] = &mut out.moment;
-        let mut spatial = |v: &mut Vec<f64>| {
+        let spatial = |v: &mut Vec<f64>| {
             if info.dimension == 3 {
                 output(v)
             } else {

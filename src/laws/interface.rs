@@ -1,7 +1,9 @@
 //! An interface law: one plugin in each of four slots, with parameters.
 
 use super::library::{LawError, Plugin};
-use fretwork_abi::{FLAG_CONSTANT, FLAG_OPENING, FLAG_TENSION_ONLY};
+use fretwork_abi::{
+    FLAG_BREAKS, FLAG_CONSTANT, FLAG_FORMS, FLAG_MOMENT, FLAG_OPENING, FLAG_TENSION_ONLY,
+};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -81,6 +83,8 @@ pub struct Interface {
     pub wear: Option<Loaded>,
     /// When bonds are made.
     pub bonds: BondRule,
+    /// Time under compression after which a contact bonds, also again after its bond broke (s).
+    pub healing: Option<f64>,
     /// Area of a contact.
     pub area: AreaRule,
 }
@@ -112,6 +116,16 @@ impl Interface {
             loaded.first_variable = next;
             next += loaded.variables();
         }
+        if let (Some(_), Some(cohesion)) = (self.healing, &self.cohesion)
+            && !(cohesion.has(FLAG_OPENING) && cohesion.has(FLAG_FORMS))
+        {
+            return Err(LawError::Pairing {
+                reason: format!(
+                    "the cohesion law `{}` of interface `{}` forms no bonds in contact; drop `healing` or choose another cohesion",
+                    cohesion.plugin.name, self.name
+                ),
+            });
+        }
         if let Some(damage) = &self.damage {
             match &self.cohesion {
                 None => {
@@ -141,6 +155,16 @@ impl Interface {
         self.loaded().map(Loaded::variables).sum()
     }
 
+    /// Those of the laws that act on every contact, bonded or not.
+    pub fn variables_of_contacts(&self) -> usize {
+        let cohesion = self.cohesion.as_ref().filter(|_| !self.opens());
+        [Some(&self.contact), cohesion, self.wear.as_ref()]
+            .into_iter()
+            .flatten()
+            .map(Loaded::variables)
+            .sum()
+    }
+
     /// Initial values of the internal variables.
     pub fn initial(&self) -> Vec<f64> {
         self.loaded()
@@ -155,7 +179,22 @@ impl Interface {
             BondRule::At(time) => time,
             BondRule::Never => return None,
         };
-        self.cohesion.is_some().then_some(time)
+        self.opens().then_some(time)
+    }
+
+    /// Whether the cohesion law has an opening, so that it makes bonds; without one it acts on every contact.
+    pub fn opens(&self) -> bool {
+        self.cohesion.as_ref().is_some_and(|c| c.has(FLAG_OPENING))
+    }
+
+    /// Whether bonds resist bending and twist.
+    pub fn rotates(&self) -> bool {
+        self.cohesion.as_ref().is_some_and(|c| c.has(FLAG_MOMENT))
+    }
+
+    /// Whether damage grows: by a damage law, or by the cohesion itself.
+    pub fn damages(&self) -> bool {
+        self.damage.is_some() || self.cohesion.as_ref().is_some_and(|c| c.has(FLAG_BREAKS))
     }
 
     /// Whether the normal stiffness only pulls.

@@ -309,6 +309,11 @@ impl Plugin {
         self.table.commit.is_some()
     }
 
+    /// Whether the law sets the internal variables of new contacts itself.
+    pub fn initialises(&self) -> bool {
+        self.table.initialise.is_some()
+    }
+
     /// Checks values of the parameters against the schema and the law's own judgement.
     ///
     /// # Errors

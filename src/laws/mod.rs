@@ -1,6 +1,8 @@
 //! Interface laws: libraries found by name, composed by the case, called in batches.
 mod bonds;
 pub mod columns;
+mod commit;
+mod gather;
 pub mod interface;
 pub mod library;
 pub mod pass;
@@ -8,5 +10,5 @@ pub mod search;
 
 pub use interface::{AreaRule, BondRule, Interface, Loaded};
 pub use library::{Call, Kind, LawError, Plugin};
-pub use pass::{Site, Totals};
+pub use pass::{Site, Totals, Turn, Velocities};
 pub use search::SearchPath;

@@ -5,11 +5,13 @@
 
 use super::bonds::Held;
 use super::columns::{Columns, StepInfo};
+use super::gather::contact_area;
 use super::interface::{Interface, Loaded};
 use super::library::{Call, LawError};
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
+use crate::solve::{MomentForm, MomentSolution};
 
 /// What one contact did over the step.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +24,24 @@ pub struct Site<S: Space> {
     pub adheres: bool,
     /// The solver's answer.
     pub solution: ContactSolution<S>,
+}
+
+/// What a contact that resists rotation did over the step.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn<S: Space> {
+    /// The solver's answer.
+    pub moment: MomentSolution<S>,
+    /// Theta-averaged relative spin (rad/s).
+    pub spin: S::Spin,
+}
+
+/// Relative velocities at the start of a step, contact by contact.
+#[derive(Clone, Debug, Default)]
+pub struct Velocities<S: Space> {
+    /// u^- (m/s).
+    pub relative: Vec<S::Vector>,
+    /// Relative spins (rad/s); empty unless a bond resists rotation.
+    pub turning: Vec<S::Spin>,
 }
 
 /// Energies and events of one step, summed over contacts (J, m^3).
@@ -63,33 +83,81 @@ struct Friction {
     e_t: f64,
     tension: f64,
     cohesion: f64,
+    rolling: f64,
+    spinning: f64,
 }
 
 impl Passes {
-    /// Makes the bonds of the interfaces whose time has come.
-    pub fn make_bonds<S: Space>(
+    /// Gives contacts the memory their laws need, and makes the bonds whose time has come: those of the
+    /// case's rule, and those of contacts that were pressed long enough.
+    ///
+    /// # Errors
+    /// A law's own error in `initialise`.
+    pub fn remember<S: Space>(
         &mut self,
         laws: &[Interface],
         network: &mut Network<S>,
-        time: f64,
-    ) {
+        info: &StepInfo,
+    ) -> Result<(), LawError> {
         self.bonded.resize(laws.len(), false);
         for (index, law) in laws.iter().enumerate() {
-            if self.bonded[index] || law.bonding_time().is_none_or(|t| time < t) {
+            let due = !self.bonded[index] && law.bonding_time().is_some_and(|t| info.time >= t);
+            self.bonded[index] |= due;
+            let remembers = law.variables_of_contacts() > 0;
+            if !due && !remembers && law.healing.is_none() {
                 continue;
             }
-            self.bonded[index] = true;
             let initial = law.initial();
-            for contact in network
-                .contacts
-                .iter_mut()
-                .filter(|c| c.law as usize == index)
-            {
+            let memory = &mut network.memory[index];
+            self.members.clear();
+            for (k, contact) in network.contacts.iter_mut().enumerate() {
+                if contact.law as usize != index {
+                    continue;
+                }
                 let area = law.area.area(S::D, contact.radius);
-                let memory = &mut network.memory[index];
-                contact.slot = memory.allocate(true, contact.gap, area, &initial);
+                let held = |slot: usize| memory.bonds[slot].intact();
+                let intact = contact.memory().is_some_and(held);
+                let healed = law
+                    .healing
+                    .is_some_and(|time| contact.pressed > 0.0 && contact.pressed >= time);
+                let bonds = !intact && (due || healed);
+                match contact.memory() {
+                    Some(slot) if bonds => memory.bond(slot, contact.gap, area),
+                    None if bonds || remembers => {
+                        contact.slot = memory.allocate(bonds, contact.gap, area, &initial);
+                        self.members.push(k);
+                    }
+                    _ => {}
+                }
+                if bonds && contact.broken {
+                    contact.broken = false;
+                    network.broken_pairs.remove(&contact.key.pair());
+                }
             }
+            self.initialise(index, law, network, info)?;
         }
+        Ok(())
+    }
+
+    /// Lets laws that have a say in it set the internal variables of new contacts, the members.
+    fn initialise<S: Space>(
+        &mut self,
+        index: usize,
+        law: &Interface,
+        network: &mut Network<S>,
+        info: &StepInfo,
+    ) -> Result<(), LawError> {
+        if self.members.is_empty() || !law.loaded().any(|l| l.plugin.initialises()) {
+            return Ok(());
+        }
+        let still = vec![S::Vector::null(); network.contacts.len()];
+        self.gather(law, network, &still, info);
+        self.columns.size_outputs();
+        for loaded in law.loaded() {
+            self.run(loaded, info, 0.0, Call::Initialise)?;
+        }
+        self.keep_state(index, network);
+        Ok(())
     }
 
     /// Completes the contacts' forms, which hold the geometry, with what the laws say.
@@ -100,21 +168,24 @@ impl Passes {
         &mut self,
         laws: &[Interface],
         network: &Network<S>,
-        before: &[S::Vector],
+        before: &Velocities<S>,
         info: &StepInfo,
         forms: &mut [ContactForm<S>],
+        moments: &mut Vec<MomentForm<S>>,
     ) -> Result<(), LawError> {
+        moments.clear();
         for (index, law) in laws.iter().enumerate() {
             // Intact bonds first: the cohesion law then takes the head of the same columns.
             let bonded = |c: &Contact<S>| network.bond(c).is_some_and(|b| b.intact());
-            let head = if law.cohesion.is_some() {
+            let head = if law.opens() {
                 self.select(network, |c| c.law as usize == index && bonded(c));
                 let head = self.members.len();
                 self.select_more(network, |c| c.law as usize == index && !bonded(c));
                 head
             } else {
                 self.select(network, |c| c.law as usize == index);
-                0
+                // Without an opening the cohesion acts on every contact.
+                law.cohesion.as_ref().map_or(0, |_| self.members.len())
             };
             if self.members.is_empty() {
                 continue;
@@ -124,7 +195,7 @@ impl Passes {
                 self.columns.clear();
                 self.columns.n = 1;
             } else {
-                self.gather(law, network, before, info);
+                self.gather(law, network, &before.relative, info);
             }
             self.columns.size_outputs();
             self.run(&law.contact, info, 0.0, Call::Prepare)?;
@@ -134,7 +205,10 @@ impl Passes {
                 e_t: out.restitution_t[k],
                 tension: out.tension_strength[k],
                 cohesion: out.shear_cohesion[k],
+                rolling: out.rolling[k],
+                spinning: out.spinning[k],
             };
+            let first = moments.len();
             for (k, at) in self.members.iter().enumerate() {
                 let friction = answer(&self.columns.out, if constant { 0 } else { k });
                 let area = contact_area(law, network, &network.contacts[*at]);
@@ -142,10 +216,21 @@ impl Passes {
                     &mut forms[*at],
                     &friction,
                     &network.contacts[*at],
-                    &before[*at],
+                    &before.relative[*at],
                     area,
                     info,
                 );
+                if law.rotates() || friction.rolling > 0.0 || friction.spinning > 0.0 {
+                    moments.push(MomentForm {
+                        contact: *at as u32,
+                        rolling: friction.rolling,
+                        spinning: friction.spinning,
+                        a: S::Spin::null(),
+                        b_twist: 0.0,
+                        b_bend: 0.0,
+                        moment: network.contacts[*at].moment,
+                    });
+                }
             }
             let Some(cohesion) = &law.cohesion else {
                 continue;
@@ -155,99 +240,36 @@ impl Passes {
             }
             self.members.truncate(head);
             if constant {
-                self.gather(law, network, before, info);
+                self.gather(law, network, &before.relative, info);
             } else {
                 self.columns.truncate(head);
             }
             self.columns.size_outputs();
             self.run(cohesion, info, 0.0, Call::Prepare)?;
             for (k, at) in self.members.iter().enumerate() {
-                self.apply_cohesion(law, k, &before[*at], info, &mut forms[*at]);
+                self.apply_cohesion(law, k, &before.relative[*at], info, &mut forms[*at]);
+            }
+            if law.rotates() {
+                for (k, form) in moments[first..].iter_mut().enumerate().take(head) {
+                    let at = form.contact as usize;
+                    self.apply_bending(
+                        k,
+                        &network.contacts[at].normal,
+                        &before.turning[at],
+                        info,
+                        form,
+                    );
+                }
             }
         }
         Ok(())
     }
 
-    /// Ends the step: `sites` are what the contacts did, in the network's order.
-    ///
-    /// # Errors
-    /// A law's own error, with the contact at fault.
-    pub fn commit<S: Space>(
+    pub(super) fn select<S: Space>(
         &mut self,
-        laws: &[Interface],
-        network: &mut Network<S>,
-        sites: &[Site<S>],
-        info: &StepInfo,
-    ) -> Result<Totals, LawError> {
-        let mut totals = Totals::default();
-        for (contact, site) in network.contacts.iter_mut().zip(sites) {
-            contact.impulse = site.solution.impulse;
-            let n = &contact.normal;
-            contact.pressed = if n.dot(&contact.impulse) > 0.0 {
-                contact.pressed + info.h
-            } else {
-                0.0
-            };
-            let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
-            totals.friction -= site.solution.unilateral_t.dot(&ut);
-            let work = -site.solution.unilateral_n * un;
-            if site.adheres && site.solution.unilateral_n < 0.0 {
-                totals.adhesion += work;
-            } else {
-                totals.impact += work;
-            }
-        }
-        for (index, law) in laws.iter().enumerate() {
-            if law.cohesion.is_some() {
-                self.select(network, |c| {
-                    c.law as usize == index && network.bond(c).is_some_and(|b| b.intact())
-                });
-                if !self.members.is_empty() {
-                    self.commit_bonds(index, law, network, sites, info, &mut totals)?;
-                }
-            }
-            if let Some(wear) = &law.wear {
-                self.select(network, |c| c.law as usize == index);
-                if !self.members.is_empty() {
-                    self.commit_wear(law, wear, network, sites, info, &mut totals)?;
-                }
-            }
-        }
-        totals.fracture += std::mem::take(&mut network.torn_energy);
-        Ok(totals)
-    }
-
-    fn commit_wear<S: Space>(
-        &mut self,
-        law: &Interface,
-        wear: &Loaded,
         network: &Network<S>,
-        sites: &[Site<S>],
-        info: &StepInfo,
-        totals: &mut Totals,
-    ) -> Result<(), LawError> {
-        self.gather_after(law, network, sites, info);
-        for at in &self.members {
-            let (contact, site) = (&network.contacts[*at], &sites[*at]);
-            let ut = S::tangential(&contact.normal, &site.average);
-            self.columns.slip.push(info.h * ut.norm());
-            let work = -site.solution.unilateral_t.dot(&ut);
-            self.columns.friction_work.push(work.max(0.0));
-        }
-        self.columns.size_outputs();
-        self.run(wear, info, 0.0, Call::Commit)?;
-        for (k, at) in self.members.iter().enumerate() {
-            let volume = self.columns.out.volume[k];
-            if network.contacts[*at].key.surface().is_some() {
-                totals.worn_first += volume;
-            } else {
-                totals.worn_third += volume;
-            }
-        }
-        Ok(())
-    }
-
-    fn select<S: Space>(&mut self, network: &Network<S>, keep: impl Fn(&Contact<S>) -> bool) {
+        keep: impl Fn(&Contact<S>) -> bool,
+    ) {
         self.members.clear();
         self.select_more(network, keep);
     }
@@ -284,70 +306,6 @@ impl Passes {
         }
     }
 
-    /// Columns at the start of the step.
-    fn gather<S: Space>(
-        &mut self,
-        law: &Interface,
-        network: &Network<S>,
-        before: &[S::Vector],
-        info: &StepInfo,
-    ) {
-        self.columns.clear();
-        for at in &self.members {
-            let contact = &network.contacts[*at];
-            gather_contact(&mut self.columns, law, network, contact, &before[*at], info);
-            push_vector::<S>(&mut self.columns.impulse, &contact.normal, &contact.impulse);
-        }
-        self.gather_state(law, network);
-    }
-
-    /// Columns at the end of the step: new openings, u_th, this step's impulses.
-    pub(super) fn gather_after<S: Space>(
-        &mut self,
-        law: &Interface,
-        network: &Network<S>,
-        sites: &[Site<S>],
-        info: &StepInfo,
-    ) {
-        self.columns.clear();
-        for at in &self.members {
-            let (contact, site) = (&network.contacts[*at], &sites[*at]);
-            gather_contact(
-                &mut self.columns,
-                law,
-                network,
-                contact,
-                &site.average,
-                info,
-            );
-            push_vector::<S>(
-                &mut self.columns.impulse,
-                &contact.normal,
-                &site.solution.impulse,
-            );
-        }
-        self.gather_state(law, network);
-    }
-
-    fn gather_state<S: Space>(&mut self, law: &Interface, network: &Network<S>) {
-        self.columns.n = self.members.len();
-        for v in 0..law.variables() {
-            let column: Vec<f64> = self
-                .members
-                .iter()
-                .map(|at| {
-                    let contact = &network.contacts[*at];
-                    let memory = &network.memory[contact.law as usize];
-                    contact
-                        .memory()
-                        .map_or(0.0, |slot| memory.variables[v][slot])
-                })
-                .collect();
-            self.columns.state_next.push(column.clone());
-            self.columns.state.push(column);
-        }
-    }
-
     fn apply_cohesion<S: Space>(
         &self,
         law: &Interface,
@@ -366,6 +324,9 @@ impl Passes {
         let traction_t = S::from_components(n, out.traction[1][k], out.traction[2][k]);
         form.tension += h * area * out.tension_strength[k];
         form.cohesion += h * area * out.shear_cohesion[k];
+        if !law.opens() {
+            return;
+        }
         form.elastic = Some(Elastic {
             a_n: h * area * (out.traction[0][k] + (kn * memory + dn * (1.0 - theta)) * un),
             a_t: (traction_t + ut * (kt * memory + dt * (1.0 - theta))) * (h * area),
@@ -374,13 +335,29 @@ impl Passes {
             tension_only: law.tension_only(),
         });
     }
-}
 
-#[inline]
-fn contact_area<S: Space>(law: &Interface, network: &Network<S>, contact: &Contact<S>) -> f64 {
-    match network.bond(contact) {
-        Some(bond) => bond.area,
-        None => law.area.area(S::D, contact.radius),
+    /// The linearised bending and twist of a bond.
+    fn apply_bending<S: Space>(
+        &self,
+        k: usize,
+        n: &S::Vector,
+        before: &S::Spin,
+        info: &StepInfo,
+        form: &mut MomentForm<S>,
+    ) {
+        let (out, StepInfo { h, theta, .. }) = (&self.columns.out, *info);
+        let impulse = h * self.columns.area[k];
+        let (twist, bend) = (
+            out.stiffness_twist[k].max(0.0),
+            out.stiffness_bend[k].max(0.0),
+        );
+        let (w_twist, w_bend) = S::split_spin(n, before);
+        let memory = h * theta * (1.0 - theta);
+        let moment = S::spin_from(n, [out.moment[0][k], out.moment[1][k], out.moment[2][k]]);
+        form.a =
+            (moment + S::about(n, w_twist * (twist * memory)) + w_bend * (bend * memory)) * impulse;
+        form.b_twist = impulse * h * theta * theta * twist;
+        form.b_bend = impulse * h * theta * theta * bend;
     }
 }
 
@@ -408,40 +385,4 @@ fn apply_friction<S: Space>(
     if contact.gap <= 0.0 && friction.e_t > 0.0 {
         form.shift_t = S::tangential(&contact.normal, before) * friction.e_t;
     }
-}
-
-#[inline]
-fn push_vector<S: Space>(triple: &mut super::columns::Triple, n: &S::Vector, v: &S::Vector) {
-    let [t1, t2] = S::components(n, &S::tangential(n, v));
-    triple[0].push(n.dot(v));
-    triple[1].push(t1);
-    triple[2].push(t2);
-}
-
-#[inline]
-fn gather_contact<S: Space>(
-    columns: &mut Columns,
-    law: &Interface,
-    network: &Network<S>,
-    contact: &Contact<S>,
-    velocity: &S::Vector,
-    info: &StepInfo,
-) {
-    columns.gap.push(contact.gap);
-    columns.area.push(contact_area(law, network, contact));
-    columns.radius.push(contact.radius);
-    columns.age.push(info.time - contact.born);
-    columns.pressed.push(contact.pressed);
-    push_vector::<S>(&mut columns.velocity, &contact.normal, velocity);
-    let (opening, damage) = match network.bond(contact) {
-        Some(bond) => {
-            let [t1, t2] = S::components(&contact.normal, &bond.opening_t);
-            ([bond.opening_n, t1, t2], bond.damage)
-        }
-        None => ([0.0; 3], 1.0),
-    };
-    for (column, x) in columns.opening.iter_mut().zip(opening) {
-        column.push(x);
-    }
-    columns.damage.push(damage);
 }

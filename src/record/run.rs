@@ -108,6 +108,7 @@ struct Recorder<'a, S: Space> {
     worn: (f64, f64),
     internal_flow: f64,
     iterations: u64,
+    couplings: u64,
     total: u64,
     clock: Instant,
     density: f64,
@@ -192,6 +193,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             worn: (0.0, 0.0),
             internal_flow: 0.0,
             iterations: 0,
+            couplings: 0,
             total,
             clock: Instant::now(),
             density: density_of(loaded, first.is_some()),
@@ -281,6 +283,8 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         self.iterations += u64::from(report.solver.iterations);
         solver.iterations_max = solver.iterations_max.max(report.solver.iterations);
         solver.error_max = solver.error_max.max(report.solver.error);
+        self.couplings += u64::from(report.coupling.iterations);
+        solver.uncoupled_steps += u64::from(report.coupling.missed);
         if !report.solver.converged {
             if solver.unconverged_steps == 0 {
                 solver.first_unconverged = s.steps;
@@ -424,6 +428,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             volume_first_bodies: self.worn.0,
             volume_third_body: self.worn.1,
         };
+        summary.solver.coupling_iterations_mean = self.couplings as f64 / s.steps.max(1) as f64;
         summary.solver.iterations_mean = self.iterations as f64 / s.steps.max(1) as f64;
         self.table
             .flush()

@@ -31,6 +31,10 @@ pub struct SolverSummary {
     pub error_max: f64,
     /// Steps that did not reach the tolerance.
     pub unconverged_steps: u64,
+    /// Steps whose damage and opening did not agree to the coupling's tolerance.
+    pub uncoupled_steps: u64,
+    /// Solves a step, on average, of an implicit coupling; 0 for an explicit one.
+    pub coupling_iterations_mean: f64,
     /// The first of them, 0 if none.
     pub first_unconverged: u64,
     /// Tolerance.
@@ -198,6 +202,24 @@ impl Summary {
                 format!(
                     "{} steps, the first is step {}; raise solver.max_iterations or take a smaller step",
                     s.unconverged_steps, s.first_unconverged
+                ),
+            );
+        }
+        if s.coupling_iterations_mean > 0.0 {
+            line(
+                "coupling",
+                format!(
+                    "{:.1} solves a step, damage and opening together",
+                    s.coupling_iterations_mean
+                ),
+            );
+        }
+        if s.uncoupled_steps > 0 {
+            line(
+                "NOT COUPLED",
+                format!(
+                    "{} steps left damage and opening apart; raise coupling.max_iterations or take a smaller step",
+                    s.uncoupled_steps
                 ),
             );
         }

@@ -782,6 +782,7 @@ impl<S: Dimensional> Builder<'_, S> {
         );
         simulation.gravity = gravity;
         simulation.correction = case.solver.correction;
+        simulation.coupling = case.coupling;
         simulation.scheme = Scheme {
             h: case.time.step,
             theta: case.time.theta,

@@ -3,6 +3,7 @@
 use crate::bodies::{Dof, TimeFunction};
 use crate::laws::BondRule;
 use crate::solve::error::Norm;
+use crate::step::coupling::Coupling;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -30,6 +31,10 @@ pub struct Case {
     /// inertial number stays below 1e-3). Reported densities and wear are unscaled.
     #[serde(default = "one")]
     pub inertia_scaling: f64,
+    /// `Explicit` (the default), or `Implicit(tolerance: 1e-6, max_iterations: 50)`: the step is solved
+    /// again until its damage is the one that its openings give.
+    #[serde(default)]
+    pub coupling: Coupling,
     /// Length of the periodic cell along an axis (m).
     #[serde(default)]
     pub periodic: PeriodicSpec,
@@ -157,6 +162,9 @@ pub struct InterfaceSpec {
     /// When bonds are made.
     #[serde(default)]
     pub bonds: BondRule,
+    /// Time under compression after which a contact bonds, also again after its bond broke (s).
+    #[serde(default)]
+    pub healing: Option<f64>,
     /// Factor of the contact's area, see `AreaRule`.
     #[serde(default = "one")]
     pub area_factor: f64,

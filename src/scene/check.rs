@@ -7,6 +7,7 @@ use crate::bodies::Dof;
 use crate::contact::detect::detect;
 use crate::geometry::space::Space;
 use crate::step::Simulation;
+use crate::step::coupling::Coupling;
 
 /// Numbers that make no sense.
 ///
@@ -41,6 +42,16 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
         ));
     }
     positive("inertia_scaling", case.inertia_scaling)?;
+    if let Coupling::Implicit {
+        tolerance,
+        max_iterations,
+    } = case.coupling
+    {
+        positive("coupling.tolerance", tolerance)?;
+        if max_iterations == 0 {
+            return Err(Fault::new("coupling.max_iterations", "must be at least 1"));
+        }
+    }
     let s = &case.solver;
     if !(s.tolerance.is_finite() && s.tolerance >= 0.0) {
         return Err(Fault::new(

@@ -63,6 +63,9 @@ pub fn build(
                 "this pair of materials has an interface already",
             )));
         }
+        if spec.healing.is_some_and(|t| !(t.is_finite() && t >= 0.0)) {
+            return Err(at(Fault::new("healing", "must be a time, not negative")));
+        }
         if !(spec.area_factor.is_finite() && spec.area_factor > 0.0) {
             return Err(at(Fault::new("area_factor", "must be positive")));
         }
@@ -165,6 +168,7 @@ fn compose(
         damage: optional(Kind::Damage, &spec.damage, &p.damage, &own.damage)?,
         wear: optional(Kind::Wear, &spec.wear, &p.wear, &own.wear)?,
         bonds: spec.bonds,
+        healing: spec.healing,
         area: AreaRule {
             factor: spec.area_factor,
         },

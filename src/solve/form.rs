@@ -1,6 +1,6 @@
 //! What the stepper hands to a solver: bodies as lines of velocity, contacts in the standard form.
 
-use super::row::{FullRow, GeneralRow, Line, PlainRow, Row};
+use super::row::{FullRow, GeneralRow, Line, MomentForm, MomentRow, MomentSolution, PlainRow, Row};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
 /// One contact in the standard local form. Impulses are in N s, velocities in m/s.
@@ -92,6 +92,8 @@ pub struct Problem<S: Space> {
     pub(super) full: Vec<FullRow<S>>,
     /// Contacts with levers or bodies that are free along some axes only.
     pub(super) general: Vec<GeneralRow<S>>,
+    /// Moments of contacts that resist rotation; they run last, in order.
+    pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<Place>,
     /// Starts of the colours of `plain` and `full`.
     pub(super) groups: [Vec<usize>; 2],
@@ -107,6 +109,7 @@ impl<S: Space> Default for Problem<S> {
             plain: Vec::new(),
             full: Vec::new(),
             general: Vec::new(),
+            moments: Vec::new(),
             places: Vec::new(),
             groups: [Vec::new(), Vec::new()],
         }
@@ -123,6 +126,7 @@ impl<S: Space> Problem<S> {
         self.plain.clear();
         self.full.clear();
         self.general.clear();
+        self.moments.clear();
         self.places.clear();
     }
 
@@ -173,6 +177,36 @@ impl<S: Space> Problem<S> {
                 (mass, inertia, self.lengths[b])
             });
             self.general.push(row);
+        }
+    }
+
+    /// Adds the moments of a contact that was pushed, given again for its bodies and normal.
+    pub fn push_moment(&mut self, form: &MomentForm<S>, contact: &ContactForm<S>) {
+        let [i, j] = contact.bodies.map(|b| b as usize);
+        self.moments.push(MomentRow::new(
+            form,
+            self.places[form.contact as usize],
+            contact.bodies,
+            contact.normal,
+            [self.masses[i].1, self.masses[j].1],
+            [self.lengths[i], self.lengths[j]],
+        ));
+    }
+
+    /// The moments, in the order pushed.
+    pub fn moments(&self) -> impl Iterator<Item = MomentSolution<S>> {
+        self.moments.iter().map(|row| {
+            let [i, j] = row.bodies.map(|b| &self.lines[b as usize]);
+            row.solution(i, j)
+        })
+    }
+
+    /// The normal impulse of a contact.
+    pub(super) fn normal(&self, place: Place) -> f64 {
+        match place {
+            Place::Plain(r) => self.plain[r as usize].normal(),
+            Place::Full(r) => self.full[r as usize].normal(),
+            Place::General(r) => self.general[r as usize].normal(),
         }
     }
 

@@ -15,3 +15,4 @@ pub mod row;
 
 pub use form::{ContactForm, Problem};
 pub use nlgs::{Options, Report, solve};
+pub use row::{MomentForm, MomentSolution};

@@ -96,6 +96,16 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     }
 }
 
+impl Report {
+    /// Adds another solve of the same step: sweeps add up, the rest is the last one's.
+    pub fn add(&mut self, other: &Self) {
+        *self = Self {
+            iterations: self.iterations + other.iterations,
+            ..*other
+        };
+    }
+}
+
 /// Over-relaxation has no theorem under friction: where it drives the residual up, or round in circles,
 /// there is to be less of it.
 struct Caution {
@@ -145,6 +155,9 @@ impl<S: Space> Problem<S> {
         load(&self.plain, &lines);
         load(&self.full, &lines);
         load(&self.general, &lines);
+        for row in &self.moments {
+            lines.with(row.bodies, true, |a, b| row.load(a, b));
+        }
     }
 
     /// The index by which the contact at a place of the sweep was pushed.
@@ -232,6 +245,9 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
             general => general,
         };
     }
+    for row in &mut problem.moments {
+        row.place = problem.places[row.form.contact as usize];
+    }
 }
 
 fn permute<S: Space, R: Row<S>>(
@@ -275,6 +291,12 @@ fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
     for row in &mut problem.general {
         lines.with(row.bodies(), true, |a, b| row.update(a, b, relaxation));
     }
+    for k in 0..problem.moments.len() {
+        let pn = problem.normal(problem.moments[k].place);
+        let lines = Lines::new(&mut problem.lines);
+        let row = &mut problem.moments[k];
+        lines.with(row.bodies, true, |a, b| row.update(pn, a, b, relaxation));
+    }
 }
 
 fn pass<S: Space, R: Row<S>>(
@@ -314,6 +336,14 @@ fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sums {
     measure_rows(&problem.plain, &lines, 0, parallel, &mut sums);
     measure_rows(&problem.full, &lines, a, parallel, &mut sums);
     measure_rows(&problem.general, &lines, a + b, parallel, &mut sums);
+    for row in &problem.moments {
+        let (i, j) = lines.read(row.bodies);
+        let pn = problem.normal(row.place);
+        // A bad moment is not searched for among the worst contacts.
+        let worst = (sums.worst, sums.worst_at);
+        sums.add(&row.residual(pn, &i, &j), 0);
+        (sums.worst, sums.worst_at) = worst;
+    }
     sums
 }
 

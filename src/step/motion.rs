@@ -73,6 +73,11 @@ impl<S: Space> Before<S> {
         }
     }
 
+    /// The spin of a body at the start of the step.
+    pub fn spin(&self, body: usize) -> S::Spin {
+        self.spin[body]
+    }
+
     /// The work done over the step. `received` are contact impulses and moments on the driven bodies
     /// in their order (N s, N m s).
     ///

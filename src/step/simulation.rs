@@ -1,5 +1,6 @@
 //! The stepper: one step, as the data flows.
 
+use super::coupling::{Coupling, CouplingReport, Progress};
 use super::motion::{self, Before};
 use crate::bodies::Bodies;
 use crate::contact::detect::{LawTable, detect};
@@ -8,9 +9,9 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
 use crate::laws::pass::Passes;
-use crate::laws::{Interface, LawError, Site, Totals};
+use crate::laws::{Interface, LawError, Site, Totals, Turn, Velocities};
 use crate::record::ledger::Energy;
-use crate::solve::{self, ContactForm, Problem};
+use crate::solve::{self, ContactForm, MomentForm, Problem};
 use std::time::{Duration, Instant};
 
 /// The time scheme.
@@ -65,12 +66,20 @@ pub struct Timing {
 pub struct StepReport {
     /// The solver's report.
     pub solver: solve::Report,
+    /// How the coupling of damage and opening went.
+    pub coupling: CouplingReport,
     /// Sums over contacts.
     pub totals: Totals,
     /// Contacts that carry an impulse.
     pub active: usize,
     /// Time spent.
     pub timing: Timing,
+}
+
+/// What the contacts did in a solved step.
+struct Solved<S: Space> {
+    sites: Vec<Site<S>>,
+    turns: Vec<Turn<S>>,
 }
 
 /// A scene that steps.
@@ -98,6 +107,8 @@ pub struct Simulation<S: Space> {
     pub steps: u64,
     /// Share of a penetration that a step takes back, 0 to 1; see [`crate::scene::case::SolverSpec`].
     pub correction: f64,
+    /// How damage and opening are brought together within a step.
+    pub coupling: Coupling,
     /// The energy ledger.
     pub energy: Energy,
     /// Contact impulses and moments on the driven bodies in the last step, in their order.
@@ -105,6 +116,7 @@ pub struct Simulation<S: Space> {
     passes: Passes,
     problem: Problem<S>,
     forms: Vec<ContactForm<S>>,
+    moments: Vec<MomentForm<S>>,
 }
 
 /// The gap a step may close, or the part of a penetration it must take back (m).
@@ -123,6 +135,10 @@ impl<S: Space> Simulation<S> {
         skin: f64,
     ) -> Self {
         let variables: Vec<usize> = laws.iter().map(Interface::variables).collect();
+        let mut network = Network::new(alert, skin, &variables);
+        for (memory, law) in network.memory.iter_mut().zip(&laws) {
+            memory.rotates = law.rotates();
+        }
         let kinetic = bodies.kinetic_energy();
         let received = vec![(S::Vector::null(), S::Spin::null()); bodies.driven.len()];
         Self {
@@ -130,7 +146,7 @@ impl<S: Space> Simulation<S> {
             shapes,
             laws,
             table,
-            network: Network::new(alert, skin, &variables),
+            network,
             gravity: S::Vector::null(),
             scheme: Scheme {
                 h: 1e-3,
@@ -140,6 +156,7 @@ impl<S: Space> Simulation<S> {
             time: 0.0,
             steps: 0,
             correction: 0.0,
+            coupling: Coupling::Explicit,
             energy: Energy {
                 kinetic,
                 initial_kinetic: kinetic,
@@ -149,6 +166,7 @@ impl<S: Space> Simulation<S> {
             passes: Passes::default(),
             problem: Problem::default(),
             forms: Vec::new(),
+            moments: Vec::new(),
         }
     }
 
@@ -176,31 +194,19 @@ impl<S: Space> Simulation<S> {
             &self.table,
             self.time,
         );
-        self.passes
-            .make_bonds(&self.laws, &mut self.network, self.time);
+        let remembered = self.passes.remember(&self.laws, &mut self.network, &info);
+        remembered.map_err(|e| self.law_error(e))?;
         report.timing.detect = clock.elapsed();
 
-        let clock = Instant::now();
         let before = self.relative_velocities();
         let free = motion::free_velocities(&self.bodies, &self.gravity, self.time, h, theta);
         self.geometry_of_forms(h);
-        let prepared =
-            self.passes
-                .prepare(&self.laws, &self.network, &before, &info, &mut self.forms);
-        prepared.map_err(|e| self.law_error(e))?;
-        report.timing.laws = clock.elapsed();
+        let Solved { sites, turns } = self.couple(&start, &before, &free, &info, &mut report)?;
 
         let clock = Instant::now();
-        self.pose(&free);
-        report.solver = solve::solve(&mut self.problem, &self.solver);
-        self.adopt_velocities()?;
-        report.timing.solve = clock.elapsed();
-
-        let clock = Instant::now();
-        let sites = self.sites(&before);
         let committed = self
             .passes
-            .commit(&self.laws, &mut self.network, &sites, &info);
+            .commit(&self.laws, &mut self.network, &sites, &turns, &info);
         report.totals = committed.map_err(|e| self.law_error(e))?;
         report.timing.laws += clock.elapsed();
 
@@ -213,6 +219,63 @@ impl<S: Space> Simulation<S> {
         self.time += h;
         self.steps += 1;
         Ok(report)
+    }
+
+    /// Prepares and solves: once where damage is coupled explicitly, else until the damage that the
+    /// impulses are formed with is the one that their openings give.
+    fn couple(
+        &mut self,
+        start: &Before<S>,
+        before: &Velocities<S>,
+        free: &[(S::Vector, S::Spin)],
+        info: &StepInfo,
+        report: &mut StepReport,
+    ) -> Result<Solved<S>, StepError> {
+        let mut coupling = Progress::new(&self.coupling);
+        loop {
+            let clock = Instant::now();
+            let prepared = self.passes.prepare(
+                &self.laws,
+                &self.network,
+                before,
+                info,
+                &mut self.forms,
+                &mut self.moments,
+            );
+            prepared.map_err(|e| self.law_error(e))?;
+            report.timing.laws += clock.elapsed();
+
+            let clock = Instant::now();
+            self.pose(free);
+            let solved = solve::solve(&mut self.problem, &self.solver);
+            report.solver.add(&solved);
+            self.adopt_velocities()?;
+            report.timing.solve += clock.elapsed();
+
+            let sites = self.sites(&before.relative);
+            let turns = self.turns(start);
+            let Coupling::Implicit { .. } = self.coupling else {
+                return Ok(Solved { sites, turns });
+            };
+            let clock = Instant::now();
+            let change = self.passes.trial(
+                &self.laws,
+                &mut self.network,
+                &sites,
+                &turns,
+                info,
+                coupling.share,
+            );
+            let change = change.map_err(|e| self.law_error(e))?;
+            report.timing.laws += clock.elapsed();
+            if coupling.ends(change) {
+                report.coupling = coupling.report();
+                return Ok(Solved { sites, turns });
+            }
+            for (k, form) in self.forms.iter_mut().enumerate() {
+                form.impulse = sites[k].solution.impulse;
+            }
+        }
     }
 
     fn law_error(&self, source: LawError) -> StepError {
@@ -232,12 +295,20 @@ impl<S: Space> Simulation<S> {
             - S::sweep(&bodies.spin[j], &contact.arms[1])
     }
 
-    fn relative_velocities(&self) -> Vec<S::Vector> {
-        self.network
-            .contacts
-            .iter()
-            .map(|c| self.relative_velocity(c))
-            .collect()
+    fn relative_velocities(&self) -> Velocities<S> {
+        let contacts = &self.network.contacts;
+        let turning = if self.laws.iter().any(Interface::rotates) {
+            let spins = &self.bodies.spin;
+            let relative =
+                |c: &Contact<S>| spins[c.bodies[0] as usize] - spins[c.bodies[1] as usize];
+            contacts.iter().map(relative).collect()
+        } else {
+            Vec::new()
+        };
+        Velocities {
+            relative: contacts.iter().map(|c| self.relative_velocity(c)).collect(),
+            turning,
+        }
     }
 
     /// The part of the forms that geometry gives.
@@ -283,6 +354,9 @@ impl<S: Space> Simulation<S> {
         for form in &self.forms {
             problem.push(form);
         }
+        for form in &self.moments {
+            problem.push_moment(form, &self.forms[form.contact as usize]);
+        }
     }
 
     fn adopt_velocities(&mut self) -> Result<(), StepError> {
@@ -314,6 +388,23 @@ impl<S: Space> Simulation<S> {
             .collect()
     }
 
+    /// What the contacts that resist rotation did.
+    fn turns(&self, start: &Before<S>) -> Vec<Turn<S>> {
+        let theta = self.scheme.theta;
+        let average = |b: u32| {
+            let b = b as usize;
+            start.spin(b) * (1.0 - theta) + self.bodies.spin[b] * theta
+        };
+        let turn = |moment: solve::MomentSolution<S>| {
+            let [i, j] = self.network.contacts[moment.contact as usize].bodies;
+            Turn {
+                spin: average(i) - average(j),
+                moment,
+            }
+        };
+        self.problem.moments().map(turn).collect()
+    }
+
     /// Books the step in the energy ledger.
     fn book(&mut self, start: &Before<S>, totals: &Totals) {
         let mut received = vec![(S::Vector::null(), S::Spin::null()); self.bodies.driven.len()];
@@ -327,7 +418,8 @@ impl<S: Space> Simulation<S> {
                 if d != usize::MAX {
                     let impulse = contact.impulse * sign;
                     received[d].0 += impulse;
-                    received[d].1 += S::moment(&contact.arms[side], &impulse);
+                    received[d].1 +=
+                        S::moment(&contact.arms[side], &impulse) + contact.moment * sign;
                 }
             }
         }

@@ -170,6 +170,10 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         self.push(&self.p, a, b);
     }
 
+    fn normal(&self) -> f64 {
+        self.n.dot(&self.p)
+    }
+
     fn speed(&self, a: &Line<S>, b: &Line<S>) -> f64 {
         let u = self.relative(a, b);
         u.dot(&u)

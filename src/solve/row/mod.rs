@@ -5,10 +5,13 @@
 
 mod full;
 mod general;
+mod moment;
 mod plain;
 
 pub(super) use full::FullRow;
 pub(super) use general::GeneralRow;
+pub(super) use moment::MomentRow;
+pub use moment::{MomentForm, MomentSolution};
 pub(super) use plain::PlainRow;
 
 use super::cone;
@@ -49,6 +52,8 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync {
     fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64);
     /// Adds what the stored impulse does to the velocities.
     fn load(&self, a: &mut Line<S>, b: &mut Line<S>);
+    /// The normal impulse.
+    fn normal(&self) -> f64;
     /// |u|^2 at the velocities at hand.
     fn speed(&self, a: &Line<S>, b: &Line<S>) -> f64;
     fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual;

@@ -53,6 +53,10 @@ impl<S: Space> Row<S> for PlainRow<S> {
         push(&self.n, self.pn, self.pt, a, b);
     }
 
+    fn normal(&self) -> f64 {
+        self.pn
+    }
+
     fn speed(&self, a: &Line<S>, b: &Line<S>) -> f64 {
         let (un, ut) = relative(&self.n, a, b);
         un * un + ut.dot(&ut)

@@ -18,7 +18,7 @@ impl Law for ElasticBond {
     const DOC: &'static str =
         "linear elastic bond, traction (1 - D) k x, psi = (1 - D) (k_n <x_n>^2 + k_t |x_t|^2)/2";
     const REFERENCE: &'static str = "bond of BondedMohrCoulomb of MELODY: G. Mollon, Comput. Part. Mech. 5 (2018), doi:10.1007/s40571-018-0187-6";
-    const FLAGS: u64 = abi::FLAG_TENSION_ONLY | abi::FLAG_OPENING;
+    const FLAGS: u64 = abi::FLAG_TENSION_ONLY | abi::FLAG_OPENING | abi::FLAG_FORMS;
 }
 
 impl CohesionLaw for ElasticBond {

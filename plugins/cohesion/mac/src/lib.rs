@@ -15,7 +15,7 @@ impl Law for Mac {
     const NAME: &'static str = "mac";
     const DOC: &'static str = "Monerie-Acary-Cangemi bond, traction (1 - D)^2 C x, psi = (1 - D)^2 (C_N <x_n>^2 + C_T |x_t|^2)/2";
     const REFERENCE: &'static str = "Y. Monerie, V. Acary, Formulation dynamique d'un modele de zone cohesive tridimensionnel, Rev. Eur. Elements Finis 10 (2001); M. Raous, L. Cangemi, M. Cocou, Comput. Methods Appl. Mech. Engrg 177 (1999) 383-399";
-    const FLAGS: u64 = abi::FLAG_TENSION_ONLY | abi::FLAG_OPENING;
+    const FLAGS: u64 = abi::FLAG_TENSION_ONLY | abi::FLAG_OPENING | abi::FLAG_FORMS;
 }
 
 impl CohesionLaw for Mac {

@@ -1,0 +1,141 @@
+//! Commit: what the laws make of a step that was solved.
+
+use super::columns::StepInfo;
+use super::interface::{Interface, Loaded};
+use super::library::{Call, LawError};
+use super::pass::{Passes, Site, Totals, Turn};
+use crate::contact::Network;
+use crate::geometry::space::{Space, VectorLike};
+
+impl Passes {
+    /// Ends the step: `sites` are what the contacts did, in the network's order, `turns` the moments of
+    /// those that resist rotation.
+    ///
+    /// # Errors
+    /// A law's own error, with the contact at fault.
+    pub fn commit<S: Space>(
+        &mut self,
+        laws: &[Interface],
+        network: &mut Network<S>,
+        sites: &[Site<S>],
+        turns: &[Turn<S>],
+        info: &StepInfo,
+    ) -> Result<Totals, LawError> {
+        let mut totals = Totals::default();
+        for (contact, site) in network.contacts.iter_mut().zip(sites) {
+            contact.impulse = site.solution.impulse;
+            contact.moment = S::Spin::null();
+            let n = &contact.normal;
+            contact.pressed = if n.dot(&contact.impulse) > 0.0 {
+                contact.pressed + info.h
+            } else {
+                0.0
+            };
+            let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
+            totals.friction -= site.solution.unilateral_t.dot(&ut);
+            let work = -site.solution.unilateral_n * un;
+            if site.adheres && site.solution.unilateral_n < 0.0 {
+                totals.adhesion += work;
+            } else {
+                totals.impact += work;
+            }
+        }
+        for turn in turns {
+            network.contacts[turn.moment.contact as usize].moment = turn.moment.moment;
+            totals.friction -= turn.moment.friction.dot(&turn.spin);
+        }
+        for (index, law) in laws.iter().enumerate() {
+            let bonded = |n: &Network<S>, c: &crate::contact::Contact<S>| {
+                n.bond(c).is_some_and(|b| b.intact())
+            };
+            if law.opens() {
+                self.select(network, |c| c.law as usize == index && bonded(network, c));
+                if !self.members.is_empty() {
+                    self.commit_bonds(index, law, network, sites, turns, info, &mut totals)?;
+                }
+            }
+            self.select(network, |c| c.law as usize == index);
+            if self.members.is_empty() {
+                continue;
+            }
+            if law.contact.variables() > 0 {
+                self.commit_state(index, law, &law.contact, network, sites, info)?;
+            }
+            if let (Some(cohesion), false) = (&law.cohesion, law.opens())
+                && cohesion.variables() > 0
+            {
+                self.commit_state(index, law, cohesion, network, sites, info)?;
+            }
+            if let Some(wear) = &law.wear {
+                self.commit_wear(index, law, wear, network, sites, info, &mut totals)?;
+            }
+        }
+        totals.fracture += std::mem::take(&mut network.torn_energy);
+        Ok(totals)
+    }
+
+    /// Moves the internal variables of a law that acts on all contacts.
+    fn commit_state<S: Space>(
+        &mut self,
+        index: usize,
+        law: &Interface,
+        loaded: &Loaded,
+        network: &mut Network<S>,
+        sites: &[Site<S>],
+        info: &StepInfo,
+    ) -> Result<(), LawError> {
+        self.gather_after(law, network, sites, info);
+        self.columns.size_outputs();
+        self.run(loaded, info, 0.0, Call::Commit)?;
+        self.keep_state(index, network);
+        Ok(())
+    }
+
+    /// Stores the new internal variables of the members.
+    pub(super) fn keep_state<S: Space>(&self, index: usize, network: &mut Network<S>) {
+        for (k, at) in self.members.iter().enumerate() {
+            let Some(slot) = network.contacts[*at].memory() else {
+                continue;
+            };
+            let columns = &mut network.memory[index].variables;
+            for (column, next) in columns.iter_mut().zip(&self.columns.state_next) {
+                column[slot] = next[k];
+            }
+        }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn commit_wear<S: Space>(
+        &mut self,
+        index: usize,
+        law: &Interface,
+        wear: &Loaded,
+        network: &mut Network<S>,
+        sites: &[Site<S>],
+        info: &StepInfo,
+        totals: &mut Totals,
+    ) -> Result<(), LawError> {
+        self.gather_after(law, network, sites, info);
+        for at in &self.members {
+            let (contact, site) = (&network.contacts[*at], &sites[*at]);
+            let ut = S::tangential(&contact.normal, &site.average);
+            self.columns.slip.push(info.h * ut.norm());
+            let work = -site.solution.unilateral_t.dot(&ut);
+            self.columns.friction_work.push(work.max(0.0));
+        }
+        self.columns.size_outputs();
+        self.run(wear, info, 0.0, Call::Commit)?;
+        for (k, at) in self.members.iter().enumerate() {
+            let volume = self.columns.out.volume[k];
+            if network.contacts[*at].key.surface().is_some() {
+                totals.worn_first += volume;
+            } else {
+                totals.worn_third += volume;
+            }
+        }
+        if wear.variables() > 0 {
+            self.keep_state(index, network);
+        }
+        Ok(())
+    }
+}

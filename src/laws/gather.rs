@@ -1,0 +1,142 @@
+//! Columns of a batch from the network.
+
+use super::columns::{Columns, StepInfo, Triple};
+use super::interface::Interface;
+use super::pass::{Passes, Site};
+use crate::contact::{Contact, Network};
+use crate::geometry::space::{Space, VectorLike};
+
+impl Passes {
+    /// Columns at the start of the step.
+    pub(super) fn gather<S: Space>(
+        &mut self,
+        law: &Interface,
+        network: &Network<S>,
+        before: &[S::Vector],
+        info: &StepInfo,
+    ) {
+        self.columns.clear();
+        for at in &self.members {
+            let contact = &network.contacts[*at];
+            gather_contact(
+                &mut self.columns,
+                law,
+                network,
+                contact,
+                &before[*at],
+                info,
+                true,
+            );
+            push_vector::<S>(&mut self.columns.impulse, &contact.normal, &contact.impulse);
+        }
+        self.gather_state(law, network);
+    }
+
+    /// Columns at the end of the step: new openings, u_th, this step's impulses.
+    pub(super) fn gather_after<S: Space>(
+        &mut self,
+        law: &Interface,
+        network: &Network<S>,
+        sites: &[Site<S>],
+        info: &StepInfo,
+    ) {
+        self.columns.clear();
+        for at in &self.members {
+            let (contact, site) = (&network.contacts[*at], &sites[*at]);
+            gather_contact(
+                &mut self.columns,
+                law,
+                network,
+                contact,
+                &site.average,
+                info,
+                false,
+            );
+            push_vector::<S>(
+                &mut self.columns.impulse,
+                &contact.normal,
+                &site.solution.impulse,
+            );
+        }
+        self.gather_state(law, network);
+    }
+
+    fn gather_state<S: Space>(&mut self, law: &Interface, network: &Network<S>) {
+        self.columns.n = self.members.len();
+        for v in 0..law.variables() {
+            let column: Vec<f64> = self
+                .members
+                .iter()
+                .map(|at| {
+                    let contact = &network.contacts[*at];
+                    let memory = &network.memory[contact.law as usize];
+                    contact
+                        .memory()
+                        .map_or(0.0, |slot| memory.variables[v][slot])
+                })
+                .collect();
+            self.columns.state_next.push(column.clone());
+            self.columns.state.push(column);
+        }
+    }
+}
+
+#[inline]
+pub(super) fn contact_area<S: Space>(
+    law: &Interface,
+    network: &Network<S>,
+    contact: &Contact<S>,
+) -> f64 {
+    match network.bond(contact) {
+        Some(bond) => bond.area,
+        None => law.area.area(S::D, contact.radius),
+    }
+}
+
+#[inline]
+fn push_vector<S: Space>(triple: &mut Triple, n: &S::Vector, v: &S::Vector) {
+    let [t1, t2] = S::components(n, &S::tangential(n, v));
+    triple[0].push(n.dot(v));
+    triple[1].push(t1);
+    triple[2].push(t2);
+}
+
+#[inline]
+fn gather_contact<S: Space>(
+    columns: &mut Columns,
+    law: &Interface,
+    network: &Network<S>,
+    contact: &Contact<S>,
+    velocity: &S::Vector,
+    info: &StepInfo,
+    // At the start of a step laws see the damage that its impulse is formed with.
+    start: bool,
+) {
+    columns.gap.push(contact.gap);
+    columns.area.push(contact_area(law, network, contact));
+    columns.radius.push(contact.radius);
+    columns.age.push(info.time - contact.born);
+    columns.pressed.push(contact.pressed);
+    push_vector::<S>(&mut columns.velocity, &contact.normal, velocity);
+    let (opening, damage) = match network.bond(contact) {
+        Some(bond) => {
+            let [t1, t2] = S::components(&contact.normal, &bond.opening_t);
+            let damage = if start { bond.used } else { bond.damage };
+            ([bond.opening_n, t1, t2], damage)
+        }
+        None => ([0.0; 3], 1.0),
+    };
+    for (column, x) in columns.opening.iter_mut().zip(opening) {
+        column.push(x);
+    }
+    columns.damage.push(damage);
+    if law.rotates() {
+        let memory = &network.memory[contact.law as usize];
+        let rotation = contact.memory().map_or([0.0; 3], |slot| {
+            S::spin_components(&contact.normal, &memory.rotations[slot])
+        });
+        for (column, x) in columns.rotation.iter_mut().zip(rotation) {
+            column.push(x);
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Moments of a contact: rolling and spinning friction, and the bending and twist of a bond.
+//!
+//! M = M_sc + M_el, dual to the relative spin w = w_i - w_j: M_el = -(a + B w) as for impulses, and M_sc
+//! opposes w with |M_sc| <= (friction length) p_n, bending and twist apart.
+
+use super::{Line, Residual, inverse};
+use crate::geometry::space::{Space, VectorLike};
+use crate::solve::form::Place;
+
+/// What a contact does against rotation. Moments over the step are in N m s.
+#[derive(Clone, Copy, Debug)]
+pub struct MomentForm<S: Space> {
+    /// Index of the contact, as pushed.
+    pub contact: u32,
+    /// Rolling friction length (m): |M_bend| <= rolling p_n.
+    pub rolling: f64,
+    /// Spinning friction length (m): |M_twist| <= spinning p_n.
+    pub spinning: f64,
+    /// Moment of the bond at w = 0, twist and bending together (N m s).
+    pub a: S::Spin,
+    /// Twisting stiffness over the step (N m s^2).
+    pub b_twist: f64,
+    /// Bending stiffness over the step (N m s^2).
+    pub b_bend: f64,
+    /// The moment to start from (N m s).
+    pub moment: S::Spin,
+}
+
+/// What the solver gives back.
+#[derive(Clone, Copy, Debug)]
+pub struct MomentSolution<S: Space> {
+    /// The contact, as pushed.
+    pub contact: u32,
+    /// Total moment on the candidate (N m s).
+    pub moment: S::Spin,
+    /// Friction's part of it.
+    pub friction: S::Spin,
+}
+
+#[derive(Clone, Debug)]
+pub(in crate::solve) struct MomentRow<S: Space> {
+    pub form: MomentForm<S>,
+    /// Where the contact's normal impulse stands; set when the rows are sorted.
+    pub place: Place,
+    pub bodies: [u32; 2],
+    n: S::Vector,
+    /// One over the lengths of the bodies (1/m).
+    over: [f64; 2],
+    w: f64,
+    iw: f64,
+    lever: f64,
+    moment: S::Spin,
+}
+
+impl<S: Space> MomentRow<S> {
+    pub fn new(
+        form: &MomentForm<S>,
+        place: Place,
+        bodies: [u32; 2],
+        n: S::Vector,
+        inverse_inertias: [f64; 2],
+        lengths: [f64; 2],
+    ) -> Self {
+        let w = inverse_inertias[0] + inverse_inertias[1];
+        Self {
+            form: *form,
+            place,
+            bodies,
+            n,
+            over: lengths.map(|l| 1.0 / l),
+            w,
+            iw: inverse(w),
+            lever: lengths[0].min(lengths[1]),
+            moment: form.moment,
+        }
+    }
+
+    fn relative(&self, a: &Line<S>, b: &Line<S>) -> S::Spin {
+        a.s * self.over[0] - b.s * self.over[1]
+    }
+
+    fn push(&self, moment: &S::Spin, a: &mut Line<S>, b: &mut Line<S>) {
+        a.s += *moment * (a.is * self.over[0]);
+        b.s -= *moment * (b.is * self.over[1]);
+    }
+
+    /// Solves for the spins at hand under the normal impulse `pn`.
+    pub fn update(&mut self, pn: f64, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64) {
+        let form = &self.form;
+        let pn = pn.max(0.0);
+        let f = self.relative(a, b) - self.moment * self.w;
+        let (f_twist, f_bend) = S::split_spin(&self.n, &f);
+        let (a_twist, a_bend) = S::split_spin(&self.n, &form.a);
+        let bound = form.spinning * pn;
+        let twist = (a_twist - f_twist * self.iw).clamp(-bound, bound);
+        let pull = a_twist + form.b_twist * (self.w * twist + f_twist);
+        let twist = twist - pull / (1.0 + self.w * form.b_twist);
+        let bend = (a_bend - f_bend * self.iw).limited(form.rolling * pn);
+        let pull = a_bend + (bend * self.w + f_bend) * form.b_bend;
+        let bend = bend - pull * (1.0 / (1.0 + self.w * form.b_bend));
+        let change = (S::about(&self.n, twist) + bend - self.moment) * relaxation;
+        self.push(&change, a, b);
+        self.moment += change;
+    }
+
+    pub fn load(&self, a: &mut Line<S>, b: &mut Line<S>) {
+        self.push(&self.moment, a, b);
+    }
+
+    /// The bond's moment at a relative spin.
+    fn bond(&self, w: &S::Spin) -> S::Spin {
+        let form = &self.form;
+        let (twist, bend) = S::split_spin(&self.n, w);
+        -(form.a + S::about(&self.n, twist * form.b_twist) + bend * form.b_bend)
+    }
+
+    /// The natural map, times a lever: a velocity.
+    pub fn residual(&self, pn: f64, a: &Line<S>, b: &Line<S>) -> Residual {
+        if self.iw == 0.0 {
+            return Residual::default();
+        }
+        let pn = pn.max(0.0);
+        let w = self.relative(a, b);
+        let shifted = self.moment - self.bond(&w);
+        let rho = self.iw + self.form.b_twist.min(self.form.b_bend);
+        let (twist, bend) = S::split_spin(&self.n, &(shifted - w * rho));
+        let bound = self.form.spinning * pn;
+        let to =
+            S::about(&self.n, twist.clamp(-bound, bound)) + bend.limited(self.form.rolling * pn);
+        let r = (shifted - to) * (1.0 / rho);
+        let over = self.lever / rho;
+        Residual {
+            squared: r.dot(&r) * self.lever * self.lever,
+            velocity: w.dot(&w) * self.lever * self.lever,
+            impulse: shifted.dot(&shifted) * over * over,
+            power: shifted.dot(&r),
+        }
+    }
+
+    pub fn solution(&self, a: &Line<S>, b: &Line<S>) -> MomentSolution<S> {
+        MomentSolution {
+            contact: self.form.contact,
+            moment: self.moment,
+            friction: self.moment - self.bond(&self.relative(a, b)),
+        }
+    }
+}
