@@ -15,7 +15,20 @@ pub(super) struct Held {
     /// Energy of the undamaged bond per area at the new opening (J/m^2).
     intact: Vec<f64>,
     /// The new damage.
-    damage: Vec<f64>,
+    pub damage: Vec<f64>,
+}
+
+impl Held {
+    /// Energy per area stored at the new opening and damage (J/m^2).
+    pub fn stored(&self, law: &Interface, k: usize) -> f64 {
+        let m = law.cohesion.as_ref().map_or(0.0, |c| c.plugin.degradation);
+        let share = if law.damages() {
+            left(self.damage[k], m)
+        } else {
+            1.0
+        };
+        share * self.intact[k]
+    }
 }
 
 impl Passes {
@@ -89,7 +102,12 @@ impl Passes {
     }
 
     /// Damage at the openings in the columns, by the cohesion itself and by the damage law: the larger.
-    fn grow(&mut self, law: &Interface, info: &StepInfo, held: &mut Held) -> Result<(), LawError> {
+    pub(super) fn grow(
+        &mut self,
+        law: &Interface,
+        info: &StepInfo,
+        held: &mut Held,
+    ) -> Result<(), LawError> {
         let Some(cohesion) = &law.cohesion else {
             return Ok(());
         };

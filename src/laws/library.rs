@@ -314,6 +314,19 @@ impl Plugin {
         self.table.initialise.is_some()
     }
 
+    /// The fracture energy (J/m^2) that the law declares for a pull at an angle from the normal (rad).
+    pub fn fracture_energy(&self, values: &[f64], angle: f64) -> Option<f64> {
+        if values.len() != self.parameters.len() {
+            return None;
+        }
+        // SAFETY: the ABI's signature, and one value a parameter.
+        let energy = self
+            .table
+            .fracture_energy
+            .map(|f| unsafe { f(values.as_ptr(), angle) });
+        energy.filter(|e| e.is_finite())
+    }
+
     /// Checks values of the parameters against the schema and the law's own judgement.
     ///
     /// # Errors

@@ -1,4 +1,5 @@
 //! Interface laws: libraries found by name, composed by the case, called in batches.
+pub mod bench;
 mod bonds;
 pub mod columns;
 mod commit;

@@ -153,6 +153,10 @@ typedef int32_t (*fw_validate)(const double *parameters, fw_message *message);
 /* A call over a batch. May be null where the kind does not need it. */
 typedef int32_t (*fw_call)(const fw_batch *batch, fw_message *message);
 
+/* The fracture energy (J/m^2) that a bond under this law dissipates when it is pulled once, slowly, at a
+ * fixed angle from the normal (rad; 0 is mode I, pi/2 mode II); not a number where it declares none. */
+typedef double (*fw_fracture)(const double *parameters, double angle);
+
 /* What a plugin is: returned by its entry function, static for the life of the program. */
 typedef struct fw_plugin {
     size_t size; /* Size of this struct in bytes, as the plugin was built. */
@@ -176,6 +180,7 @@ typedef struct fw_plugin {
     fw_call solve_local; /* Solves a contact of its own. Null in version 1.0; kept for laws that do not fit the local form. */
     fw_call commit; /* At the end of the step: new internal variables; damage: out_damage; wear: out_volume. */
     fw_call energy; /* Cohesion: out_energy at the given opening and damage. */
+    fw_fracture fracture_energy; /* Cohesion and damage: the fracture energy that the law declares; certify compares. May be null. */
 } fw_plugin;
 
 /* The one exported symbol. */

@@ -232,6 +232,10 @@ pub type FwValidate =
 pub type FwCall =
     Option<unsafe extern "C" fn(batch: *const FwBatch, message: *mut FwMessage) -> i32>;
 
+/// The fracture energy (J/m^2) that a bond under this law dissipates when it is pulled once, slowly, at a
+/// fixed angle from the normal (rad; 0 is mode I, pi/2 mode II); not a number where the law declares none.
+pub type FwFracture = Option<unsafe extern "C" fn(parameters: *const f64, angle: f64) -> f64>;
+
 /// What a plugin is: returned by its entry function, static for the life of the program.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
@@ -278,6 +282,8 @@ pub struct FwPlugin {
     pub commit: FwCall,
     /// Cohesion: `out_energy` at the given opening and damage.
     pub energy: FwCall,
+    /// Cohesion and damage: the fracture energy that the law declares; `certify` compares. May be null.
+    pub fracture_energy: FwFracture,
 }
 
 /// The entry function's type.

@@ -108,7 +108,8 @@ fn rust_layout() -> Vec<(String, u64)> {
         prepare,
         solve_local,
         commit,
-        energy
+        energy,
+        fracture_energy
     );
     for (name, value) in [
         ("FW_ABI_MAJOR", ABI_MAJOR as u64),

@@ -260,6 +260,19 @@ pub unsafe extern "C" fn validate<L: Law>(values: *const f64, message: *mut FwMe
     })
 }
 
+/// `fracture_energy` of any law; not a number where none is declared, or the law panics.
+///
+/// # Safety
+/// As the ABI says: `values` has one value a parameter.
+pub unsafe extern "C" fn fracture_energy<L: Law>(values: *const f64, angle: f64) -> f64 {
+    let asked = catch_unwind(AssertUnwindSafe(|| {
+        // SAFETY: one value a parameter of the schema.
+        let values = unsafe { parameters::<L>(values) }?;
+        L::read(values).fracture_energy(angle)
+    }));
+    asked.ok().flatten().unwrap_or(f64::NAN)
+}
+
 /// `prepare` of a contact law.
 ///
 /// # Safety

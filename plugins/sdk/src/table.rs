@@ -140,6 +140,7 @@ macro_rules! export {
                 solve_local: None,
                 commit: $commit,
                 energy: $energy,
+                fracture_energy: Some($crate::border::fracture_energy::<$law>),
             });
 
             /// The plugin's entry.

@@ -43,6 +43,12 @@ pub trait Law: Parameters {
     /// Internal variables, at most [`crate::border::MOST_VARIABLES`].
     const VARIABLES: &'static [Variable] = &[];
 
+    /// The fracture energy (J/m^2) that a bond dissipates when it is pulled once, slowly, at this angle from the
+    /// normal (rad; 0 is mode I, pi/2 mode II), where the law declares one: `fretwork law certify` compares.
+    fn fracture_energy(&self, _angle: f64) -> Option<f64> {
+        None
+    }
+
     /// Checks relations between parameters; their ranges are checked by the host.
     ///
     /// # Errors

@@ -19,6 +19,11 @@ impl Law for Mac {
     const NAME: &'static str = "mac";
     const DOC: &'static str = "rate law b dD/dt = <Y - w>, with fracture energy w and viscosity b";
     const REFERENCE: &'static str = "Y. Monerie, V. Acary, Formulation dynamique d'un modele de zone cohesive tridimensionnel, Rev. Eur. Elements Finis 10 (2001); M. Raous, L. Cangemi, M. Cocou, Comput. Methods Appl. Mech. Engrg 177 (1999) 383-399";
+
+    fn fracture_energy(&self, _angle: f64) -> Option<f64> {
+        // Viscosity adds to it with the speed.
+        (self.b == 0.0).then_some(self.w)
+    }
 }
 
 impl Mac {

@@ -1,0 +1,84 @@
+//! Mohr-Coulomb: |t_t| <= c + mu p, with p >= -tension: a plastic strength that lasts, not a bond.
+//!
+//! The host's cone is |t_t| <= mu (p + c_n) + c_t with c_n the tension strength. So that a contact without
+//! pressure holds c and no more, c_t = c - mu tension.
+#![forbid(unsafe_code)]
+use fretwork_law::{ContactLaw, Friction, Law, Site, abi, export, parameters};
+
+parameters! {
+    /// Friction, cohesion and a tension cut-off below the apex c/mu of the cone.
+    pub struct MohrCoulomb {
+        mu: "" = 0.5, 0.0, 1e6, "friction coefficient, tangent of the friction angle";
+        cohesion: "Pa" = 1e5, 0.0, 1e30, "shear strength c without pressure";
+        tension: "Pa" = 5e4, 0.0, 1e30, "tension cut-off, at most cohesion/mu";
+    }
+}
+
+impl Law for MohrCoulomb {
+    const NAME: &'static str = "mohr-coulomb";
+    const DOC: &'static str =
+        "|t_t| <= c + mu p with a tension cut-off; the strength stays when it slides";
+    const REFERENCE: &'static str =
+        "R. I. Borja, Plasticity: Modeling and Computation, Springer (2013); C. A. Coulomb (1773)";
+    const FLAGS: u64 = abi::FLAG_CONSTANT;
+
+    fn validate(&self) -> Result<(), String> {
+        if self.mu * self.tension > self.cohesion {
+            return Err(format!(
+                "`tension` exceeds cohesion/mu = {:e} Pa, the apex of the cone",
+                self.cohesion / self.mu
+            ));
+        }
+        Ok(())
+    }
+}
+
+impl ContactLaw for MohrCoulomb {
+    fn friction(&self, _site: &Site, _state: &[f64]) -> Friction {
+        Friction {
+            mu: self.mu,
+            tension_strength: self.tension,
+            shear_cohesion: (self.cohesion - self.mu * self.tension).max(0.0),
+            ..Friction::default()
+        }
+    }
+}
+
+export!(contact MohrCoulomb);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The host's cone is Mohr-Coulomb's line: c at p = 0, c + mu p under pressure, and less in tension.
+    #[test]
+    fn is_the_line_of_mohr_and_coulomb() {
+        let law = MohrCoulomb {
+            mu: 0.5,
+            cohesion: 10.0,
+            tension: 8.0,
+        };
+        let f = law.friction(&Site::default(), &[]);
+        let strength = |p: f64| f.mu * (p + f.tension_strength) + f.shear_cohesion;
+        assert_eq!(f.tension_strength, 8.0);
+        for (p, t) in [(0.0, 10.0), (100.0, 60.0), (-8.0, 6.0)] {
+            assert_eq!(strength(p), t);
+        }
+    }
+
+    #[test]
+    fn keeps_the_cut_off_below_the_apex() {
+        let law = |mu, cohesion, tension| MohrCoulomb {
+            mu,
+            cohesion,
+            tension,
+        };
+        assert!(law(0.5, 10.0, 20.0).validate().is_ok());
+        assert!(law(0.5, 10.0, 20.1).validate().is_err());
+        // Tresca's cylinder has no apex.
+        assert!(law(0.0, 10.0, 1e30).validate().is_ok());
+        assert!(MohrCoulomb::default().validate().is_ok());
+        let f = law(1e6, 1e30, 1e30).friction(&Site::default(), &[]);
+        assert!(f.shear_cohesion.is_finite() && f.shear_cohesion >= 0.0);
+    }
+}

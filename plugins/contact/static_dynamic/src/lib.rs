@@ -1,0 +1,110 @@
+//! Static and dynamic friction: mu_s while the contact sticks, mu_d while it slides.
+//!
+//! Sticking is told by the velocity (no internal variable): at most v_s sticks, as a solver leaves a stuck
+//! contact a small velocity. Above it the coefficient falls along a ramp of width v_r, for a jump would let a
+//! contact near v_s change its coefficient at every step. Choose v_r above h (mu_s - mu_d) p_n/(h m), the
+//! change of velocity that the whole fall makes in one step.
+#![forbid(unsafe_code)]
+use fretwork_law::{ContactLaw, Friction, Law, Site, export, parameters};
+
+parameters! {
+    /// mu_s for V <= v_s, mu_d for V >= v_s + v_r, a straight line between.
+    pub struct StaticDynamic {
+        mu_s: "" = 0.4, 0.0, 1e6, "static friction coefficient";
+        mu_d: "" = 0.3, 0.0, 1e6, "dynamic friction coefficient, at most mu_s";
+        v_s: "m/s" = 1e-4, 0.0, 1e6, "tangential velocity up to which the contact sticks";
+        v_r: "m/s" = 1e-4, 1e-12, 1e6, "width of the ramp from mu_s to mu_d, against chatter";
+    }
+}
+
+impl Law for StaticDynamic {
+    const NAME: &'static str = "static-dynamic";
+    const DOC: &'static str = "mu_s while |u_t| <= v_s, mu_d from v_s + v_r on";
+    const REFERENCE: &'static str =
+        "D. Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100-103, with a ramp for the jump";
+
+    fn validate(&self) -> Result<(), String> {
+        if self.mu_d > self.mu_s {
+            return Err("`mu_d` exceeds `mu_s`; dynamic friction is the lower one".into());
+        }
+        Ok(())
+    }
+}
+
+impl ContactLaw for StaticDynamic {
+    fn friction(&self, site: &Site, _state: &[f64]) -> Friction {
+        let slip = site.velocity[1].hypot(site.velocity[2]);
+        let sliding = ((slip - self.v_s) / self.v_r).clamp(0.0, 1.0);
+        Friction {
+            mu: self.mu_s + (self.mu_d - self.mu_s) * sliding,
+            ..Friction::default()
+        }
+    }
+}
+
+export!(contact StaticDynamic);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(law: &StaticDynamic, velocity: [f64; 3]) -> f64 {
+        let site = Site {
+            velocity,
+            ..Site::default()
+        };
+        law.friction(&site, &[]).mu
+    }
+
+    #[test]
+    fn is_static_then_a_ramp_then_dynamic() {
+        let law = StaticDynamic {
+            mu_s: 0.5,
+            mu_d: 0.3,
+            v_s: 1.0,
+            v_r: 2.0,
+        };
+        assert_eq!(at(&law, [-9.0, 0.0, 0.0]), 0.5);
+        assert_eq!(at(&law, [0.0, 0.6, 0.8]), 0.5);
+        assert!((at(&law, [0.0, 0.0, -2.0]) - 0.4).abs() < 1e-15);
+        assert!((at(&law, [0.0, 1.8, 2.4]) - 0.3).abs() < 1e-15);
+        assert!((at(&law, [0.0, 1e3, 0.0]) - 0.3).abs() < 1e-15);
+    }
+
+    /// A block under a pull between both coefficients stays when it sticks and slides on when it slides;
+    /// one that is braked comes to rest without its friction ever falling back.
+    #[test]
+    fn does_not_chatter() {
+        let law = StaticDynamic::default();
+        let (g, h) = (9.81, 1e-5);
+        let run = |mut v: f64, pull: f64| {
+            let (mut falls, mut last) = (0, 0.0);
+            for _ in 0..100_000 {
+                let mu = at(&law, [0.0, v, 0.0]);
+                falls += usize::from(mu < last);
+                last = mu;
+                let free = v + h * g * pull;
+                v = free.signum() * (free.abs() - h * g * mu).max(0.0);
+            }
+            (v, falls)
+        };
+        assert_eq!(run(0.0, 0.35), (0.0, 0));
+        assert_eq!(run(0.1, 0.25), (0.0, 0));
+        // Sliding it gains (0.35 - 0.3) g in a second.
+        let (v, falls) = run(0.01, 0.35);
+        assert!((v - (0.01 + 0.05 * 9.81)).abs() < 1e-9 && falls == 0, "{v}");
+    }
+
+    #[test]
+    fn is_finite_everywhere() {
+        let law = StaticDynamic::default();
+        for v in [0.0, 1e-320, -1e300, f64::MAX] {
+            assert!(at(&law, [v, v, v]).is_finite());
+        }
+        let swapped = StaticDynamic {
+            mu_s: 0.1,
+            ..StaticDynamic::default()
+        };
+        assert!(law.validate().is_ok() && swapped.validate().is_err());
+    }
+}

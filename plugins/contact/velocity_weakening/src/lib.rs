@@ -1,0 +1,79 @@
+//! Friction that falls with the sliding velocity: mu = mu_d + (mu_s - mu_d) exp(-V/V_s).
+#![forbid(unsafe_code)]
+use fretwork_law::{ContactLaw, Friction, Law, Site, export, parameters};
+
+parameters! {
+    /// Smooth from mu_s at rest to mu_d at high velocity.
+    pub struct VelocityWeakening {
+        mu_s: "" = 0.4, 0.0, 1e6, "friction coefficient at rest";
+        mu_d: "" = 0.3, 0.0, 1e6, "friction coefficient at high velocity, at most mu_s";
+        v_s: "m/s" = 0.1, 1e-12, 1e6, "velocity over which it falls, V_s";
+    }
+}
+
+impl Law for VelocityWeakening {
+    const NAME: &'static str = "velocity-weakening";
+    const DOC: &'static str = "mu_d + (mu_s - mu_d) exp(-V/V_s)";
+    const REFERENCE: &'static str = "L. C. Bo, D. Pavelescu, Wear 82 (1982) 277-289, exponent 1";
+
+    fn validate(&self) -> Result<(), String> {
+        if self.mu_d > self.mu_s {
+            return Err("`mu_d` exceeds `mu_s`; this law weakens with velocity".into());
+        }
+        Ok(())
+    }
+}
+
+impl ContactLaw for VelocityWeakening {
+    fn friction(&self, site: &Site, _state: &[f64]) -> Friction {
+        let slip = site.velocity[1].hypot(site.velocity[2]);
+        Friction {
+            mu: self.mu_d + (self.mu_s - self.mu_d) * (-slip / self.v_s).exp(),
+            ..Friction::default()
+        }
+    }
+}
+
+export!(contact VelocityWeakening);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(law: &VelocityWeakening, velocity: [f64; 3]) -> f64 {
+        let site = Site {
+            velocity,
+            ..Site::default()
+        };
+        law.friction(&site, &[]).mu
+    }
+
+    #[test]
+    fn falls_by_half_every_v_s_ln_2() {
+        let law = VelocityWeakening {
+            mu_s: 0.6,
+            mu_d: 0.2,
+            v_s: 0.5,
+        };
+        let step = 0.5 * core::f64::consts::LN_2;
+        for (k, mu) in [0.6, 0.4, 0.3, 0.25, 0.225].into_iter().enumerate() {
+            // The direction of sliding does not matter, the normal velocity neither.
+            let v = step * k as f64;
+            let (a, b) = (at(&law, [3.0, 0.6 * v, -0.8 * v]), at(&law, [0.0, -v, 0.0]));
+            assert!((a - mu).abs() < 1e-14 && (b - mu).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn is_finite_everywhere() {
+        let law = VelocityWeakening::default();
+        for v in [0.0, 1e-320, -1e300, f64::MAX] {
+            assert!(at(&law, [v, v, v]).is_finite());
+        }
+        let swapped = VelocityWeakening {
+            mu_s: 0.1,
+            ..VelocityWeakening::default()
+        };
+        assert!(law.validate().is_ok() && swapped.validate().is_err());
+    }
+}

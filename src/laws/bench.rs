@@ -1,0 +1,302 @@
+//! One contact without bodies: drives a composed interface law along a path, as a testing machine does.
+
+use super::bonds::Held;
+use super::columns::StepInfo;
+use super::interface::Interface;
+use super::library::{Call, LawError};
+use super::pass::Passes;
+use serde::Serialize;
+
+/// What a contact on the bench remembers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct State {
+    /// Time (s).
+    pub time: f64,
+    /// Opening (n, t1, t2) (m).
+    pub opening: [f64; 3],
+    /// Rotation (twist, bending, bending) (rad).
+    pub rotation: [f64; 3],
+    /// Damage.
+    pub damage: f64,
+    /// Time under compression (s).
+    pub pressed: f64,
+    /// Internal variables of the laws, slot after slot.
+    pub variables: Vec<f64>,
+}
+
+/// Where a step goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Opening at its end (m).
+    pub opening: [f64; 3],
+    /// Rotation at its end (rad).
+    pub rotation: [f64; 3],
+    /// Gap at its end (m), for laws without opening.
+    pub gap: f64,
+    /// Compressive pressure over the area (Pa).
+    pub pressure: f64,
+}
+
+/// What the laws said at the end of a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Answer {
+    /// Traction (Pa); a positive normal part pulls together.
+    pub traction: [f64; 3],
+    /// Moment over the area (N m/m^2).
+    pub moment: [f64; 3],
+    /// Stiffnesses: normal, tangential, twist, bending.
+    pub stiffness: [f64; 4],
+    /// Stored energy (J/m^2).
+    pub stored: f64,
+    /// Damage.
+    pub damage: f64,
+    /// Friction coefficient.
+    pub mu: f64,
+    /// Normal and tangential restitution.
+    pub restitution: [f64; 2],
+    /// Attraction without opening, tension and shear (Pa).
+    pub strength: [f64; 2],
+    /// Rolling and spinning friction lengths (m).
+    pub rolling: [f64; 2],
+    /// Volume removed over the step (m^3).
+    pub worn: f64,
+}
+
+/// A testing machine for contacts under one interface law.
+#[derive(Debug)]
+pub struct Bench {
+    law: Interface,
+    dimension: u32,
+    area: f64,
+    radius: f64,
+    passes: Passes,
+}
+
+impl Bench {
+    /// A bench for contacts of a reduced radius (m) and the area that goes with it.
+    pub fn new(law: Interface, dimension: u32, radius: f64) -> Self {
+        let area = law.area.area(dimension as usize, radius);
+        Self {
+            law,
+            dimension,
+            area,
+            radius,
+            passes: Passes::default(),
+        }
+    }
+
+    /// The law on it.
+    pub fn law(&self) -> &Interface {
+        &self.law
+    }
+
+    /// Area of its contacts (m^2).
+    pub fn area(&self) -> f64 {
+        self.area
+    }
+
+    /// A new contact: an intact bond where the cohesion has an opening.
+    pub fn fresh(&self) -> State {
+        State {
+            time: 0.0,
+            opening: [0.0; 3],
+            rotation: [0.0; 3],
+            damage: if self.law.opens() { 0.0 } else { 1.0 },
+            pressed: 0.0,
+            variables: self.law.initial(),
+        }
+    }
+
+    /// Moves a batch of contacts by one step of `h` seconds, one motion a contact.
+    ///
+    /// # Errors
+    /// What a law said, with the contact at fault.
+    pub fn step(
+        &mut self,
+        states: &mut [State],
+        motions: &[Motion],
+        h: f64,
+    ) -> Result<Vec<Answer>, LawError> {
+        let mut answers = vec![Answer::default(); states.len()];
+        let info = StepInfo {
+            dimension: self.dimension,
+            time: states.first().map_or(0.0, |s| s.time),
+            h,
+            theta: 0.5,
+        };
+        self.contact(states, motions, &info, &mut answers)?;
+        let held = self.grow(states, motions, &info)?;
+        for (k, answer) in answers.iter_mut().enumerate() {
+            answer.damage = held.damage.get(k).copied().unwrap_or(states[k].damage);
+        }
+        self.cohesion(states, motions, &info, &held, &mut answers)?;
+        let broke: Vec<f64> = answers.iter().map(|a| a.damage).collect();
+        self.end(states, motions, &info, &broke, &mut answers)?;
+        for (state, (motion, answer)) in states.iter_mut().zip(motions.iter().zip(&answers)) {
+            state.time += h;
+            state.opening = motion.opening;
+            state.rotation = motion.rotation;
+            state.damage = answer.damage;
+            state.pressed = if motion.pressure > 0.0 {
+                state.pressed + h
+            } else {
+                0.0
+            };
+        }
+        Ok(answers)
+    }
+
+    /// The laws' columns: openings at the start or the end of the step.
+    fn fill(&mut self, states: &[State], motions: &[Motion], info: &StepInfo, end: bool) {
+        let c = &mut self.passes.columns;
+        c.clear();
+        c.n = states.len();
+        let rotates = self.law.rotates();
+        for (state, motion) in states.iter().zip(motions) {
+            c.gap.push(motion.gap);
+            c.area.push(self.area);
+            c.radius.push(self.radius);
+            c.age.push(state.time);
+            c.pressed.push(state.pressed);
+            c.damage.push(state.damage);
+            c.impulse[0].push(info.h * self.area * motion.pressure);
+            c.impulse[1].push(0.0);
+            c.impulse[2].push(0.0);
+            for k in 0..3 {
+                let (from, to) = (state.opening[k], motion.opening[k]);
+                c.velocity[k].push((to - from) / info.h);
+                c.opening[k].push(if end { to } else { from });
+                if rotates {
+                    let (from, to) = (state.rotation[k], motion.rotation[k]);
+                    c.rotation[k].push(if end { to } else { from });
+                }
+            }
+        }
+        for v in 0..self.law.variables() {
+            let column: Vec<f64> = states.iter().map(|s| s.variables[v]).collect();
+            c.state_next.push(column.clone());
+            c.state.push(column);
+        }
+        c.size_outputs();
+    }
+
+    fn keep(&self, states: &mut [State]) {
+        for (v, column) in self.passes.columns.state_next.iter().enumerate() {
+            for (state, value) in states.iter_mut().zip(column) {
+                state.variables[v] = *value;
+            }
+        }
+    }
+
+    fn contact(
+        &mut self,
+        states: &[State],
+        motions: &[Motion],
+        info: &StepInfo,
+        answers: &mut [Answer],
+    ) -> Result<(), LawError> {
+        self.fill(states, motions, info, false);
+        let contact = self.law.contact.clone();
+        self.passes.run(&contact, info, 0.0, Call::Prepare)?;
+        let out = &self.passes.columns.out;
+        for (k, answer) in answers.iter_mut().enumerate() {
+            answer.mu = out.friction[k];
+            answer.restitution = [out.restitution_n[k], out.restitution_t[k]];
+            answer.strength = [out.tension_strength[k], out.shear_cohesion[k]];
+            answer.rolling = [out.rolling[k], out.spinning[k]];
+        }
+        Ok(())
+    }
+
+    fn grow(
+        &mut self,
+        states: &mut [State],
+        motions: &[Motion],
+        info: &StepInfo,
+    ) -> Result<Held, LawError> {
+        let mut held = Held::default();
+        if self.law.opens() {
+            self.fill(states, motions, info, true);
+            self.passes.grow(&self.law, info, &mut held)?;
+            self.keep(states);
+        }
+        Ok(held)
+    }
+
+    fn cohesion(
+        &mut self,
+        states: &[State],
+        motions: &[Motion],
+        info: &StepInfo,
+        held: &Held,
+        answers: &mut [Answer],
+    ) -> Result<(), LawError> {
+        let Some(cohesion) = self.law.cohesion.clone() else {
+            return Ok(());
+        };
+        self.fill(states, motions, info, true);
+        let opens = self.law.opens();
+        if opens {
+            self.passes.columns.damage.clone_from(&held.damage);
+        }
+        self.passes.run(&cohesion, info, 0.0, Call::Prepare)?;
+        let out = &self.passes.columns.out;
+        for (k, answer) in answers.iter_mut().enumerate() {
+            answer.strength[0] += out.tension_strength[k];
+            answer.strength[1] += out.shear_cohesion[k];
+            if !opens {
+                continue;
+            }
+            let (t, m) = (&out.traction, &out.moment);
+            answer.traction = [t[0][k], t[1][k], t[2][k]];
+            answer.moment = [m[0][k], m[1][k], m[2][k]];
+            answer.stiffness = [
+                out.stiffness_n[k],
+                out.stiffness_t[k],
+                out.stiffness_twist[k],
+                out.stiffness_bend[k],
+            ];
+            if self.law.tension_only() && answer.traction[0] < 0.0 {
+                answer.traction[0] = 0.0;
+                answer.stiffness[0] = 0.0;
+            }
+            answer.stored = held.stored(&self.law, k);
+        }
+        Ok(())
+    }
+
+    /// The laws that act on every contact, and the wear.
+    fn end(
+        &mut self,
+        states: &mut [State],
+        motions: &[Motion],
+        info: &StepInfo,
+        damage: &[f64],
+        answers: &mut [Answer],
+    ) -> Result<(), LawError> {
+        let cohesion = self.law.cohesion.clone().filter(|_| !self.law.opens());
+        let acting = [Some(self.law.contact.clone()), cohesion];
+        for loaded in acting.into_iter().flatten().filter(|l| l.variables() > 0) {
+            self.fill(states, motions, info, true);
+            self.passes.run(&loaded, info, 0.0, Call::Commit)?;
+            self.keep(states);
+        }
+        if let Some(wear) = self.law.wear.clone() {
+            self.fill(states, motions, info, true);
+            let c = &mut self.passes.columns;
+            c.damage.copy_from_slice(damage);
+            for (k, answer) in answers.iter().enumerate() {
+                let slip = info.h * c.velocity[1][k].hypot(c.velocity[2][k]);
+                let force = (motions[k].pressure * self.area).max(0.0);
+                c.slip.push(slip);
+                c.friction_work.push(answer.mu * force * slip);
+            }
+            self.passes.run(&wear, info, 0.0, Call::Commit)?;
+            for (answer, volume) in answers.iter_mut().zip(&self.passes.columns.out.volume) {
+                answer.worn = *volume;
+            }
+            self.keep(states);
+        }
+        Ok(())
+    }
+}
