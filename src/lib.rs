@@ -5,6 +5,7 @@
 //! [`contact`]s, asks the [`laws`], [`solve`]s, commits, and [`record`]s.
 
 pub mod bodies;
+pub mod certify;
 pub mod cli;
 pub mod contact;
 pub mod geometry;

@@ -1,7 +1,10 @@
-//! `fretwork law list` and `fretwork law show`.
+//! `fretwork law`: list, show, drive, certify.
+
+mod certify;
+mod drive;
 
 use super::{Failure, PluginArgs, say};
-use crate::laws::{Kind, Plugin};
+use crate::laws::{Kind, Plugin, SearchPath};
 use clap::Subcommand;
 use std::fmt::Write as _;
 
@@ -19,6 +22,12 @@ pub enum LawCommand {
         #[command(flatten)]
         plugins: PluginArgs,
     },
+    /// Drive one contact along a path and see what the laws answer
+    #[command(after_help = drive::EXAMPLES)]
+    Drive(drive::DriveArgs),
+    /// Test what a law promises: energy, dissipation, frame, step, bits, bad numbers
+    #[command(after_help = certify::EXAMPLES)]
+    Certify(certify::CertifyArgs),
 }
 
 pub fn law(command: &LawCommand) -> Result<(), Failure> {
@@ -46,37 +55,90 @@ pub fn law(command: &LawCommand) -> Result<(), Failure> {
             Ok(())
         }
         LawCommand::Show { name, plugins } => {
-            let path = plugins.search()?;
-            let (kind, name) = match name.split_once('/') {
-                Some((kind, name)) => {
-                    let found = Kind::ALL.into_iter().find(|k| k.word() == kind);
-                    let kind = found.ok_or_else(|| {
-                        Failure::Usage(format!(
-                            "there is no kind `{kind}`; use contact, cohesion, damage or wear"
-                        ))
-                    })?;
-                    (Some(kind), name)
-                }
-                None => (None, name.as_str()),
-            };
-            let laws = path.available();
-            let found: Vec<_> = laws
-                .iter()
-                .filter(|(k, n, _)| n == name && kind.is_none_or(|kind| kind == *k))
-                .collect();
-            if found.is_empty() {
-                let near = crate::scene::source::nearest(name, laws.iter().map(|l| l.1.as_str()));
-                let proposal = near.map_or(String::new(), |n| format!("; did you mean `{n}`?"));
-                return Err(Failure::Usage(format!(
-                    "there is no law named `{name}` on the search path{proposal}"
-                )));
-            }
-            for (_, _, file) in found {
-                say(&describe(&Plugin::open(file)?));
+            for plugin in named(&plugins.search()?, name)? {
+                say(&describe(&plugin));
             }
             Ok(())
         }
+        LawCommand::Drive(args) => drive::drive(args),
+        LawCommand::Certify(args) => certify::certify(args),
     }
+}
+
+/// The laws of a name, or of kind/name.
+fn named(path: &SearchPath, name: &str) -> Result<Vec<Plugin>, Failure> {
+    let (kind, name) = match name.split_once('/') {
+        Some((kind, name)) => {
+            let found = Kind::ALL.into_iter().find(|k| k.word() == kind);
+            let kind = found.ok_or_else(|| {
+                Failure::Usage(format!(
+                    "there is no kind `{kind}`; use contact, cohesion, damage or wear"
+                ))
+            })?;
+            (Some(kind), name)
+        }
+        None => (None, name),
+    };
+    let laws = path.available();
+    let found: Vec<_> = laws
+        .iter()
+        .filter(|(k, n, _)| n == name && kind.is_none_or(|kind| kind == *k))
+        .collect();
+    if found.is_empty() {
+        let near = crate::scene::source::nearest(name, laws.iter().map(|l| l.1.as_str()));
+        let proposal = near.map_or(String::new(), |n| format!("; did you mean `{n}`?"));
+        return Err(Failure::Usage(format!(
+            "there is no law named `{name}` on the search path{proposal}"
+        )));
+    }
+    let opened = found.into_iter().map(|(_, _, file)| Plugin::open(file));
+    Ok(opened.collect::<Result<_, _>>()?)
+}
+
+/// Values of a law's parameters: defaults, changed by `kind.name=value` or `name=value`.
+fn values(plugin: &Plugin, sets: &[String], used: &mut [bool]) -> Result<Vec<f64>, Failure> {
+    let mut values: Vec<f64> = plugin.parameters.iter().map(|p| p.default).collect();
+    for (set, used) in sets.iter().zip(used) {
+        let Some((key, value)) = set.split_once('=') else {
+            return Err(Failure::Usage(format!(
+                "--set {set}: expected NAME=VALUE or KIND.NAME=VALUE"
+            )));
+        };
+        let name = match key.split_once('.') {
+            Some((kind, name)) if kind == plugin.kind.word() => name,
+            Some(_) => continue,
+            None => key,
+        };
+        let Some(k) = plugin.parameters.iter().position(|p| p.name == name) else {
+            continue;
+        };
+        *used = true;
+        values[k] = value
+            .parse()
+            .map_err(|_| Failure::Usage(format!("--set {set}: `{value}` is not a number")))?;
+    }
+    plugin.validate(&values)?;
+    Ok(values)
+}
+
+/// Refuses a --set that no law took.
+fn all_used(sets: &[String], used: &[bool], laws: &[&Plugin]) -> Result<(), Failure> {
+    let Some(k) = used.iter().position(|u| !u) else {
+        return Ok(());
+    };
+    let names: Vec<String> = laws
+        .iter()
+        .flat_map(|l| {
+            l.parameters
+                .iter()
+                .map(|p| format!("{}.{}", l.kind, p.name))
+        })
+        .collect();
+    Err(Failure::Usage(format!(
+        "--set {}: no law here has this parameter; expected one of {}",
+        sets[k],
+        names.join(", ")
+    )))
 }
 
 fn describe(p: &Plugin) -> String {

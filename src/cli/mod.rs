@@ -76,6 +76,8 @@ enum Failure {
     Input(InputError),
     Usage(String),
     Run(RunError),
+    /// What was asked ran, and failed.
+    Failed(String),
 }
 
 impl From<InputError> for Failure {
@@ -113,6 +115,10 @@ pub fn main() -> ExitCode {
         Err(Failure::Usage(message)) => {
             eprintln!("error: {message}");
             ExitCode::from(2)
+        }
+        Err(Failure::Failed(message)) => {
+            eprintln!("error: {message}");
+            ExitCode::from(1)
         }
         Err(Failure::Run(e)) => {
             eprintln!("error: {e}");

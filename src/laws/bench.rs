@@ -70,6 +70,7 @@ pub struct Bench {
     area: f64,
     radius: f64,
     passes: Passes,
+    said: Vec<f64>,
 }
 
 impl Bench {
@@ -82,12 +83,18 @@ impl Bench {
             area,
             radius,
             passes: Passes::default(),
+            said: Vec::new(),
         }
     }
 
     /// The law on it.
     pub fn law(&self) -> &Interface {
         &self.law
+    }
+
+    /// The damage that the laws gave in the last step, before the host held it up.
+    pub fn said(&self) -> &[f64] {
+        &self.said
     }
 
     /// Area of its contacts (m^2).
@@ -218,6 +225,7 @@ impl Bench {
         if self.law.opens() {
             self.fill(states, motions, info, true);
             self.passes.grow(&self.law, info, &mut held)?;
+            self.said.clone_from(&self.passes.columns.out.damage);
             self.keep(states);
         }
         Ok(held)

@@ -245,7 +245,7 @@ impl Passes {
 /// Damage never falls.
 fn raise(damage: &mut [f64], new: &[f64]) {
     for (old, new) in damage.iter_mut().zip(new) {
-        *old = new.clamp(*old, 1.0);
+        *old = old.max(*new).min(1.0);
     }
 }
 

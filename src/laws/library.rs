@@ -104,6 +104,25 @@ pub enum LawError {
         /// What the law said.
         reason: String,
     },
+    /// A function of the law said it was done and gave a value that is not finite.
+    #[error("the {kind} law `{name}` gave a value that is not finite in {call:?}{}; check its parameters and the law", contact.map_or(String::new(), |c| format!(" at contact {c} of its batch")))]
+    NotFinite {
+        /// Kind.
+        kind: Kind,
+        /// Name.
+        name: String,
+        /// The call.
+        call: Call,
+        /// Index in the batch.
+        contact: Option<usize>,
+    },
+}
+
+impl LawError {
+    /// Whether the law went wrong without saying so.
+    pub fn is_silent(&self) -> bool {
+        matches!(self, Self::NotFinite { .. })
+    }
 }
 
 fn advice(name: &str, nearest: Option<&str>) -> String {

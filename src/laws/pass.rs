@@ -295,13 +295,11 @@ impl Passes {
             })?;
         match self.columns.out.not_finite(plugin.kind, call) {
             None => Ok(()),
-            Some(contact) => Err(LawError::Failed {
+            Some(contact) => Err(LawError::NotFinite {
                 kind: plugin.kind,
                 name: plugin.name.clone(),
                 call,
                 contact: Some(contact),
-                reason: "it gave a value that is not finite; check its parameters and the law"
-                    .into(),
             }),
         }
     }

@@ -61,9 +61,9 @@ impl Mac {
 
 impl DamageLaw for Mac {
     fn grow(&self, site: &Site, intact: &Intact, _state: &[f64], _next: &mut [f64]) -> f64 {
-        let d = self
-            .damage(site.damage, site.h, intact)
-            .clamp(site.damage, 1.0);
+        // `max` and `min` rather than `clamp`: a damage that is not a number is the host's to hear of.
+        let d = self.damage(site.damage, site.h, intact);
+        let d = d.max(site.damage).min(1.0);
         if 1.0 - d < self.beta_broken { 1.0 } else { d }
     }
 }

@@ -1,0 +1,292 @@
+//! Promises of laws with an opening: cohesion and damage.
+
+use super::Line;
+use super::rig::{Rig, pull, work};
+use crate::laws::bench::{Answer, Motion};
+use crate::laws::{Kind, LawError};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+pub fn checks(rig: &mut Rig) -> Vec<Line> {
+    type Check = fn(&mut Rig) -> Result<Line, LawError>;
+    let all: [(&'static str, Check); 7] = [
+        ("fracture energy", fracture_energy),
+        ("dissipation", dissipation),
+        ("damage grows", damage_grows),
+        ("objectivity", objectivity),
+        ("convergence", convergence),
+        ("tangent", tangent),
+        ("secant", secant),
+    ];
+    all.into_iter()
+        .map(|(name, check)| check(rig).unwrap_or_else(|e| Line::failed(name, &e)))
+        .collect()
+}
+
+/// Declared = area under one slow pull to the end, in modes I, mixed and II.
+fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
+    const NAME: &str = "fracture energy";
+    let tested = rig.tested();
+    let declared = |angle: f64| tested.plugin.fracture_energy(&tested.parameters, angle);
+    let modes: Vec<(f64, f64)> = [0.0, FRAC_PI_4, FRAC_PI_2]
+        .into_iter()
+        .filter_map(|angle| declared(angle).map(|e| (angle, e)))
+        .collect();
+    if modes.is_empty() {
+        return Ok(Line::skip(NAME, "the law declares none"));
+    }
+    // A tail without end is cut where it no longer counts.
+    let end = rig.end.unwrap_or(1e3 * rig.onset);
+    let (mut worst, mut said) = (0.0f64, String::new());
+    for (angle, declared) in modes {
+        // Fine to three times the onset, then geometrically until well past the end.
+        let near = (1..=20_000).map(|k| 3.0 * rig.onset * f64::from(k) / 20_000.0);
+        let decades = (30.0 * end / (3.0 * rig.onset)).max(1.0).ln();
+        let far = (1..=20_000).map(|k| 3.0 * rig.onset * (decades * f64::from(k) / 20_000.0).exp());
+        let motions: Vec<Motion> = near.chain(far).map(|u| pull(u, angle)).collect();
+        let (answers, _) = rig.drive(&motions, 1.0)?;
+        let area = area(&motions, &answers);
+        worst = worst.max((area / declared - 1.0).abs());
+        said += &format!(
+            " {area:.6e} for {declared:.6e} at {:.0} deg,",
+            angle.to_degrees()
+        );
+    }
+    Ok(Line::below(
+        NAME,
+        worst,
+        1e-2,
+        format!("area under a pull{said} worst relative error"),
+    ))
+}
+
+fn area(motions: &[Motion], answers: &[Answer]) -> f64 {
+    let start = (Motion::default(), Answer::default());
+    let mut last = (&start.0, &start.1);
+    let mut sum = 0.0;
+    for now in motions.iter().zip(answers) {
+        sum += work(last.0, now.0, last.1, now.1);
+        last = now;
+    }
+    sum
+}
+
+/// Work less what is stored, over random walks: what was dissipated never shrinks.
+fn dissipation(rig: &mut Rig) -> Result<Line, LawError> {
+    let mut worst = 0.0f64;
+    for seed in 0..24 {
+        let motions = rig.walk(seed, 800, 0.02);
+        let (answers, _) = rig.drive(&motions, 1e-3)?;
+        let start = (Motion::default(), Answer::default());
+        let mut last = (&start.0, &start.1);
+        let (mut given, mut most, mut scale, mut fall) = (0.0, 0.0f64, 0.0f64, 0.0f64);
+        for now in motions.iter().zip(&answers) {
+            given += work(last.0, now.0, last.1, now.1);
+            last = now;
+            let lost = given - now.1.stored;
+            scale = scale.max(now.1.stored.abs());
+            fall = fall.max(most - lost);
+            most = most.max(lost);
+        }
+        worst = worst.max(fall / scale.max(f64::MIN_POSITIVE));
+    }
+    // The trapezoidal rule costs the square of the walk's step.
+    Ok(Line::below(
+        "dissipation",
+        worst,
+        1e-2,
+        "largest fall of work less stored energy on random walks, over the energy at play",
+    ))
+}
+
+/// D never falls, stays in [0, 1], and broken stays broken.
+fn damage_grows(rig: &mut Rig) -> Result<Line, LawError> {
+    const NAME: &str = "damage grows";
+    if !rig.damages() {
+        return Ok(Line::skip(NAME, "no damage"));
+    }
+    let (mut worst, mut highest, mut raw) = (0.0f64, 0.0f64, 0.0f64);
+    for seed in 0..24 {
+        let motions = rig.walk(100 + seed, 400, 0.3);
+        let mut state = [rig.bench.fresh()];
+        for motion in &motions {
+            let before = state[0].damage;
+            let answer = rig
+                .bench
+                .step(&mut state, std::slice::from_ref(motion), 1e-3)?[0];
+            // The host holds D up: what the law itself said is what counts.
+            raw = raw.max(before - rig.bench.said()[0]);
+            worst = worst.max(before - answer.damage);
+            highest = highest.max(answer.damage);
+        }
+    }
+    let kept = worst <= 0.0 && raw <= 1e-12 && highest <= 1.0;
+    let text = format!("largest fall of D on random walks, which reached D = {highest:.3}");
+    Ok(Line::judged(NAME, kept, raw.max(worst), text))
+}
+
+/// Turning the tangential axes turns the answer and nothing else.
+fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
+    let motions = rig.walk(7, 300, 0.1);
+    let (c, s) = if rig.dimension() == 2 {
+        (-1.0, 0.0)
+    } else {
+        (0.8, 0.6)
+    };
+    let planar = rig.dimension() == 2;
+    let turned = |v: [f64; 3]| {
+        if planar {
+            [v[0], -v[1], 0.0]
+        } else {
+            [v[0], c * v[1] - s * v[2], s * v[1] + c * v[2]]
+        }
+    };
+    let moved: Vec<Motion> = motions
+        .iter()
+        .map(|m| Motion {
+            opening: turned(m.opening),
+            rotation: turned(m.rotation),
+            ..*m
+        })
+        .collect();
+    let (plain, _) = rig.drive(&motions, 1e-3)?;
+    let (other, _) = rig.drive(&moved, 1e-3)?;
+    let (mut worst, mut scale) = (0.0f64, f64::MIN_POSITIVE);
+    for (a, b) in plain.iter().zip(&other) {
+        worst = worst.max((a.damage - b.damage).abs());
+        scale = a.traction.iter().fold(scale, |m, t| m.max(t.abs()));
+    }
+    let mut off = 0.0f64;
+    for (a, b) in plain.iter().zip(&other) {
+        for (x, y) in turned(a.traction).iter().zip(b.traction) {
+            off = off.max((x - y).abs());
+        }
+    }
+    Ok(Line::below(
+        "objectivity",
+        worst.max(off / scale),
+        1e-8,
+        "largest change of D and of the traction when the tangential axes turn",
+    ))
+}
+
+/// The order at which the energy of a pull in a given time converges with the step.
+fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
+    let reach = rig.end.map_or(2.0 * rig.onset, |end| {
+        (2.0 * rig.onset).min(0.5 * (rig.onset + end))
+    });
+    let mut energies = Vec::new();
+    for doubling in 0..5 {
+        let n = 50 << doubling;
+        let motions: Vec<Motion> = (1..=n)
+            .map(|k| pull(reach * f64::from(k) / f64::from(n), 0.3))
+            .collect();
+        let (answers, _) = rig.drive(&motions, 1e-2 / f64::from(n))?;
+        energies.push(area(&motions, &answers));
+    }
+    let differences: Vec<f64> = energies.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+    let scale = energies[4].abs().max(f64::MIN_POSITIVE);
+    if differences[3] <= 1e-9 * scale {
+        return Ok(Line::judged(
+            "convergence",
+            true,
+            differences[3] / scale,
+            "the energy of a pull does not depend on the step",
+        ));
+    }
+    // A corner that falls between steps spoils single ratios: the slope over all of them.
+    let order = (differences[0] / differences[3]).log2() / 3.0;
+    let text = format!(
+        "order in the step of the energy of a pull, last relative change {:.1e}; at least 0.7",
+        differences[3] / scale
+    );
+    Ok(Line::judged("convergence", order >= 0.7, order, text))
+}
+
+/// The stiffness is the slope of the traction, or the secant, at frozen damage and variables.
+fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
+    const NAME: &str = "tangent";
+    if rig.kind != Kind::Cohesion {
+        return Ok(Line::skip(NAME, "the traction is the cohesion's"));
+    }
+    let mut worst = 0.0f64;
+    for (u, angle) in [(0.3, 0.0), (0.6, 0.7), (0.9, 1.4), (0.5, FRAC_PI_2)] {
+        let u = u * rig.onset;
+        let mut state = [rig.bench.fresh()];
+        let at = pull(u, angle);
+        let base = rig.bench.step(&mut state, &[at], 1e-3)?[0];
+        for (k, stiffness) in [(0, base.stiffness[0]), (1, base.stiffness[1])] {
+            if at.opening[k] <= 1e-9 * u {
+                continue;
+            }
+            let e = 1e-5 * u;
+            let mut slope = [0.0; 2];
+            for (side, out) in [(1.0, 0), (-1.0, 1)] {
+                let mut to = at;
+                to.opening[k] += side * e;
+                let mut probe = state.clone();
+                slope[out] = rig.bench.step(&mut probe, &[to], 1e-9)?[0].traction[k];
+            }
+            let slope = (slope[0] - slope[1]) / (2.0 * e);
+            let secant = base.traction[k] / at.opening[k];
+            let scale = slope.abs().max(secant.abs()).max(f64::MIN_POSITIVE);
+            // A falling traction has no stiffness to give: zero or the secant are right.
+            let off = [slope.max(0.0), secant]
+                .into_iter()
+                .map(|right| (stiffness - right).abs() / scale)
+                .fold(f64::INFINITY, f64::min);
+            worst = worst.max(off);
+        }
+    }
+    Ok(Line::below(
+        NAME,
+        worst,
+        1e-3,
+        "largest distance of the stiffness from the slope of the traction or its secant",
+    ))
+}
+
+/// Unloaded half way and to nothing, and loaded again: through the origin, and back to where it was.
+fn secant(rig: &mut Rig) -> Result<Line, LawError> {
+    const NAME: &str = "secant";
+    let mut worst = 0.0f64;
+    for angle in [0.0, FRAC_PI_4, FRAC_PI_2] {
+        let top = rig.end.map_or(1.5 * rig.onset, |end| {
+            (1.5 * rig.onset).min(0.5 * (rig.onset + end))
+        });
+        let mut state = [rig.bench.fresh()];
+        for k in 1..=50 {
+            rig.bench
+                .step(&mut state, &[pull(top * f64::from(k) / 50.0, angle)], 1e-6)?;
+        }
+        let go = |rig: &mut Rig, state: &mut [_; 1], u: f64| {
+            rig.bench
+                .step(state, &[pull(u, angle)], 1e-12)
+                .map(|a| a[0])
+        };
+        let up = go(rig, &mut state, top)?;
+        let half = go(rig, &mut state, 0.5 * top)?;
+        let none = go(rig, &mut state, 0.0)?;
+        let again = go(rig, &mut state, 0.5 * top)?;
+        let length = |a: &Answer| a.traction.iter().map(|t| t * t).sum::<f64>().sqrt();
+        let scale = length(&up).max(f64::MIN_POSITIVE);
+        if up.damage >= 1.0 {
+            continue;
+        }
+        // Fatigue damages on the way: what is left of the bond is taken out.
+        let left = |a: &Answer| (1.0 - a.damage).max(f64::MIN_POSITIVE);
+        let same = |a: &Answer, b: &Answer| (left(a) / left(b) - 1.0).abs() < 1e-12;
+        worst = worst.max(length(&none) / scale);
+        if same(&half, &again) {
+            worst = worst.max((length(&half) - length(&again)).abs() / scale);
+        }
+        if rig.damages() && same(&up, &half) {
+            worst = worst.max((0.5 * length(&up) - length(&half)).abs() / scale);
+        }
+    }
+    Ok(Line::below(
+        NAME,
+        worst,
+        1e-6,
+        "largest distance from the line to the origin on unloading and reloading",
+    ))
+}

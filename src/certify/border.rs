@@ -1,0 +1,215 @@
+//! Promises of every law at the border: batches, threads, memory, and bad numbers.
+
+use super::Line;
+use super::rig::{PRESSURE, Rig};
+use crate::laws::LawError;
+use crate::laws::bench::{Answer, Bench, Motion, State};
+
+pub fn checks(rig: &mut Rig) -> Vec<Line> {
+    type Check = fn(&mut Rig) -> Result<Line, LawError>;
+    let all: [(&'static str, Check); 5] = [
+        ("batch", batch),
+        ("threads", threads),
+        ("restore", restore),
+        ("no hidden state", hidden),
+        ("bad numbers", bad_numbers),
+    ];
+    all.into_iter()
+        .map(|(name, check)| check(rig).unwrap_or_else(|e| Line::failed(name, &e)))
+        .collect()
+}
+
+fn bits(answers: &[Answer]) -> Vec<u64> {
+    let numbers = answers.iter().flat_map(|a| {
+        let rest = [a.stored, a.damage, a.mu, a.worn];
+        a.traction
+            .into_iter()
+            .chain(a.moment)
+            .chain(a.stiffness)
+            .chain(a.restitution)
+            .chain(a.strength)
+            .chain(a.rolling)
+            .chain(rest)
+    });
+    numbers.map(f64::to_bits).collect()
+}
+
+fn along(bench: &mut Bench, motions: &[Motion]) -> Result<Vec<u64>, LawError> {
+    let mut state = [bench.fresh()];
+    let mut out = Vec::new();
+    for motion in motions {
+        out.extend(bits(&bench.step(
+            &mut state,
+            std::slice::from_ref(motion),
+            1e-3,
+        )?));
+    }
+    Ok(out)
+}
+
+/// A batch of n gives the bits of n batches of one.
+fn batch(rig: &mut Rig) -> Result<Line, LawError> {
+    const N: usize = 17;
+    let walks: Vec<Vec<Motion>> = (0..N as u64).map(|k| rig.walk(40 + k, 60, 0.3)).collect();
+    let mut together: Vec<State> = (0..N).map(|_| rig.bench.fresh()).collect();
+    let mut alone = together.clone();
+    let mut different = 0u32;
+    for step in 0..60 {
+        let motions: Vec<Motion> = walks.iter().map(|w| w[step]).collect();
+        let many = rig.bench.step(&mut together, &motions, 1e-3)?;
+        for k in 0..N {
+            let one = rig.bench.step(&mut alone[k..=k], &motions[k..=k], 1e-3)?;
+            different += u32::from(bits(&one) != bits(&many[k..=k]));
+        }
+    }
+    Ok(Line::below(
+        "batch",
+        f64::from(different),
+        0.0,
+        "answers of a batch of 17 that differ from batches of one",
+    ))
+}
+
+/// The same bits from many threads at once.
+fn threads(rig: &mut Rig) -> Result<Line, LawError> {
+    let motions = rig.walk(3, 200, 0.3);
+    let expected = along(&mut rig.bench, &motions)?;
+    let mut benches: Vec<Bench> = (0..8).map(|_| rig.another()).collect();
+    let different: u32 = std::thread::scope(|scope| {
+        let runs: Vec<_> = benches
+            .iter_mut()
+            .map(|bench| scope.spawn(|| along(bench, &motions).is_ok_and(|b| b == expected)))
+            .collect();
+        runs.into_iter()
+            .map(|run| u32::from(!run.join().unwrap_or(false)))
+            .sum()
+    });
+    Ok(Line::below(
+        "threads",
+        f64::from(different),
+        0.0,
+        "of 8 threads at once, those with other bits",
+    ))
+}
+
+/// A contact saved in the middle of a path and taken up elsewhere goes on as it would have.
+fn restore(rig: &mut Rig) -> Result<Line, LawError> {
+    let motions = rig.walk(11, 200, 0.3);
+    let mut state = [rig.bench.fresh()];
+    let mut saved = state.clone();
+    let mut rest = Vec::new();
+    for (k, motion) in motions.iter().enumerate() {
+        if k == 100 {
+            saved = state.clone();
+        }
+        let answer = rig
+            .bench
+            .step(&mut state, std::slice::from_ref(motion), 1e-3)?;
+        if k >= 100 {
+            rest.extend(bits(&answer));
+        }
+    }
+    let mut other = rig.another();
+    let mut again = Vec::new();
+    for motion in &motions[100..] {
+        again.extend(bits(&other.step(
+            &mut saved,
+            std::slice::from_ref(motion),
+            1e-3,
+        )?));
+    }
+    let different = rest.iter().zip(&again).filter(|(a, b)| a != b).count();
+    Ok(Line::below(
+        "restore",
+        different as f64,
+        0.0,
+        "numbers that differ after saving and restoring a contact",
+    ))
+}
+
+/// Another contact's path in between changes nothing.
+fn hidden(rig: &mut Rig) -> Result<Line, LawError> {
+    let (mine, other) = (rig.walk(21, 150, 0.3), rig.walk(22, 150, 0.5));
+    let alone = along(&mut rig.bench, &mine)?;
+    let mut pair = [[rig.bench.fresh()], [rig.bench.fresh()]];
+    let mut between = Vec::new();
+    for (a, b) in mine.iter().zip(&other) {
+        rig.bench
+            .step(&mut pair[1], std::slice::from_ref(b), 1e-3)?;
+        between.extend(bits(&rig.bench.step(
+            &mut pair[0],
+            std::slice::from_ref(a),
+            1e-3,
+        )?));
+    }
+    let different = alone.iter().zip(&between).filter(|(a, b)| a != b).count();
+    Ok(Line::below(
+        "no hidden state",
+        different as f64,
+        0.0,
+        "numbers that differ when another contact moves in between",
+    ))
+}
+
+/// Whatever comes in, a status or finite numbers come out.
+fn bad_numbers(rig: &mut Rig) -> Result<Line, LawError> {
+    let bad = [
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        1e300,
+        -1e300,
+        1e-300,
+        -1.0,
+        0.0,
+    ];
+    let mut silent = Vec::new();
+    for value in bad {
+        let base = Motion {
+            opening: [rig.onset, rig.onset, 0.0],
+            gap: 0.0,
+            pressure: PRESSURE,
+            ..Motion::default()
+        };
+        let mut cases: Vec<(&str, Motion, f64, f64)> = (0..3)
+            .map(|k| {
+                let mut motion = base;
+                motion.opening[k] = value;
+                ("opening", motion, 0.0, 1e-3)
+            })
+            .collect();
+        cases.push(("gap", Motion { gap: value, ..base }, 0.0, 1e-3));
+        cases.push((
+            "impulse",
+            Motion {
+                pressure: value,
+                ..base
+            },
+            0.0,
+            1e-3,
+        ));
+        cases.push(("damage", base, value, 1e-3));
+        cases.push(("time step", base, 0.0, value));
+        for (what, motion, damage, h) in cases {
+            let mut state = [rig.bench.fresh()];
+            if rig.opens() {
+                state[0].damage = damage;
+            }
+            if let Err(e) = rig.bench.step(&mut state, &[motion], h)
+                && e.is_silent()
+            {
+                silent.push(format!("{what} {value:e}"));
+            }
+        }
+    }
+    let text = if silent.is_empty() {
+        "not finite, huge, tiny and negative inputs that gave numbers that are not finite"
+            .to_owned()
+    } else {
+        format!(
+            "inputs that gave numbers that are not finite and no status: {}",
+            silent.join(", ")
+        )
+    };
+    Ok(Line::below("bad numbers", silent.len() as f64, 0.0, text))
+}

@@ -1,0 +1,245 @@
+//! A law with its partners on the bench, and the opening at which it does something.
+
+use crate::laws::bench::{Answer, Bench, Motion, State};
+use crate::laws::{AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath};
+use rand::{RngExt, SeedableRng};
+use std::sync::Arc;
+
+/// Reduced radius of the contacts on the bench (m); the area is pi r^2 in 3D.
+const RADIUS: f64 = 1e-5;
+/// Compressive pressure where a law wants one (Pa).
+pub const PRESSURE: f64 = 1e6;
+
+/// See the module.
+pub struct Rig {
+    pub bench: Bench,
+    law: Interface,
+    dimension: u32,
+    partner: String,
+    /// Opening at which damage begins, or that stores 1 J/m^2 where none does (m).
+    pub onset: f64,
+    /// Opening at which the bond breaks, where it does (m).
+    pub end: Option<f64>,
+    /// Which slot is tested.
+    pub kind: Kind,
+}
+
+fn loaded(plugin: Plugin, parameters: Vec<f64>) -> Loaded {
+    Loaded {
+        plugin: Arc::new(plugin),
+        parameters,
+        first_variable: 0,
+    }
+}
+
+fn by_default(path: &SearchPath, kind: Kind, name: &str) -> Result<Loaded, LawError> {
+    let plugin = path.find(kind, name)?;
+    let values = plugin.parameters.iter().map(|p| p.default).collect();
+    Ok(loaded(plugin, values))
+}
+
+impl Rig {
+    /// The law in its slot; a damage law once with a linear bond (m = 1), once with MAC's (m = 2).
+    pub fn all(
+        plugin: &Plugin,
+        parameters: &[f64],
+        path: &SearchPath,
+    ) -> Result<Vec<Self>, LawError> {
+        let own = || Plugin::open(&plugin.path).map(|p| loaded(p, parameters.to_vec()));
+        let plain = Interface {
+            name: "bench".into(),
+            contact: by_default(path, Kind::Contact, "frictionless")?,
+            cohesion: None,
+            damage: None,
+            wear: None,
+            bonds: BondRule::Start,
+            healing: None,
+            area: AreaRule::default(),
+        };
+        let mut laws = Vec::new();
+        match plugin.kind {
+            Kind::Contact => laws.push((
+                "",
+                Interface {
+                    contact: own()?,
+                    ..plain
+                },
+            )),
+            Kind::Cohesion => laws.push((
+                "",
+                Interface {
+                    cohesion: Some(own()?),
+                    ..plain
+                },
+            )),
+            Kind::Damage => {
+                for partner in ["elastic-bond", "mac"] {
+                    let cohesion = Some(by_default(path, Kind::Cohesion, partner)?);
+                    let damage = Some(own()?);
+                    let law = Interface {
+                        cohesion,
+                        damage,
+                        ..plain.clone()
+                    };
+                    laws.push((partner, law));
+                }
+            }
+            Kind::Wear => laws.push((
+                "",
+                Interface {
+                    contact: by_default(path, Kind::Contact, "coulomb")?,
+                    wear: Some(own()?),
+                    ..plain
+                },
+            )),
+        }
+        let dimension = if plugin.flags & fretwork_abi::FLAG_2D_ONLY != 0 {
+            2
+        } else {
+            3
+        };
+        laws.into_iter()
+            .map(|(partner, law)| {
+                let law = law.compose()?;
+                Ok(Self {
+                    bench: Bench::new(law.clone(), dimension, RADIUS),
+                    law,
+                    dimension,
+                    partner: if partner.is_empty() {
+                        String::new()
+                    } else {
+                        format!(" (with {partner})")
+                    },
+                    onset: 1e-7,
+                    end: None,
+                    kind: plugin.kind,
+                })
+            })
+            .collect()
+    }
+
+    pub fn partner(&self) -> &str {
+        &self.partner
+    }
+
+    pub fn opens(&self) -> bool {
+        self.law.opens()
+    }
+
+    /// Whether damage can grow.
+    pub fn damages(&self) -> bool {
+        self.law.damages()
+    }
+
+    pub fn dimension(&self) -> u32 {
+        self.dimension
+    }
+
+    /// The law under test.
+    pub fn tested(&self) -> &Loaded {
+        match self.kind {
+            Kind::Contact => Some(&self.law.contact),
+            Kind::Cohesion => self.law.cohesion.as_ref(),
+            Kind::Damage => self.law.damage.as_ref(),
+            Kind::Wear => self.law.wear.as_ref(),
+        }
+        .unwrap_or(&self.law.contact)
+    }
+
+    /// A second bench with the same laws.
+    pub fn another(&self) -> Bench {
+        Bench::new(self.law.clone(), self.dimension, RADIUS)
+    }
+
+    pub fn interface(&self) -> &Interface {
+        &self.law
+    }
+
+    /// Finds the opening at which damage begins and that at which the bond is broken, by single pulls in
+    /// mode I and, where that does nothing, mode II.
+    pub fn find_scale(&mut self) -> Result<(), LawError> {
+        if !self.opens() {
+            return Ok(());
+        }
+        let mut answers = Vec::new();
+        // A tenth of a decade apart, from a picometre to ten metres, in one growing pull.
+        let openings: Vec<f64> = (0..=130)
+            .map(|k| 10f64.powf(-12.0 + 0.1 * f64::from(k)))
+            .collect();
+        let mut state = [self.bench.fresh()];
+        for u in &openings {
+            let answer = self.bench.step(&mut state, &[pull(*u, 0.0)], 1.0)?;
+            answers.push((*u, answer[0]));
+        }
+        let first =
+            |test: &dyn Fn(&Answer) -> bool| answers.iter().find(|a| test(&a.1)).map(|a| a.0);
+        let stored = first(&|a| a.stored >= 1.0);
+        self.onset = first(&|a| a.damage > 0.0).or(stored).unwrap_or(1e-6);
+        self.end = first(&|a| a.damage >= 1.0);
+        Ok(())
+    }
+
+    /// A random walk of openings about the scale of the law, normal and tangential, as fine as `share` of
+    /// it; without opening, of gaps and slips.
+    pub fn walk(&self, seed: u64, steps: usize, share: f64) -> Vec<Motion> {
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(seed);
+        let reach = 3.0 * self.onset;
+        let mut at = [0.0; 3];
+        let mut turn = [0.0; 3];
+        let tangents = if self.dimension == 2 { 2 } else { 3 };
+        (0..steps)
+            .map(|_| {
+                for x in at.iter_mut().take(tangents) {
+                    *x += share * self.onset * rng.random_range(-1.0..1.0);
+                    *x = f64::clamp(*x, -reach, reach);
+                }
+                if self.law.rotates() {
+                    let bends = if self.dimension == 2 { 1..2 } else { 0..3 };
+                    for x in &mut turn[bends] {
+                        *x += 0.1 * share * self.onset / RADIUS * rng.random_range(-1.0..1.0);
+                    }
+                }
+                Motion {
+                    opening: at,
+                    rotation: turn,
+                    gap: at[0],
+                    pressure: if at[0] <= 0.0 { PRESSURE } else { 0.0 },
+                }
+            })
+            .collect()
+    }
+
+    /// Drives one fresh contact along motions.
+    pub fn drive(&mut self, motions: &[Motion], h: f64) -> Result<(Vec<Answer>, State), LawError> {
+        let mut state = [self.bench.fresh()];
+        let mut out = Vec::with_capacity(motions.len());
+        for motion in motions {
+            out.push(
+                self.bench
+                    .step(&mut state, std::slice::from_ref(motion), h)?[0],
+            );
+        }
+        let [state] = state;
+        Ok((out, state))
+    }
+}
+
+/// An opening of length `u` at an angle from the normal (rad).
+pub fn pull(u: f64, angle: f64) -> Motion {
+    let opening = [u * angle.cos(), u * angle.sin(), 0.0];
+    Motion {
+        opening,
+        gap: opening[0],
+        ..Motion::default()
+    }
+}
+
+/// Work per area done on the bond from one opening to the next, by the trapezoidal rule (J/m^2).
+pub fn work(from: &Motion, to: &Motion, a: &Answer, b: &Answer) -> f64 {
+    let mut sum = 0.0;
+    for k in 0..3 {
+        sum += 0.5 * (a.traction[k] + b.traction[k]) * (to.opening[k] - from.opening[k]);
+        sum += 0.5 * (a.moment[k] + b.moment[k]) * (to.rotation[k] - from.rotation[k]);
+    }
+    sum
+}

@@ -1,0 +1,111 @@
+//! Promises of laws without opening: contact, attraction, wear.
+
+use super::Line;
+use super::rig::{PRESSURE, Rig};
+use crate::laws::bench::Motion;
+use crate::laws::{Kind, LawError};
+
+pub fn checks(rig: &mut Rig) -> Vec<Line> {
+    let mut out = vec![signs(rig).unwrap_or_else(|e| Line::failed("dissipation", &e))];
+    out.push(objectivity(rig).unwrap_or_else(|e| Line::failed("objectivity", &e)));
+    if rig.kind == Kind::Wear {
+        out.push(convergence(rig).unwrap_or_else(|e| Line::failed("convergence", &e)));
+    }
+    out
+}
+
+/// Friction, strengths and wear are not negative, restitution gives back no more than came: so no
+/// step makes energy or matter.
+fn signs(rig: &mut Rig) -> Result<Line, LawError> {
+    let mut worst = 0.0f64;
+    for seed in 0..24 {
+        let motions = rig.walk(seed, 200, 0.3);
+        let (answers, _) = rig.drive(&motions, 1e-3)?;
+        for a in answers {
+            let least = [
+                a.mu,
+                a.strength[0],
+                a.strength[1],
+                a.rolling[0],
+                a.rolling[1],
+                a.worn,
+            ]
+            .into_iter()
+            .chain(a.restitution)
+            .fold(f64::INFINITY, f64::min);
+            worst = worst
+                .max(-least)
+                .max(a.restitution[0] - 1.0)
+                .max(a.restitution[1] - 1.0);
+        }
+    }
+    Ok(Line::below(
+        "dissipation",
+        worst,
+        0.0,
+        "largest negative friction, strength, wear, or restitution above one",
+    ))
+}
+
+/// Turning the tangential axes changes nothing.
+fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
+    let motions = rig.walk(7, 200, 0.1);
+    let planar = rig.dimension() == 2;
+    let moved: Vec<Motion> = motions
+        .iter()
+        .map(|m| {
+            let [n, t1, t2] = m.opening;
+            let opening = if planar {
+                [n, -t1, 0.0]
+            } else {
+                [n, 0.8 * t1 - 0.6 * t2, 0.6 * t1 + 0.8 * t2]
+            };
+            Motion { opening, ..*m }
+        })
+        .collect();
+    let (plain, _) = rig.drive(&motions, 1e-3)?;
+    let (other, _) = rig.drive(&moved, 1e-3)?;
+    let off = |x: f64, y: f64| (x - y).abs() / x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
+    let worst = plain
+        .iter()
+        .zip(&other)
+        .map(|(a, b)| {
+            off(a.mu, b.mu)
+                .max(off(a.worn, b.worn))
+                .max(off(a.strength[0], b.strength[0]))
+        })
+        .fold(0.0, f64::max);
+    Ok(Line::below(
+        "objectivity",
+        worst,
+        1e-6,
+        "largest relative change of the answer when the tangential axes turn",
+    ))
+}
+
+/// The volume of a slide does not depend on the number of steps.
+fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
+    let mut volumes = Vec::new();
+    for n in [10u32, 100, 1000] {
+        let motions: Vec<Motion> = (1..=n)
+            .map(|k| Motion {
+                opening: [0.0, 1e-3 * f64::from(k) / f64::from(n), 0.0],
+                pressure: PRESSURE,
+                ..Motion::default()
+            })
+            .collect();
+        let (answers, _) = rig.drive(&motions, 1e-2 / f64::from(n))?;
+        volumes.push(answers.iter().map(|a| a.worn).sum::<f64>());
+    }
+    let scale = volumes[2].abs().max(f64::MIN_POSITIVE);
+    let worst = (volumes[0] - volumes[2]).abs() / scale;
+    Ok(Line::below(
+        "convergence",
+        worst,
+        1e-6,
+        format!(
+            "volume of a slide of 1 mm, {:e} m^3, in 10 steps and in 1000: relative difference",
+            volumes[2]
+        ),
+    ))
+}
