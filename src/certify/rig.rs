@@ -151,10 +151,6 @@ impl Rig {
         Bench::new(self.law.clone(), self.dimension, RADIUS)
     }
 
-    pub fn interface(&self) -> &Interface {
-        &self.law
-    }
-
     /// Finds the opening at which damage begins and that at which the bond is broken, by single pulls in
     /// mode I and, where that does nothing, mode II.
     pub fn find_scale(&mut self) -> Result<(), LawError> {

@@ -307,7 +307,7 @@ fn by_force(bench: &mut Bench, args: &DriveArgs) -> Result<Vec<Row>, Failure> {
     let mut u = 0.0;
     for k in 1..=args.steps {
         let target = args.to * f64::from(k) * h;
-        let mut carried = |bench: &mut Bench, u: f64| -> Result<f64, Failure> {
+        let carried = |bench: &mut Bench, u: f64| -> Result<f64, Failure> {
             let mut probe = state.clone();
             let motion = Motion {
                 opening: at(u),
