@@ -1,0 +1,71 @@
+//! MELODY's linear cohesive zone: from a limit to a residual traction at a limit opening.
+#![forbid(unsafe_code)]
+use fretwork_law::{DamageLaw, Intact, Law, Site, export, parameters};
+
+parameters! {
+    /// In MELODY's own damage d, u_max(d) = (p_limit/K)(1 - d) + u_limit d carries p_limit (1 - d) +
+    /// p_residual d. So the traction falls on a line from (p_limit/K, p_limit) to (u_limit, p_residual), where
+    /// the bond breaks; D of the host is the loss of the secant stiffness, (1 - D)^m = traction/(K u).
+    pub struct CzmLinear {
+        p_limit: "Pa" = 1e6, 1e-30, 1e30, "traction at which damage begins";
+        p_residual: "Pa" = 1e5, 0.0, 1e30, "traction at which the bond breaks";
+        u_limit: "m" = 1e-5, 1e-30, 1e30, "opening at which it breaks";
+    }
+}
+
+impl Law for CzmLinear {
+    const NAME: &'static str = "czm-linear";
+    const DOC: &'static str =
+        "traction falls linearly to a residual one at a limit opening, where the bond breaks";
+    const REFERENCE: &'static str = "law CZMlinear of MELODY: G. Mollon, Comput. Part. Mech. 5 (2018), doi:10.1007/s40571-018-0187-6";
+
+    fn validate(&self) -> Result<(), String> {
+        if self.p_residual > self.p_limit {
+            return Err("p_residual must not exceed p_limit".into());
+        }
+        Ok(())
+    }
+}
+
+impl DamageLaw for CzmLinear {
+    fn grow(&self, site: &Site, intact: &Intact, _state: &[f64], _next: &mut [f64]) -> f64 {
+        let (u, k) = (intact.opening(), intact.stiffness());
+        if k <= 0.0 || intact.traction_length() <= self.p_limit {
+            return site.damage;
+        }
+        let first = self.p_limit / k;
+        if u >= self.u_limit || self.u_limit <= first {
+            return 1.0;
+        }
+        let d = (u - first) / (self.u_limit - first);
+        let traction = self.p_limit * (1.0 - d) + self.p_residual * d;
+        intact.damage_for(traction).max(site.damage)
+    }
+}
+
+export!(damage CzmLinear);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// MELODY's secant at its damage d: (p_limit (1 - d) + p_residual d)/u_max(d).
+    #[test]
+    fn the_secant_is_melodys() {
+        let law = CzmLinear::default();
+        for (k, m) in [(1e12, 1.0), (1e13, 2.0)] {
+            for d in [0.1, 0.5, 0.9] {
+                let u = law.p_limit / k * (1.0 - d) + law.u_limit * d;
+                let intact = Intact {
+                    energy: 0.5 * k * u * u,
+                    traction: [k * u, 0.0, 0.0],
+                    degradation: m,
+                    ..Intact::default()
+                };
+                let ours = law.grow(&Site::default(), &intact, &[], &mut []);
+                let secant = (law.p_limit * (1.0 - d) + law.p_residual * d) / u;
+                assert!(((1.0 - ours).powf(m) * k / secant - 1.0).abs() < 1e-9);
+            }
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Exponential softening from a strength, with a given fracture energy.
+#![forbid(unsafe_code)]
+use fretwork_law::{DamageLaw, Intact, Law, Site, export, parameters};
+
+parameters! {
+    /// traction = strength exp(-(u - u_0)/l) beyond u_0 = strength/K, with l from
+    /// energy = strength u_0/2 + strength l. Below `left` times the strength the bond is broken; the tail
+    /// that is cut off held left (energy - strength u_0/2).
+    pub struct ExponentialSoftening {
+        strength: "Pa" = 3e5, 1e-30, 1e30, "traction at which damage begins";
+        energy: "J/m^2" = 0.5, 1e-30, 1e30, "fracture energy, the area under the curve";
+        left: "" = 1e-3, 0.0, 0.5, "share of the strength below which the bond is broken";
+    }
+}
+
+impl Law for ExponentialSoftening {
+    const NAME: &'static str = "exponential-softening";
+    const DOC: &'static str =
+        "traction falls exponentially from the strength, area = fracture energy";
+    const REFERENCE: &'static str = "M. Ortiz, A. Pandolfi, Int. J. Numer. Methods Eng. 44 (1999) 1267-1282 (history by secant unloading); exponential softening as in J. Oliver et al., Eng. Fract. Mech. 69 (2002) 113-136";
+
+    fn fracture_energy(&self, _angle: f64) -> Option<f64> {
+        Some(self.energy)
+    }
+}
+
+impl DamageLaw for ExponentialSoftening {
+    fn grow(&self, site: &Site, intact: &Intact, _state: &[f64], _next: &mut [f64]) -> f64 {
+        let (u, k) = (intact.opening(), intact.stiffness());
+        if k <= 0.0 || intact.traction_length() <= self.strength {
+            return site.damage;
+        }
+        let first = self.strength / k;
+        let l = self.energy / self.strength - 0.5 * first;
+        // A bond that holds more than the fracture energy at its strength snaps.
+        let share = if l > 0.0 {
+            (-(u - first) / l).exp()
+        } else {
+            0.0
+        };
+        if share <= self.left {
+            return 1.0;
+        }
+        intact.damage_for(self.strength * share).max(site.damage)
+    }
+}
+
+export!(damage ExponentialSoftening);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_area_is_the_fracture_energy_less_the_tail() {
+        let law = ExponentialSoftening::default();
+        for (m, k) in [(1.0, 1e12), (2.0, 1e12), (2.0, 1e14)] {
+            let (mut d, mut area, mut last) = (0.0, 0.0, 0.0);
+            let (n, reach) = (400_000, 20e-6);
+            let du = reach / f64::from(n);
+            for step in 1..=n {
+                let u = du * f64::from(step);
+                let intact = Intact {
+                    energy: 0.5 * k * u * u,
+                    traction: [k * u, 0.0, 0.0],
+                    degradation: m,
+                    ..Intact::default()
+                };
+                d = law.grow(
+                    &Site {
+                        damage: d,
+                        ..Site::default()
+                    },
+                    &intact,
+                    &[],
+                    &mut [],
+                );
+                let t = (1.0f64 - d).powf(m) * k * u;
+                area += 0.5 * (last + t) * du;
+                last = t;
+            }
+            let first = law.strength / k;
+            let tail = law.left * (law.energy - 0.5 * law.strength * first);
+            assert!(
+                (area / (law.energy - tail) - 1.0).abs() < 1e-4,
+                "{m} {k}: {area}"
+            );
+            assert_eq!(d, 1.0);
+        }
+    }
+}

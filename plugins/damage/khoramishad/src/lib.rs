@@ -1,0 +1,89 @@
+//! Fatigue by cycles counted in time, from the largest strain of a cycle: Khoramishad and co-workers.
+#![forbid(unsafe_code)]
+use fretwork_law::{DamageLaw, Intact, Law, Site, export, parameters};
+
+parameters! {
+    /// dD/dN = alpha (e - threshold)^beta with e = opening/reference the strain of the maximum load, which
+    /// the scene holds (a cycle jump: the load's maximum is applied steadily and N = frequency t).
+    pub struct Khoramishad {
+        alpha: "" = 1.5, 0.0, 1e30, "damage a cycle at unit strain above the threshold";
+        beta: "" = 2.0, 1e-3, 100.0, "exponent";
+        threshold: "" = 0.03, 0.0, 1e30, "strain below which cycles do nothing";
+        reference: "m" = 1e-5, 1e-30, 1e30, "opening of unit strain: the thickness of the layer";
+        frequency: "Hz" = 10.0, 0.0, 1e30, "cycles a second";
+    }
+}
+
+impl Law for Khoramishad {
+    const NAME: &'static str = "khoramishad";
+    const DOC: &'static str =
+        "fatigue damage a cycle from the largest strain, cycles counted in time";
+    const REFERENCE: &'static str = "H. Khoramishad, A. D. Crocombe, K. B. Katnam, I. A. Ashcroft, Int. J. Fatigue 32 (2010) 1146-1158";
+}
+
+impl DamageLaw for Khoramishad {
+    fn grow(&self, site: &Site, intact: &Intact, _state: &[f64], _next: &mut [f64]) -> f64 {
+        let strain = intact.opening() / self.reference;
+        if !(strain > self.threshold) {
+            return site.damage;
+        }
+        let cycles = self.frequency * site.h.max(0.0);
+        let growth = self.alpha * (strain - self.threshold).powf(self.beta) * cycles;
+        (site.damage + growth).min(1.0)
+    }
+}
+
+export!(damage Khoramishad);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn n_cycles_damage_n_times_the_rate() {
+        let law = Khoramishad::default();
+        let u = 0.08 * law.reference;
+        let intact = Intact {
+            energy: 0.5e12 * u * u,
+            traction: [1e12 * u, 0.0, 0.0],
+            degradation: 1.0,
+            ..Intact::default()
+        };
+        let (mut d, h) = (0.0, 1e-2);
+        // 100 cycles at 10 Hz.
+        for _ in 0..1000 {
+            d = law.grow(
+                &Site {
+                    damage: d,
+                    h,
+                    ..Site::default()
+                },
+                &intact,
+                &[],
+                &mut [],
+            );
+        }
+        assert!(
+            (d / (100.0 * 1.5 * 0.05f64.powi(2)) - 1.0).abs() < 1e-9,
+            "{d}"
+        );
+    }
+
+    #[test]
+    fn below_the_threshold_nothing_grows() {
+        let law = Khoramishad::default();
+        let u = 0.0299 * law.reference;
+        let intact = Intact {
+            energy: 0.5e12 * u * u,
+            traction: [1e12 * u, 0.0, 0.0],
+            degradation: 2.0,
+            ..Intact::default()
+        };
+        let site = Site {
+            damage: 0.2,
+            h: 1e3,
+            ..Site::default()
+        };
+        assert_eq!(law.grow(&site, &intact, &[], &mut []), 0.2);
+    }
+}

@@ -1,0 +1,95 @@
+//! Linear softening from a strength to nothing, with a given fracture energy.
+#![forbid(unsafe_code)]
+use fretwork_law::{DamageLaw, Intact, Law, Site, export, parameters};
+
+parameters! {
+    /// The traction along the opening u falls from `strength` at u_0 = strength/K to zero at
+    /// u_f = 2 energy/strength. Where the bond is so soft that u_f <= u_0 it snaps at the strength, and
+    /// dissipates the strength^2/(2K) that it holds then.
+    pub struct LinearSoftening {
+        strength: "Pa" = 3e5, 1e-30, 1e30, "traction at which damage begins";
+        energy: "J/m^2" = 0.5, 1e-30, 1e30, "fracture energy, the area under the curve";
+    }
+}
+
+impl Law for LinearSoftening {
+    const NAME: &'static str = "linear-softening";
+    const DOC: &'static str =
+        "traction falls linearly from the strength to zero, area = fracture energy";
+    const REFERENCE: &'static str = "A. Hillerborg, M. Modeer, P.-E. Petersson, Cem. Concr. Res. 6 (1976) 773-781; bilinear law of P. H. Geubelle, J. S. Baylor, Compos. B 29 (1998) 589-602";
+
+    fn fracture_energy(&self, _angle: f64) -> Option<f64> {
+        Some(self.energy)
+    }
+}
+
+impl DamageLaw for LinearSoftening {
+    fn grow(&self, site: &Site, intact: &Intact, _state: &[f64], _next: &mut [f64]) -> f64 {
+        let (u, k) = (intact.opening(), intact.stiffness());
+        if k <= 0.0 || intact.traction_length() <= self.strength {
+            return site.damage;
+        }
+        let (first, last) = (self.strength / k, 2.0 * self.energy / self.strength);
+        if u >= last || last <= first {
+            return 1.0;
+        }
+        let traction = self.strength * ((last - u) / (last - first));
+        intact.damage_for(traction).max(site.damage)
+    }
+}
+
+export!(damage LinearSoftening);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Area under a pull of a bond of stiffness k and exponent m.
+    fn area(law: &LinearSoftening, k: f64, m: f64, reach: f64, n: u32) -> (f64, f64) {
+        let (mut d, mut area, mut last) = (0.0, 0.0, 0.0);
+        let du = reach / f64::from(n);
+        for step in 1..=n {
+            let u = du * f64::from(step);
+            let intact = Intact {
+                energy: 0.5 * k * u * u,
+                traction: [k * u, 0.0, 0.0],
+                degradation: m,
+                ..Intact::default()
+            };
+            d = law.grow(
+                &Site {
+                    damage: d,
+                    ..Site::default()
+                },
+                &intact,
+                &[],
+                &mut [],
+            );
+            let t = (1.0f64 - d).powf(m) * k * u;
+            area += 0.5 * (last + t) * du;
+            last = t;
+        }
+        (area, d)
+    }
+
+    #[test]
+    fn the_area_is_the_fracture_energy_for_any_exponent_and_stiffness() {
+        let law = LinearSoftening::default();
+        for m in [1.0, 2.0, 3.5] {
+            for k in [1e12, 1e13, 1e14] {
+                let (area, d) = area(&law, k, m, 4e-6, 200_000);
+                assert!((area / law.energy - 1.0).abs() < 1e-4, "{m} {k}: {area}");
+                assert_eq!(d, 1.0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_soft_bond_snaps_at_the_strength() {
+        let law = LinearSoftening::default();
+        // K = 1e10: u_0 = 30 um is beyond u_f = 3.3 um.
+        let (area, d) = area(&law, 1e10, 1.0, 40e-6, 100_000);
+        assert!((area / (0.5 * 9e10 / 1e10) - 1.0).abs() < 1e-3, "{area}");
+        assert_eq!(d, 1.0);
+    }
+}
