@@ -1,0 +1,140 @@
+//! Camanho and Davila's bilinear law in mixed mode, with the Benzeggagh-Kenane fracture energy.
+#![forbid(unsafe_code)]
+use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, export, parameters};
+
+parameters! {
+    /// On u = sqrt(<u_n>^2 + |u_t|^2) with B = |u_t|/u_n: onset d_0 = d_3 d_s sqrt((1 + B^2)/(d_s^2 + (B d_3)^2)),
+    /// d_3 = strength_n/K, d_s = strength_t/K; G_c = g_1 + (g_2 - g_1)(B^2/(1 + B^2))^eta; end d_f = 2 G_c/(K d_0);
+    /// D = d_f (u - d_0)/(u (d_f - d_0)), never falling. The defaults are AS4/PEEK.
+    pub struct CamanhoDavila {
+        k: "Pa/m" = 1e15, 1.0, 1e30, "stiffness, the same in both directions";
+        strength_n: "Pa" = 8e7, 1e-30, 1e30, "strength in mode I";
+        strength_t: "Pa" = 1e8, 1e-30, 1e30, "strength in mode II";
+        g_1: "J/m^2" = 969.0, 1e-30, 1e30, "fracture energy in mode I";
+        g_2: "J/m^2" = 1719.0, 1e-30, 1e30, "fracture energy in mode II";
+        eta: "" = 2.284, 1e-3, 100.0, "exponent of Benzeggagh and Kenane";
+    }
+}
+
+impl Law for CamanhoDavila {
+    const NAME: &'static str = "camanho-davila";
+    const DOC: &'static str =
+        "bilinear mixed-mode cohesion with the Benzeggagh-Kenane fracture energy";
+    const REFERENCE: &'static str = "P. P. Camanho, C. G. Davila, M. F. de Moura, J. Compos. Mater. 37 (2003) 1415-1438; M. L. Benzeggagh, M. Kenane, Compos. Sci. Technol. 56 (1996) 439-449";
+    const FLAGS: u64 =
+        abi::FLAG_OPENING | abi::FLAG_TENSION_ONLY | abi::FLAG_BREAKS | abi::FLAG_FORMS;
+
+    fn fracture_energy(&self, angle: f64) -> Option<f64> {
+        Some(self.mix(angle.cos().max(0.0), angle.sin().abs()).1)
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        for (s, g, mode) in [
+            (self.strength_n, self.g_1, "I"),
+            (self.strength_t, self.g_2, "II"),
+        ] {
+            if s * s >= 2.0 * self.k * g {
+                return Err(format!(
+                    "strength^2/(2 k) must be below the fracture energy in mode {mode}: raise k"
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl CamanhoDavila {
+    /// Onset and fracture energy for the mix of a normal (not negative) and a tangential opening.
+    fn mix(&self, n: f64, t: f64) -> (f64, f64) {
+        let u = n.hypot(t);
+        let (c, s) = if u > 0.0 { (n / u, t / u) } else { (1.0, 0.0) };
+        let (d3, ds) = (self.strength_n / self.k, self.strength_t / self.k);
+        // The onset with cosine and sine of the mix, which have no pole in mode II.
+        let onset = d3 * ds / (ds * c).hypot(d3 * s);
+        (
+            onset,
+            self.g_1 + (self.g_2 - self.g_1) * (s * s).powf(self.eta),
+        )
+    }
+}
+
+impl CohesionLaw for CamanhoDavila {
+    const DEGRADATION: f64 = 1.0;
+
+    fn traction(&self, site: &Site, _state: &[f64]) -> Traction {
+        let k = (1.0 - site.damage) * self.k;
+        Traction {
+            traction: site.opening.map(|u| k * u),
+            stiffness_n: k,
+            stiffness_t: k,
+            ..Traction::default()
+        }
+    }
+
+    fn energy(&self, site: &Site, _state: &[f64]) -> f64 {
+        let u = site.normal_opening().hypot(site.tangential_opening());
+        0.5 * (1.0 - site.damage) * self.k * u * u
+    }
+
+    fn commit(&self, site: &Site, _state: &[f64], _next: &mut [f64]) -> f64 {
+        let (n, t) = (site.normal_opening(), site.tangential_opening());
+        let u = n.hypot(t);
+        let (onset, energy) = self.mix(n, t);
+        let end = 2.0 * energy / (self.k * onset);
+        if u <= onset {
+            return site.damage;
+        }
+        if u >= end {
+            return 1.0;
+        }
+        (end * (u - onset) / (u * (end - onset))).max(site.damage)
+    }
+}
+
+export!(cohesion CamanhoDavila);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// AS4/PEEK: G_c of 0.98799, 1.12300 and 1.41952 N/mm at G_II/G_T of 0.2, 0.5 and 0.8, by integration of
+    /// the traction at a fixed mix.
+    #[test]
+    fn mixed_modes_take_the_energy_of_benzeggagh_and_kenane() {
+        let law = CamanhoDavila::default();
+        for (share, expected) in [
+            (0.0, 969.0),
+            (0.2, 987.99),
+            (0.5, 1123.00),
+            (0.8, 1419.52),
+            (1.0, 1719.0),
+        ] {
+            let (s, c) = (f64::sqrt(share), f64::sqrt(1.0 - share));
+            let (mut d, mut area, mut last) = (0.0, 0.0, 0.0);
+            let n = 200_000;
+            let du = 50e-6 / f64::from(n);
+            for step in 1..=n {
+                let u = du * f64::from(step);
+                let site = Site {
+                    opening: [c * u, 0.0, s * u],
+                    damage: d,
+                    ..Site::default()
+                };
+                d = law.commit(&site, &[], &mut []);
+                let t = (1.0 - d) * law.k * u;
+                area += 0.5 * (last + t) * du;
+                last = t;
+            }
+            assert!((area / expected - 1.0).abs() < 1e-4, "{share}: {area}");
+        }
+    }
+
+    #[test]
+    fn the_onset_is_the_papers() {
+        let law = CamanhoDavila::default();
+        let (d3, ds, b) = (law.strength_n / law.k, law.strength_t / law.k, 0.7);
+        let expected = d3 * ds * ((1.0 + b * b) / (ds * ds + (b * d3) * (b * d3))).sqrt();
+        assert!((law.mix(1.0, b).0 / expected - 1.0).abs() < 1e-12);
+        assert!((law.mix(0.0, 1.0).0 / ds - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,121 @@
+//! Tvergaard and Hutchinson's trapezoid: elastic, plateau, linear fall. It breaks by itself.
+#![forbid(unsafe_code)]
+use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, export, parameters};
+
+parameters! {
+    /// On the opening u = sqrt(<u_n>^2 + |u_t|^2): K u to u_i = strength/K, the strength to u_p, then a line to
+    /// u_u; energy = strength (u_u + u_p - u_i)/2. `u_p` = u_i + plateau (u_longest - u_i), where the longest
+    /// plateau that the energy allows ends at u_i/2 + energy/strength. Unloading goes to the origin.
+    pub struct TvergaardHutchinson {
+        k: "Pa/m" = 1e13, 1.0, 1e30, "stiffness, the same in both directions";
+        strength: "Pa" = 1e6, 1e-30, 1e30, "traction of the plateau";
+        energy: "J/m^2" = 5.0, 1e-30, 1e30, "fracture energy";
+        plateau: "" = 0.5, 0.0, 1.0, "length of the plateau: 0 none, 1 all of the energy";
+    }
+}
+
+impl Law for TvergaardHutchinson {
+    const NAME: &'static str = "tvergaard-hutchinson";
+    const DOC: &'static str =
+        "trapezoidal cohesion that breaks by itself, energy = s (u_u + u_p - u_i)/2";
+    const REFERENCE: &'static str =
+        "V. Tvergaard, J. W. Hutchinson, J. Mech. Phys. Solids 40 (1992) 1377-1397";
+    const FLAGS: u64 =
+        abi::FLAG_OPENING | abi::FLAG_TENSION_ONLY | abi::FLAG_BREAKS | abi::FLAG_FORMS;
+
+    fn fracture_energy(&self, _angle: f64) -> Option<f64> {
+        Some(self.energy)
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        if self.strength * self.strength >= 2.0 * self.k * self.energy {
+            return Err(
+                "strength^2/(2 k) must be below the energy: the elastic part alone holds more"
+                    .into(),
+            );
+        }
+        Ok(())
+    }
+}
+
+/// sqrt(<u_n>^2 + |u_t|^2).
+fn effective(site: &Site) -> f64 {
+    site.normal_opening().hypot(site.tangential_opening())
+}
+
+impl CohesionLaw for TvergaardHutchinson {
+    const DEGRADATION: f64 = 1.0;
+
+    fn traction(&self, site: &Site, _state: &[f64]) -> Traction {
+        let k = (1.0 - site.damage) * self.k;
+        Traction {
+            traction: site.opening.map(|u| k * u),
+            stiffness_n: k,
+            stiffness_t: k,
+            ..Traction::default()
+        }
+    }
+
+    fn energy(&self, site: &Site, _state: &[f64]) -> f64 {
+        let u = effective(site);
+        0.5 * (1.0 - site.damage) * self.k * u * u
+    }
+
+    fn commit(&self, site: &Site, _state: &[f64], _next: &mut [f64]) -> f64 {
+        let u = effective(site);
+        let first = self.strength / self.k;
+        if u <= first {
+            return site.damage;
+        }
+        let longest = 0.5 * first + self.energy / self.strength;
+        let end = first + self.plateau * (longest - first);
+        let last = 2.0 * self.energy / self.strength + first - end;
+        if u >= last {
+            return 1.0;
+        }
+        let share = if u <= end {
+            1.0
+        } else {
+            (last - u) / (last - end)
+        };
+        (1.0 - share * first / u).max(site.damage)
+    }
+}
+
+export!(cohesion TvergaardHutchinson);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_trapezoid_has_its_corners_and_its_area() {
+        for plateau in [0.0, 0.5, 1.0] {
+            let law = TvergaardHutchinson {
+                plateau,
+                ..TvergaardHutchinson::default()
+            };
+            let (mut d, mut area, mut last, mut peak) = (0.0, 0.0, 0.0, 0.0f64);
+            let n = 200_000;
+            let du = 12e-6 / f64::from(n);
+            for step in 1..=n {
+                let u = du * f64::from(step);
+                let site = Site {
+                    opening: [0.6 * u, 0.8 * u, 0.0],
+                    damage: d,
+                    ..Site::default()
+                };
+                d = law.commit(&site, &[], &mut []);
+                let t = law.traction(&Site { damage: d, ..site }, &[]).traction;
+                let t = t[0].hypot(t[1]);
+                area += 0.5 * (last + t) * du;
+                last = t;
+                peak = peak.max(t);
+            }
+            assert!((area / law.energy - 1.0).abs() < 1e-4, "{plateau}: {area}");
+            // A step may fall beside the corner.
+            assert!((peak / law.strength - 1.0).abs() < 1e-3);
+            assert_eq!(d, 1.0);
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Xu and Needleman's exponential cohesion, with a history: it unloads to the origin and stays broken.
+#![forbid(unsafe_code)]
+use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, export, parameters};
+
+parameters! {
+    /// t_n = (1 - D)(phi/delta_n^2) u_n and t_t = (1 - D)(2 phi/delta_t^2) u_t with phi = e strength delta_n and
+    /// 1 - D = exp(-u_n/delta_n - |u_t|^2/delta_t^2), which never rises: on a first loading this is the law of
+    /// the paper in mode I, and in mode II (with q = 1, r = 0); in mixed mode the paper's factor (1 + u_n/delta_n)
+    /// of t_t is left out, so that one D serves both. Below `left` the bond is broken.
+    pub struct XuNeedleman {
+        strength: "Pa" = 1e6, 1e-30, 1e30, "normal strength, reached at delta_n";
+        delta_n: "m" = 1e-6, 1e-30, 1e30, "normal opening at the strength";
+        delta_t: "m" = 1.5e-6, 1e-30, 1e30, "tangential length; the shear strength is reached at delta_t/sqrt(2)";
+        left: "" = 1e-5, 1e-300, 0.5, "share of the stiffness below which the bond is broken";
+    }
+}
+
+impl Law for XuNeedleman {
+    const NAME: &'static str = "xu-needleman";
+    const DOC: &'static str =
+        "exponential cohesion with unloading to the origin, phi = e strength delta_n";
+    const REFERENCE: &'static str =
+        "X.-P. Xu, A. Needleman, J. Mech. Phys. Solids 42 (1994) 1397-1434";
+    const FLAGS: u64 =
+        abi::FLAG_OPENING | abi::FLAG_TENSION_ONLY | abi::FLAG_BREAKS | abi::FLAG_FORMS;
+
+    fn fracture_energy(&self, angle: f64) -> Option<f64> {
+        // Of the single modes; what mixed openings take depends on the two lengths.
+        let single = angle.sin().abs() < 1e-9 || angle.cos().abs() < 1e-9;
+        single.then(|| self.phi())
+    }
+}
+
+impl XuNeedleman {
+    fn phi(&self) -> f64 {
+        std::f64::consts::E * self.strength * self.delta_n
+    }
+
+    fn stiffness(&self) -> (f64, f64) {
+        let phi = self.phi();
+        (
+            phi / (self.delta_n * self.delta_n),
+            2.0 * phi / (self.delta_t * self.delta_t),
+        )
+    }
+}
+
+impl CohesionLaw for XuNeedleman {
+    const DEGRADATION: f64 = 1.0;
+
+    fn traction(&self, site: &Site, _state: &[f64]) -> Traction {
+        let g = 1.0 - site.damage;
+        let (k_n, k_t) = self.stiffness();
+        let [n, t1, t2] = site.opening;
+        Traction {
+            traction: [g * k_n * n, g * k_t * t1, g * k_t * t2],
+            stiffness_n: g * k_n,
+            stiffness_t: g * k_t,
+            ..Traction::default()
+        }
+    }
+
+    fn energy(&self, site: &Site, _state: &[f64]) -> f64 {
+        let (k_n, k_t) = self.stiffness();
+        let (n, t) = (site.normal_opening(), site.tangential_opening());
+        0.5 * (1.0 - site.damage) * (k_n * n * n + k_t * t * t)
+    }
+
+    fn commit(&self, site: &Site, _state: &[f64], _next: &mut [f64]) -> f64 {
+        let (n, t) = (
+            site.normal_opening() / self.delta_n,
+            site.tangential_opening() / self.delta_t,
+        );
+        let g = (-n - t * t).exp();
+        if g <= self.left {
+            1.0
+        } else {
+            site.damage.max(1.0 - g)
+        }
+    }
+}
+
+export!(cohesion XuNeedleman);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pull(law: &XuNeedleman, direction: [f64; 2]) -> (f64, f64) {
+        let (mut d, mut area, mut last, mut peak) = (0.0, 0.0, 0.0, 0.0f64);
+        let n = 400_000;
+        let du = 30e-6 / f64::from(n);
+        for step in 1..=n {
+            let u = du * f64::from(step);
+            let site = Site {
+                opening: [direction[0] * u, direction[1] * u, 0.0],
+                damage: d,
+                ..Site::default()
+            };
+            d = law.commit(&site, &[], &mut []);
+            let t = law.traction(&Site { damage: d, ..site }, &[]).traction;
+            let t = t[0] * direction[0] + t[1] * direction[1];
+            area += 0.5 * (last + t) * du;
+            last = t;
+            peak = peak.max(t);
+        }
+        (peak, area)
+    }
+
+    /// Peak s at delta_n, area e s delta_n; in mode II sqrt(2 e) s delta_n/delta_t, the same area.
+    #[test]
+    fn peaks_and_areas_are_the_papers() {
+        let law = XuNeedleman::default();
+        let phi = std::f64::consts::E * 1e6 * 1e-6;
+        let (peak, area) = pull(&law, [1.0, 0.0]);
+        assert!((peak / 1e6 - 1.0).abs() < 1e-6 && (area / phi - 1.0).abs() < 1e-3);
+        let (peak, area) = pull(&law, [0.0, 1.0]);
+        let shear = (2.0 * std::f64::consts::E).sqrt() * 1e6 / 1.5;
+        assert!(
+            (peak / shear - 1.0).abs() < 1e-6 && (area / phi - 1.0).abs() < 1e-3,
+            "{area}"
+        );
+    }
+}
