@@ -6,6 +6,7 @@
 mod bonds;
 mod dynamics;
 mod energy;
+mod laws;
 mod sinks;
 
 use fretwork::geometry::space::{Plane, Solid};
@@ -91,5 +92,6 @@ fn closed_forms_are_met() {
     bonds::all(&mut table);
     energy::all(&mut table);
     sinks::all(&mut table);
+    laws::all(&mut table);
     assert!(table.failed.is_empty(), "\n{}", table.failed.join("\n"));
 }

@@ -1,0 +1,224 @@
+//! What laws do in a scene: moments, attraction without opening, bonds that form, implicit coupling.
+
+use super::{G, Table, plane, solid, until};
+use fretwork::geometry::space::Space;
+use fretwork::step::Simulation;
+use std::f64::consts::PI;
+
+pub fn all(table: &mut Table) {
+    rolling(table);
+    beams(table);
+    hanging(table);
+    healing(table);
+    coupling(table);
+}
+
+fn grain<S: Space>(s: &Simulation<S>) -> usize {
+    (0..s.bodies.len())
+        .find(|b| !s.bodies.immovable(*b))
+        .unwrap()
+}
+
+/// Thrown at v it slides until rolling, then loses g (l/R)/(1 + k) a second: measured over the rolling part.
+fn rolling(table: &mut Table) {
+    fn slow<S: fretwork::scene::build::Dimensional>(mut s: Simulation<S>) -> (f64, f64) {
+        let b = grain(&s);
+        let mut seen = Vec::new();
+        until(&mut s, 2.5, |s| {
+            seen.push((s.time, s.bodies.velocity[b][0]))
+        });
+        let at = |t: f64| *seen.iter().find(|x| x.0 >= t).unwrap();
+        let ((t0, v0), (t1, v1)) = (at(0.3), at(0.8));
+        let rest = seen.last().unwrap().1;
+        // Nothing of the energy it was thrown with is left.
+        let lost = s.energy.friction / s.energy.initial_kinetic;
+        assert!(rest.abs() < 1e-9, "it rests");
+        ((v0 - v1) / (t1 - t0), lost)
+    }
+    for (case, k, (slowed, lost)) in [
+        (
+            "rolling_stop_disk",
+            0.5,
+            slow(plane("rolling_stop_disk", &[])),
+        ),
+        (
+            "rolling_stop_sphere",
+            0.4,
+            slow(solid("rolling_stop_sphere", &[])),
+        ),
+    ] {
+        let expected = G * 0.05 / (1.0 + k);
+        table.compare(case, "g (l/R)/(1 + k) (m/s^2)", expected, slowed, 1e-6);
+        table.compare(case, "friction over m v^2/2", 1.0, lost, 1e-9);
+    }
+}
+
+/// Static shear and bending of a glued grain: R = 0.1 m, reduced radius 0.05 m.
+fn beams(table: &mut Table) {
+    fn held<S: fretwork::scene::build::Dimensional>(mut s: Simulation<S>) -> [f64; 4] {
+        until(&mut s, 1.0, |_| {});
+        let b = grain(&s);
+        let weight = s.bodies.mass[b] * G;
+        let contact = &s.network.contacts[0];
+        let slot = contact.memory().unwrap();
+        let bond = &s.network.memory[0].bonds[slot];
+        let turn = s.network.memory[0].rotations[slot];
+        let shear = S::lift(&contact.normal, &bond.opening_t);
+        use fretwork::geometry::space::VectorLike;
+        [weight, bond.area, shear.norm(), turn.norm()]
+    }
+    for (case, dimension, [weight, area, shear, turn]) in [
+        ("beam_2d", 2, held(plane("beam_2d", &[]))),
+        ("beam_3d", 3, held(solid("beam_3d", &[]))),
+    ] {
+        let second = match dimension {
+            2 => 2.0 * (0.5 * area).powi(3) / 3.0,
+            _ => area * area / (4.0 * PI),
+        };
+        table.compare(
+            case,
+            "shear k_t A u_t = m g (N)",
+            weight,
+            1e10 * area * shear,
+            1e-4,
+        );
+        table.compare(
+            case,
+            "bending k_n I theta = m g R (N m)",
+            weight * 0.1,
+            1e10 * second * turn,
+            1e-4,
+        );
+    }
+}
+
+fn hanging(table: &mut Table) {
+    let mut s = plane("hanging", &[]);
+    until(&mut s, 0.1, |_| {});
+    let b = grain(&s);
+    let weight = s.bodies.mass[b] * G;
+    let carried = s.network.contacts[0].impulse.norm() / s.scheme.h;
+    table.compare(
+        "hanging",
+        "force of the ceiling m g (N/m)",
+        weight,
+        carried,
+        1e-9,
+    );
+    table.compare(
+        "hanging",
+        "velocity, f > m g (m/s)",
+        0.0,
+        s.bodies.velocity[b].y,
+        1e-12,
+    );
+    let set = "interfaces.grain.parameters.cohesion.force=307.0";
+    let mut s = plane("hanging", &[set]);
+    until(&mut s, 0.1, |_| {});
+    // Held back for the steps in which the gap is within the range of 1 um.
+    let fall = -s.bodies.velocity[b].y;
+    table.compare(
+        "hanging",
+        "velocity, f < m g: about g t (m/s)",
+        G * 0.1,
+        fall,
+        2e-1,
+    );
+}
+
+fn healing(table: &mut Table) {
+    let mut s = plane("healing", &[]);
+    let mut made = Vec::new();
+    let mut broken = Vec::new();
+    until(&mut s, 0.4, |s| {
+        made.push((s.time, s.network.bonds_made()));
+        broken.push((s.time, s.network.bonds_broken()));
+    });
+    let first =
+        |list: &[(f64, u64)], n: u64| list.iter().find(|x| x.1 >= n).map_or(f64::NAN, |x| x.0);
+    // It carries from the first step on, so it is pressed for 0.02 s at the start of the step that ends then.
+    table.compare("healing", "first bond (s)", 0.02, first(&made, 1), 1e-2);
+    // A pull of 1e3 N/m on 0.5 m is below the strength of 1e4 Pa, 1e4 N/m above it.
+    table.compare(
+        "healing",
+        "the bond breaks at the second pull (s)",
+        0.3,
+        first(&broken, 1),
+        1e-2,
+    );
+    table.compare(
+        "healing",
+        "bonds made",
+        1.0,
+        s.network.bonds_made() as f64,
+        0.0,
+    );
+    let stronger = "bodies.1.dofs.y=Force(Table([(0.0, -1e3), (0.1, -1e3), (0.1001, 1e4), (0.11, 1e4), (0.1101, -2e4), (0.2, -2e4), (0.3, -2e4)]))";
+    let mut s = plane("healing", &[stronger]);
+    until(&mut s, 0.4, |_| {});
+    table.compare(
+        "healing",
+        "broken once, made twice",
+        2.0,
+        s.network.bonds_made() as f64,
+        0.0,
+    );
+    table.compare(
+        "healing",
+        "broken",
+        1.0,
+        s.network.bonds_broken() as f64,
+        0.0,
+    );
+}
+
+/// One viscous MAC bond pulled at a given speed: both couplings meet the limit of small steps, first order.
+fn coupling(table: &mut Table) {
+    let run = |h: f64, coupling: &str| {
+        let h = format!("time.step={h:e}");
+        let sets = [
+            h.as_str(),
+            coupling,
+            "interfaces.grain.parameters.damage.b=1e-6",
+        ];
+        let mut s = plane("bond_mode_1", &sets);
+        let mut missed = 0;
+        while s.time < 60e-6 {
+            missed += u32::from(s.step().unwrap_or_else(|e| panic!("{e}")).coupling.missed);
+        }
+        assert_eq!(missed, 0, "damage and opening agree in every step");
+        let residual = s.energy.relative_residual();
+        assert!(residual < 1e-12, "{coupling}: residual {residual}");
+        s.energy.fracture / 0.5
+    };
+    let implicit = "coupling=Implicit(tolerance: 1e-12, max_iterations: 50)";
+    let mut orders = Vec::new();
+    let mut limits = Vec::new();
+    for coupling in ["coupling=Explicit", implicit] {
+        let e = [4e-8, 2e-8, 1e-8].map(|h| run(h, coupling));
+        orders.push(((e[0] - e[1]) / (e[1] - e[2])).log2());
+        // Richardson's limit of a first-order sequence.
+        limits.push(2.0 * e[2] - e[1]);
+    }
+    table.compare(
+        "bond_mode_1, b = 1e-6",
+        "order of explicit coupling",
+        1.0,
+        orders[0],
+        0.1,
+    );
+    table.compare(
+        "bond_mode_1, b = 1e-6",
+        "order of implicit coupling",
+        1.0,
+        orders[1],
+        0.1,
+    );
+    table.compare(
+        "bond_mode_1, b = 1e-6",
+        "both limits of the fracture energy (J/m^2)",
+        limits[0],
+        limits[1],
+        1e-4,
+    );
+}
