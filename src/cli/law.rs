@@ -1,7 +1,8 @@
-//! `fretwork law`: list, show, drive, certify.
+//! `fretwork law`: list, show, new, drive, certify.
 
 mod certify;
 mod drive;
+mod new;
 
 use super::{Failure, PluginArgs, say};
 use crate::laws::{Kind, Plugin, SearchPath};
@@ -22,6 +23,9 @@ pub enum LawCommand {
         #[command(flatten)]
         plugins: PluginArgs,
     },
+    /// Make a law to fill in, in Rust, C or Fortran
+    #[command(after_help = new::EXAMPLES)]
+    New(new::NewArgs),
     /// Drive one contact along a path and see what the laws answer
     #[command(after_help = drive::EXAMPLES)]
     Drive(drive::DriveArgs),
@@ -60,6 +64,7 @@ pub fn law(command: &LawCommand) -> Result<(), Failure> {
             }
             Ok(())
         }
+        LawCommand::New(args) => new::new(args),
         LawCommand::Drive(args) => drive::drive(args),
         LawCommand::Certify(args) => certify::certify(args),
     }

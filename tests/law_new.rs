@@ -1,0 +1,126 @@
+//! `fretwork law new`, followed literally: the printed commands build a law, certify it and run a case with it.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+struct Place(std::path::PathBuf);
+
+impl Place {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("fretwork-new-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn shell(&self, line: &str) -> Output {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let program = match words[0] {
+            "fretwork" => env!("CARGO_BIN_EXE_fretwork"),
+            other => other,
+        };
+        Command::new(program)
+            .args(&words[1..])
+            .current_dir(&self.0)
+            // One build folder, so that the crates of the interface are compiled once.
+            .env("CARGO_TARGET_DIR", self.0.join("target"))
+            .output()
+            .unwrap_or_else(|e| panic!("{line}: {e}"))
+    }
+
+    fn done(&self, line: &str) -> String {
+        let output = self.shell(line);
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{line}\n{said}\n{error}");
+        said
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        std::fs::remove_dir_all(&self.0).ok();
+    }
+}
+
+fn line<'a>(said: &'a str, word: &str) -> &'a str {
+    let found = said.lines().find_map(|l| l.trim().strip_prefix(word));
+    found
+        .unwrap_or_else(|| panic!("no line `{word}` in\n{said}"))
+        .trim()
+}
+
+fn follow(language: &str) {
+    let place = Place::new(language);
+    for kind in ["contact", "cohesion", "damage", "wear"] {
+        let said = place.done(&format!(
+            "fretwork law new my-{kind} --kind {kind} --lang {language}"
+        ));
+        place.done(line(&said, "build"));
+        // The test's build folder is not the law's own.
+        let certify = line(&said, "certify").replace(&format!("my-{kind}/target/"), "target/");
+        let table = place.done(&certify);
+        assert!(table.contains("  certified"), "{table}");
+        let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/bond_mode_1.ron");
+        let run = line(&said, "run")
+            .replace(&format!("my-{kind}/target/"), "target/")
+            .replace("CASE", case.to_str().unwrap())
+            .replace("INTERFACE", "grain");
+        let fitting = match kind {
+            // The parameters of the case are those of the laws that stood there.
+            "cohesion" => " --set interfaces.grain.parameters.cohesion={}",
+            "damage" => " --set interfaces.grain.parameters.damage={}",
+            _ => "",
+        };
+        let run = format!("{run}{fitting} --set time.end=1e-6 --out out-{kind}");
+        let summary = place.done(&run);
+        assert!(summary.contains(&format!("my-{kind}")), "{summary}");
+    }
+}
+
+#[test]
+fn in_c() {
+    follow("c");
+}
+
+#[test]
+fn in_rust() {
+    follow("rust");
+}
+
+#[test]
+fn in_fortran() {
+    if Command::new("gfortran").arg("--version").output().is_err() {
+        println!("skipped: there is no gfortran; install the system's package");
+        return;
+    }
+    follow("fortran");
+}
+
+#[test]
+fn bad_names_and_kinds_are_refused() {
+    let place = Place::new("bad");
+    std::fs::create_dir_all(place.0.join("taken")).unwrap();
+    for (line, part) in [
+        (
+            "fretwork law new ../x --kind damage --lang c",
+            "is no name for a law",
+        ),
+        (
+            "fretwork law new My --kind damage --lang c",
+            "is no name for a law",
+        ),
+        (
+            "fretwork law new x --kind damages --lang c",
+            "expected contact, cohesion, damage or wear",
+        ),
+        (
+            "fretwork law new taken --kind wear --lang c",
+            "exists already",
+        ),
+    ] {
+        let output = place.shell(line);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{line}: {error}");
+        assert!(error.contains(part), "{line}: {error}");
+    }
+}
