@@ -155,6 +155,12 @@ impl Columns {
         single.into_iter().chain(triples.into_iter().flatten())
     }
 
+    /// The first contact with a new internal variable that is not finite.
+    pub fn state_not_finite(&self) -> Option<usize> {
+        let first = |column: &Vec<f64>| column.iter().position(|x| !x.is_finite());
+        self.state_next.iter().filter_map(first).min()
+    }
+
     /// Empties the inputs.
     pub fn clear(&mut self) {
         self.n = 0;

@@ -293,7 +293,11 @@ impl Passes {
             .with_batch(loaded, info, degradation, |batch| unsafe {
                 plugin.call(call, batch)
             })?;
-        match self.columns.out.not_finite(plugin.kind, call) {
+        let state = match call {
+            Call::Commit | Call::Initialise => self.columns.state_not_finite(),
+            _ => None,
+        };
+        match self.columns.out.not_finite(plugin.kind, call).or(state) {
             None => Ok(()),
             Some(contact) => Err(LawError::NotFinite {
                 kind: plugin.kind,

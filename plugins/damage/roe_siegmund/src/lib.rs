@@ -4,9 +4,12 @@ use fretwork_law::{DamageLaw, Intact, Law, Site, Variable, export, parameters};
 
 parameters! {
     /// dD = (|du|/length) (T/T_max - endurance)+ once the accumulated opening has passed `start`, with T the
-    /// traction that the bond carries and T_max = strength (1 - D). A traction of T_max breaks the bond.
+    /// traction that the bond carries and T_max = strength (1 - D). D is never below that of the monotonic
+    /// envelope, linear softening from `strength` with fracture energy `energy`; a bond that holds more than
+    /// the energy at its strength snaps. A pull damages by its cycles too and so takes less than the energy.
     pub struct RoeSiegmund {
         strength: "Pa" = 1e6, 1e-30, 1e30, "strength of the new bond";
+        energy: "J/m^2" = 5.0, 1e-30, 1e30, "fracture energy of the envelope";
         length: "m" = 1e-5, 1e-30, 1e30, "accumulated opening over which damage grows, about 4 times the one at the strength";
         endurance: "" = 0.25, 0.0, 1.0, "share of the strength below which cycles do nothing";
         start: "m" = 0.0, 0.0, 1e30, "accumulated opening before damage begins";
@@ -38,27 +41,41 @@ impl Law for RoeSiegmund {
     const VARIABLES: &'static [Variable] = VARIABLES;
 }
 
+impl RoeSiegmund {
+    /// D of linear softening; 0 below the strength.
+    fn envelope(&self, intact: &Intact) -> f64 {
+        let (u, k) = (intact.opening(), intact.stiffness());
+        if k <= 0.0 || intact.traction_length() <= self.strength {
+            return 0.0;
+        }
+        let (first, last) = (self.strength / k, 2.0 * self.energy / self.strength);
+        if u >= last || last <= first {
+            return 1.0;
+        }
+        intact.damage_for(self.strength * ((last - u) / (last - first)))
+    }
+}
+
 impl DamageLaw for RoeSiegmund {
     fn grow(&self, site: &Site, intact: &Intact, state: &[f64], next: &mut [f64]) -> f64 {
         let d = site.damage;
-        let u = intact.opening();
+        // The host does not look whether variables are finite.
+        let u = intact.opening().min(f64::MAX);
         let [last, travel] = [state[0], state[1]];
         let du = (u - last).abs();
         next[0] = u;
-        next[1] = travel + du;
+        next[1] = (travel + du).min(f64::MAX);
         let left = 1.0 - d;
         if left <= 0.0 {
             return d;
         }
         let load =
             intact.traction_length() * left.powf(intact.degradation) / (self.strength * left);
-        if load >= 1.0 {
-            return 1.0;
+        let mut grown = d;
+        if next[1] > self.start && load > self.endurance {
+            grown += du / self.length * (load.min(f64::MAX) - self.endurance);
         }
-        if next[1] <= self.start || load <= self.endurance {
-            return d;
-        }
-        (d + du / self.length * (load - self.endurance)).min(1.0)
+        grown.min(1.0).max(self.envelope(intact))
     }
 }
 
@@ -125,5 +142,100 @@ mod tests {
             state = next;
         }
         assert_eq!(d, 0.1);
+    }
+
+    /// Any finite bond, the least and the most of every parameter: D in [D_i, 1], variables finite.
+    #[test]
+    fn extremes_stay_in_range() {
+        use fretwork_law::Parameters;
+        let sizes = [0.0, 1e-300, 1e-12, 1e-3, 1.0, 1e5, 1e6, 1e30, 1e300];
+        let damages = [0.0, 0.4, 1.0 - 1e-16, 1.0];
+        for end in 0..3 {
+            let values = RoeSiegmund::FIELDS
+                .iter()
+                .map(|f| [f.default, f.minimum, f.maximum][end]);
+            let law = RoeSiegmund::read(&values.collect::<Vec<f64>>());
+            for case in 0..9 * 9 * 9 * 4 * 4 {
+                let (energy, t, s) = (sizes[case % 9], sizes[case / 9 % 9], sizes[case / 81 % 9]);
+                let intact = Intact {
+                    energy,
+                    traction: [-t, t, t],
+                    degradation: [0.5, 1.0, 2.0, 9.0][case / 729 % 4],
+                    ..Intact::default()
+                };
+                let site = Site {
+                    damage: damages[case / 2916],
+                    h: s,
+                    ..Site::default()
+                };
+                let mut next = [s; 2];
+                let d = law.grow(&site, &intact, &[s; 2], &mut next);
+                assert!(d >= site.damage && d <= 1.0, "{law:?} {intact:?} {s}: {d}");
+                assert!(next.iter().all(|x| x.is_finite()), "{law:?} {intact:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn damage_never_falls_over_a_random_path() {
+        let law = RoeSiegmund::default();
+        let (mut seed, mut u) = (1u64, 0.0f64);
+        for m in [0.5, 1.0, 2.0] {
+            let (mut d, mut state) = (0.0, [0.0; 2]);
+            for _ in 0..2000 {
+                seed = seed
+                    .wrapping_mul(6364136223846793005)
+                    .wrapping_add(1442695040888963407);
+                u = (u + ((seed >> 33) as f64 / 2f64.powi(31) - 0.5) * 4e-7).abs();
+                let intact = Intact {
+                    energy: 0.5e12 * u * u,
+                    traction: [-0.6e12 * u, 1e12 * u, 0.0],
+                    degradation: m,
+                    ..Intact::default()
+                };
+                let site = Site {
+                    damage: d,
+                    h: 1e-3,
+                    ..Site::default()
+                };
+                let mut next = state;
+                let new = law.grow(&site, &intact, &state, &mut next);
+                assert!(new >= d && new <= 1.0, "{m} {u}: {new} after {d}");
+                (d, state) = (new, next);
+            }
+            assert!(d > 0.0, "the path does damage");
+        }
+    }
+
+    /// Without cycles the area under a pull is the envelope's energy.
+    #[test]
+    fn the_envelope_holds_its_energy() {
+        let law = RoeSiegmund {
+            length: 1e30,
+            ..RoeSiegmund::default()
+        };
+        for (m, k) in [(1.0, 1e12), (2.0, 1e13)] {
+            let (mut d, mut state, mut area, mut last) = (0.0, [0.0; 2], 0.0, 0.0);
+            let du = 12e-6 / 400_000.0;
+            for step in 1..=400_000 {
+                let u = du * f64::from(step);
+                let intact = Intact {
+                    degradation: m,
+                    ..at(k, u)
+                };
+                let site = Site {
+                    damage: d,
+                    ..Site::default()
+                };
+                let mut next = state;
+                d = law.grow(&site, &intact, &state, &mut next);
+                state = next;
+                let t = (1.0f64 - d).powf(m) * k * u;
+                area += 0.5 * (last + t) * du;
+                last = t;
+            }
+            assert!((area / law.energy - 1.0).abs() < 1e-4, "{m} {area}");
+            assert_eq!(d, 1.0);
+        }
     }
 }
