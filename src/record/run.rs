@@ -8,7 +8,9 @@ use super::statistics::{Column, Table};
 use super::summary::{PluginStamp, SolverSummary, Summary, Wear};
 use super::{figures, views};
 use crate::bodies::TimeFunction;
+use crate::certify::certify;
 use crate::geometry::space::Space;
+use crate::laws::{Interface, SearchPath};
 use crate::report::ReportError;
 use crate::scene::build::{Built, Dimensional, Loaded};
 use crate::step::{Simulation, StepError, StepReport};
@@ -140,24 +142,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let table_path = options.out.join("statistics.csv");
         let table =
             Table::create(&table_path, columns.clone()).map_err(|e| unwritable(&table_path, &e))?;
-        let mut plugins: Vec<PluginStamp> = Vec::new();
-        for p in simulation
-            .laws
-            .iter()
-            .flat_map(|l| l.loaded())
-            .map(|l| &l.plugin)
-        {
-            let stamp = PluginStamp {
-                kind: p.kind.to_string(),
-                name: p.name.clone(),
-                version: p.version.clone(),
-                sha256: p.sha256.clone(),
-                path: p.path.display().to_string(),
-            };
-            if !plugins.contains(&stamp) {
-                plugins.push(stamp);
-            }
-        }
+        let plugins = stamps(&simulation.laws);
         let summary = Summary {
             case: case.name.clone(),
             dimension: S::D,
@@ -483,6 +468,34 @@ fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
         .map(|b| s.bodies.mass[b] * s.bodies.velocity[b][along].abs())
         .sum::<f64>()
         / length
+}
+
+/// The laws of a run, each once, and whether they keep their promises with its parameters.
+fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
+    // The partners on the bench are shipped laws.
+    let path = SearchPath::new(&[]);
+    let mut seen: Vec<(&str, &[f64])> = Vec::new();
+    let mut stamps: Vec<PluginStamp> = Vec::new();
+    for law in laws.iter().flat_map(Interface::loaded) {
+        let p = &law.plugin;
+        if seen.contains(&(&p.sha256, &law.parameters)) {
+            continue;
+        }
+        seen.push((&p.sha256, &law.parameters));
+        let certified = certify(p, &law.parameters, &path).is_ok_and(|c| c.certified());
+        match stamps.iter_mut().find(|s| s.sha256 == p.sha256) {
+            Some(stamp) => stamp.certified &= certified,
+            None => stamps.push(PluginStamp {
+                kind: p.kind.to_string(),
+                name: p.name.clone(),
+                version: p.version.clone(),
+                sha256: p.sha256.clone(),
+                path: p.path.display().to_string(),
+                certified,
+            }),
+        }
+    }
+    stamps
 }
 
 /// Density of the first bodies, for wear as a mass.

@@ -18,6 +18,8 @@ pub struct PluginStamp {
     pub sha256: String,
     /// Where it was found.
     pub path: String,
+    /// Whether it keeps its promises with the parameters of this run, see [`crate::certify`].
+    pub certified: bool,
 }
 
 /// What the solver did.
@@ -227,11 +229,16 @@ impl Summary {
             line(
                 "law",
                 format!(
-                    "{} {} {} ({})",
+                    "{} {} {} ({}){}",
                     p.kind,
                     p.name,
                     p.version,
-                    &p.sha256[..12.min(p.sha256.len())]
+                    &p.sha256[..12.min(p.sha256.len())],
+                    if p.certified {
+                        ""
+                    } else {
+                        ", NOT certified with these parameters: fretwork law certify says why"
+                    }
                 ),
             );
         }

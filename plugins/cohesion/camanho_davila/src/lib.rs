@@ -39,6 +39,20 @@ impl Law for CamanhoDavila {
                 ));
             }
         }
+        // Between the modes the onset may hold more than it takes to break, and 1 - D may round to 0.
+        for step in 0..=90 {
+            let angle = f64::from(step).to_radians();
+            let (onset, energy) = self.mix(angle.cos(), angle.sin());
+            let held = 0.5 * self.k * onset * onset;
+            if held >= energy {
+                return Err(format!(
+                    "at {step} degrees from the normal the elastic part alone holds more than the fracture energy: raise k"
+                ));
+            }
+            if held < 1e-12 * energy {
+                return Err("k is so high that 1 - D cannot be told from 0: lower k, or raise the strengths".into());
+            }
+        }
         Ok(())
     }
 }
@@ -51,20 +65,27 @@ impl CamanhoDavila {
         let (d3, ds) = (self.strength_n / self.k, self.strength_t / self.k);
         // The onset with cosine and sine of the mix, which have no pole in mode II.
         let onset = d3 * ds / (ds * c).hypot(d3 * s);
-        (
-            onset,
-            self.g_1 + (self.g_2 - self.g_1) * (s * s).powf(self.eta),
-        )
+        // Not g_1 + (g_2 - g_1) share, which cancels where one is much the larger.
+        let share = (s * s).powf(self.eta).min(1.0);
+        (onset, self.g_1 * (1.0 - share) + self.g_2 * share)
     }
+}
+
+/// Keeps what overflows finite; the host stops at numbers that are not.
+fn bounded(x: f64) -> f64 {
+    x.clamp(-f64::MAX, f64::MAX)
 }
 
 impl CohesionLaw for CamanhoDavila {
     const DEGRADATION: f64 = 1.0;
 
     fn traction(&self, site: &Site, _state: &[f64]) -> Traction {
+        if site.damage >= 1.0 {
+            return Traction::default();
+        }
         let k = (1.0 - site.damage) * self.k;
         Traction {
-            traction: site.opening.map(|u| k * u),
+            traction: site.opening.map(|u| bounded(k * u)),
             stiffness_n: k,
             stiffness_t: k,
             ..Traction::default()
@@ -72,8 +93,11 @@ impl CohesionLaw for CamanhoDavila {
     }
 
     fn energy(&self, site: &Site, _state: &[f64]) -> f64 {
+        if site.damage >= 1.0 {
+            return 0.0;
+        }
         let u = site.normal_opening().hypot(site.tangential_opening());
-        0.5 * (1.0 - site.damage) * self.k * u * u
+        bounded(0.5 * (1.0 - site.damage) * self.k * u * u)
     }
 
     fn commit(&self, site: &Site, _state: &[f64], _next: &mut [f64]) -> f64 {
@@ -136,5 +160,44 @@ mod tests {
         let expected = d3 * ds * ((1.0 + b * b) / (ds * ds + (b * d3) * (b * d3))).sqrt();
         assert!((law.mix(1.0, b).0 / expected - 1.0).abs() < 1e-12);
         assert!((law.mix(0.0, 1.0).0 / ds - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn numbers_stay_finite_and_a_broken_bond_carries_nothing() {
+        let law = CamanhoDavila::default();
+        for damage in [0.0, 0.3, 1.0] {
+            let site = Site {
+                opening: [1e300, -1e300, 1e300],
+                damage,
+                ..Site::default()
+            };
+            let (t, e) = (law.traction(&site, &[]), law.energy(&site, &[]));
+            assert!(e.is_finite() && t.traction.iter().chain(&t.moment).all(|x| x.is_finite()));
+            assert!(damage < 1.0 || (e == 0.0 && t.traction == [0.0; 3] && t.moment == [0.0; 3]));
+        }
+    }
+
+    /// K d_0^2/2 is 0.8 and 845 J/m^2 in the pure modes, below the energies, but 1.066 at 30 degrees, where
+    /// 1/(c^2/0.8 + s^2/845) exceeds 1 + 999 s^20 = 1.001.
+    #[test]
+    fn a_mix_that_snaps_is_refused() {
+        let law = CamanhoDavila {
+            strength_n: 4e7,
+            strength_t: 1.3e9,
+            g_1: 1.0,
+            g_2: 1000.0,
+            eta: 10.0,
+            ..CamanhoDavila::default()
+        };
+        assert!(law.validate().is_err() && CamanhoDavila::default().validate().is_ok());
+    }
+
+    #[test]
+    fn mode_two_keeps_its_energy_beside_a_huge_mode_one() {
+        let law = CamanhoDavila {
+            g_1: 1e30,
+            ..CamanhoDavila::default()
+        };
+        assert!((law.mix(0.0, 1.0).1 / 1719.0 - 1.0).abs() < 1e-12);
     }
 }

@@ -49,8 +49,11 @@ impl CapillaryBridge {
         if r <= 0.0 {
             return 0.0;
         }
-        let lambda = 0.9 * std::f64::consts::FRAC_1_SQRT_2 * (self.volume / r).sqrt();
-        std::f64::consts::TAU * pull * r * (-site.gap.max(0.0) / lambda).exp()
+        // Not zero, or gap/lambda is 0/0 for huge grains.
+        let lambda = (0.9 * std::f64::consts::FRAC_1_SQRT_2 * (self.volume / r).sqrt())
+            .max(f64::MIN_POSITIVE);
+        let fade = (-site.gap.max(0.0) / lambda).exp();
+        (std::f64::consts::TAU * pull * r).min(f64::MAX) * fade
     }
 }
 
@@ -63,7 +66,8 @@ impl CohesionLaw for CapillaryBridge {
             return Traction::default();
         }
         Traction {
-            tension_strength: self.force(site) / site.area,
+            // A tiny area overflows.
+            tension_strength: (self.force(site) / site.area).min(f64::MAX),
             ..Traction::default()
         }
     }
@@ -111,5 +115,19 @@ mod tests {
         assert!((force / full * std::f64::consts::E - 1.0).abs() < 1e-9 && bridge == 1.0);
         // V^(1/3) = 1 um.
         assert_eq!(at(1.01e-6, &[1.0]), (0.0, 0.0));
+    }
+
+    #[test]
+    fn a_tiny_area_gives_a_finite_stress() {
+        let site = Site {
+            area: 1e-300,
+            radius: 1e300,
+            dimension: 3,
+            ..Site::default()
+        };
+        let t = CapillaryBridge::default()
+            .traction(&site, &[1.0])
+            .tension_strength;
+        assert!(t.is_finite() && t > 0.0, "{t}");
     }
 }

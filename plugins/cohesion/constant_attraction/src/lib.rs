@@ -25,7 +25,8 @@ impl CohesionLaw for ConstantAttraction {
             return Traction::default();
         }
         Traction {
-            tension_strength: self.stress + self.force / site.area,
+            // A tiny area overflows.
+            tension_strength: (self.stress + self.force / site.area).min(f64::MAX),
             ..Traction::default()
         }
     }
@@ -61,5 +62,22 @@ mod tests {
                 * 4.0
         };
         assert_eq!((at(-1.0), at(1e-3), at(1.1e-3)), (42.0, 42.0, 0.0));
+    }
+
+    #[test]
+    fn a_tiny_area_gives_a_finite_stress() {
+        let site = Site {
+            area: 1e-300,
+            radius: 1e300,
+            dimension: 3,
+            ..Site::default()
+        };
+        let t = (ConstantAttraction {
+            force: 1e30,
+            ..ConstantAttraction::default()
+        })
+        .traction(&site, &[])
+        .tension_strength;
+        assert!(t.is_finite() && t > 0.0, "{t}");
     }
 }

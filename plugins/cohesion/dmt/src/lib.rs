@@ -30,7 +30,8 @@ impl CohesionLaw for Dmt {
         let far = 1.0 + site.gap.max(0.0) / self.z_0;
         let force = std::f64::consts::TAU * self.w * site.radius.max(0.0) / (far * far);
         Traction {
-            tension_strength: force / site.area,
+            // A tiny area overflows.
+            tension_strength: (force / site.area).min(f64::MAX),
             ..Traction::default()
         }
     }
@@ -75,5 +76,17 @@ mod tests {
             })
             .sum();
         assert!((work / (pull_off * law.z_0) - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_tiny_area_gives_a_finite_stress() {
+        let site = Site {
+            area: 1e-300,
+            radius: 1e300,
+            dimension: 3,
+            ..Site::default()
+        };
+        let t = Dmt::default().traction(&site, &[]).tension_strength;
+        assert!(t.is_finite() && t > 0.0, "{t}");
     }
 }

@@ -40,8 +40,9 @@ impl Law for Jkr {
 impl Jkr {
     /// a_0^2/R, the length of approaches (m).
     fn length(&self, r: f64) -> f64 {
-        let a = (4.5 * PI * self.w * r * r / self.modulus).cbrt();
-        a * a / r
+        // (a_0/R)^3 first: R^2 alone over- and underflows. Not zero, as gaps are divided by it.
+        let a = (4.5 * PI * self.w / self.modulus / r).cbrt();
+        (a * a * r).clamp(f64::MIN_POSITIVE, f64::MAX)
     }
 
     /// Gap at which the neck tears (m).
@@ -79,7 +80,8 @@ impl CohesionLaw for Jkr {
             return Traction::default();
         }
         Traction {
-            tension_strength: self.force(site.gap, r) / site.area,
+            // A tiny area overflows.
+            tension_strength: (self.force(site.gap, r) / site.area).min(f64::MAX),
             ..Traction::default()
         }
     }
@@ -126,5 +128,17 @@ mod tests {
         // The tear is at (3/4) (pi^2 w^2 R/E^2)^(1/3).
         let known = 0.75 * (PI * PI * w * w * r / (e * e)).cbrt();
         assert!((reach / known - 1.0).abs() < 1e-6, "{reach} {known}");
+    }
+
+    #[test]
+    fn a_tiny_area_gives_a_finite_stress() {
+        let site = Site {
+            area: 1e-300,
+            radius: 1e300,
+            dimension: 3,
+            ..Site::default()
+        };
+        let t = Jkr::default().traction(&site, &[1.0]).tension_strength;
+        assert!(t.is_finite() && t > 0.0, "{t}");
     }
 }

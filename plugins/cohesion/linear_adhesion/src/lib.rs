@@ -41,7 +41,8 @@ impl CohesionLaw for LinearAdhesion {
             return Traction::default();
         }
         Traction {
-            tension_strength: self.force(site.gap) / site.area,
+            // A tiny area overflows.
+            tension_strength: (self.force(site.gap) / site.area).min(f64::MAX),
             ..Traction::default()
         }
     }
@@ -89,5 +90,22 @@ mod tests {
                 .all(|(a, b)| (a - b).abs() < 1e-12),
             "{seen:?}"
         );
+    }
+
+    #[test]
+    fn a_tiny_area_gives_a_finite_stress() {
+        let site = Site {
+            area: 1e-300,
+            radius: 1e300,
+            dimension: 3,
+            ..Site::default()
+        };
+        let t = (LinearAdhesion {
+            f_max: 1e30,
+            ..LinearAdhesion::default()
+        })
+        .traction(&site, &[1.0])
+        .tension_strength;
+        assert!(t.is_finite() && t > 0.0, "{t}");
     }
 }

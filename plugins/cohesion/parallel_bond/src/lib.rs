@@ -41,27 +41,35 @@ fn section(site: &Site) -> (f64, f64, f64) {
     let area = site.area.max(0.0);
     if site.dimension == 2 {
         let r = 0.5 * area;
-        (r, r * r / 3.0, 0.0)
+        (r, (r * r / 3.0).min(f64::MAX), 0.0)
     } else {
         let square = area / PI;
         (square.sqrt(), 0.25 * square, 0.5 * square)
     }
 }
 
+/// Keeps what overflows finite; the host stops at numbers that are not.
+fn bounded(x: f64) -> f64 {
+    x.clamp(-f64::MAX, f64::MAX)
+}
+
 impl CohesionLaw for ParallelBond {
     const DEGRADATION: f64 = 1.0;
 
     fn traction(&self, site: &Site, _state: &[f64]) -> Traction {
+        if site.damage >= 1.0 {
+            return Traction::default();
+        }
         let g = 1.0 - site.damage;
         let [n, t1, t2] = site.opening;
         let [twist, b1, b2] = site.rotation;
         let (_, i, j) = section(site);
-        let (bend, turn) = (g * self.k_n * i, g * self.k_t * j);
+        let (bend, turn) = (bounded(g * self.k_n * i), bounded(g * self.k_t * j));
         Traction {
-            traction: [g * self.k_n * n, g * self.k_t * t1, g * self.k_t * t2],
+            traction: [g * self.k_n * n, g * self.k_t * t1, g * self.k_t * t2].map(bounded),
             stiffness_n: g * self.k_n,
             stiffness_t: g * self.k_t,
-            moment: [turn * twist, bend * b1, bend * b2],
+            moment: [turn * twist, bend * b1, bend * b2].map(bounded),
             stiffness_twist: turn,
             stiffness_bend: bend,
             ..Traction::default()
@@ -69,11 +77,16 @@ impl CohesionLaw for ParallelBond {
     }
 
     fn energy(&self, site: &Site, _state: &[f64]) -> f64 {
+        if site.damage >= 1.0 {
+            return 0.0;
+        }
         let (n, t) = (site.normal_opening(), site.tangential_opening());
         let [twist, b1, b2] = site.rotation;
         let (_, i, j) = section(site);
-        let bending = self.k_n * i * (b1 * b1 + b2 * b2) + self.k_t * j * twist * twist;
-        0.5 * (1.0 - site.damage) * (self.k_n * n * n + self.k_t * t * t + bending)
+        let (bend, turn) = (bounded(self.k_n * i), bounded(self.k_t * j));
+        // By factors: a square may overflow where its product with a zero is zero.
+        let bending = bend * b1 * b1 + bend * b2 * b2 + turn * twist * twist;
+        bounded(0.5 * (1.0 - site.damage) * (self.k_n * n * n + self.k_t * t * t + bending))
     }
 
     fn commit(&self, site: &Site, _state: &[f64], _next: &mut [f64]) -> f64 {
@@ -153,5 +166,23 @@ mod tests {
             )
         };
         assert_eq!((at(0.99 * limit), at(-1.01 * limit)), (0.0, 1.0));
+    }
+
+    #[test]
+    fn numbers_stay_finite_and_a_broken_bond_carries_nothing() {
+        let law = ParallelBond::default();
+        for damage in [0.0, 0.3, 1.0] {
+            let site = Site {
+                opening: [1e300, -1e300, 1e300],
+                rotation: [1e300; 3],
+                area: 1e300,
+                dimension: 2,
+                damage,
+                ..Site::default()
+            };
+            let (t, e) = (law.traction(&site, &[]), law.energy(&site, &[]));
+            assert!(e.is_finite() && t.traction.iter().chain(&t.moment).all(|x| x.is_finite()));
+            assert!(damage < 1.0 || (e == 0.0 && t.traction == [0.0; 3] && t.moment == [0.0; 3]));
+        }
     }
 }

@@ -34,6 +34,13 @@ impl Law for TvergaardHutchinson {
                     .into(),
             );
         }
+        // 1 - D is strength/(k u) on the plateau: below about 1e-12 it would be rounded away beside 1.
+        if self.strength * self.strength < 1e-12 * self.k * self.energy {
+            return Err(
+                "k is so high that 1 - D cannot be told from 0: lower k, or raise the strength"
+                    .into(),
+            );
+        }
         Ok(())
     }
 }
@@ -43,13 +50,21 @@ fn effective(site: &Site) -> f64 {
     site.normal_opening().hypot(site.tangential_opening())
 }
 
+/// Keeps what overflows finite; the host stops at numbers that are not.
+fn bounded(x: f64) -> f64 {
+    x.clamp(-f64::MAX, f64::MAX)
+}
+
 impl CohesionLaw for TvergaardHutchinson {
     const DEGRADATION: f64 = 1.0;
 
     fn traction(&self, site: &Site, _state: &[f64]) -> Traction {
+        if site.damage >= 1.0 {
+            return Traction::default();
+        }
         let k = (1.0 - site.damage) * self.k;
         Traction {
-            traction: site.opening.map(|u| k * u),
+            traction: site.opening.map(|u| bounded(k * u)),
             stiffness_n: k,
             stiffness_t: k,
             ..Traction::default()
@@ -57,8 +72,11 @@ impl CohesionLaw for TvergaardHutchinson {
     }
 
     fn energy(&self, site: &Site, _state: &[f64]) -> f64 {
+        if site.damage >= 1.0 {
+            return 0.0;
+        }
         let u = effective(site);
-        0.5 * (1.0 - site.damage) * self.k * u * u
+        bounded(0.5 * (1.0 - site.damage) * self.k * u * u)
     }
 
     fn commit(&self, site: &Site, _state: &[f64], _next: &mut [f64]) -> f64 {
@@ -116,6 +134,21 @@ mod tests {
             // A step may fall beside the corner.
             assert!((peak / law.strength - 1.0).abs() < 1e-3);
             assert_eq!(d, 1.0);
+        }
+    }
+
+    #[test]
+    fn numbers_stay_finite_and_a_broken_bond_carries_nothing() {
+        let law = TvergaardHutchinson::default();
+        for damage in [0.0, 0.3, 1.0] {
+            let site = Site {
+                opening: [1e300, -1e300, 1e300],
+                damage,
+                ..Site::default()
+            };
+            let (t, e) = (law.traction(&site, &[]), law.energy(&site, &[]));
+            assert!(e.is_finite() && t.traction.iter().chain(&t.moment).all(|x| x.is_finite()));
+            assert!(damage < 1.0 || (e == 0.0 && t.traction == [0.0; 3] && t.moment == [0.0; 3]));
         }
     }
 }

@@ -38,7 +38,8 @@ impl CohesionLaw for VanDerWaals {
             return Traction::default();
         }
         Traction {
-            tension_strength: self.force(site) / site.area,
+            // A tiny area overflows.
+            tension_strength: (self.force(site) / site.area).min(f64::MAX),
             ..Traction::default()
         }
     }
@@ -78,5 +79,17 @@ mod tests {
                 assert!((force / slope - 1.0).abs() < 1e-6, "{dimension} {gap}");
             }
         }
+    }
+
+    #[test]
+    fn a_tiny_area_gives_a_finite_stress() {
+        let site = Site {
+            area: 1e-300,
+            radius: 1e300,
+            dimension: 3,
+            ..Site::default()
+        };
+        let t = VanDerWaals::default().traction(&site, &[]).tension_strength;
+        assert!(t.is_finite() && t > 0.0, "{t}");
     }
 }
