@@ -21,8 +21,8 @@ impl Law for Mac {
     const REFERENCE: &'static str = "Y. Monerie, V. Acary, Formulation dynamique d'un modele de zone cohesive tridimensionnel, Rev. Eur. Elements Finis 10 (2001); M. Raous, L. Cangemi, M. Cocou, Comput. Methods Appl. Mech. Engrg 177 (1999) 383-399";
 
     fn fracture_energy(&self, _angle: f64) -> Option<f64> {
-        // Viscosity adds to it with the speed.
-        (self.b == 0.0).then_some(self.w)
+        // Viscosity adds to it with the speed; the cut at beta_broken takes off a share that depends on m.
+        (self.b == 0.0 && self.beta_broken <= 5e-3).then_some(self.w)
     }
 }
 
