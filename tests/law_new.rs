@@ -96,6 +96,77 @@ fn in_fortran() {
     follow("fortran");
 }
 
+/// Runs a case with the damage law `my-damage` that lies in `folder`; gives exit code and error.
+fn run_with(place: &Place, folder: &str) -> (Option<i32>, String) {
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/bond_mode_1.ron");
+    let output = place.shell(&format!(
+        "fretwork run {} --plugin-path {folder} --set interfaces.grain.damage=my-damage --set interfaces.grain.parameters.damage={{}} --set time.end=2e-6 --out out",
+        case.display()
+    ));
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    (output.status.code(), error)
+}
+
+/// What goes wrong in a law ends the run with a sentence, exit code 1; what cannot be loaded is refused, 2.
+#[test]
+fn laws_that_fail_in_a_run_are_named() {
+    let place = Place::new("failing");
+    let said = place.done("fretwork law new my-damage --kind damage --lang c");
+    let build = line(&said, "build").to_owned();
+    let file = place.0.join("my-damage/my_damage.c");
+    let good = std::fs::read_to_string(&file).unwrap();
+    let kept = "b->out_damage[k] = d;";
+    for (wrong, part) in [
+        ("b->out_damage[k] = NAN;", "gave a value that is not finite"),
+        (
+            "return fail(message, k, \"the table of the author ends here\");",
+            "the table of the author ends here",
+        ),
+        ("return 77;", "unknown status 77"),
+    ] {
+        assert!(good.contains(kept));
+        std::fs::write(&file, good.replace(kept, wrong)).unwrap();
+        place.done(&build);
+        let (code, error) = run_with(&place, "my-damage");
+        assert_eq!(code, Some(1), "{wrong}: {error}");
+        assert!(
+            error.contains(part) && error.contains("my-damage"),
+            "{wrong}: {error}"
+        );
+    }
+    let library = place
+        .0
+        .join("my-damage")
+        .join(if cfg!(target_os = "macos") {
+            "libfretwork_damage_my_damage.dylib"
+        } else {
+            "libfretwork_damage_my_damage.so"
+        });
+    std::fs::remove_file(&library).unwrap();
+    std::fs::write(&library, "not a library").unwrap();
+    let (code, error) = run_with(&place, "my-damage");
+    assert_eq!(code, Some(2), "{error}");
+    assert!(error.contains("not a loadable library"), "{error}");
+}
+
+#[test]
+fn a_law_that_panics_ends_the_run_with_a_sentence() {
+    let place = Place::new("panics");
+    let said = place.done("fretwork law new my-damage --kind damage --lang rust");
+    let file = place.0.join("my-damage/src/lib.rs");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let wrong = text.replace(
+        "let (u, k) =",
+        "assert!(site.time < 1e-6, \"the clock struck\");\n        let (u, k) =",
+    );
+    assert_ne!(text, wrong);
+    std::fs::write(&file, wrong).unwrap();
+    place.done(line(&said, "build"));
+    let (code, error) = run_with(&place, "target/release");
+    assert_eq!(code, Some(1), "{error}");
+    assert!(error.contains("panicked: the clock struck"), "{error}");
+}
+
 #[test]
 fn bad_names_and_kinds_are_refused() {
     let place = Place::new("bad");

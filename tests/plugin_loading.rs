@@ -167,6 +167,17 @@ fn a_newer_minor_with_a_longer_table_loads() {
     assert!(plugin.validate(&[0.2, 0.3]).is_ok());
 }
 
+/// A plugin built before the last field of the table was there: the host takes that field as absent.
+#[test]
+fn an_older_minor_with_a_shorter_table_loads() {
+    let folder = Folder::new("older");
+    let fields = "table.size = offsetof(fw_plugin, fracture_energy);
+        memset(&table.fracture_energy, 0xff, sizeof table.fracture_energy);";
+    let plugin = Plugin::open(&folder.law("older", fields)).unwrap();
+    assert_eq!(plugin.name, "older");
+    assert!(plugin.fracture_energy(&[0.2, 0.3], 0.0).is_none());
+}
+
 #[test]
 fn tables_that_break_the_rules_are_refused() {
     let folder = Folder::new("refused");

@@ -3,11 +3,33 @@
  * A plugin is a shared library named libfretwork_KIND_NAME.so (KIND one of contact, cohesion, damage,
  * wear; NAME with '-' written '_') which exports one function, fretwork_plugin(), returning a static
  * table. The rules:
- *  - the host owns all memory; nothing is allocated on one side and freed on the other;
- *  - every struct begins with its size and only grows at its end (fw_field is frozen in a major);
- *  - calls are batches over n contacts, columns of n doubles;
- *  - calls are pure: no globals, any thread, same input same bits;
- *  - a call returns FW_OK, or another status with a sentence in message->text.
+ *  - the host owns all memory; nothing is allocated on one side and freed on the other; what the table
+ *    points to must live as long as the program;
+ *  - calls are batches over n contacts, columns of n doubles; a column that a call does not use is null;
+ *  - calls are pure: no globals, any thread, any order, same input same bits;
+ *  - a call returns FW_OK, or another status with a sentence in message->text and, if one contact is at
+ *    fault, its index in message->contact. Any status but FW_OK ends the run (exit code 1) with the
+ *    sentence; so does an output that is not finite. FW_BAD_PARAMETER from validate refuses the case (2).
+ *
+ * When calls are made, for every interface law of a scene:
+ *  - once, when the case is read: validate;
+ *  - when a contact of a law with internal variables is first seen: initialise, if there is one (the
+ *    schema's initial values stand in state and state_next);
+ *  - at the start of every step, once detection has given gaps and normals: prepare of the contact law,
+ *    then of the cohesion law; with implicit coupling again after every solve of the step;
+ *  - after the step is solved: energy, then prepare of the cohesion at the new openings with D = 0, which
+ *    gives energy_intact, intact_* and intact_moment_*; commit of the cohesion; commit of the damage law;
+ *    commit of the contact law if it has internal variables; commit of the wear law. With implicit
+ *    coupling energy, prepare and the two commits run as trials too, whose results the host drops: a law
+ *    must not notice.
+ * A cohesion law with FW_FLAG_OPENING is called for bonds that hold; without it, for every contact.
+ *
+ * Compatibility: a host and a plugin of one major work together whatever their minors. Within a major every
+ * struct begins with its size and grows at its end only, no field changes its meaning, and fw_field is
+ * frozen. Each side reads what the other's size says is there: a plugin looks at batch->size before it
+ * touches a column that 1.0 did not have; a host takes functions missing at the end of the table as null.
+ * A change that breaks this raises the major, and the loader then refuses.
+ *
  * SI units everywhere. A test of the crate fretwork-abi compares this file with the Rust structs.
  */
 #ifndef FRETWORK_H
