@@ -1,0 +1,136 @@
+//! `fretwork law drive` gives the numbers of the field's tables.
+
+use serde_json::Value;
+use std::process::Command;
+
+fn drive(line: &str) -> (Option<i32>, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+        .args(["law", "drive"])
+        .args(line.split_whitespace())
+        .output()
+        .unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (
+        output.status.code(),
+        text(&output.stdout),
+        text(&output.stderr),
+    )
+}
+
+fn rows(line: &str) -> Vec<Value> {
+    let (code, out, error) = drive(&format!("{line} --json"));
+    assert_eq!(code, Some(0), "{line}: {error}");
+    serde_json::from_str(&out).unwrap()
+}
+
+fn number(row: &Value, name: &str) -> f64 {
+    row[name]
+        .as_f64()
+        .unwrap_or_else(|| panic!("no {name} in {row}"))
+}
+
+fn close(name: &str, got: f64, expected: f64, tolerance: f64) {
+    assert!(
+        (got / expected - 1.0).abs() <= tolerance,
+        "{name}: {got} for {expected}"
+    );
+}
+
+/// Peak sqrt(w C) and area w (1 - u_0^2/(2 u^2)...) of MAC: of w, u_0^2 C/2 w is still stored at u.
+#[test]
+fn mac_has_its_peak_and_area() {
+    let path =
+        "--set c_n=1e12 --set w=0.1 --set beta_broken=0 --to 1e-5 --rate 0.045 --steps 100000";
+    let rows = rows(&format!("mac {path}"));
+    let peak = rows
+        .iter()
+        .map(|r| number(r, "traction_n"))
+        .fold(0.0, f64::max);
+    close("peak", peak, 0.316228e6, 1e-3);
+    let last = rows.last().unwrap();
+    // From u_0 on the traction is w^2/(C u^3): w/2 + w/2 (1 - u_0^2/u^2).
+    let share = 0.1 / 1e12 / 1e-10;
+    close(
+        "area",
+        number(last, "work"),
+        0.1 * (1.0 - 0.5 * share),
+        1e-4,
+    );
+}
+
+#[test]
+fn viscous_mac_meets_its_table() {
+    for (b, peak, area) in [
+        (1e-6, 0.36159e6, 0.16741),
+        (1e-5, 0.52941e6, 0.44568),
+        (1e-4, 0.98853e6, 1.71835),
+    ] {
+        let rows = rows(&format!(
+            "mac --set b={b:e} --set beta_broken=0 --to 1e-4 --rate 0.045 --steps 100000"
+        ));
+        let highest = rows
+            .iter()
+            .map(|r| number(r, "traction_n"))
+            .fold(0.0, f64::max);
+        close("peak", highest, peak, 1e-2);
+        close("area", number(rows.last().unwrap(), "work"), area, 1e-2);
+    }
+}
+
+/// Benzeggagh and Kenane's mixes of AS4/PEEK: G_II/G_T is sin^2 of the angle.
+#[test]
+fn mixed_modes_take_their_energy() {
+    for (share, energy) in [(0.2f64, 987.99), (0.5, 1123.00), (0.8, 1419.52)] {
+        let angle = share.sqrt().asin().to_degrees();
+        let rows = rows(&format!(
+            "camanho-davila --mode mixed --angle {angle} --to 5e-5 --steps 20000"
+        ));
+        close("energy", number(rows.last().unwrap(), "work"), energy, 1e-3);
+    }
+}
+
+/// A velocity ten times higher: at first + a ln 10, in the end (a - b) ln 10.
+#[test]
+fn rate_and_state_steps_as_it_should() {
+    let set = "--set a=0.010 --set b=0.015 --set mu_0=0.6 --set v_0=1e-6 --set d_c=1e-5";
+    let rows = rows(&format!(
+        "rate-and-state {set} --mode slide --velocities 1e-6,1e-5 --to 1e-3 --steps 10000"
+    ));
+    let mu: Vec<f64> = rows.iter().skip(1).map(|r| number(r, "friction")).collect();
+    close("steady", mu[9_999], 0.6, 1e-6);
+    let highest = mu[10_000..].iter().copied().fold(0.0, f64::max);
+    close("direct effect", highest - 0.6, 0.010 * 10f64.ln(), 1e-2);
+    close(
+        "evolved",
+        mu.last().unwrap() - 0.6,
+        -0.005 * 10f64.ln(),
+        1e-2,
+    );
+}
+
+#[test]
+fn under_force_the_bond_fails_at_its_strength() {
+    let (code, out, error) = drive("mac --mode force --to 4e5 --steps 400");
+    assert_eq!(code, Some(0), "{error}");
+    assert!(error.contains("the bond does not carry 3.17"), "{error}");
+    assert!(out.contains("peak traction 3.16"), "{out}");
+}
+
+#[test]
+fn bad_requests_are_refused() {
+    for (line, part) in [
+        ("mak", "did you mean `mac`?"),
+        ("mac --mode III", "expected I, II, mixed"),
+        ("mac --set strength=3", "no law here has this parameter"),
+        ("mac elastic-bond", "are both cohesion laws"),
+        ("linear-softening", "has no cohesion to damage"),
+        ("jkr mohr-coulomb-brittle", "has no opening"),
+        ("mac --to nan", "must be positive"),
+        ("mac --path /nowhere.csv", "/nowhere.csv"),
+        ("mac --set w=-1", "must lie in"),
+    ] {
+        let (code, _, error) = drive(line);
+        assert_eq!(code, Some(2), "{line}: {error}");
+        assert!(error.contains(part), "{line}: {error}");
+    }
+}
