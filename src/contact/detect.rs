@@ -49,13 +49,15 @@ pub fn centre<S: Space>(ball: &Ball<S>, bodies: &Bodies<S>) -> S::Vector {
 
 /// Finds the contacts of this step at the positions at hand and carries memories over.
 ///
-/// Contacts that vanish lose their memory; a bond that holds keeps its contact whatever its gap.
+/// Contacts that vanish lose their memory; a bond that holds keeps its contact whatever its gap. `h` is the
+/// time since the last detection.
 pub fn detect<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
     bodies: &Bodies<S>,
     laws: &LawTable,
     time: f64,
+    h: f64,
 ) {
     let centres: Vec<S::Vector> = shapes.balls.iter().map(|b| centre(b, bodies)).collect();
     if must_rebuild(network, shapes, bodies, &centres) {
@@ -70,6 +72,7 @@ pub fn detect<S: Space>(
         centres: &centres,
         laws,
         time,
+        h,
         at: 0,
         touches: Vec::new(),
     };
@@ -193,6 +196,7 @@ struct Narrow<'a, S: Space> {
     centres: &'a [S::Vector],
     laws: &'a LawTable,
     time: f64,
+    h: f64,
     /// Next old contact not yet met.
     at: usize,
     touches: Vec<Touch<S::Vector>>,
@@ -281,7 +285,7 @@ impl<S: Space> Narrow<'_, S> {
             born: self.time,
             pressed: 0.0,
         };
-        admit(network, found, old);
+        self.admit(network, found, old);
     }
 
     fn surface(&mut self, network: &mut Network<S>, a: u32, b: u32) {
@@ -290,8 +294,13 @@ impl<S: Space> Narrow<'_, S> {
         let old = self.old_of(network, (a, b));
         let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
         let local = S::unrotate(&rotation, &(self.centres[a as usize] - origin));
-        let bonded = old.clone().any(|k| held(network, Some(k)));
-        let margin = network.alert + if bonded { network.skin } else { 0.0 };
+        // A bond reaches as far as it is stretched, and again as far within a step.
+        let stretch = |k: usize| {
+            let old = &network.old[k];
+            let bond = network.bond(old).filter(|b| b.intact())?;
+            Some(network.skin + 2.0 * (old.gap.max(0.0) + bond.opening_t.norm()))
+        };
+        let margin = network.alert + old.clone().filter_map(stretch).fold(0.0, f64::max);
         let mut touches = std::mem::take(&mut self.touches);
         touches.clear();
         surface
@@ -349,7 +358,7 @@ impl<S: Space> Narrow<'_, S> {
                 born: self.time,
                 pressed: 0.0,
             };
-            admit(network, found, matched);
+            self.admit(network, found, matched);
         }
         for k in old.clone() {
             if !taken[k - old.start] {
@@ -358,29 +367,37 @@ impl<S: Space> Narrow<'_, S> {
         }
         self.touches = touches;
     }
+
+    /// Takes a contact in, with what an old one of the same name remembers.
+    fn admit(&self, network: &mut Network<S>, mut found: Contact<S>, old: Option<usize>) {
+        match old {
+            Some(k) => {
+                let old = &network.old[k];
+                found.impulse = old.impulse;
+                found.moment = old.moment;
+                found.born = old.born;
+                found.pressed = old.pressed;
+                found.slot = old.slot;
+                found.broken = old.broken;
+                let from = old.normal;
+                if let Some(slot) = found.memory() {
+                    // What a bond remembers turns with the pair.
+                    let [i, j] = found.bodies.map(|b| self.bodies.spin[b as usize]);
+                    let angle = 0.5 * self.h * S::split_spin(&found.normal, &(i + j)).0;
+                    let memory = &mut network.memory[found.law as usize];
+                    let bond = &mut memory.bonds[slot];
+                    bond.opening_t = S::carry(&from, &found.normal, angle, &bond.opening_t);
+                    if let Some(rotation) = memory.rotations.get_mut(slot) {
+                        *rotation = S::carry_spin(&from, &found.normal, angle, rotation);
+                    }
+                }
+            }
+            None => found.broken = network.broken_pairs.contains(&found.key.pair()),
+        }
+        network.contacts.push(found);
+    }
 }
 
 fn held<S: Space>(network: &Network<S>, old: Option<usize>) -> bool {
     old.is_some_and(|k| network.bond(&network.old[k]).is_some_and(|b| b.intact()))
-}
-
-/// Adds a contact and hands it the memory of the old one.
-fn admit<S: Space>(network: &mut Network<S>, mut found: Contact<S>, old: Option<usize>) {
-    match old {
-        Some(k) => {
-            let old = &network.old[k];
-            found.impulse = old.impulse;
-            found.moment = old.moment;
-            found.born = old.born;
-            found.pressed = old.pressed;
-            found.slot = old.slot;
-            found.broken = old.broken;
-            if let Some(slot) = found.memory() {
-                let bond = &mut network.memory[found.law as usize].bonds[slot];
-                bond.opening_t = S::transport(&found.normal, &bond.opening_t);
-            }
-        }
-        None => found.broken = network.broken_pairs.contains(&found.key.pair()),
-    }
-    network.contacts.push(found);
 }

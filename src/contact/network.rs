@@ -121,6 +121,12 @@ impl<S: Space> Network<S> {
             .map(|slot| &self.memory[contact.law as usize].bonds[slot])
     }
 
+    /// The gap of a contact less what its bond fills, while it holds (m).
+    pub fn open_gap(&self, contact: &Contact<S>) -> f64 {
+        let bond = self.bond(contact).filter(|b| b.intact());
+        contact.gap - bond.map_or(0.0, |b| b.gap)
+    }
+
     /// Bonds made so far.
     pub fn bonds_made(&self) -> u64 {
         self.memory.iter().map(|m| m.made).sum()

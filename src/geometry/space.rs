@@ -202,8 +202,17 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     fn roll(spin: &Self::Spin, n: &Self::Vector) -> Self::Tangent;
     /// n x p_t as a spin.
     fn twist(n: &Self::Vector, t: &Self::Tangent) -> Self::Spin;
-    /// Carries a tangential part over to a new normal, keeping its length.
-    fn transport(n: &Self::Vector, t: &Self::Tangent) -> Self::Tangent;
+    /// Turns a tangential part with its contact: by the least rotation from one normal to the next, then
+    /// by an angle about the new one. In 2D it turns with its frame.
+    fn carry(
+        from: &Self::Vector,
+        to: &Self::Vector,
+        angle: f64,
+        t: &Self::Tangent,
+    ) -> Self::Tangent;
+    /// The same for a spin.
+    fn carry_spin(from: &Self::Vector, to: &Self::Vector, angle: f64, w: &Self::Spin)
+    -> Self::Spin;
     /// A tangential part from its components along [`Space::tangents`].
     fn from_components(n: &Self::Vector, t1: f64, t2: f64) -> Self::Tangent;
     /// The components of a tangential part along [`Space::tangents`].
@@ -280,8 +289,11 @@ impl Space for Plane {
         *t
     }
     #[inline(always)]
-    fn transport(_n: &Self::Vector, t: &Self::Tangent) -> Self::Tangent {
+    fn carry(_from: &Self::Vector, _to: &Self::Vector, _: f64, t: &Self::Tangent) -> Self::Tangent {
         *t
+    }
+    fn carry_spin(_from: &Self::Vector, _to: &Self::Vector, _: f64, w: &Self::Spin) -> Self::Spin {
+        *w
     }
     fn from_components(_n: &Self::Vector, t1: f64, _t2: f64) -> Self::Tangent {
         Vector1::new(t1)
@@ -365,14 +377,29 @@ impl Space for Solid {
     fn twist(n: &Self::Vector, t: &Self::Tangent) -> Self::Spin {
         n.cross(t)
     }
-    fn transport(n: &Self::Vector, t: &Self::Tangent) -> Self::Tangent {
-        let flat = t - n * n.dot(t);
-        let (length, kept) = (t.norm(), flat.norm());
-        if kept > 0.0 {
-            flat * (length / kept)
-        } else {
-            Vector3::zeros()
+    fn carry(
+        from: &Self::Vector,
+        to: &Self::Vector,
+        angle: f64,
+        t: &Self::Tangent,
+    ) -> Self::Tangent {
+        // Rounding leaves a part along the normal, which is none of a tangent's.
+        let turned = Self::carry_spin(from, to, angle, t);
+        turned - to * to.dot(&turned)
+    }
+    fn carry_spin(
+        from: &Self::Vector,
+        to: &Self::Vector,
+        angle: f64,
+        w: &Self::Spin,
+    ) -> Self::Spin {
+        if *w == Vector3::zeros() {
+            return *w;
         }
+        let least = nalgebra::UnitQuaternion::rotation_between(from, to)
+            .unwrap_or_else(nalgebra::UnitQuaternion::identity);
+        let about = nalgebra::UnitQuaternion::from_scaled_axis(to * angle);
+        about * (least * w)
     }
     fn from_components(n: &Self::Vector, t1: f64, t2: f64) -> Self::Tangent {
         let [e1, e2] = Self::tangents(n);

@@ -12,6 +12,10 @@ use crate::geometry::space::{Space, VectorLike};
 pub(super) struct Held {
     /// Work done by the bond's impulse over the step (J).
     work: Vec<f64>,
+    /// What of it damping and the scheme took (J).
+    lost: Vec<f64>,
+    /// The normal part came or went within the step.
+    turned: Vec<bool>,
     /// Energy of the undamaged bond per area at the new opening (J/m^2).
     intact: Vec<f64>,
     /// The new damage.
@@ -45,9 +49,13 @@ impl Passes {
         totals: &mut Totals,
     ) -> Result<(), LawError> {
         let mut held = std::mem::take(&mut self.held);
-        self.open(index, network, sites, turns, info, &mut held.work);
+        self.open(index, law, network, sites, turns, info, &mut held);
         self.gather_after(law, network, sites, info);
         self.grow(law, info, &mut held)?;
+        for (at, damage) in self.members.iter().zip(&mut held.damage) {
+            let used = network.bond(&network.contacts[*at]).map_or(0.0, |b| b.used);
+            *damage = damage.max(used);
+        }
         self.keep_state(index, network);
         self.settle(index, law, network, &held, totals);
         self.held = held;
@@ -55,7 +63,7 @@ impl Passes {
     }
 
     /// The largest distance between the damage that the step's impulses were formed with and the one
-    /// that their openings give, which becomes the next to form impulses with, `share` of the way.
+    /// that their openings give, where that is larger; [`Passes::adopt`] takes it for the next solve.
     ///
     /// # Errors
     /// A law's own error, with the contact at fault.
@@ -66,9 +74,9 @@ impl Passes {
         sites: &[Site<S>],
         turns: &[Turn<S>],
         info: &StepInfo,
-        share: f64,
     ) -> Result<f64, LawError> {
         let mut worst = 0.0f64;
+        self.trials.clear();
         for (index, law) in laws.iter().enumerate().filter(|(_, l)| l.damages()) {
             self.select(network, |c| {
                 c.law as usize == index && network.bond(c).is_some_and(|b| b.intact())
@@ -78,7 +86,7 @@ impl Passes {
             }
             let before = network.memory[index].clone_openings();
             let mut held = std::mem::take(&mut self.held);
-            self.open(index, network, sites, turns, info, &mut held.work);
+            self.open(index, law, network, sites, turns, info, &mut held);
             self.gather_after(law, network, sites, info);
             self.grow(law, info, &mut held)?;
             network.memory[index].restore_openings(before);
@@ -86,19 +94,23 @@ impl Passes {
                 let Some(slot) = network.contacts[*at].memory() else {
                     continue;
                 };
-                let bond = &mut network.memory[index].bonds[slot];
-                let change = held.damage[k] - bond.used;
-                worst = worst.max(change.abs());
-                // A bond that breaks, breaks: half a bond of infinite stiffness would never let go.
-                bond.used = if held.damage[k] >= 1.0 {
-                    1.0
-                } else {
-                    bond.used + share * change
-                };
+                let bond = &network.memory[index].bonds[slot];
+                // Damage does not heal within a step either: so the solves go one way, and end.
+                let change = (held.damage[k] - bond.used).max(0.0);
+                worst = worst.max(change);
+                let next = bond.used + change;
+                self.trials.push((index, slot, next));
             }
             self.held = held;
         }
         Ok(worst)
+    }
+
+    /// Takes the damage of the last trial as that with which impulses are formed.
+    pub fn adopt<S: Space>(&mut self, network: &mut Network<S>) {
+        for (index, slot, damage) in self.trials.drain(..) {
+            network.memory[index].bonds[slot].used = damage;
+        }
     }
 
     /// Damage at the openings in the columns, by the cohesion itself and by the damage law: the larger.
@@ -141,16 +153,21 @@ impl Passes {
     }
 
     /// Moves the openings. What the bond's impulse does beyond storing energy is damping.
+    #[allow(clippy::too_many_arguments)]
     fn open<S: Space>(
         &self,
         index: usize,
+        law: &Interface,
         network: &mut Network<S>,
         sites: &[Site<S>],
         turns: &[Turn<S>],
         info: &StepInfo,
-        works: &mut Vec<f64>,
+        held: &mut Held,
     ) {
+        let (works, lost, turned) = (&mut held.work, &mut held.lost, &mut held.turned);
         works.clear();
+        lost.clear();
+        turned.clear();
         let Network {
             contacts, memory, ..
         } = network;
@@ -159,12 +176,18 @@ impl Passes {
             let (contact, site) = (&contacts[*at], &sites[*at]);
             let Some(slot) = contact.memory() else {
                 works.push(0.0);
+                lost.push(0.0);
+                turned.push(false);
                 continue;
             };
             let bond = &mut memory.bonds[slot];
             let n = &contact.normal;
             let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
+            let before = bond.opening_n;
             bond.opening_n += info.h * un;
+            // A bond that only pulls is not linear across its zero: its energy there is a matter of the step.
+            turned.push(law.tension_only() && (before > 0.0) != (bond.opening_n > 0.0));
+            lost.push(site.lost);
             bond.opening_t += ut * info.h;
             let s = &site.solution;
             let (en, et) = (
@@ -181,12 +204,13 @@ impl Passes {
         for (k, turn) in turns.iter().enumerate() {
             place[turn.moment.contact as usize] = k;
         }
-        for (at, work) in self.members.iter().zip(works) {
+        for (at, (work, lost)) in self.members.iter().zip(works.iter_mut().zip(lost)) {
             let (Some(turn), Some(slot)) = (turns.get(place[*at]), contacts[*at].memory()) else {
                 continue;
             };
             memory.rotations[slot] += turn.spin * info.h;
             *work += (turn.moment.moment - turn.moment.friction).dot(&turn.spin);
+            *lost += turn.lost;
         }
     }
 
@@ -217,7 +241,12 @@ impl Passes {
                 let ratio = share(bond.used) / share(bond.damage);
                 (bond.energy * ratio, intact * share(bond.used))
             };
-            totals.viscous += -held.work[k] - (end - start);
+            // Without a say in it, what a law's energy does not account for shows in the residual.
+            totals.viscous += if held.turned[k] {
+                -held.work[k] - (end - start)
+            } else {
+                held.lost[k]
+            };
             let kept = if held.damage[k] >= 1.0 {
                 0.0
             } else {

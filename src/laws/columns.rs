@@ -279,8 +279,16 @@ impl Columns {
             theta: info.theta,
             degradation,
             parameters: loaded.parameters.as_ptr(),
-            state: state.as_ptr(),
-            state_next: next.as_ptr(),
+            state: if state.is_empty() {
+                null()
+            } else {
+                state.as_ptr()
+            },
+            state_next: if next.is_empty() {
+                null()
+            } else {
+                next.as_ptr()
+            },
             gap: column(&self.gap),
             area: column(&self.area),
             radius: column(&self.radius),

@@ -33,7 +33,8 @@ impl Passes {
             };
             let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
             totals.friction -= site.solution.unilateral_t.dot(&ut);
-            let work = -site.solution.unilateral_n * un;
+            let work = -site.solution.unilateral_n * un + site.corrected;
+            totals.correction -= site.corrected;
             if site.adheres && site.solution.unilateral_n < 0.0 {
                 totals.adhesion += work;
             } else {

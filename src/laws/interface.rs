@@ -165,6 +165,13 @@ impl Interface {
             .sum()
     }
 
+    /// The columns of the laws that act on bonds.
+    pub fn variables_of_bonds(&self) -> impl Iterator<Item = usize> {
+        let cohesion = self.cohesion.as_ref().filter(|_| self.opens());
+        let bonds = cohesion.into_iter().chain(self.damage.as_ref());
+        bonds.flat_map(|l| l.first_variable..l.first_variable + l.variables())
+    }
+
     /// Initial values of the internal variables.
     pub fn initial(&self) -> Vec<f64> {
         self.loaded()

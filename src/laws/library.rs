@@ -304,6 +304,9 @@ impl Plugin {
                 self.degradation
             ));
         }
+        if self.flags & abi::FLAG_CONSTANT != 0 && !self.variables.is_empty() {
+            return Err("it says that it depends on its parameters only (FW_FLAG_CONSTANT) and has internal variables; drop one of the two".into());
+        }
         for (k, field) in self.parameters.iter().enumerate() {
             if self.parameters[..k].iter().any(|f| f.name == field.name) {
                 return Err(format!("its parameter `{}` is declared twice", field.name));

@@ -22,6 +22,10 @@ pub struct Site<S: Space> {
     pub average: S::Vector,
     /// The unilateral part may pull (h c_n > 0).
     pub adheres: bool,
+    /// Work that the bond's damping and the scheme take (J).
+    pub lost: f64,
+    /// Work that the position correction gives (J).
+    pub corrected: f64,
     /// The solver's answer.
     pub solution: ContactSolution<S>,
 }
@@ -33,6 +37,8 @@ pub struct Turn<S: Space> {
     pub moment: MomentSolution<S>,
     /// Theta-averaged relative spin (rad/s).
     pub spin: S::Spin,
+    /// Work that the scheme takes (J).
+    pub lost: f64,
 }
 
 /// Relative velocities at the start of a step, contact by contact.
@@ -55,6 +61,8 @@ pub struct Totals {
     pub adhesion: f64,
     /// Dissipated by damping of bonds.
     pub viscous: f64,
+    /// Given by the position correction, negative: it lifts what has sunk in.
+    pub correction: f64,
     /// Released by damage: fracture energy.
     pub fracture: f64,
     /// Bonds that broke.
@@ -71,6 +79,8 @@ pub struct Passes {
     pub(super) columns: Columns,
     pub(super) members: Vec<usize>,
     pub(super) held: Held,
+    /// Interface, slot and damage of the bonds of a coupling's last trial.
+    pub(super) trials: Vec<(usize, usize, f64)>,
     /// Interfaces whose bonds have been made.
     bonded: Vec<bool>,
 }
@@ -122,7 +132,13 @@ impl Passes {
                     .is_some_and(|time| contact.pressed > 0.0 && contact.pressed >= time);
                 let bonds = !intact && (due || healed);
                 match contact.memory() {
-                    Some(slot) if bonds => memory.bond(slot, contact.gap, area),
+                    Some(slot) if bonds => {
+                        memory.bond(slot, contact.gap, area);
+                        // A new bond has no history; the contact's own goes on.
+                        for v in law.variables_of_bonds() {
+                            memory.variables[v][slot] = initial[v];
+                        }
+                    }
                     None if bonds || remembers => {
                         contact.slot = memory.allocate(bonds, contact.gap, area, &initial);
                         self.members.push(k);
@@ -216,6 +232,7 @@ impl Passes {
                     &mut forms[*at],
                     &friction,
                     &network.contacts[*at],
+                    network.open_gap(&network.contacts[*at]),
                     &before.relative[*at],
                     area,
                     info,
@@ -228,6 +245,8 @@ impl Passes {
                         a: S::Spin::null(),
                         b_twist: 0.0,
                         b_bend: 0.0,
+                        loss_twist: 0.0,
+                        loss_bend: 0.0,
                         moment: network.contacts[*at].moment,
                     });
                 }
@@ -335,6 +354,9 @@ impl Passes {
             b_n: h * area * (h * theta * theta * kn + theta * dn),
             b_t: h * area * (h * theta * theta * kt + theta * dt),
             tension_only: law.tension_only(),
+            // Damping, and what the theta scheme takes beyond the change of k x^2/2.
+            loss_n: h * area * (dn + h * (theta - 0.5) * kn),
+            loss_t: h * area * (dt + h * (theta - 0.5) * kt),
         });
     }
 
@@ -360,6 +382,8 @@ impl Passes {
             (moment + S::about(n, w_twist * (twist * memory)) + w_bend * (bend * memory)) * impulse;
         form.b_twist = impulse * h * theta * theta * twist;
         form.b_bend = impulse * h * theta * theta * bend;
+        form.loss_twist = impulse * h * (theta - 0.5) * twist;
+        form.loss_bend = impulse * h * (theta - 0.5) * bend;
     }
 }
 
@@ -367,6 +391,8 @@ fn apply_friction<S: Space>(
     form: &mut ContactForm<S>,
     friction: &Friction,
     contact: &Contact<S>,
+    // The gap less what an unbroken bond fills.
+    gap: f64,
     before: &S::Vector,
     area: f64,
     info: &StepInfo,
@@ -378,13 +404,13 @@ fn apply_friction<S: Space>(
     // (a quasi-shock would take the approach away before the impact).
     let un = contact.normal.dot(before);
     if friction.e_n > 0.0 {
-        if contact.gap > 0.0 {
+        if gap > 0.0 {
             form.shift_n = f64::INFINITY;
         } else if un < 0.0 {
             form.shift_n = friction.e_n * un;
         }
     }
-    if contact.gap <= 0.0 && friction.e_t > 0.0 {
+    if gap <= 0.0 && friction.e_t > 0.0 {
         form.shift_t = S::tangential(&contact.normal, before) * friction.e_t;
     }
 }

@@ -33,7 +33,8 @@ pub struct Cycle {
     pub tangential_amplitude: f64,
     /// Length of the path (m).
     pub path: f64,
-    /// integral Q d delta / integral P |d delta|: the friction coefficient from forces.
+    /// integral Q d delta / integral P |d delta|: the friction coefficient from forces; 0 where the body was
+    /// not pressed.
     pub friction_coefficient: f64,
     /// (heat + change of stored energy - other work) / integral P |d delta|: from the energy ledger, the
     /// other work from the driven bodies' paths, see [`super::layer`].

@@ -6,7 +6,8 @@ use serde::Serialize;
 /// Energies since the start (J; per metre of depth in 2D).
 ///
 /// With theta = 1/2 the balance closes to rounding and to the solver's tolerance:
-/// kinetic + potential + elastic + fracture + friction + impact + adhesion + viscous + scheme
+/// kinetic + potential + elastic + fracture + friction + impact + adhesion + viscous + correction
+/// + scheme
 /// - external work = initial energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Energy {
@@ -26,6 +27,8 @@ pub struct Energy {
     pub adhesion: f64,
     /// Dissipated by damping of bonds.
     pub viscous: f64,
+    /// Given by the position correction, negative; see `solver.correction`.
+    pub correction: f64,
     /// Dissipated by the scheme, (theta - 1/2) |v+ - v|_M^2; zero at theta = 1/2.
     pub scheme: f64,
     /// Work of imposed forces and motions.
@@ -62,11 +65,13 @@ impl Energy {
         self.impact += totals.impact;
         self.adhesion += totals.adhesion;
         self.viscous += totals.viscous;
+        self.correction += totals.correction;
         let sinks = self.fracture
             + self.friction
             + self.impact
             + self.adhesion
             + self.viscous
+            + self.correction
             + self.scheme;
         let held = self.kinetic - self.initial_kinetic + self.potential + self.elastic;
         self.residual = held + sinks - self.external_work;
@@ -82,7 +87,7 @@ impl Energy {
 
     /// Energy turned into heat and surfaces.
     pub fn dissipated(&self) -> f64 {
-        self.fracture + self.friction + self.impact + self.adhesion + self.viscous
+        self.fracture + self.friction + self.impact + self.adhesion + self.viscous + self.correction
     }
 
     /// Residual over the largest energy seen; zero when nothing moved.

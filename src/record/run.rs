@@ -159,7 +159,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         };
         let header = views::header(loaded, &built.materials, &summary, &columns, S::D);
         let results = Results::create(&options.out.join("results.h5"), &header)?;
-        let total = (case.time.end / case.time.step).round().max(1.0) as u64;
+        let total = (case.time.end / case.time.step - 1e-6).ceil().max(1.0) as u64;
         let first = simulation
             .shapes
             .surfaces
@@ -241,10 +241,27 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         Some(Sample {
             time: s.time,
             q,
-            p: impulse[test.normal].abs() / h,
+            p: impulse[test.normal] * self.facing(*place, test.normal) / h,
             slide,
             work: q * slide,
         })
+    }
+
+    /// The side on which the contacts of a driven body push it along an axis: 1 or -1.
+    fn facing(&self, place: usize, axis: usize) -> f64 {
+        let s = &self.simulation;
+        let body = s.bodies.driven[place].body;
+        let push: f64 = s
+            .network
+            .contacts
+            .iter()
+            .map(|c| match c.bodies {
+                [i, _] if i == body => c.normal[axis],
+                [_, j] if j == body => -c.normal[axis],
+                _ => 0.0,
+            })
+            .sum();
+        if push < 0.0 { -1.0 } else { 1.0 }
     }
 
     fn follow(&mut self, report: &StepReport, before: (Balance, u64)) {
@@ -405,11 +422,14 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         summary.energy = s.energy;
         summary.energy_residual_relative = s.energy.relative_residual();
         let time = s.time.max(f64::MIN_POSITIVE);
+        // Nothing leaves a contact that is periodic along the sliding.
+        let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
+        let closed = s.shapes.periodic.period[along].map(|_| 0.0);
         summary.wear = Wear {
             Qs: self.worn.0 * self.density / time,
             Qi: self.internal_flow / time,
-            Qe: 0.0,
-            Qw: 0.0,
+            Qe: closed,
+            Qw: closed,
             volume_first_bodies: self.worn.0,
             volume_third_body: self.worn.1,
         };

@@ -53,10 +53,10 @@ pub struct Wear {
     pub Qs: f64,
     /// Internal: mass of the third body that crosses a section, mean of |m v_x|/L.
     pub Qi: f64,
-    /// Ejected: zero in a periodic contact.
-    pub Qe: f64,
-    /// Lost: ejected and not recirculated.
-    pub Qw: f64,
+    /// Ejected: zero in a contact that is periodic along the sliding; not measured (null) in an open one.
+    pub Qe: Option<f64>,
+    /// Lost: ejected and not recirculated; as `Qe`.
+    pub Qw: Option<f64>,
     /// Volume worn off first bodies by the wear law (m^3; m^3/m).
     pub volume_first_bodies: f64,
     /// Volume worn between grains (m^3; m^3/m).
@@ -114,6 +114,11 @@ pub struct Summary {
     pub stopped: Option<String>,
 }
 
+/// A flow, or that it was not measured.
+fn flow(value: Option<f64>) -> String {
+    value.map_or("not measured".to_owned(), |v| format!("{v:.3e}"))
+}
+
 impl Summary {
     /// Some lines for a terminal.
     pub fn text(&self) -> String {
@@ -168,11 +173,12 @@ impl Summary {
         line(
             "dissipated",
             format!(
-                "friction {:.4e}, fracture {:.4e}, impact {:.4e}, viscous {:.4e} {joule}",
+                "friction {:.4e}, fracture {:.4e}, impact {:.4e}, viscous {:.4e}, position correction {:.4e} {joule}",
                 e.friction,
                 e.fracture,
                 e.impact,
-                e.viscous + e.adhesion + e.scheme
+                e.viscous + e.adhesion + e.scheme,
+                e.correction
             ),
         );
         line(
@@ -186,8 +192,13 @@ impl Summary {
         line(
             "wear",
             format!(
-                "{:.4e} {volume} off first bodies, {:.4e} {volume} between grains; Qs {:.3e}, Qi {:.3e}, Qe {:.3e}, Qw {:.3e} kg/s",
-                w.volume_first_bodies, w.volume_third_body, w.Qs, w.Qi, w.Qe, w.Qw
+                "{:.4e} {volume} off first bodies, {:.4e} {volume} between grains; Qs {:.3e}, Qi {:.3e}, Qe {}, Qw {} kg/s",
+                w.volume_first_bodies,
+                w.volume_third_body,
+                w.Qs,
+                w.Qi,
+                flow(w.Qe),
+                flow(w.Qw)
             ),
         );
         let s = &self.solver;

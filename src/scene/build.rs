@@ -775,7 +775,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let alert = case.detection.alert.unwrap_or(0.05 * smallest);
         let skin = case.detection.skin.unwrap_or(0.3 * smallest);
         let gravity = self.vector("gravity", &case.gravity)?;
-        self.refuse_small_period()?;
+        self.refuse_small_period(alert + skin)?;
         let (source, mut simulation) = (
             self.source,
             Simulation::new(self.bodies, self.shapes, laws, table, alert, skin),
@@ -801,7 +801,7 @@ impl<S: Dimensional> Builder<'_, S> {
     }
 
     /// Two balls must not touch each other twice around a period.
-    fn refuse_small_period(&self) -> Result<(), InputError> {
+    fn refuse_small_period(&self, reach: f64) -> Result<(), InputError> {
         let widest = self
             .shapes
             .balls
@@ -809,7 +809,14 @@ impl<S: Dimensional> Builder<'_, S> {
             .map(|b| b.radius)
             .fold(0.0, f64::max);
         for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
-            if self.shapes.periodic.period[k].is_some_and(|p| p < 8.0 * widest) {
+            let period = self.shapes.periodic.period[k];
+            if period.is_some_and(|p| 2.0 * (2.0 * widest + reach) > p) && reach > 2.0 * widest {
+                let message = format!(
+                    "with the skin, grains see each other {reach:e} m apart, which reaches twice around the period `periodic.{name}`; make it smaller"
+                );
+                return Err(self.fail("detection.alert".to_owned(), message));
+            }
+            if period.is_some_and(|p| p < 8.0 * widest) {
                 let message = format!(
                     "the period must be at least 4 diameters of the largest grain ({:e} m)",
                     8.0 * widest

@@ -71,6 +71,15 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
                 .expected("a number from 1 (none) to below 2"),
         );
     }
+    if s.test_every == 0 {
+        return Err(Fault::new("solver.test_every", "must be at least 1"));
+    }
+    if case.inertia_scaling != 1.0 && case.gravity.iter().any(|g| *g != 0.0) {
+        return Err(Fault::new(
+            "inertia_scaling",
+            "scales weights with the masses; switch gravity off, or leave the scaling out",
+        ));
+    }
     if s.max_iterations == 0 {
         return Err(Fault::new("solver.max_iterations", "must be at least 1"));
     }
@@ -191,7 +200,7 @@ pub(super) fn overlaps<S: Space>(
     origins: &[Origin],
 ) -> Result<(), Fault> {
     let s = simulation;
-    detect(&mut s.network, &s.shapes, &s.bodies, &s.table, 0.0);
+    detect(&mut s.network, &s.shapes, &s.bodies, &s.table, 0.0, 0.0);
     let worst = s
         .network
         .contacts

@@ -43,6 +43,10 @@ pub struct Elastic<S: Space> {
     pub b_t: f64,
     /// The normal part acts only while it pulls.
     pub tension_only: bool,
+    /// What is lost over the step by damping and by the scheme: loss_n u_n,th^2 + loss_t |u_t,th|^2 (kg).
+    pub loss_n: f64,
+    /// See `loss_n` (kg).
+    pub loss_t: f64,
 }
 
 impl<S: Space> Elastic<S> {
@@ -54,6 +58,8 @@ impl<S: Space> Elastic<S> {
             b_n: 0.0,
             b_t: 0.0,
             tension_only: false,
+            loss_n: 0.0,
+            loss_t: 0.0,
         }
     }
 }

@@ -202,11 +202,11 @@ impl<S: Space> Lines<S> {
             let (a, b) = (self.first.add(i), self.first.add(j));
             let (mut x, mut y) = (*a, *b);
             f(&mut x, &mut y);
-            if always || x.im > 0.0 {
+            if always || x.im > 0.0 || x.is > 0.0 {
                 (*a).v = x.v;
                 (*a).s = x.s;
             }
-            if always || y.im > 0.0 {
+            if always || y.im > 0.0 || y.is > 0.0 {
                 (*b).v = y.v;
                 (*b).s = y.s;
             }
@@ -233,7 +233,7 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
         ..
     } = problem;
     let count = lines.len();
-    let movable = |b: u32| lines[b as usize].im > 0.0;
+    let movable = |b: u32| lines[b as usize].im > 0.0 || lines[b as usize].is > 0.0;
     let (moved_plain, starts) = permute(plain, movable, count);
     groups[0] = starts;
     let (moved_full, starts) = permute(full, movable, count);

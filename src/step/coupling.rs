@@ -8,7 +8,8 @@ pub enum Coupling {
     /// The step is done with the damage at its start; damage grows at its end. First order in h.
     #[default]
     Explicit,
-    /// The step is solved again until its damage is the one that its openings give.
+    /// The step is solved again until its damage is the one that its openings give, or more: within a step
+    /// too damage only grows, so that the solves end.
     Implicit {
         /// Largest change of a damage between two solves that ends it.
         tolerance: f64,
@@ -34,8 +35,6 @@ pub(super) struct Progress {
     tolerance: f64,
     most: u32,
     report: CouplingReport,
-    /// How far damage goes towards what the openings give.
-    pub share: f64,
 }
 
 impl Progress {
@@ -54,16 +53,11 @@ impl Progress {
                 change: f64::INFINITY,
                 ..CouplingReport::default()
             },
-            share: 1.0,
         }
     }
 
     /// Takes in the change of a solve; says whether it was the last.
     pub fn ends(&mut self, change: f64) -> bool {
-        // Where damage swings about its answer, smaller steps reach it.
-        if change > 0.9 * self.report.change {
-            self.share = (0.5 * self.share).max(1.0 / 64.0);
-        }
         self.report.iterations += 1;
         self.report.change = change;
         self.report.missed = change > self.tolerance;

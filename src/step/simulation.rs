@@ -193,6 +193,7 @@ impl<S: Space> Simulation<S> {
             &self.bodies,
             &self.table,
             self.time,
+            h,
         );
         let remembered = self.passes.remember(&self.laws, &mut self.network, &info);
         remembered.map_err(|e| self.law_error(e))?;
@@ -258,20 +259,16 @@ impl<S: Space> Simulation<S> {
                 return Ok(Solved { sites, turns });
             };
             let clock = Instant::now();
-            let change = self.passes.trial(
-                &self.laws,
-                &mut self.network,
-                &sites,
-                &turns,
-                info,
-                coupling.share,
-            );
+            let change = self
+                .passes
+                .trial(&self.laws, &mut self.network, &sites, &turns, info);
             let change = change.map_err(|e| self.law_error(e))?;
             report.timing.laws += clock.elapsed();
             if coupling.ends(change) {
                 report.coupling = coupling.report();
                 return Ok(Solved { sites, turns });
             }
+            self.passes.adopt(&mut self.network);
             for (k, form) in self.forms.iter_mut().enumerate() {
                 form.impulse = sites[k].solution.impulse;
             }
@@ -316,26 +313,20 @@ impl<S: Space> Simulation<S> {
         let correction = self.correction;
         self.forms.clear();
         let network = &self.network;
-        self.forms.extend(network.contacts.iter().map(|contact| {
-            // An unbroken bond fills the gap at which it was made.
-            let filled = network
-                .bond(contact)
-                .filter(|b| b.intact())
-                .map_or(0.0, |b| b.gap);
-            ContactForm {
+        self.forms
+            .extend(network.contacts.iter().map(|contact| ContactForm {
                 bodies: contact.bodies,
                 normal: contact.normal,
                 arms: contact.arms,
                 central: contact.central,
-                shift_n: quasi_shock(contact.gap - filled, correction) / h,
+                shift_n: quasi_shock(network.open_gap(contact), correction) / h,
                 shift_t: S::Tangent::null(),
                 friction: 0.0,
                 tension: 0.0,
                 cohesion: 0.0,
                 elastic: None,
                 impulse: contact.impulse,
-            }
-        }));
+            }));
     }
 
     /// Hands bodies and contacts to the solver.
@@ -379,11 +370,31 @@ impl<S: Space> Simulation<S> {
         let theta = self.scheme.theta;
         let contacts = self.network.contacts.iter().zip(before).enumerate();
         contacts
-            .map(|(k, (contact, before))| Site {
-                before: *before,
-                average: *before * (1.0 - theta) + self.relative_velocity(contact) * theta,
-                adheres: self.forms[k].tension > 0.0,
-                solution: self.problem.solution(k),
+            .map(|(k, (contact, before))| {
+                let (form, solution) = (&self.forms[k], self.problem.solution(k));
+                let average = *before * (1.0 - theta) + self.relative_velocity(contact) * theta;
+                let n = &contact.normal;
+                let lost = form.elastic.map_or(0.0, |e| {
+                    let pulls = n.dot(&solution.impulse) != solution.unilateral_n;
+                    let (un, ut) = (n.dot(&average), S::tangential(n, &average));
+                    let normal = if pulls { e.loss_n * un * un } else { 0.0 };
+                    normal + e.loss_t * ut.dot(&ut)
+                });
+                // A shift below zero without an approach is the correction's: u_n >= -shift.
+                let lifts = form.shift_n < 0.0 && n.dot(before) >= form.shift_n;
+                let lift = if lifts && self.correction > 0.0 {
+                    -theta * form.shift_n * solution.unilateral_n.max(0.0)
+                } else {
+                    0.0
+                };
+                Site {
+                    before: *before,
+                    average,
+                    adheres: form.tension > 0.0,
+                    lost,
+                    corrected: lift,
+                    solution,
+                }
             })
             .collect()
     }
@@ -395,14 +406,19 @@ impl<S: Space> Simulation<S> {
             let b = b as usize;
             start.spin(b) * (1.0 - theta) + self.bodies.spin[b] * theta
         };
-        let turn = |moment: solve::MomentSolution<S>| {
-            let [i, j] = self.network.contacts[moment.contact as usize].bodies;
+        let turn = |(form, moment): (&MomentForm<S>, solve::MomentSolution<S>)| {
+            let contact = &self.network.contacts[moment.contact as usize];
+            let [i, j] = contact.bodies;
+            let spin = average(i) - average(j);
+            let (twist, bend) = S::split_spin(&contact.normal, &spin);
             Turn {
-                spin: average(i) - average(j),
+                spin,
+                lost: form.loss_twist * twist * twist + form.loss_bend * bend.dot(&bend),
                 moment,
             }
         };
-        self.problem.moments().map(turn).collect()
+        let solved = self.moments.iter().zip(self.problem.moments());
+        solved.map(turn).collect()
     }
 
     /// Books the step in the energy ledger.

@@ -1,7 +1,9 @@
 //! Every shipped law keeps its promises; laws made to break one fail where they should and nowhere else.
 
 use fretwork::certify::{Certificate, Outcome, certify};
-use fretwork::laws::{Plugin, SearchPath};
+use fretwork::geometry::space::Plane;
+use fretwork::laws::{Kind, Plugin, SearchPath};
+use fretwork::step::Simulation;
 use std::path::Path;
 use std::process::Command;
 
@@ -30,9 +32,76 @@ fn every_shipped_law_is_certified() {
     }
 }
 
+/// Compiles `law.c` with one promise broken against the header in `include`.
+fn compile(wrong: &str, library: &Path, include: &str) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let made = Command::new("cc")
+        .args(["-std=c11", "-O2", "-Wall", "-Werror", "-shared", "-fPIC"])
+        .arg(format!("-DWRONG_{wrong}"))
+        .arg(format!("-I{}", root.join(include).display()))
+        .arg("-o")
+        .arg(library)
+        .arg(root.join("tests/certify/law.c"))
+        .arg("-lm")
+        .status()
+        .expect("a C compiler named cc");
+    assert!(made.success(), "{wrong}");
+}
+
+/// The header of version 1.0 is frozen in `tests/certify/1.0`: what is built with it goes on working.
+#[test]
+fn a_law_built_with_the_first_header_is_certified() {
+    let folder = std::env::temp_dir().join(format!("fretwork-frozen-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let library = folder.join("frozen.so");
+    compile("NOTHING", &library, "tests/certify/1.0");
+    let found = certificate(&Plugin::open(&library).unwrap());
+    assert!(found.certified(), "{:#?}", found.lines);
+    std::fs::remove_dir_all(&folder).ok();
+}
+
+/// A law that says it stores more than it does shows in the energy residual of a run.
+#[test]
+fn a_wrong_energy_shows_in_the_residual() {
+    let folder = std::env::temp_dir().join(format!("fretwork-residual-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let library = folder.join(fretwork::laws::search::file_name(Kind::Cohesion, "tested"));
+    let residual = |wrong: &str| {
+        // A library stays open for the life of a program: each has a folder of its own.
+        let place = folder.join(wrong);
+        std::fs::create_dir_all(&place).unwrap();
+        compile(
+            wrong,
+            &place.join(library.file_name().unwrap()),
+            "plugins/abi/include",
+        );
+        let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/bond_mode_1.ron");
+        let sets = [
+            "interfaces.grain.cohesion=tested",
+            "interfaces.grain.parameters.cohesion={}",
+            "interfaces.grain.damage=linear-softening",
+            "interfaces.grain.parameters.damage={}",
+        ]
+        .map(str::to_owned);
+        let mut s: Simulation<Plane> = fretwork::scene::load(&case, &sets)
+            .unwrap_or_else(|e| panic!("{e}"))
+            .build_in(&SearchPath::new(&[place]))
+            .unwrap_or_else(|e| panic!("{e}"))
+            .simulation;
+        while s.time < 5e-6 {
+            s.step().unwrap_or_else(|e| panic!("{e}"));
+        }
+        s.energy.relative_residual()
+    };
+    assert!(residual("NOTHING") < 1e-9);
+    let wrong = residual("DISSIPATION");
+    // The scale holds the kinetic energy of the grip, 3 J/m; half of 0.01 J/m is missing.
+    assert!(wrong > 1e-3, "{wrong}");
+    std::fs::remove_dir_all(&folder).ok();
+}
+
 #[test]
 fn wrong_laws_fail_their_line_and_no_other() {
-    let root = env!("CARGO_MANIFEST_DIR");
     let folder = std::env::temp_dir().join(format!("fretwork-certify-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let cases: [(&str, &[&str]); 12] = [
@@ -55,17 +124,7 @@ fn wrong_laws_fail_their_line_and_no_other() {
     ];
     for (wrong, lines) in cases {
         let library = folder.join(format!("{wrong}.so"));
-        let made = Command::new("cc")
-            .args(["-std=c11", "-O2", "-Wall", "-Werror", "-shared", "-fPIC"])
-            .arg(format!("-DWRONG_{wrong}"))
-            .arg(format!("-I{root}/plugins/abi/include"))
-            .arg("-o")
-            .arg(&library)
-            .arg(Path::new(root).join("tests/certify/law.c"))
-            .arg("-lm")
-            .status()
-            .expect("a C compiler named cc");
-        assert!(made.success(), "{wrong}");
+        compile(wrong, &library, "plugins/abi/include");
         let found = certificate(&Plugin::open(&library).unwrap());
         let failed: Vec<&str> = broken(&found);
         // Whether a race between threads shows is chance: the other three lines see the same fault.

@@ -11,6 +11,7 @@ pub fn all(table: &mut Table) {
     hanging(table);
     healing(table);
     coupling(table);
+    turned(table);
 }
 
 fn grain<S: Space>(s: &Simulation<S>) -> usize {
@@ -219,6 +220,50 @@ fn coupling(table: &mut Table) {
         "both limits of the fracture energy (J/m^2)",
         limits[0],
         limits[1],
+        1e-4,
+    );
+}
+
+/// Rigid rotations: stored energy stays, and the force turns with the grains.
+fn turned(table: &mut Table) {
+    let mut s = solid("turned_twist", &[]);
+    until(&mut s, 0.2, |_| {});
+    let before = s.energy.elastic;
+    // R = 0.05 m: J = pi R^4/2, twisted by 0.01 rad less a step at its start and end.
+    let expected = 0.5 * 1e10 * 0.5 * PI * 0.05f64.powi(4) * 1e-4;
+    table.compare(
+        "turned_twist",
+        "k_t J theta^2/2 (J)",
+        expected,
+        before,
+        3e-3,
+    );
+    until(&mut s, 0.357, |_| {});
+    table.compare(
+        "turned_twist",
+        "energy after a turn of 90 degrees (J)",
+        before,
+        s.energy.elastic,
+        1e-4,
+    );
+    table.compare(
+        "turned_twist",
+        "dissipated (J)",
+        0.0,
+        s.energy.dissipated(),
+        1e-6,
+    );
+    let mut s = solid("turned_shear", &[]);
+    until(&mut s, 0.2, |_| {});
+    let force = s.received[0].0;
+    until(&mut s, 0.357, |_| {});
+    let turned = s.received[0].0;
+    assert!(force.z.abs() > 1e3 * force.y.abs());
+    table.compare(
+        "turned_shear",
+        "|f_z| before is |f_y| after 90 degrees",
+        force.z.abs(),
+        turned.y.abs(),
         1e-4,
     );
 }

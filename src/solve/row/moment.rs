@@ -22,6 +22,11 @@ pub struct MomentForm<S: Space> {
     pub b_twist: f64,
     /// Bending stiffness over the step (N m s^2).
     pub b_bend: f64,
+    /// What the scheme takes beyond the change of the stored energy: loss_twist w_n^2 + loss_bend |w_t|^2
+    /// (J s^2).
+    pub loss_twist: f64,
+    /// See `loss_twist`.
+    pub loss_bend: f64,
     /// The moment to start from (N m s).
     pub moment: S::Spin,
 }

@@ -1,0 +1,219 @@
+/* fretwork.h - the C interface between Fretwork and its law plugins, version 1.0.
+ *
+ * A plugin is a shared library named libfretwork_KIND_NAME.so (KIND one of contact, cohesion, damage,
+ * wear; NAME with '-' written '_') which exports one function, fretwork_plugin(), returning a static
+ * table. The rules:
+ *  - the host owns all memory; nothing is allocated on one side and freed on the other; what the table
+ *    points to must live as long as the program;
+ *  - calls are batches over n contacts, columns of n doubles; a column that a call does not use is null;
+ *  - calls are pure: no globals, any thread, any order, same input same bits;
+ *  - a call returns FW_OK, or another status with a sentence in message->text and, if one contact is at
+ *    fault, its index in message->contact. Any status but FW_OK ends the run (exit code 1) with the
+ *    sentence; so does an output that is not finite. FW_BAD_PARAMETER from validate refuses the case (2).
+ *
+ * When calls are made, for every interface law of a scene:
+ *  - once, when the case is read: validate;
+ *  - when a contact of a law with internal variables is first seen: initialise, if there is one (the
+ *    schema's initial values stand in state and state_next);
+ *  - at the start of every step, once detection has given gaps and normals: prepare of the contact law,
+ *    then of the cohesion law; with implicit coupling again after every solve of the step;
+ *  - after the step is solved: energy, then prepare of the cohesion at the new openings with D = 0, which
+ *    gives energy_intact, intact_* and intact_moment_*; commit of the cohesion; commit of the damage law;
+ *    commit of the contact law if it has internal variables; commit of the wear law. With implicit
+ *    coupling energy, prepare and the two commits run as trials too, whose results the host drops: a law
+ *    must not notice.
+ * A cohesion law with FW_FLAG_OPENING is called for bonds that hold; without it, for every contact.
+ *
+ * Compatibility: a host and a plugin of one major work together whatever their minors. Within a major every
+ * struct begins with its size and grows at its end only, no field changes its meaning, and fw_field is
+ * frozen. Each side reads what the other's size says is there: a plugin looks at batch->size before it
+ * touches a column that 1.0 did not have; a host takes functions missing at the end of the table as null.
+ * A change that breaks this raises the major, and the loader then refuses.
+ *
+ * SI units everywhere. A test of the crate fretwork-abi compares this file with the Rust structs.
+ */
+#ifndef FRETWORK_H
+#define FRETWORK_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define FW_ABI_MAJOR 1u
+#define FW_ABI_MINOR 0u
+
+/* Kind of plugin: friction, restitution, rolling (fills the non-smooth part of the local form). */
+#define FW_KIND_CONTACT 1
+/* Kind of plugin: traction against opening. */
+#define FW_KIND_COHESION 2
+/* Kind of plugin: how the damage D grows, when a bond breaks. */
+#define FW_KIND_DAMAGE 3
+/* Kind of plugin: what is removed, from slip, force and energy. */
+#define FW_KIND_WEAR 4
+/* Status: done. */
+#define FW_OK 0
+/* Status: the call failed, the message says why; the run stops with exit code 1. */
+#define FW_ERROR 1
+/* Status of validate: a parameter is out of what the law accepts; exit code 2. */
+#define FW_BAD_PARAMETER 2
+/* Status: the law could not follow so large a step; the message proposes a smaller one. */
+#define FW_REDUCE_STEP 3
+/* Status: the plugin panicked; set by the Rust wrapper. */
+#define FW_PANIC 4
+/* Flag: the law is written for two-dimensional scenes only. */
+#define FW_FLAG_2D_ONLY (UINT64_C(1) << 0)
+/* Flag: the law is written for three-dimensional scenes only. */
+#define FW_FLAG_3D_ONLY (UINT64_C(1) << 1)
+/* Flag (cohesion): the normal stiffness pulls only; compression is the contact's. Below zero opening the
+ * law goes on along its line (a negative traction), which places the zero for the host; the host drops
+ * the push. */
+#define FW_FLAG_TENSION_ONLY (UINT64_C(1) << 2)
+/* Flag (cohesion): the law has an opening and a stored energy, so a damage law can follow it. */
+#define FW_FLAG_OPENING (UINT64_C(1) << 3)
+/* Flag (contact): prepare depends on the parameters only, so the host may call it once for one
+ * contact and use the answer for all. */
+#define FW_FLAG_CONSTANT (UINT64_C(1) << 4)
+/* Flag (cohesion): the law resists bending and twist, so the host keeps the rotation of its bonds. */
+#define FW_FLAG_MOMENT (UINT64_C(1) << 5)
+/* Flag (cohesion): commit writes out_damage, so the law breaks without a damage law. */
+#define FW_FLAG_BREAKS (UINT64_C(1) << 6)
+/* Flag (cohesion): bonds may form in contact during a run, again after they broke. */
+#define FW_FLAG_FORMS (UINT64_C(1) << 7)
+
+/* Describes one parameter or one internal variable. Frozen within a major version. */
+typedef struct fw_field {
+    const char *name; /* Name, NUL-terminated, [a-z][a-z0-9_]*. */
+    const char *unit; /* SI unit, NUL-terminated, empty for a pure number. */
+    const char *doc; /* One line for the user, NUL-terminated. */
+    double default_value; /* Default value of a parameter, initial value of a variable. */
+    double minimum; /* Smallest accepted value (may be minus infinity). */
+    double maximum; /* Largest accepted value (may be infinity). */
+    uint64_t flags; /* For a variable: 1 to write it to the results. Otherwise 0. */
+} fw_field;
+
+/* The host's buffer for a sentence. */
+typedef struct fw_message {
+    size_t size; /* Size of this struct in bytes, set by the host. */
+    char *text; /* Where the plugin writes NUL-terminated UTF-8. */
+    size_t capacity; /* Bytes at text, the NUL included. */
+    int64_t contact; /* Index in the batch of the contact at fault, or -1; set by the plugin. */
+} fw_message;
+
+/* One batch of contacts that share an interface law. Columns have n values and belong to the host.
+ * 
+ * A column that a call does not use is null. Inputs are read-only; out_* and state_next columns
+ * are written by the call. Vectors are in the local frame (n, t1, t2), n from the antagonist to the
+ * candidate; in two dimensions the t2 columns are null. */
+typedef struct fw_batch {
+    size_t size; /* Size of this struct in bytes, set by the host. */
+    size_t n; /* Number of contacts. */
+    uint32_t dimension; /* 2 or 3. */
+    uint32_t reserved; /* Zero. */
+    double time; /* Time at the start of the step (s). */
+    double h; /* Time step (s). */
+    double theta; /* Theta of the scheme. */
+    double degradation; /* Exponent m of the cohesion law's degradation, psi = (1 - D)^m psi_0 (damage calls). */
+    const double *parameters; /* Parameters in the order of the plugin's schema. */
+    const double *const *state; /* Internal variables at the start of the step, one column each. */
+    double *const *state_next; /* Internal variables at the end of the step, one column each (initialise, commit). */
+    const double *gap; /* Gap at detection (m), positive when open. */
+    const double *area; /* Contact area (m^2; in 2D length times unit depth). */
+    const double *radius; /* Reduced radius r1 r2/(r1 + r2) (m); the radius itself against a flat body. */
+    const double *age; /* Time since the contact formed (s). */
+    const double *opening_n; /* Bond elongation (m): at the start of the step in prepare, at its end in commit. */
+    const double *opening_t1; /* Tangential opening along t1 (m). */
+    const double *opening_t2; /* Tangential opening along t2 (m). */
+    const double *velocity_n; /* Relative velocity (m/s): u^- in prepare, u_th in commit. */
+    const double *velocity_t1; /* Tangential relative velocity along t1 (m/s). */
+    const double *velocity_t2; /* Tangential relative velocity along t2 (m/s). */
+    const double *impulse_n; /* Impulse (N s): the last step's in prepare, this step's in commit. */
+    const double *impulse_t1; /* Tangential impulse along t1 (N s). */
+    const double *impulse_t2; /* Tangential impulse along t2 (N s). */
+    const double *damage; /* Damage D in [0, 1]; 1 for a contact without bond. */
+    const double *energy_intact; /* Stored energy of the undamaged bond at this opening, psi_0 (J/m^2) (damage). */
+    const double *intact_n; /* Traction of the undamaged bond at this opening (Pa) (damage). */
+    const double *intact_t1; /* Tangential traction of the undamaged bond along t1 (Pa) (damage). */
+    const double *intact_t2; /* Tangential traction of the undamaged bond along t2 (Pa) (damage). */
+    const double *slip; /* Slip distance over this step, h |u_t| (m) (wear). */
+    const double *friction_work; /* Energy dissipated by friction over this step (J) (wear). */
+    const double *pressed; /* Time for which the contact has carried a compressive impulse without a break (s). */
+    const double *rotation_n; /* Rotation of the bond about n, twist (rad); null without FW_FLAG_MOMENT and in 2D. */
+    const double *rotation_t1; /* Rotation about t1, bending (rad). In 2D that about the axis out of the plane. */
+    const double *rotation_t2; /* Rotation about t2, bending (rad). In 2D null. */
+    const double *intact_moment_n; /* Moment of the undamaged bond over its area, as the rotations (N m/m^2) (damage). */
+    const double *intact_moment_t1; /* Bending moment about t1 over the area (N m/m^2) (damage). */
+    const double *intact_moment_t2; /* Bending moment about t2 over the area (N m/m^2) (damage). */
+    double *out_friction; /* Contact: friction coefficient mu. */
+    double *out_restitution_n; /* Contact: normal restitution e_n. */
+    double *out_restitution_t; /* Contact: tangential restitution e_t. */
+    double *out_tension_strength; /* Contact, cohesion: tension strength c_n over the area (Pa). */
+    double *out_shear_cohesion; /* Contact, cohesion: shear cohesion c_t over the area (Pa). */
+    double *out_rolling; /* Contact: rolling friction length (m). */
+    double *out_spinning; /* Contact: spinning friction length (m). */
+    double *out_traction_n; /* Cohesion: traction at the current opening and damage, positive pulls together (Pa). */
+    double *out_traction_t1; /* Cohesion: tangential traction along t1 (Pa). */
+    double *out_traction_t2; /* Cohesion: tangential traction along t2 (Pa). */
+    double *out_stiffness_n; /* Cohesion: normal stiffness, tangent or secant, not negative (Pa/m). */
+    double *out_stiffness_t; /* Cohesion: tangential stiffness (Pa/m). */
+    double *out_damping_n; /* Cohesion: normal damping (Pa s/m). */
+    double *out_damping_t; /* Cohesion: tangential damping (Pa s/m). */
+    double *out_energy; /* Cohesion, call energy: energy stored at this opening and damage (J/m^2). */
+    double *out_damage; /* Damage, and cohesion with FW_FLAG_BREAKS: D at the end of the step. */
+    double *out_volume; /* Wear: volume removed over this step (m^3). */
+    double *out_moment_n; /* Cohesion with FW_FLAG_MOMENT: twisting moment over the area, against rotation_n (N m/m^2). */
+    double *out_moment_t1; /* Bending moment over the area, against rotation_t1 (N m/m^2). */
+    double *out_moment_t2; /* Bending moment over the area, against rotation_t2 (N m/m^2). */
+    double *out_stiffness_twist; /* Twisting stiffness over the area (N m/m^2 per rad). */
+    double *out_stiffness_bend; /* Bending stiffness over the area (N m/m^2 per rad). */
+} fw_batch;
+
+/* Checks parameters beyond their ranges (relations between them). May be null. */
+typedef int32_t (*fw_validate)(const double *parameters, fw_message *message);
+/* A call over a batch. May be null where the kind does not need it. */
+typedef int32_t (*fw_call)(const fw_batch *batch, fw_message *message);
+
+/* The fracture energy (J/m^2) that a bond under this law dissipates when it is pulled once, slowly, at a
+ * fixed angle from the normal (rad; 0 is mode I, pi/2 mode II); not a number where it declares none. */
+typedef double (*fw_fracture)(const double *parameters, double angle);
+
+/* What a plugin is: returned by its entry function, static for the life of the program. */
+typedef struct fw_plugin {
+    size_t size; /* Size of this struct in bytes, as the plugin was built. */
+    uint32_t abi_major; /* Major version the plugin was built for. */
+    uint32_t abi_minor; /* Minor version the plugin was built for. */
+    int32_t kind; /* One of the KIND_*. */
+    uint32_t reserved; /* Zero. */
+    uint64_t flags; /* Union of FLAG_*. */
+    const char *name; /* Name by which a case asks for the law, NUL-terminated. */
+    const char *version; /* The law's own version, NUL-terminated. */
+    const char *doc; /* One line for the user, NUL-terminated. */
+    const char *reference; /* Paper or DOI, NUL-terminated. */
+    size_t n_parameters; /* Number of parameters. */
+    const fw_field *parameters; /* Their schema. */
+    size_t n_variables; /* Number of internal variables. */
+    const fw_field *variables; /* Their schema. */
+    double degradation; /* Cohesion: m of psi = (1 - D)^m psi_0, 0 where damage does not enter. */
+    fw_validate validate; /* Checks the parameters. May be null. */
+    fw_call initialise; /* Fills state_next of new contacts. Null: the schema's initial values. */
+    fw_call prepare; /* Contact and cohesion: fills the local form at the start of the step. */
+    fw_call solve_local; /* Solves a contact of its own. Null in version 1.0; kept for laws that do not fit the local form. */
+    fw_call commit; /* At the end of the step: new internal variables; damage: out_damage; wear: out_volume. */
+    fw_call energy; /* Cohesion: out_energy at the given opening and damage. */
+    fw_fracture fracture_energy; /* Cohesion and damage: the fracture energy that the law declares; certify compares. May be null. */
+} fw_plugin;
+
+/* The one exported symbol. */
+#if defined(_WIN32)
+__declspec(dllexport)
+#elif defined(__GNUC__)
+__attribute__((visibility("default")))
+#endif
+const fw_plugin *fretwork_plugin(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* FRETWORK_H */
