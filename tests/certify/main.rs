@@ -2,10 +2,12 @@
 
 use fretwork::certify::{Certificate, Outcome, certify};
 use fretwork::geometry::space::Plane;
-use fretwork::laws::{Kind, Plugin, SearchPath};
+use fretwork::laws::bench::{Bench, Motion};
+use fretwork::laws::{AreaRule, BondRule, Interface, Kind, Loaded, Plugin, SearchPath};
 use fretwork::step::Simulation;
 use std::path::Path;
 use std::process::Command;
+use std::sync::Arc;
 
 fn certificate(plugin: &Plugin) -> Certificate {
     let defaults: Vec<f64> = plugin.parameters.iter().map(|p| p.default).collect();
@@ -30,6 +32,66 @@ fn every_shipped_law_is_certified() {
         let found = certificate(&Plugin::open(&file).unwrap());
         assert!(found.certified(), "{kind} {name}: {:#?}", found.lines);
     }
+}
+
+/// Every damage law with every cohesion law that has an opening: pulled, let go and pulled again, D grows,
+/// and no work comes out.
+#[test]
+fn any_damage_goes_with_any_cohesion_that_opens() {
+    let path = SearchPath::new(&[]);
+    let laws = path.available();
+    let loaded = |kind: Kind, name: &str| {
+        let plugin = path.find(kind, name).unwrap_or_else(|e| panic!("{e}"));
+        Loaded {
+            parameters: plugin.parameters.iter().map(|p| p.default).collect(),
+            plugin: Arc::new(plugin),
+            first_variable: 0,
+        }
+    };
+    let (mut pairs, mut refused) = (0, 0);
+    for (_, cohesion, _) in laws.iter().filter(|l| l.0 == Kind::Cohesion) {
+        for (_, damage, _) in laws.iter().filter(|l| l.0 == Kind::Damage) {
+            let law = Interface {
+                name: "pair".into(),
+                contact: loaded(Kind::Contact, "frictionless"),
+                cohesion: Some(loaded(Kind::Cohesion, cohesion)),
+                damage: Some(loaded(Kind::Damage, damage)),
+                wear: None,
+                bonds: BondRule::Start,
+                healing: None,
+                area: AreaRule::default(),
+            };
+            let opens = law.opens();
+            let law = match law.compose() {
+                Ok(law) => law,
+                Err(e) => {
+                    assert!(!opens && e.to_string().contains("no opening"), "{e}");
+                    refused += 1;
+                    continue;
+                }
+            };
+            let mut bench = Bench::new(law, 3, 1e-5);
+            let mut state = [bench.fresh()];
+            let (mut work, mut last) = (0.0, (0.0, 0.0, 0.0));
+            for k in 1..=4000 {
+                let u = 2e-5 * (f64::from(k) / 4000.0 * 6.0).sin().abs() * f64::from(k) / 4000.0;
+                let motion = Motion {
+                    opening: [0.6 * u, 0.8 * u, 0.0],
+                    ..Motion::default()
+                };
+                let a = bench
+                    .step(&mut state, &[motion], 1e-4)
+                    .unwrap_or_else(|e| panic!("{cohesion} {damage}: {e}"))[0];
+                assert!(a.damage >= last.2 && a.damage <= 1.0, "{cohesion} {damage}");
+                let t = 0.6 * a.traction[0] + 0.8 * a.traction[1];
+                work += 0.5 * (t + last.1) * (u - last.0);
+                last = (u, t, a.damage);
+            }
+            assert!(work >= 0.0, "{cohesion} {damage}: {work}");
+            pairs += 1;
+        }
+    }
+    assert_eq!((pairs, refused), (6 * 10, 6 * 10));
 }
 
 /// Compiles `law.c` with one promise broken against the header in `include`.
