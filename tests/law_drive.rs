@@ -116,6 +116,23 @@ fn under_force_the_bond_fails_at_its_strength() {
     assert!(out.contains("peak traction 3.15"), "{out}");
 }
 
+/// A neck holds what JKR says: 8/9 of the pull-off in contact, the pull-off at most, nothing after the tear.
+#[test]
+fn a_neck_is_pulled() {
+    let rows = rows("jkr --to 2e-9 --steps 2000 --set w=0.1 --set modulus=1e11");
+    let area = std::f64::consts::PI * 1e-10;
+    let pull_off = 1.5 * std::f64::consts::PI * 0.1 * 1e-5;
+    let force = |r: &Value| number(r, "tension_strength") * area;
+    close("in contact", force(&rows[0]), 8.0 / 9.0 * pull_off, 1e-6);
+    close(
+        "pull-off",
+        rows.iter().map(force).fold(0.0, f64::max),
+        pull_off,
+        1e-3,
+    );
+    assert_eq!(force(rows.last().unwrap()), 0.0);
+}
+
 #[test]
 fn bad_requests_are_refused() {
     for (line, part) in [
@@ -126,6 +143,9 @@ fn bad_requests_are_refused() {
         ("linear-softening", "has no cohesion to damage"),
         ("jkr mohr-coulomb-brittle", "has no opening"),
         ("mac --to nan", "must be positive"),
+        ("mac --cycles 0", "--cycles must be at least 1"),
+        ("mac --mode mixed --angle nan", "between 0 and 90 degrees"),
+        ("mac --pressure -1", "must not be negative"),
         ("mac --path /nowhere.csv", "/nowhere.csv"),
         ("mac --set w=-1", "must lie in"),
     ] {

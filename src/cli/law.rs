@@ -91,7 +91,10 @@ fn named(path: &SearchPath, name: &str) -> Result<Vec<Plugin>, Failure> {
         .collect();
     if found.is_empty() {
         let near = crate::scene::source::nearest(name, laws.iter().map(|l| l.1.as_str()));
-        let proposal = near.map_or(String::new(), |n| format!("; did you mean `{n}`?"));
+        let proposal = near.map_or_else(
+            || "; `fretwork law list` names those that are there".to_owned(),
+            |n| format!("; did you mean `{n}`?"),
+        );
         return Err(Failure::Usage(format!(
             "there is no law named `{name}` on the search path{proposal}"
         )));

@@ -33,7 +33,7 @@ enum Command {
     Run(run::RunArgs),
     /// Say what a case activates and what it will cost, without running it
     Check(check::CheckArgs),
-    /// List and describe the interface laws on the search path
+    /// Interface laws: list, show, make, drive and certify them
     #[command(subcommand)]
     Law(law::LawCommand),
 }

@@ -19,6 +19,7 @@ pub const EXAMPLES: &str = "Examples:
   fretwork law drive mac --path my_path.csv        (columns time,n,t1,t2 or time,n,t)";
 
 #[derive(Args, Debug)]
+#[command(allow_negative_numbers = true)]
 pub struct DriveArgs {
     /// Laws to compose: a name fills every slot that has it; kind/name fills one
     #[arg(required = true)]
@@ -85,7 +86,35 @@ struct Row {
     worn: f64,
 }
 
+/// Refuses numbers that make no path.
+fn check(args: &DriveArgs) -> Result<(), Failure> {
+    let positive = |x: f64| x.is_finite() && x > 0.0;
+    let wrong = [
+        (!positive(args.to), "--to must be positive"),
+        (!positive(args.rate), "--rate must be positive"),
+        (args.steps == 0, "--steps must be at least 1"),
+        (args.cycles == 0, "--cycles must be at least 1"),
+        (
+            u64::from(args.steps) * u64::from(args.cycles) > 100_000_000,
+            "--steps times --cycles must not exceed 1e8",
+        ),
+        (
+            args.angle.is_some_and(|a| !(0.0..=90.0).contains(&a)),
+            "--angle must lie between 0 and 90 degrees",
+        ),
+        (
+            !(args.pressure.is_finite() && args.pressure >= 0.0),
+            "--pressure must not be negative",
+        ),
+    ];
+    match wrong.iter().find(|w| w.0) {
+        Some((_, what)) => Err(Failure::Usage((*what).to_owned())),
+        None => Ok(()),
+    }
+}
+
 pub fn drive(args: &DriveArgs) -> Result<(), Failure> {
+    check(args)?;
     let mut bench = Bench::new(compose(args)?, 3, 1e-5);
     let rows = if args.mode == "force" && args.path.is_none() {
         by_force(&mut bench, args)?
@@ -163,12 +192,6 @@ fn path(args: &DriveArgs) -> Result<Vec<(f64, [f64; 3])>, Failure> {
         return read_path(file);
     }
     let usage = |what: &str| Err(Failure::Usage(what.to_owned()));
-    if !(args.to.is_finite() && args.to > 0.0 && args.rate.is_finite() && args.rate > 0.0) {
-        return usage("--to and --rate must be positive");
-    }
-    if args.steps == 0 {
-        return usage("--steps must be at least 1");
-    }
     let n = args.steps;
     let at = |u: f64, degrees: f64| {
         let angle = degrees.to_radians();
@@ -276,6 +299,18 @@ fn along(
 ) -> Result<Vec<Row>, Failure> {
     let mut state = [bench.fresh()];
     let mut rows = vec![Row::start(bench)];
+    let failed = |e: crate::laws::LawError| Failure::Failed(e.to_string());
+    if !bench.law().opens() {
+        // Bridges and necks form in contact: the path begins there.
+        let touch = Motion {
+            pressure: 1e6,
+            ..Motion::default()
+        };
+        let h = points.first().map_or(1.0, |p| p.0);
+        let a = bench.step(&mut state, &[touch], h).map_err(failed)?[0];
+        (rows[0].friction, rows[0].tension_strength) = (a.mu, a.strength[0]);
+        state[0].time = 0.0;
+    }
     for (time, opening) in points {
         let motion = Motion {
             opening: *opening,
@@ -374,8 +409,8 @@ impl Row {
             damage: bench.fresh().damage,
             work: 0.0,
             stored: 0.0,
-            friction: f64::NAN,
-            tension_strength: f64::NAN,
+            friction: 0.0,
+            tension_strength: 0.0,
             worn: 0.0,
         }
     }
@@ -432,10 +467,22 @@ fn draw(file: &Path, rows: &[Row], args: &DriveArgs) -> Result<(), Failure> {
         rows.iter().map(|r| (x(r), y(r))).collect::<Vec<_>>()
     };
     let title = args.laws.join(" + ");
-    if rows
+    let carries = rows
         .iter()
-        .all(|r| r.traction_n == 0.0 && r.traction_t1 == 0.0)
-    {
+        .any(|r| r.traction_n != 0.0 || r.traction_t1 != 0.0);
+    if !carries && rows.iter().any(|r| r.tension_strength > 0.0) {
+        let chart = Chart::new(
+            title,
+            Axis::new("gap", "m"),
+            Axis::new("attraction over the area", "Pa"),
+        )
+        .with(Series::new(
+            "attraction",
+            points(&|r| r.opening_n, &|r| r.tension_strength),
+        ));
+        return chart.draw(file).map_err(fail);
+    }
+    if !carries {
         let chart = Chart::new(
             title,
             Axis::new("sliding distance", "m"),
@@ -469,7 +516,7 @@ fn draw(file: &Path, rows: &[Row], args: &DriveArgs) -> Result<(), Failure> {
 /// Some twenty rows, and what the whole path came to.
 fn text(rows: &[Row]) -> String {
     let mut out = format!(
-        "{:>11} {:>12} {:>12} {:>13} {:>13} {:>9} {:>12} {:>12} {:>8}\n",
+        "{:>11} {:>12} {:>12} {:>13} {:>13} {:>9} {:>12} {:>12} {:>8} {:>13}\n",
         "time s",
         "opening_n m",
         "opening_t m",
@@ -478,7 +525,8 @@ fn text(rows: &[Row]) -> String {
         "damage",
         "work J/m2",
         "stored J/m2",
-        "mu"
+        "mu",
+        "attraction Pa"
     );
     let every = rows.len().div_ceil(20).max(1);
     for (k, r) in rows.iter().enumerate() {
@@ -486,7 +534,7 @@ fn text(rows: &[Row]) -> String {
             continue;
         }
         out += &format!(
-            "{:>11.4e} {:>12.4e} {:>12.4e} {:>13.6e} {:>13.6e} {:>9.6} {:>12.6e} {:>12.6e} {:>8.5}\n",
+            "{:>11.4e} {:>12.4e} {:>12.4e} {:>13.6e} {:>13.6e} {:>9.6} {:>12.6e} {:>12.6e} {:>8.5} {:>13.6e}\n",
             r.time,
             r.opening_n,
             r.opening_t1,
@@ -495,7 +543,8 @@ fn text(rows: &[Row]) -> String {
             r.damage,
             r.work,
             r.stored,
-            r.friction
+            r.friction,
+            r.tension_strength
         );
     }
     let peak = rows.iter().map(|r| r.along().abs()).fold(0.0, f64::max);
