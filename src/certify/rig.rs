@@ -157,21 +157,28 @@ impl Rig {
         if !self.opens() {
             return Ok(());
         }
-        let mut answers = Vec::new();
         // A tenth of a decade apart, from a picometre to ten metres, in one growing pull.
         let openings: Vec<f64> = (0..=130)
             .map(|k| 10f64.powf(-12.0 + 0.1 * f64::from(k)))
             .collect();
-        let mut state = [self.bench.fresh()];
-        for u in &openings {
-            let answer = self.bench.step(&mut state, &[pull(*u, 0.0)], 1.0)?;
-            answers.push((*u, answer[0]));
+        let mut stored = None;
+        for angle in [0.0, std::f64::consts::FRAC_PI_2] {
+            let mut answers = Vec::new();
+            let mut state = [self.bench.fresh()];
+            for u in &openings {
+                let answer = self.bench.step(&mut state, &[pull(*u, angle)], 1.0)?;
+                answers.push((*u, answer[0]));
+            }
+            let first =
+                |test: &dyn Fn(&Answer) -> bool| answers.iter().find(|a| test(&a.1)).map(|a| a.0);
+            stored = stored.or(first(&|a| a.stored >= 1.0));
+            if let Some(onset) = first(&|a| a.damage > 0.0) {
+                self.onset = onset;
+                self.end = first(&|a| a.damage >= 1.0);
+                return Ok(());
+            }
         }
-        let first =
-            |test: &dyn Fn(&Answer) -> bool| answers.iter().find(|a| test(&a.1)).map(|a| a.0);
-        let stored = first(&|a| a.stored >= 1.0);
-        self.onset = first(&|a| a.damage > 0.0).or(stored).unwrap_or(1e-6);
-        self.end = first(&|a| a.damage >= 1.0);
+        self.onset = stored.unwrap_or(1e-6);
         Ok(())
     }
 

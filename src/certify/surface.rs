@@ -2,7 +2,7 @@
 
 use super::Line;
 use super::rig::{PRESSURE, Rig};
-use crate::laws::bench::Motion;
+use crate::laws::bench::{Answer, Motion};
 use crate::laws::{Kind, LawError};
 
 pub fn checks(rig: &mut Rig) -> Vec<Line> {
@@ -66,14 +66,20 @@ fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
     let (plain, _) = rig.drive(&motions, 1e-3)?;
     let (other, _) = rig.drive(&moved, 1e-3)?;
     let off = |x: f64, y: f64| (x - y).abs() / x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
+    let numbers = |a: &Answer| {
+        let single = [a.mu, a.worn];
+        single
+            .into_iter()
+            .chain(a.strength)
+            .chain(a.restitution)
+            .chain(a.rolling)
+            .collect::<Vec<f64>>()
+    };
     let worst = plain
         .iter()
         .zip(&other)
-        .map(|(a, b)| {
-            off(a.mu, b.mu)
-                .max(off(a.worn, b.worn))
-                .max(off(a.strength[0], b.strength[0]))
-        })
+        .flat_map(|(a, b)| numbers(a).into_iter().zip(numbers(b)))
+        .map(|(x, y)| off(x, y))
         .fold(0.0, f64::max);
     Ok(Line::below(
         "objectivity",

@@ -27,7 +27,7 @@ pub struct DriveArgs {
     /// A parameter: NAME=VALUE or KIND.NAME=VALUE
     #[arg(long = "set", value_name = "NAME=VALUE")]
     sets: Vec<String>,
-    /// I, II, mixed (at --angle), cyclic (about zero in mode II; from 0 in mode I with --angle 0), force, slide
+    /// I, II, mixed (at --angle), cyclic (about zero in mode II; from 0 in mode I with --angle 0), force (raised in 1 s), slide
     #[arg(long, default_value = "I")]
     mode: String,
     /// Angle of the opening from the normal, degrees (mixed, cyclic, force)
@@ -48,9 +48,9 @@ pub struct DriveArgs {
     /// Velocities one after the other (slide, m/s)
     #[arg(long, value_delimiter = ',')]
     velocities: Vec<f64>,
-    /// Compressive pressure (Pa)
-    #[arg(long, default_value_t = 0.0)]
-    pressure: f64,
+    /// Compressive pressure (Pa); 1e6 in slide, else 0
+    #[arg(long)]
+    pressure: Option<f64>,
     /// A path from a CSV file with a heading: time,n,t1,t2 (s, m)
     #[arg(long)]
     path: Option<PathBuf>,
@@ -103,7 +103,7 @@ fn check(args: &DriveArgs) -> Result<(), Failure> {
             "--angle must lie between 0 and 90 degrees",
         ),
         (
-            !(args.pressure.is_finite() && args.pressure >= 0.0),
+            args.pressure.is_some_and(|p| !(p.is_finite() && p >= 0.0)),
             "--pressure must not be negative",
         ),
     ];
@@ -260,31 +260,45 @@ fn read_path(file: &Path) -> Result<Vec<(f64, [f64; 3])>, Failure> {
         .comment(Some(b'#'))
         .from_path(file)
         .map_err(|e| fail(e.to_string()))?;
+    let headings = reader.headers().map_err(|e| fail(e.to_string()))?.clone();
+    let place = |name: &str| headings.iter().position(|h| h == name);
+    let (Some(time), Some(n), Some(t1)) = (
+        place("time"),
+        place("n"),
+        place("t1").or_else(|| place("t")),
+    ) else {
+        return Err(fail(
+            "expected a heading with the columns time, n, t1 (or t) and perhaps t2".into(),
+        ));
+    };
+    let t2 = place("t2");
     let mut out: Vec<(f64, [f64; 3])> = Vec::new();
     for (k, record) in reader.records().enumerate() {
         let record = record.map_err(|e| fail(e.to_string()))?;
-        let numbers: Vec<f64> = record
-            .iter()
-            .map(|x| x.parse::<f64>().ok().filter(|v| v.is_finite()))
-            .collect::<Option<_>>()
-            .ok_or_else(|| {
+        let number = |column: usize| {
+            let value = record.get(column).and_then(|x| x.parse::<f64>().ok());
+            value.filter(|v| v.is_finite()).ok_or_else(|| {
                 fail(format!(
-                    "row {}: expected finite numbers time,n,t1,t2",
-                    k + 1
+                    "row {}: `{}` is no finite number",
+                    k + 1,
+                    &headings[column]
                 ))
-            })?;
-        let [time, n, t1, ref rest @ ..] = numbers[..] else {
-            return Err(fail(format!(
-                "row {}: expected time,n,t1 or time,n,t1,t2",
-                k + 1
-            )));
+            })
         };
-        if time <= out.last().map_or(0.0, |l| l.0) && !(k == 0 && time == 0.0) {
-            return Err(fail(format!("row {}: times must rise", k + 1)));
+        let opening = [number(n)?, number(t1)?, t2.map_or(Ok(0.0), number)?];
+        let time = number(time)?;
+        if k == 0 && time == 0.0 {
+            if opening != [0.0; 3] {
+                return Err(fail(
+                    "at time 0 the bond is closed: its opening must be 0".into(),
+                ));
+            }
+            continue;
         }
-        if time > 0.0 {
-            out.push((time, [n, t1, rest.first().copied().unwrap_or(0.0)]));
+        if time <= out.last().map_or(0.0, |l| l.0) {
+            return Err(fail(format!("row {}: times must rise from 0", k + 1)));
         }
+        out.push((time, opening));
     }
     if out.is_empty() {
         return Err(fail("holds no step; expected rows of time,n,t1,t2".into()));
@@ -315,15 +329,18 @@ fn along(
         let motion = Motion {
             opening: *opening,
             gap: opening[0],
-            pressure: if args.mode == "slide" && args.pressure == 0.0 {
-                1e6
-            } else {
-                args.pressure
-            },
+            pressure: args
+                .pressure
+                .unwrap_or(if args.mode == "slide" { 1e6 } else { 0.0 }),
             ..Motion::default()
         };
         let last = rows[rows.len() - 1];
         let h = time - last.time;
+        if !(h.is_finite() && h > 0.0) {
+            return Err(Failure::Usage(format!(
+                "the path has a step of {h} s; change --rate, --to or --steps"
+            )));
+        }
         let answer = bench
             .step(&mut state, &[motion], h)
             .map_err(|e| Failure::Failed(e.to_string()))?;
