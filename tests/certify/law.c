@@ -72,6 +72,12 @@ static int32_t prepare(const fw_batch *b, fw_message *m) {
         s *= 1.0 + 1e-9 * memory * p[K] / p[STRENGTH];
         memory = u;
 #endif
+#if defined(WRONG_DEGRADATION)
+        /* Right on its own curve, where D follows from u, and wrong for a damage that comes from elsewhere. */
+        double first = p[STRENGTH] / p[K], end = 2.0 * p[ENERGY] / p[STRENGTH], d = b->damage[k];
+        double least = u <= first ? 0.0 : u >= end ? 1.0 : end * (u - first) / (u * (end - first));
+        if (u < 0.7 * first && d > least) s *= 1.0 - 0.5 * d;
+#endif
         b->out_traction_n[k] = s * n;
         b->out_traction_t1[k] = s * t1;
         if (b->out_traction_t2) b->out_traction_t2[k] = s * t2;
