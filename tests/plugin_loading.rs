@@ -234,6 +234,11 @@ fn tables_that_break_the_rules_are_refused() {
         ("noschema", "table.parameters = 0;", "their table is null"),
         ("many", "table.n_parameters = (size_t)-1;", "at most 256"),
         (
+            "constant",
+            "table.flags = FW_FLAG_CONSTANT; table.variables = parameters; table.n_variables = 1;",
+            "drop one of the two",
+        ),
+        (
             "exponent",
             "table.degradation = -1.0;",
             "degradation exponent -1",

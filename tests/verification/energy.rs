@@ -10,6 +10,7 @@ use std::path::Path;
 
 pub fn all(table: &mut Table) {
     ledger(table);
+    pulled(table);
     three_dimensions(table);
 }
 
@@ -49,6 +50,33 @@ fn ledger(table: &mut Table) {
         let (forces, heat) = (c.friction_coefficient, c.friction_from_dissipation);
         table.compare("energy", &name, forces, heat, 1e-9);
     }
+}
+
+/// A frictionless bond pulled away and sheared: there is no pressure, so no friction coefficient.
+fn pulled(table: &mut Table) {
+    let out = std::env::temp_dir().join(format!("fretwork_pulled_{}", std::process::id()));
+    let file = format!(
+        "{}/cases/verification/pulled_friction.ron",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded
+        .build_in::<Plane>(&SearchPath::new(&[]))
+        .unwrap_or_else(|e| panic!("{e}"));
+    let options = RunOptions {
+        out: out.clone(),
+        threads: 1,
+    };
+    let summary = run(&loaded, built, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
+    std::fs::remove_dir_all(&out).unwrap_or_else(|e| panic!("{e}"));
+    let mu = summary.friction_coefficient.unwrap_or(0.0);
+    table.compare(
+        "pulled_friction",
+        "friction coefficient under tension",
+        0.0,
+        mu,
+        0.0,
+    );
 }
 
 /// The shear cell: ledger, and the impulses on all bodies sum to zero.

@@ -12,6 +12,7 @@ pub fn all(table: &mut Table) {
     healing(table);
     coupling(table);
     turned(table);
+    held(table);
 }
 
 fn grain<S: Space>(s: &Simulation<S>) -> usize {
@@ -265,5 +266,57 @@ fn turned(table: &mut Table) {
         force.z.abs(),
         turned.y.abs(),
         1e-4,
+    );
+}
+
+/// What a review found: each case once went wrong.
+fn held(table: &mut Table) {
+    let mut s = plane("stretched_on_surface", &[]);
+    until(&mut s, 0.1, |_| {});
+    let broken = s.network.bonds_broken() as f64;
+    table.compare(
+        "stretched_on_surface",
+        "bonds broken without a damage law",
+        0.0,
+        broken,
+        0.0,
+    );
+    // Pulled 0.1 m less half a step: k A u^2/2, with a reduced radius of 1 m.
+    let energy = 0.5e9 * 0.1f64.powi(2);
+    table.compare(
+        "stretched_on_surface",
+        "k A u^2/2 (J/m)",
+        energy,
+        s.energy.elastic,
+        2e-3,
+    );
+    for e in ["0.0", "0.1"] {
+        let set = format!("interfaces.grain.parameters.contact.restitution_n={e}");
+        let mut s = plane("bond_over_a_gap", &[&set]);
+        until(&mut s, 0.5, |_| {});
+        let y = s.bodies.position[1].y;
+        table.compare(
+            "bond_over_a_gap",
+            &format!("rests where it was bonded, e = {e} (m)"),
+            2.005,
+            y,
+            1e-6,
+        );
+    }
+    let mut s = plane("pinned_roller", &[]);
+    let mut most = 0;
+    until(&mut s, 0.05, |s| most = most.max(s.network.contacts.len()));
+    table.compare("pinned_roller", "contacts", 1.0, most as f64, 0.0);
+    // What the drive gave is in the roller's spin and, by friction at 1 m, in the grain: I w + m |v_x| R = M t.
+    let roller = s.bodies.driven[0].body as usize;
+    let on_top = (0..s.bodies.len()).find(|b| *b != roller).unwrap();
+    let spun = s.bodies.inertia[roller] * s.bodies.spin[roller][0].abs();
+    let given = spun + s.bodies.mass[on_top] * s.bodies.velocity[on_top].x.abs();
+    table.compare(
+        "pinned_roller",
+        "I w + m |v_x| R = M t (N m s/m)",
+        100.0 * 0.05,
+        given,
+        1e-2,
     );
 }
