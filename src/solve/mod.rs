@@ -10,6 +10,7 @@ pub mod colour;
 pub mod cone;
 pub mod error;
 pub mod form;
+pub mod local;
 pub mod nlgs;
 pub mod row;
 

@@ -1,0 +1,22 @@
+//! Contact problems given as a matrix: u = W p + q, K* of (u + mu |u_t| n) perpendicular to p of K.
+//!
+//! This is the form of the field's shared collection (FCLIB). Components are (n, t) or (n, t1, t2),
+//! contact after contact.
+
+pub mod block;
+pub mod csr;
+
+pub use csr::Csr;
+
+/// A local problem, whatever its dimension.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LocalProblem {
+    /// Components of a contact: 2 or 3.
+    pub dimension: usize,
+    /// The Delassus operator, `dimension * mu.len()` square (1/kg, or what the file has).
+    pub w: Csr,
+    /// Free relative velocities.
+    pub q: Vec<f64>,
+    /// Friction coefficients.
+    pub mu: Vec<f64>,
+}
