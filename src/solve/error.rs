@@ -13,6 +13,9 @@
 //! balance, so f^2 is the kinetic energy of what is not carried, relative to what is.
 //!
 //! A scene scaled in length, mass or time has the same figures.
+//!
+//! [`Norm::Field`]: error = |r| / max(|u|, |u_free|, |p|) with rho = 1: the field's own figure (Siconos'
+//! `fc3d_compute_error`), for problems from files. It adds impulses and velocities, so it depends on units.
 
 use serde::Deserialize;
 
@@ -24,6 +27,9 @@ pub enum Norm {
     Balance,
     /// Against the velocities at hand.
     Velocity,
+    /// The field's figure, for problems from files.
+    #[serde(skip)]
+    Field,
 }
 
 impl Norm {
@@ -36,6 +42,7 @@ impl Norm {
             Self::Velocity => {
                 "|r|/max(|u|, |u_free|), r = (p - proj_K(p - rho (u + mu |u_t| n)))/rho"
             }
+            Self::Field => "|r|/max(|u|, |u_free|, |p|), r = p - proj_K(p - (u + mu |u_t| n))",
         }
     }
 }
@@ -96,7 +103,7 @@ impl Sums {
     fn local(&self, norm: Norm, free: f64) -> f64 {
         let against = match norm {
             Norm::Velocity => self.velocity.max(free),
-            Norm::Balance => self.velocity.max(free).max(self.impulse),
+            Norm::Balance | Norm::Field => self.velocity.max(free).max(self.impulse),
         };
         over(self.residual.sqrt(), against.sqrt())
     }
@@ -105,7 +112,7 @@ impl Sums {
     pub fn error(&self, norm: Norm, scale: &Scale) -> f64 {
         let local = self.local(norm, scale.free);
         match norm {
-            Norm::Velocity => local,
+            Norm::Velocity | Norm::Field => local,
             Norm::Balance => local.max(over(self.power, scale.work).powi(2)),
         }
     }

@@ -1,0 +1,275 @@
+//! One contact with its own block of W: find p with u = W_cc p + f in Coulomb's law, exactly.
+//!
+//! In the plane the law has four branches, each a linear equation. In space the sliding branch asks for
+//! u_n = 0 and u_t = -lambda p_t with lambda >= 0: eliminating p_n leaves p_t(lambda) = -(A + lambda I)^-1 b and
+//! one equation mu p_n(lambda) = |p_t(lambda)|, nearly linear when divided by |p_t| (as in trust-region
+//! methods, Moré and Sorensen 1983), which Newton solves in two or three steps from the last lambda.
+
+use super::block::{Block, times};
+use super::form::largest;
+use super::law::Law;
+
+/// What the exact solution of a contact needs, formed once.
+#[derive(Clone, Copy, Debug)]
+pub struct Local<const D: usize> {
+    w: Block<D>,
+    inverse: Block<D>,
+    iwnn: f64,
+    /// A = W_tt - W_tn W_nt / W_nn (in the plane its one entry).
+    schur: [[f64; 2]; 2],
+    lambda: f64,
+}
+
+impl<const D: usize> Local<D> {
+    /// From the diagonal block.
+    pub fn new(w: &Block<D>) -> Self {
+        let iwnn = if w[0][0] > 0.0 { 1.0 / w[0][0] } else { 0.0 };
+        let mut schur = [[0.0; 2]; 2];
+        for i in 1..D {
+            for j in 1..D {
+                schur[i - 1][j - 1] = w[i][j] - w[i][0] * w[0][j] * iwnn;
+            }
+        }
+        let determinant = if D == 2 {
+            schur[0][0]
+        } else {
+            schur[0][0] * schur[1][1] - schur[0][1] * schur[1][0]
+        };
+        let size = schur[0][0].abs().max(schur[1][1].abs());
+        let floor = if D == 2 {
+            1e-14 * w[1][1].abs()
+        } else {
+            1e-14 * size * size
+        };
+        let mut inverse = [[0.0; D]; D];
+        if determinant > floor && iwnn > 0.0 {
+            // Inverse of a block matrix by its Schur complement.
+            let s = if D == 2 {
+                [[1.0 / schur[0][0], 0.0], [0.0, 0.0]]
+            } else {
+                let d = 1.0 / determinant;
+                [
+                    [schur[1][1] * d, -schur[0][1] * d],
+                    [-schur[1][0] * d, schur[0][0] * d],
+                ]
+            };
+            inverse[0][0] = iwnn;
+            for i in 1..D {
+                for j in 1..D {
+                    inverse[i][j] = s[i - 1][j - 1];
+                    inverse[0][j] -= iwnn * w[0][i] * s[i - 1][j - 1];
+                    inverse[i][0] -= s[i - 1][j - 1] * w[j][0] * iwnn;
+                }
+            }
+            for i in 1..D {
+                inverse[0][0] -= inverse[0][i] * w[i][0] * iwnn;
+            }
+        }
+        Self {
+            w: *w,
+            inverse,
+            iwnn,
+            schur,
+            lambda: 0.0,
+        }
+    }
+
+    /// The impulse that answers the free velocity `f` of this contact.
+    #[inline]
+    pub fn solve(&mut self, f: &[f64; D], mu: f64) -> [f64; D] {
+        let mut p = [0.0; D];
+        if f[0] >= 0.0 || self.iwnn == 0.0 {
+            return p;
+        }
+        if mu == 0.0 {
+            p[0] = -f[0] * self.iwnn;
+            return p;
+        }
+        let stick = times(&self.inverse, f);
+        if stick[0] < 0.0 {
+            let squared: f64 = stick[1..].iter().map(|x| x * x).sum();
+            if squared <= mu * mu * stick[0] * stick[0] {
+                return stick.map(|x| -x);
+            }
+        }
+        if D == 2 {
+            self.slide_plane(f, mu)
+        } else {
+            self.slide_space(f, mu)
+        }
+    }
+
+    /// The same for the other laws: projections with the block's own step, since none of them couples
+    /// its directions much. `start` is where to begin, `all` the impulses that may bound this one.
+    pub fn solve_rare(
+        &self,
+        f: &[f64; D],
+        law: &Law,
+        start: &[f64; D],
+        all: &[[f64; D]],
+    ) -> [f64; D] {
+        const ROUNDS: usize = 20;
+        let rho = 1.0 / largest(&self.w);
+        let mut p = *start;
+        if *law == Law::Free && self.inverse != [[0.0; D]; D] {
+            return times(&self.inverse, f).map(|x| -x);
+        }
+        if !rho.is_finite() {
+            return p;
+        }
+        for _ in 0..ROUNDS {
+            let u: [f64; D] = {
+                let wp = times(&self.w, &p);
+                std::array::from_fn(|k| wp[k] + f[k])
+            };
+            let r = law.natural(&p, &u, rho, all);
+            let mut change = 0.0;
+            for k in 0..D {
+                p[k] -= r[k];
+                change += r[k].abs();
+            }
+            if change <= 1e-15 * p.iter().map(|x| x.abs()).sum::<f64>() {
+                break;
+            }
+        }
+        p
+    }
+
+    fn slide_plane(&self, f: &[f64; D], mu: f64) -> [f64; D] {
+        let mut p = [0.0; D];
+        for sign in [1.0, -1.0] {
+            // p_t = -sign mu p_n with u_t of sign `sign`.
+            let w = self.w[0][0] - sign * mu * self.w[0][1];
+            if w <= 0.0 {
+                continue;
+            }
+            let n = -f[0] / w;
+            let t = -sign * mu * n;
+            let ut = self.w[1][0] * n + self.w[1][1] * t + f[1];
+            p[0] = n;
+            p[1] = t;
+            if sign * ut >= 0.0 {
+                break;
+            }
+        }
+        p
+    }
+
+    fn slide_space(&mut self, f: &[f64; D], mu: f64) -> [f64; D] {
+        const STEPS: usize = 30;
+        let (w, a) = (&self.w, &self.schur);
+        let b = [
+            f[1] - w[1][0] * f[0] * self.iwnn,
+            f[2] - w[2][0] * f[0] * self.iwnn,
+        ];
+        let mut p = [0.0; D];
+        let (mut low, mut high) = (0.0, f64::INFINITY);
+        let mut lambda = self.lambda;
+        for _ in 0..STEPS {
+            let (d0, d1) = (a[0][0] + lambda, a[1][1] + lambda);
+            let determinant = d0 * d1 - a[0][1] * a[1][0];
+            let over = if determinant > 0.0 {
+                1.0 / determinant
+            } else {
+                0.0
+            };
+            let t = [
+                -(d1 * b[0] - a[0][1] * b[1]) * over,
+                -(d0 * b[1] - a[1][0] * b[0]) * over,
+            ];
+            let n = -(f[0] + w[0][1] * t[0] + w[0][2] * t[1]) * self.iwnn;
+            let length = (t[0] * t[0] + t[1] * t[1]).sqrt();
+            (p[0], p[1], p[2]) = (n, t[0], t[1]);
+            let ratio = mu * n - length;
+            if ratio.abs() <= 1e-15 * length || determinant <= 0.0 && lambda > 0.0 {
+                break;
+            }
+            if ratio < 0.0 {
+                low = lambda;
+            } else {
+                high = lambda;
+            }
+            // d p_t / d lambda = -(A + lambda)^-1 p_t.
+            let dt = [
+                -(d1 * t[0] - a[0][1] * t[1]) * over,
+                -(d0 * t[1] - a[1][0] * t[0]) * over,
+            ];
+            let dn = -(w[0][1] * dt[0] + w[0][2] * dt[1]) * self.iwnn;
+            let dlength = (t[0] * dt[0] + t[1] * dt[1]) / length;
+            // Newton on mu n / |t| - 1.
+            let value = ratio / length;
+            let slope = (mu * dn * length - mu * n * dlength) / (length * length);
+            let mut next = lambda - value / slope;
+            if !(next > low && next < high) {
+                next = if high.is_finite() {
+                    0.5 * (low + high)
+                } else {
+                    2.0 * lambda + a[0][0].abs().max(a[1][1].abs())
+                };
+            }
+            if (next - lambda).abs() <= 1e-15 * next {
+                break;
+            }
+            lambda = next;
+        }
+        self.lambda = lambda;
+        // On the cone to the last bit that matters.
+        let n = p[0].max(0.0);
+        let length = (p[1] * p[1] + p[2] * p[2]).sqrt();
+        if length > 0.0 {
+            let scale = mu * n / length;
+            p[1] *= scale;
+            p[2] *= scale;
+        }
+        p[0] = n;
+        p
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+
+    /// Distance from the law: the natural map with rho = 1.
+    fn residual<const D: usize>(w: &Block<D>, f: &[f64; D], p: &[f64; D], mu: f64) -> f64 {
+        let mut u = times(w, p);
+        for k in 0..D {
+            u[k] += f[k];
+        }
+        let slip = u[1..].iter().map(|x| x * x).sum::<f64>().sqrt();
+        let z: [f64; D] =
+            std::array::from_fn(|k| p[k] - u[k] - if k == 0 { mu * slip } else { 0.0 });
+        let y = crate::solve::local::law::project(&z, mu);
+        (0..D).map(|k| (p[k] - y[k]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    fn random<const D: usize>() {
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(3);
+        for _ in 0..5000 {
+            let g: Block<D> =
+                std::array::from_fn(|_| std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
+            let w: Block<D> = std::array::from_fn(|i| {
+                std::array::from_fn(|j| {
+                    (0..D).map(|k| g[i][k] * g[j][k]).sum::<f64>() + f64::from(i == j)
+                })
+            });
+            let f: [f64; D] = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
+            let mu = rng.random_range(0.0..0.8);
+            let mut local = Local::new(&w);
+            let p = local.solve(&f, mu);
+            let r = residual(&w, &f, &p, mu);
+            assert!(r < 1e-12, "{r} {w:?} {f:?} {mu} {p:?}");
+        }
+    }
+
+    #[test]
+    fn answers_in_the_plane() {
+        random::<2>();
+    }
+
+    #[test]
+    fn answers_in_space() {
+        random::<3>();
+    }
+}

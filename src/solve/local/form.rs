@@ -1,0 +1,162 @@
+//! What a solver sees: the operator W, the free velocities q and the law of each block of unknowns.
+
+use super::block::{Block, BlockMatrix};
+use super::law::{self, Law};
+use crate::solve::error::{Norm, Scale, Sums};
+use crate::solve::row::Residual;
+
+/// The Delassus operator, whatever stands behind it.
+pub trait Delassus<const D: usize>: Sync {
+    /// Number of blocks.
+    fn len(&self) -> usize;
+    /// Whether there is none.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+    /// The diagonal block of a contact.
+    fn diagonal(&self, c: usize) -> &Block<D>;
+    /// u = W p + q.
+    fn velocity(&self, p: &[[f64; D]], q: &[[f64; D]], u: &mut [[f64; D]]);
+    /// W as a matrix; formed where it is not at hand.
+    fn matrix(&self) -> &BlockMatrix<D>;
+}
+
+impl<const D: usize> Delassus<D> for BlockMatrix<D> {
+    fn len(&self) -> usize {
+        self.diagonal.len()
+    }
+
+    fn diagonal(&self, c: usize) -> &Block<D> {
+        &self.diagonal[c]
+    }
+
+    fn velocity(&self, p: &[[f64; D]], q: &[[f64; D]], u: &mut [[f64; D]]) {
+        Self::velocity(self, p, q, u);
+    }
+
+    fn matrix(&self) -> &BlockMatrix<D> {
+        self
+    }
+}
+
+/// A problem: u = W p + q, with (p_c, u_c) in the law of every block c.
+#[derive(Clone, Copy)]
+pub struct Form<'a, const D: usize> {
+    /// The operator.
+    pub w: &'a dyn Delassus<D>,
+    /// Free velocities, shifts included.
+    pub q: &'a [[f64; D]],
+    /// Laws.
+    pub laws: &'a [Law],
+    /// How errors are measured.
+    pub norm: Norm,
+    /// |q|^2.
+    pub free: f64,
+}
+
+impl<'a, const D: usize> Form<'a, D> {
+    /// A problem measured by a norm.
+    pub fn new(w: &'a dyn Delassus<D>, q: &'a [[f64; D]], laws: &'a [Law], norm: Norm) -> Self {
+        Self {
+            w,
+            q,
+            laws,
+            norm,
+            free: squared(q),
+        }
+    }
+
+    /// Number of blocks.
+    pub fn len(&self) -> usize {
+        self.laws.len()
+    }
+
+    /// Whether there is no block.
+    pub fn is_empty(&self) -> bool {
+        self.laws.is_empty()
+    }
+
+    /// u = W p + q.
+    pub fn velocity(&self, p: &[[f64; D]], u: &mut [[f64; D]]) {
+        self.w.velocity(p, self.q, u);
+    }
+
+    /// The step of the natural map: 1 in the field's figure, else 1 / lambda_max(W_cc), bounded from above.
+    pub fn rho(&self, c: usize) -> f64 {
+        match self.norm {
+            Norm::Field => 1.0,
+            _ => 1.0 / largest(self.w.diagonal(c)),
+        }
+    }
+
+    /// The error of p, and the worst block, where u = W p + q.
+    pub fn error(&self, p: &[[f64; D]], u: &[[f64; D]]) -> (f64, usize) {
+        let mut sums = Sums::default();
+        for c in 0..self.len() {
+            let rho = self.rho(c);
+            if !rho.is_finite() {
+                continue;
+            }
+            let r = self.laws[c].natural(&p[c], &u[c], rho, p);
+            let over = 1.0 / rho;
+            let dot = |a: &[f64; D], b: &[f64; D]| (0..D).map(|k| a[k] * b[k]).sum::<f64>();
+            sums.add(
+                &Residual {
+                    squared: dot(&r, &r) * over * over,
+                    velocity: dot(&u[c], &u[c]),
+                    impulse: dot(&p[c], &p[c]) * over * over,
+                    power: dot(&p[c], &r) * over,
+                },
+                c,
+            );
+        }
+        let work = match self.norm {
+            Norm::Balance => dot(p, u) - dot(p, self.q),
+            _ => 0.0,
+        };
+        let scale = Scale {
+            free: self.free,
+            work,
+        };
+        (sums.error(self.norm, &scale), sums.worst_at)
+    }
+}
+
+/// The largest eigenvalue of a block, from above (largest absolute row sum of the symmetric part).
+pub fn largest<const D: usize>(w: &Block<D>) -> f64 {
+    let mut most = 0.0f64;
+    for i in 0..D {
+        let sum: f64 = (0..D).map(|j| 0.5 * (w[i][j] + w[j][i]).abs()).sum();
+        most = most.max(sum);
+    }
+    most
+}
+
+/// Sum of squares of a vector of blocks.
+pub fn squared<const D: usize>(x: &[[f64; D]]) -> f64 {
+    dot(x, x)
+}
+
+/// x . y of vectors of blocks.
+pub fn dot<const D: usize>(x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
+    let (x, y) = (x.as_flattened(), y.as_flattened());
+    let mut sums = [0.0; 4];
+    let (xs, ys) = (x.chunks_exact(4), y.chunks_exact(4));
+    let tail: f64 = xs
+        .remainder()
+        .iter()
+        .zip(ys.remainder())
+        .map(|(a, b)| a * b)
+        .sum();
+    for (a, b) in xs.zip(ys) {
+        for k in 0..4 {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    sums.iter().sum::<f64>() + tail
+}
+
+/// The law of a block, for problems from files.
+pub fn coulomb(mu: &[f64]) -> Vec<Law> {
+    mu.iter().map(|mu| law::Law::Coulomb(*mu)).collect()
+}

@@ -1,0 +1,161 @@
+//! Coulomb's cone on arrays (n, t...).
+
+/// Nearest point of { n >= 0, |t| <= mu n }.
+#[inline(always)]
+pub fn project<const D: usize>(z: &[f64; D], mu: f64) -> [f64; D] {
+    let mut squared = 0.0;
+    for x in &z[1..] {
+        squared += x * x;
+    }
+    let n = z[0];
+    if n >= 0.0 && squared <= mu * mu * n * n {
+        return *z;
+    }
+    let length = squared.sqrt();
+    let foot = (n + mu * length) / (1.0 + mu * mu);
+    let mut y = [0.0; D];
+    if foot > 0.0 && length > 0.0 {
+        let scale = mu * foot / length;
+        y[0] = foot;
+        for k in 1..D {
+            y[k] = z[k] * scale;
+        }
+    } else if n > 0.0 {
+        y[0] = n;
+    }
+    y
+}
+
+/// |t|.
+#[inline(always)]
+pub fn slip<const D: usize>(u: &[f64; D]) -> f64 {
+    if D == 2 {
+        u[1].abs()
+    } else {
+        let mut squared = 0.0;
+        for x in &u[1..] {
+            squared += x * x;
+        }
+        squared.sqrt()
+    }
+}
+
+/// p - project(p - rho (u + mu |u_t| n)).
+#[inline(always)]
+pub fn natural<const D: usize>(p: &[f64; D], u: &[f64; D], mu: f64, rho: f64) -> [f64; D] {
+    let shift = mu * slip(u);
+    let z: [f64; D] = std::array::from_fn(|k| p[k] - rho * (u[k] + if k == 0 { shift } else { 0.0 }));
+    let y = project(&z, mu);
+    std::array::from_fn(|k| p[k] - y[k])
+}
+
+/// What a block of unknowns obeys.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Law {
+    /// 0 <= u_n perp p_n >= 0 and |p_t| <= mu p_n opposite to u_t.
+    Coulomb(f64),
+    /// The same with |p_t| <= mu p_n + cohesion.
+    Cohesive {
+        /// Friction coefficient.
+        mu: f64,
+        /// Shear cohesion over the step (N s).
+        cohesion: f64,
+    },
+    /// u = 0, p any: a bond, whose compliance stands in W.
+    Free,
+    /// As `Free`, but it only pulls: p_n <= 0.
+    Pull,
+    /// Moments (twist, bending): |p_n| <= twist P, |p_t| <= bend P, P the normal impulse of block `of`.
+    Moment {
+        /// The block whose normal impulse bounds the moment.
+        of: u32,
+        /// Bound of the twist over P (m).
+        twist: f64,
+        /// Bound of the bending over P (m).
+        bend: f64,
+    },
+}
+
+impl Law {
+    /// Nearest admissible point to z; `p` are all impulses, for laws that are bounded by others.
+    #[inline(always)]
+    pub fn project<const D: usize>(&self, z: &[f64; D], p: &[[f64; D]]) -> [f64; D] {
+        match self {
+            Self::Coulomb(mu) => project(z, *mu),
+            _ => self.project_rare(z, p),
+        }
+    }
+
+    #[cold]
+    fn project_rare<const D: usize>(&self, z: &[f64; D], p: &[[f64; D]]) -> [f64; D] {
+        match self {
+            Self::Coulomb(mu) => project(z, *mu),
+            Self::Cohesive { mu, cohesion } => cohesive(z, *mu, *cohesion),
+            Self::Free => *z,
+            Self::Pull => {
+                let mut y = *z;
+                y[0] = y[0].min(0.0);
+                y
+            }
+            Self::Moment { of, twist, bend } => {
+                let bound = p[*of as usize][0].max(0.0);
+                let length = slip(z);
+                let scale = if length > bend * bound {
+                    bend * bound / length
+                } else {
+                    1.0
+                };
+                std::array::from_fn(|k| {
+                    if k == 0 {
+                        z[0].clamp(-twist * bound, twist * bound)
+                    } else {
+                        z[k] * scale
+                    }
+                })
+            }
+        }
+    }
+
+    /// mu of the De Saxce correction.
+    #[inline(always)]
+    pub fn friction(&self) -> f64 {
+        match self {
+            Self::Coulomb(mu) | Self::Cohesive { mu, .. } => *mu,
+            _ => 0.0,
+        }
+    }
+
+    /// The natural map, p - project(p - rho (u + mu |u_t| n)).
+    #[inline(always)]
+    pub fn natural<const D: usize>(
+        &self,
+        p: &[f64; D],
+        u: &[f64; D],
+        rho: f64,
+        all: &[[f64; D]],
+    ) -> [f64; D] {
+        if let Self::Coulomb(mu) = self {
+            return natural(p, u, *mu, rho);
+        }
+        let shift = self.friction() * slip(u);
+        let z = std::array::from_fn(|k| p[k] - rho * (u[k] + if k == 0 { shift } else { 0.0 }));
+        let y = self.project(&z, all);
+        std::array::from_fn(|k| p[k] - y[k])
+    }
+}
+
+/// Nearest point of { n >= 0, |t| <= mu n + c }.
+fn cohesive<const D: usize>(z: &[f64; D], mu: f64, c: f64) -> [f64; D] {
+    let length = slip(z);
+    if z[0] >= 0.0 && length <= mu * z[0] + c {
+        return *z;
+    }
+    let foot = (z[0] + mu * (length - c)) / (1.0 + mu * mu);
+    let (n, bound) = if length > c && foot > 0.0 {
+        (foot, mu * foot + c)
+    } else {
+        (0.0, length.min(c))
+    };
+    let scale = if length > 0.0 { bound / length } else { 0.0 };
+    std::array::from_fn(|k| if k == 0 { n } else { z[k] * scale })
+}
