@@ -42,8 +42,21 @@ fn solvers<const D: usize>() -> Vec<(&'static str, Box<dyn Solver<D>>)> {
         ("aa8", Box::new(Anderson::default())),
         ("aa5", Box::new(Anderson{memory:5,..Default::default()})),
         ("aa15", Box::new(Anderson{memory:15,..Default::default()})),
+        ("newton", Box::new(Newton::default())),
+        ("aa-newton", Box::new(Two(40,1e-3))),
+        ("aa-newton6", Box::new(Two(40,1e-6))),
+        ("aa-newton1", Box::new(Two(100,1e-1))),
         ("nlgs-sym", Box::new(Nlgs{order:Order::Symmetric, ..Default::default()})),
     ]
+}
+use fretwork::solve::local::newton::*;
+struct Two(u32, f64);
+impl<const D: usize> Solver<D> for Two {
+    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+        let mut b = budget.at_most(self.0);
+        Anderson::default().solve(form, state, &mut b);
+        Newton{alpha:self.1}.solve(form, state, budget);
+    }
 }
 fn main() {
     let a: Vec<String> = std::env::args().skip(1).collect();

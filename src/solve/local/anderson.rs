@@ -68,7 +68,7 @@ impl<const D: usize> Memory<D> {
         let most = (0..n).fold(0.0f64, |m, k| m.max(self.gram[k][k]));
         for i in 0..n {
             a[i][..n].copy_from_slice(&self.gram[i][..n]);
-            a[i][i] += 1e-13 * most;
+            a[i][i] *= 1.0 + std::env::var("REG").map_or(1e-13, |x| x.parse::<f64>().unwrap());
             a[i][n] = dot(&self.df[i], f);
         }
         // Cholesky-like elimination without pivots: the matrix is positive.
@@ -168,7 +168,7 @@ impl Anderson {
         let g = &state.p;
         subtract(g, start, f);
         let norm = dot(f, f);
-        if !*first && norm > 4.0 * *f0_norm {
+        if !*first && norm > std::env::var("GROW").map_or(4.0, |x| x.parse::<f64>().unwrap()) * *f0_norm {
             // The extrapolation was bad: go on from the last sweep's end.
             memory.clear();
             *first = true;

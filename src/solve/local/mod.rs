@@ -9,6 +9,8 @@ pub mod contact;
 pub mod csr;
 pub mod form;
 pub mod law;
+pub mod linear;
+pub mod newton;
 pub mod nlgs;
 pub mod state;
 

@@ -1,0 +1,104 @@
+//! Linear systems given by rows: dense when small, else sparse, both by `faer`.
+
+use faer::linalg::solvers::{PartialPivLu, Solve, SolveCore};
+use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, Mat, MatMut};
+
+/// A matrix by compressed rows, columns rising.
+#[derive(Clone, Debug, Default)]
+pub struct Rows {
+    /// Where each row starts; one more than rows.
+    pub starts: Vec<usize>,
+    /// Columns.
+    pub columns: Vec<usize>,
+    /// Values.
+    pub values: Vec<f64>,
+}
+
+/// Up to this many unknowns a dense factorisation is faster.
+const DENSE: usize = 120;
+
+/// A factorised matrix.
+pub enum Factor {
+    /// Dense.
+    Dense(PartialPivLu<f64>),
+    /// Sparse, of the transpose.
+    Sparse(Box<Lu<usize, f64>>),
+}
+
+impl Factor {
+    /// LU with partial pivoting; none where the matrix is singular or not finite.
+    pub fn new(a: &Rows) -> Option<Self> {
+        let n = a.starts.len() - 1;
+        if a.values.iter().any(|x| !x.is_finite()) {
+            return None;
+        }
+        let share = a.values.len() as f64 / (n as f64 * n as f64);
+        if n <= DENSE || (n <= 4 * DENSE && share > 0.3) {
+            let mut m = Mat::<f64>::zeros(n, n);
+            for r in 0..n {
+                for k in a.starts[r]..a.starts[r + 1] {
+                    m[(r, a.columns[k])] += a.values[k];
+                }
+            }
+            return Some(Self::Dense(m.partial_piv_lu()));
+        }
+        // The rows of A are the columns of its transpose.
+        let symbolic = SymbolicSparseColMatRef::new_checked(n, n, &a.starts, None, &a.columns);
+        let transposed = SparseColMatRef::new(symbolic, &a.values);
+        let symbolic = SymbolicLu::try_new(transposed.symbolic()).ok()?;
+        let lu = Lu::try_new_with_symbolic(symbolic, transposed).ok()?;
+        Some(Self::Sparse(Box::new(lu)))
+    }
+
+    /// x = A^-1 x; says whether it is finite.
+    pub fn solve(&self, x: &mut [f64]) -> bool {
+        let n = x.len();
+        let mut m = MatMut::from_column_major_slice_mut(x, n, 1);
+        match self {
+            Self::Dense(lu) => lu.solve_in_place(m.as_mut()),
+            Self::Sparse(lu) => lu.solve_transpose_in_place_with_conj(Conj::No, m.as_mut()),
+        }
+        x.iter().all(|x| x.is_finite())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+
+    #[test]
+    fn solves_dense_and_sparse() {
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(5);
+        for n in [3usize, 50, 700] {
+            let mut a = Rows {
+                starts: vec![0],
+                ..Rows::default()
+            };
+            for r in 0..n {
+                for c in 0..n {
+                    if r == c || rng.random_range(0.0..1.0) < 4.0 / n as f64 {
+                        a.columns.push(c);
+                        a.values
+                            .push(rng.random_range(-1.0..1.0) + 6.0 * f64::from(r == c));
+                    }
+                }
+                a.starts.push(a.columns.len());
+            }
+            let x: Vec<f64> = (0..n).map(|_| rng.random_range(-1.0..1.0)).collect();
+            let mut b: Vec<f64> = (0..n)
+                .map(|r| {
+                    (a.starts[r]..a.starts[r + 1])
+                        .map(|k| a.values[k] * x[a.columns[k]])
+                        .sum()
+                })
+                .collect();
+            let factor = Factor::new(&a).expect("not singular");
+            assert!(factor.solve(&mut b));
+            let off = x.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-12, "{n} {off}");
+        }
+    }
+}
