@@ -46,6 +46,7 @@ fn solvers<const D: usize>() -> Vec<(&'static str, Box<dyn Solver<D>>)> {
         ("aa-newton", Box::new(Two(40,1e-3))),
         ("aa-newton6", Box::new(Two(40,1e-6))),
         ("aa-newton1", Box::new(Two(100,1e-1))),
+        ("ipm", Box::new(fretwork::solve::local::interior::Interior)),
         ("nlgs-sym", Box::new(Nlgs{order:Order::Symmetric, ..Default::default()})),
     ]
 }

@@ -8,6 +8,7 @@ pub mod block;
 pub mod contact;
 pub mod csr;
 pub mod form;
+pub mod interior;
 pub mod law;
 pub mod linear;
 pub mod newton;

@@ -1,0 +1,344 @@
+//! Interior point for the conic problem with the De Saxce correction.
+//!
+//! With r = (mu p_n, p_t) and v = (u_n / mu + |u_t|, u_t) the law reads r, v in the Lorentz cone, r.v = 0
+//! (De Saxce and Feng 1998), which primal-dual steps in Nesterov and Todd's scaling solve even where W has
+//! not full rank (Acary, Armand, Nguyen and Shpakovych 2024); here the term |u_t| is linearised with the rest.
+//! Mehrotra's predictor and corrector choose the centring.
+
+use super::block::{Block, BlockMatrix};
+use super::form::{Form, dot};
+use super::law::{Law, slip};
+use super::linear::{Factor, Rows};
+use super::state::{Budget, Solver, State};
+
+/// The method.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Interior;
+
+/// x0^2 - |x1|^2.
+fn determinant<const D: usize>(x: &[f64; D]) -> f64 {
+    let t = slip(x);
+    (x[0] - t) * (x[0] + t)
+}
+
+/// Jordan product.
+fn product<const D: usize>(x: &[f64; D], y: &[f64; D]) -> [f64; D] {
+    std::array::from_fn(|k| {
+        if k == 0 {
+            (0..D).map(|i| x[i] * y[i]).sum()
+        } else {
+            x[0] * y[k] + y[0] * x[k]
+        }
+    })
+}
+
+/// z with x o z = y.
+fn divide<const D: usize>(x: &[f64; D], y: &[f64; D]) -> [f64; D] {
+    let d = determinant(x);
+    let cross: f64 = (1..D).map(|k| x[k] * y[k]).sum();
+    let z0 = (x[0] * y[0] - cross) / d;
+    std::array::from_fn(|k| if k == 0 { z0 } else { (y[k] - z0 * x[k]) / x[0] })
+}
+
+/// Nesterov and Todd's scaling: P r = P^-1 v.
+struct Scaling<const D: usize> {
+    eta: f64,
+    w: [f64; D],
+}
+
+impl<const D: usize> Scaling<D> {
+    fn new(r: &[f64; D], v: &[f64; D]) -> Self {
+        let (dr, dv) = (determinant(r).max(1e-300), determinant(v).max(1e-300));
+        let (a, b) = (1.0 / dr.sqrt(), 1.0 / dv.sqrt());
+        let inner: f64 = (0..D).map(|k| r[k] * v[k]).sum::<f64>() * a * b;
+        let gamma = (0.5 * (1.0 + inner)).sqrt();
+        let w: [f64; D] = std::array::from_fn(|k| {
+            let sign = if k == 0 { 1.0 } else { -1.0 };
+            (v[k] * b + sign * r[k] * a) / (2.0 * gamma)
+        });
+        Self {
+            eta: (dv / dr).powf(0.25),
+            w,
+        }
+    }
+
+    fn apply(&self, x: &[f64; D]) -> [f64; D] {
+        let w = &self.w;
+        let cross: f64 = (1..D).map(|k| w[k] * x[k]).sum();
+        let along = x[0] + cross / (1.0 + w[0]);
+        std::array::from_fn(|k| {
+            self.eta
+                * if k == 0 {
+                    w[0] * x[0] + cross
+                } else {
+                    x[k] + along * w[k]
+                }
+        })
+    }
+
+    fn apply_inverse(&self, x: &[f64; D]) -> [f64; D] {
+        let w = &self.w;
+        let cross: f64 = (1..D).map(|k| w[k] * x[k]).sum();
+        let along = -x[0] + cross / (1.0 + w[0]);
+        std::array::from_fn(|k| {
+            (if k == 0 {
+                w[0] * x[0] - cross
+            } else {
+                x[k] + along * w[k]
+            }) / self.eta
+        })
+    }
+
+    /// P^2 = eta^2 (2 w w^T - J).
+    fn square(&self) -> Block<D> {
+        let e = self.eta * self.eta;
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let sign = if i != j {
+                    0.0
+                } else if i == 0 {
+                    1.0
+                } else {
+                    -1.0
+                };
+                e * (2.0 * self.w[i] * self.w[j] - sign)
+            })
+        })
+    }
+}
+
+/// The longest step that keeps x + t d in the cone.
+fn longest<const D: usize>(x: &[f64; D], d: &[f64; D]) -> f64 {
+    let mut a = d[0] * d[0];
+    let mut b = x[0] * d[0];
+    let mut c = x[0] * x[0];
+    for k in 1..D {
+        a -= d[k] * d[k];
+        b -= x[k] * d[k];
+        c -= x[k] * x[k];
+    }
+    // Smallest positive root of a t^2 + 2 b t + c.
+    let mut t = f64::INFINITY;
+    let disc = b * b - a * c;
+    if disc >= 0.0 {
+        let q = -(b + b.signum() * disc.sqrt());
+        for root in [q / a, c / q] {
+            if root > 0.0 && root < t {
+                t = root;
+            }
+        }
+    }
+    if d[0] < 0.0 {
+        t = t.min(-x[0] / d[0]);
+    }
+    t
+}
+
+struct Scaled<'a, const D: usize> {
+    w: &'a BlockMatrix<D>,
+    /// 1 / mu.
+    over: Vec<f64>,
+}
+
+impl<const D: usize> Scaled<'_, D> {
+    /// Rows of D^-1 W D^-1 + diagonal.
+    fn rows(&self, diagonal: &[Block<D>]) -> Rows {
+        let mut a = Rows::default();
+        a.starts.push(0);
+        for c in 0..self.w.len() {
+            let (columns, blocks) = self.w.row(c);
+            for i in 0..D {
+                let left = if i == 0 { self.over[c] } else { 1.0 };
+                let push = |a: &mut Rows, e: usize, row: &[f64; D]| {
+                    for (j, x) in row.iter().enumerate() {
+                        a.columns.push(e * D + j);
+                        a.values
+                            .push(left * x * if j == 0 { self.over[e] } else { 1.0 });
+                    }
+                };
+                let own = |a: &mut Rows| {
+                    for j in 0..D {
+                        let right = if j == 0 { self.over[c] } else { 1.0 };
+                        a.columns.push(c * D + j);
+                        a.values
+                            .push(left * right * self.w.diagonal[c][i][j] + diagonal[c][i][j]);
+                    }
+                };
+                let mut put = false;
+                for (e, block) in columns.iter().zip(blocks) {
+                    if !put && *e as usize > c {
+                        own(&mut a);
+                        put = true;
+                    }
+                    push(&mut a, *e as usize, &block[i]);
+                }
+                if !put {
+                    own(&mut a);
+                }
+                a.starts.push(a.columns.len());
+            }
+        }
+        a
+    }
+}
+
+impl Interior {
+    /// Whether every block is a cone that this method knows.
+    pub fn serves(laws: &[Law]) -> bool {
+        laws.iter()
+            .all(|law| matches!(law, Law::Coulomb(mu) if *mu > 0.0))
+    }
+}
+
+impl<const D: usize> Solver<D> for Interior {
+    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+        let n = form.len();
+        let w = form.w.matrix();
+        let mu: Vec<f64> = form.laws.iter().map(Law::friction).collect();
+        let scaled = Scaled {
+            w,
+            over: mu.iter().map(|m| 1.0 / m).collect(),
+        };
+        let show = std::env::var("SHOW").is_ok();
+        // A start well inside both cones, at the problem's own scale.
+        let mean_w = w.diagonal.iter().map(|b| b[0][0]).sum::<f64>() / n.max(1) as f64;
+        let size_v = (form.free / n.max(1) as f64).sqrt().max(1e-300);
+        let size_r = size_v / mean_w;
+        let mut r = vec![[0.0; D]; n];
+        let mut v = vec![[0.0; D]; n];
+        for c in 0..n {
+            r[c][0] = size_r;
+            v[c][0] = size_v;
+        }
+        let mut best = (state.error, state.p.clone());
+        let mut p = state.p.clone();
+        let mut u = vec![[0.0; D]; n];
+        while !budget.ends(state) {
+            // Residual of v_n - u_n/mu - |v_t| = 0 and v_t - u_t = 0.
+            for c in 0..n {
+                p[c] = r[c];
+                p[c][0] *= scaled.over[c];
+            }
+            form.velocity(&p, &mut u);
+            let gap: f64 = dot(&r, &v) / n as f64;
+            let mut diagonal = vec![[[0.0; D]; D]; n];
+            let mut tau = vec![[0.0; D]; n];
+            let mut scalings = Vec::with_capacity(n);
+            let mut residual = vec![[0.0; D]; n];
+            for c in 0..n {
+                let t = slip(&v[c]);
+                for k in 1..D {
+                    tau[c][k] = if t > 0.0 { v[c][k] / t } else { 0.0 };
+                    residual[c][k] = v[c][k] - u[c][k];
+                }
+                residual[c][0] = v[c][0] - u[c][0] * scaled.over[c] - t;
+                let s = Scaling::new(&r[c], &v[c]);
+                let square = s.square();
+                // A P^2 with A = I - e tau^T.
+                diagonal[c] = square;
+                for j in 0..D {
+                    for k in 1..D {
+                        diagonal[c][0][j] -= tau[c][k] * square[k][j];
+                    }
+                }
+                scalings.push(s);
+            }
+            let Some(factor) = Factor::new(&scaled.rows(&diagonal)) else {
+                break;
+            };
+            let direction = |d: &[[f64; D]]| -> Option<(Vec<[f64; D]>, Vec<[f64; D]>)> {
+                // (W + A P^2) dr = A P d + residual;  dv = P d - P^2 dr.
+                let pd: Vec<[f64; D]> = (0..n).map(|c| scalings[c].apply(&d[c])).collect();
+                let mut dr: Vec<[f64; D]> = (0..n)
+                    .map(|c| {
+                        std::array::from_fn(|k| {
+                            let mut x = pd[c][k] + residual[c][k];
+                            if k == 0 {
+                                for j in 1..D {
+                                    x -= tau[c][j] * pd[c][j];
+                                }
+                            }
+                            x
+                        })
+                    })
+                    .collect();
+                if !factor.solve(dr.as_flattened_mut()) {
+                    return None;
+                }
+                let dv = (0..n)
+                    .map(|c| {
+                        let back = scalings[c].apply(&scalings[c].apply(&dr[c]));
+                        std::array::from_fn(|k| pd[c][k] - back[k])
+                    })
+                    .collect();
+                Some((dr, dv))
+            };
+            let longest_both = |dr: &[[f64; D]], dv: &[[f64; D]]| {
+                (0..n).fold((f64::INFINITY, f64::INFINITY), |(a, b), c| {
+                    (a.min(longest(&r[c], &dr[c])), b.min(longest(&v[c], &dv[c])))
+                })
+            };
+            let lambda: Vec<[f64; D]> = (0..n).map(|c| scalings[c].apply(&r[c])).collect();
+            let affine: Vec<[f64; D]> = lambda.iter().map(|l| l.map(|x| -x)).collect();
+            let Some((dr, dv)) = direction(&affine) else {
+                break;
+            };
+            let (a, b) = longest_both(&dr, &dv);
+            let (a, b) = (a.min(1.0), b.min(1.0));
+            let t = a.min(b);
+            let ahead: f64 = (0..n)
+                .map(|c| {
+                    (0..D)
+                        .map(|k| (r[c][k] + t * dr[c][k]) * (v[c][k] + t * dv[c][k]))
+                        .sum::<f64>()
+                })
+                .sum::<f64>()
+                / n as f64;
+            let sigma = (ahead / gap).clamp(0.0, 1.0).powi(3).clamp(1e-6, 0.9);
+            let corrected: Vec<[f64; D]> = (0..n)
+                .map(|c| {
+                    let x = scalings[c].apply(&dr[c]);
+                    let y = scalings[c].apply_inverse(&dv[c]);
+                    let second = product(&x, &y);
+                    let square = product(&lambda[c], &lambda[c]);
+                    let right: [f64; D] = std::array::from_fn(|k| {
+                        -square[k] - second[k] + if k == 0 { sigma * gap } else { 0.0 }
+                    });
+                    divide(&lambda[c], &right)
+                })
+                .collect();
+            let Some((dr, dv)) = direction(&corrected) else {
+                break;
+            };
+            let (a, b) = longest_both(&dr, &dv);
+            let keep = 1.0 - (0.1 * gap / (size_r * size_v)).clamp(1e-4, 0.1);
+            let t = (keep * a).min(keep * b).min(1.0);
+            for c in 0..n {
+                for k in 0..D {
+                    r[c][k] += t * dr[c][k];
+                    v[c][k] += t * dv[c][k];
+                }
+            }
+            state.iterations += 1;
+            for c in 0..n {
+                state.p[c] = r[c];
+                state.p[c][0] *= scaled.over[c];
+            }
+            state.measure(form);
+            if show {
+                eprintln!("ipm {} gap {gap:.2e} sigma {sigma:.1e} step {t:.2e} res {:.2e} error {:.2e}", state.iterations, dot(&residual, &residual).sqrt(), state.error);
+            }
+            if state.error < best.0 {
+                best.0 = state.error;
+                best.1.copy_from_slice(&state.p);
+            }
+            if t < 1e-10 {
+                break;
+            }
+        }
+        if state.error > best.0 {
+            state.p.copy_from_slice(&best.1);
+            state.measure(form);
+        }
+    }
+}
