@@ -47,6 +47,14 @@ fn solvers<const D: usize>() -> Vec<(&'static str, Box<dyn Solver<D>>)> {
         ("aa-newton6", Box::new(Two(40,1e-6))),
         ("aa-newton1", Box::new(Two(100,1e-1))),
         ("ipm", Box::new(fretwork::solve::local::interior::Interior)),
+        ("nn200", Box::new(Three(200000,1e-5))), ("nn400", Box::new(Three(400000,1e-5))),
+        ("nlgs-newton4", Box::new(Three(90000,1e-4))),
+        ("nlgs-newton6", Box::new(Three(90000,1e-6))),
+        ("nlgs-aa", Box::new(Three(90000,0.0))),
+        ("nlgs1.5", Box::new(Nlgs{relaxation:1.5, ..Default::default()})),
+        ("nlgs1.7", Box::new(Nlgs{relaxation:1.7, ..Default::default()})),
+        ("nlgs0.8", Box::new(Nlgs{relaxation:0.8, ..Default::default()})),
+        ("sym1.3", Box::new(Nlgs{relaxation:1.3, order:Order::Symmetric})),
         ("nlgs-sym", Box::new(Nlgs{order:Order::Symmetric, ..Default::default()})),
     ]
 }
@@ -57,6 +65,16 @@ impl<const D: usize> Solver<D> for Two {
         let mut b = budget.at_most(self.0);
         Anderson::default().solve(form, state, &mut b);
         Newton{alpha:self.1}.solve(form, state, budget);
+    }
+}
+struct Three(u32, f64);
+impl<const D: usize> Solver<D> for Three {
+    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+        let mut b = budget.at_most(self.0);
+        Nlgs{relaxation:1.5,..Default::default()}.solve(form, state, &mut b);
+        eprintln!("after nlgs {:.2e}", state.error);
+        if self.1 == 0.0 { Anderson::default().solve(form, state, budget); } else {
+        Newton{alpha:self.1}.solve(form, state, budget); }
     }
 }
 fn main() {

@@ -2,8 +2,8 @@
 //! extrapolation that the next sweep finds worse is taken back.
 
 use super::form::{Form, dot};
-use super::nlgs::Sweep;
-use super::state::{Budget, Solver, State};
+use super::nlgs::{Sweep, until_test};
+use super::state::{Best, Budget, Solver, State};
 
 /// The method and its parameters.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +68,7 @@ impl<const D: usize> Memory<D> {
         let most = (0..n).fold(0.0f64, |m, k| m.max(self.gram[k][k]));
         for i in 0..n {
             a[i][..n].copy_from_slice(&self.gram[i][..n]);
-            a[i][i] *= 1.0 + std::env::var("REG").map_or(1e-13, |x| x.parse::<f64>().unwrap());
+            a[i][i] *= 1.0 + 1e-10;
             a[i][n] = dot(&self.df[i], f);
         }
         // Cholesky-like elimination without pivots: the matrix is positive.
@@ -107,89 +107,86 @@ fn subtract<const D: usize>(a: &[[f64; D]], b: &[[f64; D]], out: &mut [[f64; D]]
     }
 }
 
-impl<const D: usize> Solver<D> for Anderson {
-    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
-        let n = form.len();
-        let mut sweep = Sweep::new(form);
-        let mut memory = Memory::new(self.memory, n);
-        let mut best = (state.error, state.p.clone());
-        let (mut g0, mut f0) = (vec![[0.0; D]; n], vec![[0.0; D]; n]);
-        let mut f = vec![[0.0; D]; n];
-        let mut start = state.p.clone();
-        let mut f0_norm = f64::INFINITY;
-        let mut first = true;
-        let mut next_test = state.iterations + 1;
-        while !budget.ends(state) {
-            loop {
-                // state.p := g(start)
-                state.p.copy_from_slice(&start);
-                sweep.forward(&mut state.p, self.relaxation);
-                state.iterations += 1;
-                if state.iterations >= next_test {
-                    break;
-                }
-                self.next(
-                    form, &mut memory, state, &mut start, &mut f, &mut f0, &mut g0, &mut f0_norm,
-                    &mut first,
-                );
-            }
-            state.measure(form);
-            if state.error < best.0 {
-                best.0 = state.error;
-                best.1.copy_from_slice(&state.p);
-            }
-            next_test = state.iterations + (state.iterations / 4).clamp(1, 10);
-            self.next(
-                form, &mut memory, state, &mut start, &mut f, &mut f0, &mut g0, &mut f0_norm,
-                &mut first,
-            );
+/// The sequence of sweeps and extrapolations.
+struct Sequence<const D: usize> {
+    memory: Memory<D>,
+    /// Where the next sweep starts.
+    start: Vec<[f64; D]>,
+    f: Vec<[f64; D]>,
+    /// End and change of the sweep before; its squared change.
+    before: Option<f64>,
+    g0: Vec<[f64; D]>,
+    f0: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Sequence<D> {
+    fn new(memory: usize, start: &[[f64; D]]) -> Self {
+        let zero = vec![[0.0; D]; start.len()];
+        Self {
+            memory: Memory::new(memory, start.len()),
+            start: start.to_vec(),
+            f: zero.clone(),
+            before: None,
+            g0: zero.clone(),
+            f0: zero,
         }
-        if state.error > best.0 {
-            state.p.copy_from_slice(&best.1);
-            state.measure(form);
+    }
+
+    /// Takes in the end of a sweep from `start` and chooses the next start.
+    fn next(&mut self, form: &Form<D>, g: &[[f64; D]]) {
+        /// Growth of the squared change that an extrapolation may cause.
+        const GROWTH: f64 = 4.0;
+        subtract(g, &self.start, &mut self.f);
+        let change = dot(&self.f, &self.f);
+        if let Some(before) = self.before {
+            if change > GROWTH * before {
+                self.memory.clear();
+                self.before = None;
+                self.start.copy_from_slice(&self.g0);
+                return;
+            }
+            self.memory.push(g, &self.g0, &self.f, &self.f0);
+        }
+        self.before = Some(change);
+        self.g0.copy_from_slice(g);
+        self.f0.copy_from_slice(&self.f);
+        if self.memory.size > 0 && self.memory.extrapolate(g, &self.f, &mut self.start) {
+            for (c, p) in self.start.iter_mut().enumerate() {
+                *p = form.laws[c].project(p, g);
+            }
+        } else {
+            self.memory.clear();
+            self.start.copy_from_slice(g);
         }
     }
 }
 
-impl Anderson {
-    #[allow(clippy::too_many_arguments)]
-    fn next<const D: usize>(
-        &self,
-        form: &Form<D>,
-        memory: &mut Memory<D>,
-        state: &State<D>,
-        start: &mut Vec<[f64; D]>,
-        f: &mut Vec<[f64; D]>,
-        f0: &mut Vec<[f64; D]>,
-        g0: &mut Vec<[f64; D]>,
-        f0_norm: &mut f64,
-        first: &mut bool,
-    ) {
-        let g = &state.p;
-        subtract(g, start, f);
-        let norm = dot(f, f);
-        if !*first && norm > std::env::var("GROW").map_or(4.0, |x| x.parse::<f64>().unwrap()) * *f0_norm {
-            // The extrapolation was bad: go on from the last sweep's end.
-            memory.clear();
-            *first = true;
-            start.copy_from_slice(g0);
-            *f0_norm = f64::INFINITY;
-            return;
-        }
-        if !*first {
-            memory.push(g, g0, f, f0);
-        }
-        *first = false;
-        g0.copy_from_slice(g);
-        f0.copy_from_slice(f);
-        *f0_norm = norm;
-        if memory.size == 0 || !memory.extrapolate(g, f, start) {
-            memory.clear();
-            start.copy_from_slice(g);
-        } else {
-            for c in 0..start.len() {
-                start[c] = form.laws[c].project(&start[c], g);
+impl<const D: usize> Solver<D> for Anderson {
+    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+        let mut sweep = Sweep::new(form);
+        let mut sequence: Option<Sequence<D>> = None;
+        let mut best = Best::of(state);
+        let mut done = 0;
+        while !budget.ends(state) {
+            let last = (state.iterations + until_test(done)).min(budget.max_iterations);
+            while state.iterations < last {
+                // The first sweep often ends it: what follows is made when it did not.
+                if done == 1 {
+                    sequence = Some(Sequence::new(self.memory, &state.p));
+                }
+                if let Some(sequence) = &mut sequence {
+                    if done > 1 {
+                        sequence.next(form, &state.p);
+                    }
+                    state.p.copy_from_slice(&sequence.start);
+                }
+                sweep.forward(&mut state.p, self.relaxation);
+                state.iterations += 1;
+                done += 1;
             }
+            state.measure(form);
+            best.keep(state);
         }
+        best.restore(form, state);
     }
 }

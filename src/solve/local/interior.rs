@@ -9,7 +9,10 @@ use super::block::{Block, BlockMatrix};
 use super::form::{Form, dot};
 use super::law::{Law, slip};
 use super::linear::{Factor, Rows};
-use super::state::{Budget, Solver, State};
+use super::state::{Best, Budget, Solver, State};
+
+/// Rounding of |v_t| over what a sticking contact's v_t is on the central path.
+const SMOOTH: f64 = 0.1;
 
 /// The method.
 #[derive(Clone, Copy, Debug, Default)]
@@ -199,7 +202,6 @@ impl<const D: usize> Solver<D> for Interior {
             w,
             over: mu.iter().map(|m| 1.0 / m).collect(),
         };
-        let show = std::env::var("SHOW").is_ok();
         // A start well inside both cones, at the problem's own scale.
         let mean_w = w.diagonal.iter().map(|b| b[0][0]).sum::<f64>() / n.max(1) as f64;
         let size_v = (form.free / n.max(1) as f64).sqrt().max(1e-300);
@@ -210,9 +212,11 @@ impl<const D: usize> Solver<D> for Interior {
             r[c][0] = size_r;
             v[c][0] = size_v;
         }
-        let mut best = (state.error, state.p.clone());
+        let mut best = Best::of(state);
         let mut p = state.p.clone();
         let mut u = vec![[0.0; D]; n];
+        let mut lagged = false;
+        let mut short = 0;
         while !budget.ends(state) {
             // Residual of v_n - u_n/mu - |v_t| = 0 and v_t - u_t = 0.
             for c in 0..n {
@@ -227,11 +231,13 @@ impl<const D: usize> Solver<D> for Interior {
             let mut residual = vec![[0.0; D]; n];
             for c in 0..n {
                 let t = slip(&v[c]);
+                let eps = SMOOTH * gap / r[c][0];
+                let smooth = (t * t + eps * eps).sqrt();
                 for k in 1..D {
-                    tau[c][k] = if t > 0.0 { v[c][k] / t } else { 0.0 };
+                    tau[c][k] = if lagged { 0.0 } else { v[c][k] / smooth };
                     residual[c][k] = v[c][k] - u[c][k];
                 }
-                residual[c][0] = v[c][0] - u[c][0] * scaled.over[c] - t;
+                residual[c][0] = v[c][0] - u[c][0] * scaled.over[c] - smooth + eps;
                 let s = Scaling::new(&r[c], &v[c]);
                 let square = s.square();
                 // A P^2 with A = I - e tau^T.
@@ -325,20 +331,13 @@ impl<const D: usize> Solver<D> for Interior {
                 state.p[c][0] *= scaled.over[c];
             }
             state.measure(form);
-            if show {
-                eprintln!("ipm {} gap {gap:.2e} sigma {sigma:.1e} step {t:.2e} res {:.2e} error {:.2e}", state.iterations, dot(&residual, &residual).sqrt(), state.error);
-            }
-            if state.error < best.0 {
-                best.0 = state.error;
-                best.1.copy_from_slice(&state.p);
-            }
+            best.keep(state);
+            short = if t < 0.1 { short + 1 } else { 0 };
+            lagged = short > 1;
             if t < 1e-10 {
                 break;
             }
         }
-        if state.error > best.0 {
-            state.p.copy_from_slice(&best.1);
-            state.measure(form);
-        }
+        best.restore(form, state);
     }
 }

@@ -6,10 +6,10 @@
 //! Acary, Bremond and Huber 2018); alpha falls while that goes well. Contacts whose prediction is open
 //! leave the linear system.
 
-use super::form::{Form, dot, largest, squared};
+use super::form::{Form, largest, squared};
 use super::law::{Law, slip};
 use super::linear::{Factor, Rows};
-use super::state::{Budget, Solver, State};
+use super::state::{Best, Budget, Solver, State};
 use std::time::Instant;
 
 /// The method and its parameters.
@@ -229,8 +229,107 @@ fn push<const D: usize>(a: &mut Rows, block: usize, row: &[f64; D]) {
     }
 }
 
+/// An iterate of Newton's method with what belongs to it.
+#[derive(Clone)]
+struct Point<const D: usize> {
+    p: Vec<[f64; D]>,
+    u: Vec<[f64; D]>,
+    f: Vec<[f64; D]>,
+    merit: f64,
+}
+
+impl<const D: usize> Point<D> {
+    fn new(n: usize) -> Self {
+        let zero = vec![[0.0; D]; n];
+        Self {
+            p: zero.clone(),
+            u: zero.clone(),
+            f: zero,
+            merit: f64::INFINITY,
+        }
+    }
+
+    fn evaluate(&mut self, prox: &Prox<D>) {
+        prox.velocity(&self.p, &mut self.u);
+        self.merit = prox.residual(&self.p, &self.u, &mut self.f);
+    }
+
+    /// from + t d.
+    fn step(&mut self, from: &[[f64; D]], t: f64, d: &[[f64; D]], prox: &Prox<D>) {
+        let parts = from.as_flattened().iter().zip(d.as_flattened());
+        for (x, (a, d)) in self.p.as_flattened_mut().iter_mut().zip(parts) {
+            *x = a + t * d;
+        }
+        self.evaluate(prox);
+    }
+}
+
+/// Newton steps of one proximal problem.
+const INNER: u32 = 30;
+/// Steps that may go the whole way though the merit grows: between kinks the line search creeps where the
+/// full step lands in the right piece.
+const BOLD: u32 = 10;
+/// A step shorter than this is given up for the full one.
+const SHORT: f64 = 0.1;
+
+/// Solves one proximal problem from its centre; whether it got there, well within what alpha moved.
+fn inner<const D: usize>(
+    prox: &Prox<D>,
+    mean: f64,
+    at: &mut Point<D>,
+    trial: &mut Point<D>,
+    state: &mut State<D>,
+    budget: &Budget,
+) -> bool {
+    at.p.copy_from_slice(&prox.centre);
+    at.evaluate(prox);
+    let mut bold = 0;
+    for _ in 0..INNER {
+        if state.iterations >= budget.max_iterations || Instant::now() > budget.deadline {
+            return false;
+        }
+        let Some(d) = prox.direction(&at.p, &at.u, &at.f) else {
+            return false;
+        };
+        state.iterations += 1;
+        let mut t = 1.0;
+        let fell = loop {
+            trial.step(&at.p, t, &d, prox);
+            if trial.merit <= (1.0 - 1e-4 * t) * at.merit {
+                break true;
+            }
+            t *= 0.5;
+            if t < if bold < BOLD { SHORT } else { 2e-4 } {
+                break false;
+            }
+        };
+        if !fell {
+            if bold >= BOLD {
+                return false;
+            }
+            bold += 1;
+            trial.step(&at.p, 1.0, &d, prox);
+        }
+        std::mem::swap(at, trial);
+        let moved: f64 = at
+            .p
+            .as_flattened()
+            .iter()
+            .zip(prox.centre.as_flattened())
+            .map(|(a, b)| (a - b).powi(2))
+            .sum();
+        let enough = 1e-2 * (prox.alpha / mean).powi(2) * moved;
+        if at.merit <= enough.max(1e-26 * squared(&at.p)) {
+            return true;
+        }
+    }
+    false
+}
+
 impl<const D: usize> Solver<D> for Newton {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+        const FALL: f64 = 0.3;
+        const RISE: f64 = 3.0;
         let n = form.len();
         let steps: Vec<f64> = (0..n)
             .map(|c| {
@@ -238,103 +337,38 @@ impl<const D: usize> Solver<D> for Newton {
                 if l > 0.0 { 1.0 / l } else { 1.0 }
             })
             .collect();
-        let mean = (0..n).map(|c| 1.0 / steps[c]).sum::<f64>() / n.max(1) as f64;
-        let mut alpha = self.alpha * mean;
-        let mut p = state.p.clone();
-        let (mut u, mut f) = (vec![[0.0; D]; n], vec![[0.0; D]; n]);
-        let (mut trial, mut trial_u, mut trial_f) = (p.clone(), u.clone(), f.clone());
-        let mut best = (state.error, state.p.clone());
+        let mean = steps.iter().map(|s| 1.0 / s).sum::<f64>() / n.max(1) as f64;
+        let mut prox = Prox {
+            form,
+            rho: &steps,
+            alpha: self.alpha * mean,
+            centre: state.p.clone(),
+        };
+        let (mut at, mut trial) = (Point::new(n), Point::new(n));
+        let mut best = Best::of(state);
         while !budget.ends(state) {
-            let prox = Prox {
-                form,
-                rho: &steps,
-                alpha,
-                centre: state.p.clone(),
-            };
-            p.copy_from_slice(&state.p);
-            prox.velocity(&p, &mut u);
-            let mut merit = prox.residual(&p, &u, &mut f);
-            let first = merit;
-            let mut good = false;
-            for _ in 0..30 {
-                if state.iterations >= budget.max_iterations || Instant::now() > budget.deadline {
-                    break;
-                }
-                let Some(d) = prox.direction(&p, &u, &f) else {
-                    break;
-                };
-                state.iterations += 1;
-                let mut t = 1.0;
-                let mut fell = false;
-                for _ in 0..12 {
-                    for c in 0..n {
-                        for k in 0..D {
-                            trial[c][k] = p[c][k] + t * d[c][k];
-                        }
-                    }
-                    prox.velocity(&trial, &mut trial_u);
-                    let m = prox.residual(&trial, &trial_u, &mut trial_f);
-                    if m <= (1.0 - 1e-4 * t) * merit || m < 1e-28 * first {
-                        fell = true;
-                        std::mem::swap(&mut p, &mut trial);
-                        std::mem::swap(&mut u, &mut trial_u);
-                        std::mem::swap(&mut f, &mut trial_f);
-                        merit = m;
-                        break;
-                    }
-                    t *= 0.5;
-                }
-                let far: f64 = p
-                    .iter()
-                    .zip(&prox.centre)
-                    .map(|(a, b)| {
-                        (0..D).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>()
-                    })
-                    .sum::<f64>();
-                let moved = alpha * alpha * far / (mean * mean);
-                if std::env::var("SHOW").is_ok() {
-                    eprintln!("   alpha {:.1e} it {} merit {merit:.3e} t {t:.1e} moved {moved:.2e} fell {fell}", alpha / mean, state.iterations);
-                }
-                if merit <= 1e-2 * moved || merit <= 1e-26 * dot(&p, &p) {
-                    good = true;
-                    break;
-                }
-                if !fell {
-                    break;
-                }
-            }
-            // The projection of a Newton iterate onto the cone costs nothing and never hurts.
+            prox.centre.copy_from_slice(&state.p);
             let before = state.error;
-            state.p.copy_from_slice(&p);
-            let keep = state.p.clone();
+            let good = inner(&prox, mean, &mut at, &mut trial, state, budget);
+            // Newton's iterate may stand a little outside the cones.
             for c in 0..n {
-                state.p[c] = form.laws[c].project(&keep[c], &keep);
+                state.p[c] = form.laws[c].project(&at.p[c], &at.p);
             }
             state.measure(form);
-            if std::env::var("SHOW").is_ok() {
-                eprintln!("alpha {:.1e} good {good} error {before:.2e} -> {:.2e}", alpha / mean, state.error);
-            }
-            if state.error < best.0 {
-                best.0 = state.error;
-                best.1.copy_from_slice(&state.p);
-            }
+            best.keep(state);
             if good {
-                alpha *= 0.1;
-                alpha = alpha.max(1e-14 * mean);
-            } else {
-                alpha *= 10.0;
-                if state.error > before {
-                    state.p.copy_from_slice(&prox.centre);
-                    state.measure(form);
-                }
-                if alpha > 1e3 * mean {
-                    break;
-                }
+                prox.alpha = (FALL * prox.alpha).max(1e-14 * mean);
+                continue;
+            }
+            prox.alpha *= RISE;
+            if state.error > before {
+                state.p.copy_from_slice(&prox.centre);
+                state.measure(form);
+            }
+            if prox.alpha > 1e3 * mean {
+                break;
             }
         }
-        if state.error > best.0 {
-            state.p.copy_from_slice(&best.1);
-            state.measure(form);
-        }
+        best.restore(form, state);
     }
 }

@@ -4,7 +4,7 @@ use super::block::BlockMatrix;
 use super::contact::Local;
 use super::form::Form;
 use super::law::Law;
-use super::state::{Budget, Solver, State};
+use super::state::{Best, Budget, Solver, State};
 
 /// How contacts are visited.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,7 +54,7 @@ impl<'a, const D: usize> Sweep<'a, D> {
         }
     }
 
-    /// Solves one contact; returns the square of its change.
+    /// Solves one contact.
     #[inline(always)]
     fn visit(&mut self, c: usize, p: &mut [[f64; D]], relaxation: f64) {
         let f = self.w.gather(c, p, self.q[c]);
@@ -87,39 +87,41 @@ impl<'a, const D: usize> Sweep<'a, D> {
     }
 }
 
+/// Sweeps until the next test: often at first, where few may do.
+pub fn until_test(done: u32) -> u32 {
+    (done / 4).clamp(1, 10)
+}
+
 impl<const D: usize> Solver<D> for Nlgs {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+        /// Tests without a better error after which there is to be less relaxation.
+        const PATIENCE: u32 = 20;
         let mut sweep = Sweep::new(form);
-        let mut next_test = state.iterations + 1;
-        let mut best = (state.error, state.p.clone());
+        let mut best = Best::of(state);
         let mut relaxation = self.relaxation;
         let mut stalled = 0;
+        let mut done = 0;
         while !budget.ends(state) {
-            while state.iterations < next_test.min(budget.max_iterations) {
+            let last = (state.iterations + until_test(done)).min(budget.max_iterations);
+            while state.iterations < last {
                 if self.order == Order::Symmetric && state.iterations % 2 == 1 {
                     sweep.backward(&mut state.p, relaxation);
                 } else {
                     sweep.forward(&mut state.p, relaxation);
                 }
                 state.iterations += 1;
+                done += 1;
             }
             state.measure(form);
-            if state.error < 0.99 * best.0 {
-                best.0 = state.error;
-                best.1.copy_from_slice(&state.p);
+            let better = state.error < 0.99 * best.error;
+            let worse = state.error > 4.0 * best.error;
+            stalled = if better { 0 } else { stalled + 1 };
+            best.keep(state);
+            if relaxation > 1.0 && (worse || stalled > PATIENCE) {
+                relaxation = 1.0 + 0.5 * (relaxation - 1.0);
                 stalled = 0;
-            } else {
-                stalled += 1;
-                if stalled > 20 && relaxation > 1.0 || state.error > 4.0 * best.0 {
-                    relaxation = 1.0 + 0.5 * (relaxation - 1.0);
-                    stalled = 0;
-                }
             }
-            next_test = state.iterations + (state.iterations / 4).clamp(1, 10);
         }
-        if state.error > best.0 {
-            state.p.copy_from_slice(&best.1);
-            state.measure(form);
-        }
+        best.restore(form, state);
     }
 }

@@ -48,6 +48,40 @@ impl<const D: usize> State<D> {
     }
 }
 
+/// The best iterate so far.
+#[derive(Clone, Debug)]
+pub struct Best<const D: usize> {
+    /// Its error.
+    pub error: f64,
+    p: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Best<D> {
+    /// The state at hand.
+    pub fn of(state: &State<D>) -> Self {
+        Self {
+            error: state.error,
+            p: state.p.clone(),
+        }
+    }
+
+    /// Keeps the state if it is better.
+    pub fn keep(&mut self, state: &State<D>) {
+        if state.error < self.error {
+            self.error = state.error;
+            self.p.copy_from_slice(&state.p);
+        }
+    }
+
+    /// Puts the best back into the state.
+    pub fn restore(&self, form: &Form<D>, state: &mut State<D>) {
+        if state.error > self.error {
+            state.p.copy_from_slice(&self.p);
+            state.measure(form);
+        }
+    }
+}
+
 /// When to stop.
 #[derive(Clone, Debug)]
 pub struct Budget {
