@@ -55,6 +55,11 @@ fn solvers<const D: usize>() -> Vec<(&'static str, Box<dyn Solver<D>>)> {
         ("nlgs1.7", Box::new(Nlgs{relaxation:1.7, ..Default::default()})),
         ("nlgs0.8", Box::new(Nlgs{relaxation:0.8, ..Default::default()})),
         ("sym1.3", Box::new(Nlgs{relaxation:1.3, order:Order::Symmetric})),
+        ("auto", Box::new(fretwork::solve::local::auto::Auto::default())),
+        ("pg", Box::new(fretwork::solve::local::gradient::Gradient{kind:fretwork::solve::local::gradient::Kind::Plain})),
+        ("cpg", Box::new(fretwork::solve::local::gradient::Gradient{kind:fretwork::solve::local::gradient::Kind::Conjugate})),
+        ("pcpg", Box::new(fretwork::solve::local::gradient::Gradient{kind:fretwork::solve::local::gradient::Kind::Preconditioned})),
+        ("apgd", Box::new(fretwork::solve::local::accelerated::Accelerated)),
         ("nlgs-sym", Box::new(Nlgs{order:Order::Symmetric, ..Default::default()})),
     ]
 }

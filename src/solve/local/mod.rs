@@ -3,11 +3,14 @@
 //! This is the form of the field's shared collection (FCLIB). Components are (n, t) or (n, t1, t2),
 //! contact after contact.
 
+pub mod accelerated;
 pub mod anderson;
+pub mod auto;
 pub mod block;
 pub mod contact;
 pub mod csr;
 pub mod form;
+pub mod gradient;
 pub mod interior;
 pub mod law;
 pub mod linear;

@@ -1,0 +1,254 @@
+//! Projected gradients for the quasi-optimisation problem of Renouf and Alart (Comput. Methods Appl. Mech.
+//! Eng. 194, 2005): p = argmin over C(mu p_n) of p.W p / 2 + q.p, whose thresholds s = mu p_n follow at every
+//! iteration (the diagonalised Tresca fixed point).
+//!
+//! The prediction is projected on C^k, gradient and last direction on the cone tangent to C^k at the
+//! iterate. [`Kind::Plain`] goes along the gradient, [`Kind::Conjugate`] along conjugate directions, and
+//! [`Kind::Preconditioned`] does so in the metric of the diagonal of W.
+//!
+//! Projecting the end of an exact line search can raise the energy p.W p / 2 + q.p, and then the bare method
+//! goes round in circles. Such a step is taken back and replaced by one of the safe length 1 / lambda_max.
+
+use super::form::{Form, dot};
+use super::law::{Law, slip};
+use super::state::{Best, Budget, Solver, State};
+
+/// Which of the three.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Projected gradient, PG.
+    Plain,
+    /// Conjugate projected gradient, CPG.
+    Conjugate,
+    /// The same preconditioned by the diagonal, PCPG.
+    Preconditioned,
+}
+
+/// The method.
+#[derive(Clone, Copy, Debug)]
+pub struct Gradient {
+    /// Which of the three.
+    pub kind: Kind,
+}
+
+/// A contact's admissible set at given thresholds.
+#[derive(Clone, Copy, Debug)]
+enum Set {
+    /// n >= 0, |t| <= s.
+    Pushes(f64),
+    /// n <= 0, t free.
+    Pulls,
+    /// Anything.
+    All,
+    /// |n| <= a, |t| <= b.
+    Box(f64, f64),
+}
+
+impl Set {
+    fn of<const D: usize>(law: &Law, own: &[f64; D], all: &[[f64; D]]) -> Self {
+        match law {
+            Law::Coulomb(mu) => Self::Pushes(mu * own[0].max(0.0)),
+            Law::Cohesive { mu, cohesion } => Self::Pushes(mu * own[0].max(0.0) + cohesion),
+            Law::Free => Self::All,
+            Law::Pull => Self::Pulls,
+            Law::Moment { of, twist, bend } => {
+                let n = all[*of as usize][0].max(0.0);
+                Self::Box(twist * n, bend * n)
+            }
+        }
+    }
+
+    fn project<const D: usize>(self, p: &mut [f64; D]) {
+        let disc = |p: &mut [f64; D], s: f64| {
+            let t = slip(p);
+            if t > s {
+                for x in &mut p[1..] {
+                    *x *= s / t;
+                }
+            }
+        };
+        match self {
+            Self::Pushes(s) => {
+                p[0] = p[0].max(0.0);
+                disc(p, s);
+            }
+            Self::Pulls => p[0] = p[0].min(0.0),
+            Self::All => {}
+            Self::Box(a, b) => {
+                p[0] = p[0].clamp(-a, a);
+                disc(p, b);
+            }
+        }
+    }
+
+    /// Projects a direction on the cone tangent to the set at p.
+    fn tangent<const D: usize>(self, p: &[f64; D], d: &mut [f64; D]) {
+        let disc = |d: &mut [f64; D], s: f64| {
+            let t = slip(p);
+            if s == 0.0 {
+                for x in &mut d[1..] {
+                    *x = 0.0;
+                }
+            } else if t >= s * (1.0 - 1e-12) {
+                let out: f64 = (1..D).map(|k| d[k] * p[k]).sum::<f64>() / t;
+                if out > 0.0 {
+                    for k in 1..D {
+                        d[k] -= out * p[k] / t;
+                    }
+                }
+            }
+        };
+        match self {
+            Self::Pushes(s) => {
+                if p[0] <= 0.0 {
+                    d[0] = d[0].max(0.0);
+                }
+                disc(d, s);
+            }
+            Self::Pulls => {
+                if p[0] >= 0.0 {
+                    d[0] = d[0].min(0.0);
+                }
+            }
+            Self::All => {}
+            Self::Box(a, b) => {
+                if p[0] >= a {
+                    d[0] = d[0].min(0.0);
+                }
+                if p[0] <= -a {
+                    d[0] = d[0].max(0.0);
+                }
+                disc(d, b);
+            }
+        }
+    }
+}
+
+/// Thresholds from the normal part of the prediction, then the projection on them.
+fn project<const D: usize>(form: &Form<D>, p: &mut [[f64; D]]) {
+    for c in 0..p.len() {
+        let mut own = p[c];
+        Set::of(&form.laws[c], &own, p).project(&mut own);
+        p[c] = own;
+    }
+}
+
+/// 1 / lambda_max of W in the metric, by power iteration, a little on the safe side.
+fn safe_step<const D: usize>(form: &Form<D>, metric: &[[f64; D]]) -> f64 {
+    const ROUNDS: usize = 20;
+    let zero = vec![[0.0; D]; form.len()];
+    let mut x = vec![[1.0; D]; form.len()];
+    let mut y = zero.clone();
+    let mut lambda = 0.0f64;
+    for _ in 0..ROUNDS {
+        form.w.velocity(&x, &zero, &mut y);
+        for (y, m) in y.iter_mut().zip(metric) {
+            for k in 0..D {
+                y[k] *= m[k];
+            }
+        }
+        let length = dot(&y, &y).sqrt();
+        lambda = lambda.max(length / dot(&x, &x).sqrt());
+        if length == 0.0 {
+            break;
+        }
+        for (x, y) in x.iter_mut().zip(&y) {
+            *x = y.map(|y| y / length);
+        }
+    }
+    if lambda > 0.0 { 0.9 / lambda } else { 1.0 }
+}
+
+impl<const D: usize> Solver<D> for Gradient {
+    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+        let n = form.len();
+        // The metric: equal along the tangents, so that discs stay discs.
+        let metric: Vec<[f64; D]> = (0..n)
+            .map(|c| {
+                if self.kind != Kind::Preconditioned {
+                    return [1.0; D];
+                }
+                let w = form.w.diagonal(c);
+                let tangential = (1..D).map(|k| w[k][k]).sum::<f64>() / (D - 1) as f64;
+                std::array::from_fn(|k| {
+                    let x = if k == 0 { w[0][0] } else { tangential };
+                    if x > 0.0 { 1.0 / x } else { 1.0 }
+                })
+            })
+            .collect();
+        let zero = vec![[0.0; D]; n];
+        let (mut d, mut gradient, mut kept, mut wd) =
+            (zero.clone(), zero.clone(), zero.clone(), zero.clone());
+        let mut sets: Vec<Set> = vec![Set::All; n];
+        let mut wd_u = zero.clone();
+        let mut safe = None;
+        let mut first = true;
+        let mut best = Best::of(state);
+        while !budget.ends(state) {
+            for c in 0..n {
+                sets[c] = Set::of(&form.laws[c], &state.p[c], &state.p);
+                gradient[c] = std::array::from_fn(|k| -metric[c][k] * state.u[c][k]);
+                sets[c].tangent(&state.p[c], &mut gradient[c]);
+                kept[c] = d[c];
+                sets[c].tangent(&state.p[c], &mut kept[c]);
+            }
+            // wd and the curvature are still those of the last direction.
+            let curvature = dot(&d, &wd);
+            let beta = if first || self.kind == Kind::Plain || curvature <= 0.0 {
+                0.0
+            } else {
+                -dot(&gradient, &wd) / curvature
+            };
+            for c in 0..n {
+                for k in 0..D {
+                    d[c][k] = gradient[c][k] + beta * kept[c][k];
+                }
+            }
+            let mut along = -dot(&d, &state.u);
+            if beta != 0.0 && along <= 0.0 {
+                // Not a descent any more: begin again along the gradient.
+                d.copy_from_slice(&gradient);
+                along = -dot(&d, &state.u);
+            }
+            form.w.velocity(&d, &zero, &mut wd);
+            let curvature = dot(&d, &wd);
+            if curvature <= 0.0 || !curvature.is_finite() {
+                if first {
+                    break;
+                }
+                d.copy_from_slice(&zero);
+                first = true;
+                continue;
+            }
+            let alpha = along / curvature;
+            let energy = 0.5 * (dot(&state.p, &state.u) + dot(&state.p, form.q));
+            kept.copy_from_slice(&state.p);
+            wd_u.copy_from_slice(&state.u);
+            for c in 0..n {
+                for k in 0..D {
+                    state.p[c][k] += alpha * d[c][k];
+                }
+            }
+            project(form, &mut state.p);
+            form.velocity(&state.p, &mut state.u);
+            state.iterations += 1;
+            first = false;
+            let raised = 0.5 * (dot(&state.p, &state.u) + dot(&state.p, form.q)) - energy;
+            if raised > 1e-12 * energy.abs() {
+                let step = *safe.get_or_insert_with(|| safe_step(form, &metric));
+                for c in 0..n {
+                    for k in 0..D {
+                        state.p[c][k] = kept[c][k] - step * metric[c][k] * wd_u[c][k];
+                    }
+                }
+                project(form, &mut state.p);
+                form.velocity(&state.p, &mut state.u);
+                d.copy_from_slice(&zero);
+                first = true;
+            }
+            state.judge(form);
+            best.keep(state);
+        }
+        best.restore(form, state);
+    }
+}
