@@ -5,8 +5,14 @@
 
 pub mod block;
 pub mod csr;
+pub mod factor;
+pub mod global;
+pub mod reduce;
+pub mod solver;
 
 pub use csr::Csr;
+pub use global::{Equalities, GlobalProblem, Multipliers};
+pub use reduce::{Elimination, ReduceError, Reduction};
 
 /// A local problem, whatever its dimension.
 #[derive(Clone, Debug, Default, PartialEq)]
