@@ -25,16 +25,24 @@ impl Source {
     /// It is not there, not HDF5, or damaged.
     pub fn open(path: &Path) -> Result<Self, FclibError> {
         let length = signed(path)?;
+        let damaged = |reason| FclibError::Damaged {
+            path: path.to_owned(),
+            place: "the file's structure".to_owned(),
+            reason,
+        };
+        match promised(path) {
+            Some(bytes) if bytes > length => {
+                let reason = format!("it promises {bytes} bytes and has {length}");
+                return Err(damaged(reason));
+            }
+            _ => {}
+        }
         let (file, datasets) = guard(|| {
             let file = H5File::options().best_effort_locking().open(path)?;
             let names = file.dataset_names();
             Ok((file, names))
         })
-        .map_err(|reason| FclibError::Damaged {
-            path: path.to_owned(),
-            place: "the file's structure".to_owned(),
-            reason,
-        })?;
+        .map_err(damaged)?;
         Ok(Self {
             file,
             datasets: datasets.into_iter().collect(),
@@ -218,6 +226,26 @@ fn signed(path: &Path) -> Result<u64, FclibError> {
     Err(FclibError::NotHdf5 {
         path: path.to_owned(),
     })
+}
+
+/// Length that the superblock at the beginning of a file gives it. The HDF5 crate does not compare it with
+/// what is there, and reads what is left of a file that was cut.
+fn promised(path: &Path) -> Option<u64> {
+    let mut start = [0u8; 64];
+    std::fs::File::open(path)
+        .ok()?
+        .read_exact(&mut start)
+        .ok()?;
+    let at = match (start[8], &start[..4]) {
+        (_, other) if other != b"\x89HDF" => return None,
+        // Sizes of addresses stand before it; other than 8 bytes are not compared.
+        (0, _) if start[13] == 8 => 40,
+        (1, _) if start[13] == 8 => 44,
+        (2 | 3, _) if start[9] == 8 => 28,
+        _ => return None,
+    };
+    let bytes = start[at..at + 8].try_into().ok()?;
+    Some(u64::from_le_bytes(bytes))
 }
 
 thread_local! {
