@@ -1,4 +1,4 @@
-//! The command line: `run`, `check`, `law`.
+//! The command line: `run`, `check`, `law`, `solve`.
 //!
 //! Exit 0: done. 1: the run failed; what was computed is on disk. 2: the input is wrong.
 
@@ -6,6 +6,7 @@ mod check;
 mod law;
 mod progress;
 mod run;
+mod solve;
 
 use crate::laws::{LawError, SearchPath};
 use crate::record::RunError;
@@ -36,6 +37,11 @@ enum Command {
     /// Interface laws: list, show, make, drive and certify them
     #[command(subcommand)]
     Law(law::LawCommand),
+    /// Solve contact problems of the field's shared collection (FCLIB files)
+    #[command(
+        after_help = "Exit code: 0 solved, 1 not solved within the limits, 2 wrong input.\n\nExample:\n  fretwork solve tests/fclib/gfc3d_OneContact.hdf5 --tolerance 1e-10 --out solution.hdf5"
+    )]
+    Solve(solve::SolveArgs),
 }
 
 /// The case and what is changed in it.
@@ -105,6 +111,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Law(command) => law::law(&command),
+        Command::Solve(args) => solve::solve(&args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,4 +1,5 @@
 //! What a run leaves behind: ledgers, statistics, pictures, the results file, the summary.
+pub mod fclib;
 pub mod figures;
 pub mod friction;
 pub mod layer;

@@ -9,16 +9,22 @@ pub mod auto;
 pub mod block;
 pub mod contact;
 pub mod csr;
+pub mod factor;
 pub mod form;
+pub mod global;
 pub mod gradient;
 pub mod interior;
 pub mod law;
 pub mod linear;
 pub mod newton;
 pub mod nlgs;
+pub mod reduce;
+pub mod solver;
 pub mod state;
 
 pub use csr::Csr;
+pub use global::{Equalities, GlobalProblem, Multipliers};
+pub use reduce::{Elimination, ReduceError, Reduction};
 
 /// A local problem, whatever its dimension.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,0 +1,227 @@
+//! `fretwork solve`: problems of the field's shared collection.
+
+mod say;
+
+use super::Failure;
+use crate::record::fclib::{self, Problem, Solution};
+use crate::solve::local::solver::{self, Limits, Method, Outcome};
+use crate::solve::local::{Elimination, LocalProblem, ReduceError, Reduction};
+use clap::Args;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::time::Instant;
+
+#[derive(Args, Debug)]
+pub struct SolveArgs {
+    /// Problem files in FCLIB's HDF5 layout, local or global
+    #[arg(required = true, value_name = "PROBLEM.hdf5")]
+    problems: Vec<PathBuf>,
+    /// The solver, or `all` for a table of all of them
+    #[arg(long, value_name = "S", default_value = "auto", value_parser = choice, long_help = long_help())]
+    solver: Choice,
+    /// Error to reach: |p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|, |u|)
+    #[arg(long, value_name = "T", default_value = "1e-8", value_parser = positive)]
+    tolerance: f64,
+    /// Iterations at most
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..))]
+    max_iterations: u32,
+    /// Seconds at most for each solve
+    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = positive)]
+    time_limit: f64,
+    /// Writes the problem with its solution here; also when the limits were reached
+    #[arg(long, value_name = "SOLUTION.hdf5")]
+    out: Option<PathBuf>,
+    /// Prints JSON: an object, or an array of them where several files are given
+    #[arg(long)]
+    json: bool,
+}
+
+/// One solver, or all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Choice {
+    One(Method),
+    All,
+}
+
+fn choice(text: &str) -> Result<Choice, String> {
+    if text == "all" {
+        return Ok(Choice::All);
+    }
+    let method = Method::from_str(text).map_err(|e| format!("{e}; `all` compares them"))?;
+    Ok(Choice::One(method))
+}
+
+fn long_help() -> String {
+    let mut out = String::from("The solver:\n");
+    for method in Method::ALL {
+        out += &format!("  {:<12} {}\n", method.name(), method.about());
+    }
+    out + "  all          every one of them: a table, solved first, then by time"
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
+        _ => Err("a number above 0 is expected".to_owned()),
+    }
+}
+
+/// What was done with one file.
+struct Solved {
+    path: PathBuf,
+    problem: Problem,
+    read_seconds: f64,
+    reduce_seconds: f64,
+    /// The best first.
+    outcomes: Vec<Outcome>,
+}
+
+pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
+    if let Some(out) = &args.out {
+        check_out(out, &args.problems)?;
+    }
+    let (mut wrong, mut unsolved, mut all) = (Vec::new(), Vec::new(), Vec::new());
+    for path in &args.problems {
+        match one(path, args) {
+            Ok(solved) => {
+                if !solved.outcomes[0].converged {
+                    unsolved.push(say::unsolved(&solved, args));
+                }
+                if args.json {
+                    all.push(say::json(&solved, args));
+                } else {
+                    super::say(&say::text(&solved, args));
+                }
+            }
+            // The files after it are still solved; it decides the exit code.
+            Err(Failure::Usage(message)) => wrong.push(message),
+            Err(other) => return Err(other),
+        }
+    }
+    if args.json && !all.is_empty() {
+        let value = match (args.problems.len(), all.pop()) {
+            (1, Some(only)) => only,
+            (_, last) => {
+                all.extend(last);
+                all.into()
+            }
+        };
+        super::say(&serde_json::to_string_pretty(&value).unwrap_or_default());
+    }
+    let joined = |lines: &[String]| lines.join("\nerror: ");
+    if !wrong.is_empty() {
+        wrong.extend(unsolved);
+        return Err(Failure::Usage(joined(&wrong)));
+    }
+    if !unsolved.is_empty() {
+        return Err(Failure::Failed(joined(&unsolved)));
+    }
+    Ok(())
+}
+
+/// Where the solution goes must be known to be right before time is spent.
+fn check_out(out: &Path, problems: &[PathBuf]) -> Result<(), Failure> {
+    let refuse = |reason: &str| Err(Failure::Usage(format!("--out {}: {reason}", out.display())));
+    if problems.len() > 1 {
+        return refuse("it holds the solution of one problem, and several are given");
+    }
+    let same =
+        |p: &PathBuf| matches!((p.canonicalize(), out.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    if problems.iter().any(same) {
+        return refuse("this is the problem itself; choose another file");
+    }
+    if out.is_dir() || out.file_name().is_none() {
+        return refuse("a file is expected, not a folder");
+    }
+    let folder = out.parent().unwrap_or(Path::new(""));
+    if !folder.as_os_str().is_empty() && !folder.is_dir() {
+        return refuse("there is no such folder");
+    }
+    Ok(())
+}
+
+/// A problem in local form, and what leads back.
+enum Form {
+    AsGiven,
+    Reduced(Reduction),
+    Eliminated(Elimination),
+}
+
+impl Form {
+    fn of(problem: &Problem) -> Result<Self, ReduceError> {
+        match problem {
+            Problem::Global(g) => Reduction::new(&g.problem).map(Self::Reduced),
+            Problem::Local(l) => match &l.multipliers {
+                Some(m) => Elimination::new(&l.problem, m).map(Self::Eliminated),
+                None => Ok(Self::AsGiven),
+            },
+        }
+    }
+
+    fn local<'a>(&'a self, problem: &'a Problem) -> &'a LocalProblem {
+        match (self, problem) {
+            (Self::Reduced(r), _) => &r.local,
+            (Self::Eliminated(e), _) => &e.local,
+            (Self::AsGiven, Problem::Local(l)) => &l.problem,
+            (Self::AsGiven, Problem::Global(_)) => unreachable!("a global problem is reduced"),
+        }
+    }
+
+    fn solution(&self, problem: &Problem, outcome: &Outcome) -> Solution {
+        let (v, l) = match (self, problem) {
+            (Self::Reduced(form), Problem::Global(g)) => form.velocities(&g.problem, &outcome.p),
+            (Self::Eliminated(form), Problem::Local(l)) => {
+                let l = l
+                    .multipliers
+                    .as_ref()
+                    .map(|m| form.multipliers(m, &outcome.p));
+                (Vec::new(), l.unwrap_or_default())
+            }
+            _ => (Vec::new(), Vec::new()),
+        };
+        Solution {
+            v,
+            l,
+            u: outcome.u.clone(),
+            r: outcome.p.clone(),
+        }
+    }
+}
+
+fn one(path: &Path, args: &SolveArgs) -> Result<Solved, Failure> {
+    let start = Instant::now();
+    let problem = fclib::read(path).map_err(|e| Failure::Usage(e.to_string()))?;
+    let read_seconds = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let form =
+        Form::of(&problem).map_err(|e| Failure::Usage(format!("{}: {e}", path.display())))?;
+    let reduce_seconds = start.elapsed().as_secs_f64();
+    let local = form.local(&problem);
+    let limits = Limits {
+        tolerance: args.tolerance,
+        max_iterations: args.max_iterations,
+        seconds: args.time_limit,
+    };
+    let run = |method| solver::solve(local, method, &limits);
+    let mut outcomes: Vec<Outcome> = match args.solver {
+        Choice::One(method) => vec![run(method)],
+        Choice::All => Method::ALL.iter().copied().map(run).collect(),
+    };
+    // Among those that reached the tolerance the fastest, among the others the most accurate.
+    outcomes.sort_by(|a, b| {
+        let by = |o: &Outcome| if o.converged { o.seconds } else { o.error };
+        (b.converged.cmp(&a.converged)).then(by(a).total_cmp(&by(b)))
+    });
+    if let Some(out) = &args.out {
+        let solution = form.solution(&problem, &outcomes[0]);
+        fclib::write_with_solution(out, &problem, &solution)
+            .map_err(|e| Failure::Failed(e.to_string()))?;
+    }
+    Ok(Solved {
+        path: path.to_owned(),
+        problem,
+        read_seconds,
+        reduce_seconds,
+        outcomes,
+    })
+}

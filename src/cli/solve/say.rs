@@ -1,0 +1,158 @@
+//! What `fretwork solve` prints.
+
+use super::{Choice, SolveArgs, Solved};
+use crate::record::fclib::Problem;
+use crate::solve::local::solver::Outcome;
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+
+/// The figure of the error, p the contact impulses and u = W p + q.
+const FORMULA: &str = "|p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|, |u|)";
+
+fn kind(problem: &Problem) -> &'static str {
+    match problem {
+        Problem::Global(g) if g.problem.equalities.is_some() => "global, with constraints",
+        Problem::Global(_) => "global",
+        Problem::Local(l) if l.multipliers.is_some() => "local, with multipliers",
+        Problem::Local(_) => "local",
+    }
+}
+
+/// The lines of one file.
+pub fn text(solved: &Solved, args: &SolveArgs) -> String {
+    let (problem, best) = (&solved.problem, &solved.outcomes[0]);
+    let mut out = format!("{}", solved.path.display());
+    if let Some(title) = problem
+        .info()
+        .title
+        .as_deref()
+        .and_then(|t| t.lines().next())
+    {
+        let _ = write!(out, ": {title}");
+    }
+    out.push('\n');
+    let mut line = |label: &str, value: String| {
+        let _ = writeln!(out, "  {label:<12} {value}");
+    };
+    let contacts = problem.contacts();
+    line(
+        "problem",
+        format!(
+            "{}, dimension {}, {contacts} contacts",
+            kind(problem),
+            problem.dimension()
+        ),
+    );
+    line("solver", best.method.clone());
+    let verdict = if best.converged {
+        "solved"
+    } else {
+        "NOT solved"
+    };
+    line(
+        "error",
+        format!("{:.3e} of {:.1e}: {verdict}", best.error, args.tolerance),
+    );
+    line("", format!("error = {FORMULA}"));
+    if let Some(worst) = best.worst {
+        line("worst", format!("contact {worst} (counted from 0)"));
+    }
+    line("iterations", best.iterations.to_string());
+    line(
+        "time",
+        format!("{} (the solve alone)", seconds(best.seconds)),
+    );
+    line("reading", seconds(solved.read_seconds));
+    if kind(problem) != "local" {
+        line(
+            "reduction",
+            format!("{} to the local form", seconds(solved.reduce_seconds)),
+        );
+    }
+    if args.solver == Choice::All {
+        out += &table(&solved.outcomes);
+    }
+    if let Some(path) = &args.out {
+        let _ = writeln!(out, "  solution in {}", path.display());
+    }
+    out.trim_end().to_owned()
+}
+
+fn table(outcomes: &[Outcome]) -> String {
+    let width = outcomes
+        .iter()
+        .map(|o| o.method.chars().count())
+        .fold(6, usize::max);
+    let mut out = format!(
+        "  {:<width$}  {:<6}  {:>9}  {:>10}  {:>10}\n",
+        "solver", "solved", "error", "iterations", "time"
+    );
+    for o in outcomes {
+        let solved = if o.converged { "yes" } else { "no" };
+        let _ = writeln!(
+            out,
+            "  {:<width$}  {solved:<6}  {:>9.2e}  {:>10}  {:>10}",
+            o.method,
+            o.error,
+            o.iterations,
+            seconds(o.seconds)
+        );
+    }
+    out
+}
+
+fn seconds(s: f64) -> String {
+    format!("{s:.3e} s")
+}
+
+/// The object of one file.
+pub fn json(solved: &Solved, args: &SolveArgs) -> Value {
+    let problem = &solved.problem;
+    let mut value = outcome(&solved.outcomes[0]);
+    let more = json!({
+        "problem": solved.path.display().to_string(),
+        "title": problem.info().title,
+        "kind": kind(problem),
+        "dimension": problem.dimension(),
+        "contacts": problem.contacts(),
+        "tolerance": args.tolerance,
+        "error_formula": FORMULA,
+        "read_seconds": solved.read_seconds,
+        "reduce_seconds": solved.reduce_seconds,
+        "out": args.out.as_ref().map(|p| p.display().to_string()),
+        "version": env!("CARGO_PKG_VERSION"),
+    });
+    if let (Value::Object(into), Value::Object(more)) = (&mut value, more) {
+        into.extend(more);
+        if args.solver == Choice::All {
+            let all = solved.outcomes.iter().map(outcome).collect();
+            into.insert("solvers".to_owned(), Value::Array(all));
+        }
+    }
+    value
+}
+
+fn outcome(o: &Outcome) -> Value {
+    json!({
+        "solver": o.method,
+        "solved": o.converged,
+        "error": o.error,
+        "worst": o.worst,
+        "iterations": o.iterations,
+        "seconds": o.seconds,
+    })
+}
+
+/// Why a file is not solved.
+pub fn unsolved(solved: &Solved, args: &SolveArgs) -> String {
+    let best = &solved.outcomes[0];
+    format!(
+        "{}: not solved to {:e} in {} iterations and {}: the error is {:.3e}; raise --max-iterations \
+         or --time-limit, or try --solver all",
+        solved.path.display(),
+        args.tolerance,
+        best.iterations,
+        seconds(best.seconds),
+        best.error
+    )
+}

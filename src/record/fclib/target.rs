@@ -1,0 +1,159 @@
+//! An HDF5 file being written, in FCLIB's few shapes.
+//!
+//! It grows beside its name and takes it when it is complete: a file of that name is never half written.
+
+use super::FclibError;
+use super::source::guard;
+use hdf5::{DatatypeMessage, H5File};
+use std::path::{Path, PathBuf};
+
+/// A file on its way.
+pub struct Target {
+    file: H5File,
+    path: PathBuf,
+    part: PathBuf,
+}
+
+impl Target {
+    /// Begins a file.
+    ///
+    /// # Errors
+    /// It cannot be written there.
+    pub fn create(path: &Path) -> Result<Self, FclibError> {
+        let mut name = path.file_name().unwrap_or_default().to_owned();
+        name.push(format!(".{}.part", std::process::id()));
+        let part = path.with_file_name(name);
+        let file = guard(|| H5File::create(&part)).map_err(|e| unwritable(path, e))?;
+        Ok(Self {
+            file,
+            path: path.to_owned(),
+            part,
+        })
+    }
+
+    /// Makes a group, and those above it where they are not there.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn group(&self, name: &str) -> Result<(), FclibError> {
+        let (parent, own) = split(name);
+        self.guarded(|| {
+            let mut group = self.file.root_group();
+            for part in parent {
+                group = group.group(part)?;
+            }
+            group.create_group(own).map(drop)
+        })
+    }
+
+    /// A scalar: one 32-bit number in an array of length 1.
+    ///
+    /// # Errors
+    /// It does not fit 32 bits, or the file cannot be written.
+    pub fn integer(&self, name: &str, value: i64) -> Result<(), FclibError> {
+        self.integers(name, [value])
+    }
+
+    /// 32-bit whole numbers.
+    ///
+    /// # Errors
+    /// One does not fit 32 bits, or the file cannot be written.
+    pub fn integers(
+        &self,
+        name: &str,
+        values: impl IntoIterator<Item = i64>,
+    ) -> Result<(), FclibError> {
+        let narrow: Result<Vec<i32>, _> = values.into_iter().map(i32::try_from).collect();
+        let narrow = narrow.map_err(|_| {
+            let reason = format!("{name} does not fit the 32-bit whole numbers of FCLIB");
+            unwritable(&self.path, reason)
+        })?;
+        self.array(name, &narrow)
+    }
+
+    /// 64-bit real numbers.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn reals(&self, name: &str, values: &[f64]) -> Result<(), FclibError> {
+        self.array(name, values)
+    }
+
+    /// A text: null-terminated ASCII, rank 0; other characters become question marks.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn text(&self, name: &str, text: &str) -> Result<(), FclibError> {
+        let ascii = |c: char| {
+            if c.is_ascii() && c != '\0' {
+                c as u8
+            } else {
+                b'?'
+            }
+        };
+        let mut bytes: Vec<u8> = text.chars().map(ascii).collect();
+        bytes.push(0);
+        let (parent, own) = split(name);
+        self.guarded(|| {
+            let mut group = self.file.root_group();
+            for part in parent {
+                group = group.group(part)?;
+            }
+            let datatype = DatatypeMessage::fixed_string(bytes.len() as u32);
+            let dataset = group.new_dataset::<u8>().datatype(datatype).scalar();
+            dataset.create(own)?.write_raw_bytes(&bytes)
+        })
+    }
+
+    /// Completes the file and gives it its name.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn close(self) -> Result<(), FclibError> {
+        let Self { file, path, part } = self;
+        let done = guard(|| file.close())
+            .and_then(|()| std::fs::rename(&part, &path).map_err(|e| e.to_string()));
+        done.map_err(|e| {
+            std::fs::remove_file(&part).ok();
+            unwritable(&path, e)
+        })
+    }
+
+    /// Leaves nothing behind.
+    pub fn discard(self) {
+        drop(self.file);
+        std::fs::remove_file(&self.part).ok();
+    }
+
+    fn array<T: hdf5::H5Type>(&self, name: &str, values: &[T]) -> Result<(), FclibError> {
+        let (parent, own) = split(name);
+        self.guarded(|| {
+            let mut group = self.file.root_group();
+            for part in parent {
+                group = group.group(part)?;
+            }
+            let dataset = group.new_dataset::<T>().shape([values.len()]).create(own)?;
+            if values.is_empty() {
+                return Ok(());
+            }
+            dataset.write_raw(values)
+        })
+    }
+
+    fn guarded<T>(&self, call: impl FnOnce() -> hdf5::Result<T>) -> Result<T, FclibError> {
+        guard(call).map_err(|e| unwritable(&self.path, e))
+    }
+}
+
+fn split(name: &str) -> (Vec<&str>, &str) {
+    let mut parts: Vec<&str> = name.trim_matches('/').split('/').collect();
+    let own = parts.pop().unwrap_or_default();
+    (parts, own)
+}
+
+fn unwritable(path: &Path, reason: String) -> FclibError {
+    FclibError::Unwritable {
+        path: path.to_owned(),
+        reason,
+    }
+}

@@ -1,0 +1,69 @@
+//! Problems given with the bodies' velocities, and local ones with multipliers: what is reduced to a
+//! [`LocalProblem`].
+
+use super::{Csr, LocalProblem};
+
+/// A global problem: M v = H r + G l + f, G^T v + b = 0, u = H^T v + w, and the law of friction between
+/// u and r. Units are the file's own: velocities or displacements, impulses or forces.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GlobalProblem {
+    /// Components of a contact: 2 or 3.
+    pub dimension: usize,
+    /// Mass or iteration matrix, n x n; need not be symmetric.
+    pub m: Csr,
+    /// From contact impulses to the degrees of freedom, n x m.
+    pub h: Csr,
+    /// Free impulses, n.
+    pub f: Vec<f64>,
+    /// What is added to the relative velocities, m.
+    pub w: Vec<f64>,
+    /// Friction coefficients, m / dimension.
+    pub mu: Vec<f64>,
+    /// Equality constraints.
+    pub equalities: Option<Equalities>,
+}
+
+/// Equality constraints of a global problem, G^T v + b = 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Equalities {
+    /// n x p.
+    pub g: Csr,
+    /// p.
+    pub b: Vec<f64>,
+}
+
+/// Multipliers of a local problem: u = W r + V l + q, V^T r + R l + s = 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Multipliers {
+    /// m x p.
+    pub v: Csr,
+    /// p x p.
+    pub r: Csr,
+    /// p.
+    pub s: Vec<f64>,
+}
+
+impl GlobalProblem {
+    /// u = H^T v + w.
+    pub fn relative_velocities(&self, v: &[f64]) -> Vec<f64> {
+        let mut u = self.w.clone();
+        for (i, v) in v.iter().enumerate() {
+            for (k, h) in self.h.row(i) {
+                u[k] += h * v;
+            }
+        }
+        u
+    }
+}
+
+impl LocalProblem {
+    /// u = W p + q.
+    pub fn velocities(&self, p: &[f64]) -> Vec<f64> {
+        let mut u = vec![0.0; self.q.len()];
+        self.w.apply(p, &mut u);
+        for (u, q) in u.iter_mut().zip(&self.q) {
+            *u += q;
+        }
+        u
+    }
+}

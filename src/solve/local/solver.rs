@@ -1,0 +1,292 @@
+//! Solving a local problem: the methods, their limits and the figure of the error.
+
+use super::LocalProblem;
+use super::accelerated::Accelerated;
+use super::anderson::Anderson;
+use super::auto::Auto;
+use super::block::BlockMatrix;
+use super::form::{Form, coulomb};
+use super::gradient::{Gradient, Kind};
+use super::interior::Interior;
+use super::law;
+use super::newton::Newton;
+use super::nlgs::{Nlgs, Order};
+use super::state::{Budget, Solver, State};
+use crate::solve::error::Norm;
+use std::str::FromStr;
+use std::time::Instant;
+
+/// A way to solve a problem.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// The program chooses.
+    Auto,
+    /// Gauss-Seidel over contacts.
+    Nlgs,
+    /// The same, forwards and backwards.
+    NlgsSymmetric,
+    /// Gauss-Seidel with Anderson's acceleration.
+    Anderson,
+    /// Projected gradient.
+    Pg,
+    /// Conjugate projected gradient.
+    Cpg,
+    /// Preconditioned conjugate projected gradient.
+    Pcpg,
+    /// Accelerated projected gradient.
+    Apgd,
+    /// Semi-smooth Newton in proximal steps.
+    Newton,
+    /// Interior point.
+    Interior,
+}
+
+impl Method {
+    /// All of them.
+    pub const ALL: &[Method] = &[
+        Method::Auto,
+        Method::Nlgs,
+        Method::NlgsSymmetric,
+        Method::Anderson,
+        Method::Pg,
+        Method::Cpg,
+        Method::Pcpg,
+        Method::Apgd,
+        Method::Newton,
+        Method::Interior,
+    ];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Nlgs => "nlgs",
+            Self::NlgsSymmetric => "nlgs-symmetric",
+            Self::Anderson => "anderson",
+            Self::Pg => "pg",
+            Self::Cpg => "cpg",
+            Self::Pcpg => "pcpg",
+            Self::Apgd => "apgd",
+            Self::Newton => "newton",
+            Self::Interior => "interior",
+        }
+    }
+
+    /// A line about it.
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::Auto => "the program chooses: sweeps first, then methods that factorise",
+            Self::Nlgs => "Gauss-Seidel over contacts, each solved exactly",
+            Self::NlgsSymmetric => "the same, forwards and backwards",
+            Self::Anderson => "Gauss-Seidel with Anderson's acceleration",
+            Self::Pg => "projected gradient",
+            Self::Cpg => "conjugate projected gradient (Renouf and Alart)",
+            Self::Pcpg => "the same, preconditioned by the diagonal",
+            Self::Apgd => "accelerated projected gradient with restarts",
+            Self::Newton => "semi-smooth Newton in proximal steps",
+            Self::Interior => "interior point with the De Saxce correction",
+        }
+    }
+
+    /// The method at work.
+    pub fn solver<const D: usize>(self) -> Box<dyn Solver<D>> {
+        let gradient = |kind| Box::new(Gradient { kind });
+        match self {
+            Self::Auto => Box::new(Auto::default()),
+            Self::Nlgs => Box::new(Nlgs::default()),
+            Self::NlgsSymmetric => Box::new(Nlgs {
+                order: Order::Symmetric,
+                ..Nlgs::default()
+            }),
+            Self::Anderson => Box::new(Anderson::default()),
+            Self::Pg => gradient(Kind::Plain),
+            Self::Cpg => gradient(Kind::Conjugate),
+            Self::Pcpg => gradient(Kind::Preconditioned),
+            Self::Apgd => Box::new(Accelerated),
+            Self::Newton => Box::new(Newton::default()),
+            Self::Interior => Box::new(Interior),
+        }
+    }
+}
+
+impl FromStr for Method {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.iter().copied().find(|m| m.name() == text);
+        found.ok_or_else(|| {
+            let names: Vec<&str> = Self::ALL.iter().map(|m| m.name()).collect();
+            format!(
+                "there is no solver `{text}`; there are {}",
+                names.join(", ")
+            )
+        })
+    }
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// The [`field_error`] to reach.
+    pub tolerance: f64,
+    /// Iterations at most.
+    pub max_iterations: u32,
+    /// Seconds at most.
+    pub seconds: f64,
+}
+
+/// What a solve gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// The method, with what `auto` chose.
+    pub method: String,
+    /// Contact impulses of the best iterate.
+    pub p: Vec<f64>,
+    /// Its velocities W p + q.
+    pub u: Vec<f64>,
+    /// Its [`field_error`].
+    pub error: f64,
+    /// The contact with the largest share of the error.
+    pub worst: Option<usize>,
+    /// Iterations done.
+    pub iterations: u32,
+    /// Seconds taken.
+    pub seconds: f64,
+    /// Whether the error is within the tolerance.
+    pub converged: bool,
+}
+
+/// Solves a problem from p = 0. A solve of a few milliseconds is repeated and the best time given, since
+/// the first one pays for cold memory.
+pub fn solve(problem: &LocalProblem, method: Method, limits: &Limits) -> Outcome {
+    match problem.dimension {
+        2 => solve_in::<2>(problem, method, limits),
+        _ => solve_in::<3>(problem, method, limits),
+    }
+}
+
+fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Limits) -> Outcome {
+    const REPEATS: u32 = 20;
+    const ENOUGH: f64 = 0.02;
+    let w = BlockMatrix::<D>::from_csr(&problem.w);
+    let q: Vec<[f64; D]> = problem.q.as_chunks().0.to_vec();
+    let laws = coulomb(&problem.mu);
+    let mut solver = Choice::<D>::new(method);
+    let (mut best, mut total) = (f64::INFINITY, 0.0);
+    let mut state = None;
+    for _ in 0..REPEATS {
+        let clock = Instant::now();
+        let form = Form::new(&w, &q, &laws, Norm::Field);
+        let mut now = State::new(&form, vec![[0.0; D]; laws.len()]);
+        // A hair below, so that the figure recomputed in another order of sums is still within.
+        let tolerance = limits.tolerance * (1.0 - 1e-9);
+        let mut budget = Budget::new(tolerance, limits.max_iterations, limits.seconds);
+        solver.solve(&form, &mut now, &mut budget);
+        let seconds = clock.elapsed().as_secs_f64();
+        best = best.min(seconds);
+        total += seconds;
+        state = Some(now);
+        if total > ENOUGH {
+            break;
+        }
+    }
+    let state = state.expect("solved at least once");
+    let p = state.p.as_flattened().to_vec();
+    let (error, worst) = measured::<D>(problem, &p);
+    Outcome {
+        method: solver.name(method),
+        u: problem.velocities(&p),
+        p,
+        error,
+        worst,
+        iterations: state.iterations,
+        seconds: best,
+        converged: error <= limits.tolerance,
+    }
+}
+
+/// A method, or the choice of one, which can tell afterwards.
+enum Choice<const D: usize> {
+    Auto(Auto),
+    Fixed(Box<dyn Solver<D>>),
+}
+
+impl<const D: usize> Choice<D> {
+    fn new(method: Method) -> Self {
+        match method {
+            Method::Auto => Self::Auto(Auto::default()),
+            other => Self::Fixed(other.solver()),
+        }
+    }
+
+    fn solve(&mut self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+        match self {
+            Self::Auto(auto) => auto.solve(form, state, budget),
+            Self::Fixed(solver) => solver.solve(form, state, budget),
+        }
+    }
+
+    fn name(&self, method: Method) -> String {
+        match self {
+            Self::Auto(auto) => format!("auto: {}", auto.names().join(", ")),
+            Self::Fixed(_) => method.name().to_owned(),
+        }
+    }
+}
+
+/// The field's figure: |p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|, |u|), Euclidean norms of whole
+/// vectors, u = W p + q; not divided when the maximum is 0.
+pub fn field_error(problem: &LocalProblem, p: &[f64]) -> f64 {
+    match problem.dimension {
+        2 => measured::<2>(problem, p).0,
+        _ => measured::<3>(problem, p).0,
+    }
+}
+
+fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> (f64, Option<usize>) {
+    let u = problem.velocities(p);
+    let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let scale = norm(&problem.q).max(norm(p)).max(norm(&u));
+    let (mut sum, mut worst) = (0.0, None::<(usize, f64)>);
+    for (c, mu) in problem.mu.iter().enumerate() {
+        let at = |x: &[f64]| -> [f64; D] { std::array::from_fn(|k| x[c * D + k]) };
+        let (p, u) = (at(p), at(&u));
+        let r = law::natural(&p, &u, *mu, 1.0);
+        let gap: f64 = r.iter().map(|x| x * x).sum();
+        sum += gap;
+        if worst.is_none_or(|w| gap > w.1) {
+            worst = Some((c, gap));
+        }
+    }
+    let error = f64::sqrt(sum) / if scale > 0.0 { scale } else { 1.0 };
+    (error, worst.map(|w| w.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::local::Csr;
+
+    #[test]
+    fn one_contact_sticks_and_slides() {
+        for (tangent, p) in [(0.1, [1.0, -0.1]), (2.0, [1.0, -0.5])] {
+            let problem = LocalProblem {
+                dimension: 2,
+                w: Csr::from_triplets(2, 2, &[(0, 0, 1.0), (1, 1, 1.0)]),
+                q: vec![-1.0, tangent],
+                mu: vec![0.5],
+            };
+            let limits = Limits {
+                tolerance: 1e-12,
+                max_iterations: 1000,
+                seconds: 10.0,
+            };
+            let outcome = solve(&problem, Method::Auto, &limits);
+            assert!(outcome.converged);
+            assert_eq!(outcome.error, field_error(&problem, &outcome.p));
+            for (x, y) in outcome.p.iter().zip(p) {
+                assert!((x - y).abs() < 1e-10, "{:?}", outcome.p);
+            }
+        }
+    }
+}

@@ -1,0 +1,387 @@
+//! `fretwork solve` from outside: exit codes, sentences, JSON, the file of the solution.
+
+use fretwork::record::fclib::{self, Problem};
+use fretwork::solve::local::solver::field_error;
+use fretwork::solve::local::{Csr, GlobalProblem, LocalProblem, Reduction};
+use serde_json::Value;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// A folder of its own, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Self {
+        static COUNT: AtomicUsize = AtomicUsize::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("fretwork-solve-{}-{number}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        Self(folder)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).to_str().unwrap().to_owned()
+    }
+
+    fn write(&self, name: &str, bytes: &[u8]) -> String {
+        let path = self.path(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    }
+
+    fn local(&self, name: &str, problem: &LocalProblem) -> String {
+        let path = self.path(name);
+        fclib::write_local(path.as_ref(), problem, name, "a test").unwrap();
+        path
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        std::fs::remove_dir_all(&self.0).ok();
+    }
+}
+
+fn shared(name: &str) -> String {
+    format!("{}/tests/fclib/{name}.hdf5", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn solve(arguments: &[&str]) -> Output {
+    let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+        .arg("solve")
+        .args(arguments)
+        .env("NO_COLOR", "1")
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!said.contains("panicked"), "{said}");
+    output
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let mut all = arguments.to_vec();
+    all.push("--json");
+    let output = solve(&all);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[track_caller]
+fn refused(arguments: &[&str], words: &[&str]) {
+    let output = solve(arguments);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    for word in words {
+        assert!(said.contains(word), "no `{word}` in: {said}");
+    }
+}
+
+fn one_contact(mu: f64, q: [f64; 3]) -> LocalProblem {
+    LocalProblem {
+        dimension: 3,
+        w: Csr::from_triplets(3, 3, &[(0, 0, 2.0), (1, 1, 1.0), (2, 2, 1.0)]),
+        q: q.to_vec(),
+        mu: vec![mu],
+    }
+}
+
+#[test]
+fn the_shared_problems_are_solved() {
+    for name in [
+        "fc2d_FrictionContactProblem00031",
+        "fc2d_SliderCrankLagrangian00000",
+        "fc3d_OneContact_reduced",
+        "fc3d_OneObject-i1028-138",
+        "gfc3d_Example00_badly_scaled",
+        "gfc3d_LMGC_GlobalFrictionContactProblem00046",
+        "gfc3d_OneContact",
+    ] {
+        let output = solve(&[&shared(name), "--tolerance", "1e-4"]);
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(0), "{name}: {text}");
+        for word in [
+            "solved",
+            "error",
+            "|p - proj_K(p",
+            "contact",
+            "iterations",
+            "time",
+            "solver",
+            "reading",
+        ] {
+            assert!(text.contains(word), "{name}: no `{word}` in {text}");
+        }
+        assert_eq!(
+            text.contains("reduction"),
+            name.starts_with('g'),
+            "{name}: {text}"
+        );
+    }
+}
+
+#[test]
+fn json_says_all_and_the_solution_read_back_has_the_error_printed() {
+    let folder = Folder::new();
+    let out = folder.path("solution.hdf5");
+    for name in [
+        "fc3d_OneObject-i1028-138",
+        "gfc3d_LMGC_GlobalFrictionContactProblem00046",
+    ] {
+        let said = json(&[&shared(name), "--tolerance", "1e-5", "--out", &out]);
+        assert_eq!(said["solved"], true);
+        assert_eq!(said["dimension"], 3);
+        assert_eq!(said["tolerance"], 1e-5);
+        assert_eq!(said["out"], Value::from(out.clone()));
+        assert_eq!(said["problem"], Value::from(shared(name)));
+        for key in ["seconds", "read_seconds", "reduce_seconds", "error"] {
+            assert!(
+                said[key].as_f64().is_some_and(|x| x >= 0.0),
+                "{key}: {said}"
+            );
+        }
+        assert!(said["iterations"].as_u64().is_some_and(|n| n > 0));
+        assert!(
+            said["worst"]
+                .as_u64()
+                .is_some_and(|c| c < said["contacts"].as_u64().unwrap())
+        );
+        assert!(
+            said["solver"]
+                .as_str()
+                .is_some_and(|s| s.starts_with("auto"))
+        );
+
+        let problem = fclib::read(out.as_ref()).unwrap();
+        assert_eq!(problem, fclib::read(shared(name).as_ref()).unwrap());
+        let solution = fclib::read_solution(out.as_ref()).unwrap().unwrap();
+        let (local, v) = match &problem {
+            Problem::Local(l) => (l.problem.clone(), Vec::new()),
+            Problem::Global(g) => {
+                let form = Reduction::new(&g.problem).unwrap();
+                let v = form.velocities(&g.problem, &solution.r).0;
+                (form.local, v)
+            }
+        };
+        assert_eq!(
+            field_error(&local, &solution.r),
+            said["error"].as_f64().unwrap()
+        );
+        assert_eq!(local.velocities(&solution.r), solution.u);
+        assert_eq!(v, solution.v);
+    }
+}
+
+#[test]
+fn several_files_give_several_answers() {
+    let files = [
+        shared("fc3d_OneContact_reduced"),
+        shared("gfc3d_OneContact"),
+    ];
+    let said = json(&[&files[0], &files[1], "--tolerance", "1e-4"]);
+    let said = said.as_array().unwrap();
+    assert_eq!(said.len(), 2);
+    assert_eq!(
+        (&said[0]["kind"], &said[1]["kind"]),
+        (&"local".into(), &"global".into())
+    );
+
+    // A wrong one does not keep the others from being solved, and decides the exit code.
+    let output = solve(&["nowhere.hdf5", &files[0], "--tolerance", "1e-4"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("solved"));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("nowhere.hdf5"));
+    let folder = Folder::new();
+    refused(
+        &[&files[0], &files[1], "--out", &folder.path("a.hdf5")],
+        &["--out", "one problem"],
+    );
+}
+
+#[test]
+fn all_solvers_stand_in_a_table() {
+    let file = shared("fc2d_FrictionContactProblem00031");
+    let said = json(&[&file, "--solver", "all", "--tolerance", "1e-4"]);
+    let all = said["solvers"].as_array().unwrap();
+    assert!(
+        all.len() >= 2 && all[0]["solver"] == said["solver"],
+        "{said}"
+    );
+    let solved = |o: &Value| o["solved"].as_bool().unwrap();
+    let seconds = |o: &Value| o["seconds"].as_f64().unwrap();
+    let in_order = all
+        .windows(2)
+        .all(|w| match (solved(&w[0]), solved(&w[1])) {
+            (true, true) => seconds(&w[0]) <= seconds(&w[1]),
+            (first, second) => first || !second,
+        });
+    assert!(in_order, "{said}");
+    let output = solve(&[&file, "--solver", "all", "--tolerance", "1e-4"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    let heads = ["solver", "solved", "error", "iterations", "time"];
+    assert!(
+        text.lines().any(|l| l.split_whitespace().eq(heads)),
+        "{text}"
+    );
+}
+
+#[test]
+fn what_is_not_solved_ends_with_one_and_is_written() {
+    let folder = Folder::new();
+    let out = folder.path("solution.hdf5");
+    let file = shared("fc3d_OneObject-i1028-138");
+    let output = solve(&[
+        &file,
+        "--max-iterations",
+        "1",
+        "--tolerance",
+        "1e-12",
+        "--out",
+        &out,
+    ]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("not solved") && said.contains("--max-iterations"),
+        "{said}"
+    );
+    assert!(String::from_utf8_lossy(&output.stdout).contains("NOT solved"));
+    assert_eq!(
+        fclib::read_solution(out.as_ref()).unwrap().unwrap().r.len(),
+        69
+    );
+}
+
+#[test]
+fn a_problem_without_contacts_is_solved() {
+    let folder = Folder::new();
+    for dimension in [2, 3] {
+        let empty = LocalProblem {
+            dimension,
+            ..LocalProblem::default()
+        };
+        let out = folder.path("out.hdf5");
+        let said = json(&[&folder.local("empty.hdf5", &empty), "--out", &out]);
+        assert_eq!(
+            (&said["solved"], &said["contacts"]),
+            (&true.into(), &0.into())
+        );
+        assert_eq!(
+            (&said["error"], &said["worst"]),
+            (&0.0.into(), &Value::Null)
+        );
+        assert!(
+            fclib::read_solution(out.as_ref())
+                .unwrap()
+                .unwrap()
+                .r
+                .is_empty()
+        );
+    }
+}
+
+#[test]
+fn one_contact_sticks_slides_or_parts() {
+    let folder = Folder::new();
+    let out = folder.path("out.hdf5");
+    // W = diag(2, 1, 1): sticking needs p = (0.5, -0.1, 0); sliding p_t = -mu p_n; without friction none.
+    for (mu, q, exact) in [
+        (0.5, [-1.0, 0.1, 0.0], [0.5, -0.1, 0.0]),
+        (0.5, [-1.0, 0.0, 3.0], [0.5, 0.0, -0.25]),
+        (0.0, [-1.0, 2.0, 0.0], [0.5, 0.0, 0.0]),
+        (0.3, [1.0, 2.0, 0.0], [0.0, 0.0, 0.0]),
+        (0.3, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
+    ] {
+        let file = folder.local("one.hdf5", &one_contact(mu, q));
+        let said = json(&[&file, "--tolerance", "1e-10", "--out", &out]);
+        assert_eq!(said["solved"], true, "{said}");
+        let r = fclib::read_solution(out.as_ref()).unwrap().unwrap().r;
+        for (x, y) in r.iter().zip(exact) {
+            assert!((x - y).abs() < 1e-8, "{r:?} {exact:?}");
+        }
+    }
+}
+
+#[test]
+fn wrong_files_are_refused_with_a_sentence() {
+    let folder = Folder::new();
+    refused(&[&folder.path("none.hdf5")], &["cannot read", "none.hdf5"]);
+    refused(
+        &[folder.0.to_str().unwrap()],
+        &["cannot read", "not a file"],
+    );
+    refused(&[&folder.write("empty", b"")], &["not an HDF5 file"]);
+    refused(
+        &[&folder.write("text", b"3 1\n")],
+        &["not an HDF5 file", "FCLIB"],
+    );
+    let bytes = std::fs::read(shared("fc3d_OneContact_reduced")).unwrap();
+    let cut = folder.write("cut.hdf5", &bytes[..bytes.len() / 2]);
+    refused(&[&cut], &["cut.hdf5", "promises", "damaged or cut short"]);
+    let results = folder.path("results.h5");
+    let other = hdf5::H5File::create(&results).unwrap();
+    other.create_group("grains").unwrap();
+    other.close().unwrap();
+    refused(&[&results], &["without an FCLIB problem", "/fclib_global"]);
+    let negative = folder.local("negative.hdf5", &one_contact(-0.5, [0.0; 3]));
+    refused(
+        &[&negative],
+        &["/fclib_local/vectors/mu", "contact 0", "-0.5"],
+    );
+    let infinite = folder.local("infinite.hdf5", &one_contact(0.5, [0.0, f64::NAN, 0.0]));
+    refused(&[&infinite], &["/fclib_local/vectors/q", "value 1", "NaN"]);
+    let mut small = one_contact(0.5, [0.0; 3]);
+    small.mu.push(0.5);
+    refused(
+        &[&folder.local("small.hdf5", &small)],
+        &["vectors/mu", "2 coefficients"],
+    );
+    let massless = GlobalProblem {
+        dimension: 2,
+        m: Csr::from_triplets(3, 3, &[(0, 0, 1.0), (2, 2, 1.0)]),
+        h: Csr::from_triplets(3, 2, &[(0, 0, 1.0), (1, 1, 1.0)]),
+        f: vec![0.0; 3],
+        w: vec![-1.0; 2],
+        mu: vec![0.5],
+        equalities: None,
+    };
+    let path = folder.path("massless.hdf5");
+    fclib::write_global(path.as_ref(), &massless, "no mass", "").unwrap();
+    refused(
+        &[&path],
+        &["massless.hdf5", "M cannot be inverted", "row 1", "singular"],
+    );
+}
+
+#[test]
+fn wrong_arguments_are_refused_with_a_sentence() {
+    let folder = Folder::new();
+    let file = shared("fc3d_OneContact_reduced");
+    refused(&[&file, "--solver", "nlsg"], &["nlsg", "nlgs", "all"]);
+    for wrong in ["0", "-1", "NaN", "inf", "small"] {
+        refused(
+            &[&file, &format!("--tolerance={wrong}")],
+            &["--tolerance", "above 0"],
+        );
+        refused(
+            &[&file, &format!("--time-limit={wrong}")],
+            &["--time-limit", "above 0"],
+        );
+    }
+    refused(&[&file, "--max-iterations", "0"], &["--max-iterations"]);
+    refused(&[], &["PROBLEM.hdf5"]);
+    refused(
+        &[&file, "--out", &folder.path("no/such/a.hdf5")],
+        &["--out", "no such folder"],
+    );
+    refused(
+        &[&file, "--out", folder.0.to_str().unwrap()],
+        &["--out", "a file is expected"],
+    );
+    let copy = folder.path("copy.hdf5");
+    std::fs::copy(&file, &copy).unwrap();
+    refused(&[&copy, "--out", &copy], &["--out", "the problem itself"]);
+    assert_eq!(std::fs::read(&copy).unwrap(), std::fs::read(&file).unwrap());
+}
