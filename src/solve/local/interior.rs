@@ -12,7 +12,7 @@ use super::linear::{Factor, Rows};
 use super::state::{Best, Budget, Solver, State};
 
 /// Rounding of |v_t| over what a sticking contact's v_t is on the central path.
-const SMOOTH: f64 = 0.1;
+const SMOOTH: f64 = 0.01;
 
 /// The method.
 #[derive(Clone, Copy, Debug, Default)]
