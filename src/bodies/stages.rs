@@ -29,8 +29,9 @@ pub(super) fn fault(stages: &[Stage]) -> Option<(String, String)> {
         return Some((String::new(), "stages need at least one drive".into()));
     }
     let mut before = 0.0;
+    // In the text, stages hold one thing, their list.
     for (k, stage) in stages.iter().enumerate() {
-        let said = |field: &str, message: String| Some((format!("{k}.{field}"), message));
+        let said = |field: &str, message: String| Some((format!("0.{k}.{field}"), message));
         if matches!(stage.drive, Dof::Stages(_)) {
             return said("drive", "a stage cannot hold stages again".into());
         }
@@ -40,7 +41,7 @@ pub(super) fn fault(stages: &[Stage]) -> Option<(String, String)> {
         match (stage.until, k + 1 == stages.len()) {
             (None, false) => {
                 let message = "a stage that another one follows needs `until`, its end (s)";
-                return Some((format!("{k}"), message.into()));
+                return Some((format!("0.{k}"), message.into()));
             }
             (Some(_), true) => {
                 let message = "the last stage holds for ever; leave its `until` out";

@@ -6,8 +6,8 @@ use crate::step::Simulation;
 /// The internal moment tensor of the free grains, sum f (x) l over their contacts, over a volume: the
 /// Love-Weber stress (Pa), positive in compression; row: axis of the force, column: axis of the branch.
 ///
-/// f is the mean force of the last step, l the arm from a grain's centre to the contact, so that a contact
-/// with a wall counts with its grain only. At rest its trace is what the walls feel.
+/// f is the mean force of the last step, l goes from a grain's centre to the contact: to the wall's face, or
+/// to the middle of the gap to another grain. At rest the stress is what the walls feel.
 pub fn love_weber<S: Space>(s: &Simulation<S>, volume: f64) -> [[f64; 3]; 3] {
     let mut free = vec![true; s.bodies.len()];
     for driven in &s.bodies.driven {
@@ -16,13 +16,16 @@ pub fn love_weber<S: Space>(s: &Simulation<S>, volume: f64) -> [[f64; 3]; 3] {
     let mut moment = [[0.0; 3]; 3];
     let factor = 1.0 / (s.scheme.h * volume);
     for contact in &s.network.contacts {
+        let members = contact.bodies.map(|b| free[b as usize]);
+        let share = if members == [true, true] { 0.5 } else { 1.0 };
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
-            if !free[contact.bodies[side] as usize] {
+            if !members[side] {
                 continue;
             }
+            let arm = contact.arms[side] + contact.normal * (sign * share * contact.gap);
             for (a, row) in moment.iter_mut().enumerate().take(S::D) {
                 for (b, value) in row.iter_mut().enumerate().take(S::D) {
-                    *value += sign * factor * contact.impulse[a] * contact.arms[side][b];
+                    *value += sign * factor * contact.impulse[a] * arm[b];
                 }
             }
         }

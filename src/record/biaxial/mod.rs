@@ -38,7 +38,6 @@ pub struct Biaxial {
     start: f64,
     /// Lengths along the two axes at the start (m).
     reference: [f64; 2],
-    /// Volume of the grains (m^3; m^2 in 2D).
     solid: f64,
 }
 
@@ -117,6 +116,11 @@ impl Biaxial {
         if !self.begun(s) {
             self.reference = self.lengths(s);
         }
+    }
+
+    /// Volume of the grains (m^3; m^2 in 2D).
+    pub fn solid(&self) -> f64 {
+        self.solid
     }
 
     /// Mean mass of a grain (kg; kg/m in 2D), inertia scaled as in the run.
