@@ -209,3 +209,31 @@ fn a_folder_that_cannot_be_written_is_said() {
     );
     std::fs::remove_file(file).ok();
 }
+
+#[test]
+fn a_biaxial_test_leaves_its_figure_and_its_columns() {
+    let out = folder("biaxial");
+    let sets = ["--set", "time.end=0.42", "--set", "output.figures=true"];
+    let (output, s) = run("cases/verification/biaxial.ron", &out, &sets);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("friction angle"), "{said}");
+    let test = &s["biaxial"];
+    // 0.02 m/s for 0.02 s on a sample of some 0.1 m.
+    let strain = test["axial_strain"].as_f64().unwrap();
+    assert!((3e-3..6e-3).contains(&strain), "{strain}");
+    let compacity = test["compacity_start"].as_f64().unwrap();
+    assert!((0.7..0.9).contains(&compacity), "{compacity}");
+    let table = std::fs::read_to_string(out.join("statistics.csv")).unwrap();
+    let header = table.lines().next().unwrap();
+    for column in [
+        "sigma_axial [Pa]",
+        "p_contacts [Pa]",
+        "q_over_p",
+        "compacity",
+    ] {
+        assert!(header.split(',').any(|c| c == column), "{column}");
+    }
+    assert!(out.join("biaxial.png").exists());
+    std::fs::remove_dir_all(out).ok();
+}

@@ -1,5 +1,6 @@
 //! Driven degrees of freedom and their functions of time.
 
+use super::stages::{self, Stage};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -187,9 +188,41 @@ pub enum Dof {
     Displacement(TimeFunction),
     /// Imposed force (N; N/m of depth in 2D) or moment.
     Force(TimeFunction),
+    /// One drive after another, see [`Stage`].
+    Stages(Vec<Stage>),
 }
 
 impl Dof {
+    /// The drive in force at a time; itself where there are no stages.
+    pub fn at(&self, t: f64) -> &Self {
+        match self {
+            Self::Stages(stages) => stages::at(stages, t),
+            simple => simple,
+        }
+    }
+
+    /// The drive in force over a step of `h` from `time` on: a step belongs to the stage in which its middle
+    /// lies, so that the rounding of times does not matter.
+    pub fn over(&self, time: f64, h: f64) -> &Self {
+        self.at(time + 0.5 * h)
+    }
+
+    /// All its drives, in their order; itself where there are no stages.
+    pub fn drives(&self) -> impl DoubleEndedIterator<Item = &Self> {
+        let stages = match self {
+            Self::Stages(stages) => stages.as_slice(),
+            _ => &[],
+        };
+        let simple = (!matches!(self, Self::Stages(_))).then_some(self);
+        stages.iter().map(|s| &s.drive).chain(simple)
+    }
+
+    /// Whether contacts can move it at some time.
+    pub fn yields(&self) -> bool {
+        self.drives()
+            .any(|d| matches!(d, Self::Free | Self::Force(_)))
+    }
+
     /// The velocity imposed at a time, if one is.
     pub fn imposed_velocity(&self, t: f64) -> Option<f64> {
         match self {
@@ -197,23 +230,33 @@ impl Dof {
             Self::Fixed => Some(0.0),
             Self::Velocity(f) => Some(f.value(t)),
             Self::Displacement(f) => Some(f.rate(t)),
+            Self::Stages(_) => self.at(t).imposed_velocity(t),
         }
     }
 
     /// The force imposed at a time.
     pub fn force(&self, t: f64) -> f64 {
-        if let Self::Force(f) = self {
-            f.value(t)
-        } else {
-            0.0
+        match self {
+            Self::Force(f) => f.value(t),
+            Self::Stages(_) => self.at(t).force(t),
+            _ => 0.0,
         }
     }
 
-    /// The time function, if there is one.
+    /// The time function, if there is one: that of the last stage where there are stages.
     pub fn function(&self) -> Option<&TimeFunction> {
         match self {
             Self::Free | Self::Fixed => None,
             Self::Velocity(f) | Self::Displacement(f) | Self::Force(f) => Some(f),
+            Self::Stages(stages) => stages.last().and_then(|s| s.drive.function()),
+        }
+    }
+
+    /// What is wrong with it, if anything, and where below it (an empty path for itself).
+    pub fn fault(&self) -> Option<(String, String)> {
+        match self {
+            Self::Stages(stages) => stages::fault(stages),
+            simple => simple.function()?.fault().map(|f| (String::new(), f)),
         }
     }
 }

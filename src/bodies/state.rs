@@ -75,8 +75,7 @@ impl<S: Space> Bodies<S> {
             inverse[k] = 1.0 / mass;
         }
         self.inverse_mass.push(inverse);
-        self.inverse_inertia
-            .push(if inertia > 0.0 { 1.0 / inertia } else { 0.0 });
+        self.inverse_inertia.push(one_over(inertia));
         index as u32
     }
 
@@ -91,21 +90,39 @@ impl<S: Space> Bodies<S> {
         )
     }
 
-    /// Makes a body driven: imposed degrees of freedom lose their compliance.
+    /// Makes a body driven, by the drives of time zero.
     pub fn drive(&mut self, driven: Driven) {
-        let b = driven.body as usize;
-        for k in 0..S::D {
-            if driven.dofs[k].imposed_velocity(0.0).is_some() {
-                self.inverse_mass[b][k] = 0.0;
+        self.driven.push(driven);
+        self.engage(self.driven.len() - 1, 0.0);
+    }
+
+    /// Puts the drives in force at a time in charge of all bodies whose drives change.
+    pub fn engage_stages(&mut self, time: f64) {
+        for place in 0..self.driven.len() {
+            let mut dofs = self.driven[place].dofs.iter();
+            if dofs.any(|d| matches!(d, Dof::Stages(_))) {
+                self.engage(place, time);
             }
         }
-        if driven.dofs[S::D..]
-            .iter()
-            .any(|d| d.imposed_velocity(0.0).is_some())
-        {
-            self.inverse_inertia[b] = 0.0;
+    }
+
+    /// Imposed degrees of freedom have no compliance, the others that of their inertia.
+    fn engage(&mut self, place: usize, time: f64) {
+        let driven = &self.driven[place];
+        let b = driven.body as usize;
+        let imposed = |d: &Dof| d.imposed_velocity(time).is_some();
+        for k in 0..S::D {
+            self.inverse_mass[b][k] = if imposed(&driven.dofs[k]) {
+                0.0
+            } else {
+                1.0 / self.mass[b]
+            };
         }
-        self.driven.push(driven);
+        self.inverse_inertia[b] = if driven.dofs[S::D..].iter().any(imposed) {
+            0.0
+        } else {
+            one_over(self.inertia[b])
+        };
     }
 
     /// Whether contacts cannot move the body at all.
@@ -131,6 +148,11 @@ impl<S: Space> Bodies<S> {
             })
             .sum()
     }
+}
+
+/// One over an inertia; a body without one does not turn.
+fn one_over(inertia: f64) -> f64 {
+    if inertia > 0.0 { 1.0 / inertia } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! `fretwork check`: what a scene activates, its size and dimensionless groups; runs nothing.
 
 use super::{CaseArgs, Failure, say};
+use crate::bodies::Dof;
 use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};
+use crate::record::biaxial::Biaxial;
 use crate::scene::build::Built;
 use crate::scene::{Loaded, Scene, load};
 use crate::solve::row::Line;
@@ -127,7 +129,58 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
         ),
     );
     groups(loaded, built, high, &mut line);
+    biaxial_groups(loaded, built, &mut line);
     out
+}
+
+/// Pressure and inertial number of a biaxial test, for a square sample.
+fn biaxial_groups<S: Space>(
+    loaded: &Loaded,
+    built: &Built<S>,
+    line: &mut impl FnMut(&str, String),
+) {
+    let (case, s) = (&loaded.case, &built.simulation);
+    let Some((spec, test)) = case
+        .biaxial
+        .as_ref()
+        .and_then(|spec| Some((spec, Biaxial::new(spec, s)?)))
+    else {
+        return;
+    };
+    // From the start of the test to the end, in all directions: the walls have one that is driven.
+    let largest = |names: &(String, String), f: &dyn Fn(&Dof, f64) -> f64| {
+        let walls = s.bodies.driven.iter();
+        let walls = walls.filter(|d| d.name == names.0 || d.name == names.1);
+        walls
+            .flat_map(|d| &d.dofs[..S::D])
+            .flat_map(|dof| {
+                (0..=1000).map(move |k| {
+                    let part = f64::from(k) / 1000.0;
+                    f(dof, spec.start + (case.time.end - spec.start) * part).abs()
+                })
+            })
+            .fold(0.0, f64::max)
+    };
+    let speed = largest(&spec.axial, &|d, t| d.imposed_velocity(t).unwrap_or(0.0));
+    let force = largest(&spec.lateral, &Dof::force);
+    let side = (test.solid() / 0.82).sqrt();
+    if !(side > 0.0 && force > 0.0) {
+        return;
+    }
+    let pressure = force / side;
+    line(
+        "biaxial test",
+        format!("about {side:.2e} m wide at a compacity of 0.82, under {pressure:.3e} Pa"),
+    );
+    let rate = speed / side;
+    let inertial = rate * (test.grain_mass(s) / pressure).sqrt();
+    line(
+        "inertial number",
+        format!(
+            "{inertial:.2e} at a strain rate of {rate:.2e} /s, {:.1e} of strain a step (quasi-static below some 1e-3)",
+            rate * case.time.step
+        ),
+    );
 }
 
 /// Dimensionless groups of a friction test.

@@ -1,4 +1,6 @@
 //! What a run leaves behind: ledgers, statistics, pictures, the results file, the summary.
+pub mod biaxial;
+pub mod coordination;
 pub mod fclib;
 pub mod figures;
 pub mod friction;
@@ -8,6 +10,7 @@ pub mod picture;
 pub mod results;
 pub mod run;
 pub mod statistics;
+pub mod stress;
 pub mod summary;
 pub mod views;
 

@@ -1,5 +1,6 @@
 //! Runs a scene to its end and records it.
 
+use super::biaxial::{self, Biaxial, Outcome};
 use super::friction::{Cycles, Sample};
 use super::layer::{Balance, Layer};
 use super::picture::Camera;
@@ -104,6 +105,7 @@ struct Recorder<'a, S: Space> {
     results: Results,
     camera: Camera,
     cycles: Option<(Cycles, usize)>,
+    biaxial: Option<Biaxial>,
     layer: Layer<S>,
     sample: Option<Sample>,
     slide: f64,
@@ -138,7 +140,9 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             };
             Some((Cycles::new(start, period, case.time.end), place))
         });
-        let columns = columns(&simulation, cycles.is_some());
+        let spec = case.biaxial.as_ref();
+        let biaxial = spec.and_then(|spec| Biaxial::new(spec, &simulation));
+        let columns = columns(&simulation, cycles.is_some(), biaxial.is_some());
         let table_path = options.out.join("statistics.csv");
         let table =
             Table::create(&table_path, columns.clone()).map_err(|e| unwritable(&table_path, &e))?;
@@ -172,6 +176,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             table,
             results,
             cycles,
+            biaxial,
             layer: Layer::new(&simulation),
             sample: None,
             slide: 0.0,
@@ -269,6 +274,9 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         if let (Some((_, place)), Some(test)) = (&self.cycles, &self.loaded.case.friction) {
             self.layer.follow(&self.simulation, (*place, test.along));
         }
+        if let Some(test) = &mut self.biaxial {
+            test.follow(&self.simulation);
+        }
         let after = self.balance();
         let damage = self.damage_ratio();
         let s = &self.simulation;
@@ -336,6 +344,9 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
                     0.0
                 },
             ]);
+        }
+        if let Some(test) = &self.biaxial {
+            row.extend(test.state(s).row());
         }
         for (d, driven) in s
             .bodies
@@ -419,6 +430,10 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             summary.friction_from_dissipation = cycles.last().map(|c| c.friction_from_dissipation);
             summary.cycles.clone_from(&cycles.list);
         }
+        let start = self.loaded.case.biaxial.as_ref().map_or(0.0, |t| t.start);
+        if let Some(test) = &self.biaxial {
+            summary.biaxial = Some(Outcome::new(&self.table, start, test.grain_mass(s)));
+        }
         summary.energy = s.energy;
         summary.energy_residual_relative = s.energy.relative_residual();
         let time = s.time.max(f64::MIN_POSITIVE);
@@ -450,6 +465,10 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
                 self.cycles.as_ref().map(|c| &c.0),
                 S::D,
             )?;
+            if self.biaxial.is_some() {
+                let title = &self.loaded.case.name;
+                biaxial::draw(&self.out.join("biaxial.png"), title, &self.table, start)?;
+            }
         }
         Ok(())
     }
@@ -527,7 +546,7 @@ fn density_of(loaded: &Loaded, any: bool) -> f64 {
     }
 }
 
-fn columns<S: Space>(s: &Simulation<S>, friction: bool) -> Vec<Column> {
+fn columns<S: Space>(s: &Simulation<S>, friction: bool, biaxial: bool) -> Vec<Column> {
     let newton = if S::D == 2 { "N/m" } else { "N" };
     let joule = if S::D == 2 { "J/m" } else { "J" };
     let volume = if S::D == 2 { "m^3/m" } else { "m^3" };
@@ -569,6 +588,9 @@ fn columns<S: Space>(s: &Simulation<S>, friction: bool) -> Vec<Column> {
             c("P", newton, "normal force"),
             c("mu", "", "|Q|/P"),
         ]);
+    }
+    if biaxial {
+        out.extend(Biaxial::columns());
     }
     let axes = ["x", "y", "z"];
     for driven in s.bodies.driven.iter().filter(|d| shown(&d.name)) {

@@ -1,5 +1,6 @@
 //! `summary.json`, and the summary a tribologist reads at the end.
 
+use super::biaxial::Outcome;
 use super::friction::Cycle;
 use super::ledger::Energy;
 use serde::Serialize;
@@ -94,6 +95,8 @@ pub struct Summary {
     pub friction_from_dissipation: Option<f64>,
     /// Cycle by cycle.
     pub cycles: Vec<Cycle>,
+    /// What a biaxial test found; null without one.
+    pub biaxial: Option<Outcome>,
     /// Energy ledger (J; J/m).
     pub energy: Energy,
     /// Residual over the largest energy seen.
@@ -168,6 +171,9 @@ impl Summary {
                     c.friction_coefficient, c.work, c.normal_force, c.energy_ratio, c.broken
                 ),
             );
+        }
+        for (label, text) in self.biaxial.iter().flat_map(Outcome::lines) {
+            line(label, text);
         }
         let e = &self.energy;
         line(

@@ -117,6 +117,11 @@ impl Chart {
 
     /// Draws the chart to a PNG file.
     pub fn draw(&self, path: &Path) -> Result<(), ReportError> {
+        self.page()?.save(path)
+    }
+
+    /// Draws the chart.
+    pub(super) fn page(&self) -> Result<Canvas, ReportError> {
         let (width, height) = self.size_px;
         if width.min(height) < 200 {
             return Err(ReportError::Size { width, height });
@@ -188,7 +193,7 @@ impl Chart {
                 .halo(WHITE);
             page.text("no data", centre, &style);
         }
-        page.save(path)
+        Ok(page)
     }
 
     pub(super) fn colour(&self, index: usize) -> Rgb {

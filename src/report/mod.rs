@@ -6,10 +6,12 @@ mod font;
 mod frame;
 mod furniture;
 mod legend;
+mod panels;
 mod sphere;
 
 pub use axis::Axis;
 pub use canvas::ReportError;
 pub use chart::{Chart, Series, Style};
 pub use frame::{Arrow, Disk, Frame, Link, LinkState, Outline};
+pub use panels::draw_panels;
 pub use sphere::{View, project_spheres, sphere_disk};

@@ -624,7 +624,7 @@ impl<S: Dimensional> Builder<'_, S> {
 
     fn check_dofs(&self, here: &str, spec: &BodySpec, has_mass: bool) -> Result<(), InputError> {
         let dofs = spec.ordered(S::D);
-        let moves = |d: &crate::bodies::Dof| d.imposed_velocity(0.0).is_none();
+        let moves = crate::bodies::Dof::yields;
         if dofs.iter().any(moves) && spec.mass.is_none() && !has_mass {
             return Err(self.fail(
                 here,

@@ -1,6 +1,6 @@
 //! A case file: what the user writes.
 
-use crate::bodies::{Dof, TimeFunction};
+use crate::bodies::Dof;
 use crate::laws::BondRule;
 use crate::solve::error::Norm;
 use crate::step::coupling::Coupling;
@@ -57,6 +57,9 @@ pub struct Case {
     /// What is measured as a friction test.
     #[serde(default)]
     pub friction: Option<FrictionSpec>,
+    /// What is measured as a biaxial test.
+    #[serde(default)]
+    pub biaxial: Option<BiaxialSpec>,
     /// What is written, and how often.
     #[serde(default)]
     pub output: OutputSpec,
@@ -397,6 +400,19 @@ fn axis_y() -> usize {
     1
 }
 
+/// A biaxial test of the grains between four flat walls (2D).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BiaxialSpec {
+    /// The walls on the low and the high side, along which the sample is sheared: names of bodies.
+    pub axial: (String, String),
+    /// The walls on the low and the high side of the other axis.
+    pub lateral: (String, String),
+    /// When the sample is confined and at rest: strains count from here (s).
+    #[serde(default)]
+    pub start: f64,
+}
+
 /// What is written.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -443,14 +459,5 @@ impl BodySpec {
         } else {
             &["x", "y", "z", "rx", "ry", "rz"]
         }
-    }
-
-    /// The time functions in use.
-    pub fn functions(&self, dimension: usize) -> Vec<(String, TimeFunction)> {
-        let dofs = self.ordered(dimension);
-        let named = dofs.iter().zip(Self::names(dimension));
-        named
-            .filter_map(|(d, n)| d.function().map(|f| ((*n).to_owned(), f.clone())))
-            .collect()
     }
 }

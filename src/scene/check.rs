@@ -122,6 +122,7 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
         let message = format!("a frame cannot be {} pixels wide", case.output.width);
         return Err(Fault::new("output.width", message).expected("200 to 16384 pixels"));
     }
+    super::biaxial::check(case)?;
     friction(case, dimension)
 }
 
@@ -145,9 +146,11 @@ fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), Fault> {
             }
         }
     }
-    for (name, function) in body.functions(dimension) {
-        if let Some(fault) = function.fault() {
-            return Err(Fault::new(format!("dofs.{name}"), fault));
+    let dofs = body.ordered(dimension);
+    for (name, dof) in BodySpec::names(dimension).iter().zip(&dofs) {
+        if let Some((below, fault)) = dof.fault() {
+            let path = format!("dofs.{name}.{below}");
+            return Err(Fault::new(path.trim_end_matches('.'), fault));
         }
     }
     Ok(())

@@ -1,4 +1,5 @@
 //! Cases and materials: read, checked, and made into a scene that steps.
+pub mod biaxial;
 pub mod build;
 pub mod case;
 pub mod check;

@@ -40,6 +40,7 @@ pub fn free_velocities<S: Space>(
         let b = driven.body as usize;
         let (v, w) = &mut free[b];
         for (k, dof) in driven.dofs.iter().enumerate() {
+            let dof = dof.over(time, h);
             let imposed = dof.imposed_velocity(time + h);
             let force = dof.force(time + theta * h);
             if k < S::D {
@@ -103,6 +104,7 @@ impl<S: Space> Before<S> {
         for (driven, (impulse, moment)) in bodies.driven.iter().zip(received) {
             let b = driven.body as usize;
             for (k, dof) in driven.dofs.iter().enumerate() {
+                let dof = dof.over(time, h);
                 let (old, new, inertia, received, weight) = if k < S::D {
                     let g = h * bodies.mass[b] * gravity[k];
                     (

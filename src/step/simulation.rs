@@ -184,6 +184,7 @@ impl<S: Space> Simulation<S> {
             theta,
         };
         let start = Before::new(&self.bodies);
+        self.bodies.engage_stages(self.time + 0.5 * h);
 
         let clock = Instant::now();
         motion::advance(&mut self.bodies, (1.0 - theta) * h);

@@ -8,6 +8,7 @@ mod dynamics;
 mod energy;
 mod laws;
 mod sinks;
+mod stages;
 
 use fretwork::geometry::space::{Plane, Solid};
 use fretwork::laws::SearchPath;
@@ -93,5 +94,6 @@ fn closed_forms_are_met() {
     energy::all(&mut table);
     sinks::all(&mut table);
     laws::all(&mut table);
+    stages::all(&mut table);
     assert!(table.failed.is_empty(), "\n{}", table.failed.join("\n"));
 }

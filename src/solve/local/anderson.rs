@@ -92,7 +92,11 @@ impl<const D: usize> Memory<D> {
         p.copy_from_slice(g);
         for (k, row) in a.iter().enumerate() {
             let gamma = row[n];
-            for (p, d) in p.as_flattened_mut().iter_mut().zip(self.dg[k].as_flattened()) {
+            for (p, d) in p
+                .as_flattened_mut()
+                .iter_mut()
+                .zip(self.dg[k].as_flattened())
+            {
                 *p -= gamma * d;
             }
         }

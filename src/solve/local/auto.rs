@@ -60,9 +60,20 @@ impl<const D: usize> Solver<D> for Auto {
         self.used.borrow_mut().clear();
         let blocks = form.w.matrix().blocks.len() + form.len();
         let per = sweeps_per_factorisation((blocks * D * D) as f64, form.len() as f64);
-        let worth = if budget.tolerance >= 1e-5 { LOOSE } else { TIGHT };
+        let worth = if budget.tolerance >= 1e-5 {
+            LOOSE
+        } else {
+            TIGHT
+        };
         let sweeps = (worth * per).clamp(100.0, 1e6) as u32;
-        if self.run("anderson", &Anderson::default(), form, state, budget, sweeps) {
+        if self.run(
+            "anderson",
+            &Anderson::default(),
+            form,
+            state,
+            budget,
+            sweeps,
+        ) {
             return;
         }
         if Interior::serves(form.laws) {

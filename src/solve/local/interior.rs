@@ -40,7 +40,13 @@ fn divide<const D: usize>(x: &[f64; D], y: &[f64; D]) -> [f64; D] {
     let d = determinant(x);
     let cross: f64 = (1..D).map(|k| x[k] * y[k]).sum();
     let z0 = (x[0] * y[0] - cross) / d;
-    std::array::from_fn(|k| if k == 0 { z0 } else { (y[k] - z0 * x[k]) / x[0] })
+    std::array::from_fn(|k| {
+        if k == 0 {
+            z0
+        } else {
+            (y[k] - z0 * x[k]) / x[0]
+        }
+    })
 }
 
 /// Nesterov and Todd's scaling: P r = P^-1 v.

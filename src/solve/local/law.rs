@@ -44,7 +44,8 @@ pub fn slip<const D: usize>(u: &[f64; D]) -> f64 {
 #[inline(always)]
 pub fn natural<const D: usize>(p: &[f64; D], u: &[f64; D], mu: f64, rho: f64) -> [f64; D] {
     let shift = mu * slip(u);
-    let z: [f64; D] = std::array::from_fn(|k| p[k] - rho * (u[k] + if k == 0 { shift } else { 0.0 }));
+    let z: [f64; D] =
+        std::array::from_fn(|k| p[k] - rho * (u[k] + if k == 0 { shift } else { 0.0 }));
     let y = project(&z, mu);
     std::array::from_fn(|k| p[k] - y[k])
 }

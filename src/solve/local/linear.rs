@@ -97,7 +97,11 @@ mod tests {
                 .collect();
             let factor = Factor::new(&a).expect("not singular");
             assert!(factor.solve(&mut b));
-            let off = x.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let off = x
+                .iter()
+                .zip(&b)
+                .map(|(a, b)| (a - b).abs())
+                .fold(0.0, f64::max);
             assert!(off < 1e-12, "{n} {off}");
         }
     }

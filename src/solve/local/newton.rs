@@ -180,8 +180,7 @@ impl<const D: usize> Prox<'_, D> {
                 let mut own = s.p[i];
                 for j in 0..D {
                     for l in 0..D {
-                        let x = w.diagonal[c][l][j]
-                            + if l == j { self.alpha } else { 0.0 };
+                        let x = w.diagonal[c][l][j] + if l == j { self.alpha } else { 0.0 };
                         own[j] += s.u[i][l] * x;
                     }
                 }
@@ -200,9 +199,8 @@ impl<const D: usize> Prox<'_, D> {
                         push(&mut a, place[c], &own);
                         put = true;
                     }
-                    let row: [f64; D] = std::array::from_fn(|j| {
-                        (0..D).map(|l| s.u[i][l] * block[l][j]).sum()
-                    });
+                    let row: [f64; D] =
+                        std::array::from_fn(|j| (0..D).map(|l| s.u[i][l] * block[l][j]).sum());
                     push(&mut a, at, &row);
                 }
                 if !put {
@@ -311,13 +309,12 @@ fn inner<const D: usize>(
             trial.step(&at.p, 1.0, &d, prox);
         }
         std::mem::swap(at, trial);
-        let moved: f64 = at
-            .p
-            .as_flattened()
-            .iter()
-            .zip(prox.centre.as_flattened())
-            .map(|(a, b)| (a - b).powi(2))
-            .sum();
+        let moved: f64 =
+            at.p.as_flattened()
+                .iter()
+                .zip(prox.centre.as_flattened())
+                .map(|(a, b)| (a - b).powi(2))
+                .sum();
         let enough = 1e-2 * (prox.alpha / mean).powi(2) * moved;
         if at.merit <= enough.max(1e-26 * squared(&at.p)) {
             return true;

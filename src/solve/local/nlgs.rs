@@ -66,8 +66,7 @@ impl<'a, const D: usize> Sweep<'a, D> {
             p[c] = new;
         } else {
             let old = p[c];
-            let far: [f64; D] =
-                std::array::from_fn(|k| old[k] + relaxation * (new[k] - old[k]));
+            let far: [f64; D] = std::array::from_fn(|k| old[k] + relaxation * (new[k] - old[k]));
             p[c] = self.laws[c].project(&far, p);
         }
     }

@@ -1,0 +1,190 @@
+//! What a biaxial test found, for the summary.
+
+use super::super::statistics::Table;
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// Axial strain over which a stress ratio is averaged before its largest value is called the peak: forces
+/// between rigid grains jump from step to step.
+const WINDOW: f64 = 5e-3;
+
+/// Results of the test. Angles in radians; strains and stresses signed as in [`super`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Outcome {
+    /// Compacity when the test starts.
+    pub compacity_start: f64,
+    /// Coordination over all grains when the test starts.
+    pub coordination_start: f64,
+    /// Coordination without rattlers when the test starts.
+    pub coordination_carried_start: f64,
+    /// Pressure on the walls when the test starts (Pa).
+    pub pressure_start: f64,
+    /// Largest |p_walls - p_contacts| / p_walls when the test starts and in its course.
+    pub pressure_mismatch: [f64; 2],
+    /// Largest q/p, averaged over half a per cent of axial strain.
+    pub peak_ratio: f64,
+    /// Its friction angle, asin(q/p) (rad).
+    pub peak_angle: f64,
+    /// Axial strain at the peak.
+    pub peak_strain: f64,
+    /// Mean q/p over the last third of the axial strain.
+    pub residual_ratio: f64,
+    /// Its friction angle (rad).
+    pub residual_angle: f64,
+    /// Axial strain at the end.
+    pub axial_strain: f64,
+    /// Volumetric strain at the end.
+    pub volumetric_strain: f64,
+    /// Smallest volumetric strain: the contraction before the sample dilates.
+    pub contraction: f64,
+    /// Compacity at the end, the mean over the last third of the axial strain.
+    pub compacity_end: f64,
+    /// Coordination at the end, likewise.
+    pub coordination_end: f64,
+    /// Mean inertial number over the test, rate of axial strain times sqrt(m/p), m the mean mass of a grain.
+    pub inertial_number: f64,
+}
+
+impl Outcome {
+    /// From the statistics: `start` of the test (s), mean mass of a grain (kg; kg/m).
+    pub fn new(table: &Table, start: f64, mass: f64) -> Self {
+        let time = table.column("time");
+        let first = time.partition_point(|t| *t <= start * (1.0 + 1e-9));
+        let at = first.saturating_sub(1);
+        let column = |name: &str| table.column(name);
+        let (walls, contacts) = (column("p_walls"), column("p_contacts"));
+        let (strain, ratio) = (column("axial_strain"), column("q_over_p"));
+        let volume = column("volumetric_strain");
+        let (compacity, coordination) = (column("compacity"), column("coordination"));
+        let value = |values: &[f64]| values.get(at).copied().unwrap_or(0.0);
+        let mismatch = |k: usize| {
+            if walls[k] > 0.0 {
+                (contacts[k] / walls[k] - 1.0).abs()
+            } else {
+                0.0
+            }
+        };
+        let mut out = Self {
+            compacity_start: value(&compacity),
+            coordination_start: value(&coordination),
+            coordination_carried_start: value(&column("coordination_carried")),
+            pressure_start: value(&walls),
+            ..Self::default()
+        };
+        let Some(last) = time.len().checked_sub(1) else {
+            return out;
+        };
+        out.pressure_mismatch[0] = mismatch(at);
+        if first > last {
+            return out;
+        }
+        out.pressure_mismatch[1] = (first..=last).map(mismatch).fold(0.0, f64::max);
+        (out.axial_strain, out.volumetric_strain) = (strain[last], volume[last]);
+        out.contraction = volume[first..].iter().copied().fold(0.0, f64::min);
+        (out.peak_ratio, out.peak_strain) = peak(&strain[first..], &ratio[first..]);
+        let mean = |values: &[f64]| {
+            let late = (first..=last).filter(|k| strain[*k] >= strain[last] * 2.0 / 3.0);
+            let (sum, count) = late.fold((0.0, 0), |(s, n), k| (s + values[k], n + 1));
+            sum / f64::from(count.max(1))
+        };
+        out.residual_ratio = mean(&ratio);
+        out.compacity_end = mean(&compacity);
+        out.coordination_end = mean(&coordination);
+        out.peak_angle = out.peak_ratio.clamp(-1.0, 1.0).asin();
+        out.residual_angle = out.residual_ratio.clamp(-1.0, 1.0).asin();
+        let course = &walls[first..];
+        let pressure = course.iter().sum::<f64>() / course.len() as f64;
+        let duration = time[last] - value(&time);
+        if pressure > 0.0 && duration > 0.0 {
+            let rate = strain[last].abs() / duration;
+            out.inertial_number = rate * (mass / pressure).sqrt();
+        }
+        out
+    }
+
+    /// Some lines for a terminal: a label and a text.
+    pub fn lines(&self) -> Vec<(&'static str, String)> {
+        let mut rest = format!(
+            "compacity {:.4}, coordination {:.3}, {:.3} without rattlers",
+            self.compacity_start, self.coordination_start, self.coordination_carried_start
+        );
+        let _ = write!(
+            rest,
+            ", pressure {:.4e} Pa, that of the contacts {:.1e} from it",
+            self.pressure_start, self.pressure_mismatch[0]
+        );
+        vec![
+            ("at rest", rest),
+            (
+                "friction angle",
+                format!(
+                    "peak {:.2} degrees (q/p {:.3}) at axial strain {:.4}, residual {:.2} degrees (q/p {:.3})",
+                    self.peak_angle.to_degrees(),
+                    self.peak_ratio,
+                    self.peak_strain,
+                    self.residual_angle.to_degrees(),
+                    self.residual_ratio
+                ),
+            ),
+            (
+                "strains",
+                format!(
+                    "axial {:.4}, volumetric {:+.4} (least {:+.4}); inertial number {:.2e}",
+                    self.axial_strain,
+                    self.volumetric_strain,
+                    self.contraction,
+                    self.inertial_number
+                ),
+            ),
+            (
+                "sheared",
+                format!(
+                    "compacity {:.4}, coordination {:.3}",
+                    self.compacity_end, self.coordination_end
+                ),
+            ),
+        ]
+    }
+}
+
+/// The largest mean over a window of strain, and the strain in its middle; over all where it is shorter.
+fn peak(strain: &[f64], ratio: &[f64]) -> (f64, f64) {
+    let whole = ratio.iter().sum::<f64>() / ratio.len().max(1) as f64;
+    let mut best: Option<(f64, f64)> = None;
+    let (mut low, mut sum) = (0, 0.0);
+    for high in 0..strain.len() {
+        sum += ratio[high];
+        let mut full = false;
+        while low < high && strain[high] - strain[low] > WINDOW {
+            sum -= ratio[low];
+            low += 1;
+            full = true;
+        }
+        let mean = sum / (high - low + 1) as f64;
+        if (full || low > 0) && best.is_none_or(|b| mean > b.0) {
+            best = Some((mean, 0.5 * (strain[high] + strain[low])));
+        }
+    }
+    best.unwrap_or((whole, strain.last().map_or(0.0, |e| 0.5 * e)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lone_jump_is_no_peak() {
+        let strain: Vec<f64> = (0..1000).map(|k| f64::from(k) * 1e-4).collect();
+        // A hill of 0.4 in the middle of 0.3, and one step of 10.
+        let mut ratio: Vec<f64> = strain
+            .iter()
+            .map(|e| if (e - 0.03).abs() < 5e-3 { 0.4 } else { 0.3 })
+            .collect();
+        ratio[800] = 2.0;
+        let (top, at) = peak(&strain, &ratio);
+        assert!(
+            (top - 0.4).abs() < 1e-9 && (at - 0.03).abs() < 5e-3,
+            "{top} {at}"
+        );
+    }
+}

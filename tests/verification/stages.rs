@@ -1,0 +1,155 @@
+//! Drives that follow one another, and the biaxial test that is made with them.
+
+use super::{Table, plane, until};
+use fretwork::geometry::space::Plane;
+use fretwork::laws::SearchPath;
+use fretwork::record::biaxial::Biaxial;
+use fretwork::record::stress::love_weber;
+use fretwork::scene::load;
+use fretwork::step::Simulation;
+use std::path::Path;
+
+pub fn all(table: &mut Table) {
+    cart(table);
+    lid(table);
+    biaxial(table);
+}
+
+fn place(s: &Simulation<Plane>, name: &str) -> usize {
+    let found = s.bodies.driven.iter().position(|d| d.name == name);
+    found.unwrap_or_else(|| panic!("a body named {name}"))
+}
+
+/// F for t1, then V, then -F. At theta = 1/2 the scheme is exact but for the step of each jump, over which the
+/// velocity counts as the mean of the two.
+fn cart(table: &mut Table) {
+    let (f, m, v2, t1, h) = (10.0, 5.0, -0.7, 0.2, 1e-3);
+    let mut s = plane("staged_drive", &[]);
+    let b = s.bodies.driven[place(&s, "cart")].body as usize;
+    let x0 = s.bodies.position[b].x;
+    let name = "staged_drive";
+    until(&mut s, t1, |_| {});
+    let v1 = f * t1 / m;
+    let x1 = 0.5 * v1 * t1;
+    let (v, x) = (s.bodies.velocity[b].x, s.bodies.position[b].x - x0);
+    table.compare(name, "pushed: F t/m (m/s)", v1, v, 1e-12);
+    table.compare(name, "pushed: F t^2/(2 m) (m)", x1, x, 1e-12);
+    until(&mut s, 0.3, |_| {});
+    let x2 = x1 + v2 * 0.1 + 0.5 * (v1 - v2) * h;
+    let (v, x) = (s.bodies.velocity[b].x, s.bodies.position[b].x - x0);
+    table.compare(name, "moved: V (m/s)", v2, v, 0.0);
+    table.compare(name, "moved: place (m)", x2, x, 1e-10);
+    until(&mut s, 0.5, |_| {});
+    let (v3, t) = (v2 - f * 0.2 / m, 0.2);
+    let x3 = x2 + v2 * t - 0.5 * f / m * t * t;
+    let (v, x) = (s.bodies.velocity[b].x, s.bodies.position[b].x - x0);
+    table.compare(name, "pushed again: V - F t/m (m/s)", v3, v, 1e-12);
+    table.compare(name, "pushed again: place (m)", x3, x, 1e-10);
+}
+
+/// The lid falls by the gap and rests on the grain, then it is lifted: the work is F times the gap, lost in
+/// impacts, then m V^2/2.
+fn lid(table: &mut Table) {
+    let (f, gap, m, v) = (100.0, 0.01, 4.0, 0.3);
+    let mut s = plane("staged_drive", &[]);
+    let name = "staged_drive";
+    let lid = place(&s, "lid");
+    let cart = s.bodies.driven[place(&s, "cart")].body as usize;
+    let cart_work = |s: &Simulation<Plane>| 0.5 * 5.0 * s.bodies.velocity[cart].x.powi(2);
+    until(&mut s, 0.2, |_| {});
+    let felt = s.received[lid].0.y / s.scheme.h;
+    table.compare(name, "the lid feels F (N/m)", f, felt, 1e-9);
+    let work = s.energy.external_work - cart_work(&s);
+    table.compare(name, "work F g (J/m)", f * gap, work, 1e-9);
+    until(&mut s, 0.25, |_| {});
+    table.compare(
+        name,
+        "lifted it feels nothing (N/m)",
+        0.0,
+        s.received[lid].0.y,
+        0.0,
+    );
+    let work = s.energy.external_work - cart_work(&s);
+    table.compare(
+        name,
+        "work F g + m V^2/2 (J/m)",
+        f * gap + 0.5 * m * v * v,
+        work,
+        1e-9,
+    );
+    table.compare(
+        name,
+        "residual over largest energy",
+        0.0,
+        s.energy.relative_residual(),
+        1e-12,
+    );
+}
+
+/// At rest: forces over lengths, and the Love-Weber stress. Then the strain that the wall's motion gives.
+fn biaxial(table: &mut Table) {
+    let name = "biaxial";
+    let root = env!("CARGO_MANIFEST_DIR");
+    let file = format!("{root}/cases/verification/biaxial.ron");
+    let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<Plane>(&SearchPath::new(&[]));
+    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let spec = loaded
+        .case
+        .biaxial
+        .as_ref()
+        .unwrap_or_else(|| panic!("a test"));
+    let mut test = Biaxial::new(spec, &s).unwrap_or_else(|| panic!("its walls"));
+    // While grains collide the forces need no digits; at rest all that there are.
+    let tolerance = s.solver.tolerance;
+    until(&mut s, 0.3, |s| test.follow(s));
+    s.solver.tolerance = 1e-9;
+    until(&mut s, 0.4, |s| test.follow(s));
+    let at = |s: &Simulation<Plane>, name: &str| {
+        s.bodies.position[s.bodies.driven[place(s, name)].body as usize]
+    };
+    // The left wall stands 0.01 m below zero, the right one 0.14 m from its frame.
+    let width = at(&s, "right").x + 0.14 + 0.01;
+    let height = at(&s, "top").y;
+    let state = test.state(&s);
+    table.compare(
+        name,
+        "axial stress F/L at rest (Pa)",
+        1000.0 / width,
+        state.walls[0],
+        1e-6,
+    );
+    table.compare(
+        name,
+        "lateral stress F/L at rest (Pa)",
+        1500.0 / height,
+        state.walls[1],
+        1e-6,
+    );
+    let (walls, contacts) = (state.pressure_walls, state.pressure_contacts);
+    table.compare(
+        name,
+        "Love-Weber pressure is that of walls",
+        walls,
+        contacts,
+        1e-6,
+    );
+    let stress = love_weber(&s, width * height);
+    for (k, axis) in ["lateral", "axial"].into_iter().enumerate() {
+        let quantity = format!("Love-Weber stress, {axis} (Pa)");
+        table.compare(name, &quantity, state.walls[1 - k], stress[k][k], 1e-6);
+    }
+    s.solver.tolerance = tolerance;
+    until(&mut s, 0.5, |s| test.follow(s));
+    let strain = test.state(&s).axial_strain;
+    // The first step of the drive has half the velocity.
+    let expected = 0.02 * (0.1 - 0.5 * s.scheme.h) / height;
+    table.compare(name, "axial strain V t/L", expected, strain, 1e-4);
+    table.compare(
+        name,
+        "residual over largest energy",
+        0.0,
+        s.energy.relative_residual(),
+        1e-9,
+    );
+}
