@@ -101,11 +101,16 @@ impl Sums {
 
     /// The part of the error that needs no sum over bodies.
     fn local(&self, norm: Norm, free: f64) -> f64 {
-        let against = match norm {
+        over(self.residual.sqrt(), self.against(norm, free))
+    }
+
+    /// What the residual is measured against.
+    pub fn against(&self, norm: Norm, free: f64) -> f64 {
+        match norm {
             Norm::Velocity => self.velocity.max(free),
             Norm::Balance | Norm::Field => self.velocity.max(free).max(self.impulse),
-        };
-        over(self.residual.sqrt(), against.sqrt())
+        }
+        .sqrt()
     }
 
     /// The error. Where there is nothing to measure against, the residual itself.

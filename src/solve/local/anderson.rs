@@ -2,7 +2,7 @@
 //! extrapolation that the next sweep finds worse is taken back.
 
 use super::form::{Form, dot};
-use super::nlgs::{Sweep, until_test};
+use super::nlgs::{Sweep, Tests};
 use super::state::{Best, Budget, Solver, State};
 
 /// The method and its parameters.
@@ -10,16 +10,16 @@ use super::state::{Best, Budget, Solver, State};
 pub struct Anderson {
     /// Sweeps remembered.
     pub memory: usize,
-    /// Relaxation of each sweep.
-    pub relaxation: f64,
 }
+
+/// Sweeps before the memory is begun: where few do, its sums would cost more than they save.
+const PLAIN: u32 = 8;
+/// Over-relaxation of these.
+const RELAXED: f64 = 1.3;
 
 impl Default for Anderson {
     fn default() -> Self {
-        Self {
-            memory: 8,
-            relaxation: 1.0,
-        }
+        Self { memory: 8 }
     }
 }
 
@@ -170,23 +170,29 @@ impl<const D: usize> Solver<D> for Anderson {
         let mut sweep = Sweep::new(form);
         let mut sequence: Option<Sequence<D>> = None;
         let mut best = Best::of(state);
+        let mut tests = Tests::new();
         let mut done = 0;
         while !budget.ends(state) {
-            let last = (state.iterations + until_test(done)).min(budget.max_iterations);
-            while state.iterations < last {
-                // The first sweep often ends it: what follows is made when it did not.
-                if done == 1 {
-                    sequence = Some(Sequence::new(self.memory, &state.p));
-                }
-                if let Some(sequence) = &mut sequence {
-                    if done > 1 {
-                        sequence.next(form, &state.p);
+            loop {
+                if done < PLAIN {
+                    // The first sweep often ends it, so it is not relaxed.
+                    let relaxation = if done == 0 { 1.0 } else { RELAXED };
+                    sweep.forward(&mut state.p, relaxation);
+                } else {
+                    match &mut sequence {
+                        Some(sequence) => sequence.next(form, &state.p),
+                        none => *none = Some(Sequence::new(self.memory, &state.p)),
                     }
-                    state.p.copy_from_slice(&sequence.start);
+                    if let Some(sequence) = &sequence {
+                        state.p.copy_from_slice(&sequence.start);
+                    }
+                    sweep.forward(&mut state.p, 1.0);
                 }
-                sweep.forward(&mut state.p, self.relaxation);
-                state.iterations += 1;
                 done += 1;
+                state.iterations += 1;
+                if tests.due(&sweep, state, budget) {
+                    break;
+                }
             }
             state.measure(form);
             best.keep(state);

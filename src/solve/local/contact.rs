@@ -8,6 +8,7 @@
 use super::block::{Block, times};
 use super::form::largest;
 use super::law::Law;
+use std::hint::select_unpredictable;
 
 /// What the exact solution of a contact needs, formed once.
 #[derive(Clone, Copy, Debug)]
@@ -77,6 +78,33 @@ impl<const D: usize> Local<D> {
     /// The impulse that answers the free velocity `f` of this contact.
     #[inline]
     pub fn solve(&mut self, f: &[f64; D], mu: f64) -> [f64; D] {
+        if D == 2 {
+            self.solve_plane(f, mu)
+        } else {
+            self.solve_space(f, mu)
+        }
+    }
+
+    /// The four branches in the plane; all are formed and one is chosen, since a processor cannot guess
+    /// which it will be.
+    #[inline(always)]
+    fn solve_plane(&self, f: &[f64; D], mu: f64) -> [f64; D] {
+        let stick = times(&self.inverse, f);
+        // Sliding: p_t = -s mu p_n, s the sign of u_t, which is that of the impulse it lacks.
+        let s = mu.copysign(stick[1]);
+        let slide_n = -f[0] / (self.w[0][0] - s * self.w[0][1]);
+        let sticks = stick[0] < 0.0 && stick[1].abs() <= -mu * stick[0];
+        let n = select_unpredictable(sticks, -stick[0], slide_n);
+        let t = select_unpredictable(sticks, -stick[1], -s * slide_n);
+        let closed = f[0] < 0.0 && self.iwnn > 0.0;
+        let mut p = [0.0; D];
+        p[0] = select_unpredictable(closed, n.max(0.0), 0.0);
+        p[1] = select_unpredictable(closed && n > 0.0, t, 0.0);
+        p
+    }
+
+    #[inline]
+    fn solve_space(&mut self, f: &[f64; D], mu: f64) -> [f64; D] {
         let mut p = [0.0; D];
         if f[0] >= 0.0 || self.iwnn == 0.0 {
             return p;
@@ -92,11 +120,7 @@ impl<const D: usize> Local<D> {
                 return stick.map(|x| -x);
             }
         }
-        if D == 2 {
-            self.slide_plane(f, mu)
-        } else {
-            self.slide_space(f, mu)
-        }
+        self.slide_space(f, mu)
     }
 
     /// The same for the other laws: projections with the block's own step, since none of them couples
@@ -129,26 +153,6 @@ impl<const D: usize> Local<D> {
                 change += r[k].abs();
             }
             if change <= 1e-15 * p.iter().map(|x| x.abs()).sum::<f64>() {
-                break;
-            }
-        }
-        p
-    }
-
-    fn slide_plane(&self, f: &[f64; D], mu: f64) -> [f64; D] {
-        let mut p = [0.0; D];
-        for sign in [1.0, -1.0] {
-            // p_t = -sign mu p_n with u_t of sign `sign`.
-            let w = self.w[0][0] - sign * mu * self.w[0][1];
-            if w <= 0.0 {
-                continue;
-            }
-            let n = -f[0] / w;
-            let t = -sign * mu * n;
-            let ut = self.w[1][0] * n + self.w[1][1] * t + f[1];
-            p[0] = n;
-            p[1] = t;
-            if sign * ut >= 0.0 {
                 break;
             }
         }

@@ -89,8 +89,8 @@ impl<'a, const D: usize> Form<'a, D> {
         }
     }
 
-    /// The error of p, and the worst block, where u = W p + q.
-    pub fn error(&self, p: &[[f64; D]], u: &[[f64; D]]) -> (f64, usize) {
+    /// The error of p, where u = W p + q.
+    pub fn error(&self, p: &[[f64; D]], u: &[[f64; D]]) -> Measure {
         let mut sums = Sums::default();
         for c in 0..self.len() {
             let rho = self.rho(c);
@@ -118,8 +118,23 @@ impl<'a, const D: usize> Form<'a, D> {
             free: self.free,
             work,
         };
-        (sums.error(self.norm, &scale), sums.worst_at)
+        Measure {
+            error: sums.error(self.norm, &scale),
+            scale: sums.against(self.norm, self.free),
+            worst: sums.worst_at,
+        }
     }
+}
+
+/// An error and what belongs to it.
+#[derive(Clone, Copy, Debug)]
+pub struct Measure {
+    /// The error.
+    pub error: f64,
+    /// What the residual was divided by.
+    pub scale: f64,
+    /// The block with the largest residual.
+    pub worst: usize,
 }
 
 /// The largest eigenvalue of a block, from above (largest absolute row sum of the symmetric part).

@@ -2,9 +2,10 @@
 
 use super::block::BlockMatrix;
 use super::contact::Local;
-use super::form::Form;
+use super::form::{Form, largest};
 use super::law::Law;
 use super::state::{Best, Budget, Solver, State};
+use crate::solve::error::Norm;
 
 /// How contacts are visited.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,6 +41,10 @@ pub struct Sweep<'a, const D: usize> {
     q: &'a [[f64; D]],
     laws: &'a [Law],
     locals: Vec<Local<D>>,
+    /// What a change of impulse does to the residual, about: see [`Tests`].
+    reach: Vec<f64>,
+    /// Square of the residual that the last sweep took away, about.
+    pub change: f64,
 }
 
 impl<'a, const D: usize> Sweep<'a, D> {
@@ -51,6 +56,19 @@ impl<'a, const D: usize> Sweep<'a, D> {
             q: form.q,
             laws: form.laws,
             locals: w.diagonal.iter().map(Local::new).collect(),
+            reach: w
+                .diagonal
+                .iter()
+                .map(|w| {
+                    let largest = largest(w);
+                    let reach = match form.norm {
+                        Norm::Field => largest.min(1.0),
+                        _ => largest,
+                    };
+                    reach * reach
+                })
+                .collect(),
+            change: f64::INFINITY,
         }
     }
 
@@ -62,10 +80,15 @@ impl<'a, const D: usize> Sweep<'a, D> {
             Law::Coulomb(mu) => self.locals[c].solve(&f, mu),
             law => self.locals[c].solve_rare(&f, &law, &p[c], p),
         };
+        let old = p[c];
+        let mut squared = 0.0;
+        for k in 0..D {
+            squared += (new[k] - old[k]) * (new[k] - old[k]);
+        }
+        self.change += self.reach[c] * squared;
         if relaxation == 1.0 {
             p[c] = new;
         } else {
-            let old = p[c];
             let far: [f64; D] = std::array::from_fn(|k| old[k] + relaxation * (new[k] - old[k]));
             p[c] = self.laws[c].project(&far, p);
         }
@@ -73,6 +96,7 @@ impl<'a, const D: usize> Sweep<'a, D> {
 
     /// All contacts once.
     pub fn forward(&mut self, p: &mut [[f64; D]], relaxation: f64) {
+        self.change = 0.0;
         for c in 0..p.len() {
             self.visit(c, p, relaxation);
         }
@@ -80,15 +104,47 @@ impl<'a, const D: usize> Sweep<'a, D> {
 
     /// All contacts once, last to first.
     pub fn backward(&mut self, p: &mut [[f64; D]], relaxation: f64) {
+        self.change = 0.0;
         for c in (0..p.len()).rev() {
             self.visit(c, p, relaxation);
         }
     }
 }
 
-/// Sweeps until the next test: often at first, where few may do.
-pub fn until_test(done: u32) -> u32 {
-    (done / 4).clamp(1, 10)
+/// When to measure the error: a measure costs as much as a sweep, and the change of a sweep tells about
+/// how large it will be.
+pub struct Tests {
+    done: u32,
+    since: u32,
+}
+
+impl Tests {
+    /// Sweeps at most between two tests.
+    const MOST: u32 = 10;
+
+    pub fn new() -> Self {
+        Self { done: 0, since: 0 }
+    }
+
+    /// After a sweep: whether to measure. The first sweep often ends it.
+    pub fn due<const D: usize>(
+        &mut self,
+        sweep: &Sweep<D>,
+        state: &State<D>,
+        budget: &Budget,
+    ) -> bool {
+        self.done += 1;
+        self.since += 1;
+        let goal = 2.0 * budget.tolerance * state.scale;
+        let due = self.done == 1
+            || self.since >= Self::MOST
+            || sweep.change <= goal * goal
+            || state.iterations >= budget.max_iterations;
+        if due {
+            self.since = 0;
+        }
+        due
+    }
 }
 
 impl<const D: usize> Solver<D> for Nlgs {
@@ -99,17 +155,18 @@ impl<const D: usize> Solver<D> for Nlgs {
         let mut best = Best::of(state);
         let mut relaxation = self.relaxation;
         let mut stalled = 0;
-        let mut done = 0;
+        let mut tests = Tests::new();
         while !budget.ends(state) {
-            let last = (state.iterations + until_test(done)).min(budget.max_iterations);
-            while state.iterations < last {
+            loop {
                 if self.order == Order::Symmetric && state.iterations % 2 == 1 {
                     sweep.backward(&mut state.p, relaxation);
                 } else {
                     sweep.forward(&mut state.p, relaxation);
                 }
                 state.iterations += 1;
-                done += 1;
+                if tests.due(&sweep, state, budget) {
+                    break;
+                }
             }
             state.measure(form);
             let better = state.error < 0.99 * best.error;

@@ -12,6 +12,8 @@ pub struct State<const D: usize> {
     pub u: Vec<[f64; D]>,
     /// Error of `p`.
     pub error: f64,
+    /// What the residual is divided by.
+    pub scale: f64,
     /// The block with the largest residual.
     pub worst: usize,
     /// Iterations done, in the solver's own unit.
@@ -25,10 +27,16 @@ impl<const D: usize> State<D> {
             u: vec![[0.0; D]; p.len()],
             p,
             error: f64::INFINITY,
+            scale: 0.0,
             worst: 0,
             iterations: 0,
         };
-        state.measure(form);
+        if state.p.iter().all(|p| *p == [0.0; D]) {
+            state.u.copy_from_slice(form.q);
+            state.judge(form);
+        } else {
+            state.measure(form);
+        }
         state
     }
 
@@ -40,7 +48,8 @@ impl<const D: usize> State<D> {
 
     /// Recomputes the error; `u` must belong to `p`.
     pub fn judge(&mut self, form: &Form<D>) -> f64 {
-        (self.error, self.worst) = form.error(&self.p, &self.u);
+        let measure = form.error(&self.p, &self.u);
+        (self.error, self.scale, self.worst) = (measure.error, measure.scale, measure.worst);
         if self.error.is_nan() {
             self.error = f64::INFINITY;
         }

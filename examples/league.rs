@@ -1,0 +1,331 @@
+//! The league table of a folder of FCLIB problems: every solver of ours against the best of a peer's.
+//!
+//! `cargo run --release --example league -- FOLDER BASELINE.csv [OUT]` solves every problem of FOLDER with
+//! `auto` and with each solver, at 1e-4, 1e-8 and 1e-12, at most 60 s each (`LIMIT` seconds if set), judges
+//! every solution again from the file that was written, and writes to OUT (docs) `fclib_table.md` and
+//! `figures/solvers_profile.png`. BASELINE.csv holds the peer's times: problem, nc, solver, tol, solved, time_s.
+
+use fretwork::record::fclib::{self, Problem, Solution};
+use fretwork::report::{Axis, Chart, Series};
+use fretwork::solve::local::solver::{self, Limits, Method, Outcome};
+use fretwork::solve::local::{Elimination, LocalProblem, Reduction};
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Times by (problem, tolerance, solver); none where not solved.
+type Times = BTreeMap<(String, String), Vec<(String, Option<f64>)>>;
+
+const TOLERANCES: [&str; 3] = ["1e-4", "1e-8", "1e-12"];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let [folder, baseline] = [args.first(), args.get(1)].map(|a| a.cloned());
+    let (Some(folder), Some(baseline)) = (folder, baseline) else {
+        return Err("give the folder of problems and the peer's table".into());
+    };
+    let out = PathBuf::from(args.get(2).map_or("docs", String::as_str));
+    let limit: f64 = std::env::var("LIMIT")
+        .ok()
+        .map_or(Ok(60.0), |s| s.parse())?;
+    let only = std::env::var("ONLY").ok();
+    let peer = read_baseline(Path::new(&baseline))?;
+    let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)?
+        .map(|e| e.map(|e| e.path()))
+        .collect::<Result<_, _>>()?;
+    files.retain(|f| f.extension().is_some_and(|e| e == "hdf5"));
+    files.sort();
+    let mut rows = String::new();
+    let mut ours: Times = Times::new();
+    let mut solved = BTreeMap::<&str, u32>::new();
+    let (mut false_success, mut count) = (0, 0);
+    for file in &files {
+        let name = file
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let problem = fclib::read(file)?;
+        let clock = Instant::now();
+        let local = reduce(&problem)?;
+        let reduction = clock.elapsed().as_secs_f64();
+        let global = matches!(problem, Problem::Global(_));
+        count += 1;
+        for tolerance in TOLERANCES {
+            let key = (name.clone(), tolerance.to_owned());
+            let limits = Limits {
+                tolerance: tolerance.parse()?,
+                max_iterations: u32::MAX,
+                seconds: limit,
+            };
+            for method in Method::ALL {
+                if *method != Method::Auto && (global || only.as_deref() == Some("auto")) {
+                    continue;
+                }
+                let outcome = solver::solve(&local, *method, &limits);
+                let again = judge_again(&local, &outcome)?;
+                if outcome.converged && again > limits.tolerance {
+                    false_success += 1;
+                    eprintln!(
+                        "{name} {tolerance} {}: says {:e}, is {again:e}",
+                        outcome.method, outcome.error
+                    );
+                }
+                // A global problem's time holds its reduction, as the peer's do.
+                let seconds = outcome.seconds + if global { reduction } else { 0.0 };
+                let time = outcome.converged.then_some(seconds);
+                if *method == Method::Auto {
+                    *solved.entry(tolerance).or_default() += u32::from(outcome.converged);
+                    rows += &row(
+                        &name,
+                        local.mu.len(),
+                        tolerance,
+                        seconds,
+                        &outcome,
+                        peer.get(&key),
+                    );
+                    eprint!("{}", rows.lines().last().unwrap_or_default());
+                    eprintln!();
+                }
+                ours.entry(key.clone())
+                    .or_default()
+                    .push((method.name().to_owned(), time));
+            }
+        }
+    }
+    let text = page(&rows, &ours, &peer, &solved, count, false_success, limit);
+    std::fs::create_dir_all(out.join("figures"))?;
+    std::fs::write(out.join("fclib_table.md"), &text)?;
+    println!("{}", text.split("\n| problem").next().unwrap_or_default());
+    if only.is_none() {
+        profile(&ours, &peer, &out.join("figures/solvers_profile.png"))?;
+    }
+    Ok(())
+}
+
+fn read_baseline(path: &Path) -> Result<Times, Box<dyn Error>> {
+    let mut times = Times::new();
+    let mut reader = csv::Reader::from_path(path)?;
+    let heads = reader.headers()?.clone();
+    let at = |name: &str| {
+        heads
+            .iter()
+            .position(|h| h == name)
+            .ok_or_else(|| format!("{}: no column {name}", path.display()))
+    };
+    let (p, s, t, ok, sec) = (
+        at("problem")?,
+        at("solver")?,
+        at("tol")?,
+        at("solved")?,
+        at("time_s")?,
+    );
+    for record in reader.records() {
+        let r = record?;
+        let tolerance: f64 = r[t].parse()?;
+        let name = TOLERANCES.iter().find(|x| x.parse() == Ok(tolerance));
+        if let Some(name) = name {
+            let time = if &r[ok] == "1" {
+                r[sec].parse().ok()
+            } else {
+                None
+            };
+            times
+                .entry((r[p].to_owned(), (*name).to_owned()))
+                .or_default()
+                .push((r[s].to_owned(), time));
+        }
+    }
+    Ok(times)
+}
+
+fn reduce(problem: &Problem) -> Result<LocalProblem, Box<dyn Error>> {
+    Ok(match problem {
+        Problem::Local(local) => match &local.multipliers {
+            None => local.problem.clone(),
+            Some(multipliers) => Elimination::new(&local.problem, multipliers)?.local,
+        },
+        Problem::Global(global) => Reduction::new(&global.problem)?.local,
+    })
+}
+
+/// The error of the solution as it stands in a file.
+fn judge_again(local: &LocalProblem, outcome: &Outcome) -> Result<f64, Box<dyn Error>> {
+    let path = std::env::temp_dir().join(format!("fretwork-league-{}.hdf5", std::process::id()));
+    let solution = Solution {
+        r: outcome.p.clone(),
+        u: outcome.u.clone(),
+        v: Vec::new(),
+        l: Vec::new(),
+    };
+    let written = Problem::Local(fclib::Local {
+        problem: local.clone(),
+        ..Default::default()
+    });
+    fclib::write_with_solution(&path, &written, &solution)?;
+    let read = fclib::read_solution(&path)?.ok_or("no solution in the file written")?;
+    std::fs::remove_file(&path)?;
+    Ok(solver::field_error(local, &read.r))
+}
+
+fn best(times: Option<&Vec<(String, Option<f64>)>>) -> Option<(String, f64)> {
+    times?
+        .iter()
+        .filter_map(|(s, t)| t.map(|t| (s.clone(), t)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+fn row(
+    name: &str,
+    nc: usize,
+    tolerance: &str,
+    seconds: f64,
+    outcome: &Outcome,
+    peer: Option<&Vec<(String, Option<f64>)>>,
+) -> String {
+    let theirs = best(peer);
+    let ratio = theirs
+        .as_ref()
+        .filter(|_| outcome.converged)
+        .map_or("-".to_owned(), |t| format!("{:.2}", seconds / t.1));
+    let theirs = match (theirs, peer) {
+        (Some((s, t)), _) => format!("{t:.2e} ({s})"),
+        (None, Some(_)) => "none".to_owned(),
+        (None, None) => "not run".to_owned(),
+    };
+    format!(
+        "| {name} | {nc} | {tolerance} | {} | {:.1e} | {} | {:.2e} | {theirs} | {ratio} |\n",
+        if outcome.converged { "yes" } else { "**no**" },
+        outcome.error,
+        outcome.method.trim_start_matches("auto: "),
+        seconds,
+    )
+}
+
+#[allow(clippy::too_many_arguments)]
+fn page(
+    rows: &str,
+    ours: &Times,
+    peer: &Times,
+    solved: &BTreeMap<&str, u32>,
+    count: u32,
+    false_success: u32,
+    limit: f64,
+) -> String {
+    let mut out = String::from(
+        "# The league table\n\nMade by `cargo run --release --example league -- FOLDER BASELINE.csv`; see [solvers](solvers.md) for what it means.\n\n",
+    );
+    let _ = writeln!(
+        out,
+        "At most {limit} s a solve. Solved by `auto` of {count} problems: {}.",
+        TOLERANCES
+            .map(|t| format!("{} at {t}", solved.get(t).unwrap_or(&0)))
+            .join(", ")
+    );
+    let _ = writeln!(
+        out,
+        "Solutions that claimed a tolerance and do not have it when read back: {false_success}.\n"
+    );
+    for tolerance in ["1e-4", "1e-8"] {
+        let (mut faster, mut of, mut worst) = (0, 0, 0.0f64);
+        for ((name, t), times) in ours.iter().filter(|((_, t), _)| t == tolerance) {
+            let nc_large = rows.lines().any(|l| {
+                let cells: Vec<&str> = l.split('|').map(str::trim).collect();
+                cells[1] == name && cells[2].parse::<usize>().is_ok_and(|n| n >= 20)
+            });
+            let Some(theirs) = peer.get(&(name.clone(), t.clone())) else {
+                continue;
+            };
+            if !nc_large {
+                continue;
+            }
+            of += 1;
+            let auto = times
+                .iter()
+                .find(|(s, _)| s == "auto")
+                .and_then(|(_, t)| *t);
+            match (auto, best(Some(theirs))) {
+                (Some(a), Some((_, b))) => {
+                    faster += u32::from(a < b);
+                    worst = worst.max(a / b);
+                }
+                (Some(_), None) => faster += 1,
+                (None, _) => worst = f64::INFINITY,
+            }
+        }
+        let _ = writeln!(
+            out,
+            "At {tolerance}, of {of} problems of 20 contacts or more: `auto` is faster than the best of the peer's solvers on {faster}; at worst it takes {worst:.2} times as long.\n"
+        );
+    }
+    out += "| problem | contacts | tolerance | solved | error | chosen | time (s) | peer's best (s) | ratio |\n|---|---|---|---|---|---|---|---|---|\n";
+    out + rows
+}
+
+/// Dolan and More's profile: the share of problems solved within a factor of the best of all solvers.
+fn profile(ours: &Times, peer: &Times, path: &Path) -> Result<(), Box<dyn Error>> {
+    let mut all: BTreeMap<&(String, String), Vec<(String, Option<f64>)>> = BTreeMap::new();
+    for (key, times) in ours.iter().filter(|((_, t), _)| t == "1e-8") {
+        if let Some(theirs) = peer.get(key).filter(|_| times.len() > 1) {
+            let mut list = times.clone();
+            list.extend(theirs.iter().map(|(s, t)| (format!("peer {s}"), *t)));
+            all.insert(key, list);
+        }
+    }
+    let mut names: Vec<String> = Method::ALL.iter().map(|m| m.name().to_owned()).collect();
+    // The peer's most successful ones.
+    let mut wins = BTreeMap::<String, u32>::new();
+    for list in all.values() {
+        for (s, t) in list.iter().filter(|(s, _)| s.starts_with("peer")) {
+            *wins.entry(s.clone()).or_default() += u32::from(t.is_some());
+        }
+    }
+    let mut theirs: Vec<(String, u32)> = wins.into_iter().collect();
+    theirs.sort_by_key(|t| std::cmp::Reverse(t.1));
+    names.extend(theirs.into_iter().take(4).map(|t| t.0));
+    let mut chart = Chart::new(
+        "Share of problems solved within a factor of the fastest",
+        Axis::new("time over that of the fastest solver", "").log(),
+        Axis::new("share of problems", ""),
+    );
+    chart.subtitle = Some(format!(
+        "{} problems at 1e-8, Siconos 4.4 dashed (its four that solve most)",
+        all.len()
+    ));
+    for name in names {
+        let mut ratios: Vec<f64> = all
+            .values()
+            .filter_map(|list| {
+                let least = list
+                    .iter()
+                    .filter_map(|(_, t)| *t)
+                    .fold(f64::INFINITY, f64::min);
+                list.iter()
+                    .find(|(s, _)| *s == name)
+                    .and_then(|(_, t)| *t)
+                    .map(|t| t / least)
+            })
+            .collect();
+        ratios.sort_by(f64::total_cmp);
+        let n = all.len() as f64;
+        let mut points = vec![(1.0, 0.0)];
+        let mut share = 0.0;
+        for r in ratios.iter().filter(|r| **r <= 1e4) {
+            points.push((*r, share));
+            share += 1.0 / n;
+            points.push((*r, share));
+        }
+        points.push((1e4, share));
+        let series = Series::new(name.clone(), points);
+        chart = chart.with(if name.starts_with("peer") {
+            series.style(fretwork::report::Style::Dashed)
+        } else {
+            series
+        });
+    }
+    chart.y_range = Some((0.0, 1.02));
+    chart.draw(path)?;
+    Ok(())
+}
