@@ -123,6 +123,7 @@ fn solvers<const D: usize>() -> Vec<(&'static str, Box<dyn Solver<D>>)> {
             "sym1.3",
             Box::new(Nlgs {
                 relaxation: 1.3,
+                last: false,
                 order: Order::Symmetric,
             }),
         ),

@@ -1,15 +1,15 @@
 //! The choice for a problem given as a matrix.
 //!
 //! Sweeps with Anderson's acceleration come first and solve most problems. When they have cost about as
-//! much as factorisations would, the interior point takes over, then Newton from the best point, and then
-//! long runs of sweeps with Newton's attempts between them. The order and the lengths follow from sizes
+//! much as some factorisations would, Newton goes on from there, then the interior point tries from its own
+//! start, and then come long runs of sweeps with attempts of Newton between them. The order and the lengths follow from sizes
 //! alone, so the same problem takes the same path on any machine.
 
 use super::anderson::Anderson;
 use super::form::Form;
 use super::interior::Interior;
 use super::newton::Newton;
-use super::nlgs::Nlgs;
+use super::nlgs::{Nlgs, Order};
 use super::state::{Best, Budget, Solver, State};
 
 /// The method; [`Auto::names`] tells what it used.
@@ -56,7 +56,7 @@ impl<const D: usize> Solver<D> for Auto {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
         /// Factorisations' worth of sweeps before the interior point, at a loose and at a tight tolerance.
         const LOOSE: f64 = 40.0;
-        const TIGHT: f64 = 15.0;
+        const TIGHT: f64 = 10.0;
         self.used.borrow_mut().clear();
         let blocks = form.w.matrix().blocks.len() + form.len();
         let per = sweeps_per_factorisation((blocks * D * D) as f64, form.len() as f64);
@@ -76,37 +76,43 @@ impl<const D: usize> Solver<D> for Auto {
         ) {
             return;
         }
+        let newton = Newton { alpha: 1e-4 };
+        let mut best = Best::of(state);
+        if self.run("newton", &newton, form, state, budget, 40) {
+            return;
+        }
+        best.keep(state);
         if Interior::serves(form.laws) {
-            let mut best = Best::of(state);
             if self.run("interior", &Interior, form, state, budget, 80) {
                 return;
             }
             best.keep(state);
-            best.restore(form, state);
         }
-        if self.run("newton", &Newton::default(), form, state, budget, 150) {
-            return;
-        }
-        let mut sweeps = (worth * per).clamp(1000.0, 1e5) as u32;
-        let gauss_seidel = Nlgs {
-            relaxation: 1.5,
-            ..Nlgs::default()
-        };
-        // From the sweeps' own point: what Newton reached may be a piece that leads nowhere.
-        loop {
+        best.restore(form, state);
+        // What is left has many solutions and dead ends between them: every round takes another way.
+        let base = (worth * per).clamp(1000.0, 10_000.0) as u32;
+        let mut round = 0u32;
+        while !budget.ends(state) {
+            let sweeps = base.saturating_mul(1 << (round / 4).min(16));
+            let gauss_seidel = Nlgs {
+                relaxation: [1.5, 1.3, 1.0][round as usize % 3],
+                order: if round == 0 {
+                    Order::Forward
+                } else {
+                    Order::Shuffled(round.into())
+                },
+                last: true,
+            };
             if self.run("nlgs", &gauss_seidel, form, state, budget, sweeps) {
                 return;
             }
-            let best = Best::of(state);
-            let newton = Newton { alpha: 1e-5 };
-            if self.run("newton", &newton, form, state, budget, 60) {
+            best.keep(state);
+            if self.run("newton", &Newton { alpha: 1e-5 }, form, state, budget, 200) {
                 return;
             }
-            best.restore(form, state);
-            sweeps = sweeps.saturating_add(sweeps / 2);
-            if budget.ends(state) {
-                return;
-            }
+            best.keep(state);
+            round += 1;
         }
+        best.restore(form, state);
     }
 }

@@ -119,7 +119,7 @@ fn slopes<const D: usize>(p: &[f64; D], u: &[f64; D], law: &Law, rho: f64) -> Sl
 /// One proximal problem: u = W p + q + alpha (p - centre).
 struct Prox<'a, const D: usize> {
     form: &'a Form<'a, D>,
-    rho: &'a [f64],
+    rho: Vec<f64>,
     alpha: f64,
     centre: Vec<[f64; D]>,
 }
@@ -263,10 +263,10 @@ impl<const D: usize> Point<D> {
 }
 
 /// Newton steps of one proximal problem.
-const INNER: u32 = 30;
+const INNER: u32 = 16;
 /// Steps that may go the whole way though the merit grows: between kinks the line search creeps where the
 /// full step lands in the right piece.
-const BOLD: u32 = 10;
+const BOLD: u32 = 8;
 /// A step shorter than this is given up for the full one.
 const SHORT: f64 = 0.1;
 
@@ -327,6 +327,8 @@ impl<const D: usize> Solver<D> for Newton {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
         const FALL: f64 = 0.3;
         const RISE: f64 = 3.0;
+        const HOLD: u32 = 4;
+        const SCALES: [f64; 3] = [1.0, 10.0, 0.1];
         let n = form.len();
         let steps: Vec<f64> = (0..n)
             .map(|c| {
@@ -337,12 +339,14 @@ impl<const D: usize> Solver<D> for Newton {
         let mean = steps.iter().map(|s| 1.0 / s).sum::<f64>() / n.max(1) as f64;
         let mut prox = Prox {
             form,
-            rho: &steps,
+            rho: steps.clone(),
             alpha: self.alpha * mean,
             centre: state.p.clone(),
         };
         let (mut at, mut trial) = (Point::new(n), Point::new(n));
         let mut best = Best::of(state);
+        let mut hold = 0u32;
+        let mut failures = 0;
         while !budget.ends(state) {
             prox.centre.copy_from_slice(&state.p);
             let before = state.error;
@@ -354,10 +358,22 @@ impl<const D: usize> Solver<D> for Newton {
             state.measure(form);
             best.keep(state);
             if good {
-                prox.alpha = (FALL * prox.alpha).max(1e-14 * mean);
+                // What failed lately is not tried again at once, unless nothing moves without it.
+                let slow = state.error > 0.9 * before;
+                hold = if slow { 0 } else { hold.saturating_sub(1) };
+                if hold == 0 {
+                    prox.alpha = (FALL * prox.alpha).max(1e-14 * mean);
+                }
                 continue;
             }
             prox.alpha *= RISE;
+            hold = HOLD;
+            // Another step of the projections has its kinks elsewhere.
+            failures += 1;
+            let scale = SCALES[failures % SCALES.len()];
+            for (rho, step) in prox.rho.iter_mut().zip(&steps) {
+                *rho = scale * step;
+            }
             if state.error > before {
                 state.p.copy_from_slice(&prox.centre);
                 state.measure(form);

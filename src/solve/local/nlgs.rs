@@ -15,6 +15,8 @@ pub enum Order {
     Forward,
     /// Forwards, then backwards.
     Symmetric,
+    /// In an order drawn from a seed, the same in every sweep.
+    Shuffled(u64),
 }
 
 /// The method and its parameters.
@@ -24,6 +26,8 @@ pub struct Nlgs {
     pub order: Order,
     /// Over-relaxation, from 1 (none) to below 2.
     pub relaxation: f64,
+    /// Ends with the last iterate instead of the best: for sweeps that are to go on.
+    pub last: bool,
 }
 
 impl Default for Nlgs {
@@ -31,6 +35,7 @@ impl Default for Nlgs {
         Self {
             order: Order::Forward,
             relaxation: 1.0,
+            last: false,
         }
     }
 }
@@ -102,6 +107,14 @@ impl<'a, const D: usize> Sweep<'a, D> {
         }
     }
 
+    /// All contacts once, in an order.
+    pub fn along(&mut self, order: &[u32], p: &mut [[f64; D]], relaxation: f64) {
+        self.change = 0.0;
+        for c in order {
+            self.visit(*c as usize, p, relaxation);
+        }
+    }
+
     /// All contacts once, last to first.
     pub fn backward(&mut self, p: &mut [[f64; D]], relaxation: f64) {
         self.change = 0.0;
@@ -147,21 +160,35 @@ impl Tests {
     }
 }
 
+/// The contacts in an order drawn from a seed.
+fn shuffled(seed: u64, count: usize) -> Vec<u32> {
+    use rand::seq::SliceRandom;
+    let mut order: Vec<u32> = (0..count as u32).collect();
+    order.shuffle(&mut rand_pcg::Pcg64::new(seed.into(), 0xa02_bdbf_7bb3_c0a7));
+    order
+}
+
 impl<const D: usize> Solver<D> for Nlgs {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
         /// Tests without a better error after which there is to be less relaxation.
         const PATIENCE: u32 = 20;
         let mut sweep = Sweep::new(form);
+        let order = match self.order {
+            Order::Shuffled(seed) => shuffled(seed, form.len()),
+            _ => Vec::new(),
+        };
         let mut best = Best::of(state);
         let mut relaxation = self.relaxation;
         let mut stalled = 0;
         let mut tests = Tests::new();
         while !budget.ends(state) {
             loop {
-                if self.order == Order::Symmetric && state.iterations % 2 == 1 {
-                    sweep.backward(&mut state.p, relaxation);
-                } else {
-                    sweep.forward(&mut state.p, relaxation);
+                match self.order {
+                    Order::Symmetric if state.iterations % 2 == 1 => {
+                        sweep.backward(&mut state.p, relaxation);
+                    }
+                    Order::Shuffled(_) => sweep.along(&order, &mut state.p, relaxation),
+                    _ => sweep.forward(&mut state.p, relaxation),
                 }
                 state.iterations += 1;
                 if tests.due(&sweep, state, budget) {
@@ -178,6 +205,8 @@ impl<const D: usize> Solver<D> for Nlgs {
                 stalled = 0;
             }
         }
-        best.restore(form, state);
+        if !self.last {
+            best.restore(form, state);
+        }
     }
 }
