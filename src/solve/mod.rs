@@ -9,6 +9,7 @@
 pub mod colour;
 pub mod cone;
 pub mod error;
+pub mod extrapolation;
 pub mod form;
 pub mod local;
 pub mod nlgs;
