@@ -6,6 +6,7 @@
 //!   opposite to the sliding velocity u_t + s_t.
 //!
 //! Body velocities are updated in place: applying an impulse costs O(1) a contact.
+pub mod accelerate;
 pub mod colour;
 pub mod cone;
 pub mod error;
@@ -14,6 +15,7 @@ pub mod form;
 pub mod local;
 pub mod nlgs;
 pub mod row;
+pub mod standard;
 
 pub use form::{ContactForm, Problem};
 pub use nlgs::{Options, Report, solve};

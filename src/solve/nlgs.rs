@@ -1,5 +1,6 @@
 //! Non-linear Gauss-Seidel: contact by contact, velocities updated in place, warm started.
 
+use super::accelerate::Acceleration;
 use super::colour::{self, COLOURS};
 use super::error::{Norm, Scale, Sums};
 use super::form::{Place, Problem};
@@ -20,6 +21,8 @@ pub struct Options {
     pub test_every: u32,
     /// Over-relaxation in \[1, 2): how much farther than its own solution a contact goes.
     pub relaxation: f64,
+    /// Anderson's acceleration.
+    pub accelerated: bool,
     /// Split colours over threads.
     pub parallel: bool,
 }
@@ -32,6 +35,7 @@ impl Default for Options {
             max_iterations: 10_000,
             test_every: 10,
             relaxation: 1.45,
+            accelerated: true,
             parallel: false,
         }
     }
@@ -66,6 +70,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     problem.reload();
     let every = options.test_every.max(1);
     let mut report = Report::default();
+    let mut acceleration = options.accelerated.then(Acceleration::default);
     let (mut relaxation, mut caution) = (options.relaxation, Caution::default());
     loop {
         let last = (report.iterations + every).min(options.max_iterations);
@@ -92,7 +97,14 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
                 return report;
             }
         }
-        relaxation = caution.judge(sums.residual, relaxation);
+        let cautious = caution.judge(sums.residual, relaxation);
+        if let Some(acceleration) = &mut acceleration {
+            if cautious != relaxation {
+                acceleration.forget();
+            }
+            acceleration.extrapolate(problem, report.iterations, sums.residual);
+        }
+        relaxation = cautious;
     }
 }
 
@@ -145,8 +157,45 @@ impl Caution {
 }
 
 impl<S: Space> Problem<S> {
+    /// The numbers of all impulses and moments, in the order of the sweep.
+    pub(super) fn store(&self, out: &mut Vec<f64>) {
+        out.clear();
+        self.plain.iter().for_each(|row| row.store(out));
+        self.full.iter().for_each(|row| row.store(out));
+        self.general.iter().for_each(|row| row.store(out));
+        self.moments.iter().for_each(|row| row.store(out));
+    }
+
+    /// Takes them back, and the velocities with them.
+    pub(super) fn restore(&mut self, mut from: &[f64]) {
+        let from = &mut from;
+        self.plain.iter_mut().for_each(|row| row.restore(from));
+        self.full.iter_mut().for_each(|row| row.restore(from));
+        self.general.iter_mut().for_each(|row| row.restore(from));
+        self.moments.iter_mut().for_each(|row| row.restore(from));
+        self.reload();
+    }
+
+    /// Takes impulses and moments in the order pushed, where there are any, and the velocities with them.
+    pub(super) fn adopt(&mut self, impulses: &[Option<S::Vector>], moments: &[Option<S::Spin>]) {
+        for (place, impulse) in self.places.iter().zip(impulses) {
+            let Some(impulse) = impulse else { continue };
+            match *place {
+                Place::Plain(r) => self.plain[r as usize].set(impulse),
+                Place::Full(r) => self.full[r as usize].set(impulse),
+                Place::General(r) => self.general[r as usize].set(impulse),
+            }
+        }
+        for (row, moment) in self.moments.iter_mut().zip(moments) {
+            if let Some(moment) = moment {
+                row.set(moment);
+            }
+        }
+        self.reload();
+    }
+
     /// v = v_free + M^-1 H p.
-    fn reload(&mut self) {
+    pub(super) fn reload(&mut self) {
         for ((line, free), length) in self.lines.iter_mut().zip(&self.free).zip(&self.lengths) {
             line.v = free.0;
             line.s = free.1 * *length;

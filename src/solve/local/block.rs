@@ -72,6 +72,24 @@ impl<const D: usize> BlockMatrix<D> {
         out
     }
 
+    /// The same matrix by rows.
+    pub fn to_csr(&self) -> Csr {
+        let mut entries = Vec::new();
+        for c in 0..self.diagonal.len() {
+            let (columns, blocks) = self.row(c);
+            let own = std::iter::once((c, &self.diagonal[c]));
+            for (d, block) in columns.iter().map(|d| *d as usize).zip(blocks).chain(own) {
+                for (k, row) in block.iter().enumerate() {
+                    for (l, x) in row.iter().enumerate() {
+                        entries.push(((c * D + k) as u32, (d * D + l) as u32, *x));
+                    }
+                }
+            }
+        }
+        let n = self.diagonal.len() * D;
+        Csr::from_triplets(n, n, &entries)
+    }
+
     /// Number of contacts.
     pub fn len(&self) -> usize {
         self.diagonal.len()

@@ -6,7 +6,7 @@ use crate::solve::error::{Norm, Scale, Sums};
 use crate::solve::row::Residual;
 
 /// The Delassus operator, whatever stands behind it.
-pub trait Delassus<const D: usize>: Sync {
+pub trait Delassus<const D: usize> {
     /// Number of blocks.
     fn len(&self) -> usize;
     /// Whether there is none.

@@ -170,6 +170,21 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         self.push(&self.p, a, b);
     }
 
+    fn store(&self, out: &mut Vec<f64>) {
+        for k in 0..S::D {
+            out.push(self.p[k]);
+        }
+    }
+
+    fn restore(&mut self, from: &mut &[f64]) {
+        self.p = S::Vector::from_slice(&from[..S::D]);
+        *from = &from[S::D..];
+    }
+
+    fn set(&mut self, impulse: &S::Vector) {
+        self.p = *impulse;
+    }
+
     fn normal(&self) -> f64 {
         self.n.dot(&self.p)
     }

@@ -52,6 +52,12 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync {
     fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64);
     /// Adds what the stored impulse does to the velocities.
     fn load(&self, a: &mut Line<S>, b: &mut Line<S>);
+    /// Appends the numbers of the impulse.
+    fn store(&self, out: &mut Vec<f64>);
+    /// Takes them back from the front of `from`; the velocities are the caller's.
+    fn restore(&mut self, from: &mut &[f64]);
+    /// Takes an impulse given in world axes; the velocities are the caller's.
+    fn set(&mut self, impulse: &S::Vector);
     /// The normal impulse.
     fn normal(&self) -> f64;
     /// |u|^2 at the velocities at hand.
@@ -60,6 +66,19 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync {
     /// What the contact carries at the velocities at hand: the bond's part follows from them, the
     /// unilateral part is the rest.
     fn solution(&self, a: &Line<S>, b: &Line<S>) -> ContactSolution<S>;
+}
+
+fn store_parts<T: VectorLike>(n: f64, t: &T, out: &mut Vec<f64>) {
+    out.push(n);
+    for k in 0..T::N {
+        out.push(t[k]);
+    }
+}
+
+fn restore_parts<T: VectorLike>(n: &mut f64, t: &mut T, from: &mut &[f64]) {
+    *n = from[0];
+    *t = T::from_slice(&from[1..=T::N]);
+    *from = &from[1 + T::N..];
 }
 
 #[inline(always)]

@@ -108,6 +108,21 @@ impl<S: Space> MomentRow<S> {
         self.moment += change;
     }
 
+    pub fn store(&self, out: &mut Vec<f64>) {
+        for k in 0..S::Spin::N {
+            out.push(self.moment[k]);
+        }
+    }
+
+    pub fn restore(&mut self, from: &mut &[f64]) {
+        self.moment = S::Spin::from_slice(&from[..S::Spin::N]);
+        *from = &from[S::Spin::N..];
+    }
+
+    pub fn set(&mut self, moment: &S::Spin) {
+        self.moment = *moment;
+    }
+
     pub fn load(&self, a: &mut Line<S>, b: &mut Line<S>) {
         self.push(&self.moment, a, b);
     }

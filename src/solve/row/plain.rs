@@ -1,6 +1,8 @@
 //! Contact of two balls without a bond: solved in closed form.
 
-use super::{Line, Residual, Row, inverse, natural_map, push, relative};
+use super::{
+    Line, Residual, Row, inverse, natural_map, push, relative, restore_parts, store_parts,
+};
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution};
 
@@ -51,6 +53,19 @@ impl<S: Space> Row<S> for PlainRow<S> {
 
     fn load(&self, a: &mut Line<S>, b: &mut Line<S>) {
         push(&self.n, self.pn, self.pt, a, b);
+    }
+
+    fn store(&self, out: &mut Vec<f64>) {
+        store_parts(self.pn, &self.pt, out);
+    }
+
+    fn restore(&mut self, from: &mut &[f64]) {
+        restore_parts(&mut self.pn, &mut self.pt, from);
+    }
+
+    fn set(&mut self, impulse: &S::Vector) {
+        self.pn = self.n.dot(impulse);
+        self.pt = S::tangential(&self.n, impulse);
     }
 
     fn normal(&self) -> f64 {

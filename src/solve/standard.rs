@@ -1,0 +1,536 @@
+//! The problem of a step as the solvers of [`super::local`] see it: blocks of unknowns, each with its law, and
+//! W matrix-free from bodies.
+//!
+//! A contact gives one block; its bond a second one, p_el = -(a + B u) read as u + (p_el + a)/B = 0, a law
+//! without friction whose compliance 1/B stands on the diagonal of W; friction against rotation and the
+//! moments of a bond likewise. Tension c_n and what does not depend on velocities go into the free ones.
+
+use super::error::Norm;
+use super::form::{ContactForm, Problem};
+use super::local::block::{Block, BlockMatrix};
+use super::local::csr::Csr;
+use super::local::form::{Delassus, Form};
+use super::local::law::Law;
+use super::local::solver::Method;
+use super::local::state::{Budget, State};
+use super::row::MomentForm;
+use crate::geometry::space::{Space, VectorLike};
+use std::cell::{OnceCell, RefCell};
+
+/// What a component of a block pushes along.
+#[derive(Clone, Copy, Debug)]
+struct Axis<S: Space> {
+    /// Linear impulse of a unit.
+    linear: S::Vector,
+    /// Its moments about the two bodies.
+    angular: [S::Spin; 2],
+    /// 1/B of a bond; 1 of a component that is not there.
+    compliance: f64,
+}
+
+/// A block of unknowns.
+#[derive(Clone, Debug)]
+struct Unknown<S: Space, const D: usize> {
+    bodies: [u32; 2],
+    axes: [Axis<S>; D],
+}
+
+/// Impulse and moment of a body.
+type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
+
+/// W of a step, from its bodies.
+struct Bodies<'a, S: Space, const D: usize> {
+    masses: &'a [(S::Vector, f64)],
+    unknowns: Vec<Unknown<S, D>>,
+    diagonal: Vec<Block<D>>,
+    scratch: RefCell<Vec<Motion<S>>>,
+    matrix: OnceCell<BlockMatrix<D>>,
+}
+
+impl<S: Space, const D: usize> Bodies<'_, S, D> {
+    /// M^-1 of an impulse and moment on a body.
+    fn mobility(&self, body: u32, (p, m): Motion<S>) -> Motion<S> {
+        let (mass, inertia) = &self.masses[body as usize];
+        (p.scaled_by(mass), m * *inertia)
+    }
+
+    fn push(&self, c: usize, p: &[f64; D], motions: &mut [Motion<S>]) {
+        let unknown = &self.unknowns[c];
+        for (side, sign) in [(0, 1.0), (1, -1.0)] {
+            let mut impulse = S::Vector::null();
+            let mut moment = S::Spin::null();
+            for (axis, p) in unknown.axes.iter().zip(p) {
+                impulse += axis.linear * (sign * p);
+                moment += axis.angular[side] * (sign * p);
+            }
+            let body = unknown.bodies[side];
+            let (v, w) = self.mobility(body, (impulse, moment));
+            let motion = &mut motions[body as usize];
+            motion.0 += v;
+            motion.1 += w;
+        }
+    }
+
+    fn relative(&self, c: usize, motions: &[Motion<S>]) -> [f64; D] {
+        let unknown = &self.unknowns[c];
+        let [a, b] = unknown.bodies.map(|b| &motions[b as usize]);
+        std::array::from_fn(|k| {
+            let axis = &unknown.axes[k];
+            axis.linear.dot(&a.0) + axis.angular[0].dot(&a.1)
+                - axis.linear.dot(&b.0)
+                - axis.angular[1].dot(&b.1)
+        })
+    }
+
+    /// The block W_cd.
+    fn coupling(&self, c: usize, d: usize) -> Block<D> {
+        let (x, y) = (&self.unknowns[c], &self.unknowns[d]);
+        let mut out = [[0.0; D]; D];
+        for (i, sign_i) in [(0, 1.0), (1, -1.0)] {
+            for (j, sign_j) in [(0, 1.0), (1, -1.0)] {
+                if x.bodies[i] != y.bodies[j] {
+                    continue;
+                }
+                for (l, axis) in y.axes.iter().enumerate() {
+                    let motion =
+                        self.mobility(y.bodies[j], (axis.linear, axis.angular[j]));
+                    for (k, own) in x.axes.iter().enumerate() {
+                        out[k][l] += sign_i
+                            * sign_j
+                            * (own.linear.dot(&motion.0) + own.angular[i].dot(&motion.1));
+                    }
+                }
+            }
+        }
+        if c == d {
+            for (k, axis) in x.axes.iter().enumerate() {
+                out[k][k] += axis.compliance;
+            }
+        }
+        out
+    }
+}
+
+impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
+    fn len(&self) -> usize {
+        self.unknowns.len()
+    }
+
+    fn diagonal(&self, c: usize) -> &Block<D> {
+        &self.diagonal[c]
+    }
+
+    fn velocity(&self, p: &[[f64; D]], q: &[[f64; D]], u: &mut [[f64; D]]) {
+        let mut motions = self.scratch.borrow_mut();
+        motions.clear();
+        motions.resize(self.masses.len(), (S::Vector::null(), S::Spin::null()));
+        for (c, p) in p.iter().enumerate() {
+            self.push(c, p, &mut motions);
+        }
+        for (c, u) in u.iter_mut().enumerate() {
+            *u = self.relative(c, &motions);
+            for k in 0..D {
+                u[k] += q[c][k] + self.unknowns[c].axes[k].compliance * p[c][k];
+            }
+        }
+    }
+
+    fn matrix(&self) -> &BlockMatrix<D> {
+        self.matrix.get_or_init(|| {
+            let mut of_body: Vec<Vec<u32>> = vec![Vec::new(); self.masses.len()];
+            for (c, unknown) in self.unknowns.iter().enumerate() {
+                for body in unknown.bodies {
+                    of_body[body as usize].push(c as u32);
+                }
+            }
+            let moves = |b: u32| {
+                let (mass, inertia) = &self.masses[b as usize];
+                *inertia > 0.0 || (0..S::D).any(|k| mass[k] > 0.0)
+            };
+            let mut out = BlockMatrix {
+                diagonal: self.diagonal.clone(),
+                starts: vec![0],
+                ..BlockMatrix::default()
+            };
+            for (c, unknown) in self.unknowns.iter().enumerate() {
+                let mut near: Vec<u32> = unknown
+                    .bodies
+                    .iter()
+                    .filter(|b| moves(**b))
+                    .flat_map(|b| of_body[*b as usize].iter().copied())
+                    .filter(|d| *d as usize != c)
+                    .collect();
+                near.sort_unstable();
+                near.dedup();
+                for d in near {
+                    out.columns.push(d);
+                    out.blocks.push(self.coupling(c, d as usize));
+                }
+                out.starts.push(out.columns.len() as u32);
+            }
+            out
+        })
+    }
+}
+
+/// What became of a contact.
+#[derive(Clone, Copy, Debug, Default)]
+struct Places {
+    contact: Option<u32>,
+    bond: Option<u32>,
+}
+
+/// The problem of a step in blocks of D unknowns; D is the dimension of S.
+pub struct Standard<'a, S: Space, const D: usize> {
+    w: Bodies<'a, S, D>,
+    laws: Vec<Law>,
+    q: Vec<[f64; D]>,
+    places: Vec<Places>,
+    /// Friction and bond of each moment.
+    moments: Vec<Places>,
+    /// The constant part of the impulses, world axes, and of the moments.
+    constant: Vec<S::Vector>,
+    constant_moments: Vec<S::Spin>,
+}
+
+fn frame<S: Space, const D: usize>(n: &S::Vector) -> [S::Vector; D] {
+    let [t1, t2] = S::tangents(n);
+    std::array::from_fn(|k| match k {
+        0 => *n,
+        1 => t1,
+        _ => t2,
+    })
+}
+
+/// The axes of rotation: twist and bending; in the plane bending alone, in the second place.
+fn spins<S: Space, const D: usize>(n: &S::Vector) -> [S::Spin; D] {
+    std::array::from_fn(|k| {
+        let mut components = [0.0; 3];
+        components[k] = 1.0;
+        S::spin_from(n, components)
+    })
+}
+
+impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
+    /// From the forms that were pushed into a problem.
+    pub fn new(
+        problem: &'a Problem<S>,
+        forms: &[ContactForm<S>],
+        moments: &[MomentForm<S>],
+    ) -> Self {
+        let mut out = Self {
+            w: Bodies {
+                masses: &problem.masses,
+                unknowns: Vec::new(),
+                diagonal: Vec::new(),
+                scratch: RefCell::new(Vec::new()),
+                matrix: OnceCell::new(),
+            },
+            laws: Vec::new(),
+            q: Vec::new(),
+            places: Vec::with_capacity(forms.len()),
+            moments: Vec::with_capacity(moments.len()),
+            constant: vec![S::Vector::null(); forms.len()],
+            constant_moments: vec![S::Spin::null(); moments.len()],
+        };
+        for (k, form) in forms.iter().enumerate() {
+            let places = out.push_contact(problem, form, k);
+            out.places.push(places);
+        }
+        for (k, form) in moments.iter().enumerate() {
+            let places = out.push_moment(problem, form, &forms[form.contact as usize], k);
+            out.moments.push(places);
+        }
+        out.free(problem, forms, moments);
+        out.w.diagonal = (0..out.laws.len()).map(|c| out.w.coupling(c, c)).collect();
+        out
+    }
+
+    fn moves(problem: &Problem<S>, bodies: [u32; 2]) -> bool {
+        bodies.iter().any(|b| {
+            let (mass, inertia) = &problem.masses[*b as usize];
+            *inertia > 0.0 || (0..S::D).any(|k| mass[k] > 0.0)
+        })
+    }
+
+    fn add(&mut self, bodies: [u32; 2], axes: [Axis<S>; D], law: Law) -> u32 {
+        self.w.unknowns.push(Unknown { bodies, axes });
+        self.laws.push(law);
+        self.laws.len() as u32 - 1
+    }
+
+    fn push_contact(&mut self, problem: &Problem<S>, form: &ContactForm<S>, k: usize) -> Places {
+        let mut places = Places::default();
+        if !Self::moves(problem, form.bodies) {
+            return places;
+        }
+        let axes: [Axis<S>; D] = frame::<S, D>(&form.normal).map(|linear| Axis {
+            linear,
+            angular: form.arms.map(|arm| S::moment(&arm, &linear)),
+            compliance: 0.0,
+        });
+        let mu = form.friction;
+        let law = if form.cohesion > 0.0 {
+            Law::Cohesive {
+                mu,
+                cohesion: form.cohesion,
+            }
+        } else {
+            Law::Coulomb(mu)
+        };
+        places.contact = Some(self.add(form.bodies, axes, law));
+        self.constant[k] = form.normal * -form.tension;
+        if let Some(e) = &form.elastic {
+            let mut axes = axes;
+            for (d, axis) in axes.iter_mut().enumerate() {
+                *axis = component(axis, if d == 0 { e.b_n } else { e.b_t });
+            }
+            // Without stiffness the bond pulls as it does, whatever the velocities.
+            let law = if e.tension_only && e.b_n > 0.0 {
+                Law::Pull
+            } else {
+                Law::Free
+            };
+            if e.b_n == 0.0 {
+                let pull = if e.tension_only { (-e.a_n).min(0.0) } else { -e.a_n };
+                self.constant[k] += form.normal * pull;
+            }
+            if e.b_t == 0.0 {
+                self.constant[k] -= S::lift(&form.normal, &e.a_t);
+            }
+            places.bond = Some(self.add(form.bodies, axes, law));
+        }
+        places
+    }
+
+    fn push_moment(
+        &mut self,
+        problem: &Problem<S>,
+        form: &MomentForm<S>,
+        contact: &ContactForm<S>,
+        k: usize,
+    ) -> Places {
+        let mut places = Places::default();
+        let turns = |b: &u32| problem.masses[*b as usize].1 > 0.0;
+        let Some(of) = self.places[form.contact as usize].contact else {
+            return places;
+        };
+        if !contact.bodies.iter().any(turns) {
+            return places;
+        }
+        let axes: [Axis<S>; D] = spins::<S, D>(&contact.normal).map(|spin| Axis {
+            linear: S::Vector::null(),
+            angular: [spin; 2],
+            compliance: if spin == S::Spin::null() { 1.0 } else { 0.0 },
+        });
+        if form.rolling > 0.0 || form.spinning > 0.0 {
+            let law = Law::Moment {
+                of,
+                twist: form.spinning,
+                bend: form.rolling,
+            };
+            places.contact = Some(self.add(contact.bodies, axes, law));
+        }
+        if form.b_twist > 0.0 || form.b_bend > 0.0 || form.a != S::Spin::null() {
+            let mut axes = axes;
+            for (d, axis) in axes.iter_mut().enumerate() {
+                if *axis.angular.first().unwrap_or(&S::Spin::null()) != S::Spin::null() {
+                    *axis = component(axis, if d == 0 { form.b_twist } else { form.b_bend });
+                }
+            }
+            let (twist, bend) = S::split_spin(&contact.normal, &form.a);
+            if form.b_twist == 0.0 {
+                self.constant_moments[k] -= S::about(&contact.normal, twist);
+            }
+            if form.b_bend == 0.0 {
+                self.constant_moments[k] -= bend;
+            }
+            places.bond = Some(self.add(contact.bodies, axes, Law::Free));
+        }
+        places
+    }
+
+    /// q: free velocities with the constant impulses, shifts, and a/B of bonds.
+    fn free(&mut self, problem: &Problem<S>, forms: &[ContactForm<S>], moments: &[MomentForm<S>]) {
+        let mut motions: Vec<Motion<S>> = problem.free.clone();
+        for (form, p) in forms.iter().zip(&self.constant) {
+            for (side, sign) in [(0, 1.0), (1, -1.0)] {
+                let p = *p * sign;
+                let body = form.bodies[side];
+                let (v, w) = self.w.mobility(body, (p, S::moment(&form.arms[side], &p)));
+                motions[body as usize].0 += v;
+                motions[body as usize].1 += w;
+            }
+        }
+        for (form, m) in moments.iter().zip(&self.constant_moments) {
+            let bodies = forms[form.contact as usize].bodies;
+            for (body, sign) in [(bodies[0], 1.0), (bodies[1], -1.0)] {
+                let (_, w) = self.w.mobility(body, (S::Vector::null(), *m * sign));
+                motions[body as usize].1 += w;
+            }
+        }
+        self.q = (0..self.laws.len())
+            .map(|c| self.w.relative(c, &motions))
+            .collect();
+        for (form, places) in forms.iter().zip(&self.places) {
+            let n = &form.normal;
+            if let Some(c) = places.contact {
+                let shift = S::components(n, &form.shift_t);
+                let q = &mut self.q[c as usize];
+                q[0] += form.shift_n;
+                for k in 1..D {
+                    q[k] += shift[k - 1];
+                }
+            }
+            if let (Some(c), Some(e)) = (places.bond, &form.elastic) {
+                let a_t = S::components(n, &e.a_t);
+                let a: [f64; D] = std::array::from_fn(|k| if k == 0 { e.a_n } else { a_t[k - 1] });
+                offset(&mut self.q[c as usize], &self.w.unknowns[c as usize], &a);
+            }
+        }
+        for (form, places) in moments.iter().zip(&self.moments) {
+            if let Some(c) = places.bond {
+                let n = &forms[form.contact as usize].normal;
+                let a = S::spin_components(n, &form.a);
+                let a: [f64; D] = std::array::from_fn(|k| a[k]);
+                offset(&mut self.q[c as usize], &self.w.unknowns[c as usize], &a);
+            }
+        }
+    }
+
+    /// Splits total impulses into the blocks': the bond's part follows from the velocities they give.
+    fn start(&self, problem: &Problem<S>, forms: &[ContactForm<S>]) -> Vec<[f64; D]> {
+        let mut p = vec![[0.0; D]; self.laws.len()];
+        for (k, (form, places)) in forms.iter().zip(&self.places).enumerate() {
+            let Some(c) = places.contact else { continue };
+            let total = problem.solution(k);
+            let shifted = total.impulse - self.constant[k];
+            let frame = frame::<S, D>(&form.normal);
+            let mut all: [f64; D] = std::array::from_fn(|d| frame[d].dot(&shifted));
+            if let Some(b) = places.bond {
+                let unilateral = form.normal * (total.unilateral_n + form.tension)
+                    + S::lift(&form.normal, &total.unilateral_t);
+                let own: [f64; D] = std::array::from_fn(|d| frame[d].dot(&unilateral));
+                for d in 0..D {
+                    if self.w.unknowns[b as usize].axes[d].linear != S::Vector::null() {
+                        p[b as usize][d] = all[d] - own[d];
+                        all[d] = own[d];
+                    }
+                }
+            }
+            p[c as usize] = all;
+        }
+        for c in 0..p.len() {
+            p[c] = self.laws[c].project(&p[c], &p);
+        }
+        p
+    }
+
+    /// Total impulses of the contacts in world axes, and total moments.
+    fn totals(&self, p: &[[f64; D]], forms: &[ContactForm<S>], moments: &[MomentForm<S>]) -> (Vec<Option<S::Vector>>, Vec<Option<S::Spin>>) {
+        let sum = |places: &Places| -> [f64; D] {
+            let mut sum = [0.0; D];
+            for c in [places.contact, places.bond].into_iter().flatten() {
+                let unknown = &self.w.unknowns[c as usize];
+                for k in 0..D {
+                    let here = unknown.axes[k].linear != S::Vector::null()
+                        || unknown.axes[k].angular != [S::Spin::null(); 2];
+                    sum[k] += if here { p[c as usize][k] } else { 0.0 };
+                }
+            }
+            sum
+        };
+        let impulses = forms.iter().zip(&self.places).enumerate();
+        let impulses = impulses
+            .map(|(k, (form, places))| {
+                places.contact?;
+                let p = sum(places);
+                let frame = frame::<S, D>(&form.normal);
+                let mut total = self.constant[k];
+                for d in 0..D {
+                    total += frame[d] * p[d];
+                }
+                Some(total)
+            })
+            .collect();
+        let turned = moments.iter().zip(&self.moments).enumerate();
+        let turned = turned
+            .map(|(k, (form, places))| {
+                places.contact.or(places.bond)?;
+                let p = sum(places);
+                let mut components = [0.0; 3];
+                components[..D].copy_from_slice(&p);
+                let n = &forms[form.contact as usize].normal;
+                Some(self.constant_moments[k] + S::spin_from(n, components))
+            })
+            .collect();
+        (impulses, turned)
+    }
+
+    /// The laws of the blocks.
+    pub fn laws(&self) -> &[Law] {
+        &self.laws
+    }
+
+    /// W, q and mu, where every block is a contact of Coulomb's law.
+    pub fn coulomb(&self) -> Option<(Csr, Vec<f64>, Vec<f64>)> {
+        let mu: Option<Vec<f64>> = self
+            .laws
+            .iter()
+            .map(|law| match law {
+                Law::Coulomb(mu) => Some(*mu),
+                _ => None,
+            })
+            .collect();
+        Some((self.w.matrix().to_csr(), self.q.as_flattened().to_vec(), mu?))
+    }
+}
+
+/// An axis of a bond of stiffness `b` over the step; not there where the stiffness is zero.
+fn component<S: Space>(axis: &Axis<S>, b: f64) -> Axis<S> {
+    if b > 0.0 {
+        Axis {
+            compliance: 1.0 / b,
+            ..*axis
+        }
+    } else {
+        Axis {
+            linear: S::Vector::null(),
+            angular: [S::Spin::null(); 2],
+            compliance: 1.0,
+        }
+    }
+}
+
+fn offset<S: Space, const D: usize>(q: &mut [f64; D], unknown: &Unknown<S, D>, a: &[f64; D]) {
+    for k in 0..D {
+        let axis = &unknown.axes[k];
+        let here = axis.linear != S::Vector::null() || axis.angular != [S::Spin::null(); 2];
+        if here {
+            q[k] += a[k] * axis.compliance;
+        } else {
+            q[k] = 0.0;
+        }
+    }
+}
+
+/// Improves the impulses of a problem by a method; the problem must hold a start. Returns the iterations.
+pub fn improve<S: Space, const D: usize>(
+    problem: &mut Problem<S>,
+    forms: &[ContactForm<S>],
+    moments: &[MomentForm<S>],
+    method: Method,
+    (norm, tolerance, iterations): (Norm, f64, u32),
+) -> u32 {
+    let (impulses, turned, done) = {
+        let standard = Standard::<S, D>::new(problem, forms, moments);
+        let form = Form::new(&standard.w, &standard.q, &standard.laws, norm);
+        let mut state = State::new(&form, standard.start(problem, forms));
+        let mut budget = Budget::new(tolerance, iterations, f64::INFINITY);
+        method.solver().solve(&form, &mut state, &mut budget);
+        let (impulses, turned) = standard.totals(&state.p, forms, moments);
+        (impulses, turned, state.iterations)
+    };
+    problem.adopt(&impulses, &turned);
+    done
+}
