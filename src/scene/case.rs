@@ -3,6 +3,7 @@
 use crate::bodies::Dof;
 use crate::laws::BondRule;
 use crate::solve::error::Norm;
+use crate::solve::local::solver::Method;
 use crate::step::coupling::Coupling;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -108,6 +109,9 @@ pub struct DetectionSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SolverSpec {
+    /// The method: `Auto`, `Nlgs`, `Anderson`, `Pg`, `Cpg`, `Pcpg`, `Apgd`, `Newton`, `Interior`; see
+    /// `docs/solvers.md`.
+    pub method: Method,
     /// Error to reach.
     pub tolerance: f64,
     /// How the error is measured: `Balance` or `Velocity`, see [`crate::solve::error`].
@@ -127,6 +131,7 @@ pub struct SolverSpec {
 impl Default for SolverSpec {
     fn default() -> Self {
         Self {
+            method: Method::Auto,
             tolerance: 1e-4,
             norm: Norm::Balance,
             max_iterations: 10_000,

@@ -7,6 +7,7 @@
 //!
 //! Body velocities are updated in place: applying an impulse costs O(1) a contact.
 pub mod accelerate;
+pub mod choose;
 pub mod colour;
 pub mod cone;
 pub mod error;
@@ -17,6 +18,7 @@ pub mod nlgs;
 pub mod row;
 pub mod standard;
 
+pub use choose::{Habit, solve};
 pub use form::{ContactForm, Problem};
-pub use nlgs::{Options, Report, solve};
+pub use nlgs::{Options, Report};
 pub use row::{MomentForm, MomentSolution};

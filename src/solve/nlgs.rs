@@ -4,6 +4,7 @@ use super::accelerate::Acceleration;
 use super::colour::{self, COLOURS};
 use super::error::{Norm, Scale, Sums};
 use super::form::{Place, Problem};
+use super::local::solver::Method;
 use super::row::{Line, Row};
 use crate::geometry::space::{Space, VectorLike};
 use rayon::prelude::*;
@@ -23,6 +24,8 @@ pub struct Options {
     pub relaxation: f64,
     /// Anderson's acceleration.
     pub accelerated: bool,
+    /// The method.
+    pub method: Method,
     /// Split colours over threads.
     pub parallel: bool,
 }
@@ -36,6 +39,7 @@ impl Default for Options {
             test_every: 10,
             relaxation: 1.45,
             accelerated: true,
+            method: Method::Auto,
             parallel: false,
         }
     }
@@ -52,12 +56,40 @@ pub struct Report {
     pub converged: bool,
     /// The contact with the largest residual, as pushed; none when there is no contact.
     pub worst: Option<usize>,
+    /// The method that ended it.
+    pub used: Method,
 }
 
 /// Contacts a thread takes at a time. Sums are formed by chunk and added in order.
 const CHUNK: usize = 512;
 
-/// Solves the problem in place.
+/// Puts the rows in order, forms velocities from the impulses at hand, and judges them.
+pub(super) fn prepare<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
+    if problem.contacts() == 0 {
+        return Report {
+            converged: true,
+            ..Report::default()
+        };
+    }
+    sort(problem);
+    judge(problem, options)
+}
+
+/// Forms velocities from the impulses at hand and judges them.
+pub(super) fn judge<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
+    let free = free_velocity(problem);
+    problem.reload();
+    let sums = measure(problem, options.parallel);
+    let error = sums.error(options.norm, &scale(problem, free));
+    Report {
+        error,
+        converged: error <= options.tolerance,
+        worst: problem.pushed(sums.worst_at),
+        ..Report::default()
+    }
+}
+
+/// Sweeps until the problem is solved, in place.
 pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     if problem.contacts() == 0 {
         return Report {

@@ -92,8 +92,7 @@ impl<S: Space, const D: usize> Bodies<'_, S, D> {
                     continue;
                 }
                 for (l, axis) in y.axes.iter().enumerate() {
-                    let motion =
-                        self.mobility(y.bodies[j], (axis.linear, axis.angular[j]));
+                    let motion = self.mobility(y.bodies[j], (axis.linear, axis.angular[j]));
                     for (k, own) in x.axes.iter().enumerate() {
                         out[k][l] += sign_i
                             * sign_j
@@ -292,7 +291,11 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
                 Law::Free
             };
             if e.b_n == 0.0 {
-                let pull = if e.tension_only { (-e.a_n).min(0.0) } else { -e.a_n };
+                let pull = if e.tension_only {
+                    (-e.a_n).min(0.0)
+                } else {
+                    -e.a_n
+                };
                 self.constant[k] += form.normal * pull;
             }
             if e.b_t == 0.0 {
@@ -427,7 +430,12 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
     }
 
     /// Total impulses of the contacts in world axes, and total moments.
-    fn totals(&self, p: &[[f64; D]], forms: &[ContactForm<S>], moments: &[MomentForm<S>]) -> (Vec<Option<S::Vector>>, Vec<Option<S::Spin>>) {
+    fn totals(
+        &self,
+        p: &[[f64; D]],
+        forms: &[ContactForm<S>],
+        moments: &[MomentForm<S>],
+    ) -> (Vec<Option<S::Vector>>, Vec<Option<S::Spin>>) {
         let sum = |places: &Places| -> [f64; D] {
             let mut sum = [0.0; D];
             for c in [places.contact, places.bond].into_iter().flatten() {
@@ -482,7 +490,11 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
                 _ => None,
             })
             .collect();
-        Some((self.w.matrix().to_csr(), self.q.as_flattened().to_vec(), mu?))
+        Some((
+            self.w.matrix().to_csr(),
+            self.q.as_flattened().to_vec(),
+            mu?,
+        ))
     }
 }
 

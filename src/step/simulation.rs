@@ -113,6 +113,7 @@ pub struct Simulation<S: Space> {
     pub energy: Energy,
     /// Contact impulses and moments on the driven bodies in the last step, in their order.
     pub received: Vec<(S::Vector, S::Spin)>,
+    habit: solve::Habit,
     passes: Passes,
     problem: Problem<S>,
     forms: Vec<ContactForm<S>>,
@@ -163,6 +164,7 @@ impl<S: Space> Simulation<S> {
                 ..Energy::default()
             },
             received,
+            habit: solve::Habit::default(),
             passes: Passes::default(),
             problem: Problem::default(),
             forms: Vec::new(),
@@ -249,7 +251,13 @@ impl<S: Space> Simulation<S> {
 
             let clock = Instant::now();
             self.pose(free);
-            let solved = solve::solve(&mut self.problem, &self.solver);
+            let solved = solve::solve(
+                &mut self.problem,
+                &self.forms,
+                &self.moments,
+                &self.solver,
+                &mut self.habit,
+            );
             report.solver.add(&solved);
             self.adopt_velocities()?;
             report.timing.solve += clock.elapsed();

@@ -22,7 +22,7 @@ pub struct Auto {
 ///
 /// Fitted on the 41 local problems of the docs' table: a sweep takes 1 ns an entry and 60 ns a contact, a
 /// factorisation 0.9 ns times entries^1.5 (sparse; about the same for the small dense ones).
-fn sweeps_per_factorisation(entries: f64, contacts: f64) -> f64 {
+pub fn sweeps_per_factorisation(entries: f64, contacts: f64) -> f64 {
     0.9 * entries.powf(1.5) / (entries + 60.0 * contacts)
 }
 

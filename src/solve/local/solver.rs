@@ -13,13 +13,15 @@ use super::newton::Newton;
 use super::nlgs::{Nlgs, Order};
 use super::state::{Budget, Solver, State};
 use crate::solve::error::Norm;
+use serde::Deserialize;
 use std::str::FromStr;
 use std::time::Instant;
 
 /// A way to solve a problem.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 pub enum Method {
     /// The program chooses.
+    #[default]
     Auto,
     /// Gauss-Seidel over contacts.
     Nlgs,

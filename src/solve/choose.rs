@@ -1,0 +1,205 @@
+//! Which method solves a step.
+//!
+//! Sweeps over bodies are matrix-free and nearly always enough. [`Method::Auto`] lets them run for as long as
+//! ten factorisations of W would take (four times as long at a loose tolerance), then tries Newton on the
+//! assembled W, and sweeps on. Where Newton did not help it is tried half as early in the steps that follow;
+//! where it did, twice as early. The lengths follow from sizes alone: the same case takes the same path on any
+//! machine.
+
+use super::form::{ContactForm, Problem};
+use super::local::auto::sweeps_per_factorisation;
+use super::local::solver::Method;
+use super::nlgs::{self, Options, Report};
+use super::row::MomentForm;
+use super::standard::{self, Standard};
+use crate::geometry::space::Space;
+
+/// What the last steps taught.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Habit {
+    /// Sweeps before Newton over what their costs say.
+    patience: f64,
+}
+
+impl Default for Habit {
+    fn default() -> Self {
+        Self { patience: 1.0 }
+    }
+}
+
+/// Solves the problem in place from the impulses of its forms.
+pub fn solve<S: Space>(
+    problem: &mut Problem<S>,
+    forms: &[ContactForm<S>],
+    moments: &[MomentForm<S>],
+    options: &Options,
+    habit: &mut Habit,
+) -> Report {
+    let pieces = Pieces {
+        forms,
+        moments,
+        options,
+    };
+    match options.method {
+        Method::Nlgs => nlgs::solve(
+            problem,
+            &Options {
+                accelerated: false,
+                ..*options
+            },
+        ),
+        Method::NlgsSymmetric | Method::Anderson => nlgs::solve(problem, options),
+        Method::Auto => pieces.auto(problem, habit),
+        method => pieces.by(problem, method),
+    }
+}
+
+struct Pieces<'a, S: Space> {
+    forms: &'a [ContactForm<S>],
+    moments: &'a [MomentForm<S>],
+    options: &'a Options,
+}
+
+impl<S: Space> Pieces<'_, S> {
+    /// Improves the problem by a method for matrices; its tolerance is that of the blocks' own error.
+    fn improve(
+        &self,
+        problem: &mut Problem<S>,
+        method: Method,
+        tolerance: f64,
+        most: u32,
+    ) -> Report {
+        let limits = (self.options.norm, tolerance, most);
+        let (forms, moments) = (self.forms, self.moments);
+        let iterations = if S::D == 2 {
+            standard::improve::<S, 2>(problem, forms, moments, method, limits)
+        } else {
+            standard::improve::<S, 3>(problem, forms, moments, method, limits)
+        };
+        Report {
+            iterations,
+            used: method,
+            ..nlgs::judge(problem, self.options)
+        }
+    }
+
+    /// One method alone. Bodies may find the error a little larger than the blocks did: then it goes on.
+    fn by(&self, problem: &mut Problem<S>, method: Method) -> Report {
+        const ATTEMPTS: u32 = 4;
+        let mut report = nlgs::prepare(problem, self.options);
+        let mut tolerance = self.options.tolerance;
+        for _ in 0..ATTEMPTS {
+            let left = self.options.max_iterations - report.iterations;
+            if report.converged || left == 0 {
+                break;
+            }
+            let next = self.improve(problem, method, tolerance, left);
+            report.add(&next);
+            tolerance *= 0.3;
+        }
+        Report {
+            used: method,
+            ..report
+        }
+    }
+
+    fn auto(&self, problem: &mut Problem<S>, habit: &mut Habit) -> Report {
+        /// Factorisations' worth of sweeps before Newton, at a loose and at a tight tolerance.
+        const LOOSE: f64 = 40.0;
+        const TIGHT: f64 = 10.0;
+        /// More unknowns than this are not factorised.
+        const LARGEST: usize = 60_000;
+        /// Newton's steps.
+        const NEWTON: u32 = 40;
+        let options = self.options;
+        let unknowns = problem.contacts() * S::D;
+        // A contact of balls meets some eight others.
+        let entries = (9 * S::D * unknowns) as f64;
+        let per = sweeps_per_factorisation(entries, problem.contacts() as f64);
+        let worth = if options.tolerance >= 1e-5 {
+            LOOSE
+        } else {
+            TIGHT
+        };
+        let sweeps = (worth * per * habit.patience).clamp(200.0, f64::from(u32::MAX / 2)) as u32;
+        let first = nlgs::solve(
+            problem,
+            &Options {
+                max_iterations: options.max_iterations.min(sweeps),
+                ..*options
+            },
+        );
+        let mut report = Report {
+            used: Method::Anderson,
+            ..first
+        };
+        let newton = !self
+            .moments
+            .iter()
+            .any(|m| m.rolling > 0.0 || m.spinning > 0.0);
+        let left = options.max_iterations.saturating_sub(report.iterations);
+        if report.converged || left == 0 || unknowns > LARGEST {
+            return report;
+        }
+        let mut saved = Vec::new();
+        if newton {
+            problem.store(&mut saved);
+            let before = report.error;
+            let next = self.improve(problem, Method::Newton, 0.3 * options.tolerance, NEWTON);
+            report.add(&next);
+            if report.converged {
+                habit.patience = (0.5 * habit.patience).max(0.1);
+                return report;
+            }
+            habit.patience = (2.0 * habit.patience).min(64.0);
+            if report.error > before {
+                problem.restore(&saved);
+            }
+        }
+        let left = options.max_iterations.saturating_sub(report.iterations);
+        let last = nlgs::solve(
+            problem,
+            &Options {
+                max_iterations: left.max(1),
+                ..*options
+            },
+        );
+        report.add(&Report {
+            used: Method::Anderson,
+            ..last
+        });
+        report
+    }
+}
+
+/// Why a method cannot solve a case with these moments and laws, if it cannot.
+pub fn refusal(method: Method, rotation: bool, other_than_coulomb: bool) -> Option<&'static str> {
+    match method {
+        Method::Newton if rotation => Some(
+            "friction against rotation is bounded by another unknown, which newton does not follow; use auto, anderson or a gradient",
+        ),
+        Method::Interior if rotation || other_than_coulomb => Some(
+            "interior solves Coulomb's cone alone, without bonds, cohesion or friction against rotation; use auto, newton or anderson",
+        ),
+        _ => None,
+    }
+}
+
+/// The local form of a problem of Coulomb contacts: W, q, mu; none where another law is at work.
+pub fn coulomb<S: Space>(
+    problem: &Problem<S>,
+    forms: &[ContactForm<S>],
+    moments: &[MomentForm<S>],
+) -> Option<super::local::LocalProblem> {
+    let (w, q, mu) = if S::D == 2 {
+        Standard::<S, 2>::new(problem, forms, moments).coulomb()?
+    } else {
+        Standard::<S, 3>::new(problem, forms, moments).coulomb()?
+    };
+    Some(super::local::LocalProblem {
+        dimension: S::D,
+        w,
+        q,
+        mu,
+    })
+}
