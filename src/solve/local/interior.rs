@@ -4,6 +4,8 @@
 //! (De Saxce and Feng 1998), which primal-dual steps in Nesterov and Todd's scaling solve even where W has
 //! not full rank (Acary, Armand, Nguyen and Shpakovych 2024); here the term |u_t| is linearised with the rest.
 //! Mehrotra's predictor and corrector choose the centring.
+//!
+//! Where mu = 0 the cone is the half line: p_t = 0 is known, and the tangents have no rows in the system.
 
 use super::block::{Block, BlockMatrix};
 use super::form::{Form, dot};
@@ -145,30 +147,54 @@ fn longest<const D: usize>(x: &[f64; D], d: &[f64; D]) -> f64 {
 
 struct Scaled<'a, const D: usize> {
     w: &'a BlockMatrix<D>,
-    /// 1 / mu.
+    /// 1 / mu; 1 where there is no friction.
     over: Vec<f64>,
+    /// First row of each contact, and the number of rows: D of a contact with friction, else 1.
+    starts: Vec<usize>,
 }
 
 impl<const D: usize> Scaled<'_, D> {
+    /// Rows of a contact.
+    fn size(&self, c: usize) -> usize {
+        self.starts[c + 1] - self.starts[c]
+    }
+
+    /// The unknowns of all contacts one after the other.
+    fn pack(&self, x: &[[f64; D]]) -> Vec<f64> {
+        let mut out = Vec::with_capacity(self.starts[x.len()]);
+        for (c, x) in x.iter().enumerate() {
+            out.extend_from_slice(&x[..self.size(c)]);
+        }
+        out
+    }
+
+    /// The way back; the others are left as they are.
+    fn unpack(&self, from: &[f64], x: &mut [[f64; D]]) {
+        for (c, x) in x.iter_mut().enumerate() {
+            let size = self.size(c);
+            x[..size].copy_from_slice(&from[self.starts[c]..self.starts[c + 1]]);
+        }
+    }
+
     /// Rows of D^-1 W D^-1 + diagonal.
     fn rows(&self, diagonal: &[Block<D>]) -> Rows {
         let mut a = Rows::default();
         a.starts.push(0);
         for c in 0..self.w.len() {
             let (columns, blocks) = self.w.row(c);
-            for i in 0..D {
+            for i in 0..self.size(c) {
                 let left = if i == 0 { self.over[c] } else { 1.0 };
                 let push = |a: &mut Rows, e: usize, row: &[f64; D]| {
-                    for (j, x) in row.iter().enumerate() {
-                        a.columns.push(e * D + j);
+                    for (j, x) in row.iter().take(self.size(e)).enumerate() {
+                        a.columns.push(self.starts[e] + j);
                         a.values
                             .push(left * x * if j == 0 { self.over[e] } else { 1.0 });
                     }
                 };
                 let own = |a: &mut Rows| {
-                    for j in 0..D {
+                    for j in 0..self.size(c) {
                         let right = if j == 0 { self.over[c] } else { 1.0 };
-                        a.columns.push(c * D + j);
+                        a.columns.push(self.starts[c] + j);
                         a.values
                             .push(left * right * self.w.diagonal[c][i][j] + diagonal[c][i][j]);
                     }
@@ -192,10 +218,19 @@ impl<const D: usize> Scaled<'_, D> {
 }
 
 impl Interior {
-    /// Whether every block is a cone that this method knows.
-    pub fn serves(laws: &[Law]) -> bool {
-        laws.iter()
-            .all(|law| matches!(law, Law::Coulomb(mu) if *mu > 0.0))
+    /// Whether every block is a cone that this method knows; else the reason.
+    ///
+    /// # Errors
+    /// A sentence that names the first law that is no cone.
+    pub fn serves(laws: &[Law]) -> Result<(), String> {
+        let other = laws.iter().position(|law| !matches!(law, Law::Coulomb(_)));
+        match other {
+            None => Ok(()),
+            Some(block) => Err(format!(
+                "the interior point solves Coulomb's law only, and block {block} obeys another: {:?}",
+                laws[block]
+            )),
+        }
     }
 }
 
@@ -204,14 +239,26 @@ impl<const D: usize> Solver<D> for Interior {
         let n = form.len();
         let w = form.w.matrix();
         let mu: Vec<f64> = form.laws.iter().map(Law::friction).collect();
+        let mut starts = vec![0];
+        for mu in &mu {
+            starts.push(starts[starts.len() - 1] + if *mu > 0.0 { D } else { 1 });
+        }
         let scaled = Scaled {
             w,
-            over: mu.iter().map(|m| 1.0 / m).collect(),
+            over: mu
+                .iter()
+                .map(|mu| if *mu > 0.0 { 1.0 / mu } else { 1.0 })
+                .collect(),
+            starts,
         };
         // A start well inside both cones, at the problem's own scale.
         let mean_w = w.diagonal.iter().map(|b| b[0][0]).sum::<f64>() / n.max(1) as f64;
         let size_v = (form.free / n.max(1) as f64).sqrt().max(1e-300);
         let size_r = size_v / mean_w;
+        if !size_r.is_finite() || size_r <= 0.0 {
+            // Nothing can move, or the numbers are beyond the range.
+            return;
+        }
         let mut r = vec![[0.0; D]; n];
         let mut v = vec![[0.0; D]; n];
         for c in 0..n {
@@ -236,6 +283,13 @@ impl<const D: usize> Solver<D> for Interior {
             let mut scalings = Vec::with_capacity(n);
             let mut residual = vec![[0.0; D]; n];
             for c in 0..n {
+                if scaled.size(c) < D {
+                    residual[c][0] = v[c][0] - u[c][0];
+                    let s = Scaling::new(&r[c], &v[c]);
+                    diagonal[c] = s.square();
+                    scalings.push(s);
+                    continue;
+                }
                 let t = slip(&v[c]);
                 let eps = SMOOTH * gap / r[c][0];
                 let smooth = (t * t + eps * eps).sqrt();
@@ -274,9 +328,11 @@ impl<const D: usize> Solver<D> for Interior {
                         })
                     })
                     .collect();
-                if !factor.solve(dr.as_flattened_mut()) {
+                let mut x = scaled.pack(&dr);
+                if !factor.solve(&mut x) {
                     return None;
                 }
+                scaled.unpack(&x, &mut dr);
                 let dv = (0..n)
                     .map(|c| {
                         let back = scalings[c].apply(&scalings[c].apply(&dr[c]));

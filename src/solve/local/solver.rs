@@ -8,7 +8,7 @@ use super::block::BlockMatrix;
 use super::form::{Form, coulomb};
 use super::gradient::{Gradient, Kind};
 use super::interior::Interior;
-use super::law;
+use super::law::{self, Law};
 use super::newton::Newton;
 use super::nlgs::{Nlgs, Order};
 use super::state::{Budget, Solver, State};
@@ -88,6 +88,18 @@ impl Method {
         }
     }
 
+    /// Whether it can solve blocks of these laws; else the reason.
+    ///
+    /// # Errors
+    /// A sentence that says which law it does not serve.
+    pub fn serves(self, laws: &[Law]) -> Result<(), String> {
+        match self {
+            Self::Newton => Newton::serves(laws),
+            Self::Interior => Interior::serves(laws),
+            _ => Ok(()),
+        }
+    }
+
     /// The method at work.
     pub fn solver<const D: usize>(self) -> Box<dyn Solver<D>> {
         let gradient = |kind| Box::new(Gradient { kind });
@@ -157,8 +169,22 @@ pub struct Outcome {
 }
 
 /// Solves a problem from p = 0. A solve of a few milliseconds is repeated and the best time given, since
-/// the first one pays for cold memory.
+/// the first one pays for cold memory. A problem that [`LocalProblem::check`] refuses is not begun: p = 0, an
+/// infinite error.
 pub fn solve(problem: &LocalProblem, method: Method, limits: &Limits) -> Outcome {
+    if problem.check().is_err() {
+        let p = vec![0.0; problem.q.len()];
+        return Outcome {
+            method: method.name().to_owned(),
+            u: problem.q.clone(),
+            p,
+            error: f64::INFINITY,
+            worst: None,
+            iterations: 0,
+            seconds: 0.0,
+            converged: false,
+        };
+    }
     match problem.dimension {
         2 => solve_in::<2>(problem, method, limits),
         _ => solve_in::<3>(problem, method, limits),
@@ -235,7 +261,7 @@ impl<const D: usize> Choice<D> {
 }
 
 /// The field's figure: |p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|, |u|), Euclidean norms of whole
-/// vectors, u = W p + q; not divided when the maximum is 0.
+/// vectors, u = W p + q; not divided when the maximum is 0. Infinite where a number is not finite.
 pub fn field_error(problem: &LocalProblem, p: &[f64]) -> f64 {
     match problem.dimension {
         2 => measured::<2>(problem, p).0,
@@ -245,11 +271,23 @@ pub fn field_error(problem: &LocalProblem, p: &[f64]) -> f64 {
 
 fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> (f64, Option<usize>) {
     let u = problem.velocities(p);
-    let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let all = || problem.q.iter().chain(p).chain(&u);
+    if !all().chain(&problem.mu).all(|x| x.is_finite()) {
+        return (f64::INFINITY, None);
+    }
+    // The figure is the same of vectors divided by one number: a power of two, so that no bit changes and
+    // no square leaves the range.
+    let most = all().fold(0.0f64, |m, x| m.max(x.abs()));
+    let unit = if most > 0.0 {
+        most.log2().floor().clamp(-1000.0, 1000.0).exp2()
+    } else {
+        1.0
+    };
+    let norm = |x: &[f64]| x.iter().map(|x| (x / unit).powi(2)).sum::<f64>().sqrt();
     let scale = norm(&problem.q).max(norm(p)).max(norm(&u));
     let (mut sum, mut worst) = (0.0, None::<(usize, f64)>);
     for (c, mu) in problem.mu.iter().enumerate() {
-        let at = |x: &[f64]| -> [f64; D] { std::array::from_fn(|k| x[c * D + k]) };
+        let at = |x: &[f64]| -> [f64; D] { std::array::from_fn(|k| x[c * D + k] / unit) };
         let (p, u) = (at(p), at(&u));
         let r = law::natural(&p, &u, *mu, 1.0);
         let gap: f64 = r.iter().map(|x| x * x).sum();
