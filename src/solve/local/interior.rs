@@ -8,13 +8,17 @@
 //! Where mu = 0 the cone is the half line: p_t = 0 is known, and the tangents have no rows in the system.
 
 use super::block::{Block, BlockMatrix};
-use super::form::{Form, dot};
+use super::form::{Form, dot, largest};
 use super::law::{Law, slip};
 use super::linear::{Factor, Rows};
 use super::state::{Best, Budget, Solver, State};
 
 /// Rounding of |v_t| over what a sticking contact's v_t is on the central path.
 const SMOOTH: f64 = 0.01;
+
+/// Short steps in a row before the iterate is moved away from the borders, and how often that is done.
+const CROWDED: u32 = 20;
+const RECENTRE: u32 = 10;
 
 /// The method.
 #[derive(Clone, Copy, Debug, Default)]
@@ -269,6 +273,7 @@ impl<const D: usize> Solver<D> for Interior {
         let mut p = state.p.clone();
         let mut u = vec![[0.0; D]; n];
         let mut lagged = false;
+        let mut recentred = 0;
         let mut short = 0;
         while !budget.ends(state) {
             // Residual of v_n - u_n/mu - |v_t| = 0 and v_t - u_t = 0.
@@ -391,13 +396,28 @@ impl<const D: usize> Solver<D> for Interior {
             for c in 0..n {
                 state.p[c] = r[c];
                 state.p[c][0] *= scaled.over[c];
+                if largest(form.w.diagonal(c)) == 0.0 {
+                    // Nothing moves it: an impulse would only grow.
+                    state.p[c] = [0.0; D];
+                }
             }
             state.measure(form);
             best.keep(state);
             short = if t < 0.1 { short + 1 } else { 0 };
             lagged = short > 1;
-            if t < 1e-10 {
-                break;
+            if t < 1e-10 || short > CROWDED {
+                // Some contact is at its border long before the others: all move inwards, by as much as
+                // is missing.
+                if recentred == RECENTRE {
+                    break;
+                }
+                recentred += 1;
+                short = 0;
+                let shift = (10.0 * best.error).min(0.1);
+                for (r, v) in r.iter_mut().zip(&mut v) {
+                    r[0] += shift * size_r;
+                    v[0] += shift * size_v;
+                }
             }
         }
         best.restore(form, state);

@@ -372,7 +372,10 @@ impl<const D: usize> Solver<D> for Newton {
             let good = inner(&prox, mean, &mut at, &mut trial, state, budget);
             // Newton's iterate may stand a little outside the cones.
             for c in 0..n {
-                state.p[c] = form.laws[c].project(&at.p[c], &at.p);
+                // What nothing moves keeps its impulse, which would grow without end where it is pressed.
+                if largest(form.w.diagonal(c)) > 0.0 {
+                    state.p[c] = form.laws[c].project(&at.p[c], &at.p);
+                }
             }
             state.measure(form);
             best.keep(state);

@@ -195,7 +195,15 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
     const REPEATS: u32 = 20;
     const ENOUGH: f64 = 0.02;
     let w = BlockMatrix::<D>::from_csr(&problem.w);
-    let q: Vec<[f64; D]> = problem.q.as_chunks().0.to_vec();
+    let mut q: Vec<[f64; D]> = problem.q.as_chunks().0.to_vec();
+    // Impulses follow a factor of the free velocities: one keeps the squares of far-off units in range.
+    let unit = match magnitude(problem.q.iter()) {
+        unit if (1e-50..1e50).contains(&unit) => 1.0,
+        unit => unit,
+    };
+    for x in q.as_flattened_mut() {
+        *x /= unit;
+    }
     let laws = coulomb(&problem.mu);
     let mut solver = Choice::<D>::new(method);
     let (mut best, mut total) = (f64::INFINITY, 0.0);
@@ -217,7 +225,7 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
         }
     }
     let state = state.expect("solved at least once");
-    let p = state.p.as_flattened().to_vec();
+    let p: Vec<f64> = state.p.as_flattened().iter().map(|p| p * unit).collect();
     let (error, worst) = measured::<D>(problem, &p);
     Outcome {
         method: solver.name(method),
@@ -277,12 +285,7 @@ fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> (f64, Option<u
     }
     // The figure is the same of vectors divided by one number: a power of two, so that no bit changes and
     // no square leaves the range.
-    let most = all().fold(0.0f64, |m, x| m.max(x.abs()));
-    let unit = if most > 0.0 {
-        most.log2().floor().clamp(-1000.0, 1000.0).exp2()
-    } else {
-        1.0
-    };
+    let unit = magnitude(all());
     let norm = |x: &[f64]| x.iter().map(|x| (x / unit).powi(2)).sum::<f64>().sqrt();
     let scale = norm(&problem.q).max(norm(p)).max(norm(&u));
     let (mut sum, mut worst) = (0.0, None::<(usize, f64)>);
@@ -298,6 +301,16 @@ fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> (f64, Option<u
     }
     let error = f64::sqrt(sum) / if scale > 0.0 { scale } else { 1.0 };
     (error, worst.map(|w| w.0))
+}
+
+/// The power of two below the largest number; 1 where all are 0.
+fn magnitude<'a>(x: impl Iterator<Item = &'a f64>) -> f64 {
+    let most = x.fold(0.0f64, |m, x| m.max(x.abs()));
+    if most > 0.0 {
+        most.log2().floor().clamp(-1000.0, 1000.0).exp2()
+    } else {
+        1.0
+    }
 }
 
 #[cfg(test)]
