@@ -16,9 +16,33 @@ use super::state::{Best, Budget, Solver, State};
 /// Rounding of |v_t| over what a sticking contact's v_t is on the central path.
 const SMOOTH: f64 = 0.01;
 
-/// Short steps in a row before the iterate is moved away from the borders, and how often that is done.
-const CROWDED: u32 = 20;
-const RECENTRE: u32 = 10;
+/// Iterations without a better error before the iterate is moved away from the borders.
+const STALLED: u32 = 15;
+
+/// Moves the iterate away from the borders: a contact may reach its own, to rounding, long before the
+/// others, and then no step is left or no scaling.
+struct Inwards {
+    size_r: f64,
+    size_v: f64,
+    /// How often it may be done.
+    left: u32,
+}
+
+impl Inwards {
+    /// By as much as is missing; whether it was done.
+    fn step<const D: usize>(&mut self, error: f64, r: &mut [[f64; D]], v: &mut [[f64; D]]) -> bool {
+        if self.left == 0 {
+            return false;
+        }
+        self.left -= 1;
+        let shift = (10.0 * error).min(0.1);
+        for (r, v) in r.iter_mut().zip(v) {
+            r[0] += shift * self.size_r;
+            v[0] += shift * self.size_v;
+        }
+        true
+    }
+}
 
 /// The method.
 #[derive(Clone, Copy, Debug, Default)]
@@ -273,7 +297,12 @@ impl<const D: usize> Solver<D> for Interior {
         let mut p = state.p.clone();
         let mut u = vec![[0.0; D]; n];
         let mut lagged = false;
-        let mut recentred = 0;
+        let mut stalled = 0;
+        let mut inwards = Inwards {
+            size_r,
+            size_v,
+            left: 10,
+        };
         let mut short = 0;
         while !budget.ends(state) {
             // Residual of v_n - u_n/mu - |v_t| = 0 and v_t - u_t = 0.
@@ -315,6 +344,9 @@ impl<const D: usize> Solver<D> for Interior {
                 scalings.push(s);
             }
             let Some(factor) = Factor::new(&scaled.rows(&diagonal)) else {
+                if inwards.step(best.error, &mut r, &mut v) {
+                    continue;
+                }
                 break;
             };
             let direction = |d: &[[f64; D]]| -> Option<(Vec<[f64; D]>, Vec<[f64; D]>)> {
@@ -354,6 +386,9 @@ impl<const D: usize> Solver<D> for Interior {
             let lambda: Vec<[f64; D]> = (0..n).map(|c| scalings[c].apply(&r[c])).collect();
             let affine: Vec<[f64; D]> = lambda.iter().map(|l| l.map(|x| -x)).collect();
             let Some((dr, dv)) = direction(&affine) else {
+                if inwards.step(best.error, &mut r, &mut v) {
+                    continue;
+                }
                 break;
             };
             let (a, b) = longest_both(&dr, &dv);
@@ -381,6 +416,9 @@ impl<const D: usize> Solver<D> for Interior {
                 })
                 .collect();
             let Some((dr, dv)) = direction(&corrected) else {
+                if inwards.step(best.error, &mut r, &mut v) {
+                    continue;
+                }
                 break;
             };
             let (a, b) = longest_both(&dr, &dv);
@@ -402,22 +440,19 @@ impl<const D: usize> Solver<D> for Interior {
                 }
             }
             state.measure(form);
+            stalled = if state.error < 0.9 * best.error {
+                0
+            } else {
+                stalled + 1
+            };
             best.keep(state);
             short = if t < 0.1 { short + 1 } else { 0 };
             lagged = short > 1;
-            if t < 1e-10 || short > CROWDED {
-                // Some contact is at its border long before the others: all move inwards, by as much as
-                // is missing.
-                if recentred == RECENTRE {
-                    break;
-                }
-                recentred += 1;
-                short = 0;
-                let shift = (10.0 * best.error).min(0.1);
-                for (r, v) in r.iter_mut().zip(&mut v) {
-                    r[0] += shift * size_r;
-                    v[0] += shift * size_v;
-                }
+            if (t < 1e-10 || stalled > STALLED) && {
+                stalled = 0;
+                !inwards.step(best.error, &mut r, &mut v)
+            } {
+                break;
             }
         }
         best.restore(form, state);
