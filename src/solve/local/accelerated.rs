@@ -15,11 +15,11 @@ pub struct Accelerated;
 impl<const D: usize> Solver<D> for Accelerated {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
         let n = form.len();
-        let scale: Vec<f64> = (0..n)
-            .map(|c| {
-                let l = largest(form.w.diagonal(c));
-                if l > 0.0 { 1.0 / l } else { 1.0 }
-            })
+        let size: Vec<f64> = (0..n).map(|c| largest(form.w.diagonal(c))).collect();
+        // What nothing moves keeps its impulse.
+        let scale: Vec<f64> = size
+            .iter()
+            .map(|l| if *l > 0.0 { 1.0 / l } else { 0.0 })
             .collect();
         let mut theta = 1.0;
         let mut momentum = 1.0f64;
@@ -42,7 +42,7 @@ impl<const D: usize> Solver<D> for Accelerated {
                     for k in 0..D {
                         let d = p[c][k] - y[c][k];
                         energy += d * (u[c][k] - uy[c][k]);
-                        bound += d * d / scale[c];
+                        bound += d * d * size[c];
                     }
                 }
                 if energy * theta <= bound * (1.0 + 1e-12) || theta < 1e-12 {
@@ -56,7 +56,7 @@ impl<const D: usize> Solver<D> for Accelerated {
                     (0..D)
                         .map(|k| (y[c][k] - p[c][k]) * (p[c][k] - state.p[c][k]))
                         .sum::<f64>()
-                        / scale[c]
+                        * size[c]
                 })
                 .sum();
             let next = if uphill > 0.0 {

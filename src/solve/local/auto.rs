@@ -78,11 +78,12 @@ impl<const D: usize> Solver<D> for Auto {
         }
         let newton = Newton { alpha: 1e-4 };
         let mut best = Best::of(state);
-        if self.run("newton", &newton, form, state, budget, 40) {
+        let bends = Newton::serves(form.laws).is_ok();
+        if bends && self.run("newton", &newton, form, state, budget, 40) {
             return;
         }
         best.keep(state);
-        if Interior::serves(form.laws) {
+        if Interior::serves(form.laws).is_ok() {
             if self.run("interior", &Interior, form, state, budget, 80) {
                 return;
             }
@@ -107,7 +108,7 @@ impl<const D: usize> Solver<D> for Auto {
                 return;
             }
             best.keep(state);
-            if self.run("newton", &Newton { alpha: 1e-5 }, form, state, budget, 200) {
+            if bends && self.run("newton", &Newton { alpha: 1e-5 }, form, state, budget, 200) {
                 return;
             }
             best.keep(state);

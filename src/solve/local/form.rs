@@ -92,9 +92,11 @@ impl<'a, const D: usize> Form<'a, D> {
     /// The error of p, where u = W p + q.
     pub fn error(&self, p: &[[f64; D]], u: &[[f64; D]]) -> Measure {
         let mut sums = Sums::default();
+        let mut finite = true;
         for c in 0..self.len() {
             let rho = self.rho(c);
             if !rho.is_finite() {
+                finite &= u[c].iter().all(|x| x.is_finite());
                 continue;
             }
             let r = self.laws[c].natural(&p[c], &u[c], rho, p);
@@ -118,8 +120,15 @@ impl<'a, const D: usize> Form<'a, D> {
             free: self.free,
             work,
         };
+        // The projection of what is no number is 0, and what is divided by infinity too: neither is an
+        // error of 0.
+        finite &= (sums.residual + sums.velocity + sums.impulse + self.free).is_finite();
         Measure {
-            error: sums.error(self.norm, &scale),
+            error: if finite {
+                sums.error(self.norm, &scale)
+            } else {
+                f64::INFINITY
+            },
             scale: sums.against(self.norm, self.free),
             worst: sums.worst_at,
         }

@@ -9,7 +9,7 @@
 //! Projecting the end of an exact line search can raise the energy p.W p / 2 + q.p, and then the bare method
 //! goes round in circles. Such a step is taken back and replaced by one of the safe length 1 / lambda_max.
 
-use super::form::{Form, dot};
+use super::form::{Form, dot, largest};
 use super::law::{Law, slip};
 use super::state::{Best, Budget, Solver, State};
 
@@ -165,10 +165,14 @@ impl<const D: usize> Solver<D> for Gradient {
         // The metric: equal along the tangents, so that discs stay discs.
         let metric: Vec<[f64; D]> = (0..n)
             .map(|c| {
+                let w = form.w.diagonal(c);
+                if largest(w) == 0.0 {
+                    // What nothing moves keeps its impulse.
+                    return [0.0; D];
+                }
                 if self.kind != Kind::Preconditioned {
                     return [1.0; D];
                 }
-                let w = form.w.diagonal(c);
                 let tangential = (1..D).map(|k| w[k][k]).sum::<f64>() / (D - 1) as f64;
                 std::array::from_fn(|k| {
                     let x = if k == 0 { w[0][0] } else { tangential };

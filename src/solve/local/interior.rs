@@ -4,15 +4,45 @@
 //! (De Saxce and Feng 1998), which primal-dual steps in Nesterov and Todd's scaling solve even where W has
 //! not full rank (Acary, Armand, Nguyen and Shpakovych 2024); here the term |u_t| is linearised with the rest.
 //! Mehrotra's predictor and corrector choose the centring.
+//!
+//! Where mu = 0 the cone is the half line: p_t = 0 is known, and the tangents have no rows in the system.
 
 use super::block::{Block, BlockMatrix};
-use super::form::{Form, dot};
+use super::form::{Form, dot, largest};
 use super::law::{Law, slip};
 use super::linear::{Factor, Rows};
 use super::state::{Best, Budget, Solver, State};
 
 /// Rounding of |v_t| over what a sticking contact's v_t is on the central path.
 const SMOOTH: f64 = 0.01;
+
+/// Iterations without a better error before the iterate is moved away from the borders.
+const STALLED: u32 = 15;
+
+/// Moves the iterate away from the borders: a contact may reach its own, to rounding, long before the
+/// others, and then no step is left or no scaling.
+struct Inwards {
+    size_r: f64,
+    size_v: f64,
+    /// How often it may be done.
+    left: u32,
+}
+
+impl Inwards {
+    /// By as much as is missing; whether it was done.
+    fn step<const D: usize>(&mut self, error: f64, r: &mut [[f64; D]], v: &mut [[f64; D]]) -> bool {
+        if self.left == 0 {
+            return false;
+        }
+        self.left -= 1;
+        let shift = (10.0 * error).min(0.1);
+        for (r, v) in r.iter_mut().zip(v) {
+            r[0] += shift * self.size_r;
+            v[0] += shift * self.size_v;
+        }
+        true
+    }
+}
 
 /// The method.
 #[derive(Clone, Copy, Debug, Default)]
@@ -145,30 +175,54 @@ fn longest<const D: usize>(x: &[f64; D], d: &[f64; D]) -> f64 {
 
 struct Scaled<'a, const D: usize> {
     w: &'a BlockMatrix<D>,
-    /// 1 / mu.
+    /// 1 / mu; 1 where there is no friction.
     over: Vec<f64>,
+    /// First row of each contact, and the number of rows: D of a contact with friction, else 1.
+    starts: Vec<usize>,
 }
 
 impl<const D: usize> Scaled<'_, D> {
+    /// Rows of a contact.
+    fn size(&self, c: usize) -> usize {
+        self.starts[c + 1] - self.starts[c]
+    }
+
+    /// The unknowns of all contacts one after the other.
+    fn pack(&self, x: &[[f64; D]]) -> Vec<f64> {
+        let mut out = Vec::with_capacity(self.starts[x.len()]);
+        for (c, x) in x.iter().enumerate() {
+            out.extend_from_slice(&x[..self.size(c)]);
+        }
+        out
+    }
+
+    /// The way back; the others are left as they are.
+    fn unpack(&self, from: &[f64], x: &mut [[f64; D]]) {
+        for (c, x) in x.iter_mut().enumerate() {
+            let size = self.size(c);
+            x[..size].copy_from_slice(&from[self.starts[c]..self.starts[c + 1]]);
+        }
+    }
+
     /// Rows of D^-1 W D^-1 + diagonal.
     fn rows(&self, diagonal: &[Block<D>]) -> Rows {
         let mut a = Rows::default();
         a.starts.push(0);
         for c in 0..self.w.len() {
             let (columns, blocks) = self.w.row(c);
-            for i in 0..D {
+            for i in 0..self.size(c) {
                 let left = if i == 0 { self.over[c] } else { 1.0 };
                 let push = |a: &mut Rows, e: usize, row: &[f64; D]| {
-                    for (j, x) in row.iter().enumerate() {
-                        a.columns.push(e * D + j);
+                    for (j, x) in row.iter().take(self.size(e)).enumerate() {
+                        a.columns.push(self.starts[e] + j);
                         a.values
                             .push(left * x * if j == 0 { self.over[e] } else { 1.0 });
                     }
                 };
                 let own = |a: &mut Rows| {
-                    for j in 0..D {
+                    for j in 0..self.size(c) {
                         let right = if j == 0 { self.over[c] } else { 1.0 };
-                        a.columns.push(c * D + j);
+                        a.columns.push(self.starts[c] + j);
                         a.values
                             .push(left * right * self.w.diagonal[c][i][j] + diagonal[c][i][j]);
                     }
@@ -192,10 +246,19 @@ impl<const D: usize> Scaled<'_, D> {
 }
 
 impl Interior {
-    /// Whether every block is a cone that this method knows.
-    pub fn serves(laws: &[Law]) -> bool {
-        laws.iter()
-            .all(|law| matches!(law, Law::Coulomb(mu) if *mu > 0.0))
+    /// Whether every block is a cone that this method knows; else the reason.
+    ///
+    /// # Errors
+    /// A sentence that names the first law that is no cone.
+    pub fn serves(laws: &[Law]) -> Result<(), String> {
+        let other = laws.iter().position(|law| !matches!(law, Law::Coulomb(_)));
+        match other {
+            None => Ok(()),
+            Some(block) => Err(format!(
+                "the interior point solves Coulomb's law only, and block {block} obeys another: {:?}",
+                laws[block]
+            )),
+        }
     }
 }
 
@@ -204,14 +267,26 @@ impl<const D: usize> Solver<D> for Interior {
         let n = form.len();
         let w = form.w.matrix();
         let mu: Vec<f64> = form.laws.iter().map(Law::friction).collect();
+        let mut starts = vec![0];
+        for mu in &mu {
+            starts.push(starts[starts.len() - 1] + if *mu > 0.0 { D } else { 1 });
+        }
         let scaled = Scaled {
             w,
-            over: mu.iter().map(|m| 1.0 / m).collect(),
+            over: mu
+                .iter()
+                .map(|mu| if *mu > 0.0 { 1.0 / mu } else { 1.0 })
+                .collect(),
+            starts,
         };
         // A start well inside both cones, at the problem's own scale.
         let mean_w = w.diagonal.iter().map(|b| b[0][0]).sum::<f64>() / n.max(1) as f64;
         let size_v = (form.free / n.max(1) as f64).sqrt().max(1e-300);
         let size_r = size_v / mean_w;
+        if !size_r.is_finite() || size_r <= 0.0 {
+            // Nothing can move, or the numbers are beyond the range.
+            return;
+        }
         let mut r = vec![[0.0; D]; n];
         let mut v = vec![[0.0; D]; n];
         for c in 0..n {
@@ -222,6 +297,12 @@ impl<const D: usize> Solver<D> for Interior {
         let mut p = state.p.clone();
         let mut u = vec![[0.0; D]; n];
         let mut lagged = false;
+        let mut stalled = 0;
+        let mut inwards = Inwards {
+            size_r,
+            size_v,
+            left: 10,
+        };
         let mut short = 0;
         while !budget.ends(state) {
             // Residual of v_n - u_n/mu - |v_t| = 0 and v_t - u_t = 0.
@@ -236,6 +317,13 @@ impl<const D: usize> Solver<D> for Interior {
             let mut scalings = Vec::with_capacity(n);
             let mut residual = vec![[0.0; D]; n];
             for c in 0..n {
+                if scaled.size(c) < D {
+                    residual[c][0] = v[c][0] - u[c][0];
+                    let s = Scaling::new(&r[c], &v[c]);
+                    diagonal[c] = s.square();
+                    scalings.push(s);
+                    continue;
+                }
                 let t = slip(&v[c]);
                 let eps = SMOOTH * gap / r[c][0];
                 let smooth = (t * t + eps * eps).sqrt();
@@ -256,6 +344,9 @@ impl<const D: usize> Solver<D> for Interior {
                 scalings.push(s);
             }
             let Some(factor) = Factor::new(&scaled.rows(&diagonal)) else {
+                if inwards.step(best.error, &mut r, &mut v) {
+                    continue;
+                }
                 break;
             };
             let direction = |d: &[[f64; D]]| -> Option<(Vec<[f64; D]>, Vec<[f64; D]>)> {
@@ -274,9 +365,11 @@ impl<const D: usize> Solver<D> for Interior {
                         })
                     })
                     .collect();
-                if !factor.solve(dr.as_flattened_mut()) {
+                let mut x = scaled.pack(&dr);
+                if !factor.solve(&mut x) {
                     return None;
                 }
+                scaled.unpack(&x, &mut dr);
                 let dv = (0..n)
                     .map(|c| {
                         let back = scalings[c].apply(&scalings[c].apply(&dr[c]));
@@ -293,6 +386,9 @@ impl<const D: usize> Solver<D> for Interior {
             let lambda: Vec<[f64; D]> = (0..n).map(|c| scalings[c].apply(&r[c])).collect();
             let affine: Vec<[f64; D]> = lambda.iter().map(|l| l.map(|x| -x)).collect();
             let Some((dr, dv)) = direction(&affine) else {
+                if inwards.step(best.error, &mut r, &mut v) {
+                    continue;
+                }
                 break;
             };
             let (a, b) = longest_both(&dr, &dv);
@@ -320,6 +416,9 @@ impl<const D: usize> Solver<D> for Interior {
                 })
                 .collect();
             let Some((dr, dv)) = direction(&corrected) else {
+                if inwards.step(best.error, &mut r, &mut v) {
+                    continue;
+                }
                 break;
             };
             let (a, b) = longest_both(&dr, &dv);
@@ -335,12 +434,24 @@ impl<const D: usize> Solver<D> for Interior {
             for c in 0..n {
                 state.p[c] = r[c];
                 state.p[c][0] *= scaled.over[c];
+                if largest(form.w.diagonal(c)) == 0.0 {
+                    // Nothing moves it: an impulse would only grow.
+                    state.p[c] = [0.0; D];
+                }
             }
             state.measure(form);
+            stalled = if state.error < 0.9 * best.error {
+                0
+            } else {
+                stalled + 1
+            };
             best.keep(state);
             short = if t < 0.1 { short + 1 } else { 0 };
             lagged = short > 1;
-            if t < 1e-10 {
+            if (t < 1e-10 || stalled > STALLED) && {
+                stalled = 0;
+                !inwards.step(best.error, &mut r, &mut v)
+            } {
                 break;
             }
         }

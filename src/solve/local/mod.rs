@@ -38,3 +38,36 @@ pub struct LocalProblem {
     /// Friction coefficients.
     pub mu: Vec<f64>,
 }
+
+impl LocalProblem {
+    /// Whether the sizes fit and every number can be worked with; else the reason.
+    ///
+    /// # Errors
+    /// A sentence about the first thing that is wrong.
+    pub fn check(&self) -> Result<(), String> {
+        let (d, n) = (self.dimension, self.q.len());
+        if d != 2 && d != 3 {
+            return Err(format!("a contact has 2 or 3 components, not {d}"));
+        }
+        if self.mu.len() * d != n || self.w.rows != n || self.w.columns != n {
+            return Err(format!(
+                "{} contacts of {d} components ask for W of {m} x {m} and q of {m}, not {} x {} and {n}",
+                self.mu.len(),
+                self.w.rows,
+                self.w.columns,
+                m = self.mu.len() * d,
+            ));
+        }
+        let finite = |x: &[f64], name: &str| match x.iter().position(|x| !x.is_finite()) {
+            Some(at) => Err(format!("entry {at} of {name} is {}", x[at])),
+            None => Ok(()),
+        };
+        finite(&self.w.values, "W")?;
+        finite(&self.q, "q")?;
+        finite(&self.mu, "mu")?;
+        match self.mu.iter().position(|mu| *mu < 0.0) {
+            Some(at) => Err(format!("mu of contact {at} is below 0: {}", self.mu[at])),
+            None => Ok(()),
+        }
+    }
+}

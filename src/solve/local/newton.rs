@@ -323,6 +323,25 @@ fn inner<const D: usize>(
     false
 }
 
+impl Newton {
+    /// Whether every law has slopes of its own; else the reason.
+    ///
+    /// # Errors
+    /// A sentence that names the first law that another block's impulse bounds.
+    pub fn serves(laws: &[Law]) -> Result<(), String> {
+        let bounded = laws
+            .iter()
+            .position(|law| matches!(law, Law::Moment { .. }));
+        match bounded {
+            None => Ok(()),
+            Some(block) => Err(format!(
+                "Newton's method does not solve moments that another block's impulse bounds, as those of \
+                 block {block}"
+            )),
+        }
+    }
+}
+
 impl<const D: usize> Solver<D> for Newton {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
         const FALL: f64 = 0.3;
@@ -353,7 +372,10 @@ impl<const D: usize> Solver<D> for Newton {
             let good = inner(&prox, mean, &mut at, &mut trial, state, budget);
             // Newton's iterate may stand a little outside the cones.
             for c in 0..n {
-                state.p[c] = form.laws[c].project(&at.p[c], &at.p);
+                // What nothing moves keeps its impulse, which would grow without end where it is pressed.
+                if largest(form.w.diagonal(c)) > 0.0 {
+                    state.p[c] = form.laws[c].project(&at.p[c], &at.p);
+                }
             }
             state.measure(form);
             best.keep(state);

@@ -8,7 +8,7 @@ use super::block::BlockMatrix;
 use super::form::{Form, coulomb};
 use super::gradient::{Gradient, Kind};
 use super::interior::Interior;
-use super::law;
+use super::law::{self, Law};
 use super::newton::Newton;
 use super::nlgs::{Nlgs, Order};
 use super::state::{Budget, Solver, State};
@@ -90,6 +90,18 @@ impl Method {
         }
     }
 
+    /// Whether it can solve blocks of these laws; else the reason.
+    ///
+    /// # Errors
+    /// A sentence that says which law it does not serve.
+    pub fn serves(self, laws: &[Law]) -> Result<(), String> {
+        match self {
+            Self::Newton => Newton::serves(laws),
+            Self::Interior => Interior::serves(laws),
+            _ => Ok(()),
+        }
+    }
+
     /// The method at work.
     pub fn solver<const D: usize>(self) -> Box<dyn Solver<D>> {
         let gradient = |kind| Box::new(Gradient { kind });
@@ -159,8 +171,22 @@ pub struct Outcome {
 }
 
 /// Solves a problem from p = 0. A solve of a few milliseconds is repeated and the best time given, since
-/// the first one pays for cold memory.
+/// the first one pays for cold memory. A problem that [`LocalProblem::check`] refuses is not begun: p = 0, an
+/// infinite error.
 pub fn solve(problem: &LocalProblem, method: Method, limits: &Limits) -> Outcome {
+    if problem.check().is_err() {
+        let p = vec![0.0; problem.q.len()];
+        return Outcome {
+            method: method.name().to_owned(),
+            u: problem.q.clone(),
+            p,
+            error: f64::INFINITY,
+            worst: None,
+            iterations: 0,
+            seconds: 0.0,
+            converged: false,
+        };
+    }
     match problem.dimension {
         2 => solve_in::<2>(problem, method, limits),
         _ => solve_in::<3>(problem, method, limits),
@@ -171,7 +197,15 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
     const REPEATS: u32 = 20;
     const ENOUGH: f64 = 0.02;
     let w = BlockMatrix::<D>::from_csr(&problem.w);
-    let q: Vec<[f64; D]> = problem.q.as_chunks().0.to_vec();
+    let mut q: Vec<[f64; D]> = problem.q.as_chunks().0.to_vec();
+    // Impulses follow a factor of the free velocities: one keeps the squares of far-off units in range.
+    let unit = match magnitude(problem.q.iter()) {
+        unit if (1e-50..1e50).contains(&unit) => 1.0,
+        unit => unit,
+    };
+    for x in q.as_flattened_mut() {
+        *x /= unit;
+    }
     let laws = coulomb(&problem.mu);
     let mut solver = Choice::<D>::new(method);
     let (mut best, mut total) = (f64::INFINITY, 0.0);
@@ -193,7 +227,7 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
         }
     }
     let state = state.expect("solved at least once");
-    let p = state.p.as_flattened().to_vec();
+    let p: Vec<f64> = state.p.as_flattened().iter().map(|p| p * unit).collect();
     let (error, worst) = measured::<D>(problem, &p);
     Outcome {
         method: solver.name(method),
@@ -237,7 +271,7 @@ impl<const D: usize> Choice<D> {
 }
 
 /// The field's figure: |p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|, |u|), Euclidean norms of whole
-/// vectors, u = W p + q; not divided when the maximum is 0.
+/// vectors, u = W p + q; not divided when the maximum is 0. Infinite where a number is not finite.
 pub fn field_error(problem: &LocalProblem, p: &[f64]) -> f64 {
     match problem.dimension {
         2 => measured::<2>(problem, p).0,
@@ -247,11 +281,18 @@ pub fn field_error(problem: &LocalProblem, p: &[f64]) -> f64 {
 
 fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> (f64, Option<usize>) {
     let u = problem.velocities(p);
-    let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let all = || problem.q.iter().chain(p).chain(&u);
+    if !all().chain(&problem.mu).all(|x| x.is_finite()) {
+        return (f64::INFINITY, None);
+    }
+    // The figure is the same of vectors divided by one number: a power of two, so that no bit changes and
+    // no square leaves the range.
+    let unit = magnitude(all());
+    let norm = |x: &[f64]| x.iter().map(|x| (x / unit).powi(2)).sum::<f64>().sqrt();
     let scale = norm(&problem.q).max(norm(p)).max(norm(&u));
     let (mut sum, mut worst) = (0.0, None::<(usize, f64)>);
     for (c, mu) in problem.mu.iter().enumerate() {
-        let at = |x: &[f64]| -> [f64; D] { std::array::from_fn(|k| x[c * D + k]) };
+        let at = |x: &[f64]| -> [f64; D] { std::array::from_fn(|k| x[c * D + k] / unit) };
         let (p, u) = (at(p), at(&u));
         let r = law::natural(&p, &u, *mu, 1.0);
         let gap: f64 = r.iter().map(|x| x * x).sum();
@@ -262,6 +303,16 @@ fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> (f64, Option<u
     }
     let error = f64::sqrt(sum) / if scale > 0.0 { scale } else { 1.0 };
     (error, worst.map(|w| w.0))
+}
+
+/// The power of two below the largest number; 1 where all are 0.
+fn magnitude<'a>(x: impl Iterator<Item = &'a f64>) -> f64 {
+    let most = x.fold(0.0f64, |m, x| m.max(x.abs()));
+    if most > 0.0 {
+        most.log2().floor().clamp(-1000.0, 1000.0).exp2()
+    } else {
+        1.0
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,232 @@
+//! The ends of the range: nothing to solve, contacts that nothing moves, numbers that are none, no time.
+
+use super::made::{Made, friction, rng, well};
+use super::{run, tolerance};
+use fretwork::solve::error::Norm;
+use fretwork::solve::local::LocalProblem;
+use fretwork::solve::local::form::Form;
+use fretwork::solve::local::solver::{Limits, Method, field_error, solve};
+use fretwork::solve::local::state::{Budget, State};
+use nalgebra::DMatrix;
+
+const LIMITS: Limits = Limits {
+    tolerance: 1e-8,
+    max_iterations: 200,
+    seconds: 1.0,
+};
+
+fn all() -> impl Iterator<Item = Method> {
+    Method::ALL.iter().copied()
+}
+
+#[test]
+fn nothing_to_solve() {
+    for dimension in [2, 3] {
+        let problem = LocalProblem {
+            dimension,
+            w: fretwork::solve::local::Csr::from_triplets(0, 0, &[]),
+            ..LocalProblem::default()
+        };
+        for method in all() {
+            let outcome = solve(&problem, method, &LIMITS);
+            assert!(outcome.converged, "{}", method.name());
+            assert_eq!((outcome.error, outcome.p.len()), (0.0, 0));
+        }
+    }
+}
+
+fn immovable<const D: usize>() {
+    let mut rng = rng(21);
+    for mu in [0.0, 0.3] {
+        for at in [0, 3, 5] {
+            let mut w = well(6 * D, 3.0, &mut rng);
+            for k in at * D..at * D + D {
+                w.row_mut(k).fill(0.0);
+                w.column_mut(k).fill(0.0);
+            }
+            let name = format!("{D}D, contact {at} between immovable bodies, mu {mu}");
+            let mut made = Made::<D>::new(w, friction(6, mu, true), name, &mut rng);
+            // It slides as it likes, and is not pressed.
+            made.q[at * D] = made.q[at * D].abs();
+            for method in all() {
+                if made.q[at * D] > 0.0 || made.q[at * D + 1..at * D + D].iter().all(|x| *x == 0.0)
+                {
+                    let (state, solved) = run(&made, method, Norm::Field);
+                    let (name, error) = (method.name(), state.error);
+                    // With p = 0 and u = 0 in one contact the interior point ends near 1e-8.
+                    let near = method == Method::Interior && error <= 1e-7;
+                    assert!(solved || near, "{name} on {}: {error:e}", made.name);
+                }
+            }
+            // Pressed it has no solution, and nobody may say so.
+            made.q[at * D] = -1.0;
+            for method in all() {
+                let (_, solved) = run(&made, method, Norm::Field);
+                assert!(!solved, "{} on {}", method.name(), made.name);
+            }
+        }
+    }
+    // None moves at all.
+    let mut made = Made::<D>::new(
+        DMatrix::zeros(2 * D, 2 * D),
+        friction(2, 0.3, false),
+        format!("{D}D, no body moves"),
+        &mut rng,
+    );
+    made.q = vec![1.0; 2 * D];
+    for method in all() {
+        assert!(run(&made, method, Norm::Field).1, "{}", method.name());
+    }
+    made.q = vec![-1.0; 2 * D];
+    for method in all() {
+        assert!(!run(&made, method, Norm::Field).1, "{}", method.name());
+    }
+}
+
+#[test]
+fn contacts_that_nothing_moves() {
+    immovable::<2>();
+    immovable::<3>();
+}
+
+fn made<const D: usize>(seed: u64) -> Made<D> {
+    let mut rng = rng(seed);
+    let w = well(5 * D, 3.0, &mut rng);
+    let mut made = Made::new(w, friction(5, 0.3, true), "five contacts".into(), &mut rng);
+    // One is pressed, so that p = 0 is no solution.
+    made.q[0] = -1.0;
+    made
+}
+
+fn not_a_number<const D: usize>() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for entry in [0, 1, D, 4 * D] {
+            let good = made::<D>(22).problem();
+            assert!(good.check().is_ok());
+            let (mut in_w, mut in_q, mut in_mu) = (good.clone(), good.clone(), good);
+            in_w.w.values[entry * 5] = bad;
+            in_q.q[entry] = bad;
+            in_mu.mu[entry / D] = bad;
+            for problem in [in_w, in_q, in_mu] {
+                let reason = problem.check().unwrap_err();
+                assert!(reason.contains("NaN") || reason.contains("inf"), "{reason}");
+                assert_eq!(
+                    field_error(&problem, &vec![0.0; 5 * D]),
+                    f64::INFINITY,
+                    "{reason}"
+                );
+                for method in all() {
+                    let outcome = solve(&problem, method, &LIMITS);
+                    assert!(!outcome.converged, "{}", method.name());
+                    assert!(outcome.p.iter().all(|x| *x == 0.0));
+                }
+            }
+            // Behind that check, too.
+            for in_w in [false, true] {
+                let mut made = made::<D>(22);
+                if in_w {
+                    made.w[(entry, 0)] = bad;
+                } else {
+                    made.q[entry] = bad;
+                }
+                for norm in [Norm::Field, Norm::Velocity, Norm::Balance] {
+                    for method in all() {
+                        let (w, q) = (made.blocks(), made.free());
+                        let form = Form::new(&w, &q, &made.laws, norm);
+                        let mut state = State::new(&form, vec![[0.0; D]; q.len()]);
+                        let mut budget = Budget::new(1e-8, 200, 1.0);
+                        method.solver().solve(&form, &mut state, &mut budget);
+                        assert!(
+                            state.error > 1e-8,
+                            "{} with {bad} at {entry} (in W: {in_w}): {norm:?}",
+                            method.name()
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn numbers_that_are_none() {
+    not_a_number::<2>();
+    not_a_number::<3>();
+}
+
+#[test]
+fn a_problem_that_does_not_fit_is_refused() {
+    let good = made::<3>(22).problem();
+    let mut few = good.clone();
+    few.q.pop();
+    let mut below = good.clone();
+    below.mu[3] = -0.1;
+    let mut line = good;
+    line.dimension = 1;
+    for (problem, why) in [(few, "5 contacts"), (below, "contact 3"), (line, "not 1")] {
+        let reason = problem.check().unwrap_err();
+        assert!(reason.contains(why), "{reason}");
+        assert!(!solve(&problem, Method::Auto, &LIMITS).converged);
+    }
+}
+
+/// q beyond what a square can hold.
+#[test]
+fn tiny_and_huge_velocities() {
+    let made = made::<3>(23);
+    for scale in [1e-250, 1e-160, 1e-100, 1e100, 1e160, 1e250] {
+        let mut problem = made.problem();
+        for q in &mut problem.q {
+            *q *= scale;
+        }
+        for method in all() {
+            let outcome = solve(&problem, method, &LIMITS);
+            let p: Vec<f64> = outcome.p.iter().map(|p| p / scale).collect();
+            let error = made.error(&p, Norm::Field);
+            let name = method.name();
+            assert!(
+                (outcome.error - error).abs() <= 1e-6 * error + 1e-13,
+                "{name} at {scale:e}: says {:e}, has {error:e}",
+                outcome.error
+            );
+            assert!(error <= tolerance(method), "{name} at {scale:e}: {error:e}");
+        }
+    }
+}
+
+fn at_once<const D: usize>() {
+    let made = made::<D>(24);
+    let (w, q) = (made.blocks(), made.free());
+    for method in all() {
+        for (iterations, seconds) in [(1, 10.0), (0, 10.0), (1_000_000, 0.0)] {
+            let form = Form::new(&w, &q, &made.laws, Norm::Field);
+            let mut state = State::new(&form, vec![[0.0; D]; q.len()]);
+            let before = state.error;
+            let mut budget = Budget::new(0.0, iterations, seconds);
+            method.solver().solve(&form, &mut state, &mut budget);
+            let name = method.name();
+            let most = if seconds > 0.0 { iterations } else { 0 };
+            assert!(
+                state.iterations <= most,
+                "{name}: {} of {most}",
+                state.iterations
+            );
+            assert!(state.p.as_flattened().iter().all(|x| x.is_finite()));
+            let error = made.error(state.p.as_flattened(), Norm::Field);
+            assert!(error <= before * (1.0 + 1e-12), "{name} made it worse");
+            assert!((error - state.error).abs() <= 1e-12, "{name}");
+        }
+        // What it gives is what it says, through the other door too.
+        let outcome = solve(&made.problem(), method, &LIMITS);
+        assert_eq!(outcome.error <= LIMITS.tolerance, outcome.converged);
+        let error = made.error(&outcome.p, Norm::Field);
+        assert!((error - outcome.error).abs() <= 1e-6 * error + 1e-13);
+        assert!(error <= tolerance(method), "{}: {error:e}", method.name());
+    }
+}
+
+#[test]
+fn no_time_and_no_iterations() {
+    at_once::<2>();
+    at_once::<3>();
+}
