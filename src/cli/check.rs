@@ -88,8 +88,12 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
     line(
         "solver",
         format!(
-            "Gauss-Seidel, tolerance {:e}, at most {} sweeps, tested every {}",
-            s.solver.tolerance, s.solver.max_iterations, s.solver.test_every
+            "{} ({}), tolerance {:e}, at most {} iterations, tested every {}",
+            s.solver.method.name(),
+            s.solver.method.about(),
+            s.solver.tolerance,
+            s.solver.max_iterations,
+            s.solver.test_every
         ),
     );
     line("error", case.solver.norm.formula().into());

@@ -1,6 +1,7 @@
 //! Runs a scene to its end and records it.
 
 use super::biaxial::{self, Biaxial, Outcome};
+use super::fclib;
 use super::friction::{Cycles, Sample};
 use super::layer::{Balance, Layer};
 use super::picture::Camera;
@@ -157,6 +158,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             solver: SolverSummary {
                 tolerance: case.solver.tolerance,
                 error_formula: case.solver.norm.formula().to_owned(),
+                method: case.solver.method.name().to_owned(),
                 ..SolverSummary::default()
             },
             ..Summary::default()
@@ -201,6 +203,9 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             let before = self.balance();
             let report = self.simulation.step()?;
             self.follow(&report, before);
+            if output.fclib > 0 && step % output.fclib == 0 {
+                self.dump(step)?;
+            }
             if step % output.every.max(1) == 0 || step == self.total {
                 let row = self.row(&report);
                 self.table
@@ -216,6 +221,24 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             }
             progress(&self.progress(step, &report));
         }
+        Ok(())
+    }
+
+    /// Writes the step's problem in the form of the field's collection.
+    fn dump(&mut self, step: u64) -> Result<(), RunError> {
+        let Some(problem) = self.simulation.local_problem() else {
+            self.summary.solver.fclib_skipped += 1;
+            return Ok(());
+        };
+        let folder = self.out.join("fclib");
+        let path = folder.join(format!("step-{step:08}.hdf5"));
+        std::fs::create_dir_all(&folder).map_err(|e| unwritable(&folder, &e))?;
+        let title = format!("{}, step {step}", self.loaded.case.name);
+        let description =
+            "u: relative velocities (m/s), (n, t) or (n, t1, t2); r: impulses of the step (N s)";
+        fclib::write_local(&path, &problem, &title, description)
+            .map_err(|e| unwritable(&path, &e))?;
+        self.summary.solver.fclib_written += 1;
         Ok(())
     }
 
@@ -293,6 +316,8 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         self.iterations += u64::from(report.solver.iterations);
         solver.iterations_max = solver.iterations_max.max(report.solver.iterations);
         solver.error_max = solver.error_max.max(report.solver.error);
+        let used = report.solver.used.name().to_owned();
+        *solver.steps_by_method.entry(used).or_default() += 1;
         self.couplings += u64::from(report.coupling.iterations);
         solver.uncoupled_steps += u64::from(report.coupling.missed);
         if !report.solver.converged {

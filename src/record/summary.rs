@@ -44,6 +44,14 @@ pub struct SolverSummary {
     pub tolerance: f64,
     /// How the error is formed.
     pub error_formula: String,
+    /// The method asked for.
+    pub method: String,
+    /// Steps by the method that ended them.
+    pub steps_by_method: std::collections::BTreeMap<String, u64>,
+    /// Steps written as FCLIB problems.
+    pub fclib_written: u64,
+    /// Steps that were to be written and hold what that form does not.
+    pub fclib_skipped: u64,
 }
 
 /// Flows of matter, as mean mass flows over the run (kg/s; kg/(m s) in 2D).
@@ -215,6 +223,24 @@ impl Summary {
                 s.iterations_mean, s.iterations_max, s.error_max, s.tolerance
             ),
         );
+        let used: Vec<String> = s
+            .steps_by_method
+            .iter()
+            .map(|(name, steps)| format!("{name} ended {steps} steps"))
+            .collect();
+        line("method", format!("{}: {}", s.method, used.join(", ")));
+        if s.fclib_written + s.fclib_skipped > 0 {
+            let skipped = match s.fclib_skipped {
+                0 => String::new(),
+                n => format!(
+                    "; {n} not, they hold bonds, cohesion or friction against rotation, which FCLIB does not"
+                ),
+            };
+            line(
+                "problems",
+                format!("{} steps written in fclib/{skipped}", s.fclib_written),
+            );
+        }
         if s.unconverged_steps > 0 {
             line(
                 "NOT CONVERGED",

@@ -432,6 +432,8 @@ pub struct OutputSpec {
     pub figures: bool,
     /// Width of a frame (pixels).
     pub width: u32,
+    /// Steps between two that are written as FCLIB problems, `fclib/step-N.hdf5`; 0 for none.
+    pub fclib: u64,
 }
 
 impl Default for OutputSpec {
@@ -442,6 +444,7 @@ impl Default for OutputSpec {
             every: 1,
             figures: true,
             width: 1400,
+            fclib: 0,
         }
     }
 }

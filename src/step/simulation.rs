@@ -284,6 +284,12 @@ impl<S: Space> Simulation<S> {
         }
     }
 
+    /// The problem of the last step solved, in the form of the field's collection; none where a bond,
+    /// cohesion or friction against rotation was at work, which that form does not hold.
+    pub fn local_problem(&self) -> Option<solve::local::LocalProblem> {
+        solve::choose::coulomb(&self.problem, &self.forms, &self.moments)
+    }
+
     fn law_error(&self, source: LawError) -> StepError {
         StepError::Law {
             step: self.steps + 1,
