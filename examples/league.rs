@@ -16,7 +16,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Times by (problem, tolerance, solver); none where not solved.
-type Times = BTreeMap<(String, String), Vec<(String, Option<f64>)>>;
+type Times = BTreeMap<(String, String), Timings>;
+
+/// A solver's name and its time.
+type Timings = Vec<(String, Option<f64>)>;
 
 const TOLERANCES: [&str; 3] = ["1e-4", "1e-8", "1e-12"];
 
@@ -266,7 +269,7 @@ fn page(
 
 /// Dolan and More's profile: the share of problems solved within a factor of the best of all solvers.
 fn profile(ours: &Times, peer: &Times, path: &Path) -> Result<(), Box<dyn Error>> {
-    let mut all: BTreeMap<&(String, String), Vec<(String, Option<f64>)>> = BTreeMap::new();
+    let mut all: BTreeMap<&(String, String), Timings> = BTreeMap::new();
     for (key, times) in ours.iter().filter(|((_, t), _)| t == "1e-8") {
         if let Some(theirs) = peer.get(key).filter(|_| times.len() > 1) {
             let mut list = times.clone();

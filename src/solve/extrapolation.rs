@@ -47,10 +47,10 @@ impl Memory {
         let n = self.size;
         let mut a = vec![vec![0.0; n + 1]; n];
         let most = (0..n).fold(0.0f64, |m, k| m.max(self.gram[k][k]));
-        for i in 0..n {
-            a[i][..n].copy_from_slice(&self.gram[i][..n]);
-            a[i][i] *= 1.0 + RIDGE;
-            a[i][n] = dot(&self.df[i], f);
+        for (i, row) in a.iter_mut().enumerate() {
+            row[..n].copy_from_slice(&self.gram[i][..n]);
+            row[i] *= 1.0 + RIDGE;
+            row[n] = dot(&self.df[i], f);
         }
         // Elimination without pivots: the matrix is positive.
         for k in 0..n {

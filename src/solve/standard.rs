@@ -172,6 +172,12 @@ impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
     }
 }
 
+/// Impulses of the contacts and moments, none where nothing moves.
+type Totals<S> = (
+    Vec<Option<<S as Space>::Vector>>,
+    Vec<Option<<S as Space>::Spin>>,
+);
+
 /// What became of a contact.
 #[derive(Clone, Copy, Debug, Default)]
 struct Places {
@@ -435,7 +441,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         p: &[[f64; D]],
         forms: &[ContactForm<S>],
         moments: &[MomentForm<S>],
-    ) -> (Vec<Option<S::Vector>>, Vec<Option<S::Spin>>) {
+    ) -> Totals<S> {
         let sum = |places: &Places| -> [f64; D] {
             let mut sum = [0.0; D];
             for c in [places.contact, places.bond].into_iter().flatten() {

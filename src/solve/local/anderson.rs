@@ -37,7 +37,7 @@ impl<const D: usize> Solver<D> for Anderson {
         let mut sweep = Sweep::new(form);
         let mut sequence: Option<Extrapolation> = None;
         let mut best = Best::of(state);
-        let mut tests = Tests::new();
+        let mut tests = Tests::default();
         let mut done = 0;
         while !budget.ends(state) {
             loop {

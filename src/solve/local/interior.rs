@@ -173,6 +173,9 @@ fn longest<const D: usize>(x: &[f64; D], d: &[f64; D]) -> f64 {
     t
 }
 
+/// Changes of r and of v.
+type Pair<const D: usize> = (Vec<[f64; D]>, Vec<[f64; D]>);
+
 struct Scaled<'a, const D: usize> {
     w: &'a BlockMatrix<D>,
     /// 1 / mu; 1 where there is no friction.
@@ -306,8 +309,8 @@ impl<const D: usize> Solver<D> for Interior {
         let mut short = 0;
         while !budget.ends(state) {
             // Residual of v_n - u_n/mu - |v_t| = 0 and v_t - u_t = 0.
+            p.copy_from_slice(&r);
             for c in 0..n {
-                p[c] = r[c];
                 p[c][0] *= scaled.over[c];
             }
             form.velocity(&p, &mut u);
@@ -349,7 +352,7 @@ impl<const D: usize> Solver<D> for Interior {
                 }
                 break;
             };
-            let direction = |d: &[[f64; D]]| -> Option<(Vec<[f64; D]>, Vec<[f64; D]>)> {
+            let direction = |d: &[[f64; D]]| -> Option<Pair<D>> {
                 // (W + A P^2) dr = A P d + residual;  dv = P d - P^2 dr.
                 let pd: Vec<[f64; D]> = (0..n).map(|c| scalings[c].apply(&d[c])).collect();
                 let mut dr: Vec<[f64; D]> = (0..n)

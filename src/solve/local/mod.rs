@@ -2,6 +2,10 @@
 //!
 //! This is the form of the field's shared collection (FCLIB). Components are (n, t) or (n, t1, t2),
 //! contact after contact.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "loops over the components of blocks read like their formulas"
+)]
 
 pub mod accelerated;
 pub mod anderson;

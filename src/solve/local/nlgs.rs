@@ -126,6 +126,7 @@ impl<'a, const D: usize> Sweep<'a, D> {
 
 /// When to measure the error: a measure costs as much as a sweep, and the change of a sweep tells about
 /// how large it will be.
+#[derive(Default)]
 pub struct Tests {
     done: u32,
     since: u32,
@@ -134,10 +135,6 @@ pub struct Tests {
 impl Tests {
     /// Sweeps at most between two tests.
     const MOST: u32 = 10;
-
-    pub fn new() -> Self {
-        Self { done: 0, since: 0 }
-    }
 
     /// After a sweep: whether to measure. The first sweep often ends it.
     pub fn due<const D: usize>(
@@ -180,7 +177,7 @@ impl<const D: usize> Solver<D> for Nlgs {
         let mut best = Best::of(state);
         let mut relaxation = self.relaxation;
         let mut stalled = 0;
-        let mut tests = Tests::new();
+        let mut tests = Tests::default();
         while !budget.ends(state) {
             loop {
                 match self.order {
