@@ -20,6 +20,8 @@ use std::time::Instant;
 struct Cost {
     /// Bytes of the row; all of its cache lines are read and written back.
     row: f64,
+    /// Bytes of rows and lines read and written, from L1 at best.
+    near: f64,
     /// Additions, multiplications and comparisons.
     flops: f64,
     /// Divisions, and as many square roots.
@@ -30,12 +32,14 @@ struct Cost {
 
 const DISKS: Cost = Cost {
     row: 72.0,
+    near: 72.0 + 16.0 + 2.0 * (40.0 + 32.0),
     flops: 43.0,
     roots: 0.0,
     depth: 15.0,
 };
 const SPHERES: Cost = Cost {
     row: 96.0,
+    near: 96.0 + 32.0 + 2.0 * (64.0 + 64.0),
     flops: 96.0,
     roots: 1.0,
     depth: 20.0,
@@ -116,7 +120,9 @@ fn bench<S: Space>(name: &str, make: &dyn Fn() -> Problem<S>, cost: &Cost, machi
     let mut stream = vec![1.0f64; (footprint / 8.0) as usize];
     // Short runs and many: some find the machine to themselves.
     let count = (100_000.0 / n).ceil() as u32;
-    let seconds = std::env::var("SECONDS_EACH").ok().and_then(|s| s.parse().ok());
+    let seconds = std::env::var("SECONDS_EACH")
+        .ok()
+        .and_then(|s| s.parse().ok());
     let seconds: f64 = seconds.unwrap_or(5.0);
     let start = Instant::now();
     let (mut t1, mut t2) = (f64::INFINITY, f64::INFINITY);
@@ -139,7 +145,7 @@ fn bench<S: Space>(name: &str, make: &dyn Fn() -> Problem<S>, cost: &Cost, machi
         t2 * 1e9 / n / f64::from(count),
     );
     let (stream1, stream2) = (far / b1, far / b2);
-    let l1 = 4.0 * 64.0 / machine.l1;
+    let l1 = cost.near / machine.l1;
     let arithmetic = cost.flops / machine.flops + cost.roots * machine.root;
     let bound = stream1.max(l1).max(arithmetic);
     let bound2 = stream2.max(0.5 * l1.max(arithmetic));
@@ -342,7 +348,12 @@ fn spheres(contacts: usize) -> impl Fn() -> Problem<Solid> {
             for j in 0..n[1] {
                 for k in 0..n[2] {
                     let at = [i, j, k].map(|c| c as f64 * edge);
-                    for shift in [[0.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5]] {
+                    for shift in [
+                        [0.0, 0.0, 0.0],
+                        [0.5, 0.5, 0.0],
+                        [0.5, 0.0, 0.5],
+                        [0.0, 0.5, 0.5],
+                    ] {
                         centres.push(std::array::from_fn(|d| at[d] + edge * shift[d]));
                     }
                 }
@@ -402,7 +413,13 @@ fn problem<S: Space, const D: usize>(lattice: Lattice<D>) -> Problem<S> {
         let mut near = Vec::new();
         for code in 0..3i64.pow(D as u32) {
             let key = std::array::from_fn(|k| home[k] + code / 3i64.pow(k as u32) % 3 - 1);
-            near.extend(cells.get(&key).into_iter().flatten().filter(|b| **b as usize > a));
+            near.extend(
+                cells
+                    .get(&key)
+                    .into_iter()
+                    .flatten()
+                    .filter(|b| **b as usize > a),
+            );
         }
         near.sort_unstable();
         for b in near {

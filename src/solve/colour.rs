@@ -6,6 +6,8 @@
 //! a part to stay in the L1 cache, and the contacts of a part are coloured in turn: a group of them
 //! shares no movable body, so none waits for the one before and several are solved at once.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 /// Colours at most, of blocks and within a part.
 const COLOURS: usize = 32;
 /// Contacts of a part.
@@ -47,9 +49,44 @@ impl Schedule {
         from..to
     }
 
-    /// The groups of a block, as places in the new order.
-    pub fn groups(&self, k: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
-        ranges(&self.groups[self.blocks[k] as usize..=self.blocks[k + 1] as usize])
+    /// The starts of the groups of a block, and the end of the last.
+    pub fn groups(&self, k: usize) -> &[u32] {
+        &self.groups[self.blocks[k] as usize..=self.blocks[k + 1] as usize]
+    }
+
+    /// Runs every block once, colour by colour, on the threads at hand if `parallel`.
+    ///
+    /// Threads draw blocks by ticket, in the order of the sweep, and wait only for what was drawn in
+    /// colours before: none waits for a thread that has not woken up.
+    pub fn run(&self, parallel: bool, block: impl Fn(usize) + Sync) {
+        let blocks = self.blocks.len() - 1;
+        let threads = rayon::current_num_threads().min(blocks);
+        if !parallel || threads < 2 || self.colours.len() > blocks {
+            (0..blocks).for_each(block);
+            return;
+        }
+        let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        let work = || {
+            let mut colour = 0;
+            loop {
+                let ticket = next.fetch_add(1, Ordering::Relaxed);
+                if ticket >= blocks {
+                    return;
+                }
+                while self.colours[colour + 1] as usize <= ticket {
+                    colour += 1;
+                }
+                await_count(&done, self.colours[colour] as usize);
+                let _done = Done(&done);
+                block(ticket);
+            }
+        };
+        rayon::scope(|scope| {
+            for _ in 1..threads {
+                scope.spawn(|_| work());
+            }
+            work();
+        });
     }
 
     fn end_group(&mut self, at: usize) {
@@ -70,6 +107,28 @@ impl Schedule {
         if self.colours.last() != Some(&at) {
             self.colours.push(at);
         }
+    }
+}
+
+/// Waits until so many blocks are done.
+fn await_count(done: &AtomicUsize, count: usize) {
+    let mut turns = 0u32;
+    while done.load(Ordering::Acquire) < count {
+        turns += 1;
+        if turns < 4096 {
+            std::hint::spin_loop();
+        } else {
+            std::thread::yield_now();
+        }
+    }
+}
+
+/// Counts a block as done, even one that panics: others wait for it.
+struct Done<'a>(&'a AtomicUsize);
+
+impl Drop for Done<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_add(1, Ordering::Release);
     }
 }
 
@@ -143,7 +202,15 @@ pub fn order(
                 mark += 1;
                 let part = from..end.min(from + PART);
                 let part = part.filter(|k| !hubs || !of_hub(&bodies[*k]));
-                group(part, mark, bodies, &moved, &mut seen, &mut order, &mut schedule);
+                group(
+                    part,
+                    mark,
+                    bodies,
+                    &moved,
+                    &mut seen,
+                    &mut order,
+                    &mut schedule,
+                );
             }
             schedule.end_block();
         }
@@ -248,7 +315,7 @@ mod tests {
             strangers(blocks.clone().map(|k| touched(schedule.block(k))).collect());
             for block in blocks {
                 assert_eq!(schedule.block(block).start, covered);
-                for group in schedule.groups(block) {
+                for group in ranges(schedule.groups(block)) {
                     assert_eq!(group.start, covered);
                     covered = group.end;
                     strangers(group.map(|k| touched(k..k + 1)).collect());
@@ -293,7 +360,7 @@ mod tests {
     fn a_star_runs_in_order() {
         let star: Vec<[u32; 2]> = (1..100).map(|k| [0, k]).collect();
         let schedule = check(&star, 100, 101);
-        assert_eq!(schedule.groups(0).count(), 99);
+        assert_eq!(schedule.groups(0).len(), 100);
         check(&[], 0, 1);
     }
 }

@@ -272,20 +272,11 @@ fn pass<S: Space, R: Row<S>>(
     parallel: bool,
 ) {
     let rows = Rows(rows.as_mut_ptr());
-    let run = |block: usize| {
-        for group in schedule.groups(block) {
-            // SAFETY: blocks are apart, and a block is run once.
-            let group = unsafe { rows.slice(group) };
-            R::run(group, lines, relaxation);
-        }
-    };
-    for blocks in schedule.colours() {
-        if parallel && blocks.len() > 1 {
-            blocks.into_par_iter().for_each(run);
-        } else {
-            blocks.for_each(run);
-        }
-    }
+    schedule.run(parallel, |block| {
+        // SAFETY: blocks are apart, and a block is run once.
+        let part = unsafe { rows.slice(schedule.block(block)) };
+        R::run(part, schedule.groups(block), lines, relaxation);
+    });
 }
 
 /// Rows reached by several threads, each at blocks of its own.

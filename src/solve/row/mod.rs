@@ -54,8 +54,9 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync {
     fn bodies(&self) -> [u32; 2];
     /// Solves the contact for the velocities at hand, goes `relaxation` times as far, and updates them.
     fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64);
-    /// Updates contacts of which none shares a movable body with another.
-    fn run(rows: &mut [Self], lines: &Lines<S>, relaxation: f64) {
+    /// Updates a block of contacts, given the starts of its groups and the end of the last: contacts of
+    /// a group share no movable body.
+    fn run(rows: &mut [Self], _groups: &[u32], lines: &Lines<S>, relaxation: f64) {
         for row in rows {
             let bodies = row.bodies();
             lines.with(bodies, |a, b| row.update(a, b, relaxation));

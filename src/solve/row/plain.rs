@@ -45,10 +45,7 @@ impl<S: Space> Row<S> for PlainRow<S> {
     #[inline(always)]
     fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64) {
         let (un, ut) = relative(&self.n, a, b);
-        let pn = greatest(
-            self.pn - (un + self.shift) * (self.iwn * relaxation),
-            0.0,
-        );
+        let pn = greatest(self.pn - (un + self.shift) * (self.iwn * relaxation), 0.0);
         let pt = (self.pt - ut * (self.iwt * relaxation)).limited(self.mu * pn);
         push(&self.n, pn - self.pn, pt - self.pt, a, b);
         self.pn = pn;
@@ -56,8 +53,8 @@ impl<S: Space> Row<S> for PlainRow<S> {
     }
 
     #[cfg(target_arch = "x86_64")]
-    fn run(rows: &mut [Self], lines: &Lines<S>, relaxation: f64) {
-        lanes::run(rows, lines, relaxation);
+    fn run(rows: &mut [Self], groups: &[u32], lines: &Lines<S>, relaxation: f64) {
+        lanes::run(rows, groups, lines, relaxation);
     }
 
     fn load(&self, a: &mut Line<S>, b: &mut Line<S>) {
