@@ -33,14 +33,14 @@ struct Cost {
 const DISKS: Cost = Cost {
     row: 72.0,
     near: 72.0 + 16.0 + 2.0 * (40.0 + 32.0),
-    flops: 43.0,
+    flops: 41.0,
     roots: 0.0,
     depth: 15.0,
 };
 const SPHERES: Cost = Cost {
     row: 96.0,
     near: 96.0 + 32.0 + 2.0 * (64.0 + 64.0),
-    flops: 96.0,
+    flops: 95.0,
     roots: 1.0,
     depth: 20.0,
 };

@@ -1,16 +1,19 @@
-//! The order of the sweep: blocks of neighbours, groups of strangers.
+//! The order of the sweep: groups of contacts that share no movable body, so that none waits for the one
+//! before and several are solved at once; and blocks that threads draw.
 //!
-//! Contacts come sorted along space. They are cut into blocks, coloured as in Box2D v3 (greedily, in
-//! their own order) so that blocks of one colour share no movable body: these can be solved in any order,
-//! by any number of threads, with the same bits. A block is cut into parts, small enough for the velocities of
-//! a part to stay in the L1 cache, and the contacts of a part are coloured in turn: a group of them
-//! shares no movable body, so none waits for the one before and several are solved at once.
+//! Contacts come sorted along space and are coloured greedily in their own order, as in Box2D v3. A small
+//! problem is coloured as a whole; its blocks are pieces of a colour. A large one is cut into
+//! blocks of neighbours, coloured so that blocks of one colour share no movable body, and a block into parts, small
+//! enough for the velocities of a part to stay in the L1 cache, whose contacts are coloured in turn. Either
+//! way blocks of one colour can be solved in any order, by any number of threads, with the same bits.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Colours at most, of blocks and within a part.
 const COLOURS: usize = 32;
-/// Contacts of a part.
+/// Contacts of a problem that is small.
+const SMALL: usize = 32_768;
+/// Contacts of a part, and of a block of a small problem.
 const PART: usize = 512;
 /// Parts of a block at most.
 const PARTS: usize = 8;
@@ -89,6 +92,32 @@ impl Schedule {
         });
     }
 
+    /// Makes colours of groups, and blocks of pieces of them; small groups share a block.
+    fn cut(self) -> Self {
+        let mut out = Self::default();
+        for group in ranges(&self.groups) {
+            if group.len() <= PART {
+                out.end_group(group.end);
+                let open = *out.blocks.last().unwrap_or(&0) as usize;
+                if group.end - out.groups[open] as usize >= PART {
+                    out.end_block();
+                    out.end_colour();
+                }
+                continue;
+            }
+            out.end_block();
+            out.end_colour();
+            for from in group.clone().step_by(PART) {
+                out.end_group(group.end.min(from + PART));
+                out.end_block();
+            }
+            out.end_colour();
+        }
+        out.end_block();
+        out.end_colour();
+        out
+    }
+
     fn end_group(&mut self, at: usize) {
         if self.groups.last() != Some(&(at as u32)) {
             self.groups.push(at as u32);
@@ -156,6 +185,18 @@ pub fn order(
     let mut seen = vec![Seen::default(); count];
     let movable: Vec<bool> = (0..count as u32).map(movable).collect();
     let moved = |pair: &[u32; 2]| pair.map(|b| movable[b as usize].then_some(b as usize));
+    if bodies.len() <= SMALL {
+        group(
+            0..bodies.len(),
+            1,
+            bodies,
+            &moved,
+            &mut seen,
+            &mut order,
+            &mut schedule,
+        );
+        return (order, schedule.cut());
+    }
     // Hubs.
     for (block, pairs) in bodies.chunks(span).enumerate() {
         for body in pairs.iter().flat_map(moved).flatten() {
@@ -240,8 +281,7 @@ fn group(
     schedule: &mut Schedule,
 ) {
     let mut sizes = [0u32; COLOURS + 1];
-    let mut coloured = [(0u32, 0u8); PART];
-    let mut count = 0;
+    let mut coloured = Vec::with_capacity(part.size_hint().1.unwrap_or(0));
     for k in part {
         let pair = moved(&bodies[k]);
         let mut taken = 0;
@@ -257,8 +297,7 @@ fn group(
             seen[body].taken |= 1u32.checked_shl(colour).unwrap_or(0);
         }
         sizes[colour as usize] += 1;
-        coloured[count] = (k as u32, colour as u8);
-        count += 1;
+        coloured.push((k as u32, colour as u8));
     }
     let first = order.len();
     let mut next = [0u32; COLOURS + 1];
@@ -277,7 +316,7 @@ fn group(
         }
     }
     order.resize(at, 0);
-    for (k, colour) in &coloured[..count] {
+    for (k, colour) in &coloured {
         let slot = &mut next[usize::from(*colour)];
         order[*slot as usize] = *k;
         *slot += 1;
@@ -328,8 +367,14 @@ mod tests {
 
     #[test]
     fn what_runs_at_once_shares_no_movable_body() {
-        // A square lattice on a floor.
-        let side = 120;
+        let blocks = lattice(160);
+        assert!(blocks.len() < 8 && blocks.iter().sum::<usize>() > 50);
+        lattice(60);
+        lattice(10);
+    }
+
+    /// A square lattice on a floor: the blocks of each colour.
+    fn lattice(side: u32) -> Vec<usize> {
         let mut bodies = Vec::new();
         for k in 0..side * side {
             if k % side + 1 < side {
@@ -343,8 +388,7 @@ mod tests {
             }
         }
         let schedule = check(&bodies, side * side, (side * side + 1) as usize);
-        let blocks: Vec<usize> = schedule.colours().map(|c| c.len()).collect();
-        assert!(blocks.len() < 8 && blocks.iter().sum::<usize>() > 50);
+        schedule.colours().map(|c| c.len()).collect()
     }
 
     #[test]
