@@ -3,9 +3,10 @@
 //!
 //! Contacts come sorted along space and are coloured greedily in their own order, as in Box2D v3. A small
 //! problem is coloured as a whole; its blocks are pieces of a colour. A large one is cut into
-//! blocks of neighbours, coloured so that blocks of one colour share no movable body, and a block into parts, small
-//! enough for the velocities of a part to stay in the L1 cache, whose contacts are coloured in turn. Either
-//! way blocks of one colour can be solved in any order, by any number of threads, with the same bits.
+//! blocks of neighbours, coloured so that blocks of one colour share no movable body, and a block into
+//! parts, small enough for the velocities of a part to stay in the L1 cache, whose contacts are coloured
+//! in turn. Either way blocks of one colour can be solved in any order, by any number of threads, with
+//! the same bits.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -1,6 +1,6 @@
 //! Four plain contacts at once in the lanes of a vector, and two vectors at a time, so that one does
-//! something while the other waits. The operations are those of [`PlainRow::update`] in their order, so the bits are its
-//! own.
+//! something while the other waits. The operations are those of [`PlainRow::update`] in their order, so
+//! the bits are its own.
 
 use super::{Line, Lines, PlainRow, Row};
 use crate::geometry::space::{Plane, Solid, Space, VectorLike};
