@@ -7,6 +7,18 @@ use nalgebra::{Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
+/// The greater of two numbers; of equal ones, or where `a` is none, `b`: what vector units do.
+#[inline(always)]
+pub fn greatest(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The lesser of two numbers; of equal ones, or where `a` is none, `b`.
+#[inline(always)]
+pub fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
 /// Arithmetic shared by positions, velocities and spins of either dimension.
 pub trait VectorLike:
     Copy
@@ -89,7 +101,7 @@ macro_rules! vector_like {
             fn limited(mut self, bound: f64) -> Self {
                 if $n == 1 {
                     // One number needs neither a root nor a branch.
-                    self[0] = self[0].max(-bound).min(bound);
+                    self[0] = least(greatest(self[0], -bound), bound);
                     return self;
                 }
                 let squared = VectorLike::dot(&self, &self);

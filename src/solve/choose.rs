@@ -86,7 +86,7 @@ impl<S: Space> Pieces<'_, S> {
     /// One method alone. Bodies may find the error a little larger than the blocks did: then it goes on.
     fn by(&self, problem: &mut Problem<S>, method: Method) -> Report {
         const ATTEMPTS: u32 = 4;
-        let mut report = nlgs::prepare(problem, self.options);
+        let mut report = nlgs::arrange(problem, self.options);
         let mut tolerance = self.options.tolerance;
         for _ in 0..ATTEMPTS {
             let left = self.options.max_iterations - report.iterations;

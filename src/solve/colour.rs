@@ -1,82 +1,411 @@
-//! Graph colouring: contacts of one colour share no movable body, so they can be solved in any order,
-//! by any number of threads, with the same bits. Greedy, in the contacts' own order, as in Box2D v3.
+//! The order of the sweep: groups of contacts that share no movable body, so that none waits for the one
+//! before and several are solved at once; and blocks that threads draw.
+//!
+//! Contacts come sorted along space and are coloured greedily in their own order, as in Box2D v3. A small
+//! problem is coloured as a whole; its blocks are pieces of a colour. A large one is cut into
+//! blocks of neighbours, coloured so that blocks of one colour share no movable body, and a block into
+//! parts, small enough for the velocities of a part to stay in the L1 cache, whose contacts are coloured
+//! in turn. Either way blocks of one colour can be solved in any order, by any number of threads, with
+//! the same bits.
 
-/// Colours that run in parallel; what fits in none is the last group and runs in order.
-pub const COLOURS: usize = 24;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Sorts contacts by colour. Returns the permutation (`order[k]` is the old index of the k-th) and the
-/// starts of the groups: `COLOURS` parallel ones and one serial, so `COLOURS + 2` numbers.
+/// Colours at most, of blocks and within a part.
+const COLOURS: usize = 32;
+/// Contacts of a problem that is small.
+const SMALL: usize = 32_768;
+/// Contacts of a part, and of a block of a small problem.
+const PART: usize = 512;
+/// Parts of a block at most.
+const PARTS: usize = 8;
+/// Blocks there are to be, where blocks can be made small enough.
+const BLOCKS: usize = 128;
+/// A body touched by more blocks than this would keep them all apart: its contacts run by themselves.
+const HUB: u32 = 16;
+
+/// Groups, blocks of groups and colours of blocks, each by its starts and the end of the last.
+#[derive(Clone, Debug)]
+pub struct Schedule {
+    groups: Vec<u32>,
+    blocks: Vec<u32>,
+    colours: Vec<u32>,
+}
+
+impl Default for Schedule {
+    fn default() -> Self {
+        Self {
+            groups: vec![0],
+            blocks: vec![0],
+            colours: vec![0],
+        }
+    }
+}
+
+impl Schedule {
+    /// The blocks of each colour, in the order of the sweep.
+    pub fn colours(&self) -> impl Iterator<Item = std::ops::Range<usize>> {
+        ranges(&self.colours)
+    }
+
+    /// The contacts of a block, as places in the new order.
+    pub fn block(&self, k: usize) -> std::ops::Range<usize> {
+        let [from, to] = [k, k + 1].map(|k| self.groups[self.blocks[k] as usize] as usize);
+        from..to
+    }
+
+    /// The starts of the groups of a block, and the end of the last.
+    pub fn groups(&self, k: usize) -> &[u32] {
+        &self.groups[self.blocks[k] as usize..=self.blocks[k + 1] as usize]
+    }
+
+    /// Runs every block once, colour by colour, on the threads at hand if `parallel`.
+    ///
+    /// Threads draw blocks by ticket, in the order of the sweep, and wait only for what was drawn in
+    /// colours before: none waits for a thread that has not woken up.
+    pub fn run(&self, parallel: bool, block: impl Fn(usize) + Sync) {
+        let blocks = self.blocks.len() - 1;
+        let threads = rayon::current_num_threads().min(blocks);
+        if !parallel || threads < 2 || self.colours.len() > blocks {
+            (0..blocks).for_each(block);
+            return;
+        }
+        let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        let work = || {
+            let mut colour = 0;
+            loop {
+                let ticket = next.fetch_add(1, Ordering::Relaxed);
+                if ticket >= blocks {
+                    return;
+                }
+                while self.colours[colour + 1] as usize <= ticket {
+                    colour += 1;
+                }
+                await_count(&done, self.colours[colour] as usize);
+                let _done = Done(&done);
+                block(ticket);
+            }
+        };
+        rayon::scope(|scope| {
+            for _ in 1..threads {
+                scope.spawn(|_| work());
+            }
+            work();
+        });
+    }
+
+    /// Makes colours of groups, and blocks of pieces of them; small groups share a block.
+    fn cut(self) -> Self {
+        let mut out = Self::default();
+        for group in ranges(&self.groups) {
+            if group.len() <= PART {
+                out.end_group(group.end);
+                let open = *out.blocks.last().unwrap_or(&0) as usize;
+                if group.end - out.groups[open] as usize >= PART {
+                    out.end_block();
+                    out.end_colour();
+                }
+                continue;
+            }
+            out.end_block();
+            out.end_colour();
+            for from in group.clone().step_by(PART) {
+                out.end_group(group.end.min(from + PART));
+                out.end_block();
+            }
+            out.end_colour();
+        }
+        out.end_block();
+        out.end_colour();
+        out
+    }
+
+    fn end_group(&mut self, at: usize) {
+        if self.groups.last() != Some(&(at as u32)) {
+            self.groups.push(at as u32);
+        }
+    }
+
+    fn end_block(&mut self) {
+        let at = (self.groups.len() - 1) as u32;
+        if self.blocks.last() != Some(&at) {
+            self.blocks.push(at);
+        }
+    }
+
+    fn end_colour(&mut self) {
+        let at = (self.blocks.len() - 1) as u32;
+        if self.colours.last() != Some(&at) {
+            self.colours.push(at);
+        }
+    }
+}
+
+/// Waits until so many blocks are done.
+fn await_count(done: &AtomicUsize, count: usize) {
+    let mut turns = 0u32;
+    while done.load(Ordering::Acquire) < count {
+        turns += 1;
+        if turns < 4096 {
+            std::hint::spin_loop();
+        } else {
+            std::thread::yield_now();
+        }
+    }
+}
+
+/// Counts a block as done, even one that panics: others wait for it.
+struct Done<'a>(&'a AtomicUsize);
+
+impl Drop for Done<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_add(1, Ordering::Release);
+    }
+}
+
+fn ranges(starts: &[u32]) -> impl Iterator<Item = std::ops::Range<usize>> {
+    starts.windows(2).map(|w| w[0] as usize..w[1] as usize)
+}
+
+/// What is known of a body: a mark of whom it was last seen by, and what they took.
+#[derive(Clone, Copy, Default)]
+struct Seen {
+    by: u32,
+    taken: u32,
+}
+
+/// Sorts contacts for the sweep. Returns the permutation (`order[k]` is the old index of the k-th) and the
+/// schedule of the new order.
 pub fn order(
     bodies: &[[u32; 2]],
     movable: impl Fn(u32) -> bool,
     count: usize,
-) -> (Vec<u32>, Vec<usize>) {
-    let mut used = vec![0u32; count];
-    let mut sizes = [0usize; COLOURS + 1];
-    let mut colour_of = Vec::with_capacity(bodies.len());
-    let all = (1u32 << COLOURS) - 1;
-    for [i, j] in bodies {
-        let (a, b) = (movable(*i), movable(*j));
-        let taken = if a { used[*i as usize] } else { 0 } | if b { used[*j as usize] } else { 0 };
-        let free = !taken & all;
-        let colour = if free == 0 {
-            COLOURS
-        } else {
-            free.trailing_zeros() as usize
-        };
-        if colour < COLOURS {
-            if a {
-                used[*i as usize] |= 1 << colour;
-            }
-            if b {
-                used[*j as usize] |= 1 << colour;
+) -> (Vec<u32>, Schedule) {
+    let span = PART * (bodies.len().div_ceil(PART * BLOCKS)).clamp(1, PARTS);
+    let mut order = Vec::with_capacity(bodies.len());
+    let mut schedule = Schedule::default();
+    let mut seen = vec![Seen::default(); count];
+    let movable: Vec<bool> = (0..count as u32).map(movable).collect();
+    let moved = |pair: &[u32; 2]| pair.map(|b| movable[b as usize].then_some(b as usize));
+    if bodies.len() <= SMALL {
+        group(
+            0..bodies.len(),
+            1,
+            bodies,
+            &moved,
+            &mut seen,
+            &mut order,
+            &mut schedule,
+        );
+        return (order, schedule.cut());
+    }
+    // Hubs.
+    for (block, pairs) in bodies.chunks(span).enumerate() {
+        for body in pairs.iter().flat_map(moved).flatten() {
+            let seen = &mut seen[body];
+            if seen.by != block as u32 + 1 {
+                seen.by = block as u32 + 1;
+                seen.taken += 1;
             }
         }
-        sizes[colour] += 1;
-        colour_of.push(colour as u8);
     }
-    let mut starts = vec![0usize; COLOURS + 2];
-    for k in 0..=COLOURS {
-        starts[k + 1] = starts[k] + sizes[k];
+    let hub: Vec<bool> = seen.iter().map(|s| s.taken > HUB).collect();
+    let of_hub = |pair: &[u32; 2]| moved(pair).iter().flatten().any(|b| hub[*b]);
+    let hubs = hub.iter().any(|h| *h);
+    // Colours of blocks.
+    seen.fill(Seen::default());
+    let mut blocks: Vec<(u32, u32)> = Vec::new();
+    for (block, pairs) in bodies.chunks(span).enumerate() {
+        let own = || pairs.iter().filter(|p| !hubs || !of_hub(p));
+        let mut taken = 0;
+        for body in own().flat_map(moved).flatten() {
+            taken |= seen[body].taken;
+        }
+        // Without a colour left, a block gets one of its own.
+        let colour = (!taken).trailing_zeros();
+        for body in own().flat_map(moved).flatten() {
+            seen[body].taken |= 1u32.checked_shl(colour).unwrap_or(0);
+        }
+        let alone = if colour < COLOURS as u32 {
+            colour
+        } else {
+            colour + block as u32
+        };
+        blocks.push((alone, block as u32));
     }
-    let mut next = starts.clone();
-    let mut order = vec![0u32; bodies.len()];
-    for (k, colour) in colour_of.iter().enumerate() {
-        let slot = &mut next[*colour as usize];
-        order[*slot] = k as u32;
+    blocks.sort_unstable();
+    // Groups.
+    seen.fill(Seen::default());
+    let mut mark = 0;
+    for same in blocks.chunk_by(|a, b| a.0 == b.0) {
+        for (_, block) in same {
+            let first = *block as usize * span;
+            let end = bodies.len().min(first + span);
+            for from in (first..end).step_by(PART) {
+                mark += 1;
+                let part = from..end.min(from + PART);
+                let part = part.filter(|k| !hubs || !of_hub(&bodies[*k]));
+                group(
+                    part,
+                    mark,
+                    bodies,
+                    &moved,
+                    &mut seen,
+                    &mut order,
+                    &mut schedule,
+                );
+            }
+            schedule.end_block();
+        }
+        schedule.end_colour();
+    }
+    if hubs {
+        for (k, pair) in bodies.iter().enumerate() {
+            if of_hub(pair) {
+                order.push(k as u32);
+                schedule.end_group(order.len());
+            }
+        }
+        schedule.end_block();
+        schedule.end_colour();
+    }
+    (order, schedule)
+}
+
+/// Appends the contacts of a part by groups.
+fn group(
+    part: impl Iterator<Item = usize>,
+    mark: u32,
+    bodies: &[[u32; 2]],
+    moved: &impl Fn(&[u32; 2]) -> [Option<usize>; 2],
+    seen: &mut [Seen],
+    order: &mut Vec<u32>,
+    schedule: &mut Schedule,
+) {
+    let mut sizes = [0u32; COLOURS + 1];
+    let mut coloured = Vec::with_capacity(part.size_hint().1.unwrap_or(0));
+    for k in part {
+        let pair = moved(&bodies[k]);
+        let mut taken = 0;
+        for body in pair.into_iter().flatten() {
+            let seen = &mut seen[body];
+            if seen.by != mark {
+                *seen = Seen { by: mark, taken: 0 };
+            }
+            taken |= seen.taken;
+        }
+        let colour = (!taken).trailing_zeros();
+        for body in pair.into_iter().flatten() {
+            seen[body].taken |= 1u32.checked_shl(colour).unwrap_or(0);
+        }
+        sizes[colour as usize] += 1;
+        coloured.push((k as u32, colour as u8));
+    }
+    let first = order.len();
+    let mut next = [0u32; COLOURS + 1];
+    let mut at = first;
+    for (colour, size) in sizes.iter().enumerate() {
+        next[colour] = at as u32;
+        if colour < COLOURS {
+            at += *size as usize;
+            schedule.end_group(at);
+        } else {
+            // Those without a colour may share a body.
+            for _ in 0..*size {
+                at += 1;
+                schedule.end_group(at);
+            }
+        }
+    }
+    order.resize(at, 0);
+    for (k, colour) in &coloured {
+        let slot = &mut next[usize::from(*colour)];
+        order[*slot as usize] = *k;
         *slot += 1;
     }
-    (order, starts)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_colour_shares_no_movable_body() {
-        let chain: Vec<[u32; 2]> = (0..50).flat_map(|k| [[k, k + 1], [k, 60]]).collect();
-        let (order, starts) = order(&chain, |b| b != 60, 61);
+    fn check(bodies: &[[u32; 2]], fixed: u32, count: usize) -> Schedule {
+        let (order, schedule) = order(bodies, |b| b != fixed, count);
         let mut seen = order.clone();
         seen.sort_unstable();
         assert!(seen.iter().enumerate().all(|(k, o)| k as u32 == *o));
-        for group in starts.windows(2).take(COLOURS) {
-            let mut bodies: Vec<u32> = order[group[0]..group[1]]
-                .iter()
-                .flat_map(|k| chain[*k as usize])
-                .filter(|b| *b != 60)
-                .collect();
-            let n = bodies.len();
-            bodies.sort_unstable();
-            bodies.dedup();
-            assert_eq!(bodies.len(), n);
+        assert_eq!(order.len(), bodies.len());
+        let strangers = |sets: Vec<Vec<u32>>| {
+            let mut all = Vec::new();
+            for mut set in sets {
+                set.sort_unstable();
+                set.dedup();
+                all.extend(set);
+            }
+            let n = all.len();
+            all.sort_unstable();
+            all.dedup();
+            assert_eq!(all.len(), n);
+        };
+        let touched = |places: std::ops::Range<usize>| -> Vec<u32> {
+            let pairs = order[places].iter().flat_map(|k| bodies[*k as usize]);
+            pairs.filter(|b| *b != fixed).collect()
+        };
+        let mut covered = 0;
+        for blocks in schedule.colours() {
+            strangers(blocks.clone().map(|k| touched(schedule.block(k))).collect());
+            for block in blocks {
+                assert_eq!(schedule.block(block).start, covered);
+                for group in ranges(schedule.groups(block)) {
+                    assert_eq!(group.start, covered);
+                    covered = group.end;
+                    strangers(group.map(|k| touched(k..k + 1)).collect());
+                }
+            }
         }
+        assert_eq!(covered, bodies.len());
+        schedule
     }
 
     #[test]
-    fn a_hub_overflows_into_the_serial_group() {
+    fn what_runs_at_once_shares_no_movable_body() {
+        let blocks = lattice(160);
+        assert!(blocks.len() < 8 && blocks.iter().sum::<usize>() > 50);
+        lattice(60);
+        lattice(10);
+    }
+
+    /// A square lattice on a floor: the blocks of each colour.
+    fn lattice(side: u32) -> Vec<usize> {
+        let mut bodies = Vec::new();
+        for k in 0..side * side {
+            if k % side + 1 < side {
+                bodies.push([k, k + 1]);
+            }
+            if k + side < side * side {
+                bodies.push([k, k + side]);
+            }
+            if k < side {
+                bodies.push([k, side * side]);
+            }
+        }
+        let schedule = check(&bodies, side * side, (side * side + 1) as usize);
+        schedule.colours().map(|c| c.len()).collect()
+    }
+
+    #[test]
+    fn a_hub_does_not_keep_others_apart() {
+        // A chain of which each link touches a movable plate.
+        let n = 20_000;
+        let bodies: Vec<[u32; 2]> = (0..n).flat_map(|k| [[k, k + 1], [k, n + 1]]).collect();
+        let schedule = check(&bodies, n + 2, n as usize + 3);
+        assert!(schedule.colours().count() < 8);
+    }
+
+    #[test]
+    fn a_star_runs_in_order() {
         let star: Vec<[u32; 2]> = (1..100).map(|k| [0, k]).collect();
-        let (_, starts) = order(&star, |_| true, 100);
-        assert_eq!(starts[COLOURS + 1] - starts[COLOURS], 99 - COLOURS);
+        let schedule = check(&star, 100, 101);
+        assert_eq!(schedule.groups(0).len(), 100);
+        check(&[], 0, 1);
     }
 }

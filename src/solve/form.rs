@@ -1,5 +1,6 @@
 //! What the stepper hands to a solver: bodies as lines of velocity, contacts in the standard form.
 
+use super::colour::Schedule;
 use super::row::{FullRow, GeneralRow, Line, MomentForm, MomentRow, MomentSolution, PlainRow, Row};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
@@ -101,8 +102,8 @@ pub struct Problem<S: Space> {
     /// Moments of contacts that resist rotation; they run last, in order.
     pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<Place>,
-    /// Starts of the colours of `plain` and `full`.
-    pub(super) groups: [Vec<usize>; 2],
+    /// The order in which `plain` and `full` are swept.
+    pub(super) groups: [Schedule; 2],
 }
 
 impl<S: Space> Default for Problem<S> {
@@ -117,7 +118,7 @@ impl<S: Space> Default for Problem<S> {
             general: Vec::new(),
             moments: Vec::new(),
             places: Vec::new(),
-            groups: [Vec::new(), Vec::new()],
+            groups: Default::default(),
         }
     }
 }

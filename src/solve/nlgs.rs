@@ -1,11 +1,11 @@
 //! Non-linear Gauss-Seidel: contact by contact, velocities updated in place, warm started.
 
 use super::accelerate::Acceleration;
-use super::colour::{self, COLOURS};
+use super::colour::{self, Schedule};
 use super::error::{Norm, Scale, Sums};
 use super::form::{Place, Problem};
 use super::local::solver::Method;
-use super::row::{Line, Row};
+use super::row::{Lines, Row};
 use crate::geometry::space::{Space, VectorLike};
 use rayon::prelude::*;
 
@@ -64,7 +64,7 @@ pub struct Report {
 const CHUNK: usize = 512;
 
 /// Puts the rows in order, forms velocities from the impulses at hand, and judges them.
-pub(super) fn prepare<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
+pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     if problem.contacts() == 0 {
         return Report {
             converged: true,
@@ -137,6 +137,19 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
             acceleration.extrapolate(problem, report.iterations, sums.residual);
         }
         relaxation = cautious;
+    }
+}
+
+/// Sorts the contacts and sets the velocities by their impulses: what comes before [`sweeps`].
+pub fn prepare<S: Space>(problem: &mut Problem<S>) {
+    sort(problem);
+    problem.reload();
+}
+
+/// Sweeps without a test: for measuring the sweep alone. The problem is to be [`prepare`]d.
+pub fn sweeps<S: Space>(problem: &mut Problem<S>, count: u32, relaxation: f64, parallel: bool) {
+    for _ in 0..count {
+        sweep(problem, relaxation, parallel);
     }
 }
 
@@ -237,7 +250,7 @@ impl<S: Space> Problem<S> {
         load(&self.full, &lines);
         load(&self.general, &lines);
         for row in &self.moments {
-            lines.with(row.bodies, true, |a, b| row.load(a, b));
+            lines.alone(row.bodies, |a, b| row.load(a, b));
         }
     }
 
@@ -255,54 +268,6 @@ impl<S: Space> Problem<S> {
     }
 }
 
-/// Velocities reached by several threads, each at bodies of its own.
-struct Lines<S: Space> {
-    first: *mut Line<S>,
-    len: usize,
-}
-
-// SAFETY: contacts solved at the same time share no movable body (see `colour`), and lines of
-// immovable bodies are read only; so no line is written while another thread reads or writes it.
-unsafe impl<S: Space> Sync for Lines<S> {}
-
-impl<S: Space> Lines<S> {
-    fn new(lines: &mut [Line<S>]) -> Self {
-        Self {
-            first: lines.as_mut_ptr(),
-            len: lines.len(),
-        }
-    }
-
-    /// Runs `f` on the lines of two bodies and stores those of movable bodies.
-    #[inline(always)]
-    fn with(&self, bodies: [u32; 2], always: bool, f: impl FnOnce(&mut Line<S>, &mut Line<S>)) {
-        let [i, j] = bodies.map(|b| b as usize);
-        debug_assert!(i < self.len && j < self.len && i != j);
-        // SAFETY: indices are those of bodies pushed before the contact, and see `Sync` above.
-        unsafe {
-            let (a, b) = (self.first.add(i), self.first.add(j));
-            let (mut x, mut y) = (*a, *b);
-            f(&mut x, &mut y);
-            if always || x.im > 0.0 || x.is > 0.0 {
-                (*a).v = x.v;
-                (*a).s = x.s;
-            }
-            if always || y.im > 0.0 || y.is > 0.0 {
-                (*b).v = y.v;
-                (*b).s = y.s;
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn read(&self, bodies: [u32; 2]) -> (Line<S>, Line<S>) {
-        let [i, j] = bodies.map(|b| b as usize);
-        debug_assert!(i < self.len && j < self.len);
-        // SAFETY: indices are those of bodies pushed; nothing is written while errors are measured.
-        unsafe { (*self.first.add(i), *self.first.add(j)) }
-    }
-}
-
 /// Puts the rows of each kind in the order of their colours.
 fn sort<S: Space>(problem: &mut Problem<S>) {
     let Problem {
@@ -315,10 +280,10 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
     } = problem;
     let count = lines.len();
     let movable = |b: u32| lines[b as usize].im > 0.0 || lines[b as usize].is > 0.0;
-    let (moved_plain, starts) = permute(plain, movable, count);
-    groups[0] = starts;
-    let (moved_full, starts) = permute(full, movable, count);
-    groups[1] = starts;
+    let (moved_plain, schedule) = permute(plain, movable, count);
+    groups[0] = schedule;
+    let (moved_full, schedule) = permute(full, movable, count);
+    groups[1] = schedule;
     for place in places.iter_mut() {
         *place = match *place {
             Place::Plain(r) => Place::Plain(moved_plain[r as usize]),
@@ -335,20 +300,20 @@ fn permute<S: Space, R: Row<S>>(
     rows: &mut Vec<R>,
     movable: impl Fn(u32) -> bool,
     count: usize,
-) -> (Vec<u32>, Vec<usize>) {
+) -> (Vec<u32>, Schedule) {
     let bodies: Vec<[u32; 2]> = rows.iter().map(Row::bodies).collect();
-    let (order, starts) = colour::order(&bodies, movable, count);
+    let (order, schedule) = colour::order(&bodies, movable, count);
     let mut to = vec![0u32; order.len()];
     for (k, old) in order.iter().enumerate() {
         to[*old as usize] = k as u32;
     }
     *rows = order.iter().map(|k| rows[*k as usize].clone()).collect();
-    (to, starts)
+    (to, schedule)
 }
 
 fn load<S: Space, R: Row<S>>(rows: &[R], lines: &Lines<S>) {
     for row in rows {
-        lines.with(row.bodies(), true, |a, b| row.load(a, b));
+        lines.alone(row.bodies(), |a, b| row.load(a, b));
     }
 }
 
@@ -370,43 +335,45 @@ fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
     );
     // First bodies have many contacts, which share them: these run in order.
     for row in &mut problem.general {
-        lines.with(row.bodies(), true, |a, b| row.update(a, b, relaxation));
+        lines.alone(row.bodies(), |a, b| row.update(a, b, relaxation));
     }
     for k in 0..problem.moments.len() {
         let pn = problem.normal(problem.moments[k].place);
         let lines = Lines::new(&mut problem.lines);
         let row = &mut problem.moments[k];
-        lines.with(row.bodies, true, |a, b| row.update(pn, a, b, relaxation));
+        lines.alone(row.bodies, |a, b| row.update(pn, a, b, relaxation));
     }
 }
 
 fn pass<S: Space, R: Row<S>>(
     rows: &mut [R],
-    starts: &[usize],
+    schedule: &Schedule,
     lines: &Lines<S>,
     relaxation: f64,
     parallel: bool,
 ) {
-    if !parallel {
-        // The order of the colours, without a pause between them.
-        in_order(rows, lines, relaxation);
-        return;
-    }
-    for (k, group) in starts.windows(2).enumerate() {
-        let rows = &mut rows[group[0]..group[1]];
-        if k < COLOURS && rows.len() > CHUNK {
-            rows.par_chunks_mut(CHUNK)
-                .for_each(|chunk| in_order(chunk, lines, relaxation));
-        } else {
-            in_order(rows, lines, relaxation);
-        }
-    }
+    let rows = Rows(rows.as_mut_ptr());
+    schedule.run(parallel, |block| {
+        // SAFETY: blocks are apart, and a block is run once.
+        let part = unsafe { rows.slice(schedule.block(block)) };
+        R::run(part, schedule.groups(block), lines, relaxation);
+    });
 }
 
-fn in_order<S: Space, R: Row<S>>(rows: &mut [R], lines: &Lines<S>, relaxation: f64) {
-    for row in rows {
-        let bodies = row.bodies();
-        lines.with(bodies, false, |a, b| row.update(a, b, relaxation));
+/// Rows reached by several threads, each at blocks of its own.
+struct Rows<R>(*mut R);
+
+// SAFETY: a block is run by one thread.
+unsafe impl<R: Send> Sync for Rows<R> {}
+
+impl<R> Rows<R> {
+    /// # Safety
+    /// The places are those of rows that no one else uses meanwhile.
+    #[inline(always)]
+    #[expect(clippy::mut_from_ref)]
+    unsafe fn slice(&self, places: std::ops::Range<usize>) -> &mut [R] {
+        // SAFETY: as above.
+        unsafe { std::slice::from_raw_parts_mut(self.0.add(places.start), places.len()) }
     }
 }
 

@@ -5,11 +5,15 @@
 
 mod full;
 mod general;
+#[cfg(target_arch = "x86_64")]
+mod lanes;
+mod lines;
 mod moment;
 mod plain;
 
 pub(super) use full::FullRow;
 pub(super) use general::GeneralRow;
+pub(super) use lines::Lines;
 pub(super) use moment::MomentRow;
 pub use moment::{MomentForm, MomentSolution};
 pub(super) use plain::PlainRow;
@@ -50,6 +54,14 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync {
     fn bodies(&self) -> [u32; 2];
     /// Solves the contact for the velocities at hand, goes `relaxation` times as far, and updates them.
     fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64);
+    /// Updates a block of contacts, given the starts of its groups and the end of the last: contacts of
+    /// a group share no movable body.
+    fn run(rows: &mut [Self], _groups: &[u32], lines: &Lines<S>, relaxation: f64) {
+        for row in rows {
+            let bodies = row.bodies();
+            lines.with(bodies, |a, b| row.update(a, b, relaxation));
+        }
+    }
     /// Adds what the stored impulse does to the velocities.
     fn load(&self, a: &mut Line<S>, b: &mut Line<S>);
     /// Appends the numbers of the impulse.

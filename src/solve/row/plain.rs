@@ -1,22 +1,25 @@
 //! Contact of two balls without a bond: solved in closed form.
 
+#[cfg(target_arch = "x86_64")]
+use super::lanes;
 use super::{
-    Line, Residual, Row, inverse, natural_map, push, relative, restore_parts, store_parts,
+    Line, Lines, Residual, Row, inverse, natural_map, push, relative, restore_parts, store_parts,
 };
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::{Space, VectorLike, greatest};
 use crate::solve::form::{ContactForm, ContactSolution};
 
-/// Frictional contact without memory.
+/// Frictional contact without memory. `lanes` reads it by fours of numbers.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub(in crate::solve) struct PlainRow<S: Space> {
-    bodies: [u32; 2],
-    n: S::Vector,
-    pn: f64,
-    pt: S::Tangent,
-    shift: f64,
-    iwn: f64,
-    iwt: f64,
-    mu: f64,
+    pub(super) n: S::Vector,
+    pub(super) pn: f64,
+    pub(super) pt: S::Tangent,
+    pub(super) shift: f64,
+    pub(super) iwn: f64,
+    pub(super) iwt: f64,
+    pub(super) mu: f64,
+    pub(super) bodies: [u32; 2],
 }
 
 impl<S: Space> PlainRow<S> {
@@ -44,11 +47,16 @@ impl<S: Space> Row<S> for PlainRow<S> {
     #[inline(always)]
     fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64) {
         let (un, ut) = relative(&self.n, a, b);
-        let pn = (self.pn - (un + self.shift) * (self.iwn * relaxation)).max(0.0);
+        let pn = greatest(self.pn - (un + self.shift) * (self.iwn * relaxation), 0.0);
         let pt = (self.pt - ut * (self.iwt * relaxation)).limited(self.mu * pn);
         push(&self.n, pn - self.pn, pt - self.pt, a, b);
         self.pn = pn;
         self.pt = pt;
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn run(rows: &mut [Self], groups: &[u32], lines: &Lines<S>, relaxation: f64) {
+        lanes::run(rows, groups, lines, relaxation);
     }
 
     fn load(&self, a: &mut Line<S>, b: &mut Line<S>) {
