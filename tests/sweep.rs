@@ -1,8 +1,8 @@
 //! The sweep of Gauss-Seidel gives the same bits on any number of threads.
 
 use fretwork::geometry::space::{Plane, Solid, Space, VectorLike};
-use fretwork::solve::nlgs::{prepare, sweeps};
-use fretwork::solve::{ContactForm, Options, Problem, solve};
+use fretwork::solve::nlgs::{prepare, solve, sweeps};
+use fretwork::solve::{ContactForm, Options, Problem};
 
 /// Balls of a square lattice, pressed down on a floor: `side` to the power of the dimension.
 fn lattice<S: Space>(side: u32) -> Problem<S> {
