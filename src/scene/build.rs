@@ -780,9 +780,8 @@ impl<S: Dimensional> Builder<'_, S> {
             self.source,
             Simulation::new(self.bodies, self.shapes, laws, table, alert, skin),
         );
-        let rotates = simulation.laws.iter().any(crate::laws::Interface::rotates);
         let bonds = simulation.laws.iter().any(|law| law.cohesion.is_some());
-        if let Some(reason) = solve::choose::refusal(case.solver.method, rotates, bonds) {
+        if let Some(reason) = solve::choose::refusal(case.solver.method, false, bonds) {
             return Err(self.source.locate(Fault::new("solver.method", reason)));
         }
         simulation.gravity = gravity;

@@ -36,6 +36,16 @@ pub enum StepError {
         /// What the law said.
         source: LawError,
     },
+    /// The method does not serve what the laws ask for.
+    #[error("step {step}: solver.method {method}: {reason}")]
+    Method {
+        /// Number of the step.
+        step: u64,
+        /// The method.
+        method: &'static str,
+        /// Why, and what to take instead.
+        reason: &'static str,
+    },
     /// A velocity is not finite.
     #[error(
         "step {step} at t = {time:.6e} s: the velocity of body {body} is not finite; use a smaller step or softer parameters"
@@ -251,6 +261,7 @@ impl<S: Space> Simulation<S> {
 
             let clock = Instant::now();
             self.pose(free);
+            self.served()?;
             let solved = solve::solve(
                 &mut self.problem,
                 &self.forms,
@@ -281,6 +292,27 @@ impl<S: Space> Simulation<S> {
             for (k, form) in self.forms.iter_mut().enumerate() {
                 form.impulse = sites[k].solution.impulse;
             }
+        }
+    }
+
+    /// Whether the method serves the forms at hand; what a law asks for shows only in a step.
+    fn served(&self) -> Result<(), StepError> {
+        let method = self.solver.method;
+        let rolls = self
+            .moments
+            .iter()
+            .any(|m| m.rolling > 0.0 || m.spinning > 0.0);
+        let other = self
+            .forms
+            .iter()
+            .any(|f| f.elastic.is_some() || f.cohesion > 0.0 || f.tension > 0.0);
+        match solve::choose::refusal(method, rolls, other) {
+            None => Ok(()),
+            Some(reason) => Err(StepError::Method {
+                step: self.steps + 1,
+                method: method.name(),
+                reason,
+            }),
         }
     }
 

@@ -8,6 +8,7 @@ mod dynamics;
 mod energy;
 mod laws;
 mod sinks;
+mod solvers;
 mod stages;
 
 use fretwork::geometry::space::{Plane, Solid};
@@ -93,6 +94,7 @@ fn closed_forms_are_met() {
     bonds::all(&mut table);
     energy::all(&mut table);
     sinks::all(&mut table);
+    solvers::all(&mut table);
     laws::all(&mut table);
     stages::all(&mut table);
     assert!(table.failed.is_empty(), "\n{}", table.failed.join("\n"));

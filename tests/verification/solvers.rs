@@ -1,0 +1,122 @@
+//! Every method in a run: a closed form where there is one, else what plain Gauss-Seidel finds.
+
+use super::{G, Table, scene};
+use fretwork::geometry::space::{Plane, Solid, VectorLike};
+use fretwork::laws::SearchPath;
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::load;
+use fretwork::step::Simulation;
+use std::path::Path;
+
+pub fn all(table: &mut Table) {
+    column(table);
+    // Bonds that bend and twist: compliance, moments.
+    alike::<Solid>(
+        table,
+        "beam_3d",
+        &["time.end=0.2"],
+        &["Auto", "Anderson", "Newton", "Apgd", "Cpg"],
+    );
+    // Friction against rotation, bounded by another unknown.
+    alike::<Solid>(
+        table,
+        "rolling_stop_sphere",
+        &["time.end=0.02"],
+        &["Auto", "Anderson", "Apgd", "Pcpg"],
+    );
+    // Bonds that only pull, under friction.
+    alike::<Plane>(
+        table,
+        "pulled_friction",
+        &[],
+        &["Auto", "Anderson", "Newton", "Apgd"],
+    );
+    refused();
+}
+
+/// The floor of a column carries its weight, whoever solves it.
+fn column(table: &mut Table) {
+    for method in [
+        "Auto",
+        "Nlgs",
+        "NlgsSymmetric",
+        "Anderson",
+        "Pg",
+        "Cpg",
+        "Pcpg",
+        "Apgd",
+        "Newton",
+        "Interior",
+    ] {
+        let set = format!("solver.method={method}");
+        let mut s: Simulation<Plane> = scene("column", &[&set]);
+        for _ in 0..2 {
+            let report = s.step().unwrap_or_else(|e| panic!("{method}: {e}"));
+            assert!(report.solver.converged, "{method}: {:?}", report.solver);
+        }
+        let movable = (0..s.bodies.len()).filter(|b| !s.bodies.immovable(*b));
+        let weight: f64 = movable.map(|b| s.bodies.mass[b] * G).sum();
+        let carried = -s.received[0].0.y / s.scheme.h;
+        let quantity = format!("weight on the floor by {method}");
+        table.compare("column", &quantity, weight, carried, 1e-9);
+    }
+}
+
+/// Ends a case by plain Gauss-Seidel and by others: the same displacements.
+fn alike<S: Dimensional>(table: &mut Table, case: &str, sets: &[&str], methods: &[&str]) {
+    let end = |method: &str| {
+        let set = format!("solver.method={method}");
+        let mut all = vec![set.as_str()];
+        all.extend(sets);
+        let file = format!(
+            "{}/cases/verification/{case}.ron",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        let owned: Vec<String> = all.iter().map(|s| (*s).to_owned()).collect();
+        let loaded = load(Path::new(&file), &owned).unwrap_or_else(|e| panic!("{e}"));
+        let steps = (loaded.case.time.end / loaded.case.time.step).round() as u64;
+        let mut s: Simulation<S> = scene(case, &all);
+        let start = s.bodies.position.clone();
+        for _ in 0..steps {
+            let report = s.step().unwrap_or_else(|e| panic!("{method}: {e}"));
+            assert!(
+                report.solver.converged,
+                "{case}, {method}: {:?}",
+                report.solver
+            );
+        }
+        let moved = s.bodies.position.iter().zip(&start);
+        moved.map(|(a, b)| *a - *b).collect::<Vec<S::Vector>>()
+    };
+    let norm = |v: &[S::Vector]| v.iter().map(|v| v.dot(v)).sum::<f64>().sqrt();
+    let reference = end("Nlgs");
+    for method in methods {
+        let off: Vec<S::Vector> = end(method)
+            .iter()
+            .zip(&reference)
+            .map(|(a, b)| *a - *b)
+            .collect();
+        let quantity = format!("displacements, {method} less Nlgs");
+        table.compare(case, &quantity, 0.0, norm(&off) / norm(&reference), 1e-6);
+    }
+}
+
+/// What a method cannot solve is refused with the reason: before the run where the laws tell, else at the
+/// first step that asks for it.
+fn refused() {
+    let file = format!(
+        "{}/cases/verification/beam_2d.ron",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let loaded = load(Path::new(&file), &["solver.method=Interior".to_owned()]);
+    let error = loaded
+        .unwrap_or_else(|e| panic!("{e}"))
+        .build(&SearchPath::new(&[]))
+        .expect_err("is refused")
+        .to_string();
+    assert!(error.contains("bonds"), "{error}");
+
+    let mut s: Simulation<Solid> = scene("rolling_stop_sphere", &["solver.method=Newton"]);
+    let error = s.step().expect_err("is refused").to_string();
+    assert!(error.contains("rotation"), "{error}");
+}
