@@ -2,8 +2,8 @@
 //!
 //! Sweeps over bodies are matrix-free and nearly always enough. [`Method::Auto`] lets them run for as long as
 //! ten factorisations of W would take (four times as long at a loose tolerance), then tries Newton on the
-//! assembled W, and sweeps on. Where Newton did not help it is tried half as early in the steps that follow;
-//! where it did, twice as early. The lengths follow from sizes alone: the same case takes the same path on any
+//! assembled W, and sweeps on. Where Newton did not help it is tried half as early in the steps that follow,
+//! until it helps again. The lengths follow from sizes alone: the same case takes the same path on any
 //! machine.
 
 use super::form::{ContactForm, Problem};
@@ -148,7 +148,7 @@ impl<S: Space> Pieces<'_, S> {
             let next = self.improve(problem, Method::Newton, 0.3 * options.tolerance, NEWTON);
             report.add(&next);
             if report.converged {
-                habit.patience = (0.5 * habit.patience).max(0.1);
+                habit.patience = (0.5 * habit.patience).max(1.0);
                 return report;
             }
             habit.patience = (2.0 * habit.patience).min(64.0);
