@@ -41,14 +41,8 @@ pub fn solve<S: Space>(
         options,
     };
     match options.method {
-        Method::Nlgs => nlgs::solve(
-            problem,
-            &Options {
-                accelerated: false,
-                ..*options
-            },
-        ),
-        Method::NlgsSymmetric | Method::Anderson => nlgs::solve(problem, options),
+        Method::Nlgs => pieces.sweep(problem, false, options.max_iterations),
+        Method::Anderson => pieces.sweep(problem, true, options.max_iterations),
         Method::Auto => pieces.auto(problem, habit),
         method => pieces.by(problem, method),
     }
@@ -61,6 +55,23 @@ struct Pieces<'a, S: Space> {
 }
 
 impl<S: Space> Pieces<'_, S> {
+    /// Sweeps over bodies, so many at most.
+    fn sweep(&self, problem: &mut Problem<S>, accelerated: bool, most: u32) -> Report {
+        let options = Options {
+            accelerated,
+            max_iterations: most,
+            ..*self.options
+        };
+        Report {
+            used: if accelerated {
+                Method::Anderson
+            } else {
+                Method::Nlgs
+            },
+            ..nlgs::solve(problem, &options)
+        }
+    }
+
     /// Improves the problem by a method for matrices; its tolerance is that of the blocks' own error.
     fn improve(
         &self,
@@ -89,7 +100,10 @@ impl<S: Space> Pieces<'_, S> {
         let mut report = nlgs::arrange(problem, self.options);
         let mut tolerance = self.options.tolerance;
         for _ in 0..ATTEMPTS {
-            let left = self.options.max_iterations - report.iterations;
+            let left = self
+                .options
+                .max_iterations
+                .saturating_sub(report.iterations);
             if report.converged || left == 0 {
                 break;
             }
@@ -121,53 +135,40 @@ impl<S: Space> Pieces<'_, S> {
         } else {
             TIGHT
         };
-        let sweeps = (worth * per * habit.patience).clamp(200.0, f64::from(u32::MAX / 2)) as u32;
-        let first = nlgs::solve(
-            problem,
-            &Options {
-                max_iterations: options.max_iterations.min(sweeps),
-                ..*options
-            },
-        );
-        let mut report = Report {
-            used: Method::Anderson,
-            ..first
-        };
-        let newton = !self
+        let rolls = self
             .moments
             .iter()
             .any(|m| m.rolling > 0.0 || m.spinning > 0.0);
-        let left = options.max_iterations.saturating_sub(report.iterations);
-        if report.converged || left == 0 || unknowns > LARGEST {
+        if refusal(Method::Newton, rolls, false).is_some() || unknowns > LARGEST {
+            return self.sweep(problem, true, options.max_iterations);
+        }
+        let sweeps = (worth * per * habit.patience).clamp(200.0, f64::from(u32::MAX / 2)) as u32;
+        let mut report = self.sweep(problem, true, options.max_iterations.min(sweeps));
+        let left = options.max_iterations - report.iterations;
+        if report.converged || left == 0 {
             return report;
         }
         let mut saved = Vec::new();
-        if newton {
-            problem.store(&mut saved);
-            let before = report.error;
-            let next = self.improve(problem, Method::Newton, 0.3 * options.tolerance, NEWTON);
-            report.add(&next);
-            if report.converged {
-                habit.patience = (0.5 * habit.patience).max(1.0);
-                return report;
-            }
-            habit.patience = (2.0 * habit.patience).min(64.0);
-            if report.error > before {
-                problem.restore(&saved);
-            }
+        problem.store(&mut saved);
+        let swept = Report {
+            iterations: 0,
+            ..report
+        };
+        let steps = NEWTON.min(left);
+        report.add(&self.improve(problem, Method::Newton, 0.3 * options.tolerance, steps));
+        if report.converged {
+            habit.patience = (0.5 * habit.patience).max(1.0);
+            return report;
+        }
+        habit.patience = (2.0 * habit.patience).min(64.0);
+        if report.error > swept.error {
+            problem.restore(&saved);
+            report.add(&swept);
         }
         let left = options.max_iterations.saturating_sub(report.iterations);
-        let last = nlgs::solve(
-            problem,
-            &Options {
-                max_iterations: left.max(1),
-                ..*options
-            },
-        );
-        report.add(&Report {
-            used: Method::Anderson,
-            ..last
-        });
+        if left > 0 {
+            report.add(&self.sweep(problem, true, left));
+        }
         report
     }
 }

@@ -5,7 +5,7 @@ use super::colour::{self, Schedule};
 use super::error::{Norm, Scale, Sums};
 use super::form::{Place, Problem};
 use super::local::solver::Method;
-use super::row::{Lines, Row};
+use super::row::{Line, Lines, Row};
 use crate::geometry::space::{Space, VectorLike};
 use rayon::prelude::*;
 
@@ -201,6 +201,18 @@ impl Caution {
     }
 }
 
+/// Gives a row its impulse, or lets it answer where nothing moves.
+fn take<S: Space, R: Row<S>>(row: &mut R, impulse: &Option<S::Vector>, lines: &mut [Line<S>]) {
+    match impulse {
+        Some(impulse) => row.set(impulse),
+        None => {
+            let [i, j] = row.bodies().map(|b| b as usize);
+            let (mut a, mut b) = (lines[i], lines[j]);
+            row.update(&mut a, &mut b, 1.0);
+        }
+    }
+}
+
 impl<S: Space> Problem<S> {
     /// The numbers of all impulses and moments, in the order of the sweep.
     pub(super) fn store(&self, out: &mut Vec<f64>) {
@@ -221,19 +233,26 @@ impl<S: Space> Problem<S> {
         self.reload();
     }
 
-    /// Takes impulses and moments in the order pushed, where there are any, and the velocities with them.
+    /// Takes impulses and moments in the order pushed, and the velocities with them. Where there is none
+    /// nothing moves, and the contact answers the velocities as they are.
     pub(super) fn adopt(&mut self, impulses: &[Option<S::Vector>], moments: &[Option<S::Spin>]) {
-        for (place, impulse) in self.places.iter().zip(impulses) {
-            let Some(impulse) = impulse else { continue };
-            match *place {
-                Place::Plain(r) => self.plain[r as usize].set(impulse),
-                Place::Full(r) => self.full[r as usize].set(impulse),
-                Place::General(r) => self.general[r as usize].set(impulse),
+        for (k, impulse) in impulses.iter().enumerate() {
+            match self.places[k] {
+                Place::Plain(r) => take(&mut self.plain[r as usize], impulse, &mut self.lines),
+                Place::Full(r) => take(&mut self.full[r as usize], impulse, &mut self.lines),
+                Place::General(r) => take(&mut self.general[r as usize], impulse, &mut self.lines),
             }
         }
-        for (row, moment) in self.moments.iter_mut().zip(moments) {
-            if let Some(moment) = moment {
-                row.set(moment);
+        for k in 0..self.moments.len() {
+            let pn = self.normal(self.moments[k].place);
+            let row = &mut self.moments[k];
+            match &moments[k] {
+                Some(moment) => row.set(moment),
+                None => {
+                    let [i, j] = row.bodies.map(|b| b as usize);
+                    let (mut a, mut b) = (self.lines[i], self.lines[j]);
+                    row.update(pn, &mut a, &mut b, 1.0);
+                }
             }
         }
         self.reload();
