@@ -31,10 +31,11 @@
 
 pub mod border;
 pub mod table;
+pub mod testing;
 mod traits;
 
 pub use fretwork_abi as abi;
 pub use traits::{
     CohesionLaw, ContactLaw, DamageLaw, Friction, Intact, Law, Parameters, Site, Traction,
-    Variable, WearLaw,
+    Variable, WearLaw, bounded,
 };

@@ -161,6 +161,33 @@ pub struct Traction {
     pub stiffness_bend: f64,
 }
 
+impl Traction {
+    /// An attraction of the contact by a force (N; N/m in the plane), as a stress over its area.
+    pub fn attraction(force: f64, site: &Site) -> Self {
+        Self {
+            // A tiny area overflows.
+            tension_strength: (force / site.area).min(f64::MAX),
+            ..Self::default()
+        }
+    }
+
+    /// Linear in the opening, with stiffnesses (Pa/m) along the normal and the tangents.
+    pub fn linear(site: &Site, stiffness_n: f64, stiffness_t: f64) -> Self {
+        let [n, t1, t2] = site.opening;
+        Self {
+            traction: [stiffness_n * n, stiffness_t * t1, stiffness_t * t2].map(bounded),
+            stiffness_n,
+            stiffness_t,
+            ..Self::default()
+        }
+    }
+}
+
+/// Keeps what overflows finite; the host stops at numbers that are not.
+pub fn bounded(x: f64) -> f64 {
+    x.clamp(-f64::MAX, f64::MAX)
+}
+
 /// The undamaged bond at this opening, for damage laws.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Intact {

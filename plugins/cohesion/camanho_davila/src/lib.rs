@@ -1,6 +1,6 @@
 //! Camanho and Davila's bilinear law in mixed mode, with the Benzeggagh-Kenane fracture energy.
 #![forbid(unsafe_code)]
-use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, export, parameters};
+use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, bounded, export, parameters};
 
 parameters! {
     /// On u = sqrt(<u_n>^2 + |u_t|^2) with B = |u_t|/u_n: onset d_0 = d_3 d_s sqrt((1 + B^2)/(d_s^2 + (B d_3)^2)),
@@ -71,11 +71,6 @@ impl CamanhoDavila {
     }
 }
 
-/// Keeps what overflows finite; the host stops at numbers that are not.
-fn bounded(x: f64) -> f64 {
-    x.clamp(-f64::MAX, f64::MAX)
-}
-
 impl CohesionLaw for CamanhoDavila {
     const DEGRADATION: f64 = 1.0;
 
@@ -84,12 +79,7 @@ impl CohesionLaw for CamanhoDavila {
             return Traction::default();
         }
         let k = (1.0 - site.damage) * self.k;
-        Traction {
-            traction: site.opening.map(|u| bounded(k * u)),
-            stiffness_n: k,
-            stiffness_t: k,
-            ..Traction::default()
-        }
+        Traction::linear(site, k, k)
     }
 
     fn energy(&self, site: &Site, _state: &[f64]) -> f64 {
@@ -120,6 +110,7 @@ export!(cohesion CamanhoDavila);
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_law::testing;
 
     /// AS4/PEEK: G_c of 0.98799, 1.12300 and 1.41952 N/mm at G_II/G_T of 0.2, 0.5 and 0.8, by integration of
     /// the traction at a fixed mix.
@@ -134,21 +125,7 @@ mod tests {
             (1.0, 1719.0),
         ] {
             let (s, c) = (f64::sqrt(share), f64::sqrt(1.0 - share));
-            let (mut d, mut area, mut last) = (0.0, 0.0, 0.0);
-            let n = 200_000;
-            let du = 50e-6 / f64::from(n);
-            for step in 1..=n {
-                let u = du * f64::from(step);
-                let site = Site {
-                    opening: [c * u, 0.0, s * u],
-                    damage: d,
-                    ..Site::default()
-                };
-                d = law.commit(&site, &[], &mut []);
-                let t = (1.0 - d) * law.k * u;
-                area += 0.5 * (last + t) * du;
-                last = t;
-            }
+            let area = testing::pull_breaking(&law, [c, 0.0, s], 50e-6, 200_000).area;
             assert!((area / expected - 1.0).abs() < 1e-4, "{share}: {area}");
         }
     }
@@ -164,17 +141,7 @@ mod tests {
 
     #[test]
     fn numbers_stay_finite_and_a_broken_bond_carries_nothing() {
-        let law = CamanhoDavila::default();
-        for damage in [0.0, 0.3, 1.0] {
-            let site = Site {
-                opening: [1e300, -1e300, 1e300],
-                damage,
-                ..Site::default()
-            };
-            let (t, e) = (law.traction(&site, &[]), law.energy(&site, &[]));
-            assert!(e.is_finite() && t.traction.iter().chain(&t.moment).all(|x| x.is_finite()));
-            assert!(damage < 1.0 || (e == 0.0 && t.traction == [0.0; 3] && t.moment == [0.0; 3]));
-        }
+        testing::bond_stays_finite(&CamanhoDavila::default());
     }
 
     /// K d_0^2/2 is 0.8 and 845 J/m^2 in the pure modes, below the energies, but 1.066 at 30 degrees, where

@@ -1,6 +1,6 @@
 //! Tvergaard and Hutchinson's trapezoid: elastic, plateau, linear fall. It breaks by itself.
 #![forbid(unsafe_code)]
-use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, export, parameters};
+use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, bounded, export, parameters};
 
 parameters! {
     /// On the opening u = sqrt(<u_n>^2 + |u_t|^2): K u to u_i = strength/K, the strength to u_p, then a line to
@@ -50,11 +50,6 @@ fn effective(site: &Site) -> f64 {
     site.normal_opening().hypot(site.tangential_opening())
 }
 
-/// Keeps what overflows finite; the host stops at numbers that are not.
-fn bounded(x: f64) -> f64 {
-    x.clamp(-f64::MAX, f64::MAX)
-}
-
 impl CohesionLaw for TvergaardHutchinson {
     const DEGRADATION: f64 = 1.0;
 
@@ -63,12 +58,7 @@ impl CohesionLaw for TvergaardHutchinson {
             return Traction::default();
         }
         let k = (1.0 - site.damage) * self.k;
-        Traction {
-            traction: site.opening.map(|u| bounded(k * u)),
-            stiffness_n: k,
-            stiffness_t: k,
-            ..Traction::default()
-        }
+        Traction::linear(site, k, k)
     }
 
     fn energy(&self, site: &Site, _state: &[f64]) -> f64 {
@@ -105,6 +95,7 @@ export!(cohesion TvergaardHutchinson);
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_law::testing;
 
     #[test]
     fn the_trapezoid_has_its_corners_and_its_area() {
@@ -113,42 +104,19 @@ mod tests {
                 plateau,
                 ..TvergaardHutchinson::default()
             };
-            let (mut d, mut area, mut last, mut peak) = (0.0, 0.0, 0.0, 0.0f64);
-            let n = 200_000;
-            let du = 12e-6 / f64::from(n);
-            for step in 1..=n {
-                let u = du * f64::from(step);
-                let site = Site {
-                    opening: [0.6 * u, 0.8 * u, 0.0],
-                    damage: d,
-                    ..Site::default()
-                };
-                d = law.commit(&site, &[], &mut []);
-                let t = law.traction(&Site { damage: d, ..site }, &[]).traction;
-                let t = t[0].hypot(t[1]);
-                area += 0.5 * (last + t) * du;
-                last = t;
-                peak = peak.max(t);
-            }
-            assert!((area / law.energy - 1.0).abs() < 1e-4, "{plateau}: {area}");
+            let pull = testing::pull_breaking(&law, [0.6, 0.8, 0.0], 12e-6, 200_000);
+            assert!(
+                (pull.area / law.energy - 1.0).abs() < 1e-4,
+                "{plateau}: {pull:?}"
+            );
             // A step may fall beside the corner.
-            assert!((peak / law.strength - 1.0).abs() < 1e-3);
-            assert_eq!(d, 1.0);
+            assert!((pull.peak / law.strength - 1.0).abs() < 1e-3);
+            assert_eq!(pull.damage, 1.0);
         }
     }
 
     #[test]
     fn numbers_stay_finite_and_a_broken_bond_carries_nothing() {
-        let law = TvergaardHutchinson::default();
-        for damage in [0.0, 0.3, 1.0] {
-            let site = Site {
-                opening: [1e300, -1e300, 1e300],
-                damage,
-                ..Site::default()
-            };
-            let (t, e) = (law.traction(&site, &[]), law.energy(&site, &[]));
-            assert!(e.is_finite() && t.traction.iter().chain(&t.moment).all(|x| x.is_finite()));
-            assert!(damage < 1.0 || (e == 0.0 && t.traction == [0.0; 3] && t.moment == [0.0; 3]));
-        }
+        testing::bond_stays_finite(&TvergaardHutchinson::default());
     }
 }

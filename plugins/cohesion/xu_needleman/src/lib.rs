@@ -1,6 +1,6 @@
 //! Xu and Needleman's exponential cohesion, with a history: it unloads to the origin and stays broken.
 #![forbid(unsafe_code)]
-use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, export, parameters};
+use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, bounded, export, parameters};
 
 parameters! {
     /// t_n = (1 - D)(phi/delta_n^2) u_n and t_t = (1 - D)(2 phi/delta_t^2) u_t with phi = e strength delta_n and
@@ -52,11 +52,6 @@ impl XuNeedleman {
     }
 }
 
-/// Keeps what overflows finite; the host stops at numbers that are not.
-fn bounded(x: f64) -> f64 {
-    x.clamp(-f64::MAX, f64::MAX)
-}
-
 impl CohesionLaw for XuNeedleman {
     const DEGRADATION: f64 = 1.0;
 
@@ -66,13 +61,7 @@ impl CohesionLaw for XuNeedleman {
         }
         let g = 1.0 - site.damage;
         let (k_n, k_t) = self.stiffness();
-        let [n, t1, t2] = site.opening;
-        Traction {
-            traction: [g * k_n * n, g * k_t * t1, g * k_t * t2].map(bounded),
-            stiffness_n: g * k_n,
-            stiffness_t: g * k_t,
-            ..Traction::default()
-        }
+        Traction::linear(site, g * k_n, g * k_t)
     }
 
     fn energy(&self, site: &Site, _state: &[f64]) -> f64 {
@@ -103,36 +92,18 @@ export!(cohesion XuNeedleman);
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn pull(law: &XuNeedleman, direction: [f64; 2]) -> (f64, f64) {
-        let (mut d, mut area, mut last, mut peak) = (0.0, 0.0, 0.0, 0.0f64);
-        let n = 400_000;
-        let du = 30e-6 / f64::from(n);
-        for step in 1..=n {
-            let u = du * f64::from(step);
-            let site = Site {
-                opening: [direction[0] * u, direction[1] * u, 0.0],
-                damage: d,
-                ..Site::default()
-            };
-            d = law.commit(&site, &[], &mut []);
-            let t = law.traction(&Site { damage: d, ..site }, &[]).traction;
-            let t = t[0] * direction[0] + t[1] * direction[1];
-            area += 0.5 * (last + t) * du;
-            last = t;
-            peak = peak.max(t);
-        }
-        (peak, area)
-    }
+    use fretwork_law::testing;
 
     /// Peak s at delta_n, area e s delta_n; in mode II sqrt(2 e) s delta_n/delta_t, the same area.
     #[test]
     fn peaks_and_areas_are_the_papers() {
         let law = XuNeedleman::default();
         let phi = std::f64::consts::E * 1e6 * 1e-6;
-        let (peak, area) = pull(&law, [1.0, 0.0]);
+        let testing::Pull { peak, area, .. } =
+            testing::pull_breaking(&law, [1.0, 0.0, 0.0], 30e-6, 400_000);
         assert!((peak / 1e6 - 1.0).abs() < 1e-6 && (area / phi - 1.0).abs() < 1e-3);
-        let (peak, area) = pull(&law, [0.0, 1.0]);
+        let testing::Pull { peak, area, .. } =
+            testing::pull_breaking(&law, [0.0, 1.0, 0.0], 30e-6, 400_000);
         let shear = (2.0 * std::f64::consts::E).sqrt() * 1e6 / 1.5;
         assert!(
             (peak / shear - 1.0).abs() < 1e-6 && (area / phi - 1.0).abs() < 1e-3,
@@ -142,17 +113,7 @@ mod tests {
 
     #[test]
     fn numbers_stay_finite_and_a_broken_bond_carries_nothing() {
-        let law = XuNeedleman::default();
-        for damage in [0.0, 0.3, 1.0] {
-            let site = Site {
-                opening: [1e300, -1e300, 1e300],
-                damage,
-                ..Site::default()
-            };
-            let (t, e) = (law.traction(&site, &[]), law.energy(&site, &[]));
-            assert!(e.is_finite() && t.traction.iter().chain(&t.moment).all(|x| x.is_finite()));
-            assert!(damage < 1.0 || (e == 0.0 && t.traction == [0.0; 3] && t.moment == [0.0; 3]));
-        }
+        testing::bond_stays_finite(&XuNeedleman::default());
     }
 
     /// With x = -ln left the area up to the cut is phi (1 - (1 + x) exp(-x)) in mode I, phi (1 - exp(-x)) in mode II.
@@ -162,8 +123,11 @@ mod tests {
             left: 0.1,
             ..XuNeedleman::default()
         };
-        for (angle, direction) in [(0.0, [1.0, 0.0]), (std::f64::consts::FRAC_PI_2, [0.0, 1.0])] {
-            let area = pull(&law, direction).1;
+        for (angle, direction) in [
+            (0.0, [1.0, 0.0, 0.0]),
+            (std::f64::consts::FRAC_PI_2, [0.0, 1.0, 0.0]),
+        ] {
+            let area = testing::pull_breaking(&law, direction, 30e-6, 400_000).area;
             let declared = law.fracture_energy(angle).unwrap();
             assert!((area / declared - 1.0).abs() < 1e-3, "{area} {declared}");
         }

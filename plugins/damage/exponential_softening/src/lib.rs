@@ -51,42 +51,20 @@ export!(damage ExponentialSoftening);
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_law::testing;
 
     #[test]
     fn the_area_is_the_fracture_energy_less_the_tail() {
         let law = ExponentialSoftening::default();
         for (m, k) in [(1.0, 1e12), (2.0, 1e12), (2.0, 1e14)] {
-            let (mut d, mut area, mut last) = (0.0, 0.0, 0.0);
-            let (n, reach) = (400_000, 20e-6);
-            let du = reach / f64::from(n);
-            for step in 1..=n {
-                let u = du * f64::from(step);
-                let intact = Intact {
-                    energy: 0.5 * k * u * u,
-                    traction: [k * u, 0.0, 0.0],
-                    degradation: m,
-                    ..Intact::default()
-                };
-                d = law.grow(
-                    &Site {
-                        damage: d,
-                        ..Site::default()
-                    },
-                    &intact,
-                    &[],
-                    &mut [],
-                );
-                let t = (1.0f64 - d).powf(m) * k * u;
-                area += 0.5 * (last + t) * du;
-                last = t;
-            }
+            let pull = testing::pull(&law, k, m, 20e-6, 400_000);
             let first = law.strength / k;
             let tail = law.left * (law.energy - 0.5 * law.strength * first);
             assert!(
-                (area / (law.energy - tail) - 1.0).abs() < 1e-4,
-                "{m} {k}: {area}"
+                (pull.area / (law.energy - tail) - 1.0).abs() < 1e-4,
+                "{m} {k}: {pull:?}"
             );
-            assert_eq!(d, 1.0);
+            assert_eq!(pull.damage, 1.0);
         }
     }
 
@@ -100,93 +78,24 @@ mod tests {
         };
         for m in [1.0, 2.0] {
             for k in [1e10, 1e11, 1e12, 1e13, 1e14] {
-                let (mut d, mut area, mut last) = (0.0, 0.0, 0.0);
-                let du = 80e-6 / 400_000.0;
-                for step in 1..=400_000 {
-                    let t = k * du * f64::from(step);
-                    let intact = Intact {
-                        energy: 0.5 * t * t / k,
-                        traction: [0.6 * t, 0.0, 0.8 * t],
-                        degradation: m,
-                        ..Intact::default()
-                    };
-                    let site = Site {
-                        damage: d,
-                        ..Site::default()
-                    };
-                    d = law.grow(&site, &intact, &[], &mut []);
-                    let carried = (1.0f64 - d).powf(m) * t;
-                    area += 0.5 * (last + carried) * du;
-                    last = carried;
-                }
-                let expected =
-                    law.energy - law.left * (law.energy - 0.5 * law.strength.powi(2) / k);
-                assert!((area / expected - 1.0).abs() < 1e-4, "{m} {k}: {area}");
-                assert_eq!(d, 1.0);
+                let pull = testing::pull(&law, k, m, 80e-6, 400_000);
+                let tail = law.left * (law.energy - 0.5 * law.strength.powi(2) / k);
+                assert!(
+                    (pull.area / (law.energy - tail) - 1.0).abs() < 1e-4,
+                    "{m} {k}: {pull:?}"
+                );
+                assert_eq!(pull.damage, 1.0);
             }
         }
     }
 
-    /// Any finite bond, the least and the most of every parameter: D in [D_i, 1], variables finite.
     #[test]
     fn extremes_stay_in_range() {
-        use fretwork_law::Parameters;
-        let sizes = [0.0, 1e-300, 1e-12, 1e-3, 1.0, 1e5, 1e6, 1e30, 1e300];
-        let damages = [0.0, 0.4, 1.0 - 1e-16, 1.0];
-        for end in 0..3 {
-            let values = ExponentialSoftening::FIELDS
-                .iter()
-                .map(|f| [f.default, f.minimum, f.maximum][end]);
-            let law = ExponentialSoftening::read(&values.collect::<Vec<f64>>());
-            for case in 0..9 * 9 * 9 * 4 * 4 {
-                let (energy, t, s) = (sizes[case % 9], sizes[case / 9 % 9], sizes[case / 81 % 9]);
-                let intact = Intact {
-                    energy,
-                    traction: [-t, t, t],
-                    degradation: [0.5, 1.0, 2.0, 9.0][case / 729 % 4],
-                    ..Intact::default()
-                };
-                let site = Site {
-                    damage: damages[case / 2916],
-                    h: s,
-                    ..Site::default()
-                };
-                let mut next = [s; 0];
-                let d = law.grow(&site, &intact, &[s; 0], &mut next);
-                assert!(d >= site.damage && d <= 1.0, "{law:?} {intact:?} {s}: {d}");
-                assert!(next.iter().all(|x| x.is_finite()), "{law:?} {intact:?}");
-            }
-        }
+        testing::damage_stays_in_range::<ExponentialSoftening>();
     }
 
     #[test]
     fn damage_never_falls_over_a_random_path() {
-        let law = ExponentialSoftening::default();
-        let (mut seed, mut u) = (1u64, 0.0f64);
-        for m in [0.5, 1.0, 2.0] {
-            let (mut d, mut state) = (0.0, [0.0; 0]);
-            for _ in 0..2000 {
-                seed = seed
-                    .wrapping_mul(6364136223846793005)
-                    .wrapping_add(1442695040888963407);
-                u = (u + ((seed >> 33) as f64 / 2f64.powi(31) - 0.5) * 4e-7).abs();
-                let intact = Intact {
-                    energy: 0.5e12 * u * u,
-                    traction: [-0.6e12 * u, 1e12 * u, 0.0],
-                    degradation: m,
-                    ..Intact::default()
-                };
-                let site = Site {
-                    damage: d,
-                    h: 1e-3,
-                    ..Site::default()
-                };
-                let mut next = state;
-                let new = law.grow(&site, &intact, &state, &mut next);
-                assert!(new >= d && new <= 1.0, "{m} {u}: {new} after {d}");
-                (d, state) = (new, next);
-            }
-            assert!(d > 0.0, "the path does damage");
-        }
+        testing::damage_never_falls(&ExponentialSoftening::default());
     }
 }

@@ -63,6 +63,7 @@ export!(damage Nguyen);
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_law::testing;
 
     /// N cycles 0 - u - 0 below the envelope leave (1 - D)^m = exp(-N u/length), whatever the step.
     #[test]
@@ -100,66 +101,13 @@ mod tests {
         }
     }
 
-    /// Any finite bond, the least and the most of every parameter: D in [D_i, 1], variables finite.
     #[test]
     fn extremes_stay_in_range() {
-        use fretwork_law::Parameters;
-        let sizes = [0.0, 1e-300, 1e-12, 1e-3, 1.0, 1e5, 1e6, 1e30, 1e300];
-        let damages = [0.0, 0.4, 1.0 - 1e-16, 1.0];
-        for end in 0..3 {
-            let values = Nguyen::FIELDS
-                .iter()
-                .map(|f| [f.default, f.minimum, f.maximum][end]);
-            let law = Nguyen::read(&values.collect::<Vec<f64>>());
-            for case in 0..9 * 9 * 9 * 4 * 4 {
-                let (energy, t, s) = (sizes[case % 9], sizes[case / 9 % 9], sizes[case / 81 % 9]);
-                let intact = Intact {
-                    energy,
-                    traction: [-t, t, t],
-                    degradation: [0.5, 1.0, 2.0, 9.0][case / 729 % 4],
-                    ..Intact::default()
-                };
-                let site = Site {
-                    damage: damages[case / 2916],
-                    h: s,
-                    ..Site::default()
-                };
-                let mut next = [s; 1];
-                let d = law.grow(&site, &intact, &[s; 1], &mut next);
-                assert!(d >= site.damage && d <= 1.0, "{law:?} {intact:?} {s}: {d}");
-                assert!(next.iter().all(|x| x.is_finite()), "{law:?} {intact:?}");
-            }
-        }
+        testing::damage_stays_in_range::<Nguyen>();
     }
 
     #[test]
     fn damage_never_falls_over_a_random_path() {
-        let law = Nguyen::default();
-        let (mut seed, mut u) = (1u64, 0.0f64);
-        for m in [0.5, 1.0, 2.0] {
-            let (mut d, mut state) = (0.0, [0.0; 1]);
-            for _ in 0..2000 {
-                seed = seed
-                    .wrapping_mul(6364136223846793005)
-                    .wrapping_add(1442695040888963407);
-                u = (u + ((seed >> 33) as f64 / 2f64.powi(31) - 0.5) * 4e-7).abs();
-                let intact = Intact {
-                    energy: 0.5e12 * u * u,
-                    traction: [-0.6e12 * u, 1e12 * u, 0.0],
-                    degradation: m,
-                    ..Intact::default()
-                };
-                let site = Site {
-                    damage: d,
-                    h: 1e-3,
-                    ..Site::default()
-                };
-                let mut next = state;
-                let new = law.grow(&site, &intact, &state, &mut next);
-                assert!(new >= d && new <= 1.0, "{m} {u}: {new} after {d}");
-                (d, state) = (new, next);
-            }
-            assert!(d > 0.0, "the path does damage");
-        }
+        testing::damage_never_falls(&Nguyen::default());
     }
 }
