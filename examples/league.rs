@@ -272,6 +272,9 @@ fn page(
     out + rows
 }
 
+/// The fastest of the peer's solvers on each problem.
+const BEST: &str = "peer best";
+
 /// Dolan and More's profile: the share of problems solved within a factor of the best of all solvers.
 fn profile(ours: &Times, peer: &Times, path: &Path) -> Result<(), Box<dyn Error>> {
     let mut all: BTreeMap<&(String, String), Timings> = BTreeMap::new();
@@ -279,27 +282,27 @@ fn profile(ours: &Times, peer: &Times, path: &Path) -> Result<(), Box<dyn Error>
         if let Some(theirs) = peer.get(key).filter(|_| times.len() > 1) {
             let mut list = times.clone();
             list.extend(theirs.iter().map(|(s, t)| (format!("peer {s}"), *t)));
+            list.push((BEST.to_owned(), best(Some(theirs)).map(|(_, t)| t)));
             all.insert(key, list);
         }
     }
-    let mut names: Vec<String> = Method::ALL.iter().map(|m| m.name().to_owned()).collect();
-    // The peer's most successful ones.
+    // Those that solve most, ours and the peer's: more curves cannot be told apart.
     let mut wins = BTreeMap::<String, u32>::new();
-    for list in all.values() {
-        for (s, t) in list.iter().filter(|(s, _)| s.starts_with("peer")) {
-            *wins.entry(s.clone()).or_default() += u32::from(t.is_some());
-        }
+    for (s, t) in all.values().flatten() {
+        *wins.entry(s.clone()).or_default() += u32::from(t.is_some());
     }
-    let mut theirs: Vec<(String, u32)> = wins.into_iter().collect();
-    theirs.sort_by_key(|t| std::cmp::Reverse(t.1));
-    names.extend(theirs.into_iter().take(4).map(|t| t.0));
+    let mut wins: Vec<(String, u32)> = wins.into_iter().collect();
+    wins.sort_by_key(|t| std::cmp::Reverse(t.1));
+    let (theirs, own): (Vec<_>, Vec<_>) = wins.into_iter().partition(|t| t.0.starts_with("peer"));
+    let names = own.into_iter().take(4).chain(theirs.into_iter().take(3));
+    let names = names.map(|t| t.0);
     let mut chart = Chart::new(
         "Share of problems solved within a factor of the fastest",
         Axis::new("time over that of the fastest solver", "").log(),
         Axis::new("share of problems", ""),
     );
     chart.subtitle = Some(format!(
-        "{} problems at 1e-8, Siconos 4.4 dashed (its four that solve most)",
+        "{} problems at 1e-8, Siconos 4.4 dashed (best: the fastest of all its solvers on each problem)",
         all.len()
     ));
     for name in names {

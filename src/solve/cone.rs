@@ -6,21 +6,40 @@ use crate::geometry::space::VectorLike;
 /// P = p_n + h c_n and c = h c_t. Returns the nearest point (Euclidean).
 #[inline]
 pub fn project<T: VectorLike>(normal: f64, tangent: T, mu: f64, c: f64) -> (f64, T) {
-    let length = tangent.norm();
-    if normal >= 0.0 && length <= mu * normal + c {
-        return (normal, tangent);
+    match outside(normal, tangent.dot(&tangent), mu, c) {
+        None => (normal, tangent),
+        Some((n, scale)) => (n, tangent * scale),
     }
+}
+
+/// The same of (P, t...) in an array.
+#[inline(always)]
+pub fn project_array<const D: usize>(z: &[f64; D], mu: f64, c: f64) -> [f64; D] {
+    let mut squared = 0.0;
+    for x in &z[1..] {
+        squared += x * x;
+    }
+    match outside(z[0], squared, mu, c) {
+        None => *z,
+        Some((n, scale)) => std::array::from_fn(|k| if k == 0 { n } else { z[k] * scale }),
+    }
+}
+
+/// Of a point outside, by P and |t|^2: the nearest P, and what t is multiplied by.
+#[inline(always)]
+fn outside(normal: f64, squared: f64, mu: f64, c: f64) -> Option<(f64, f64)> {
+    let bound = mu * normal + c;
+    if normal >= 0.0 && squared <= bound * bound {
+        return None;
+    }
+    let length = squared.sqrt();
     let foot = (normal + mu * (length - c)) / (1.0 + mu * mu);
     let (n, bound) = if length > c && foot > 0.0 {
         (foot, mu * foot + c)
     } else {
         (0.0, length.min(c))
     };
-    if length > 0.0 {
-        (n, tangent * (bound / length))
-    } else {
-        (n, tangent)
-    }
+    Some((n, if length > 0.0 { bound / length } else { 0.0 }))
 }
 
 #[cfg(test)]
@@ -50,6 +69,7 @@ mod tests {
             assert!(pn >= 0.0 && pt.norm() <= mu * pn + c + 1e-15);
             let distance = (pn - n).hypot(pt[0] - s);
             assert!(distance <= nearest_by_sampling(n, s, mu, c) + 2e-6);
+            assert_eq!(project_array(&[n, s], mu, c), [pn, pt[0]]);
         }
     }
 

@@ -2,8 +2,8 @@
 //!
 //! Sweeps with Anderson's acceleration come first and solve most problems. When they have cost about as
 //! much as some factorisations would, Newton goes on from there, then the interior point tries from its own
-//! start, and then come long runs of sweeps with attempts of Newton between them. The order and the lengths follow from sizes
-//! alone, so the same problem takes the same path on any machine.
+//! start, and then come long runs of sweeps with attempts of Newton between them. The order and the
+//! lengths follow from sizes alone, so the same problem takes the same path on any machine.
 
 use super::anderson::Anderson;
 use super::form::Form;

@@ -244,7 +244,7 @@ mod tests {
         let slip = u[1..].iter().map(|x| x * x).sum::<f64>().sqrt();
         let z: [f64; D] =
             std::array::from_fn(|k| p[k] - u[k] - if k == 0 { mu * slip } else { 0.0 });
-        let y = crate::solve::local::law::project(&z, mu);
+        let y = crate::solve::cone::project_array(&z, mu, 0.0);
         (0..D).map(|k| (p[k] - y[k]).powi(2)).sum::<f64>().sqrt()
     }
 

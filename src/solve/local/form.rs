@@ -3,6 +3,7 @@
 use super::block::{Block, BlockMatrix};
 use super::law::{self, Law};
 use crate::solve::error::{Norm, Scale, Sums};
+use crate::solve::extrapolation;
 use crate::solve::row::Residual;
 
 /// The Delassus operator, whatever stands behind it.
@@ -163,21 +164,7 @@ pub fn squared<const D: usize>(x: &[[f64; D]]) -> f64 {
 
 /// x . y of vectors of blocks.
 pub fn dot<const D: usize>(x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
-    let (x, y) = (x.as_flattened(), y.as_flattened());
-    let mut sums = [0.0; 4];
-    let (xs, ys) = (x.chunks_exact(4), y.chunks_exact(4));
-    let tail: f64 = xs
-        .remainder()
-        .iter()
-        .zip(ys.remainder())
-        .map(|(a, b)| a * b)
-        .sum();
-    for (a, b) in xs.zip(ys) {
-        for k in 0..4 {
-            sums[k] += a[k] * b[k];
-        }
-    }
-    sums.iter().sum::<f64>() + tail
+    extrapolation::dot(x.as_flattened(), y.as_flattened())
 }
 
 /// The law of a block, for problems from files.

@@ -1,30 +1,6 @@
-//! Coulomb's cone on arrays (n, t...).
+//! What a block of unknowns obeys: its set of admissible impulses and its natural map.
 
-/// Nearest point of { n >= 0, |t| <= mu n }.
-#[inline(always)]
-pub fn project<const D: usize>(z: &[f64; D], mu: f64) -> [f64; D] {
-    let mut squared = 0.0;
-    for x in &z[1..] {
-        squared += x * x;
-    }
-    let n = z[0];
-    if n >= 0.0 && squared <= mu * mu * n * n {
-        return *z;
-    }
-    let length = squared.sqrt();
-    let foot = (n + mu * length) / (1.0 + mu * mu);
-    let mut y = [0.0; D];
-    if foot > 0.0 && length > 0.0 {
-        let scale = mu * foot / length;
-        y[0] = foot;
-        for k in 1..D {
-            y[k] = z[k] * scale;
-        }
-    } else if n > 0.0 {
-        y[0] = n;
-    }
-    y
-}
+use crate::solve::cone::project_array;
 
 /// |t|.
 #[inline(always)]
@@ -46,7 +22,7 @@ pub fn natural<const D: usize>(p: &[f64; D], u: &[f64; D], mu: f64, rho: f64) ->
     let shift = mu * slip(u);
     let z: [f64; D] =
         std::array::from_fn(|k| p[k] - rho * (u[k] + if k == 0 { shift } else { 0.0 }));
-    let y = project(&z, mu);
+    let y = project_array(&z, mu, 0.0);
     std::array::from_fn(|k| p[k] - y[k])
 }
 
@@ -82,7 +58,7 @@ impl Law {
     #[inline(always)]
     pub fn project<const D: usize>(&self, z: &[f64; D], p: &[[f64; D]]) -> [f64; D] {
         match self {
-            Self::Coulomb(mu) => project(z, *mu),
+            Self::Coulomb(mu) => project_array(z, *mu, 0.0),
             _ => self.project_rare(z, p),
         }
     }
@@ -90,8 +66,8 @@ impl Law {
     #[cold]
     fn project_rare<const D: usize>(&self, z: &[f64; D], p: &[[f64; D]]) -> [f64; D] {
         match self {
-            Self::Coulomb(mu) => project(z, *mu),
-            Self::Cohesive { mu, cohesion } => cohesive(z, *mu, *cohesion),
+            Self::Coulomb(mu) => project_array(z, *mu, 0.0),
+            Self::Cohesive { mu, cohesion } => project_array(z, *mu, *cohesion),
             Self::Free => *z,
             Self::Pull => {
                 let mut y = *z;
@@ -143,20 +119,4 @@ impl Law {
         let y = self.project(&z, all);
         std::array::from_fn(|k| p[k] - y[k])
     }
-}
-
-/// Nearest point of { n >= 0, |t| <= mu n + c }.
-fn cohesive<const D: usize>(z: &[f64; D], mu: f64, c: f64) -> [f64; D] {
-    let length = slip(z);
-    if z[0] >= 0.0 && length <= mu * z[0] + c {
-        return *z;
-    }
-    let foot = (z[0] + mu * (length - c)) / (1.0 + mu * mu);
-    let (n, bound) = if length > c && foot > 0.0 {
-        (foot, mu * foot + c)
-    } else {
-        (0.0, length.min(c))
-    };
-    let scale = if length > 0.0 { bound / length } else { 0.0 };
-    std::array::from_fn(|k| if k == 0 { n } else { z[k] * scale })
 }

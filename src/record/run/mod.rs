@@ -1,14 +1,17 @@
 //! Runs a scene to its end and records it.
 
-use super::biaxial::{self, Biaxial, Outcome};
+mod end;
+mod row;
+
+use super::biaxial::Biaxial;
 use super::fclib;
 use super::friction::{Cycles, Sample};
 use super::layer::{Balance, Layer};
 use super::picture::Camera;
 use super::results::{Results, ResultsError};
-use super::statistics::{Column, Table};
-use super::summary::{PluginStamp, SolverSummary, Summary, Wear};
-use super::{figures, views};
+use super::statistics::Table;
+use super::summary::{PluginStamp, SolverSummary, Summary};
+use super::views;
 use crate::bodies::TimeFunction;
 use crate::certify::certify;
 use crate::geometry::space::Space;
@@ -143,7 +146,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         });
         let spec = case.biaxial.as_ref();
         let biaxial = spec.and_then(|spec| Biaxial::new(spec, &simulation));
-        let columns = columns(&simulation, cycles.is_some(), biaxial.is_some());
+        let columns = row::columns(&simulation, cycles.is_some(), biaxial.is_some());
         let table_path = options.out.join("statistics.csv");
         let table =
             Table::create(&table_path, columns.clone()).map_err(|e| unwritable(&table_path, &e))?;
@@ -328,67 +331,6 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         }
     }
 
-    fn row(&self, report: &StepReport) -> Vec<f64> {
-        let (s, e) = (&self.simulation, &self.simulation.energy);
-        let n = &s.network;
-        let cycle = self.cycles.as_ref().map_or(0, |(c, _)| c.number(s.time));
-        let mut row = vec![
-            s.steps as f64,
-            s.time,
-            f64::from(cycle),
-            n.contacts.len() as f64,
-            report.active as f64,
-            f64::from(report.solver.iterations),
-            report.solver.error,
-            f64::from(u8::from(report.solver.converged)),
-            (n.bonds_made() - n.bonds_broken()) as f64,
-            n.bonds_broken() as f64,
-            self.damage_ratio(),
-            n.mean_damage(),
-            e.kinetic,
-            e.potential,
-            e.elastic,
-            e.fracture,
-            e.friction,
-            e.impact,
-            e.adhesion,
-            e.viscous,
-            e.external_work,
-            e.residual,
-            self.worn.0,
-            self.worn.1,
-        ];
-        if let Some(sample) = self.sample {
-            row.extend([
-                self.slide,
-                sample.q,
-                sample.p,
-                if sample.p > 0.0 {
-                    sample.q.abs() / sample.p
-                } else {
-                    0.0
-                },
-            ]);
-        }
-        if let Some(test) = &self.biaxial {
-            row.extend(test.state(s).row());
-        }
-        for (d, driven) in s
-            .bodies
-            .driven
-            .iter()
-            .enumerate()
-            .filter(|(_, d)| shown(&d.name))
-        {
-            let b = driven.body as usize;
-            let force = s.received[d].0 * (1.0 / s.scheme.h);
-            for values in [s.bodies.position[b], s.bodies.velocity[b], force] {
-                row.extend((0..S::D).map(|k| values[k]));
-            }
-        }
-        row
-    }
-
     fn views(&mut self) -> Result<(), RunError> {
         Ok(views::append(&mut self.results, &self.simulation)?)
     }
@@ -432,82 +374,12 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             damage_ratio: self.damage_ratio(),
         }
     }
-
-    /// Writes what a run leaves behind, whatever it reached.
-    fn finish(&mut self) -> Result<(), RunError> {
-        let (s, n) = (&self.simulation, &self.simulation.network);
-        let summary = &mut self.summary;
-        summary.steps = s.steps;
-        summary.time = s.time;
-        summary.wall_seconds = self.clock.elapsed().as_secs_f64();
-        summary.bodies = s.bodies.len();
-        summary.contacts = n.contacts.len();
-        summary.bonds = n.bonds_made();
-        summary.broken = n.bonds_broken();
-        summary.damage_ratio = if n.bonds_made() > 0 {
-            n.bonds_broken() as f64 / n.bonds_made() as f64
-        } else {
-            0.0
-        };
-        summary.mean_damage = n.mean_damage();
-        if let Some((cycles, _)) = &self.cycles {
-            summary.friction_coefficient = cycles.last().map(|c| c.friction_coefficient);
-            summary.friction_from_dissipation = cycles.last().map(|c| c.friction_from_dissipation);
-            summary.cycles.clone_from(&cycles.list);
-        }
-        let start = self.loaded.case.biaxial.as_ref().map_or(0.0, |t| t.start);
-        if let Some(test) = &self.biaxial {
-            summary.biaxial = Some(Outcome::new(&self.table, start, test.grain_mass(s)));
-        }
-        summary.energy = s.energy;
-        summary.energy_residual_relative = s.energy.relative_residual();
-        let time = s.time.max(f64::MIN_POSITIVE);
-        // Nothing leaves a contact that is periodic along the sliding.
-        let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
-        let closed = s.shapes.periodic.period[along].map(|_| 0.0);
-        summary.wear = Wear {
-            Qs: self.worn.0 * self.density / time,
-            Qi: self.internal_flow / time,
-            Qe: closed,
-            Qw: closed,
-            volume_first_bodies: self.worn.0,
-            volume_third_body: self.worn.1,
-        };
-        summary.solver.coupling_iterations_mean = self.couplings as f64 / s.steps.max(1) as f64;
-        summary.solver.iterations_mean = self.iterations as f64 / s.steps.max(1) as f64;
-        self.table
-            .flush()
-            .map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
-        let text = serde_json::to_string_pretty(&self.summary).unwrap_or_default();
-        let path = self.out.join("summary.json");
-        std::fs::write(&path, text + "\n").map_err(|e| unwritable(&path, &e))?;
-        self.results.finish(&self.out)?;
-        if self.loaded.case.output.figures {
-            figures::draw(
-                &self.out,
-                &self.loaded.case.name,
-                &self.table,
-                self.cycles.as_ref().map(|c| &c.0),
-                S::D,
-            )?;
-            if self.biaxial.is_some() {
-                let title = &self.loaded.case.name;
-                biaxial::draw(&self.out.join("biaxial.png"), title, &self.table, start)?;
-            }
-        }
-        Ok(())
-    }
 }
 
 /// Whether event k of `count` over the run falls on this step.
 fn due(step: u64, total: u64, count: u32) -> bool {
     let number = |step: u64| u128::from(step) * u128::from(count) / u128::from(total.max(1));
     count > 0 && number(step) > number(step - 1)
-}
-
-/// Walls that a scene file brought are not worth columns.
-fn shown(name: &str) -> bool {
-    !name.starts_with("wall_")
 }
 
 /// Mass of the third body that crosses a section a second: sum m |v| / L along the sliding.
@@ -569,71 +441,4 @@ fn density_of(loaded: &Loaded, any: bool) -> f64 {
         (true, Some(name)) => loaded.density(name).unwrap_or(0.0),
         _ => 0.0,
     }
-}
-
-fn columns<S: Space>(s: &Simulation<S>, friction: bool, biaxial: bool) -> Vec<Column> {
-    let newton = if S::D == 2 { "N/m" } else { "N" };
-    let joule = if S::D == 2 { "J/m" } else { "J" };
-    let volume = if S::D == 2 { "m^3/m" } else { "m^3" };
-    let c = Column::new;
-    let mut out = vec![
-        c("step", "", "number of the step"),
-        c("time", "s", "time at its end"),
-        c("cycle", "", "cycle of the friction test"),
-        c("contacts", "", "contacts within the alert distance"),
-        c("active", "", "contacts that carry an impulse"),
-        c("iterations", "", "sweeps of the solver"),
-        c("error", "", "error of the solution"),
-        c("converged", "", "1 if the tolerance was reached"),
-        c("bonds_intact", "", "bonds that hold"),
-        c("bonds_broken", "", "bonds that broke"),
-        c("damage_ratio", "", "broken bonds over bonds made"),
-        c("mean_damage", "", "mean damage over bonds made"),
-        c("kinetic", joule, "kinetic energy"),
-        c("potential", joule, "potential energy since the start"),
-        c("elastic", joule, "energy stored in bonds"),
-        c("fracture", joule, "fracture energy since the start"),
-        c("friction", joule, "energy dissipated by friction"),
-        c("impact", joule, "energy dissipated by impacts"),
-        c(
-            "adhesion",
-            joule,
-            "energy spent against cohesion without opening",
-        ),
-        c("viscous", joule, "energy dissipated by damping of bonds"),
-        c("external_work", joule, "work of imposed forces and motions"),
-        c("residual", joule, "what does not add up"),
-        c("worn_first", volume, "volume worn off first bodies"),
-        c("worn_third", volume, "volume worn between grains"),
-    ];
-    if friction {
-        out.extend([
-            c("delta", "m", "displacement of the body under test"),
-            c("Q", newton, "tangential force that moves it"),
-            c("P", newton, "normal force"),
-            c("mu", "", "|Q|/P"),
-        ]);
-    }
-    if biaxial {
-        out.extend(Biaxial::columns());
-    }
-    let axes = ["x", "y", "z"];
-    for driven in s.bodies.driven.iter().filter(|d| shown(&d.name)) {
-        for (what, unit, doc) in [
-            ("", "m", "position of the body"),
-            ("v", "m/s", "velocity of the body"),
-            ("f", newton, "contact force on the body"),
-        ] {
-            out.extend(
-                axes.iter()
-                    .take(S::D)
-                    .map(|a| c_named(&driven.name, what, a, unit, doc)),
-            );
-        }
-    }
-    out
-}
-
-fn c_named(body: &str, what: &str, axis: &str, unit: &'static str, doc: &'static str) -> Column {
-    Column::new(format!("{body}_{what}{axis}"), unit, doc)
 }

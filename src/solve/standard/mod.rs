@@ -5,9 +5,10 @@
 //! without friction whose compliance 1/B stands on the diagonal of W; friction against rotation and the
 //! moments of a bond likewise. Tension c_n and what does not depend on velocities go into the free ones.
 
+mod bodies;
+
 use super::error::Norm;
 use super::form::{ContactForm, Problem};
-use super::local::block::{Block, BlockMatrix};
 use super::local::csr::Csr;
 use super::local::form::{Delassus, Form};
 use super::local::law::Law;
@@ -15,162 +16,7 @@ use super::local::solver::Method;
 use super::local::state::{Budget, State};
 use super::row::MomentForm;
 use crate::geometry::space::{Space, VectorLike};
-use std::cell::{OnceCell, RefCell};
-
-/// What a component of a block pushes along.
-#[derive(Clone, Copy, Debug)]
-struct Axis<S: Space> {
-    /// Linear impulse of a unit.
-    linear: S::Vector,
-    /// Its moments about the two bodies.
-    angular: [S::Spin; 2],
-    /// 1/B of a bond; 1 of a component that is not there.
-    compliance: f64,
-}
-
-/// A block of unknowns.
-#[derive(Clone, Debug)]
-struct Unknown<S: Space, const D: usize> {
-    bodies: [u32; 2],
-    axes: [Axis<S>; D],
-}
-
-/// Impulse and moment of a body.
-type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
-
-/// W of a step, from its bodies.
-struct Bodies<'a, S: Space, const D: usize> {
-    masses: &'a [(S::Vector, f64)],
-    unknowns: Vec<Unknown<S, D>>,
-    diagonal: Vec<Block<D>>,
-    scratch: RefCell<Vec<Motion<S>>>,
-    matrix: OnceCell<BlockMatrix<D>>,
-}
-
-impl<S: Space, const D: usize> Bodies<'_, S, D> {
-    /// M^-1 of an impulse and moment on a body.
-    fn mobility(&self, body: u32, (p, m): Motion<S>) -> Motion<S> {
-        let (mass, inertia) = &self.masses[body as usize];
-        (p.scaled_by(mass), m * *inertia)
-    }
-
-    fn push(&self, c: usize, p: &[f64; D], motions: &mut [Motion<S>]) {
-        let unknown = &self.unknowns[c];
-        for (side, sign) in [(0, 1.0), (1, -1.0)] {
-            let mut impulse = S::Vector::null();
-            let mut moment = S::Spin::null();
-            for (axis, p) in unknown.axes.iter().zip(p) {
-                impulse += axis.linear * (sign * p);
-                moment += axis.angular[side] * (sign * p);
-            }
-            let body = unknown.bodies[side];
-            let (v, w) = self.mobility(body, (impulse, moment));
-            let motion = &mut motions[body as usize];
-            motion.0 += v;
-            motion.1 += w;
-        }
-    }
-
-    fn relative(&self, c: usize, motions: &[Motion<S>]) -> [f64; D] {
-        let unknown = &self.unknowns[c];
-        let [a, b] = unknown.bodies.map(|b| &motions[b as usize]);
-        std::array::from_fn(|k| {
-            let axis = &unknown.axes[k];
-            axis.linear.dot(&a.0) + axis.angular[0].dot(&a.1)
-                - axis.linear.dot(&b.0)
-                - axis.angular[1].dot(&b.1)
-        })
-    }
-
-    /// The block W_cd.
-    fn coupling(&self, c: usize, d: usize) -> Block<D> {
-        let (x, y) = (&self.unknowns[c], &self.unknowns[d]);
-        let mut out = [[0.0; D]; D];
-        for (i, sign_i) in [(0, 1.0), (1, -1.0)] {
-            for (j, sign_j) in [(0, 1.0), (1, -1.0)] {
-                if x.bodies[i] != y.bodies[j] {
-                    continue;
-                }
-                for (l, axis) in y.axes.iter().enumerate() {
-                    let motion = self.mobility(y.bodies[j], (axis.linear, axis.angular[j]));
-                    for (k, own) in x.axes.iter().enumerate() {
-                        out[k][l] += sign_i
-                            * sign_j
-                            * (own.linear.dot(&motion.0) + own.angular[i].dot(&motion.1));
-                    }
-                }
-            }
-        }
-        if c == d {
-            for (k, axis) in x.axes.iter().enumerate() {
-                out[k][k] += axis.compliance;
-            }
-        }
-        out
-    }
-}
-
-impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
-    fn len(&self) -> usize {
-        self.unknowns.len()
-    }
-
-    fn diagonal(&self, c: usize) -> &Block<D> {
-        &self.diagonal[c]
-    }
-
-    fn velocity(&self, p: &[[f64; D]], q: &[[f64; D]], u: &mut [[f64; D]]) {
-        let mut motions = self.scratch.borrow_mut();
-        motions.clear();
-        motions.resize(self.masses.len(), (S::Vector::null(), S::Spin::null()));
-        for (c, p) in p.iter().enumerate() {
-            self.push(c, p, &mut motions);
-        }
-        for (c, u) in u.iter_mut().enumerate() {
-            *u = self.relative(c, &motions);
-            for k in 0..D {
-                u[k] += q[c][k] + self.unknowns[c].axes[k].compliance * p[c][k];
-            }
-        }
-    }
-
-    fn matrix(&self) -> &BlockMatrix<D> {
-        self.matrix.get_or_init(|| {
-            let mut of_body: Vec<Vec<u32>> = vec![Vec::new(); self.masses.len()];
-            for (c, unknown) in self.unknowns.iter().enumerate() {
-                for body in unknown.bodies {
-                    of_body[body as usize].push(c as u32);
-                }
-            }
-            let moves = |b: u32| {
-                let (mass, inertia) = &self.masses[b as usize];
-                *inertia > 0.0 || (0..S::D).any(|k| mass[k] > 0.0)
-            };
-            let mut out = BlockMatrix {
-                diagonal: self.diagonal.clone(),
-                starts: vec![0],
-                ..BlockMatrix::default()
-            };
-            for (c, unknown) in self.unknowns.iter().enumerate() {
-                let mut near: Vec<u32> = unknown
-                    .bodies
-                    .iter()
-                    .filter(|b| moves(**b))
-                    .flat_map(|b| of_body[*b as usize].iter().copied())
-                    .filter(|d| *d as usize != c)
-                    .collect();
-                near.sort_unstable();
-                near.dedup();
-                for d in near {
-                    out.columns.push(d);
-                    out.blocks.push(self.coupling(c, d as usize));
-                }
-                out.starts.push(out.columns.len() as u32);
-            }
-            out
-        })
-    }
-}
+use bodies::{Axis, Bodies, Motion, Unknown};
 
 /// Impulses of the contacts and moments, none where nothing moves.
 type Totals<S> = (
@@ -224,13 +70,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         moments: &[MomentForm<S>],
     ) -> Self {
         let mut out = Self {
-            w: Bodies {
-                masses: &problem.masses,
-                unknowns: Vec::new(),
-                diagonal: Vec::new(),
-                scratch: RefCell::new(Vec::new()),
-                matrix: OnceCell::new(),
-            },
+            w: Bodies::new(&problem.masses),
             laws: Vec::new(),
             q: Vec::new(),
             places: Vec::with_capacity(forms.len()),
@@ -288,7 +128,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         if let Some(e) = &form.elastic {
             let mut axes = axes;
             for (d, axis) in axes.iter_mut().enumerate() {
-                *axis = component(axis, if d == 0 { e.b_n } else { e.b_t });
+                *axis = axis.bonded(if d == 0 { e.b_n } else { e.b_t });
             }
             // Without stiffness the bond pulls as it does, whatever the velocities.
             let law = if e.tension_only && e.b_n > 0.0 {
@@ -343,8 +183,8 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         if form.b_twist > 0.0 || form.b_bend > 0.0 || form.a != S::Spin::null() {
             let mut axes = axes;
             for (d, axis) in axes.iter_mut().enumerate() {
-                if *axis.angular.first().unwrap_or(&S::Spin::null()) != S::Spin::null() {
-                    *axis = component(axis, if d == 0 { form.b_twist } else { form.b_bend });
+                if axis.pushes() {
+                    *axis = axis.bonded(if d == 0 { form.b_twist } else { form.b_bend });
                 }
             }
             let (twist, bend) = S::split_spin(&contact.normal, &form.a);
@@ -421,7 +261,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
                     + S::lift(&form.normal, &total.unilateral_t);
                 let own: [f64; D] = std::array::from_fn(|d| frame[d].dot(&unilateral));
                 for d in 0..D {
-                    if self.w.unknowns[b as usize].axes[d].linear != S::Vector::null() {
+                    if self.w.unknowns[b as usize].axes[d].pushes() {
                         p[b as usize][d] = all[d] - own[d];
                         all[d] = own[d];
                     }
@@ -447,9 +287,9 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             for c in [places.contact, places.bond].into_iter().flatten() {
                 let unknown = &self.w.unknowns[c as usize];
                 for k in 0..D {
-                    let here = unknown.axes[k].linear != S::Vector::null()
-                        || unknown.axes[k].angular != [S::Spin::null(); 2];
-                    sum[k] += if here { p[c as usize][k] } else { 0.0 };
+                    if unknown.axes[k].pushes() {
+                        sum[k] += p[c as usize][k];
+                    }
                 }
             }
             sum
@@ -481,11 +321,6 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         (impulses, turned)
     }
 
-    /// The laws of the blocks.
-    pub fn laws(&self) -> &[Law] {
-        &self.laws
-    }
-
     /// W, q and mu, where every block is a contact of Coulomb's law.
     pub fn coulomb(&self) -> Option<(Csr, Vec<f64>, Vec<f64>)> {
         let mu: Option<Vec<f64>> = self
@@ -504,27 +339,10 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
     }
 }
 
-/// An axis of a bond of stiffness `b` over the step; not there where the stiffness is zero.
-fn component<S: Space>(axis: &Axis<S>, b: f64) -> Axis<S> {
-    if b > 0.0 {
-        Axis {
-            compliance: 1.0 / b,
-            ..*axis
-        }
-    } else {
-        Axis {
-            linear: S::Vector::null(),
-            angular: [S::Spin::null(); 2],
-            compliance: 1.0,
-        }
-    }
-}
-
 fn offset<S: Space, const D: usize>(q: &mut [f64; D], unknown: &Unknown<S, D>, a: &[f64; D]) {
     for k in 0..D {
         let axis = &unknown.axes[k];
-        let here = axis.linear != S::Vector::null() || axis.angular != [S::Spin::null(); 2];
-        if here {
+        if axis.pushes() {
             q[k] += a[k] * axis.compliance;
         } else {
             q[k] = 0.0;

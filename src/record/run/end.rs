@@ -1,0 +1,74 @@
+//! The end of a run: what is summed up, drawn and written last.
+
+use super::{Recorder, RunError, unwritable};
+use crate::record::biaxial::{self, Outcome};
+use crate::record::figures;
+use crate::record::summary::Wear;
+use crate::scene::build::Dimensional;
+
+impl<S: Dimensional> Recorder<'_, S> {
+    /// Writes what a run leaves behind, whatever it reached.
+    pub(super) fn finish(&mut self) -> Result<(), RunError> {
+        let (s, n) = (&self.simulation, &self.simulation.network);
+        let summary = &mut self.summary;
+        summary.steps = s.steps;
+        summary.time = s.time;
+        summary.wall_seconds = self.clock.elapsed().as_secs_f64();
+        summary.bodies = s.bodies.len();
+        summary.contacts = n.contacts.len();
+        summary.bonds = n.bonds_made();
+        summary.broken = n.bonds_broken();
+        summary.damage_ratio = if n.bonds_made() > 0 {
+            n.bonds_broken() as f64 / n.bonds_made() as f64
+        } else {
+            0.0
+        };
+        summary.mean_damage = n.mean_damage();
+        if let Some((cycles, _)) = &self.cycles {
+            summary.friction_coefficient = cycles.last().map(|c| c.friction_coefficient);
+            summary.friction_from_dissipation = cycles.last().map(|c| c.friction_from_dissipation);
+            summary.cycles.clone_from(&cycles.list);
+        }
+        let start = self.loaded.case.biaxial.as_ref().map_or(0.0, |t| t.start);
+        if let Some(test) = &self.biaxial {
+            summary.biaxial = Some(Outcome::new(&self.table, start, test.grain_mass(s)));
+        }
+        summary.energy = s.energy;
+        summary.energy_residual_relative = s.energy.relative_residual();
+        let time = s.time.max(f64::MIN_POSITIVE);
+        // Nothing leaves a contact that is periodic along the sliding.
+        let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
+        let closed = s.shapes.periodic.period[along].map(|_| 0.0);
+        summary.wear = Wear {
+            Qs: self.worn.0 * self.density / time,
+            Qi: self.internal_flow / time,
+            Qe: closed,
+            Qw: closed,
+            volume_first_bodies: self.worn.0,
+            volume_third_body: self.worn.1,
+        };
+        summary.solver.coupling_iterations_mean = self.couplings as f64 / s.steps.max(1) as f64;
+        summary.solver.iterations_mean = self.iterations as f64 / s.steps.max(1) as f64;
+        self.table
+            .flush()
+            .map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
+        let text = serde_json::to_string_pretty(&self.summary).unwrap_or_default();
+        let path = self.out.join("summary.json");
+        std::fs::write(&path, text + "\n").map_err(|e| unwritable(&path, &e))?;
+        self.results.finish(&self.out)?;
+        if self.loaded.case.output.figures {
+            figures::draw(
+                &self.out,
+                &self.loaded.case.name,
+                &self.table,
+                self.cycles.as_ref().map(|c| &c.0),
+                S::D,
+            )?;
+            if self.biaxial.is_some() {
+                let title = &self.loaded.case.name;
+                biaxial::draw(&self.out.join("biaxial.png"), title, &self.table, start)?;
+            }
+        }
+        Ok(())
+    }
+}

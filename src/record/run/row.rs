@@ -1,0 +1,143 @@
+//! The rows of the statistics: their columns and what stands in them.
+
+use super::Recorder;
+use crate::geometry::space::Space;
+use crate::record::biaxial::Biaxial;
+use crate::record::statistics::Column;
+use crate::scene::build::Dimensional;
+use crate::step::{Simulation, StepReport};
+
+impl<S: Dimensional> Recorder<'_, S> {
+    pub(super) fn row(&self, report: &StepReport) -> Vec<f64> {
+        let (s, e) = (&self.simulation, &self.simulation.energy);
+        let n = &s.network;
+        let cycle = self.cycles.as_ref().map_or(0, |(c, _)| c.number(s.time));
+        let mut row = vec![
+            s.steps as f64,
+            s.time,
+            f64::from(cycle),
+            n.contacts.len() as f64,
+            report.active as f64,
+            f64::from(report.solver.iterations),
+            report.solver.error,
+            f64::from(u8::from(report.solver.converged)),
+            (n.bonds_made() - n.bonds_broken()) as f64,
+            n.bonds_broken() as f64,
+            self.damage_ratio(),
+            n.mean_damage(),
+            e.kinetic,
+            e.potential,
+            e.elastic,
+            e.fracture,
+            e.friction,
+            e.impact,
+            e.adhesion,
+            e.viscous,
+            e.external_work,
+            e.residual,
+            self.worn.0,
+            self.worn.1,
+        ];
+        if let Some(sample) = self.sample {
+            row.extend([
+                self.slide,
+                sample.q,
+                sample.p,
+                if sample.p > 0.0 {
+                    sample.q.abs() / sample.p
+                } else {
+                    0.0
+                },
+            ]);
+        }
+        if let Some(test) = &self.biaxial {
+            row.extend(test.state(s).row());
+        }
+        for (d, driven) in s
+            .bodies
+            .driven
+            .iter()
+            .enumerate()
+            .filter(|(_, d)| shown(&d.name))
+        {
+            let b = driven.body as usize;
+            let force = s.received[d].0 * (1.0 / s.scheme.h);
+            for values in [s.bodies.position[b], s.bodies.velocity[b], force] {
+                row.extend((0..S::D).map(|k| values[k]));
+            }
+        }
+        row
+    }
+}
+
+pub(super) fn columns<S: Space>(s: &Simulation<S>, friction: bool, biaxial: bool) -> Vec<Column> {
+    let newton = if S::D == 2 { "N/m" } else { "N" };
+    let joule = if S::D == 2 { "J/m" } else { "J" };
+    let volume = if S::D == 2 { "m^3/m" } else { "m^3" };
+    let c = Column::new;
+    let mut out = vec![
+        c("step", "", "number of the step"),
+        c("time", "s", "time at its end"),
+        c("cycle", "", "cycle of the friction test"),
+        c("contacts", "", "contacts within the alert distance"),
+        c("active", "", "contacts that carry an impulse"),
+        c("iterations", "", "sweeps of the solver"),
+        c("error", "", "error of the solution"),
+        c("converged", "", "1 if the tolerance was reached"),
+        c("bonds_intact", "", "bonds that hold"),
+        c("bonds_broken", "", "bonds that broke"),
+        c("damage_ratio", "", "broken bonds over bonds made"),
+        c("mean_damage", "", "mean damage over bonds made"),
+        c("kinetic", joule, "kinetic energy"),
+        c("potential", joule, "potential energy since the start"),
+        c("elastic", joule, "energy stored in bonds"),
+        c("fracture", joule, "fracture energy since the start"),
+        c("friction", joule, "energy dissipated by friction"),
+        c("impact", joule, "energy dissipated by impacts"),
+        c(
+            "adhesion",
+            joule,
+            "energy spent against cohesion without opening",
+        ),
+        c("viscous", joule, "energy dissipated by damping of bonds"),
+        c("external_work", joule, "work of imposed forces and motions"),
+        c("residual", joule, "what does not add up"),
+        c("worn_first", volume, "volume worn off first bodies"),
+        c("worn_third", volume, "volume worn between grains"),
+    ];
+    if friction {
+        out.extend([
+            c("delta", "m", "displacement of the body under test"),
+            c("Q", newton, "tangential force that moves it"),
+            c("P", newton, "normal force"),
+            c("mu", "", "|Q|/P"),
+        ]);
+    }
+    if biaxial {
+        out.extend(Biaxial::columns());
+    }
+    let axes = ["x", "y", "z"];
+    for driven in s.bodies.driven.iter().filter(|d| shown(&d.name)) {
+        for (what, unit, doc) in [
+            ("", "m", "position of the body"),
+            ("v", "m/s", "velocity of the body"),
+            ("f", newton, "contact force on the body"),
+        ] {
+            out.extend(
+                axes.iter()
+                    .take(S::D)
+                    .map(|a| c_named(&driven.name, what, a, unit, doc)),
+            );
+        }
+    }
+    out
+}
+
+fn c_named(body: &str, what: &str, axis: &str, unit: &'static str, doc: &'static str) -> Column {
+    Column::new(format!("{body}_{what}{axis}"), unit, doc)
+}
+
+/// Walls that a scene file brought are not worth columns.
+fn shown(name: &str) -> bool {
+    !name.starts_with("wall_")
+}

@@ -1,0 +1,154 @@
+//! First bodies: balls and surfaces that move together, driven or free.
+
+use super::surface::Placed;
+use super::{Builder, Dimensional, Origin};
+use crate::bodies::Driven;
+use crate::geometry::shape::{Ball, Carried};
+use crate::geometry::space::VectorLike;
+use crate::scene::case::{BodySpec, ShapeSpec};
+use crate::scene::source::{self, Fault, InputError};
+
+impl<S: Dimensional> Builder<'_, S> {
+    pub(super) fn first_bodies(&mut self) -> Result<(), InputError> {
+        for (k, spec) in self.case.bodies.iter().enumerate() {
+            self.first_body(&format!("bodies.{k}"), spec)?;
+            self.origins.push(Origin::Body(k));
+        }
+        Ok(())
+    }
+
+    fn first_body(&mut self, here: &str, spec: &BodySpec) -> Result<(), InputError> {
+        let (material, density) = self.material(&format!("{here}.material"), &spec.material)?;
+        let position = self.vector(&format!("{here}.position"), &spec.position)?;
+        let mut balls: Vec<(S::Vector, f64)> = Vec::new();
+        let mut surfaces: Vec<Placed<S>> = Vec::new();
+        for (s, shape) in spec.shapes.iter().enumerate() {
+            let here = format!("{here}.shapes.{s}");
+            match shape {
+                ShapeSpec::Balls(list) => {
+                    for (x, r) in list {
+                        balls.push((self.vector(&here, x)?, self.radius(&here, *r)?));
+                    }
+                }
+                ShapeSpec::Cluster { file, name } => {
+                    let scene = self.scene_file(file)?;
+                    let cluster = scene.clusters.iter().find(|c| c.0 == *name);
+                    let names = || scene.clusters.iter().map(|c| c.0.as_str());
+                    let Some(cluster) = cluster else {
+                        return Err(self.source.locate(
+                            Fault::new(
+                                format!("{here}.name"),
+                                format!("the scene has no cluster `{name}`"),
+                            )
+                            .expected(format!("one of {}", names().collect::<Vec<_>>().join(", ")))
+                            .nearest(source::nearest(name, names())),
+                        ));
+                    };
+                    balls.extend(
+                        cluster
+                            .1
+                            .iter()
+                            .map(|(x, r)| (S::Vector::from_slice(x), *r)),
+                    );
+                }
+                other => surfaces.push(self.surface(&here, other)?),
+            }
+        }
+        if balls.is_empty() && surfaces.is_empty() {
+            return Err(self.fail(
+                format!("{here}.shapes"),
+                "a first body needs at least one shape",
+            ));
+        }
+        // A body made of balls has its frame at their centre of mass.
+        let weight: f64 = balls.iter().map(|b| S::ball_volume(b.1)).sum();
+        let mut centre = S::Vector::null();
+        if weight > 0.0 && surfaces.is_empty() {
+            for (x, r) in &balls {
+                centre += *x * (S::ball_volume(*r) / weight);
+            }
+        }
+        let inertia: f64 = balls
+            .iter()
+            .map(|(x, r)| {
+                let d = *x - centre;
+                density * S::ball_volume(*r) * (S::BALL_INERTIA * r * r + d.dot(&d))
+            })
+            .sum();
+        let dofs = spec.ordered(S::D);
+        self.check_dofs(here, spec, weight > 0.0)?;
+        let mass = spec
+            .mass
+            .unwrap_or(if weight > 0.0 { density * weight } else { 1.0 });
+        let inertia = spec
+            .inertia
+            .unwrap_or(if inertia > 0.0 { inertia } else { 1.0 });
+        let only = if surfaces.is_empty() && balls.len() == 1 {
+            balls[0].1
+        } else {
+            0.0
+        };
+        let length = if only > 0.0 {
+            only
+        } else {
+            (inertia / mass).sqrt()
+        };
+        let body = self.bodies.add(position + centre, mass, inertia, length);
+        self.bodies.drive(Driven {
+            name: spec.name.clone(),
+            body,
+            dofs,
+        });
+        for (x, radius) in balls {
+            let offset = if only > 0.0 {
+                S::Vector::null()
+            } else {
+                x - centre
+            };
+            self.shapes.balls.push(Ball {
+                body,
+                radius,
+                offset,
+                material,
+            });
+        }
+        for (offset, shape) in surfaces {
+            self.shapes.surfaces.push(Carried {
+                body,
+                offset,
+                shape,
+                material,
+            });
+        }
+        Ok(())
+    }
+
+    fn check_dofs(&self, here: &str, spec: &BodySpec, has_mass: bool) -> Result<(), InputError> {
+        let dofs = spec.ordered(S::D);
+        let moves = crate::bodies::Dof::yields;
+        if dofs.iter().any(moves) && spec.mass.is_none() && !has_mass {
+            return Err(self.fail(
+                here,
+                format!(
+                    "the body `{}` moves under forces, so it needs a `mass`",
+                    spec.name
+                ),
+            ));
+        }
+        if dofs[S::D..].iter().any(moves) {
+            if S::D == 3 {
+                return Err(self.fail(format!("{here}.dofs"), "a first body cannot turn freely in three dimensions yet; fix or drive rx, ry and rz"));
+            }
+            if spec.inertia.is_none() && !has_mass {
+                return Err(self.fail(
+                    here,
+                    format!(
+                        "the body `{}` turns under moments, so it needs an `inertia`",
+                        spec.name
+                    ),
+                ));
+            }
+        }
+        Ok(())
+    }
+}

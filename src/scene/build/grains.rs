@@ -1,0 +1,181 @@
+//! Grains and the walls that come with scenes.
+
+use super::{Builder, Dimensional, Origin};
+use crate::bodies::Driven;
+use crate::geometry::shape::{Ball, Carried, HalfSpace, Surface};
+use crate::geometry::space::{Space, VectorLike};
+use crate::scene::case::GrainSpec;
+use crate::scene::sample;
+use crate::scene::source::{Fault, InputError};
+
+/// More grains than memory holds are a slip of the keyboard.
+const MOST_GRAINS: usize = 10_000_000;
+
+/// A grain to be: place, radius, material, density, velocity, spin, and where the case has it.
+type Seed<S> = (
+    <S as Space>::Vector,
+    f64,
+    u16,
+    f64,
+    <S as Space>::Vector,
+    <S as Space>::Spin,
+    Origin,
+);
+
+impl<S: Dimensional> Builder<'_, S> {
+    pub(super) fn grains(&mut self) -> Result<(), InputError> {
+        let mut found: Vec<Seed<S>> = Vec::new();
+        for (k, spec) in self.case.grains.iter().enumerate() {
+            let here = format!("grains.{k}");
+            match spec {
+                GrainSpec::List { material, grains } => {
+                    let (m, density) = self.material(&format!("{here}.material"), material)?;
+                    for (g, grain) in grains.iter().enumerate() {
+                        let here = format!("{here}.grains.{g}");
+                        let at = self.vector(&format!("{here}.at"), &grain.at)?;
+                        let radius = self.radius(&format!("{here}.radius"), grain.radius)?;
+                        let velocity = self.vector(&format!("{here}.velocity"), &grain.velocity)?;
+                        if !grain.spin.is_empty() && grain.spin.len() != S::Spin::N {
+                            return Err(self.fail(
+                                format!("{here}.spin"),
+                                format!("a spin has {} components here", S::Spin::N),
+                            ));
+                        }
+                        if grain.spin.iter().any(|x| !x.is_finite()) {
+                            return Err(self.fail(
+                                format!("{here}.spin"),
+                                "the components must be finite numbers",
+                            ));
+                        }
+                        found.push((
+                            at,
+                            radius,
+                            m,
+                            density,
+                            velocity,
+                            S::Spin::from_slice(&grain.spin),
+                            Origin::Grain(k, Some(g)),
+                        ));
+                    }
+                }
+                GrainSpec::Lattice {
+                    material,
+                    count,
+                    radius,
+                    low,
+                    high,
+                } => {
+                    let (m, density) = self.material(&format!("{here}.material"), material)?;
+                    for r in [radius.0, radius.1] {
+                        self.radius(&format!("{here}.radius"), r)?;
+                    }
+                    if radius.1 < radius.0 {
+                        return Err(
+                            self.fail(format!("{here}.radius"), "the smallest radius comes first")
+                        );
+                    }
+                    for (name, corner) in [("low", low), ("high", high)] {
+                        let path = format!("{here}.{name}");
+                        self.vector(&path, corner)?;
+                        if corner.is_empty() {
+                            return Err(self.source.locate(
+                                Fault::new(path, "a corner of the box is empty")
+                                    .expected(format!("{} numbers", S::D)),
+                            ));
+                        }
+                    }
+                    if *count > MOST_GRAINS {
+                        return Err(self.source.locate(
+                            Fault::new(
+                                format!("{here}.count"),
+                                format!("{count} grains are too many"),
+                            )
+                            .expected(format!("at most {MOST_GRAINS}")),
+                        ));
+                    }
+                    let periodic = self.shapes.periodic.period[0].is_some();
+                    let list =
+                        sample::lattice(S::D, periodic, *count, *radius, low, high, self.case.seed);
+                    if list.len() < *count {
+                        let message =
+                            format!("only {} of {count} grains fit into the box", list.len());
+                        return Err(self.source.locate(
+                            Fault::new(format!("{here}.count"), message)
+                                .expected("a larger box, smaller grains or fewer"),
+                        ));
+                    }
+                    let none = (S::Vector::null(), S::Spin::null());
+                    found.extend(list.into_iter().map(|(x, r)| {
+                        let at = S::Vector::from_slice(&x);
+                        (at, r, m, density, none.0, none.1, Origin::Grain(k, None))
+                    }));
+                }
+                GrainSpec::Scene {
+                    file,
+                    material,
+                    walls,
+                } => {
+                    let (m, density) = self.material(&format!("{here}.material"), material)?;
+                    let scene = self.scene_file(file)?;
+                    let none = (S::Vector::null(), S::Spin::null());
+                    found.extend(scene.balls.iter().map(|(x, r)| {
+                        let at = S::Vector::from_slice(x);
+                        (at, *r, m, density, none.0, none.1, Origin::Grain(k, None))
+                    }));
+                    if let Some(walls) = walls {
+                        let (m, _) = self.material(&format!("{here}.walls"), walls)?;
+                        for (w, wall) in scene.walls.iter().enumerate() {
+                            let shape = HalfSpace {
+                                normal: S::Vector::from_slice(&wall.normal),
+                                shown: 1.0,
+                            };
+                            self.add_wall(
+                                format!("wall_{w}"),
+                                S::Vector::from_slice(&wall.at),
+                                Box::new(shape),
+                                m,
+                            );
+                            self.origins.push(Origin::Grain(k, None));
+                        }
+                    }
+                }
+            }
+        }
+        // Neighbours in space become neighbours in memory.
+        let width = 4.0 * found.iter().map(|g| g.1).fold(0.0, f64::max);
+        let cell = |x: &S::Vector| -> Vec<i64> {
+            (0..S::D)
+                .rev()
+                .map(|k| (x[k] / width).floor() as i64)
+                .collect()
+        };
+        if width > 0.0 {
+            found.sort_by_cached_key(|g| cell(&g.0));
+        }
+        for (at, radius, material, density, velocity, spin, origin) in found {
+            let body = self.bodies.add_ball(at, radius, density);
+            self.origins.push(origin);
+            self.bodies.velocity[body as usize] = velocity;
+            self.bodies.spin[body as usize] = spin;
+            self.shapes.balls.push(Ball {
+                body,
+                radius,
+                offset: S::Vector::null(),
+                material,
+            });
+        }
+        Ok(())
+    }
+
+    fn add_wall(&mut self, name: String, at: S::Vector, shape: Box<dyn Surface<S>>, material: u16) {
+        let body = self.bodies.add(at, 1.0, 1.0, 1.0);
+        let dofs = vec![crate::bodies::Dof::Fixed; S::D + S::Spin::N];
+        self.bodies.drive(Driven { name, body, dofs });
+        self.shapes.surfaces.push(Carried {
+            body,
+            offset: S::Vector::null(),
+            shape,
+            material,
+        });
+    }
+}

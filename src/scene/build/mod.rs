@@ -1,0 +1,336 @@
+//! From a case to a scene that steps.
+
+mod first_body;
+mod grains;
+mod surface;
+
+pub use surface::Dimensional;
+
+use super::case::Case;
+use super::interfaces;
+use super::material::{Material, Shelf};
+use super::scene_file::{self, SceneFile};
+use super::source::{Fault, InputError, Source};
+use crate::bodies::Bodies;
+use crate::geometry::periodic::Periodic;
+use crate::geometry::shape::Shapes;
+use crate::geometry::space::{Plane, Solid, Space, VectorLike};
+use crate::laws::{Interface, SearchPath};
+use crate::solve;
+use crate::step::{Scheme, Simulation};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// A case that was read: the text, what it says, and where it stands.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The text, `--set` applied.
+    pub source: Source,
+    /// What it says.
+    pub case: Case,
+    /// Its file.
+    pub path: PathBuf,
+}
+
+/// A scene of either dimension.
+#[derive(Debug)]
+pub enum Scene {
+    /// Two dimensions.
+    Plane(Box<Built<Plane>>),
+    /// Three dimensions.
+    Solid(Box<Built<Solid>>),
+}
+
+/// A scene ready to step.
+#[derive(Debug)]
+pub struct Built<S: Space> {
+    /// The stepper.
+    pub simulation: Simulation<S>,
+    /// Material files read: name and text.
+    pub materials: Vec<(String, String)>,
+    /// The body under test and the names of the driven bodies, in their order.
+    pub names: Vec<String>,
+}
+
+/// Reads a case and applies `--set`s.
+///
+/// # Errors
+/// At file, line and column.
+pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
+    let mut source = Source::read(path)?;
+    for set in sets {
+        source.set(set)?;
+    }
+    let case: Case = source.parse()?;
+    super::check::numbers(&case).map_err(|f| source.locate(f))?;
+    Ok(Loaded {
+        source,
+        case,
+        path: path.to_owned(),
+    })
+}
+
+impl Loaded {
+    /// Builds the scene.
+    ///
+    /// # Errors
+    /// At file, line and column.
+    pub fn build(&self, path: &SearchPath) -> Result<Scene, InputError> {
+        if self.case.dimension == 2 {
+            Ok(Scene::Plane(Box::new(self.build_in::<Plane>(path)?)))
+        } else {
+            Ok(Scene::Solid(Box::new(self.build_in::<Solid>(path)?)))
+        }
+    }
+
+    /// Builds the scene in a dimension that must be the case's.
+    ///
+    /// # Errors
+    /// At file, line and column.
+    pub fn build_in<S: Dimensional>(&self, path: &SearchPath) -> Result<Built<S>, InputError> {
+        let shelf = Shelf::beside(&self.path);
+        let (densities, mut materials) = self.materials(&shelf)?;
+        let laws = interfaces::build(&self.case, &self.source, &shelf, path)?;
+        materials.extend(laws.files);
+        let mut builder = Builder::<S> {
+            case: &self.case,
+            source: &self.source,
+            folder: self.path.parent().map(Path::to_owned).unwrap_or_default(),
+            densities: densities
+                .into_iter()
+                .map(|(n, (k, d))| (n, (k, d * self.case.inertia_scaling)))
+                .collect(),
+            files: BTreeMap::new(),
+            origins: Vec::new(),
+            bodies: Bodies::default(),
+            shapes: Shapes {
+                balls: Vec::new(),
+                surfaces: Vec::new(),
+                periodic: Periodic {
+                    period: [
+                        self.case.periodic.x,
+                        self.case.periodic.y,
+                        self.case.periodic.z,
+                    ],
+                },
+            },
+        };
+        builder.grains()?;
+        builder.first_bodies()?;
+        let names = builder
+            .bodies
+            .driven
+            .iter()
+            .map(|d| d.name.clone())
+            .collect();
+        let simulation = builder.finish(laws.interfaces, laws.table)?;
+        Ok(Built {
+            simulation,
+            materials,
+            names,
+        })
+    }
+
+    /// Density of a material of the case (kg/m^3), without any scaling of inertia.
+    pub fn density(&self, name: &str) -> Option<f64> {
+        let (densities, _) = self.materials(&Shelf::beside(&self.path)).ok()?;
+        densities.get(name).map(|d| d.1)
+    }
+
+    /// Densities by material, and the texts of the files.
+    #[allow(clippy::type_complexity)]
+    fn materials(
+        &self,
+        shelf: &Shelf,
+    ) -> Result<(BTreeMap<String, (u16, f64)>, Vec<(String, String)>), InputError> {
+        let (mut densities, mut texts) = (BTreeMap::new(), Vec::new());
+        for (k, (name, file)) in self.case.materials.iter().enumerate() {
+            let source = shelf.read(file).map_err(|e| match e {
+                Err(error) => error,
+                Ok(missing) => self.source.locate(
+                    Fault::new(
+                        format!("materials.{name}"),
+                        format!("there is no file `{file}.ron` in materials/"),
+                    )
+                    .expected(format!("one of {}", missing.available))
+                    .nearest(missing.nearest.as_deref()),
+                ),
+            })?;
+            let material: Material = source.parse()?;
+            let density = material.density.value;
+            if !(density.is_finite() && density > 0.0) {
+                return Err(source.error_at(
+                    "density.value",
+                    format!("a density must be positive, got {density}"),
+                ));
+            }
+            densities.insert(name.clone(), (k as u16, density));
+            if !texts.iter().any(|t: &(String, String)| t.0 == *file) {
+                texts.push((file.clone(), source.text().to_owned()));
+            }
+        }
+        Ok((densities, texts))
+    }
+}
+
+struct Builder<'a, S: Space> {
+    case: &'a Case,
+    source: &'a Source,
+    folder: PathBuf,
+    densities: BTreeMap<String, (u16, f64)>,
+    files: BTreeMap<String, SceneFile>,
+    bodies: Bodies<S>,
+    shapes: Shapes<S>,
+    /// Where the case writes each body: the place in `grains`, in that list, or in `bodies`.
+    origins: Vec<Origin>,
+}
+
+/// The place of a body in the case.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Origin {
+    /// Of one of `grains`, and which of its list where it has one.
+    Grain(usize, Option<usize>),
+    /// One of `bodies`.
+    Body(usize),
+}
+
+impl Origin {
+    /// Its dotted path.
+    pub fn path(self) -> String {
+        match self {
+            Self::Grain(k, None) => format!("grains.{k}"),
+            Self::Grain(k, Some(g)) => format!("grains.{k}.grains.{g}"),
+            Self::Body(k) => format!("bodies.{k}"),
+        }
+    }
+}
+
+impl<S: Dimensional> Builder<'_, S> {
+    fn fail(&self, path: impl Into<String>, message: impl Into<String>) -> InputError {
+        self.source.locate(Fault::new(path, message))
+    }
+
+    fn material(&self, path: &str, name: &str) -> Result<(u16, f64), InputError> {
+        self.densities.get(name).copied().ok_or_else(|| {
+            let names: Vec<&str> = self.densities.keys().map(String::as_str).collect();
+            self.source.locate(
+                Fault::new(path, format!("the case has no material `{name}`"))
+                    .expected(format!("one of {}", names.join(", ")))
+                    .nearest(super::source::nearest(name, names.iter().copied())),
+            )
+        })
+    }
+
+    fn vector(&self, path: &str, values: &[f64]) -> Result<S::Vector, InputError> {
+        if values.is_empty() {
+            return Ok(S::Vector::null());
+        }
+        if values.len() != S::D {
+            let message = format!(
+                "{} components in a case of dimension {}",
+                values.len(),
+                S::D
+            );
+            return Err(self
+                .source
+                .locate(Fault::new(path, message).expected(format!("{} numbers", S::D))));
+        }
+        if values.iter().any(|x| !x.is_finite()) {
+            return Err(self.fail(path, "the components must be finite numbers"));
+        }
+        Ok(S::Vector::from_slice(values))
+    }
+
+    fn radius(&self, path: &str, radius: f64) -> Result<f64, InputError> {
+        if radius.is_finite() && radius > 0.0 {
+            return Ok(radius);
+        }
+        Err(self.source.locate(Fault::new(
+            path,
+            format!("a radius must be positive, got {radius}"),
+        )))
+    }
+
+    fn scene_file(&mut self, file: &str) -> Result<SceneFile, InputError> {
+        if let Some(scene) = self.files.get(file) {
+            return Ok(scene.clone());
+        }
+        let scene = scene_file::read(&self.folder.join(file), S::D)?;
+        self.files.insert(file.to_owned(), scene.clone());
+        Ok(scene)
+    }
+
+    fn finish(
+        self,
+        laws: Vec<Interface>,
+        table: crate::contact::detect::LawTable,
+    ) -> Result<Simulation<S>, InputError> {
+        let case = self.case;
+        let smallest = self
+            .shapes
+            .balls
+            .iter()
+            .map(|b| b.radius)
+            .fold(f64::INFINITY, f64::min);
+        let smallest = if smallest.is_finite() { smallest } else { 1.0 };
+        let alert = case.detection.alert.unwrap_or(0.05 * smallest);
+        let skin = case.detection.skin.unwrap_or(0.3 * smallest);
+        let gravity = self.vector("gravity", &case.gravity)?;
+        self.refuse_small_period(alert + skin)?;
+        let (source, mut simulation) = (
+            self.source,
+            Simulation::new(self.bodies, self.shapes, laws, table, alert, skin),
+        );
+        let bonds = simulation.laws.iter().any(|law| law.cohesion.is_some());
+        if let Some(reason) = solve::choose::refusal(case.solver.method, false, bonds) {
+            return Err(self.source.locate(Fault::new("solver.method", reason)));
+        }
+        simulation.gravity = gravity;
+        simulation.correction = case.solver.correction;
+        simulation.coupling = case.coupling;
+        simulation.scheme = Scheme {
+            h: case.time.step,
+            theta: case.time.theta,
+        };
+        simulation.solver = solve::Options {
+            tolerance: case.solver.tolerance,
+            norm: case.solver.norm,
+            max_iterations: case.solver.max_iterations,
+            test_every: case.solver.test_every,
+            relaxation: case.solver.relaxation,
+            accelerated: true,
+            method: case.solver.method,
+            parallel: false,
+        };
+        super::check::overlaps(&mut simulation, smallest, &self.origins)
+            .map_err(|f| source.locate(f))?;
+        Ok(simulation)
+    }
+
+    /// Two balls must not touch each other twice around a period.
+    fn refuse_small_period(&self, reach: f64) -> Result<(), InputError> {
+        let widest = self
+            .shapes
+            .balls
+            .iter()
+            .map(|b| b.radius)
+            .fold(0.0, f64::max);
+        for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
+            let period = self.shapes.periodic.period[k];
+            if period.is_some_and(|p| 2.0 * (2.0 * widest + reach) > p) && reach > 2.0 * widest {
+                let message = format!(
+                    "with the skin, grains see each other {reach:e} m apart, which reaches twice around the period `periodic.{name}`; make it smaller"
+                );
+                return Err(self.fail("detection.alert".to_owned(), message));
+            }
+            if period.is_some_and(|p| p < 8.0 * widest) {
+                let message = format!(
+                    "the period must be at least 4 diameters of the largest grain ({:e} m)",
+                    8.0 * widest
+                );
+                return Err(self.fail(format!("periodic.{name}"), message));
+            }
+        }
+        Ok(())
+    }
+}

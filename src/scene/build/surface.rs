@@ -1,0 +1,202 @@
+//! Surfaces of first bodies.
+
+use super::Builder;
+use crate::geometry::height_field::HeightField;
+use crate::geometry::polyline::Polyline;
+use crate::geometry::shape::{HalfSpace, Surface};
+use crate::geometry::space::{Plane, Solid, Space, VectorLike};
+use crate::scene::case::{ShapeSpec, Side};
+use crate::scene::profile;
+use crate::scene::source::InputError;
+use nalgebra::Vector2;
+
+/// Shapes that exist in one dimension only.
+pub trait Dimensional: Space {
+    /// A profile of points, left to right.
+    ///
+    /// # Errors
+    /// Why it is none, or that the dimension has no profiles.
+    fn profile(
+        points: Vec<(f64, f64)>,
+        side: Side,
+        period: Option<f64>,
+    ) -> Result<Box<dyn Surface<Self>>, String>;
+    /// A height field.
+    ///
+    /// # Errors
+    /// Why it is none, or that the dimension has no height fields.
+    fn height_field(
+        points: (usize, usize),
+        spacing: (f64, f64),
+        heights: Vec<f64>,
+        periodic: [bool; 2],
+    ) -> Result<Box<dyn Surface<Self>>, String>;
+}
+
+impl Dimensional for Plane {
+    fn profile(
+        points: Vec<(f64, f64)>,
+        side: Side,
+        period: Option<f64>,
+    ) -> Result<Box<dyn Surface<Self>>, String> {
+        let mut points: Vec<Vector2<f64>> = points
+            .into_iter()
+            .map(|(x, y)| Vector2::new(x, y))
+            .collect();
+        if points.windows(2).any(|w| w[1].x < w[0].x) {
+            return Err("the points of a profile must go from left to right".into());
+        }
+        if side == Side::Above {
+            points.reverse();
+        }
+        Ok(Box::new(
+            Polyline::new(points, period).map_err(|e| e.to_string())?,
+        ))
+    }
+    fn height_field(
+        _: (usize, usize),
+        _: (f64, f64),
+        _: Vec<f64>,
+        _: [bool; 2],
+    ) -> Result<Box<dyn Surface<Self>>, String> {
+        Err("a height field needs three dimensions; use a Profile or RoughProfile in two".into())
+    }
+}
+
+impl Dimensional for Solid {
+    fn profile(
+        _: Vec<(f64, f64)>,
+        _: Side,
+        _: Option<f64>,
+    ) -> Result<Box<dyn Surface<Self>>, String> {
+        Err("a profile needs two dimensions; use a HeightField in three".into())
+    }
+    fn height_field(
+        points: (usize, usize),
+        spacing: (f64, f64),
+        heights: Vec<f64>,
+        periodic: [bool; 2],
+    ) -> Result<Box<dyn Surface<Self>>, String> {
+        let field = HeightField::new(
+            points.0,
+            points.1,
+            [spacing.0, spacing.1],
+            heights,
+            periodic,
+        );
+        Ok(Box::new(field.map_err(|e| e.to_string())?))
+    }
+}
+
+/// A surface and its offset in the frame of its body.
+pub(super) type Placed<S> = (<S as Space>::Vector, Box<dyn Surface<S>>);
+
+impl<S: Dimensional> Builder<'_, S> {
+    pub(super) fn surface(&self, here: &str, shape: &ShapeSpec) -> Result<Placed<S>, InputError> {
+        let period = self.shapes.periodic.period[0];
+        let null = S::Vector::null();
+        let bad = |message: String| self.fail(here, message);
+        match shape {
+            ShapeSpec::HalfSpace { normal, at } => {
+                let n = self.vector(&format!("{here}.normal"), normal)?;
+                if n.norm() == 0.0 {
+                    return Err(self.fail(format!("{here}.normal"), "a normal must not be null"));
+                }
+                let at = self.vector(&format!("{here}.at"), at)?;
+                let shown = period.map_or(1.0, |p| 0.5 * p);
+                Ok((
+                    at,
+                    Box::new(HalfSpace {
+                        normal: n * (1.0 / n.norm()),
+                        shown,
+                    }),
+                ))
+            }
+            ShapeSpec::Profile { points, side } => {
+                // A chain that spans the period repeats.
+                let spans = |p: f64| {
+                    points.len() > 1
+                        && ((points[points.len() - 1].0 - points[0].0) / p - 1.0).abs() < 1e-9
+                };
+                let period = period.filter(|p| spans(*p));
+                Ok((
+                    null,
+                    S::profile(points.clone(), *side, period).map_err(bad)?,
+                ))
+            }
+            ShapeSpec::RoughProfile {
+                points,
+                rms,
+                hurst,
+                longest,
+                shortest,
+                height,
+                side,
+            } => {
+                let Some(period) = period else {
+                    return Err(bad("a rough profile needs a periodic x".into()));
+                };
+                let valid = *points >= 3
+                    && *rms >= 0.0
+                    && *shortest > 0.0
+                    && longest.is_none_or(|l| l > 0.0)
+                    && rms.is_finite()
+                    && hurst.is_finite();
+                if !valid || *points > 10_000_000 {
+                    return Err(bad(
+                        "a rough profile needs 3 to 10,000,000 points, rms >= 0, shortest > 0 and longest > 0".into(),
+                    ));
+                }
+                // Rail and wheel must not be each other's image.
+                let salt = here
+                    .bytes()
+                    .fold(17u64, |h, b| h.wrapping_mul(31).wrapping_add(u64::from(b)));
+                let longest = longest.unwrap_or(period);
+                let z = profile::rough(
+                    *points,
+                    period,
+                    *rms,
+                    *hurst,
+                    longest,
+                    *shortest,
+                    self.case.seed ^ salt,
+                );
+                let x = |k: usize| period * k as f64 / *points as f64;
+                let mut chain: Vec<(f64, f64)> = z
+                    .iter()
+                    .enumerate()
+                    .map(|(k, z)| (x(k), height + z))
+                    .collect();
+                chain.push((period, chain[0].1));
+                Ok((null, S::profile(chain, *side, Some(period)).map_err(bad)?))
+            }
+            ShapeSpec::HeightField {
+                points,
+                spacing,
+                heights,
+                rms,
+            } => {
+                let count = points.0.saturating_mul(points.1);
+                if count > 10_000_000 {
+                    return Err(bad("a height field has at most 10,000,000 points".into()));
+                }
+                let heights = match rms {
+                    Some(rms) => profile::noise(count, *rms, self.case.seed ^ 0x5eed),
+                    None => heights.clone(),
+                };
+                let p = self.shapes.periodic.period;
+                let fits = |axis: usize, n: usize, s: f64| {
+                    p[axis].is_some_and(|p| (n as f64 * s / p - 1.0).abs() < 1e-9)
+                };
+                let periodic = [fits(0, points.0, spacing.0), fits(1, points.1, spacing.1)];
+                Ok((
+                    null,
+                    S::height_field(*points, *spacing, heights, periodic).map_err(bad)?,
+                ))
+            }
+            ShapeSpec::Balls(_) | ShapeSpec::Cluster { .. } => {
+                Err(bad("balls are not a surface".into()))
+            }
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! W of a step, matrix-free from its bodies; assembled only when a method asks for the matrix.
+
+use crate::geometry::space::{Space, VectorLike};
+use crate::solve::local::block::{Block, BlockMatrix};
+use crate::solve::local::form::Delassus;
+use std::cell::{OnceCell, RefCell};
+
+/// What a component of a block pushes along.
+#[derive(Clone, Copy, Debug)]
+pub struct Axis<S: Space> {
+    /// Linear impulse of a unit.
+    pub linear: S::Vector,
+    /// Its moments about the two bodies.
+    pub angular: [S::Spin; 2],
+    /// 1/B of a bond; 1 of a component that is not there.
+    pub compliance: f64,
+}
+
+impl<S: Space> Axis<S> {
+    /// Whether it pushes at all.
+    pub fn pushes(&self) -> bool {
+        self.linear != S::Vector::null() || self.angular != [S::Spin::null(); 2]
+    }
+
+    /// The same in a bond of stiffness `b` over the step; not there where the stiffness is zero.
+    pub fn bonded(&self, b: f64) -> Self {
+        if b > 0.0 {
+            Self {
+                compliance: 1.0 / b,
+                ..*self
+            }
+        } else {
+            Self {
+                linear: S::Vector::null(),
+                angular: [S::Spin::null(); 2],
+                compliance: 1.0,
+            }
+        }
+    }
+}
+
+/// A block of unknowns.
+#[derive(Clone, Debug)]
+pub struct Unknown<S: Space, const D: usize> {
+    /// Pushed along the axes, and against them.
+    pub bodies: [u32; 2],
+    /// One a component.
+    pub axes: [Axis<S>; D],
+}
+
+/// Impulse and moment of a body.
+pub type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
+
+/// W of a step, from its bodies.
+pub struct Bodies<'a, S: Space, const D: usize> {
+    /// Inverse masses and inertias by body.
+    pub masses: &'a [(S::Vector, f64)],
+    /// The blocks.
+    pub unknowns: Vec<Unknown<S, D>>,
+    /// W_cc of every block; to be set once all are there.
+    pub diagonal: Vec<Block<D>>,
+    scratch: RefCell<Vec<Motion<S>>>,
+    matrix: OnceCell<BlockMatrix<D>>,
+}
+
+impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
+    /// Of bodies with these inverse masses and inertias, without unknowns yet.
+    pub fn new(masses: &'a [(S::Vector, f64)]) -> Self {
+        Self {
+            masses,
+            unknowns: Vec::new(),
+            diagonal: Vec::new(),
+            scratch: RefCell::new(Vec::new()),
+            matrix: OnceCell::new(),
+        }
+    }
+
+    /// M^-1 of an impulse and moment on a body.
+    pub fn mobility(&self, body: u32, (p, m): Motion<S>) -> Motion<S> {
+        let (mass, inertia) = &self.masses[body as usize];
+        (p.scaled_by(mass), m * *inertia)
+    }
+
+    /// Adds what the impulses of a block do to its bodies.
+    pub fn push(&self, c: usize, p: &[f64; D], motions: &mut [Motion<S>]) {
+        let unknown = &self.unknowns[c];
+        for (side, sign) in [(0, 1.0), (1, -1.0)] {
+            let mut impulse = S::Vector::null();
+            let mut moment = S::Spin::null();
+            for (axis, p) in unknown.axes.iter().zip(p) {
+                impulse += axis.linear * (sign * p);
+                moment += axis.angular[side] * (sign * p);
+            }
+            let body = unknown.bodies[side];
+            let (v, w) = self.mobility(body, (impulse, moment));
+            let motion = &mut motions[body as usize];
+            motion.0 += v;
+            motion.1 += w;
+        }
+    }
+
+    /// The velocities of a block, without its compliance.
+    pub fn relative(&self, c: usize, motions: &[Motion<S>]) -> [f64; D] {
+        let unknown = &self.unknowns[c];
+        let [a, b] = unknown.bodies.map(|b| &motions[b as usize]);
+        std::array::from_fn(|k| {
+            let axis = &unknown.axes[k];
+            axis.linear.dot(&a.0) + axis.angular[0].dot(&a.1)
+                - axis.linear.dot(&b.0)
+                - axis.angular[1].dot(&b.1)
+        })
+    }
+
+    /// The block W_cd.
+    pub fn coupling(&self, c: usize, d: usize) -> Block<D> {
+        let (x, y) = (&self.unknowns[c], &self.unknowns[d]);
+        let mut out = [[0.0; D]; D];
+        for (i, sign_i) in [(0, 1.0), (1, -1.0)] {
+            for (j, sign_j) in [(0, 1.0), (1, -1.0)] {
+                if x.bodies[i] != y.bodies[j] {
+                    continue;
+                }
+                for (l, axis) in y.axes.iter().enumerate() {
+                    let motion = self.mobility(y.bodies[j], (axis.linear, axis.angular[j]));
+                    for (k, own) in x.axes.iter().enumerate() {
+                        out[k][l] += sign_i
+                            * sign_j
+                            * (own.linear.dot(&motion.0) + own.angular[i].dot(&motion.1));
+                    }
+                }
+            }
+        }
+        if c == d {
+            for (k, axis) in x.axes.iter().enumerate() {
+                out[k][k] += axis.compliance;
+            }
+        }
+        out
+    }
+}
+
+impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
+    fn len(&self) -> usize {
+        self.unknowns.len()
+    }
+
+    fn diagonal(&self, c: usize) -> &Block<D> {
+        &self.diagonal[c]
+    }
+
+    fn velocity(&self, p: &[[f64; D]], q: &[[f64; D]], u: &mut [[f64; D]]) {
+        let mut motions = self.scratch.borrow_mut();
+        motions.clear();
+        motions.resize(self.masses.len(), (S::Vector::null(), S::Spin::null()));
+        for (c, p) in p.iter().enumerate() {
+            self.push(c, p, &mut motions);
+        }
+        for (c, u) in u.iter_mut().enumerate() {
+            *u = self.relative(c, &motions);
+            for k in 0..D {
+                u[k] += q[c][k] + self.unknowns[c].axes[k].compliance * p[c][k];
+            }
+        }
+    }
+
+    fn matrix(&self) -> &BlockMatrix<D> {
+        self.matrix.get_or_init(|| {
+            let mut of_body: Vec<Vec<u32>> = vec![Vec::new(); self.masses.len()];
+            for (c, unknown) in self.unknowns.iter().enumerate() {
+                for body in unknown.bodies {
+                    of_body[body as usize].push(c as u32);
+                }
+            }
+            let moves = |b: u32| {
+                let (mass, inertia) = &self.masses[b as usize];
+                *inertia > 0.0 || (0..S::D).any(|k| mass[k] > 0.0)
+            };
+            let mut out = BlockMatrix {
+                diagonal: self.diagonal.clone(),
+                starts: vec![0],
+                ..BlockMatrix::default()
+            };
+            for (c, unknown) in self.unknowns.iter().enumerate() {
+                let mut near: Vec<u32> = unknown
+                    .bodies
+                    .iter()
+                    .filter(|b| moves(**b))
+                    .flat_map(|b| of_body[*b as usize].iter().copied())
+                    .filter(|d| *d as usize != c)
+                    .collect();
+                near.sort_unstable();
+                near.dedup();
+                for d in near {
+                    out.columns.push(d);
+                    out.blocks.push(self.coupling(c, d as usize));
+                }
+                out.starts.push(out.columns.len() as u32);
+            }
+            out
+        })
+    }
+}
