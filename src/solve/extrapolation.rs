@@ -1,88 +1,119 @@
 //! Anderson's extrapolation of a fixed-point iteration p -> g(p) (type II: Walker and Ni 2011),
 //! safeguarded: a start that the iteration itself finds worse is taken back.
 
-/// The last differences of the map, and their Gram matrix.
+use pulp::{Arch, Simd, WithSimd};
+
+/// Differences remembered at most.
+const MOST: usize = 8;
+
+/// A number by difference remembered, zero where there is none.
+type Lanes = [f64; MOST];
+
+/// The last differences of the map, those of one unknown side by side, and their Gram matrix.
 #[derive(Debug)]
 struct Memory {
     /// Changes of g(p).
-    dg: Vec<Vec<f64>>,
+    dg: Vec<Lanes>,
     /// Changes of f = g(p) - p.
-    df: Vec<Vec<f64>>,
-    gram: Vec<Vec<f64>>,
+    df: Vec<Lanes>,
+    gram: [Lanes; MOST],
+    /// df . f.
+    along: Lanes,
     next: usize,
     size: usize,
+    most: usize,
 }
 
 impl Memory {
-    fn new(size: usize, n: usize) -> Self {
+    fn new(most: usize, n: usize) -> Self {
         Self {
-            dg: vec![vec![0.0; n]; size],
-            df: vec![vec![0.0; n]; size],
-            gram: vec![vec![0.0; size]; size],
+            dg: vec![[0.0; MOST]; n],
+            df: vec![[0.0; MOST]; n],
+            gram: [[0.0; MOST]; MOST],
+            along: [0.0; MOST],
             next: 0,
             size: 0,
+            most: most.clamp(1, MOST),
         }
     }
 
     fn clear(&mut self) {
+        self.dg.fill([0.0; MOST]);
+        self.df.fill([0.0; MOST]);
         (self.size, self.next) = (0, 0);
     }
 
+    /// Takes in the differences to g0 and f0.
+    #[inline(always)]
     fn push(&mut self, g: &[f64], g0: &[f64], f: &[f64], f0: &[f64]) {
         let k = self.next;
-        subtract(g, g0, &mut self.dg[k]);
-        subtract(f, f0, &mut self.df[k]);
-        self.next = (k + 1) % self.dg.len();
-        self.size = (self.size + 1).min(self.dg.len());
-        for j in 0..self.size {
-            let x = dot(&self.df[k], &self.df[j]);
-            (self.gram[k][j], self.gram[j][k]) = (x, x);
+        self.next = (k + 1) % self.most;
+        self.size = (self.size + 1).min(self.most);
+        let (mut gram, mut along, mut own) = ([0.0; MOST], [0.0; MOST], (0.0, 0.0));
+        let old = g0.iter().zip(f0);
+        let rows = self.dg.iter_mut().zip(&mut self.df);
+        for (((dg, df), (g0, f0)), (g, f)) in rows.zip(old).zip(g.iter().zip(f)) {
+            let d = f - f0;
+            for j in 0..MOST {
+                gram[j] += d * df[j];
+                along[j] += f * df[j];
+            }
+            // Written last: a vector read over a number just written waits for it.
+            dg[k] = g - g0;
+            df[k] = d;
+            own.0 += d * d;
+            own.1 += f * d;
         }
+        (gram[k], along[k]) = own;
+        for j in 0..MOST {
+            (self.gram[k][j], self.gram[j][k]) = (gram[j], gram[j]);
+        }
+        self.along = along;
     }
 
-    /// p = g - sum gamma_k dg_k, where gamma makes f - sum gamma_k df_k least; false where that fails.
-    fn extrapolate(&self, g: &[f64], f: &[f64], p: &mut [f64]) -> bool {
+    /// gamma that makes f - sum gamma_k df_k least; none where that fails.
+    fn weights(&self) -> Option<Lanes> {
         /// Keeps the sum of squares away from singular.
         const RIDGE: f64 = 1e-10;
         let n = self.size;
-        let mut a = vec![vec![0.0; n + 1]; n];
-        let most = (0..n).fold(0.0f64, |m, k| m.max(self.gram[k][k]));
-        for (i, row) in a.iter_mut().enumerate() {
-            row[..n].copy_from_slice(&self.gram[i][..n]);
-            row[i] *= 1.0 + RIDGE;
-            row[n] = dot(&self.df[i], f);
+        let (mut a, mut b) = (self.gram, self.along);
+        let most = (0..n).fold(0.0f64, |m, k| m.max(a[k][k]));
+        for (k, row) in a.iter_mut().enumerate() {
+            row[k] *= 1.0 + RIDGE;
         }
         // Elimination without pivots: the matrix is positive.
         for k in 0..n {
             if a[k][k] <= 1e-15 * most {
-                return false;
+                return None;
             }
-            let pivot = a[k].clone();
-            for row in &mut a[k + 1..] {
-                let l = row[k] / pivot[k];
-                for (x, y) in row.iter_mut().zip(&pivot).skip(k) {
-                    *x -= l * y;
+            for i in k + 1..n {
+                let l = a[i][k] / a[k][k];
+                for j in k..n {
+                    a[i][j] -= l * a[k][j];
                 }
+                b[i] -= l * b[k];
             }
         }
         for k in (0..n).rev() {
-            let known: f64 = (k + 1..n).map(|j| a[k][j] * a[j][n]).sum();
-            a[k][n] = (a[k][n] - known) / a[k][k];
+            let known: f64 = (k + 1..n).map(|j| a[k][j] * b[j]).sum();
+            b[k] = (b[k] - known) / a[k][k];
         }
-        p.copy_from_slice(g);
-        for (row, dg) in a.iter().zip(&self.dg) {
-            let gamma = row[n];
-            for (p, d) in p.iter_mut().zip(dg) {
-                *p -= gamma * d;
-            }
-        }
-        p.iter().all(|x| x.is_finite())
+        b[n..].fill(0.0);
+        b.iter().all(|x| x.is_finite()).then_some(b)
     }
-}
 
-fn subtract(a: &[f64], b: &[f64], out: &mut [f64]) {
-    for (o, (a, b)) in out.iter_mut().zip(a.iter().zip(b)) {
-        *o = a - b;
+    /// p = g - sum gamma_k dg_k.
+    #[inline(always)]
+    fn extrapolate(&self, gamma: &Lanes, g: &[f64], p: &mut [f64]) {
+        for ((p, g), dg) in p.iter_mut().zip(g).zip(&self.dg) {
+            let mut x: Lanes = std::array::from_fn(|k| gamma[k] * dg[k]);
+            for half in [4, 2, 1] {
+                for k in 0..half {
+                    x[k] += x[k + half];
+                }
+            }
+            *p = g - x[0];
+        }
     }
 }
 
@@ -113,8 +144,20 @@ pub struct Extrapolation {
     f0: Vec<f64>,
 }
 
+/// [`Extrapolation::next`] for the vectors at hand.
+struct Next<'a>(&'a mut Extrapolation, &'a [f64]);
+
+impl WithSimd for Next<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) {
+        self.0.choose(self.1);
+    }
+}
+
 impl Extrapolation {
-    /// Begins at a point, remembering so many differences.
+    /// Begins at a point, remembering so many differences, eight at most.
     pub fn new(memory: usize, start: &[f64]) -> Self {
         let zero = vec![0.0; start.len()];
         Self {
@@ -129,9 +172,17 @@ impl Extrapolation {
 
     /// Takes in g(start) and chooses the next start.
     pub fn next(&mut self, g: &[f64]) {
+        // The same operations in the same order, with whatever vectors the machine has.
+        Arch::new().dispatch(Next(self, g));
+    }
+
+    #[inline(always)]
+    fn choose(&mut self, g: &[f64]) {
         /// Growth of the squared change that an extrapolation may cause.
         const GROWTH: f64 = 4.0;
-        subtract(g, &self.start, &mut self.f);
+        for ((f, g), start) in self.f.iter_mut().zip(g).zip(&self.start) {
+            *f = g - start;
+        }
         let change = dot(&self.f, &self.f);
         if let Some(before) = self.before {
             if change > GROWTH * before {
@@ -144,12 +195,14 @@ impl Extrapolation {
         }
         self.before = Some(change);
         self.g0.copy_from_slice(g);
-        self.f0.copy_from_slice(&self.f);
-        let went = self.memory.size > 0 && self.memory.extrapolate(g, &self.f, &mut self.start);
-        if !went {
+        std::mem::swap(&mut self.f0, &mut self.f);
+        if self.memory.size > 0 {
+            if let Some(gamma) = self.memory.weights() {
+                return self.memory.extrapolate(&gamma, g, &mut self.start);
+            }
             self.memory.clear();
-            self.start.copy_from_slice(g);
         }
+        self.start.copy_from_slice(g);
     }
 }
 

@@ -56,9 +56,9 @@ impl<const D: usize> Solver<D> for Auto {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
         /// Factorisations' worth of sweeps before the interior point, at a loose and at a tight tolerance.
         const LOOSE: f64 = 40.0;
-        const TIGHT: f64 = 10.0;
+        const TIGHT: f64 = 20.0;
         self.used.borrow_mut().clear();
-        let blocks = form.w.matrix().blocks.len() + form.len();
+        let blocks = form.w.matrix().others() + form.len();
         let per = sweeps_per_factorisation((blocks * D * D) as f64, form.len() as f64);
         let worth = if budget.tolerance >= 1e-5 {
             LOOSE

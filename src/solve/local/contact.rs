@@ -18,12 +18,16 @@ pub struct Local<const D: usize> {
     iwnn: f64,
     /// A = W_tt - W_tn W_nt / W_nn (in the plane its one entry).
     schur: [[f64; 2]; 2],
+    mu: f64,
     lambda: f64,
 }
 
 impl<const D: usize> Local<D> {
-    /// From the diagonal block.
-    pub fn new(w: &Block<D>) -> Self {
+    /// From the diagonal block and the friction of Coulomb's law.
+    pub fn new(w: &Block<D>, mu: f64) -> Self {
+        /// What is added to an A that is singular, as a share of W: impulses along it then answer its
+        /// velocities as far as friction lets them.
+        const LEAST: f64 = 1e-12;
         let iwnn = if w[0][0] > 0.0 { 1.0 / w[0][0] } else { 0.0 };
         let mut schur = [[0.0; 2]; 2];
         for i in 1..D {
@@ -31,19 +35,22 @@ impl<const D: usize> Local<D> {
                 schur[i - 1][j - 1] = w[i][j] - w[i][0] * w[0][j] * iwnn;
             }
         }
-        let determinant = if D == 2 {
-            schur[0][0]
-        } else {
-            schur[0][0] * schur[1][1] - schur[0][1] * schur[1][0]
+        let size = (1..D).fold(w[0][0].abs(), |m, k| m.max(w[k][k].abs()));
+        let determinant = |a: &[[f64; 2]; 2]| {
+            if D == 2 {
+                a[0][0]
+            } else {
+                a[0][0] * a[1][1] - a[0][1] * a[1][0]
+            }
         };
-        let size = schur[0][0].abs().max(schur[1][1].abs());
-        let floor = if D == 2 {
-            1e-14 * w[1][1].abs()
-        } else {
-            1e-14 * size * size
-        };
+        let least = LEAST * size;
+        if determinant(&schur) <= if D == 2 { least } else { least * size } {
+            schur[0][0] += least;
+            schur[1][1] += least;
+        }
+        let determinant = determinant(&schur);
         let mut inverse = [[0.0; D]; D];
-        if determinant > floor && iwnn > 0.0 {
+        if determinant > 0.0 && iwnn > 0.0 {
             // Inverse of a block matrix by its Schur complement.
             let s = if D == 2 {
                 [[1.0 / schur[0][0], 0.0], [0.0, 0.0]]
@@ -71,29 +78,30 @@ impl<const D: usize> Local<D> {
             inverse,
             iwnn,
             schur,
+            mu,
             lambda: 0.0,
         }
     }
 
     /// The impulse that answers the free velocity `f` of this contact.
-    #[inline]
-    pub fn solve(&mut self, f: &[f64; D], mu: f64) -> [f64; D] {
+    #[inline(always)]
+    pub fn solve(&mut self, f: &[f64; D]) -> [f64; D] {
         if D == 2 {
-            self.solve_plane(f, mu)
+            self.solve_plane(f)
         } else {
-            self.solve_space(f, mu)
+            self.solve_space(f)
         }
     }
 
     /// The four branches in the plane; all are formed and one is chosen, since a processor cannot guess
     /// which it will be.
     #[inline(always)]
-    fn solve_plane(&self, f: &[f64; D], mu: f64) -> [f64; D] {
+    fn solve_plane(&self, f: &[f64; D]) -> [f64; D] {
         let stick = times(&self.inverse, f);
         // Sliding: p_t = -s mu p_n, s the sign of u_t, which is that of the impulse it lacks.
-        let s = mu.copysign(stick[1]);
+        let s = self.mu.copysign(stick[1]);
         let slide_n = -f[0] / (self.w[0][0] - s * self.w[0][1]);
-        let sticks = stick[0] < 0.0 && stick[1].abs() <= -mu * stick[0];
+        let sticks = stick[0] < 0.0 && stick[1].abs() <= -self.mu * stick[0];
         let n = select_unpredictable(sticks, -stick[0], slide_n);
         let t = select_unpredictable(sticks, -stick[1], -s * slide_n);
         let closed = f[0] < 0.0 && self.iwnn > 0.0;
@@ -103,8 +111,9 @@ impl<const D: usize> Local<D> {
         p
     }
 
-    #[inline]
-    fn solve_space(&mut self, f: &[f64; D], mu: f64) -> [f64; D] {
+    #[inline(always)]
+    fn solve_space(&mut self, f: &[f64; D]) -> [f64; D] {
+        let mu = self.mu;
         let mut p = [0.0; D];
         if f[0] >= 0.0 || self.iwnn == 0.0 {
             return p;
@@ -120,7 +129,7 @@ impl<const D: usize> Local<D> {
                 return stick.map(|x| -x);
             }
         }
-        self.slide_space(f, mu)
+        self.slide_space(f)
     }
 
     /// The same for the other laws: projections with the block's own step, since none of them couples
@@ -159,9 +168,9 @@ impl<const D: usize> Local<D> {
         p
     }
 
-    fn slide_space(&mut self, f: &[f64; D], mu: f64) -> [f64; D] {
+    fn slide_space(&mut self, f: &[f64; D]) -> [f64; D] {
         const STEPS: usize = 30;
-        let (w, a) = (&self.w, &self.schur);
+        let (w, a, mu) = (&self.w, &self.schur, self.mu);
         let b = [
             f[1] - w[1][0] * f[0] * self.iwnn,
             f[2] - w[2][0] * f[0] * self.iwnn,
@@ -260,8 +269,7 @@ mod tests {
             });
             let f: [f64; D] = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
             let mu = rng.random_range(0.0..0.8);
-            let mut local = Local::new(&w);
-            let p = local.solve(&f, mu);
+            let p = Local::new(&w, mu).solve(&f);
             let r = residual(&w, &f, &p, mu);
             assert!(r < 1e-12, "{r} {w:?} {f:?} {mu} {p:?}");
         }

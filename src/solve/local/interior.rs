@@ -212,7 +212,6 @@ impl<const D: usize> Scaled<'_, D> {
         let mut a = Rows::default();
         a.starts.push(0);
         for c in 0..self.w.len() {
-            let (columns, blocks) = self.w.row(c);
             for i in 0..self.size(c) {
                 let left = if i == 0 { self.over[c] } else { 1.0 };
                 let push = |a: &mut Rows, e: usize, row: &[f64; D]| {
@@ -231,12 +230,12 @@ impl<const D: usize> Scaled<'_, D> {
                     }
                 };
                 let mut put = false;
-                for (e, block) in columns.iter().zip(blocks) {
-                    if !put && *e as usize > c {
+                for (e, block) in self.w.row(c) {
+                    if !put && e > c {
                         own(&mut a);
                         put = true;
                     }
-                    push(&mut a, *e as usize, &block[i]);
+                    push(&mut a, e, &block[i]);
                 }
                 if !put {
                     own(&mut a);

@@ -163,11 +163,9 @@ impl<const D: usize> Prox<'_, D> {
         let mut b = Vec::with_capacity(active.len() * D);
         for &c in &active {
             let s = slopes(&p[c], &u[c], &self.form.laws[c], self.rho[c]);
-            let (columns, blocks) = w.row(c);
             // What open contacts do, W_cd d_d, goes to the right.
             let mut known = [0.0; D];
-            for (e, block) in columns.iter().zip(blocks) {
-                let e = *e as usize;
+            for (e, block) in w.row(c) {
                 if place[e] == usize::MAX {
                     for i in 0..D {
                         for j in 0..D {
@@ -190,12 +188,12 @@ impl<const D: usize> Prox<'_, D> {
                 }
                 b.push(right);
                 let mut put = false;
-                for (e, block) in columns.iter().zip(blocks) {
-                    let at = place[*e as usize];
+                for (e, block) in w.row(c) {
+                    let at = place[e];
                     if at == usize::MAX {
                         continue;
                     }
-                    if !put && *e as usize > c {
+                    if !put && e > c {
                         push(&mut a, place[c], &own);
                         put = true;
                     }

@@ -6,6 +6,7 @@ use super::form::{Form, largest};
 use super::law::Law;
 use super::state::{Best, Budget, Solver, State};
 use crate::solve::error::Norm;
+use pulp::{Arch, Simd, WithSimd};
 
 /// How contacts are visited.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,7 +61,12 @@ impl<'a, const D: usize> Sweep<'a, D> {
             w,
             q: form.q,
             laws: form.laws,
-            locals: w.diagonal.iter().map(Local::new).collect(),
+            locals: w
+                .diagonal
+                .iter()
+                .zip(form.laws)
+                .map(|(w, law)| Local::new(w, law.friction()))
+                .collect(),
             reach: w
                 .diagonal
                 .iter()
@@ -82,7 +88,7 @@ impl<'a, const D: usize> Sweep<'a, D> {
     fn visit(&mut self, c: usize, p: &mut [[f64; D]], relaxation: f64) {
         let f = self.w.gather(c, p, self.q[c]);
         let new = match self.laws[c] {
-            Law::Coulomb(mu) => self.locals[c].solve(&f, mu),
+            Law::Coulomb(_) => self.locals[c].solve(&f),
             law => self.locals[c].solve_rare(&f, &law, &p[c], p),
         };
         let old = p[c];
@@ -101,10 +107,7 @@ impl<'a, const D: usize> Sweep<'a, D> {
 
     /// All contacts once.
     pub fn forward(&mut self, p: &mut [[f64; D]], relaxation: f64) {
-        self.change = 0.0;
-        for c in 0..p.len() {
-            self.visit(c, p, relaxation);
-        }
+        Arch::new().dispatch(Forward(self, p, relaxation));
     }
 
     /// All contacts once, in an order.
@@ -120,6 +123,22 @@ impl<'a, const D: usize> Sweep<'a, D> {
         self.change = 0.0;
         for c in (0..p.len()).rev() {
             self.visit(c, p, relaxation);
+        }
+    }
+}
+
+/// [`Sweep::forward`] for the vectors at hand.
+struct Forward<'s, 'a, const D: usize>(&'s mut Sweep<'a, D>, &'s mut [[f64; D]], f64);
+
+impl<const D: usize> WithSimd for Forward<'_, '_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) {
+        let Self(sweep, p, relaxation) = self;
+        sweep.change = 0.0;
+        for c in 0..p.len() {
+            sweep.visit(c, p, relaxation);
         }
     }
 }

@@ -175,11 +175,7 @@ impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
                 let (mass, inertia) = &self.masses[b as usize];
                 *inertia > 0.0 || (0..S::D).any(|k| mass[k] > 0.0)
             };
-            let mut out = BlockMatrix {
-                diagonal: self.diagonal.clone(),
-                starts: vec![0],
-                ..BlockMatrix::default()
-            };
+            let mut out = BlockMatrix::new(self.diagonal.clone());
             for (c, unknown) in self.unknowns.iter().enumerate() {
                 let mut near: Vec<u32> = unknown
                     .bodies
@@ -191,10 +187,9 @@ impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
                 near.sort_unstable();
                 near.dedup();
                 for d in near {
-                    out.columns.push(d);
-                    out.blocks.push(self.coupling(c, d as usize));
+                    out.push(d as usize, &self.coupling(c, d as usize));
                 }
-                out.starts.push(out.columns.len() as u32);
+                out.end_row();
             }
             out
         })
