@@ -65,9 +65,10 @@ impl Memory {
             own.1 += f * d;
         }
         (gram[k], along[k]) = own;
-        for j in 0..MOST {
-            (self.gram[k][j], self.gram[j][k]) = (gram[j], gram[j]);
+        for (row, x) in self.gram.iter_mut().zip(gram) {
+            row[k] = x;
         }
+        self.gram[k] = gram;
         self.along = along;
     }
 
@@ -86,12 +87,13 @@ impl Memory {
             if a[k][k] <= 1e-15 * most {
                 return None;
             }
-            for i in k + 1..n {
-                let l = a[i][k] / a[k][k];
-                for j in k..n {
-                    a[i][j] -= l * a[k][j];
+            let (pivot, right) = (a[k], b[k]);
+            for (row, b) in a.iter_mut().zip(&mut b).take(n).skip(k + 1) {
+                let l = row[k] / pivot[k];
+                for (x, y) in row.iter_mut().zip(&pivot).skip(k) {
+                    *x -= l * y;
                 }
-                b[i] -= l * b[k];
+                *b -= l * right;
             }
         }
         for k in (0..n).rev() {

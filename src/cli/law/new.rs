@@ -35,7 +35,7 @@ enum Language {
 const HEADER: &str = include_str!("../../../plugins/abi/include/fretwork.h");
 const MODULE: &str = include_str!("templates/fretwork.f90");
 /// The safe crate and the ABI, so that a law builds anywhere.
-const CRATES: [(&str, &str); 6] = [
+const CRATES: [(&str, &str); 7] = [
     (
         "fretwork-abi/src/lib.rs",
         include_str!("../../../plugins/abi/src/lib.rs"),
@@ -51,6 +51,10 @@ const CRATES: [(&str, &str); 6] = [
     (
         "fretwork-law/src/table.rs",
         include_str!("../../../plugins/sdk/src/table.rs"),
+    ),
+    (
+        "fretwork-law/src/testing.rs",
+        include_str!("../../../plugins/sdk/src/testing.rs"),
     ),
     (
         "fretwork-law/src/traits.rs",
