@@ -51,7 +51,7 @@ fn run<const D: usize>(made: &Made<D>, method: Method, norm: Norm) -> (State<D>,
     let error = made.error(p, norm);
     let gap = (error - state.error).abs();
     assert!(
-        gap <= 1e-6 * error + 1e-13,
+        gap <= 1e-6 * error + 1e-13 + made.rounding(p),
         "{name}: says {:e}, has {error:e}",
         state.error
     );

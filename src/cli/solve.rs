@@ -133,6 +133,16 @@ fn check_out(out: &Path, problems: &[PathBuf]) -> Result<(), Failure> {
     if out.is_dir() || out.file_name().is_none() {
         return refuse("a file is expected, not a folder");
     }
+    if let Ok(there) = std::fs::symlink_metadata(out) {
+        if !there.is_file() {
+            return refuse("this is not a plain file; give the name of one, or of a new one");
+        }
+        if there.permissions().readonly() {
+            return refuse(
+                "this file may not be written; choose another, or change its permissions",
+            );
+        }
+    }
     let folder = out.parent().unwrap_or(Path::new(""));
     if !folder.as_os_str().is_empty() && !folder.is_dir() {
         return refuse("there is no such folder");

@@ -12,10 +12,15 @@
 //! crossed a packing; the second part sees that: f is the share of the step's work that is out of
 //! balance, so f^2 is the kinetic energy of what is not carried, relative to what is.
 //!
+//! r_c is what the natural map leaves or [`lost`], whichever is larger. The work of the step counts for no
+//! less than sum_c rho_c |u_free,c|^2: where nothing is to be carried it is an error itself.
+//!
 //! A scene scaled in length, mass or time has the same figures.
 //!
 //! [`Norm::Field`]: error = |r| / max(|u|, |u_free|, |p|) with rho = 1: the field's own figure (Siconos'
 //! `fc3d_compute_error`), for problems from files. It adds impulses and velocities, so it depends on units.
+//! Solvers meet it with two more that it does not hold: [`lost`], and |r| / max(|u|, |u_free|) where that is above a half, without
+//! which a problem that has no solution would be solved by impulses without bound.
 
 use serde::Deserialize;
 
@@ -47,11 +52,28 @@ impl Norm {
     }
 }
 
+/// What the natural map does not see of a contact: it shrinks u_n < 0 by 1 + mu^2 where the contact slides,
+/// so that with a large mu no impulse at all would pass for a solution. What it loses of min(p_n/rho, u_n),
+/// which is 0 in Signorini's law.
+#[inline(always)]
+pub fn lost(p_n: f64, u_n: f64, mu: f64) -> f64 {
+    let squared = (mu * mu).min(f64::MAX);
+    p_n.min(u_n) * (squared / (1.0 + squared))
+}
+
+/// The residual over velocities alone, where it is of their size: impulses that grow without bound, since no
+/// answer exists, would hide it.
+pub fn unbounded(residual: f64) -> f64 {
+    if residual > 0.5 { residual } else { 0.0 }
+}
+
 /// What residuals are measured against.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Scale {
     /// |u_free|^2 (m^2/s^2).
     pub free: f64,
+    /// Sum of rho |u_free|^2 (J).
+    pub energy: f64,
     /// |v - v_free|_M^2 (J).
     pub work: f64,
 }
@@ -117,8 +139,13 @@ impl Sums {
     pub fn error(&self, norm: Norm, scale: &Scale) -> f64 {
         let local = self.local(norm, scale.free);
         match norm {
-            Norm::Velocity | Norm::Field => local,
-            Norm::Balance => local.max(over(self.power, scale.work).powi(2)),
+            Norm::Velocity => local,
+            Norm::Field => local.max(unbounded(over(
+                self.residual.sqrt(),
+                self.velocity.max(scale.free).sqrt(),
+            ))),
+            // Where nothing is carried the work is itself an error: what contacts could take at most is not.
+            Norm::Balance => local.max(over(self.power, scale.work.max(scale.energy)).powi(2)),
         }
     }
 }

@@ -441,7 +441,7 @@ fn measure_rows<S: Space, R: Row<S>>(
 }
 
 /// What the error is measured against, at the velocities at hand.
-fn scale<S: Space>(problem: &Problem<S>, free: f64) -> Scale {
+fn scale<S: Space>(problem: &Problem<S>, (free, energy): (f64, f64)) -> Scale {
     let mut work = 0.0;
     let bodies = problem
         .lines
@@ -460,11 +460,11 @@ fn scale<S: Space>(problem: &Problem<S>, free: f64) -> Scale {
             work += ds.dot(&ds) / line.is;
         }
     }
-    Scale { free, work }
+    Scale { free, energy, work }
 }
 
-/// |u_free|^2 over all contacts; leaves the free velocities in the lines.
-fn free_velocity<S: Space>(problem: &mut Problem<S>) -> f64 {
+/// |u_free|^2 and rho |u_free|^2 over all contacts; leaves the free velocities in the lines.
+fn free_velocity<S: Space>(problem: &mut Problem<S>) -> (f64, f64) {
     for ((line, free), length) in problem
         .lines
         .iter_mut()
@@ -475,15 +475,19 @@ fn free_velocity<S: Space>(problem: &mut Problem<S>) -> f64 {
         line.s = free.1 * *length;
     }
     let lines = Lines::new(&mut problem.lines);
-    squared(&problem.plain, &lines)
-        + squared(&problem.full, &lines)
-        + squared(&problem.general, &lines)
+    let (a, b) = squared(&problem.plain, &lines);
+    let (c, d) = squared(&problem.full, &lines);
+    let (e, f) = squared(&problem.general, &lines);
+    (a + c + e, b + d + f)
 }
 
-fn squared<S: Space, R: Row<S>>(rows: &[R], lines: &Lines<S>) -> f64 {
-    let of = |row: &R| {
+fn squared<S: Space, R: Row<S>>(rows: &[R], lines: &Lines<S>) -> (f64, f64) {
+    let mut sums = (0.0, 0.0);
+    for row in rows {
         let (a, b) = lines.read(row.bodies());
-        row.speed(&a, &b)
-    };
-    rows.iter().map(of).sum()
+        let speed = row.speed(&a, &b);
+        sums.0 += speed;
+        sums.1 += row.rho() * speed;
+    }
+    sums
 }

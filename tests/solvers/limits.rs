@@ -230,3 +230,139 @@ fn no_time_and_no_iterations() {
     at_once::<2>();
     at_once::<3>();
 }
+
+/// A problem of one contact from its block.
+fn single<const D: usize>(w: [[f64; D]; D], q: [f64; D], mu: f64) -> LocalProblem {
+    let entries: Vec<(u32, u32, f64)> = (0..D * D)
+        .map(|k| ((k / D) as u32, (k % D) as u32, w[k / D][k % D]))
+        .collect();
+    LocalProblem {
+        dimension: D,
+        w: fretwork::solve::local::Csr::from_triplets(D, D, &entries),
+        q: q.to_vec(),
+        mu: vec![mu],
+    }
+}
+
+/// Bodies that yield along some directions only: the slip of the others is given, and friction goes against it.
+#[test]
+fn blocks_of_less_than_full_rank() {
+    let r = 0.3f64.hypot(1.0);
+    let problems = [
+        (
+            single([[1.0, 0.0], [0.0, 0.0]], [-1.0, -1.0], 0.5),
+            vec![1.0, 0.5],
+        ),
+        (
+            single([[1.0, 0.0], [0.0, 0.0]], [-1.0, 1.0], 0.5),
+            vec![1.0, -0.5],
+        ),
+        // u_n = p_n + p_t/2 - 1 = 0 and p_t = mu p_n, against u_t < 0.
+        (
+            single([[1.0, 0.5], [0.5, 0.25]], [-1.0, -1.0], 0.3),
+            vec![1.0 / 1.15, 0.3 / 1.15],
+        ),
+        (
+            single(
+                [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+                [-1.0, -1.0, 0.3],
+                0.5,
+            ),
+            vec![1.0, 0.5 / r, -0.15 / r],
+        ),
+    ];
+    for (problem, expected) in problems {
+        for method in all() {
+            let limits = Limits {
+                max_iterations: 20_000,
+                ..LIMITS
+            };
+            let outcome = solve(&problem, method, &limits);
+            let name = method.name();
+            assert!(
+                outcome.converged,
+                "{name} on {problem:?}: {:e}",
+                outcome.error
+            );
+            for (p, e) in outcome.p.iter().zip(&expected) {
+                assert!(
+                    (p - e).abs() < 1e-6,
+                    "{name}: {:?}, not {expected:?}",
+                    outcome.p
+                );
+            }
+        }
+    }
+    // One tangent yields: |p_t| = mu p_n along (u_1, u_2) with u_1 = p_1 - 0.3.
+    let problem = single(
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]],
+        [-1.0, -0.3, 0.3],
+        0.5,
+    );
+    for method in all() {
+        let limits = Limits {
+            max_iterations: 20_000,
+            ..LIMITS
+        };
+        let outcome = solve(&problem, method, &limits);
+        assert!(outcome.converged, "{}: {:e}", method.name(), outcome.error);
+        let (p, u) = (&outcome.p, &outcome.u);
+        assert!((p[1].hypot(p[2]) - 0.5).abs() < 1e-6 && (p[1] * u[2] - p[2] * u[1]).abs() < 1e-6);
+        assert!(p[2] < 0.0);
+    }
+}
+
+/// With a large mu the natural map hardly sees that nothing is carried.
+#[test]
+fn large_friction_hides_no_penetration() {
+    for mu in [1e3, 1e5, 1e6, 1e10, 1e50, 1e160] {
+        let w = [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
+        let problem = single(w, [-1.0, 3.0, 0.4], mu);
+        for tolerance in [1e-4, 1e-8] {
+            let mut solved = 0;
+            for method in all() {
+                let limits = Limits {
+                    tolerance,
+                    ..LIMITS
+                };
+                let outcome = solve(&problem, method, &limits);
+                solved += u32::from(outcome.converged);
+                let gap = outcome.p[0].min(outcome.u[0]).abs();
+                let name = method.name();
+                assert!(
+                    !outcome.converged || gap <= 10.0 * tolerance,
+                    "{name}, mu {mu:e}: {gap}"
+                );
+            }
+            assert!(mu > 1e6 || solved >= 3, "mu {mu:e}: {solved} methods");
+        }
+    }
+}
+
+/// u_1 + u_2 = -2 whatever the impulses: nobody may say that it is solved.
+#[test]
+fn no_answer_is_no_success() {
+    for mu in [0.0, 0.3] {
+        let entries: Vec<(u32, u32, f64)> = [(0, 0, 1.0), (0, 2, -1.0), (2, 0, -1.0), (2, 2, 1.0)]
+            .into_iter()
+            .chain([(1, 1, 1.0), (3, 3, 1.0)])
+            .collect();
+        let problem = LocalProblem {
+            dimension: 2,
+            w: fretwork::solve::local::Csr::from_triplets(4, 4, &entries),
+            q: vec![-1.0, 0.0, -1.0, 0.0],
+            mu: vec![mu; 2],
+        };
+        for method in all() {
+            for tolerance in [1e-4, 1e-8] {
+                let limits = Limits {
+                    tolerance,
+                    max_iterations: 20_000,
+                    ..LIMITS
+                };
+                let outcome = solve(&problem, method, &limits);
+                assert!(!outcome.converged, "{}: {:?}", method.name(), outcome.p);
+            }
+        }
+    }
+}

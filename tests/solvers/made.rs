@@ -174,7 +174,8 @@ impl<const D: usize> Made<D> {
         self.q.as_chunks().0.to_vec()
     }
 
-    /// The error of p by its formula: |r| / max(...), r = (p - proj(p - rho (u + mu |u_t| n))) / rho.
+    /// The error of p by its formula: |r| / max(...), r = (p - proj(p - rho (u + mu |u_t| n))) / rho or what that
+    /// loses of min(p_n/rho, u_n), mu^2/(1 + mu^2); in the field's norm |r| / max(|u|, |q|) where that is above a half.
     pub fn error(&self, p: &[f64], norm: Norm) -> f64 {
         let u = &self.w * DVector::from_column_slice(p) + DVector::from_column_slice(&self.q);
         let (mut r2, mut p2, mut u2) = (0.0, 0.0, 0.0);
@@ -190,8 +191,15 @@ impl<const D: usize> Made<D> {
             z[0] -= rho * law.friction() * slip;
             let push = |of: u32| p[of as usize * D].max(0.0);
             let y = nearest(law, &z, push);
+            let seen: f64 = (0..D).map(|k| ((pc[k] - y[k]) / rho).powi(2)).sum();
+            let mu = law.friction();
+            let lost = (pc[0] / rho).min(uc[0]) * mu * mu / (1.0 + mu * mu);
+            r2 += if matches!(law, Law::Coulomb(_) | Law::Cohesive { .. }) {
+                seen.max(lost * lost)
+            } else {
+                seen
+            };
             for k in 0..D {
-                r2 += ((pc[k] - y[k]) / rho).powi(2);
                 p2 += (pc[k] / rho).powi(2);
                 u2 += uc[k] * uc[k];
             }
@@ -201,7 +209,20 @@ impl<const D: usize> Made<D> {
             Norm::Velocity => q2.max(u2),
             _ => q2.max(u2).max(p2),
         };
-        (r2 / if most > 0.0 { most } else { 1.0 }).sqrt()
+        let over = |scale: f64| (r2 / if scale > 0.0 { scale } else { 1.0 }).sqrt();
+        match norm {
+            Norm::Field => {
+                over(most).max(Some(over(q2.max(u2))).filter(|r| *r > 0.5).unwrap_or(0.0))
+            }
+            _ => over(most),
+        }
+    }
+
+    /// What impulses too large for the velocities may lose of the error.
+    pub fn rounding(&self, p: &[f64]) -> f64 {
+        let sizes = self.w.abs() * DVector::from_column_slice(p).abs();
+        let free = DVector::from_column_slice(&self.q).norm();
+        f64::EPSILON * sizes.norm() / free.max(1e-300)
     }
 
     /// |p - p_made| / |p_made|.

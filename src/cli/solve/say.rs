@@ -54,6 +54,25 @@ pub fn text(solved: &Solved, args: &SolveArgs) -> String {
         format!("{:.3e} of {:.1e}: {verdict}", best.error, args.tolerance),
     );
     line("", format!("error = {FORMULA}"));
+    if best.error <= args.tolerance && !best.converged {
+        line(
+            "",
+            format!(
+                "but {:.1e} of what it does not hold: contacts that friction alone keeps apart, or impulses that grow without bound; the problem may have no solution",
+                best.beside
+            ),
+        );
+    }
+    line(
+        "velocities",
+        format!("{:.3e} of |u|, whatever the units", best.velocity_error),
+    );
+    if best.converged && best.velocity_error > (100.0 * args.tolerance).max(1e-3) {
+        line(
+            "",
+            "far more than the error: the figure adds impulses to velocities, and in these units the one hides the other; lower --tolerance, or store W/s and s r in place of W and r, s a mean of W's diagonal".into(),
+        );
+    }
     if let Some(worst) = best.worst {
         line("worst", format!("contact {worst} (counted from 0)"));
     }
@@ -137,6 +156,8 @@ fn outcome(o: &Outcome) -> Value {
         "solver": o.method,
         "solved": o.converged,
         "error": o.error,
+        "error_beside": o.beside,
+        "velocity_error": o.velocity_error,
         "worst": o.worst,
         "iterations": o.iterations,
         "seconds": o.seconds,
@@ -146,6 +167,14 @@ fn outcome(o: &Outcome) -> Value {
 /// Why a file is not solved.
 pub fn unsolved(solved: &Solved, args: &SolveArgs) -> String {
     let best = &solved.outcomes[0];
+    if best.error <= args.tolerance {
+        return format!(
+            "{}: the error is {:.3e}, but {:.1e} of what it does not hold: the problem may have no solution",
+            solved.path.display(),
+            best.error,
+            best.beside
+        );
+    }
     format!(
         "{}: not solved to {:e} in {} iterations and {}: the error is {:.3e}; raise --max-iterations \
          or --time-limit, or try --solver all",

@@ -2,7 +2,7 @@
 
 use super::block::{Block, BlockMatrix};
 use super::law::{self, Law};
-use crate::solve::error::{Norm, Scale, Sums};
+use crate::solve::error::{Norm, Scale, Sums, lost};
 use crate::solve::extrapolation;
 use crate::solve::row::Residual;
 
@@ -53,6 +53,8 @@ pub struct Form<'a, const D: usize> {
     pub norm: Norm,
     /// |q|^2.
     pub free: f64,
+    /// Sum of rho |q_c|^2.
+    energy: f64,
 }
 
 impl<'a, const D: usize> Form<'a, D> {
@@ -64,6 +66,16 @@ impl<'a, const D: usize> Form<'a, D> {
             laws,
             norm,
             free: squared(q),
+            energy: match norm {
+                Norm::Balance => q
+                    .iter()
+                    .enumerate()
+                    .map(|(c, q)| (1.0 / largest(w.diagonal(c)), q))
+                    .filter(|(rho, _)| rho.is_finite())
+                    .map(|(rho, q)| rho * q.iter().map(|x| x * x).sum::<f64>())
+                    .sum(),
+                _ => 0.0,
+            },
         }
     }
 
@@ -103,9 +115,13 @@ impl<'a, const D: usize> Form<'a, D> {
             let r = self.laws[c].natural(&p[c], &u[c], rho, p);
             let over = 1.0 / rho;
             let dot = |a: &[f64; D], b: &[f64; D]| (0..D).map(|k| a[k] * b[k]).sum::<f64>();
+            let lost = match self.laws[c] {
+                Law::Coulomb(mu) | Law::Cohesive { mu, .. } => lost(p[c][0] * over, u[c][0], mu),
+                _ => 0.0,
+            };
             sums.add(
                 &Residual {
-                    squared: dot(&r, &r) * over * over,
+                    squared: (dot(&r, &r) * over * over).max(lost * lost),
                     velocity: dot(&u[c], &u[c]),
                     impulse: dot(&p[c], &p[c]) * over * over,
                     power: dot(&p[c], &r) * over,
@@ -119,6 +135,7 @@ impl<'a, const D: usize> Form<'a, D> {
         };
         let scale = Scale {
             free: self.free,
+            energy: self.energy,
             work,
         };
         // The projection of what is no number is 0, and what is divided by infinity too: neither is an

@@ -66,4 +66,11 @@ impl LocalProblem {
         }
         u
     }
+
+    /// sum_j |W_ij p_j|: what the rounding of W p is measured by.
+    pub(super) fn sizes(&self, p: &[f64]) -> Vec<f64> {
+        (0..self.w.rows)
+            .map(|r| self.w.row(r).map(|(c, w)| (w * p[c]).abs()).sum())
+            .collect()
+    }
 }

@@ -137,7 +137,10 @@ fn project<const D: usize>(form: &Form<D>, p: &mut [[f64; D]]) {
 fn safe_step<const D: usize>(form: &Form<D>, metric: &[[f64; D]]) -> f64 {
     const ROUNDS: usize = 20;
     let zero = vec![[0.0; D]; form.len()];
-    let mut x = vec![[1.0; D]; form.len()];
+    // No direction that W may happen not to see.
+    let mut x: Vec<[f64; D]> = (0..form.len())
+        .map(|c| std::array::from_fn(|k| 1.0 + 0.5 * (1.3 * c as f64 + 0.7 * k as f64).sin()))
+        .collect();
     let mut y = zero.clone();
     let mut lambda = 0.0f64;
     for _ in 0..ROUNDS {
@@ -216,29 +219,30 @@ impl<const D: usize> Solver<D> for Gradient {
             }
             form.w.velocity(&d, &zero, &mut wd);
             let curvature = dot(&d, &wd);
-            if curvature <= 0.0 || !curvature.is_finite() {
-                if first {
-                    break;
-                }
+            let curved = curvature > 0.0 && curvature.is_finite();
+            if !curved && !first {
                 d.copy_from_slice(&zero);
                 first = true;
                 continue;
             }
-            let alpha = along / curvature;
             let energy = 0.5 * (dot(&state.p, &state.u) + dot(&state.p, form.q));
             kept.copy_from_slice(&state.p);
             wd_u.copy_from_slice(&state.u);
-            for c in 0..n {
-                for k in 0..D {
-                    state.p[c][k] += alpha * d[c][k];
+            let mut raised = f64::INFINITY;
+            if curved {
+                let alpha = along / curvature;
+                for c in 0..n {
+                    for k in 0..D {
+                        state.p[c][k] += alpha * d[c][k];
+                    }
                 }
+                project(form, &mut state.p);
+                form.velocity(&state.p, &mut state.u);
+                raised = 0.5 * (dot(&state.p, &state.u) + dot(&state.p, form.q)) - energy;
             }
-            project(form, &mut state.p);
-            form.velocity(&state.p, &mut state.u);
             state.iterations += 1;
             first = false;
-            let raised = 0.5 * (dot(&state.p, &state.u) + dot(&state.p, form.q)) - energy;
-            if raised > 1e-12 * energy.abs() {
+            if raised > 1e-12 * energy.abs() || raised.is_nan() {
                 let step = *safe.get_or_insert_with(|| safe_step(form, &metric));
                 for c in 0..n {
                     for k in 0..D {

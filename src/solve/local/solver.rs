@@ -12,7 +12,7 @@ use super::law::{self, Law};
 use super::newton::Newton;
 use super::nlgs::{Nlgs, Order};
 use super::state::{Budget, Solver, State};
-use crate::solve::error::Norm;
+use crate::solve::error::{Norm, lost, unbounded};
 use serde::Deserialize;
 use std::str::FromStr;
 use std::time::Instant;
@@ -160,13 +160,18 @@ pub struct Outcome {
     pub u: Vec<f64>,
     /// Its [`field_error`].
     pub error: f64,
+    /// The larger of two figures that it does not hold and that must be within the tolerance too: what
+    /// friction hides of Signorini's law, and impulses that grow without bound. See [`crate::solve::error`].
+    pub beside: f64,
+    /// The error in velocity, |r|/max(|u|, |q|), which no choice of units changes.
+    pub velocity_error: f64,
     /// The contact with the largest share of the error.
     pub worst: Option<usize>,
     /// Iterations done.
     pub iterations: u32,
     /// Seconds taken.
     pub seconds: f64,
-    /// Whether the error is within the tolerance.
+    /// Whether the errors are within the tolerance.
     pub converged: bool,
 }
 
@@ -181,6 +186,8 @@ pub fn solve(problem: &LocalProblem, method: Method, limits: &Limits) -> Outcome
             u: problem.q.clone(),
             p,
             error: f64::INFINITY,
+            beside: f64::INFINITY,
+            velocity_error: f64::INFINITY,
             worst: None,
             iterations: 0,
             seconds: 0.0,
@@ -228,7 +235,11 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
     }
     let state = state.expect("solved at least once");
     let p: Vec<f64> = state.p.as_flattened().iter().map(|p| p * unit).collect();
-    let (error, worst) = measured::<D>(problem, &p);
+    let Measured {
+        error,
+        beside,
+        worst,
+    } = measured::<D>(problem, &p);
     Outcome {
         method: solver.name(method),
         u: problem.velocities(&p),
@@ -237,7 +248,11 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
         worst,
         iterations: state.iterations,
         seconds: best,
-        converged: error <= limits.tolerance,
+        beside,
+        velocity_error: Form::new(&w, &q, &laws, Norm::Velocity)
+            .error(&state.p, &state.u)
+            .error,
+        converged: error <= limits.tolerance && beside <= limits.tolerance,
     }
 }
 
@@ -274,35 +289,58 @@ impl<const D: usize> Choice<D> {
 /// vectors, u = W p + q; not divided when the maximum is 0. Infinite where a number is not finite.
 pub fn field_error(problem: &LocalProblem, p: &[f64]) -> f64 {
     match problem.dimension {
-        2 => measured::<2>(problem, p).0,
-        _ => measured::<3>(problem, p).0,
+        2 => measured::<2>(problem, p).error,
+        _ => measured::<3>(problem, p).error,
     }
 }
 
-fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> (f64, Option<usize>) {
+/// What is measured of a solution.
+struct Measured {
+    /// The field's figure.
+    error: f64,
+    /// The larger of the two that it does not hold, see [`crate::solve::error`].
+    beside: f64,
+    /// The block with the largest residual.
+    worst: Option<usize>,
+}
+
+fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> Measured {
     let u = problem.velocities(p);
     let all = || problem.q.iter().chain(p).chain(&u);
     if !all().chain(&problem.mu).all(|x| x.is_finite()) {
-        return (f64::INFINITY, None);
+        return Measured {
+            error: f64::INFINITY,
+            beside: f64::INFINITY,
+            worst: None,
+        };
     }
     // The figure is the same of vectors divided by one number: a power of two, so that no bit changes and
     // no square leaves the range.
     let unit = magnitude(all());
     let norm = |x: &[f64]| x.iter().map(|x| (x / unit).powi(2)).sum::<f64>().sqrt();
-    let scale = norm(&problem.q).max(norm(p)).max(norm(&u));
-    let (mut sum, mut worst) = (0.0, None::<(usize, f64)>);
+    let velocity = norm(&problem.q).max(norm(&u));
+    let over = |x: f64, scale: f64| x / if scale > 0.0 { scale } else { 1.0 };
+    let (mut sum, mut unseen, mut worst) = (0.0, 0.0, None::<(usize, f64)>);
     for (c, mu) in problem.mu.iter().enumerate() {
         let at = |x: &[f64]| -> [f64; D] { std::array::from_fn(|k| x[c * D + k] / unit) };
         let (p, u) = (at(p), at(&u));
         let r = law::natural(&p, &u, *mu, 1.0);
         let gap: f64 = r.iter().map(|x| x * x).sum();
         sum += gap;
+        unseen += lost(p[0], u[0], *mu).powi(2);
         if worst.is_none_or(|w| gap > w.1) {
             worst = Some((c, gap));
         }
     }
-    let error = f64::sqrt(sum) / if scale > 0.0 { scale } else { 1.0 };
-    (error, worst.map(|w| w.0))
+    let scale = velocity.max(norm(p));
+    // Impulses so large that q is lost in the rounding of W p answer nothing.
+    let rounding = f64::EPSILON * norm(&problem.sizes(p));
+    let growth = over(f64::sqrt(sum).max(rounding), velocity);
+    Measured {
+        error: over(f64::sqrt(sum), scale),
+        beside: over(f64::sqrt(unseen), scale).max(unbounded(growth)),
+        worst: worst.map(|w| w.0),
+    }
 }
 
 /// The power of two below the largest number; 1 where all are 0.

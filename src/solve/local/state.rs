@@ -84,7 +84,7 @@ impl<const D: usize> Best<D> {
 
     /// Puts the best back into the state.
     pub fn restore(&self, form: &Form<D>, state: &mut State<D>) {
-        if state.error > self.error {
+        if state.error > self.error || !state.error.is_finite() {
             state.p.copy_from_slice(&self.p);
             state.measure(form);
         }

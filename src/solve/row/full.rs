@@ -1,7 +1,8 @@
 //! Contact of two balls with a bond, cohesion or tangential restitution: solved in closed form.
 
 use super::{
-    Line, Residual, Row, inverse, natural_map, push, relative, restore_parts, store_parts,
+    Line, Residual, Row, inverse, inverse_along, natural_map, push, relative, restore_parts,
+    store_parts,
 };
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
@@ -54,7 +55,7 @@ impl<S: Space> FullRow<S> {
         let n = contact.normal;
         let e = contact.elastic.unwrap_or_else(Elastic::none);
         let (dn, dt) = (1.0 + w_n * e.b_n, 1.0 + w_t * e.b_t);
-        let (iwn, iwt) = (inverse(w_n), inverse(w_t));
+        let (iwn, iwt) = (inverse(w_n), inverse_along(w_t, w_n));
         // Two immovable bodies do not press on each other; their bond still pulls.
         let movable = f64::from(u8::from(w_n > 0.0));
         Self {
@@ -165,14 +166,21 @@ impl<S: Space> Row<S> for FullRow<S> {
         un * un + ut.dot(&ut)
     }
 
-    fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual {
+    fn rho(&self) -> f64 {
         if self.normal.iw == 0.0 {
+            return 0.0;
+        }
+        // 1/W' of a direction is (1 + w b)/w.
+        (self.normal.iw + self.bond_n.b).min(self.tangent.iw + self.bond_t.b)
+    }
+
+    fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual {
+        let rho = self.rho();
+        if rho == 0.0 {
             return Residual::default();
         }
         let (un, ut) = relative(&self.n, a, b);
         let (en, et) = self.bond(un, ut);
-        // 1/W' of a direction is (1 + w b)/w.
-        let rho = (self.normal.iw + self.bond_n.b).min(self.tangent.iw + self.bond_t.b);
         let shifted = (self.pn - en + self.tension, self.pt - et);
         let shift = (self.bond_n.shift, self.bond_t.shift);
         natural_map(shifted, (un, ut), shift, rho, self.mu, self.cohesion)

@@ -1,6 +1,6 @@
 //! A contact with levers or of a body that is free along some axes only: solved as a block.
 
-use super::{Line, Residual, Row, inverse, natural_map};
+use super::{Line, Residual, Row, inverse, inverse_along, natural_map};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
 
@@ -28,11 +28,12 @@ impl<S: Space> Block<S> {
         let (a, c) = (t1.dot(&w.apply(&t1)), t2.dot(&w.apply(&t2)));
         let cross = t1.dot(&w.apply(&t2));
         let largest = 0.5 * (a + c) + (0.25 * (a - c) * (a - c) + cross * cross).sqrt();
+        let w_n = n.dot(&w.apply(n));
         Self {
             m,
             w,
-            iwn: inverse(n.dot(&w.apply(n))),
-            iwt: inverse(largest),
+            iwn: inverse(w_n),
+            iwt: inverse_along(largest, w_n),
         }
     }
 }
@@ -194,11 +195,15 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         u.dot(&u)
     }
 
+    fn rho(&self) -> f64 {
+        self.pulled.iwn.min(self.pulled.iwt)
+    }
+
     fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual {
         let n = &self.n;
         let u = self.relative(a, b);
         let (en, et) = self.bond(&u);
-        let rho = self.pulled.iwn.min(self.pulled.iwt);
+        let rho = self.rho();
         let (un, ut) = (n.dot(&u), S::tangential(n, &u));
         if rho > 0.0 {
             let pn = n.dot(&self.p) - en + self.tension;

@@ -18,8 +18,8 @@ pub(super) use moment::MomentRow;
 pub use moment::{MomentForm, MomentSolution};
 pub(super) use plain::PlainRow;
 
-use super::cone;
 use super::form::ContactSolution;
+use super::{cone, error};
 use crate::geometry::space::{Space, VectorLike};
 
 /// Velocity of a body in the solver: 64 bytes in both dimensions.
@@ -74,6 +74,8 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync {
     fn normal(&self) -> f64;
     /// |u|^2 at the velocities at hand.
     fn speed(&self, a: &Line<S>, b: &Line<S>) -> f64;
+    /// The step of the natural map; 0 of a contact that nothing can be done about.
+    fn rho(&self) -> f64;
     fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual;
     /// What the contact carries at the velocities at hand: the bond's part follows from them, the
     /// unilateral part is the rest.
@@ -129,8 +131,9 @@ fn natural_map<T: VectorLike>(
     );
     let over = 1.0 / rho;
     let (rn, rt) = ((pn - zn) * over, (pt - zt) * over);
+    let lost = error::lost(pn * over, un + sn, mu);
     Residual {
-        squared: rn * rn + rt.dot(&rt),
+        squared: (rn * rn + rt.dot(&rt)).max(lost * lost),
         velocity: un * un + ut.dot(&ut),
         impulse: (pn * pn + pt.dot(&pt)) * (over * over),
         power: pn * rn + pt.dot(&rt),
@@ -140,4 +143,11 @@ fn natural_map<T: VectorLike>(
 /// Of two immovable bodies nothing can be solved: their impulse is zero.
 fn inverse(w: f64) -> f64 {
     if w > 0.0 { 1.0 / w } else { 0.0 }
+}
+
+/// The same along the tangent. Where bodies move along the normal alone their slip is given, and friction
+/// goes against it at once, as far as it may.
+fn inverse_along(w_t: f64, w_n: f64) -> f64 {
+    const LEAST: f64 = 1e-12;
+    inverse(w_t.max(LEAST * w_n))
 }

@@ -3,7 +3,8 @@
 #[cfg(target_arch = "x86_64")]
 use super::lanes;
 use super::{
-    Line, Lines, Residual, Row, inverse, natural_map, push, relative, restore_parts, store_parts,
+    Line, Lines, Residual, Row, inverse, inverse_along, natural_map, push, relative, restore_parts,
+    store_parts,
 };
 use crate::geometry::space::{Space, VectorLike, greatest};
 use crate::solve::form::{ContactForm, ContactSolution};
@@ -32,7 +33,7 @@ impl<S: Space> PlainRow<S> {
             pt: S::tangential(&n, &contact.impulse),
             shift: contact.shift_n,
             iwn: inverse(w_n),
-            iwt: inverse(w_t),
+            iwt: inverse_along(w_t, w_n),
             mu: contact.friction,
         }
     }
@@ -86,9 +87,14 @@ impl<S: Space> Row<S> for PlainRow<S> {
     }
 
     #[inline(always)]
+    fn rho(&self) -> f64 {
+        self.iwn.min(self.iwt)
+    }
+
+    #[inline(always)]
     fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual {
         let (un, ut) = relative(&self.n, a, b);
-        let rho = self.iwn.min(self.iwt);
+        let rho = self.rho();
         if rho > 0.0 {
             natural_map(
                 (self.pn, self.pt),
