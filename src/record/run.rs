@@ -318,6 +318,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         solver.error_max = solver.error_max.max(report.solver.error);
         let used = report.solver.used.name().to_owned();
         *solver.steps_by_method.entry(used).or_default() += 1;
+        solver.choice.add(&report.solver);
         self.couplings += u64::from(report.coupling.iterations);
         solver.uncoupled_steps += u64::from(report.coupling.missed);
         if !report.solver.converged {
@@ -474,6 +475,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             volume_third_body: self.worn.1,
         };
         summary.solver.coupling_iterations_mean = self.couplings as f64 / s.steps.max(1) as f64;
+        summary.solver.why = summary.solver.choice.why(s.solver.method, s.steps);
         summary.solver.iterations_mean = self.iterations as f64 / s.steps.max(1) as f64;
         self.table
             .flush()
