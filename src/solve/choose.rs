@@ -1,7 +1,7 @@
 //! Which method solves a step.
 //!
 //! Sweeps over bodies are matrix-free and nearly always enough. [`Method::Auto`] lets them run for as long as
-//! ten factorisations of W would take (four times as long at a loose tolerance), then tries Newton on the
+//! twenty factorisations of W would take (twice as long at a loose tolerance), then tries Newton on the
 //! assembled W, and sweeps on. On a hyperstatic set it comes ten times as late. Where Newton did not help it is tried half as early in the steps that follow,
 //! until it helps again. The lengths follow from sizes alone: the same case takes the same path on any
 //! machine.
@@ -121,7 +121,7 @@ impl<S: Space> Pieces<'_, S> {
     fn auto(&self, problem: &mut Problem<S>, habit: &mut Habit) -> Report {
         /// Factorisations' worth of sweeps before Newton, at a loose and at a tight tolerance.
         const LOOSE: f64 = 40.0;
-        const TIGHT: f64 = 10.0;
+        const TIGHT: f64 = 20.0;
         /// Times as many sweeps on a hyperstatic set, where Newton takes more steps and fails in every third.
         const HYPERSTATIC: u32 = 10;
         /// More unknowns than this are not factorised.
