@@ -17,18 +17,15 @@ pub enum Asked {
     Unseen,
     /// In some of the trials.
     Sometimes,
-    /// In every contact.
+    /// In every contact that touches.
     Always,
 }
 
 impl Asked {
-    /// From what trials gave.
-    fn of(trials: impl Iterator<Item = bool>, constant: bool) -> Self {
-        let (mut all, mut any) = (true, false);
-        for asks in trials {
-            all &= asks;
-            any |= asks;
-        }
+    /// From what trials gave: whether the contact touched, and whether the law asked for it.
+    fn of(trials: &[(bool, bool)], constant: bool) -> Self {
+        let any = trials.iter().any(|(_, asks)| *asks);
+        let all = trials.iter().all(|(touches, asks)| *asks || !touches);
         match (any, all) {
             (true, true) => Self::Always,
             (true, false) => Self::Sometimes,
@@ -68,17 +65,19 @@ impl Interface {
         for radius in radii {
             let mut bench = Bench::new(acting.clone(), dimension, *radius);
             let (mut states, motions) = trials(&bench, *radius);
-            for answer in bench.step(&mut states, &motions, STEP)? {
-                turns.push(answer.rolling.iter().any(|x| *x > 0.0));
-                pulls.push(answer.strength.iter().any(|x| *x > 0.0));
+            let answers = bench.step(&mut states, &motions, STEP)?;
+            for (answer, motion) in answers.iter().zip(&motions) {
+                let touches = motion.gap <= 0.0;
+                turns.push((touches, answer.rolling.iter().any(|x| *x > 0.0)));
+                pulls.push((touches, answer.strength.iter().any(|x| *x > 0.0)));
             }
         }
         Ok(Demand {
-            rotation: Asked::of(turns.into_iter(), constant),
+            rotation: Asked::of(&turns, constant),
             attraction: if bonds {
                 Asked::Always
             } else {
-                Asked::of(pulls.into_iter(), simple)
+                Asked::of(&pulls, simple)
             },
         })
     }

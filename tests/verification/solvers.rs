@@ -9,6 +9,19 @@ use fretwork::solve::local::solver::Method;
 use fretwork::step::Simulation;
 use std::path::Path;
 
+const ALL: [&str; 10] = [
+    "Auto",
+    "Nlgs",
+    "NlgsSymmetric",
+    "Anderson",
+    "Pg",
+    "Cpg",
+    "Pcpg",
+    "Apgd",
+    "Newton",
+    "Interior",
+];
+
 pub fn all(table: &mut Table) {
     column(table);
     // Bonds that bend and twist: compliance, moments.
@@ -25,6 +38,14 @@ pub fn all(table: &mut Table) {
         &["time.end=0.02"],
         &["Auto", "Anderson", "Apgd", "Pcpg"],
     );
+    // Impacts: contacts with a gap bounce freely when they close, and until then carry nothing.
+    alike::<Plane>(table, "cradle_touching", &[], &ALL);
+    alike::<Plane>(
+        table,
+        "cradle_apart",
+        &[],
+        &["Auto", "Pg", "Pcpg", "Newton", "Interior"],
+    );
     // Bonds that only pull, under friction.
     alike::<Plane>(
         table,
@@ -37,18 +58,7 @@ pub fn all(table: &mut Table) {
 
 /// The floor of a column carries its weight, whoever solves it.
 fn column(table: &mut Table) {
-    for method in [
-        "Auto",
-        "Nlgs",
-        "NlgsSymmetric",
-        "Anderson",
-        "Pg",
-        "Cpg",
-        "Pcpg",
-        "Apgd",
-        "Newton",
-        "Interior",
-    ] {
+    for method in ALL {
         let set = format!("solver.method={method}");
         let mut s: Simulation<Plane> = scene("column", &[&set]);
         for _ in 0..2 {
