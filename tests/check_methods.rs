@@ -69,7 +69,8 @@ fn the_methods_of_a_case_are_listed() {
 #[test]
 fn a_law_that_decides_at_run_time_is_told_apart() {
     let law = "interfaces.0.contact=velocity-weakening";
-    let (fine, text) = check("column", &[law, "solver.method=Newton"]);
+    let none = "interfaces.0.parameters.contact={}";
+    let (fine, text) = check("column", &[law, none, "solver.method=Newton"]);
     assert!(fine, "{text}");
     assert_eq!(
         line(&text, "methods"),

@@ -40,12 +40,6 @@ pub fn all(table: &mut Table) {
     );
     // Impacts: contacts with a gap bounce freely when they close, and until then carry nothing.
     alike::<Plane>(table, "cradle_touching", &[], &ALL);
-    alike::<Plane>(
-        table,
-        "cradle_apart",
-        &[],
-        &["Auto", "Pg", "Pcpg", "Newton", "Interior"],
-    );
     // Bonds that only pull, under friction.
     alike::<Plane>(
         table,
