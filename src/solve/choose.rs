@@ -163,7 +163,8 @@ impl<S: Space> Pieces<'_, S> {
         }
         let hyperstaticity = hyperstaticity(problem, self.forms);
         if hyperstaticity > 1.0 {
-            let more = left.min(sweeps.saturating_mul(HYPERSTATIC - 1));
+            // Newton is to have its turn before the iterations end.
+            let more = (left / 2).min(sweeps.saturating_mul(HYPERSTATIC - 1));
             report.add(&self.sweep(problem, true, more));
             report.chosen = Chosen::Longer { hyperstaticity };
         }

@@ -247,10 +247,10 @@ impl<S: Space> Problem<S> {
                 Place::General(r) => take(&mut self.general[r as usize], impulse, &mut self.lines),
             }
         }
-        for k in 0..self.moments.len() {
+        for (k, moment) in moments.iter().enumerate() {
             let pn = self.normal(self.moments[k].place);
             let row = &mut self.moments[k];
-            match &moments[k] {
+            match moment {
                 Some(moment) => row.set(moment),
                 None => {
                     let [i, j] = row.bodies.map(|b| b as usize);
