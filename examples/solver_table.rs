@@ -5,6 +5,7 @@
 //! `PARTS=fretting,seeds,cases`, `METHODS=auto,newton`, `TOLERANCES=1e-4,1e-6`; `BUDGET` (40) is the wall time (s) a
 //! fretting run may take, `SHORT` (4) that of a run of the other cases. `PARTS=page` only writes the page.
 
+use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::{Scene, load};
@@ -23,6 +24,9 @@ const SETTLE: u64 = 520;
 const SEEDS: [u64; 3] = [7, 8, 9];
 
 type Any = Box<dyn Error>;
+
+/// Velocity and spin of a body.
+type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
 fn main() -> Result<(), Any> {
     let list = |name: &str, default: &str| -> Vec<String> {
@@ -132,7 +136,7 @@ fn go<S: Dimensional>(
     s: &mut Simulation<S>,
     steps: u64,
     budget: f64,
-    follow: &mut dyn FnMut(&Simulation<S>, &[(S::Vector, S::Spin)]),
+    follow: &mut dyn FnMut(&Simulation<S>, &[Motion<S>]),
 ) -> Tally {
     let mut tally = Tally::default();
     let clock = Instant::now();
