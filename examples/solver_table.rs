@@ -136,7 +136,7 @@ fn go<S: Dimensional>(
     s: &mut Simulation<S>,
     steps: u64,
     budget: f64,
-    follow: &mut dyn FnMut(&Simulation<S>, &[Motion<S>]),
+    mut follow: impl FnMut(&Simulation<S>, &[Motion<S>]),
 ) -> Tally {
     let mut tally = Tally::default();
     let clock = Instant::now();
@@ -177,7 +177,7 @@ fn fretting(tolerance: &str, method: Method, seed: u64, budget: f64) -> Result<S
     }
     let mut s = built.simulation;
     let total = (loaded.case.time.end / loaded.case.time.step).round() as u64;
-    go(&mut s, SETTLE, f64::INFINITY, &mut |_, _| {});
+    go(&mut s, SETTLE, f64::INFINITY, |_, _| {});
     (s.solver.method, s.solver.tolerance) = (method, tolerance.parse()?);
     s.solver.max_iterations = most(method);
     let wheel = s.bodies.driven.iter().position(|d| d.name == "wheel");
@@ -185,7 +185,7 @@ fn fretting(tolerance: &str, method: Method, seed: u64, budget: f64) -> Result<S
     let (start, period) = (0.05, 0.05);
     // Work and pressed path of each cycle.
     let mut cycles: BTreeMap<u32, (f64, f64, u32)> = BTreeMap::new();
-    let tally = go(&mut s, total - SETTLE, budget, &mut |s, before| {
+    let tally = go(&mut s, total - SETTLE, budget, |s, before| {
         let at = s.time - start;
         if at <= 0.0 {
             return;
@@ -248,11 +248,11 @@ fn shipped(case: &Path, method: Method, budget: f64) -> Result<String, Any> {
         Err(e) => return Ok(format!("refused\t{e}")),
         Ok(Scene::Plane(b)) => {
             let mut b = b;
-            go(&mut b.simulation, total, budget, &mut |_, _| {})
+            go(&mut b.simulation, total, budget, |_, _| {})
         }
         Ok(Scene::Solid(b)) => {
             let mut b = b;
-            go(&mut b.simulation, total, budget, &mut |_, _| {})
+            go(&mut b.simulation, total, budget, |_, _| {})
         }
     };
     Ok(format!(
