@@ -6,8 +6,11 @@ use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};
 use crate::record::biaxial::Biaxial;
 use crate::scene::build::Built;
+use crate::scene::methods::{Demands, Service};
 use crate::scene::{Loaded, Scene, load};
+use crate::solve::local::solver::Method;
 use crate::solve::row::Line;
+use crate::step::Simulation;
 use clap::Args;
 use std::fmt::Write as _;
 
@@ -96,6 +99,7 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
             s.solver.test_every
         ),
     );
+    methods(s, &mut line);
     line("error", case.solver.norm.formula().into());
     for law in &s.laws {
         let laws: Vec<String> = law
@@ -135,6 +139,33 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
     groups(loaded, built, high, &mut line);
     biaxial_groups(loaded, built, &mut line);
     out
+}
+
+/// Which methods the case can use, and the reasons why others not. A case that asks for one it cannot use is
+/// refused before.
+fn methods<S: Space>(simulation: &Simulation<S>, line: &mut impl FnMut(&str, String)) {
+    let demands = Demands::of(simulation);
+    let (mut can, mut reasons) = (Vec::new(), Vec::new());
+    for method in Method::ALL.iter().copied() {
+        match demands.service(method) {
+            Service::Serves => can.push(method.name().to_owned()),
+            Service::May(reason) => {
+                can.push(format!("{}?", method.name()));
+                reasons.push(format!("{} {reason}", method.name()));
+            }
+            Service::Refuses(reason) => reasons.push(format!("not {}, {reason}", method.name())),
+        }
+    }
+    let chosen = simulation.solver.method;
+    let served = match demands.service(chosen) {
+        Service::Serves => "serves this case".to_owned(),
+        Service::May(reason) | Service::Refuses(reason) => reason,
+    };
+    line("method", format!("{} {served}", chosen.name()));
+    line("methods", can.join(", "));
+    for reason in reasons {
+        line("", reason);
+    }
 }
 
 /// Pressure and inertial number of a biaxial test, for a square sample.

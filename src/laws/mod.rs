@@ -3,6 +3,7 @@ pub mod bench;
 mod bonds;
 pub mod columns;
 mod commit;
+pub mod demand;
 mod gather;
 pub mod interface;
 pub mod library;

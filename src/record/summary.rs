@@ -1,6 +1,7 @@
 //! `summary.json`, and the summary a tribologist reads at the end.
 
 use super::biaxial::Outcome;
+use super::choice::Choice;
 use super::friction::Cycle;
 use super::ledger::Energy;
 use serde::Serialize;
@@ -48,6 +49,10 @@ pub struct SolverSummary {
     pub method: String,
     /// Steps by the method that ended them.
     pub steps_by_method: std::collections::BTreeMap<String, u64>,
+    /// What was chosen and why, in a sentence.
+    pub why: String,
+    /// What `auto` chose.
+    pub choice: Choice,
     /// Steps written as FCLIB problems.
     pub fclib_written: u64,
     /// Steps that were to be written and hold what that form does not.
@@ -229,6 +234,9 @@ impl Summary {
             .map(|(name, steps)| format!("{name} ended {steps} steps"))
             .collect();
         line("method", format!("{}: {}", s.method, used.join(", ")));
+        if s.method == "auto" {
+            line("why", s.why.clone());
+        }
         if s.fclib_written + s.fclib_skipped > 0 {
             let skipped = match s.fclib_skipped {
                 0 => String::new(),

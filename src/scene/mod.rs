@@ -5,6 +5,7 @@ pub mod case;
 pub mod check;
 pub mod interfaces;
 pub mod material;
+pub mod methods;
 pub mod profile;
 pub mod sample;
 pub mod scene_file;

@@ -1,11 +1,12 @@
 //! Which method solves a step.
 //!
 //! Sweeps over bodies are matrix-free and nearly always enough. [`Method::Auto`] lets them run for as long as
-//! ten factorisations of W would take (four times as long at a loose tolerance), then tries Newton on the
-//! assembled W, and sweeps on. Where Newton did not help it is tried half as early in the steps that follow,
-//! until it helps again. The lengths follow from sizes alone: the same case takes the same path on any
-//! machine.
+//! twenty factorisations of W would take (twice as long at a loose tolerance), then tries Newton on the
+//! assembled W, and sweeps on. On a hyperstatic set Newton comes ten times as late. Where it did not help it
+//! is tried half as early in the steps that follow, until it helps again. The lengths follow from sizes
+//! alone: the same case takes the same path on any machine.
 
+use super::chosen::{Chosen, hyperstaticity};
 use super::form::{ContactForm, Problem};
 use super::local::auto::sweeps_per_factorisation;
 use super::local::solver::Method;
@@ -120,7 +121,9 @@ impl<S: Space> Pieces<'_, S> {
     fn auto(&self, problem: &mut Problem<S>, habit: &mut Habit) -> Report {
         /// Factorisations' worth of sweeps before Newton, at a loose and at a tight tolerance.
         const LOOSE: f64 = 40.0;
-        const TIGHT: f64 = 10.0;
+        const TIGHT: f64 = 20.0;
+        /// Times as many sweeps on a hyperstatic set, where Newton takes more steps and fails in every third.
+        const HYPERSTATIC: u32 = 10;
         /// More unknowns than this are not factorised.
         const LARGEST: usize = 60_000;
         /// Newton's steps.
@@ -139,12 +142,34 @@ impl<S: Space> Pieces<'_, S> {
             .moments
             .iter()
             .any(|m| m.rolling > 0.0 || m.spinning > 0.0);
-        if refusal(Method::Newton, rolls, false).is_some() || unknowns > LARGEST {
-            return self.sweep(problem, true, options.max_iterations);
+        let sweeps = worth * per * habit.patience;
+        let sweeps = sweeps.clamp(200.0, f64::from(u32::MAX / 2)) as u32;
+        let without = if refusal(Method::Newton, rolls, false).is_some() {
+            Some(Chosen::Unserved)
+        } else {
+            (unknowns > LARGEST).then_some(Chosen::Large)
+        };
+        if let Some(chosen) = without {
+            let mut report = self.sweep(problem, true, options.max_iterations);
+            if report.iterations > sweeps {
+                report.chosen = chosen;
+            }
+            return report;
         }
-        let sweeps = (worth * per * habit.patience).clamp(200.0, f64::from(u32::MAX / 2)) as u32;
         let mut report = self.sweep(problem, true, options.max_iterations.min(sweeps));
         let left = options.max_iterations - report.iterations;
+        if report.converged || left == 0 {
+            return report;
+        }
+        let hyperstaticity = hyperstaticity(problem, self.forms);
+        if hyperstaticity > 1.0 {
+            // Newton is to have its turn before the iterations end.
+            let more = (left / 2).min(sweeps.saturating_mul(HYPERSTATIC - 1));
+            report.add(&self.sweep(problem, true, more));
+            report.chosen = Chosen::Longer { hyperstaticity };
+        }
+        let after = report.iterations;
+        let left = options.max_iterations.saturating_sub(after);
         if report.converged || left == 0 {
             return report;
         }
@@ -156,6 +181,11 @@ impl<S: Space> Pieces<'_, S> {
         };
         let steps = NEWTON.min(left);
         report.add(&self.improve(problem, Method::Newton, 0.3 * options.tolerance, steps));
+        report.chosen = Chosen::Newton {
+            after,
+            hyperstaticity,
+            ended: report.converged,
+        };
         if report.converged {
             habit.patience = (0.5 * habit.patience).max(1.0);
             return report;

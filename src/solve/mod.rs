@@ -8,6 +8,7 @@
 //! Body velocities are updated in place: applying an impulse costs O(1) a contact.
 pub mod accelerate;
 pub mod choose;
+pub mod chosen;
 pub mod colour;
 pub mod cone;
 pub mod error;
@@ -19,6 +20,7 @@ pub mod row;
 pub mod standard;
 
 pub use choose::{Habit, solve};
+pub use chosen::Chosen;
 pub use form::{ContactForm, Problem};
 pub use nlgs::{Options, Report};
 pub use row::{MomentForm, MomentSolution};

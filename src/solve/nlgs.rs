@@ -1,6 +1,7 @@
 //! Non-linear Gauss-Seidel: contact by contact, velocities updated in place, warm started.
 
 use super::accelerate::Acceleration;
+use super::chosen::Chosen;
 use super::colour::{self, Schedule};
 use super::error::{Norm, Scale, Sums};
 use super::form::{Place, Problem};
@@ -58,6 +59,8 @@ pub struct Report {
     pub worst: Option<usize>,
     /// The method that ended it.
     pub used: Method,
+    /// What `auto` chose.
+    pub chosen: Chosen,
 }
 
 /// Contacts a thread takes at a time. Sums are formed by chunk and added in order.
@@ -158,6 +161,7 @@ impl Report {
     pub fn add(&mut self, other: &Self) {
         *self = Self {
             iterations: self.iterations + other.iterations,
+            chosen: self.chosen.or(other.chosen),
             ..*other
         };
     }

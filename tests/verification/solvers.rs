@@ -5,8 +5,22 @@ use fretwork::geometry::space::{Plane, Solid, VectorLike};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
+use fretwork::solve::local::solver::Method;
 use fretwork::step::Simulation;
 use std::path::Path;
+
+const ALL: [&str; 10] = [
+    "Auto",
+    "Nlgs",
+    "NlgsSymmetric",
+    "Anderson",
+    "Pg",
+    "Cpg",
+    "Pcpg",
+    "Apgd",
+    "Newton",
+    "Interior",
+];
 
 pub fn all(table: &mut Table) {
     column(table);
@@ -24,6 +38,8 @@ pub fn all(table: &mut Table) {
         &["time.end=0.02"],
         &["Auto", "Anderson", "Apgd", "Pcpg"],
     );
+    // Impacts: contacts with a gap bounce freely when they close, and until then carry nothing.
+    alike::<Plane>(table, "cradle_touching", &[], &ALL);
     // Bonds that only pull, under friction.
     alike::<Plane>(
         table,
@@ -36,18 +52,7 @@ pub fn all(table: &mut Table) {
 
 /// The floor of a column carries its weight, whoever solves it.
 fn column(table: &mut Table) {
-    for method in [
-        "Auto",
-        "Nlgs",
-        "NlgsSymmetric",
-        "Anderson",
-        "Pg",
-        "Cpg",
-        "Pcpg",
-        "Apgd",
-        "Newton",
-        "Interior",
-    ] {
+    for method in ALL {
         let set = format!("solver.method={method}");
         let mut s: Simulation<Plane> = scene("column", &[&set]);
         for _ in 0..2 {
@@ -104,19 +109,26 @@ fn alike<S: Dimensional>(table: &mut Table, case: &str, sets: &[&str], methods: 
 /// What a method cannot solve is refused with the reason: before the run where the laws tell, else at the
 /// first step that asks for it.
 fn refused() {
-    let file = format!(
-        "{}/cases/verification/beam_2d.ron",
-        env!("CARGO_MANIFEST_DIR")
-    );
-    let loaded = load(Path::new(&file), &["solver.method=Interior".to_owned()]);
-    let error = loaded
-        .unwrap_or_else(|e| panic!("{e}"))
-        .build(&SearchPath::new(&[]))
-        .expect_err("is refused")
-        .to_string();
-    assert!(error.contains("bonds"), "{error}");
+    for (case, method, word) in [
+        ("beam_2d", "Interior", "bonds"),
+        ("rolling_stop_sphere", "Newton", "rotation"),
+        ("rolling_stop_disk", "Interior", "rotation"),
+    ] {
+        let file = format!(
+            "{}/cases/verification/{case}.ron",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        let loaded = load(Path::new(&file), &[format!("solver.method={method}")]);
+        let error = loaded
+            .unwrap_or_else(|e| panic!("{e}"))
+            .build(&SearchPath::new(&[]))
+            .expect_err("is refused")
+            .to_string();
+        assert!(error.contains(word), "{error}");
+    }
 
-    let mut s: Simulation<Solid> = scene("rolling_stop_sphere", &["solver.method=Newton"]);
+    let mut s: Simulation<Solid> = scene("rolling_stop_sphere", &[]);
+    s.solver.method = Method::Newton;
     let error = s.step().expect_err("is refused").to_string();
     assert!(error.contains("rotation"), "{error}");
 }

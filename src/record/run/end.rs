@@ -48,6 +48,7 @@ impl<S: Dimensional> Recorder<'_, S> {
             volume_third_body: self.worn.1,
         };
         summary.solver.coupling_iterations_mean = self.couplings as f64 / s.steps.max(1) as f64;
+        summary.solver.why = summary.solver.choice.why(s.solver.method, s.steps);
         summary.solver.iterations_mean = self.iterations as f64 / s.steps.max(1) as f64;
         self.table
             .flush()

@@ -321,6 +321,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         solver.error_max = solver.error_max.max(report.solver.error);
         let used = report.solver.used.name().to_owned();
         *solver.steps_by_method.entry(used).or_default() += 1;
+        solver.choice.add(&report.solver);
         self.couplings += u64::from(report.coupling.iterations);
         solver.uncoupled_steps += u64::from(report.coupling.missed);
         if !report.solver.converged {

@@ -9,6 +9,7 @@ pub use surface::Dimensional;
 use super::case::Case;
 use super::interfaces;
 use super::material::{Material, Shelf};
+use super::methods::{Demands, Service};
 use super::scene_file::{self, SceneFile};
 use super::source::{Fault, InputError, Source};
 use crate::bodies::Bodies;
@@ -281,8 +282,8 @@ impl<S: Dimensional> Builder<'_, S> {
             self.source,
             Simulation::new(self.bodies, self.shapes, laws, table, alert, skin),
         );
-        let bonds = simulation.laws.iter().any(|law| law.cohesion.is_some());
-        if let Some(reason) = solve::choose::refusal(case.solver.method, false, bonds) {
+        let service = Demands::of(&simulation).service(case.solver.method);
+        if let Service::Refuses(reason) = service {
             return Err(self.source.locate(Fault::new("solver.method", reason)));
         }
         simulation.gravity = gravity;

@@ -123,7 +123,19 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         } else {
             Law::Coulomb(mu)
         };
-        places.contact = Some(self.add(form.bodies, axes, law));
+        let mut own = axes;
+        if open(form) {
+            // Whatever the velocities, it carries no normal impulse: w p = 0, apart from the bodies.
+            let mobility = |b: &u32| {
+                form.normal
+                    .dot(&form.normal.scaled_by(&problem.masses[*b as usize].0))
+            };
+            own[0] = Axis {
+                compliance: form.bodies.iter().map(mobility).sum(),
+                ..axes[0].bonded(0.0)
+            };
+        }
+        places.contact = Some(self.add(form.bodies, own, law));
         self.constant[k] = form.normal * -form.tension;
         if let Some(e) = &form.elastic {
             let mut axes = axes;
@@ -226,7 +238,9 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             if let Some(c) = places.contact {
                 let shift = S::components(n, &form.shift_t);
                 let q = &mut self.q[c as usize];
-                q[0] += form.shift_n;
+                if !open(form) {
+                    q[0] += form.shift_n;
+                }
                 for k in 1..D {
                     q[k] += shift[k - 1];
                 }
@@ -266,6 +280,9 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
                         all[d] = own[d];
                     }
                 }
+            }
+            if open(form) {
+                all[0] = 0.0;
             }
             p[c as usize] = all;
         }
@@ -337,6 +354,11 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             mu?,
         ))
     }
+}
+
+/// Whether a contact has a gap and a law that lets it close freely: the impact comes with the contact.
+fn open<S: Space>(form: &ContactForm<S>) -> bool {
+    form.shift_n == f64::INFINITY
 }
 
 fn offset<S: Space, const D: usize>(q: &mut [f64; D], unknown: &Unknown<S, D>, a: &[f64; D]) {

@@ -1,0 +1,131 @@
+//! What `auto` chose in a step, and how far a contact set is from isostatic.
+
+use super::form::{ContactForm, Problem};
+use crate::geometry::space::{Space, VectorLike};
+
+/// What [`super::local::solver::Method::Auto`] did in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Chosen {
+    /// Sweeps were enough, or another method was asked for.
+    #[default]
+    Sweeps,
+    /// Sweeps had taken their share, and were given more, since the set is hyperstatic.
+    Longer {
+        /// The set's [`hyperstaticity`].
+        hyperstaticity: f64,
+    },
+    /// Sweeps had taken their share, and Newton was tried.
+    Newton {
+        /// Sweeps before it.
+        after: u32,
+        /// The set's [`hyperstaticity`].
+        hyperstaticity: f64,
+        /// Whether it reached the tolerance.
+        ended: bool,
+    },
+    /// Sweeps had taken their share, and went on: Newton does not serve friction against rotation.
+    Unserved,
+    /// Sweeps had taken their share, and went on: the set is too large to factorise.
+    Large,
+}
+
+impl Chosen {
+    /// What is to be told of a step of several solves: the first in which more than sweeps were asked for.
+    #[must_use]
+    pub fn or(self, later: Self) -> Self {
+        if self == Self::Sweeps { later } else { self }
+    }
+}
+
+/// Unknown impulses of the contacts that carry, over the degrees of freedom of the bodies they move; above 1
+/// the set is hyperstatic: impulses are not determined by the motion.
+///
+/// A contact without friction has one unknown. Rotation counts where a contact can turn the body: by friction
+/// or by a lever. What a bond carries follows from its opening and is no unknown. 0 where nothing is carried.
+pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) -> f64 {
+    /// A body that is touched, and one that can be turned.
+    const TOUCHED: u8 = 1;
+    const TURNED: u8 = 3;
+    let mut state = vec![0u8; problem.masses.len()];
+    let mut unknowns = 0;
+    for (k, form) in forms.iter().enumerate() {
+        let solution = problem.solution(k);
+        let carries = solution.unilateral_n != 0.0 || solution.unilateral_t != S::Tangent::null();
+        let moves = |b: &u32| freedoms::<S>(problem, *b as usize, true) > 0;
+        if !carries || !form.bodies.iter().any(moves) {
+            continue;
+        }
+        let rough = form.friction > 0.0 || form.cohesion > 0.0;
+        unknowns += if rough { S::D } else { 1 };
+        for body in form.bodies {
+            state[body as usize] |= if rough || !form.central {
+                TURNED
+            } else {
+                TOUCHED
+            };
+        }
+    }
+    let freedoms: usize = state
+        .iter()
+        .enumerate()
+        .filter(|(_, state)| **state != 0)
+        .map(|(b, state)| freedoms::<S>(problem, b, *state == TURNED))
+        .sum();
+    unknowns as f64 / freedoms.max(1) as f64
+}
+
+/// Degrees of freedom of a body that can move, with rotation or without.
+fn freedoms<S: Space>(problem: &Problem<S>, body: usize, turns: bool) -> usize {
+    let (mass, inertia) = &problem.masses[body];
+    let shifts = (0..S::D).filter(|k| mass[*k] > 0.0).count();
+    let axes = if S::D == 2 { 1 } else { 3 };
+    shifts + if turns && *inertia > 0.0 { axes } else { 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::{Plane, Space};
+    use nalgebra::Vector2;
+
+    /// A ball on `supports` fixed bodies, all of which carry.
+    fn ball(supports: usize, friction: f64) -> f64 {
+        let mut problem = Problem::<Plane>::default();
+        let body = |p: &mut Problem<Plane>, inverse: f64| {
+            let mass = Vector2::new(inverse, inverse);
+            p.push_body(Vector2::zeros(), VectorLike::null(), mass, inverse, 1.0);
+        };
+        body(&mut problem, 1.0);
+        let mut forms = Vec::new();
+        for k in 0..supports {
+            body(&mut problem, 0.0);
+            let angle = 1.0 + 0.1 * k as f64;
+            let normal = Vector2::new(angle.cos(), angle.sin());
+            let form = ContactForm::<Plane> {
+                bodies: [0, k as u32 + 1],
+                normal,
+                arms: [-normal, normal],
+                central: true,
+                shift_n: 0.0,
+                shift_t: <Plane as Space>::Tangent::null(),
+                friction,
+                tension: 0.0,
+                cohesion: 0.0,
+                elastic: None,
+                impulse: normal,
+            };
+            problem.push(&form);
+            forms.push(form);
+        }
+        hyperstaticity(&problem, &forms)
+    }
+
+    #[test]
+    fn unknowns_over_freedoms() {
+        assert_eq!(ball(0, 0.3), 0.0);
+        // Two of three freedoms without friction: nothing turns the ball.
+        assert_eq!(ball(1, 0.0), 0.5);
+        assert_eq!(ball(2, 0.0), 1.0);
+        assert_eq!(ball(3, 0.3), 2.0);
+    }
+}

@@ -1,0 +1,106 @@
+//! `fretwork check` says which methods a case can use, and refuses one that it cannot before a run.
+
+use std::process::{Command, Output};
+
+fn fretwork(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fretwork"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(args)
+        .output()
+        .unwrap()
+}
+
+/// What `check` prints of a verification case.
+fn check(case: &str, sets: &[&str]) -> (bool, String) {
+    let path = format!("cases/verification/{case}.ron");
+    let mut args = vec!["check", &path];
+    for set in sets {
+        args.extend(["--set", set]);
+    }
+    let output = fretwork(&args);
+    let text = [output.stdout, output.stderr].concat();
+    (
+        output.status.success(),
+        String::from_utf8_lossy(&text).into_owned(),
+    )
+}
+
+/// A line by its label.
+fn line<'a>(text: &'a str, label: &str) -> &'a str {
+    let found = text.lines().find_map(|l| {
+        let (name, rest) = l.trim_start().split_once(' ')?;
+        (name == label).then(|| rest.trim())
+    });
+    found.unwrap_or_else(|| panic!("no line `{label}` in {text}"))
+}
+
+const ALL: &str = "auto, nlgs, nlgs-symmetric, anderson, pg, cpg, pcpg, apgd, newton, interior";
+const GRADIENTS: &str = "auto, nlgs, nlgs-symmetric, anderson, pg, cpg, pcpg, apgd";
+
+#[test]
+fn the_methods_of_a_case_are_listed() {
+    // Coulomb friction alone: all of them.
+    let (fine, text) = check("column", &[]);
+    assert!(fine);
+    assert_eq!(line(&text, "methods"), ALL);
+    assert_eq!(line(&text, "method"), "auto serves this case");
+    // Bonds: not the interior point.
+    let (fine, text) = check("beam_2d", &["solver.method=Newton"]);
+    assert!(fine);
+    assert_eq!(line(&text, "methods"), format!("{GRADIENTS}, newton"));
+    assert_eq!(line(&text, "method"), "newton serves this case");
+    assert!(
+        text.contains("not interior, interface `") && text.contains("bonds"),
+        "{text}"
+    );
+    // Friction against rotation: neither of the two.
+    let (fine, text) = check("rolling_stop_sphere", &[]);
+    assert!(fine);
+    assert_eq!(line(&text, "methods"), GRADIENTS);
+    assert!(
+        text.contains("not newton, interface `") && text.contains("rotation"),
+        "{text}"
+    );
+    // Attraction without an opening.
+    let (_, text) = check("hanging", &[]);
+    assert!(text.contains("not interior"), "{text}");
+}
+
+#[test]
+fn a_law_that_decides_at_run_time_is_told_apart() {
+    let law = "interfaces.0.contact=velocity-weakening";
+    let none = "interfaces.0.parameters.contact={}";
+    let (fine, text) = check("column", &[law, none, "solver.method=Newton"]);
+    assert!(fine, "{text}");
+    assert_eq!(
+        line(&text, "methods"),
+        format!("{GRADIENTS}, newton?, interior?")
+    );
+    let chosen = line(&text, "method");
+    assert!(
+        chosen.starts_with("newton may be refused") && chosen.contains("trials"),
+        "{chosen}"
+    );
+}
+
+#[test]
+fn a_method_that_cannot_is_refused_before_the_run() {
+    for (case, method, word) in [
+        ("rolling_stop_disk", "Newton", "rotation"),
+        ("rolling_stop_sphere", "Interior", "rotation"),
+        ("beam_3d", "Interior", "bonds"),
+        ("hanging", "Interior", "cohesion"),
+    ] {
+        let set = format!("solver.method={method}");
+        let (fine, text) = check(case, &[&set]);
+        assert!(
+            !fine && text.contains(word) && text.contains("interface `"),
+            "{case} {text}"
+        );
+        let path = format!("cases/verification/{case}.ron");
+        let out = std::env::temp_dir().join(format!("fretwork-refused-{}", std::process::id()));
+        let output = fretwork(&["run", &path, "--set", &set, "--out", out.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(!out.exists(), "nothing is written");
+    }
+}
