@@ -2,7 +2,7 @@
 //! are extrapolated and the velocities formed again. What lies between two tests is one application of the
 //! map, so an extrapolation, which costs about three sweeps, is paid for by ten.
 
-use super::extrapolation::Extrapolation;
+use super::extrapolation::{Extrapolation, Safeguard};
 use super::form::Problem;
 use crate::geometry::space::Space;
 
@@ -64,7 +64,10 @@ impl Acceleration {
         }
         problem.store(&mut self.impulses);
         match &mut self.sequence {
-            None => self.sequence = Some(Extrapolation::new(MEMORY, &self.impulses)),
+            None => {
+                let sequence = Extrapolation::new(MEMORY, Safeguard::Back, &self.impulses);
+                self.sequence = Some(sequence);
+            }
             Some(sequence) => {
                 sequence.next(&self.impulses);
                 problem.restore(&sequence.start);

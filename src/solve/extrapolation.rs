@@ -1,5 +1,5 @@
 //! Anderson's extrapolation of a fixed-point iteration p -> g(p) (type II: Walker and Ni 2011),
-//! safeguarded: a start that the iteration itself finds worse is taken back.
+//! safeguarded against starts that the iteration itself finds worse: see [`Safeguard`].
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -41,6 +41,10 @@ impl Memory {
         self.dg.fill([0.0; MOST]);
         self.df.fill([0.0; MOST]);
         (self.size, self.next) = (0, 0);
+    }
+
+    fn full(&self) -> bool {
+        self.size == self.most
     }
 
     /// Takes in the differences to g0 and f0.
@@ -133,10 +137,22 @@ pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + tail
 }
 
+/// What becomes of a start that grew the change, and of a full memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Safeguard {
+    /// The start is taken back, and the oldest difference makes room: where an application of the map is
+    /// long, so that none is to be spent on a bad start.
+    Back,
+    /// The memory is begun anew, from where the map led: one application damps most of what a bad start
+    /// brought in, and differences across a change of contacts' branches do not stay for long.
+    Anew,
+}
+
 /// The sequence of starts.
 #[derive(Debug)]
 pub struct Extrapolation {
     memory: Memory,
+    safeguard: Safeguard,
     /// Where the next iteration starts.
     pub start: Vec<f64>,
     f: Vec<f64>,
@@ -160,10 +176,11 @@ impl WithSimd for Next<'_> {
 
 impl Extrapolation {
     /// Begins at a point, remembering so many differences, eight at most.
-    pub fn new(memory: usize, start: &[f64]) -> Self {
+    pub fn new(memory: usize, safeguard: Safeguard, start: &[f64]) -> Self {
         let zero = vec![0.0; start.len()];
         Self {
             memory: Memory::new(memory, start.len()),
+            safeguard,
             start: start.to_vec(),
             f: zero.clone(),
             before: None,
@@ -187,13 +204,19 @@ impl Extrapolation {
         }
         let change = dot(&self.f, &self.f);
         if let Some(before) = self.before {
-            if change > GROWTH * before {
+            let grew = change > GROWTH * before;
+            if grew && self.safeguard == Safeguard::Back {
                 self.memory.clear();
                 self.before = None;
                 self.start.copy_from_slice(&self.g0);
                 return;
             }
-            self.memory.push(g, &self.g0, &self.f, &self.f0);
+            if grew || self.safeguard == Safeguard::Anew && self.memory.full() {
+                self.memory.clear();
+            }
+            if !grew {
+                self.memory.push(g, &self.g0, &self.f, &self.f0);
+            }
         }
         self.before = Some(change);
         self.g0.copy_from_slice(g);
@@ -212,20 +235,41 @@ impl Extrapolation {
 mod tests {
     use super::*;
 
+    const BOTH: [Safeguard; 2] = [Safeguard::Back, Safeguard::Anew];
+
     /// A linear map is solved in as many steps as it has eigenvalues.
     #[test]
     fn ends_on_a_linear_map() {
         let rates = [0.99, 0.9, 0.5, -0.7];
         let map =
             |p: &[f64]| -> Vec<f64> { p.iter().zip(rates).map(|(p, r)| r * p + 1.0).collect() };
-        let mut sequence = Extrapolation::new(6, &[0.0; 4]);
-        for _ in 0..7 {
-            let g = map(&sequence.start.clone());
-            sequence.next(&g);
+        for safeguard in BOTH {
+            let mut sequence = Extrapolation::new(6, safeguard, &[0.0; 4]);
+            for _ in 0..7 {
+                let g = map(&sequence.start.clone());
+                sequence.next(&g);
+            }
+            for (p, r) in sequence.start.iter().zip(rates) {
+                let exact = 1.0 / (1.0 - r);
+                assert!((p - exact).abs() < 1e-4 * exact, "{p} {exact}");
+            }
         }
-        for (p, r) in sequence.start.iter().zip(rates) {
-            let exact = 1.0 / (1.0 - r);
-            assert!((p - exact).abs() < 1e-4 * exact, "{p} {exact}");
+    }
+
+    /// A start that grew the change is taken back or followed by the map's own answer, as the safeguard
+    /// says.
+    #[test]
+    fn answers_a_bad_start() {
+        for safeguard in BOTH {
+            let mut sequence = Extrapolation::new(6, safeguard, &[0.0]);
+            sequence.next(&[1.0]);
+            assert_eq!(sequence.start, [1.0]);
+            sequence.next(&[11.0]);
+            let wanted = match safeguard {
+                Safeguard::Back => 1.0,
+                Safeguard::Anew => 11.0,
+            };
+            assert_eq!(sequence.start, [wanted]);
         }
     }
 }

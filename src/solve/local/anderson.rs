@@ -3,12 +3,12 @@
 use super::form::Form;
 use super::nlgs::{Sweep, Tests};
 use super::state::{Best, Budget, Solver, State};
-use crate::solve::extrapolation::Extrapolation;
+use crate::solve::extrapolation::{Extrapolation, Safeguard};
 
 /// The method and its parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct Anderson {
-    /// Sweeps remembered.
+    /// Sweeps remembered at most, after which the memory is begun anew.
     pub memory: usize,
 }
 
@@ -49,7 +49,8 @@ impl<const D: usize> Solver<D> for Anderson {
                     match &mut sequence {
                         Some(sequence) => sequence.next(state.p.as_flattened()),
                         none => {
-                            *none = Some(Extrapolation::new(self.memory, state.p.as_flattened()));
+                            let p = state.p.as_flattened();
+                            *none = Some(Extrapolation::new(self.memory, Safeguard::Anew, p));
                         }
                     }
                     if let Some(sequence) = &mut sequence {
