@@ -1,8 +1,8 @@
 //! The pictures.
 
 use crate::process::{Step, Trace};
-use crate::{Run, Single};
-use fretwork::report::{Axis, Chart, ReportError, Series, Style, draw_panels};
+use crate::{Run, Samples, Single};
+use fretwork::report::{Axis, Chart, ReportError, Series, draw_panels};
 use fretwork::solve::local::solver::Method;
 use std::path::Path;
 
@@ -178,36 +178,43 @@ pub const QUANTITIES: [Quantity; 4] = [
     ("deviator over pressure", "", |s| s.test.deviator_ratio),
 ];
 
-/// The biaxial test: NLGS and CPG over NLGS on other paths.
-pub fn biaxial(runs: &[Run], scale: &[Run], path: &Path) -> Result<(), ReportError> {
+/// The biaxial test: means over samples by NLGS and by CPG, over the samples themselves.
+pub fn biaxial(samples: &Samples, path: &Path) -> Result<(), ReportError> {
     let panels = QUANTITIES.map(|(name, unit, value)| {
         // One legend serves all panels.
-        let label = |run: &Run| {
-            if name == QUANTITIES[0].0 {
-                run.label
-            } else {
-                ""
-            }
-        };
+        let label = |text: &str| if name == QUANTITIES[0].0 { text } else { "" }.to_owned();
         let mut panel = chart("", Axis::new("axial strain", ""), Axis::new(name, unit));
-        let styles = [Style::Line, Style::Dashed];
-        for (run, style) in scale.iter().zip(styles) {
-            let points = curve(&run.trace, value);
-            let grey = series(run.label, points).style(style);
+        for (k, trace) in samples.nlgs.iter().enumerate() {
+            let text = if k == 0 { "NLGS, samples" } else { "" };
             panel = panel.with(Series {
-                label: label(run).to_owned(),
-                ..grey
+                label: label(text),
+                ..series("", curve(trace, value))
             });
         }
-        for run in runs.iter().filter(|r| ["NLGS", "CPG"].contains(&r.label)) {
+        for (text, of, traces) in [
+            ("NLGS, mean", "NLGS", &samples.nlgs),
+            ("CPG, mean", "CPG", &samples.cpg),
+        ] {
             panel = panel.with(Series {
-                label: label(run).to_owned(),
-                ..series(run.label, curve(&run.trace, value))
+                label: label(text),
+                ..series(of, mean(traces, value))
             });
         }
         panel
     });
     draw_panels(&panels, 2, path)
+}
+
+/// The mean of the curves of samples, which are driven alike.
+fn mean(traces: &[&Trace], value: fn(&Step) -> f64) -> Vec<(f64, f64)> {
+    let curves: Vec<_> = traces.iter().map(|t| curve(t, value)).collect();
+    let length = curves.iter().map(Vec::len).min().unwrap_or(0);
+    let over = |f: &dyn Fn(&Vec<(f64, f64)>) -> f64| {
+        curves.iter().map(f).sum::<f64>() / curves.len() as f64
+    };
+    (0..length)
+        .map(|k| (over(&|c| c[k].0), over(&|c| c[k].1)))
+        .collect()
 }
 
 /// Means over windows of steps, against their axial strain.
