@@ -141,6 +141,11 @@ fn project<const D: usize>(form: &Form<D>, p: &mut [[f64; D]]) {
     }
 }
 
+/// What follows a threshold grows by, if it was at the old one.
+fn growth(at: f64, old: f64, new: f64) -> Option<f64> {
+    (old > 0.0 && at >= old * SLIDES).then(|| new / old)
+}
+
 /// Projects a prediction on the sets it was made for, `fixed`, then gives in `p` the admissible point at its own
 /// thresholds: what slides in the first slides in the second.
 fn carry<const D: usize>(form: &Form<D>, sets: &[Set], fixed: &mut [[f64; D]], p: &mut [[f64; D]]) {
@@ -149,15 +154,24 @@ fn carry<const D: usize>(form: &Form<D>, sets: &[Set], fixed: &mut [[f64; D]], p
         sets[c].project(&mut fixed[c]);
         let mut own = p[c];
         let now = Set::of(&form.laws[c], &own, p);
-        match (sets[c], now) {
-            (Set::Pushes(s), Set::Pushes(now)) if s > 0.0 && slip(&fixed[c]) >= s * SLIDES => {
-                own = fixed[c];
-                for x in &mut own[1..] {
-                    *x *= now / s;
-                }
-            }
-            _ => now.project(&mut own),
+        let across = slip(&fixed[c]);
+        let [axial, across] = match (sets[c], now) {
+            (Set::Pushes(s), Set::Pushes(new)) => [None, growth(across, s, new)],
+            (Set::Box(a, b), Set::Box(new_a, new_b)) => [
+                growth(fixed[c][0].abs(), a, new_a),
+                growth(across, b, new_b),
+            ],
+            _ => [None, None],
+        };
+        if let Some(factor) = axial {
+            own[0] = factor * fixed[c][0];
         }
+        if let Some(factor) = across {
+            for k in 1..D {
+                own[k] = factor * fixed[c][k];
+            }
+        }
+        now.project(&mut own);
         p[c] = own;
     }
 }
