@@ -209,11 +209,11 @@ pub fn biaxial(samples: &Samples, path: &Path) -> Result<(), ReportError> {
 fn mean(traces: &[&Trace], value: fn(&Step) -> f64) -> Vec<(f64, f64)> {
     let curves: Vec<_> = traces.iter().map(|t| curve(t, value)).collect();
     let length = curves.iter().map(Vec::len).min().unwrap_or(0);
-    let over = |f: &dyn Fn(&Vec<(f64, f64)>) -> f64| {
-        curves.iter().map(f).sum::<f64>() / curves.len() as f64
+    let over = |k: usize, f: fn(&(f64, f64)) -> f64| {
+        curves.iter().map(|c| f(&c[k])).sum::<f64>() / curves.len() as f64
     };
     (0..length)
-        .map(|k| (over(&|c| c[k].0), over(&|c| c[k].1)))
+        .map(|k| (over(k, |p| p.0), over(k, |p| p.1)))
         .collect()
 }
 

@@ -222,6 +222,5 @@ fn agreement(out: &mut String, samples: &Samples) {
             },
         );
     }
-    *out +=
-        "\nCoordination is that of the grains that carry force; compacity is in two dimensions.\n";
+    *out += "\nCoordination is that of the grains that carry force; compacity is in two dimensions. So few samples tell large differences only:\n`yes` says that none was seen, not that there is none.\n";
 }
