@@ -6,8 +6,13 @@
 //! iterate. [`Kind::Plain`] goes along the gradient, [`Kind::Conjugate`] along conjugate directions, and
 //! [`Kind::Preconditioned`] does so in the metric of the diagonal of W.
 //!
-//! Projecting the end of an exact line search can raise the energy p.W p / 2 + q.p, and then the bare method
-//! goes round in circles. Such a step is taken back and replaced by one of the safe length 1 / lambda_max.
+//! What slides at the end of an iteration is carried along to its new threshold. Left at the old one while its
+//! normal part grows it would stick in the next iteration and slide in the one after, and so would its
+//! neighbours: conjugacy is lost and the method is no faster than plain gradients.
+//!
+//! Projecting the end of an exact line search can raise the energy p.W p / 2 + q.p at fixed thresholds, and then
+//! the bare method goes round in circles. Such a step is taken back and replaced by one of the safe length
+//! 1 / lambda_max.
 
 use super::form::{Form, dot, largest};
 use super::law::{Law, slip};
@@ -30,6 +35,9 @@ pub struct Gradient {
     /// Which of the three.
     pub kind: Kind,
 }
+
+/// Share of its threshold from which on a contact slides.
+const SLIDES: f64 = 1.0 - 1e-12;
 
 /// A contact's admissible set at given thresholds.
 #[derive(Clone, Copy, Debug)]
@@ -89,7 +97,7 @@ impl Set {
                 for x in &mut d[1..] {
                     *x = 0.0;
                 }
-            } else if t >= s * (1.0 - 1e-12) {
+            } else if t >= s * SLIDES {
                 let out: f64 = (1..D).map(|k| d[k] * p[k]).sum::<f64>() / t;
                 if out > 0.0 {
                     for k in 1..D {
@@ -129,6 +137,41 @@ fn project<const D: usize>(form: &Form<D>, p: &mut [[f64; D]]) {
     for c in 0..p.len() {
         let mut own = p[c];
         Set::of(&form.laws[c], &own, p).project(&mut own);
+        p[c] = own;
+    }
+}
+
+/// What follows a threshold grows by, if it was at the old one.
+fn growth(at: f64, old: f64, new: f64) -> Option<f64> {
+    (old > 0.0 && at >= old * SLIDES).then(|| new / old)
+}
+
+/// Projects a prediction on the sets it was made for, `fixed`, then gives in `p` the admissible point at its own
+/// thresholds: what slides in the first slides in the second.
+fn carry<const D: usize>(form: &Form<D>, sets: &[Set], fixed: &mut [[f64; D]], p: &mut [[f64; D]]) {
+    fixed.copy_from_slice(p);
+    for c in 0..p.len() {
+        sets[c].project(&mut fixed[c]);
+        let mut own = p[c];
+        let now = Set::of(&form.laws[c], &own, p);
+        let across = slip(&fixed[c]);
+        let [axial, across] = match (sets[c], now) {
+            (Set::Pushes(s), Set::Pushes(new)) => [None, growth(across, s, new)],
+            (Set::Box(a, b), Set::Box(new_a, new_b)) => [
+                growth(fixed[c][0].abs(), a, new_a),
+                growth(across, b, new_b),
+            ],
+            _ => [None, None],
+        };
+        if let Some(factor) = axial {
+            own[0] = factor * fixed[c][0];
+        }
+        if let Some(factor) = across {
+            for k in 1..D {
+                own[k] = factor * fixed[c][k];
+            }
+        }
+        now.project(&mut own);
         p[c] = own;
     }
 }
@@ -187,7 +230,7 @@ impl<const D: usize> Solver<D> for Gradient {
         let (mut d, mut gradient, mut kept, mut wd) =
             (zero.clone(), zero.clone(), zero.clone(), zero.clone());
         let mut sets: Vec<Set> = vec![Set::All; n];
-        let mut wd_u = zero.clone();
+        let (mut wd_u, mut fixed) = (zero.clone(), zero.clone());
         let mut safe = None;
         let mut first = true;
         let mut best = Best::of(state);
@@ -236,9 +279,11 @@ impl<const D: usize> Solver<D> for Gradient {
                         state.p[c][k] += alpha * d[c][k];
                     }
                 }
-                project(form, &mut state.p);
+                carry(form, &sets, &mut fixed, &mut state.p);
                 form.velocity(&state.p, &mut state.u);
-                raised = 0.5 * (dot(&state.p, &state.u) + dot(&state.p, form.q)) - energy;
+                // What new thresholds add is no fault of the step.
+                let moved = dot(&state.u, &state.p) - dot(&state.u, &fixed);
+                raised = 0.5 * (dot(&state.p, &state.u) + dot(&state.p, form.q)) - energy - moved;
             }
             state.iterations += 1;
             first = false;

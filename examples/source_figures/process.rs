@@ -1,0 +1,109 @@
+//! Runs of a case in the plane, step by step, with the counts and times that the figures show.
+
+use fretwork::geometry::space::Plane;
+use fretwork::laws::SearchPath;
+use fretwork::record::biaxial::{Biaxial, State};
+use fretwork::scene::{Scene, load};
+use fretwork::solve::local::LocalProblem;
+use fretwork::step::Simulation;
+use std::error::Error;
+use std::path::Path;
+
+/// One step of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// Time at its end (s).
+    pub time: f64,
+    /// Iterations, in the unit of the method.
+    pub iterations: u32,
+    /// Whether the tolerance was reached.
+    pub converged: bool,
+    /// Time of the solve (s).
+    pub seconds: f64,
+    /// Kinetic energy of the grains' translation (J/m).
+    pub kinetic: f64,
+    /// The biaxial test, where the case is one.
+    pub test: State,
+}
+
+/// A run.
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    /// Its steps.
+    pub steps: Vec<Step>,
+    /// The contact problem of the last one.
+    pub last: Option<LocalProblem>,
+    /// The grains at the end: centre and radius (m).
+    pub grains: Vec<([f64; 2], f64)>,
+    /// Tolerance of the solver.
+    pub tolerance: f64,
+}
+
+/// Runs a case of two dimensions to a time, or to its end.
+pub fn run(case: &Path, sets: &[String], until: Option<f64>) -> Result<Trace, Box<dyn Error>> {
+    let loaded = load(case, sets)?;
+    let Scene::Plane(built) = loaded.build(&SearchPath::new(&[]))? else {
+        return Err(format!("{}: not a case of two dimensions", case.display()).into());
+    };
+    let mut s: Simulation<Plane> = built.simulation;
+    let mut test = loaded
+        .case
+        .biaxial
+        .as_ref()
+        .and_then(|spec| Biaxial::new(spec, &s));
+    let end = until.unwrap_or(loaded.case.time.end);
+    let count = (end / s.scheme.h).round() as u64;
+    let mut trace = Trace {
+        tolerance: s.solver.tolerance,
+        ..Trace::default()
+    };
+    for _ in 0..count {
+        let report = s.step()?;
+        if let Some(test) = &mut test {
+            test.follow(&s);
+        }
+        trace.steps.push(Step {
+            time: s.time,
+            iterations: report.solver.iterations,
+            converged: report.solver.converged,
+            seconds: report.timing.solve.as_secs_f64(),
+            kinetic: s
+                .shapes
+                .balls
+                .iter()
+                .map(|b| kinetic(&s, b.body as usize))
+                .sum(),
+            test: test.as_ref().map(|t| t.state(&s)).unwrap_or_default(),
+        });
+    }
+    trace.last = s.local_problem();
+    let driven = |body: u32| s.bodies.driven.iter().any(|d| d.body == body);
+    for ball in s.shapes.balls.iter().filter(|b| !driven(b.body)) {
+        let at = s.bodies.position[ball.body as usize];
+        trace.grains.push(([at[0], at[1]], ball.radius));
+    }
+    Ok(trace)
+}
+
+/// Kinetic energy of translation of a body (J/m).
+fn kinetic(s: &Simulation<Plane>, body: usize) -> f64 {
+    0.5 * s.bodies.mass[body] * s.bodies.velocity[body].norm_squared()
+}
+
+impl Trace {
+    /// Time of all solves (s).
+    pub fn seconds(&self) -> f64 {
+        self.steps.iter().map(|s| s.seconds).sum()
+    }
+
+    /// Iterations a step.
+    pub fn iterations(&self) -> f64 {
+        let sum: u64 = self.steps.iter().map(|s| u64::from(s.iterations)).sum();
+        sum as f64 / self.steps.len().max(1) as f64
+    }
+
+    /// Steps that missed the tolerance.
+    pub fn missed(&self) -> usize {
+        self.steps.iter().filter(|s| !s.converged).count()
+    }
+}
