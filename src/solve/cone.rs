@@ -1,6 +1,7 @@
 //! The set of admissible impulses of one contact and the projection onto it.
 
 use crate::geometry::space::VectorLike;
+use std::hint::select_unpredictable;
 
 /// { (P, t) : P >= 0, |t| <= mu P + c }: Coulomb's cone for c = 0, Tresca's cylinder for mu = 0.
 /// P = p_n + h c_n and c = h c_t. Returns the nearest point (Euclidean).
@@ -15,6 +16,19 @@ pub fn project<T: VectorLike>(normal: f64, tangent: T, mu: f64, c: f64) -> (f64,
 /// The same of (P, t...) in an array.
 #[inline(always)]
 pub fn project_array<const D: usize>(z: &[f64; D], mu: f64, c: f64) -> [f64; D] {
+    if D == 2 {
+        // All answers are formed and one is chosen: the branches would be guessed wrong too often.
+        let (n, length) = (z[0], z[1].abs());
+        let inside = n >= 0.0 && length <= mu * n + c;
+        let foot = (n + mu * (length - c)) / (1.0 + mu * mu);
+        let slides = length > c && foot > 0.0;
+        let foot = select_unpredictable(slides, foot, 0.0);
+        let bound = select_unpredictable(slides, mu * foot + c, length.min(c));
+        let mut y = [0.0; D];
+        y[0] = select_unpredictable(inside, n, foot);
+        y[1] = select_unpredictable(inside, z[1], bound.copysign(z[1]));
+        return y;
+    }
     let mut squared = 0.0;
     for x in &z[1..] {
         squared += x * x;
@@ -69,7 +83,10 @@ mod tests {
             assert!(pn >= 0.0 && pt.norm() <= mu * pn + c + 1e-15);
             let distance = (pn - n).hypot(pt[0] - s);
             assert!(distance <= nearest_by_sampling(n, s, mu, c) + 2e-6);
-            assert_eq!(project_array(&[n, s], mu, c), [pn, pt[0]]);
+            let y = project_array(&[n, s], mu, c);
+            assert!((y[0] - pn).abs() < 1e-15 && (y[1] - pt[0]).abs() < 1e-15);
+            let z = project_array(&[n, 0.6 * s, -0.8 * s], mu, c);
+            assert!((z[0] - pn).abs() < 1e-15 && (z[1] - 0.6 * pt[0]).abs() < 1e-15);
         }
     }
 

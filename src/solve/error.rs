@@ -61,6 +61,18 @@ pub fn lost(p_n: f64, u_n: f64, mu: f64) -> f64 {
     p_n.min(u_n) * (squared / (1.0 + squared))
 }
 
+/// The squared residual of a contact: what the natural map leaves, or [`lost`] where that is larger.
+#[inline(always)]
+pub fn residual(natural: f64, p_n: f64, u_n: f64, mu: f64) -> f64 {
+    let most = p_n.min(u_n);
+    // Never more than this, and seldom anything: the division is spared.
+    if most * most <= natural {
+        return natural;
+    }
+    let lost = lost(p_n, u_n, mu);
+    natural.max(lost * lost)
+}
+
 /// The residual over velocities alone, where it is of their size: impulses that grow without bound, since no
 /// answer exists, would hide it.
 pub fn unbounded(residual: f64) -> f64 {

@@ -15,40 +15,44 @@ use std::hint::select_unpredictable;
 pub struct Local<const D: usize> {
     w: Block<D>,
     inverse: Block<D>,
-    iwnn: f64,
-    /// A = W_tt - W_tn W_nt / W_nn (in the plane its one entry).
-    schur: [[f64; 2]; 2],
     mu: f64,
     lambda: f64,
+}
+
+/// A = W_tt - W_tn W_nt / W_nn (in the plane its one entry) and its determinant.
+#[inline(always)]
+fn schur<const D: usize>(w: &Block<D>) -> ([[f64; 2]; 2], f64) {
+    /// What is added to an A that is singular, as a share of W: impulses along it then answer its velocities
+    /// as far as friction lets them.
+    const LEAST: f64 = 1e-12;
+    let iwnn = if w[0][0] > 0.0 { 1.0 / w[0][0] } else { 0.0 };
+    let mut a = [[0.0; 2]; 2];
+    for i in 1..D {
+        for j in 1..D {
+            a[i - 1][j - 1] = w[i][j] - w[i][0] * w[0][j] * iwnn;
+        }
+    }
+    let determinant = |a: &[[f64; 2]; 2]| {
+        if D == 2 {
+            a[0][0]
+        } else {
+            a[0][0] * a[1][1] - a[0][1] * a[1][0]
+        }
+    };
+    let size = (1..D).fold(w[0][0].abs(), |m, k| m.max(w[k][k].abs()));
+    let least = LEAST * size;
+    if determinant(&a) <= if D == 2 { least } else { least * size } {
+        a[0][0] += least;
+        a[1][1] += least;
+    }
+    (a, determinant(&a))
 }
 
 impl<const D: usize> Local<D> {
     /// From the diagonal block and the friction of Coulomb's law.
     pub fn new(w: &Block<D>, mu: f64) -> Self {
-        /// What is added to an A that is singular, as a share of W: impulses along it then answer its
-        /// velocities as far as friction lets them.
-        const LEAST: f64 = 1e-12;
+        let (schur, determinant) = schur(w);
         let iwnn = if w[0][0] > 0.0 { 1.0 / w[0][0] } else { 0.0 };
-        let mut schur = [[0.0; 2]; 2];
-        for i in 1..D {
-            for j in 1..D {
-                schur[i - 1][j - 1] = w[i][j] - w[i][0] * w[0][j] * iwnn;
-            }
-        }
-        let size = (1..D).fold(w[0][0].abs(), |m, k| m.max(w[k][k].abs()));
-        let determinant = |a: &[[f64; 2]; 2]| {
-            if D == 2 {
-                a[0][0]
-            } else {
-                a[0][0] * a[1][1] - a[0][1] * a[1][0]
-            }
-        };
-        let least = LEAST * size;
-        if determinant(&schur) <= if D == 2 { least } else { least * size } {
-            schur[0][0] += least;
-            schur[1][1] += least;
-        }
-        let determinant = determinant(&schur);
         let mut inverse = [[0.0; D]; D];
         if determinant > 0.0 && iwnn > 0.0 {
             // Inverse of a block matrix by its Schur complement.
@@ -76,8 +80,6 @@ impl<const D: usize> Local<D> {
         Self {
             w: *w,
             inverse,
-            iwnn,
-            schur,
             mu,
             lambda: 0.0,
         }
@@ -104,7 +106,7 @@ impl<const D: usize> Local<D> {
         let sticks = stick[0] < 0.0 && stick[1].abs() <= -self.mu * stick[0];
         let n = select_unpredictable(sticks, -stick[0], slide_n);
         let t = select_unpredictable(sticks, -stick[1], -s * slide_n);
-        let closed = f[0] < 0.0 && self.iwnn > 0.0;
+        let closed = f[0] < 0.0 && self.w[0][0] > 0.0;
         let mut p = [0.0; D];
         p[0] = select_unpredictable(closed, n.max(0.0), 0.0);
         p[1] = select_unpredictable(closed && n > 0.0, t, 0.0);
@@ -115,11 +117,11 @@ impl<const D: usize> Local<D> {
     fn solve_space(&mut self, f: &[f64; D]) -> [f64; D] {
         let mu = self.mu;
         let mut p = [0.0; D];
-        if f[0] >= 0.0 || self.iwnn == 0.0 {
+        if f[0] >= 0.0 || self.w[0][0] <= 0.0 {
             return p;
         }
         if mu == 0.0 {
-            p[0] = -f[0] * self.iwnn;
+            p[0] = -f[0] / self.w[0][0];
             return p;
         }
         let stick = times(&self.inverse, f);
@@ -170,11 +172,10 @@ impl<const D: usize> Local<D> {
 
     fn slide_space(&mut self, f: &[f64; D]) -> [f64; D] {
         const STEPS: usize = 30;
-        let (w, a, mu) = (&self.w, &self.schur, self.mu);
-        let b = [
-            f[1] - w[1][0] * f[0] * self.iwnn,
-            f[2] - w[2][0] * f[0] * self.iwnn,
-        ];
+        let (w, mu) = (&self.w, self.mu);
+        let (a, _) = schur(w);
+        let iwnn = 1.0 / w[0][0];
+        let b = [f[1] - w[1][0] * f[0] * iwnn, f[2] - w[2][0] * f[0] * iwnn];
         let mut p = [0.0; D];
         let (mut low, mut high) = (0.0, f64::INFINITY);
         let mut lambda = self.lambda;
@@ -190,7 +191,7 @@ impl<const D: usize> Local<D> {
                 -(d1 * b[0] - a[0][1] * b[1]) * over,
                 -(d0 * b[1] - a[1][0] * b[0]) * over,
             ];
-            let n = -(f[0] + w[0][1] * t[0] + w[0][2] * t[1]) * self.iwnn;
+            let n = -(f[0] + w[0][1] * t[0] + w[0][2] * t[1]) * iwnn;
             let length = (t[0] * t[0] + t[1] * t[1]).sqrt();
             (p[0], p[1], p[2]) = (n, t[0], t[1]);
             let ratio = mu * n - length;
@@ -207,7 +208,7 @@ impl<const D: usize> Local<D> {
                 -(d1 * t[0] - a[0][1] * t[1]) * over,
                 -(d0 * t[1] - a[1][0] * t[0]) * over,
             ];
-            let dn = -(w[0][1] * dt[0] + w[0][2] * dt[1]) * self.iwnn;
+            let dn = -(w[0][1] * dt[0] + w[0][2] * dt[1]) * iwnn;
             let dlength = (t[0] * dt[0] + t[1] * dt[1]) / length;
             // Newton on mu n / |t| - 1.
             let value = ratio / length;

@@ -2,7 +2,7 @@
 
 use super::block::{Block, BlockMatrix};
 use super::law::{self, Law};
-use crate::solve::error::{Norm, Scale, Sums, lost};
+use crate::solve::error::{Norm, Scale, Sums, residual};
 use crate::solve::extrapolation;
 use crate::solve::row::Residual;
 
@@ -113,15 +113,18 @@ impl<'a, const D: usize> Form<'a, D> {
                 continue;
             }
             let r = self.laws[c].natural(&p[c], &u[c], rho, p);
-            let over = 1.0 / rho;
+            let over = if rho == 1.0 { 1.0 } else { 1.0 / rho };
             let dot = |a: &[f64; D], b: &[f64; D]| (0..D).map(|k| a[k] * b[k]).sum::<f64>();
-            let lost = match self.laws[c] {
-                Law::Coulomb(mu) | Law::Cohesive { mu, .. } => lost(p[c][0] * over, u[c][0], mu),
-                _ => 0.0,
+            let natural = dot(&r, &r) * over * over;
+            let squared = match self.laws[c] {
+                Law::Coulomb(mu) | Law::Cohesive { mu, .. } => {
+                    residual(natural, p[c][0] * over, u[c][0], mu)
+                }
+                _ => natural,
             };
             sums.add(
                 &Residual {
-                    squared: (dot(&r, &r) * over * over).max(lost * lost),
+                    squared,
                     velocity: dot(&u[c], &u[c]),
                     impulse: dot(&p[c], &p[c]) * over * over,
                     power: dot(&p[c], &r) * over,

@@ -131,9 +131,8 @@ fn natural_map<T: VectorLike>(
     );
     let over = 1.0 / rho;
     let (rn, rt) = ((pn - zn) * over, (pt - zt) * over);
-    let lost = error::lost(pn * over, un + sn, mu);
     Residual {
-        squared: (rn * rn + rt.dot(&rt)).max(lost * lost),
+        squared: error::residual(rn * rn + rt.dot(&rt), pn * over, un + sn, mu),
         velocity: un * un + ut.dot(&ut),
         impulse: (pn * pn + pt.dot(&pt)) * (over * over),
         power: pn * rn + pt.dot(&rt),
