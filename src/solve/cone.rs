@@ -7,53 +7,54 @@ use std::hint::select_unpredictable;
 /// P = p_n + h c_n and c = h c_t. Returns the nearest point (Euclidean).
 #[inline]
 pub fn project<T: VectorLike>(normal: f64, tangent: T, mu: f64, c: f64) -> (f64, T) {
-    match outside(normal, tangent.dot(&tangent), mu, c) {
-        None => (normal, tangent),
-        Some((n, scale)) => (n, tangent * scale),
+    if T::N == 1 {
+        let (n, bound) = nearest(normal, tangent[0].abs(), mu, c);
+        let t = select_unpredictable(bound < 0.0, tangent[0], bound.copysign(tangent[0]));
+        return (n, T::from_slice(&[t]));
     }
+    let length = tangent.dot(&tangent).sqrt();
+    let (n, bound) = nearest(normal, length, mu, c);
+    (n, tangent * share(bound, length))
 }
 
 /// The same of (P, t...) in an array.
 #[inline(always)]
 pub fn project_array<const D: usize>(z: &[f64; D], mu: f64, c: f64) -> [f64; D] {
     if D == 2 {
-        // All answers are formed and one is chosen: the branches would be guessed wrong too often.
-        let (n, length) = (z[0], z[1].abs());
-        let inside = n >= 0.0 && length <= mu * n + c;
-        let foot = (n + mu * (length - c)) / (1.0 + mu * mu);
-        let slides = length > c && foot > 0.0;
-        let foot = select_unpredictable(slides, foot, 0.0);
-        let bound = select_unpredictable(slides, mu * foot + c, length.min(c));
-        let mut y = [0.0; D];
-        y[0] = select_unpredictable(inside, n, foot);
-        y[1] = select_unpredictable(inside, z[1], bound.copysign(z[1]));
-        return y;
+        let (n, bound) = nearest(z[0], z[1].abs(), mu, c);
+        let t = select_unpredictable(bound < 0.0, z[1], bound.copysign(z[1]));
+        return std::array::from_fn(|k| if k == 0 { n } else { t });
     }
     let mut squared = 0.0;
     for x in &z[1..] {
         squared += x * x;
     }
-    match outside(z[0], squared, mu, c) {
-        None => *z,
-        Some((n, scale)) => std::array::from_fn(|k| if k == 0 { n } else { z[k] * scale }),
-    }
+    let length = squared.sqrt();
+    let (n, bound) = nearest(z[0], length, mu, c);
+    let scale = share(bound, length);
+    std::array::from_fn(|k| if k == 0 { n } else { z[k] * scale })
 }
 
-/// Of a point outside, by P and |t|^2: the nearest P, and what t is multiplied by.
+/// The P and |t| of the nearest point to one of these; |t| = -1 of a point inside. All answers are formed
+/// and one is chosen: branches would be guessed wrong too often.
 #[inline(always)]
-fn outside(normal: f64, squared: f64, mu: f64, c: f64) -> Option<(f64, f64)> {
-    let bound = mu * normal + c;
-    if normal >= 0.0 && squared <= bound * bound {
-        return None;
-    }
-    let length = squared.sqrt();
+fn nearest(normal: f64, length: f64, mu: f64, c: f64) -> (f64, f64) {
+    let inside = normal >= 0.0 && length <= mu * normal + c;
     let foot = (normal + mu * (length - c)) / (1.0 + mu * mu);
-    let (n, bound) = if length > c && foot > 0.0 {
-        (foot, mu * foot + c)
-    } else {
-        (0.0, length.min(c))
-    };
-    Some((n, if length > 0.0 { bound / length } else { 0.0 }))
+    let slides = length > c && foot > 0.0;
+    let foot = select_unpredictable(slides, foot, 0.0);
+    let bound = select_unpredictable(slides, mu * foot + c, length.min(c));
+    (
+        select_unpredictable(inside, normal, foot),
+        select_unpredictable(inside, -1.0, bound),
+    )
+}
+
+/// What a tangent of a length is multiplied by to have the length `bound`; 1 where it is inside.
+#[inline(always)]
+fn share(bound: f64, length: f64) -> f64 {
+    let scale = select_unpredictable(length > 0.0, bound / length, 0.0);
+    select_unpredictable(bound < 0.0, 1.0, scale)
 }
 
 #[cfg(test)]

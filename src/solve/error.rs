@@ -15,6 +15,9 @@
 //! r_c is what the natural map leaves or [`lost`], whichever is larger. The work of the step counts for no
 //! less than sum_c rho_c |u_free,c|^2: where nothing is to be carried it is an error itself.
 //!
+//! Bodies that move fast together have relative velocities that are all rounding: what is below that of their
+//! own velocities counts as none.
+//!
 //! A scene scaled in length, mass or time has the same figures.
 //!
 //! [`Norm::Field`]: error = |r| / max(|u|, |u_free|, |p|) with rho = 1: the field's own figure (Siconos'
@@ -86,6 +89,8 @@ pub struct Scale {
     pub free: f64,
     /// Sum of rho |u_free|^2 (J).
     pub energy: f64,
+    /// Squared rounding of all relative velocities (m^2/s^2): a residual below it is none.
+    pub noise: f64,
     /// |v - v_free|_M^2 (J).
     pub work: f64,
 }
@@ -149,6 +154,9 @@ impl Sums {
 
     /// The error. Where there is nothing to measure against, the residual itself.
     pub fn error(&self, norm: Norm, scale: &Scale) -> f64 {
+        if self.residual <= scale.noise {
+            return 0.0;
+        }
         let local = self.local(norm, scale.free);
         match norm {
             Norm::Velocity => local,

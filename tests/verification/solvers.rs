@@ -24,6 +24,8 @@ const ALL: [&str; 10] = [
 
 pub fn all(table: &mut Table) {
     column(table);
+    dragged(table);
+    thrown(table);
     // Bonds that bend and twist: compliance, moments.
     alike::<Solid>(
         table,
@@ -64,6 +66,78 @@ fn column(table: &mut Table) {
         let carried = -s.received[0].0.y / s.scheme.h;
         let quantity = format!("weight on the floor by {method}");
         table.compare("column", &quantity, weight, carried, 1e-9);
+    }
+}
+
+/// A block that is dragged at a given velocity and free to rise: friction is mu times its weight, although
+/// no impulse changes its slip.
+fn dragged(table: &mut Table) {
+    for method in ALL {
+        let mut s: Simulation<Plane> = scene(
+            "slide_to_stop",
+            &[
+                &format!("solver.method={method}"),
+                "bodies.block.dofs.x=Velocity(Constant(1.0))",
+                "solver.tolerance=1e-9",
+            ],
+        );
+        for _ in 0..20 {
+            let report = s.step().unwrap_or_else(|e| panic!("{method}: {e}"));
+            assert!(report.solver.converged, "{method}: {:?}", report.solver);
+        }
+        let floor = s.received[0].0 * (1.0 / s.scheme.h);
+        let weight = s.bodies.mass[s.bodies.driven[1].body as usize] * G;
+        let quantity = format!("weight of the block by {method}");
+        table.compare("dragged", &quantity, weight, -floor.y, 1e-5);
+        let quantity = format!("its friction by {method}");
+        table.compare("dragged", &quantity, 0.3 * weight, floor.x, 1e-5);
+    }
+}
+
+/// A ball thrown obliquely on a floor of huge friction does not sink in: it rolls on at once, at v_x/(1 + 1/k),
+/// k = 1/2 of a disk, and the floor takes its normal momentum. Until it arrives the floor takes none.
+fn thrown(table: &mut Table) {
+    for mu in ["0.3", "1e4", "1e7"] {
+        for method in ALL {
+            let mut s: Simulation<Plane> = scene(
+                "bouncing_ball",
+                &[
+                    &format!("solver.method={method}"),
+                    &format!("interfaces.grain.parameters.contact.mu={mu}"),
+                    "interfaces.grain.parameters.contact.restitution_n=0.0",
+                    "grains.0.grains.0.at=[0.0,0.10015]",
+                    "grains.0.grains.0.velocity=[0.1,-1.0]",
+                    "solver.norm=Balance",
+                    "solver.tolerance=1e-6",
+                    "gravity=[0,0]",
+                ],
+            );
+            let ball = (0..s.bodies.len())
+                .find(|b| !s.bodies.immovable(*b))
+                .expect("there is a ball");
+            let mut taken = 0.0;
+            for _ in 0..4 {
+                let report = s.step().unwrap_or_else(|e| panic!("{method}: {e}"));
+                assert!(
+                    report.solver.converged,
+                    "mu {mu}, {method}: {:?}",
+                    report.solver
+                );
+                taken -= s.received[0].0.y;
+            }
+            let m = s.bodies.mass[ball];
+            let quantity = format!("normal impulse over m v, mu {mu}, {method}");
+            // What the step leaves of the gap is closed at once.
+            table.compare("thrown", &quantity, 1.0, taken / m, 1e-3);
+            let quantity = format!("velocity along the floor, mu {mu}, {method}");
+            table.compare(
+                "thrown",
+                &quantity,
+                0.1 / 1.5,
+                s.bodies.velocity[ball].x,
+                1e-3,
+            );
+        }
     }
 }
 

@@ -27,7 +27,7 @@ pub fn sweeps_per_factorisation(entries: f64, contacts: f64) -> f64 {
 }
 
 impl Auto {
-    /// The methods used in the last solve, in their order.
+    /// The methods used in the last solve, in the order of their first use.
     pub fn names(&self) -> Vec<&'static str> {
         self.used.borrow().clone()
     }
@@ -41,7 +41,7 @@ impl Auto {
         budget: &mut Budget,
         iterations: u32,
     ) -> bool {
-        if self.used.borrow().last() != Some(&name) {
+        if !self.used.borrow().contains(&name) {
             self.used.borrow_mut().push(name);
         }
         let mut own = budget.at_most(state.iterations.saturating_add(iterations));

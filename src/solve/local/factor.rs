@@ -88,6 +88,22 @@ impl Factors {
         }
     }
 
+    /// Entries of [`Self::sandwich`], from above.
+    pub fn reach(&self, b: &Csr) -> usize {
+        let columns = |component: &Component| {
+            let mut columns: Vec<usize> = component
+                .rows
+                .iter()
+                .flat_map(|r| b.row(*r).map(|(c, _)| c))
+                .collect();
+            columns.sort_unstable();
+            columns.dedup();
+            columns.len()
+        };
+        let squares = self.components.iter().map(|c| columns(c).pow(2));
+        squares.fold(0, usize::saturating_add)
+    }
+
     /// B^T K^-1 B, of as many rows and columns as B has columns. An entry is left out where every
     /// component's share of it is exactly zero.
     pub fn sandwich(&self, b: &Csr) -> Csr {

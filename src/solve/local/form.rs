@@ -139,6 +139,7 @@ impl<'a, const D: usize> Form<'a, D> {
         let scale = Scale {
             free: self.free,
             energy: self.energy,
+            noise: 0.0,
             work,
         };
         // The projection of what is no number is 0, and what is divided by infinity too: neither is an

@@ -67,6 +67,25 @@ impl LocalProblem {
         u
     }
 
+    /// Takes impulses in such units that the mean normal diagonal of W is 1, and gives the factor that they were
+    /// multiplied by; 1 where nothing moves.
+    pub fn normalise(&mut self) -> f64 {
+        let diagonal: Vec<f64> = (0..self.mu.len())
+            .map(|c| c * self.dimension)
+            .filter_map(|r| self.w.row(r).find(|(c, _)| *c == r))
+            .map(|(_, w)| w)
+            .filter(|w| *w > 0.0)
+            .collect();
+        if diagonal.is_empty() {
+            return 1.0;
+        }
+        let mean = diagonal.iter().sum::<f64>() / diagonal.len() as f64;
+        for w in &mut self.w.values {
+            *w /= mean;
+        }
+        mean
+    }
+
     /// sum_j |W_ij p_j|: what the rounding of W p is measured by.
     pub(super) fn sizes(&self, p: &[f64]) -> Vec<f64> {
         (0..self.w.rows)

@@ -31,11 +31,31 @@ pub enum ReduceError {
          that follow from others, or give the problem in global form"
     )]
     Multipliers(Singular),
+    /// The local form would not fit in memory.
+    #[error(
+        "the local form would have up to {entries} entries, above {MOST_ENTRIES}: so many contacts share a body \
+         or a structure; give the problem in local form, or fewer contacts"
+    )]
+    Large {
+        /// Entries of W, from above.
+        entries: usize,
+    },
     /// Numbers beyond the range of a double.
     #[error(
         "the local form has values beyond the range of a double; scale the units of the problem"
     )]
     Overflow,
+}
+
+/// W of some 3 GB while it is formed.
+const MOST_ENTRIES: usize = 100_000_000;
+
+/// B^T K^-1 B where it fits in memory.
+fn sandwich(factors: &Factors, b: &Csr) -> Result<Csr, ReduceError> {
+    match factors.reach(b) {
+        entries if entries > MOST_ENTRIES => Err(ReduceError::Large { entries }),
+        _ => Ok(factors.sandwich(b)),
+    }
 }
 
 /// The local form of a global problem and the way back.
@@ -67,12 +87,12 @@ impl Reduction {
             }
         };
         let w = if rows == n {
-            factors.sandwich(&problem.h)
+            sandwich(&factors, &problem.h)?
         } else {
             let mut tall = problem.h.clone();
             tall.starts.resize(rows + 1, tall.indices.len());
             tall.rows = rows;
-            factors.sandwich(&tall)
+            sandwich(&factors, &tall)?
         };
         let mut reduction = Self {
             local: LocalProblem {
@@ -128,7 +148,7 @@ impl Elimination {
     pub fn new(problem: &LocalProblem, multipliers: &Multipliers) -> Result<Self, ReduceError> {
         let factors = Factors::new(&multipliers.r).map_err(ReduceError::Multipliers)?;
         let mut entries = triplets(&problem.w);
-        let share = factors.sandwich(&multipliers.v.transpose());
+        let share = sandwich(&factors, &multipliers.v.transpose())?;
         entries.extend(triplets(&share).iter().map(|(r, c, x)| (*r, *c, -x)));
         let mut local = problem.clone();
         local.w = Csr::from_triplets(problem.w.rows, problem.w.columns, &entries);

@@ -166,6 +166,10 @@ impl<S: Space> Row<S> for FullRow<S> {
         un * un + ut.dot(&ut)
     }
 
+    fn friction(&self) -> f64 {
+        self.mu
+    }
+
     fn rho(&self) -> f64 {
         if self.normal.iw == 0.0 {
             return 0.0;

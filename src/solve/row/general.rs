@@ -195,6 +195,10 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         u.dot(&u)
     }
 
+    fn friction(&self) -> f64 {
+        self.mu
+    }
+
     fn rho(&self) -> f64 {
         self.pulled.iwn.min(self.pulled.iwt)
     }

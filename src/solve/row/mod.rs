@@ -76,6 +76,8 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync {
     fn speed(&self, a: &Line<S>, b: &Line<S>) -> f64;
     /// The step of the natural map; 0 of a contact that nothing can be done about.
     fn rho(&self) -> f64;
+    /// The friction coefficient.
+    fn friction(&self) -> f64;
     fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual;
     /// What the contact carries at the velocities at hand: the bond's part follows from them, the
     /// unilateral part is the rest.

@@ -86,6 +86,10 @@ impl<S: Space> Row<S> for PlainRow<S> {
         un * un + ut.dot(&ut)
     }
 
+    fn friction(&self) -> f64 {
+        self.mu
+    }
+
     #[inline(always)]
     fn rho(&self) -> f64 {
         self.iwn.min(self.iwt)
