@@ -90,17 +90,7 @@ impl Factors {
 
     /// Entries of [`Self::sandwich`], from above.
     pub fn reach(&self, b: &Csr) -> usize {
-        let columns = |component: &Component| {
-            let mut columns: Vec<usize> = component
-                .rows
-                .iter()
-                .flat_map(|r| b.row(*r).map(|(c, _)| c))
-                .collect();
-            columns.sort_unstable();
-            columns.dedup();
-            columns.len()
-        };
-        let squares = self.components.iter().map(|c| columns(c).pow(2));
+        let squares = self.components.iter().map(|c| c.columns(b).len().pow(2));
         squares.fold(0, usize::saturating_add)
     }
 
@@ -109,13 +99,7 @@ impl Factors {
     pub fn sandwich(&self, b: &Csr) -> Csr {
         let mut entries = Vec::new();
         for component in &self.components {
-            let mut columns: Vec<usize> = component
-                .rows
-                .iter()
-                .flat_map(|r| b.row(*r).map(|(c, _)| c))
-                .collect();
-            columns.sort_unstable();
-            columns.dedup();
+            let columns = component.columns(b);
             // A few columns at a time: the memory stays near that of B and the result.
             for part in columns.chunks(DENSE) {
                 let mut x = DMatrix::zeros(component.rows.len(), part.len());
@@ -204,6 +188,18 @@ impl Component {
             column_scale,
             lu,
         })
+    }
+
+    /// The columns of B that have an entry in its rows, rising.
+    fn columns(&self, b: &Csr) -> Vec<usize> {
+        let mut columns: Vec<usize> = self
+            .rows
+            .iter()
+            .flat_map(|r| b.row(*r).map(|(c, _)| c))
+            .collect();
+        columns.sort_unstable();
+        columns.dedup();
+        columns
     }
 
     /// In place, for every column.
