@@ -173,18 +173,61 @@ struct Seen {
     taken: u32,
 }
 
+/// The order of contacts, kept from step to step: it is found anew where they are others.
+#[derive(Clone, Debug, Default)]
+pub struct Order {
+    bodies: Vec<[u32; 2]>,
+    movable: Vec<bool>,
+    sequence: Vec<u32>,
+    places: Vec<u32>,
+    schedule: Schedule,
+}
+
+impl Order {
+    /// That of contacts of these bodies.
+    pub fn update(&mut self, bodies: impl ExactSizeIterator<Item = [u32; 2]>, movable: &[bool]) {
+        let mut same = self.movable == movable && self.bodies.len() == bodies.len();
+        self.bodies.resize(bodies.len(), [0, 0]);
+        for (old, new) in self.bodies.iter_mut().zip(bodies) {
+            same &= *old == new;
+            *old = new;
+        }
+        if same {
+            return;
+        }
+        self.movable.clear();
+        self.movable.extend_from_slice(movable);
+        (self.sequence, self.schedule) = order(&self.bodies, movable);
+        self.places.resize(self.sequence.len(), 0);
+        for (k, old) in self.sequence.iter().enumerate() {
+            self.places[*old as usize] = k as u32;
+        }
+    }
+
+    /// The old index of each contact in the new order.
+    pub fn sequence(&self) -> &[u32] {
+        &self.sequence
+    }
+
+    /// The new place of each contact.
+    pub fn places(&self) -> &[u32] {
+        &self.places
+    }
+
+    /// The schedule of the new order.
+    pub fn schedule(&self) -> &Schedule {
+        &self.schedule
+    }
+}
+
 /// Sorts contacts for the sweep. Returns the permutation (`order[k]` is the old index of the k-th) and the
 /// schedule of the new order.
-pub fn order(
-    bodies: &[[u32; 2]],
-    movable: impl Fn(u32) -> bool,
-    count: usize,
-) -> (Vec<u32>, Schedule) {
+fn order(bodies: &[[u32; 2]], movable: &[bool]) -> (Vec<u32>, Schedule) {
+    let count = movable.len();
     let span = PART * (bodies.len().div_ceil(PART * BLOCKS)).clamp(1, PARTS);
     let mut order = Vec::with_capacity(bodies.len());
     let mut schedule = Schedule::default();
     let mut seen = vec![Seen::default(); count];
-    let movable: Vec<bool> = (0..count as u32).map(movable).collect();
     let moved = |pair: &[u32; 2]| pair.map(|b| movable[b as usize].then_some(b as usize));
     if bodies.len() <= SMALL {
         group(
@@ -329,7 +372,8 @@ mod tests {
     use super::*;
 
     fn check(bodies: &[[u32; 2]], fixed: u32, count: usize) -> Schedule {
-        let (order, schedule) = order(bodies, |b| b != fixed, count);
+        let movable: Vec<bool> = (0..count as u32).map(|b| b != fixed).collect();
+        let (order, schedule) = order(bodies, &movable);
         let mut seen = order.clone();
         seen.sort_unstable();
         assert!(seen.iter().enumerate().all(|(k, o)| k as u32 == *o));

@@ -83,7 +83,7 @@ pub fn unbounded(residual: f64) -> f64 {
 }
 
 /// What residuals are measured against.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scale {
     /// |u_free|^2 (m^2/s^2).
     pub free: f64,
@@ -96,7 +96,7 @@ pub struct Scale {
 }
 
 /// Sums over contacts; added in a fixed order, whatever the number of threads.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sums {
     /// Sum of squared residuals (m^2/s^2).
     pub residual: f64,
@@ -116,14 +116,20 @@ impl Sums {
     /// Adds one contact.
     #[inline(always)]
     pub fn add(&mut self, r: &super::row::Residual, at: usize) {
-        self.residual += r.squared;
-        self.velocity += r.velocity;
-        self.impulse += r.impulse;
-        self.power += r.power;
+        self.add_moment(r);
         if r.squared > self.worst {
             self.worst = r.squared;
             self.worst_at = at;
         }
+    }
+
+    /// Adds what is not searched for the worst.
+    #[inline(always)]
+    pub fn add_moment(&mut self, r: &super::row::Residual) {
+        self.residual += r.squared;
+        self.velocity += r.velocity;
+        self.impulse += r.impulse;
+        self.power += r.power;
     }
 
     /// Adds the sums of another range of contacts.

@@ -1,6 +1,6 @@
 //! What the stepper hands to a solver: bodies as lines of velocity, contacts in the standard form.
 
-use super::colour::Schedule;
+use super::colour::Order;
 use super::row::{FullRow, GeneralRow, Line, MomentForm, MomentRow, MomentSolution, PlainRow, Row};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
@@ -29,6 +29,26 @@ pub struct ContactForm<S: Space> {
     pub elastic: Option<Elastic<S>>,
     /// The impulse to start from, in world axes (N s).
     pub impulse: S::Vector,
+}
+
+impl<S: Space> ContactForm<S> {
+    /// A contact that nothing moves.
+    #[cfg(target_arch = "x86_64")]
+    pub(super) fn idle() -> Self {
+        Self {
+            bodies: [0, 0],
+            normal: S::Vector::null(),
+            arms: [S::Vector::null(); 2],
+            central: true,
+            shift_n: 0.0,
+            shift_t: S::Tangent::null(),
+            friction: 0.0,
+            tension: 0.0,
+            cohesion: 0.0,
+            elastic: None,
+            impulse: S::Vector::null(),
+        }
+    }
 }
 
 /// p_el = -(a + B u), with the normal part switched off where it would push (`tension_only`).
@@ -103,7 +123,7 @@ pub struct Problem<S: Space> {
     pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<Place>,
     /// The order in which `plain` and `full` are swept.
-    pub(super) groups: [Schedule; 2],
+    pub(super) orders: [Order; 2],
 }
 
 impl<S: Space> Default for Problem<S> {
@@ -118,7 +138,7 @@ impl<S: Space> Default for Problem<S> {
             general: Vec::new(),
             moments: Vec::new(),
             places: Vec::new(),
-            groups: Default::default(),
+            orders: Default::default(),
         }
     }
 }

@@ -15,6 +15,7 @@ pub mod error;
 pub mod extrapolation;
 pub mod form;
 pub mod local;
+mod measure;
 pub mod nlgs;
 pub mod row;
 pub mod standard;

@@ -2,13 +2,13 @@
 
 use super::accelerate::Acceleration;
 use super::chosen::Chosen;
-use super::colour::{self, Schedule};
-use super::error::{Norm, Scale, Sums};
+use super::colour::{Order, Schedule};
+use super::error::Norm;
 use super::form::{Place, Problem};
 use super::local::solver::Method;
-use super::row::{Line, Lines, Row};
-use crate::geometry::space::{Space, VectorLike};
-use rayon::prelude::*;
+use super::measure::{free_velocity, measure, scale};
+use super::row::{Line, Lines, Load, Row, Update, Visit, visit};
+use crate::geometry::space::Space;
 
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Options {
     pub norm: Norm,
     /// Sweeps at most.
     pub max_iterations: u32,
-    /// Sweeps between two convergence tests.
+    /// Sweeps between two convergence tests; the first comes after half as many.
     pub test_every: u32,
     /// Over-relaxation in \[1, 2): how much farther than its own solution a contact goes.
     pub relaxation: f64,
@@ -63,9 +63,6 @@ pub struct Report {
     pub chosen: Chosen,
 }
 
-/// Contacts a thread takes at a time. Sums are formed by chunk and added in order.
-const CHUNK: usize = 512;
-
 /// Puts the rows in order, forms velocities from the impulses at hand, and judges them.
 pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     if problem.contacts() == 0 {
@@ -81,7 +78,7 @@ pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &Options) -> 
 /// Forms velocities from the impulses at hand and judges them.
 pub(super) fn judge<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     let free = free_velocity(problem);
-    problem.reload();
+    problem.reload(options.parallel);
     let sums = measure(problem, options.parallel);
     let error = sums.error(options.norm, &scale(problem, free));
     Report {
@@ -102,13 +99,15 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     }
     sort(problem);
     let free = free_velocity(problem);
-    problem.reload();
+    problem.reload(options.parallel);
     let every = options.test_every.max(1);
     let mut report = Report::default();
     let mut acceleration = options.accelerated.then(Acceleration::default);
     let (mut relaxation, mut caution) = (options.relaxation, Caution::default());
+    // A warm start needs few sweeps: the first test comes early.
+    let mut next = every.div_ceil(2);
     loop {
-        let last = (report.iterations + every).min(options.max_iterations);
+        let last = next.min(options.max_iterations);
         while report.iterations < last {
             // The sweep before a test is not relaxed: it leaves impulses that contacts can carry.
             let plain = report.iterations + 1 == last;
@@ -121,15 +120,15 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
         }
         let ended = report.iterations >= options.max_iterations;
         // The velocities have gathered rounding: what ends a solve is judged by velocities formed from the
-        // impulses. The first test often does, so it begins with them.
+        // impulses. The first tests often do, so they begin with them.
         let fresh = report.iterations <= every;
         if fresh {
-            problem.reload();
+            problem.reload(options.parallel);
         }
         let mut sums = measure(problem, options.parallel);
         if ended || sums.error(options.norm, &scale(problem, free)) <= options.tolerance {
             if !fresh {
-                problem.reload();
+                problem.reload(options.parallel);
                 sums = measure(problem, options.parallel);
             }
             report.error = sums.error(options.norm, &scale(problem, free));
@@ -138,6 +137,15 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
                 report.worst = problem.pushed(sums.worst_at);
                 return report;
             }
+        }
+        let early = next < every;
+        next = if early {
+            every
+        } else {
+            next.saturating_add(every)
+        };
+        if early {
+            continue;
         }
         let cautious = caution.judge(sums.residual, relaxation);
         if let Some(acceleration) = &mut acceleration {
@@ -153,7 +161,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
 /// Sorts the contacts and sets the velocities by their impulses: what comes before [`sweeps`].
 pub fn prepare<S: Space>(problem: &mut Problem<S>) {
     sort(problem);
-    problem.reload();
+    problem.reload(false);
 }
 
 /// Sweeps without a test: for measuring the sweep alone. The problem is to be [`prepare`]d.
@@ -241,7 +249,7 @@ impl<S: Space> Problem<S> {
         self.full.iter_mut().for_each(|row| row.restore(from));
         self.general.iter_mut().for_each(|row| row.restore(from));
         self.moments.iter_mut().for_each(|row| row.restore(from));
-        self.reload();
+        self.reload(false);
     }
 
     /// Takes impulses and moments in the order pushed, and the velocities with them. Where there is none
@@ -266,19 +274,19 @@ impl<S: Space> Problem<S> {
                 }
             }
         }
-        self.reload();
+        self.reload(false);
     }
 
     /// v = v_free + M^-1 H p.
-    pub(super) fn reload(&mut self) {
-        for ((line, free), length) in self.lines.iter_mut().zip(&self.free).zip(&self.lengths) {
-            line.v = free.0;
-            line.s = free.1 * *length;
-        }
+    pub(super) fn reload(&mut self, parallel: bool) {
+        self.set_free();
+        let [plain, full] = &self.orders;
         let lines = Lines::new(&mut self.lines);
-        load(&self.plain, &lines);
-        load(&self.full, &lines);
-        load(&self.general, &lines);
+        pass(&mut self.plain, plain.schedule(), &lines, parallel, || Load);
+        pass(&mut self.full, full.schedule(), &lines, parallel, || Load);
+        for row in &self.general {
+            lines.alone(row.bodies(), |a, b| row.load(a, b));
+        }
         for row in &self.moments {
             lines.alone(row.bodies, |a, b| row.load(a, b));
         }
@@ -304,16 +312,14 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
         plain,
         full,
         places,
-        groups,
+        orders,
         lines,
         ..
     } = problem;
-    let count = lines.len();
-    let movable = |b: u32| lines[b as usize].im > 0.0 || lines[b as usize].is > 0.0;
-    let (moved_plain, schedule) = permute(plain, movable, count);
-    groups[0] = schedule;
-    let (moved_full, schedule) = permute(full, movable, count);
-    groups[1] = schedule;
+    let movable: Vec<bool> = lines.iter().map(|l| l.im > 0.0 || l.is > 0.0).collect();
+    let [of_plain, of_full] = orders;
+    let moved_plain = permute(plain, &movable, of_plain);
+    let moved_full = permute(full, &movable, of_full);
     for place in places.iter_mut() {
         *place = match *place {
             Place::Plain(r) => Place::Plain(moved_plain[r as usize]),
@@ -326,43 +332,33 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
     }
 }
 
-fn permute<S: Space, R: Row<S>>(
+/// Returns where each row went.
+fn permute<'a, S: Space, R: Row<S>>(
     rows: &mut Vec<R>,
-    movable: impl Fn(u32) -> bool,
-    count: usize,
-) -> (Vec<u32>, Schedule) {
-    let bodies: Vec<[u32; 2]> = rows.iter().map(Row::bodies).collect();
-    let (order, schedule) = colour::order(&bodies, movable, count);
-    let mut to = vec![0u32; order.len()];
-    for (k, old) in order.iter().enumerate() {
-        to[*old as usize] = k as u32;
-    }
-    *rows = order.iter().map(|k| rows[*k as usize].clone()).collect();
-    (to, schedule)
-}
-
-fn load<S: Space, R: Row<S>>(rows: &[R], lines: &Lines<S>) {
-    for row in rows {
-        lines.alone(row.bodies(), |a, b| row.load(a, b));
-    }
+    movable: &[bool],
+    order: &'a mut Order,
+) -> &'a [u32] {
+    order.update(rows.iter().map(Row::bodies), movable);
+    *rows = order
+        .sequence()
+        .iter()
+        .map(|k| rows[*k as usize].clone())
+        .collect();
+    order.places()
 }
 
 fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
     let lines = Lines::new(&mut problem.lines);
+    let [plain, full] = &problem.orders;
+    let update = || Update(relaxation);
     pass(
         &mut problem.plain,
-        &problem.groups[0],
+        plain.schedule(),
         &lines,
-        relaxation,
         parallel,
+        update,
     );
-    pass(
-        &mut problem.full,
-        &problem.groups[1],
-        &lines,
-        relaxation,
-        parallel,
-    );
+    pass(&mut problem.full, full.schedule(), &lines, parallel, update);
     // First bodies have many contacts, which share them: these run in order.
     for row in &mut problem.general {
         lines.alone(row.bodies(), |a, b| row.update(a, b, relaxation));
@@ -375,18 +371,19 @@ fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
     }
 }
 
-fn pass<S: Space, R: Row<S>>(
+/// Does the same to all rows of a kind, block by block.
+fn pass<S: Space, R: Row<S>, V: Visit>(
     rows: &mut [R],
     schedule: &Schedule,
     lines: &Lines<S>,
-    relaxation: f64,
     parallel: bool,
+    what: impl Fn() -> V + Sync,
 ) {
     let rows = Rows(rows.as_mut_ptr());
     schedule.run(parallel, |block| {
         // SAFETY: blocks are apart, and a block is run once.
         let part = unsafe { rows.slice(schedule.block(block)) };
-        R::run(part, schedule.groups(block), lines, relaxation);
+        visit(part, schedule.groups(block), lines, &mut what());
     });
 }
 
@@ -404,108 +401,5 @@ impl<R> Rows<R> {
     unsafe fn slice(&self, places: std::ops::Range<usize>) -> &mut [R] {
         // SAFETY: as above.
         unsafe { std::slice::from_raw_parts_mut(self.0.add(places.start), places.len()) }
-    }
-}
-
-fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sums {
-    let lines = Lines::new(&mut problem.lines);
-    let mut sums = Sums::default();
-    let (a, b) = (problem.plain.len(), problem.full.len());
-    measure_rows(&problem.plain, &lines, 0, parallel, &mut sums);
-    measure_rows(&problem.full, &lines, a, parallel, &mut sums);
-    measure_rows(&problem.general, &lines, a + b, parallel, &mut sums);
-    for row in &problem.moments {
-        let (i, j) = lines.read(row.bodies);
-        let pn = problem.normal(row.place);
-        // A bad moment is not searched for among the worst contacts.
-        let worst = (sums.worst, sums.worst_at);
-        sums.add(&row.residual(pn, &i, &j), 0);
-        (sums.worst, sums.worst_at) = worst;
-    }
-    sums
-}
-
-fn measure_rows<S: Space, R: Row<S>>(
-    rows: &[R],
-    lines: &Lines<S>,
-    offset: usize,
-    parallel: bool,
-    sums: &mut Sums,
-) {
-    let chunk = |(c, rows): (usize, &[R])| {
-        let mut sums = Sums::default();
-        for (k, row) in rows.iter().enumerate() {
-            let (a, b) = lines.read(row.bodies());
-            let r = row.residual(&a, &b);
-            sums.add(&r, offset + c * CHUNK + k);
-        }
-        sums
-    };
-    let parts: Vec<Sums> = if parallel {
-        rows.par_chunks(CHUNK).enumerate().map(chunk).collect()
-    } else {
-        rows.chunks(CHUNK).enumerate().map(chunk).collect()
-    };
-    for part in &parts {
-        sums.merge(part);
-    }
-}
-
-/// What the error is measured against, at the velocities at hand.
-fn scale<S: Space>(problem: &Problem<S>, free: Scale) -> Scale {
-    let mut work = 0.0;
-    let bodies = problem
-        .lines
-        .iter()
-        .zip(&problem.free)
-        .zip(problem.masses.iter().zip(&problem.lengths));
-    for ((line, (v, w)), ((inverse_mass, _), length)) in bodies {
-        let dv = line.v - *v;
-        for k in 0..S::D {
-            if inverse_mass[k] > 0.0 {
-                work += dv[k] * dv[k] / inverse_mass[k];
-            }
-        }
-        if line.is > 0.0 {
-            let ds = line.s - *w * *length;
-            work += ds.dot(&ds) / line.is;
-        }
-    }
-    Scale { work, ..free }
-}
-
-/// What the free velocities give to measure against; leaves them in the lines.
-fn free_velocity<S: Space>(problem: &mut Problem<S>) -> Scale {
-    for ((line, free), length) in problem
-        .lines
-        .iter_mut()
-        .zip(&problem.free)
-        .zip(&problem.lengths)
-    {
-        line.v = free.0;
-        line.s = free.1 * *length;
-    }
-    let lines = Lines::new(&mut problem.lines);
-    let mut out = Scale::default();
-    squared(&problem.plain, &lines, &mut out);
-    squared(&problem.full, &lines, &mut out);
-    squared(&problem.general, &lines, &mut out);
-    out
-}
-
-fn squared<S: Space, R: Row<S>>(rows: &[R], lines: &Lines<S>, out: &mut Scale) {
-    /// Roundings in a relative velocity.
-    const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
-    /// Friction coefficient beyond which that is no excuse.
-    const MOST: f64 = 1e6;
-    for row in rows {
-        let (a, b) = lines.read(row.bodies());
-        let speed = row.speed(&a, &b);
-        out.free += speed;
-        out.energy += row.rho() * speed;
-        let own = a.v.dot(&a.v) + a.s.dot(&a.s) + b.v.dot(&b.v) + b.s.dot(&b.s);
-        // The natural map multiplies that of a slip by mu.
-        let mu = row.friction().min(MOST);
-        out.noise += own * (1.0 + mu * mu) * ROUNDINGS * ROUNDINGS;
     }
 }

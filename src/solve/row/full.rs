@@ -4,13 +4,14 @@ use super::{
     Line, Residual, Row, inverse, inverse_along, natural_map, push, relative, restore_parts,
     store_parts,
 };
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::{Space, VectorLike, greatest, least};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
 
 /// A direction with w = W_cc, f = u - w p and p_el = -(a + b u): by elimination of u,
 /// s = q - f/w while the contact holds, and p_el = -(k + c (w s + f)),
 /// q = a - (1 + w b) shift/w, k = a/(1 + w b), c = b/(1 + w b).
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 struct Direction<T> {
     w: f64,
     iw: f64,
@@ -21,17 +22,17 @@ struct Direction<T> {
 
 /// What the convergence test needs beside; the sweep leaves it alone.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 struct Bond<T> {
     a: T,
     b: f64,
     shift: T,
 }
 
-/// See the module.
+/// See the module. `lanes` reads its numbers in their order.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(in crate::solve) struct FullRow<S: Space> {
-    bodies: [u32; 2],
     n: S::Vector,
     pn: f64,
     pt: S::Tangent,
@@ -48,6 +49,7 @@ pub(in crate::solve) struct FullRow<S: Space> {
     cohesion: f64,
     bond_n: Bond<f64>,
     bond_t: Bond<S::Tangent>,
+    bodies: [u32; 2],
 }
 
 impl<S: Space> FullRow<S> {
@@ -104,6 +106,12 @@ impl<S: Space> FullRow<S> {
         }
     }
 
+    /// Of a contact that nothing moves.
+    #[cfg(target_arch = "x86_64")]
+    pub(super) fn idle() -> Self {
+        Self::new(&ContactForm::idle(), 0.0, 0.0)
+    }
+
     /// The impulse of the bond at a relative velocity.
     fn bond(&self, un: f64, ut: S::Tangent) -> (f64, S::Tangent) {
         let pull = -(self.bond_n.a + self.bond_n.b * un);
@@ -124,9 +132,9 @@ impl<S: Space> Row<S> for FullRow<S> {
         let (un, ut) = relative(&self.n, a, b);
         let f = un - n.w * self.pn;
         // Both answers are formed and one is chosen: the branch would be guessed wrong too often.
-        let with = (n.q - f * n.iw).max(-self.tension);
+        let with = greatest(n.q - f * n.iw, -self.tension);
         let pull = -(n.k + n.c * (n.w * with + f));
-        let without = (self.q_slack - f * n.iw).max(-self.tension);
+        let without = greatest(self.q_slack - f * n.iw, -self.tension);
         let slack = pull > self.limit;
         let sn = std::hint::select_unpredictable(slack, without, with);
         let en = std::hint::select_unpredictable(slack, 0.0, pull);
@@ -175,7 +183,10 @@ impl<S: Space> Row<S> for FullRow<S> {
             return 0.0;
         }
         // 1/W' of a direction is (1 + w b)/w.
-        (self.normal.iw + self.bond_n.b).min(self.tangent.iw + self.bond_t.b)
+        least(
+            self.normal.iw + self.bond_n.b,
+            self.tangent.iw + self.bond_t.b,
+        )
     }
 
     fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual {

@@ -10,6 +10,7 @@ mod lanes;
 mod lines;
 mod moment;
 mod plain;
+mod visit;
 
 pub(super) use full::FullRow;
 pub(super) use general::GeneralRow;
@@ -17,6 +18,7 @@ pub(super) use lines::Lines;
 pub(super) use moment::MomentRow;
 pub use moment::{MomentForm, MomentSolution};
 pub(super) use plain::PlainRow;
+pub(super) use visit::{Free, Load, Measure, Update, Visit, visit};
 
 use super::form::ContactSolution;
 use super::{cone, error};
@@ -36,6 +38,19 @@ pub struct Line<S: Space> {
     pub is: f64,
 }
 
+impl<S: Space> Line<S> {
+    /// Of a body that nothing moves.
+    #[cfg(target_arch = "x86_64")]
+    fn idle() -> Self {
+        Self {
+            v: S::Vector::null(),
+            s: S::Spin::null(),
+            im: 0.0,
+            is: 0.0,
+        }
+    }
+}
+
 /// What the convergence test reads off one contact.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Residual {
@@ -50,18 +65,10 @@ pub struct Residual {
 }
 
 /// A contact in the solver.
-pub(super) trait Row<S: Space>: Clone + Send + Sync {
+pub(super) trait Row<S: Space>: Clone + Send + Sync + 'static {
     fn bodies(&self) -> [u32; 2];
     /// Solves the contact for the velocities at hand, goes `relaxation` times as far, and updates them.
     fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64);
-    /// Updates a block of contacts, given the starts of its groups and the end of the last: contacts of
-    /// a group share no movable body.
-    fn run(rows: &mut [Self], _groups: &[u32], lines: &Lines<S>, relaxation: f64) {
-        for row in rows {
-            let bodies = row.bodies();
-            lines.with(bodies, |a, b| row.update(a, b, relaxation));
-        }
-    }
     /// Adds what the stored impulse does to the velocities.
     fn load(&self, a: &mut Line<S>, b: &mut Line<S>);
     /// Appends the numbers of the impulse.

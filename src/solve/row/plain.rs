@@ -1,26 +1,24 @@
 //! Contact of two balls without a bond: solved in closed form.
 
-#[cfg(target_arch = "x86_64")]
-use super::lanes;
 use super::{
-    Line, Lines, Residual, Row, inverse, inverse_along, natural_map, push, relative, restore_parts,
+    Line, Residual, Row, inverse, inverse_along, natural_map, push, relative, restore_parts,
     store_parts,
 };
-use crate::geometry::space::{Space, VectorLike, greatest};
+use crate::geometry::space::{Space, VectorLike, greatest, least};
 use crate::solve::form::{ContactForm, ContactSolution};
 
-/// Frictional contact without memory. `lanes` reads it by fours of numbers.
+/// Frictional contact without memory. `lanes` reads its numbers in their order.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(in crate::solve) struct PlainRow<S: Space> {
-    pub(super) n: S::Vector,
-    pub(super) pn: f64,
-    pub(super) pt: S::Tangent,
-    pub(super) shift: f64,
-    pub(super) iwn: f64,
-    pub(super) iwt: f64,
-    pub(super) mu: f64,
-    pub(super) bodies: [u32; 2],
+    n: S::Vector,
+    pn: f64,
+    pt: S::Tangent,
+    shift: f64,
+    iwn: f64,
+    iwt: f64,
+    mu: f64,
+    bodies: [u32; 2],
 }
 
 impl<S: Space> PlainRow<S> {
@@ -36,6 +34,12 @@ impl<S: Space> PlainRow<S> {
             iwt: inverse_along(w_t, w_n),
             mu: contact.friction,
         }
+    }
+
+    /// Of a contact that nothing moves.
+    #[cfg(target_arch = "x86_64")]
+    pub(super) fn idle() -> Self {
+        Self::new(&ContactForm::idle(), 0.0, 0.0)
     }
 }
 
@@ -53,11 +57,6 @@ impl<S: Space> Row<S> for PlainRow<S> {
         push(&self.n, pn - self.pn, pt - self.pt, a, b);
         self.pn = pn;
         self.pt = pt;
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    fn run(rows: &mut [Self], groups: &[u32], lines: &Lines<S>, relaxation: f64) {
-        lanes::run(rows, groups, lines, relaxation);
     }
 
     fn load(&self, a: &mut Line<S>, b: &mut Line<S>) {
@@ -92,7 +91,7 @@ impl<S: Space> Row<S> for PlainRow<S> {
 
     #[inline(always)]
     fn rho(&self) -> f64 {
-        self.iwn.min(self.iwt)
+        least(self.iwn, self.iwt)
     }
 
     #[inline(always)]

@@ -1,0 +1,102 @@
+//! What the error of a step's problem is formed from, at the velocities at hand.
+
+use super::error::{Scale, Sums};
+use super::form::Problem;
+use super::row::{Free, Lines, Measure, Row, visit};
+use crate::geometry::space::{Space, VectorLike};
+use rayon::prelude::*;
+
+/// Contacts a thread takes at a time. Sums are formed by chunk and added in order.
+const CHUNK: usize = 512;
+
+/// Sums over the contacts, the worst among those of rows in the order of the sweep.
+pub(super) fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sums {
+    let lines = Lines::new(&mut problem.lines);
+    let mut sums = Sums::default();
+    let (a, b) = (problem.plain.len(), problem.full.len());
+    measure_rows(&mut problem.plain, &lines, 0, parallel, &mut sums);
+    measure_rows(&mut problem.full, &lines, a, parallel, &mut sums);
+    measure_rows(&mut problem.general, &lines, a + b, parallel, &mut sums);
+    for row in &problem.moments {
+        let (i, j) = lines.read(row.bodies);
+        sums.add_moment(&row.residual(problem.normal(row.place), &i, &j));
+    }
+    sums
+}
+
+fn measure_rows<S: Space, R: Row<S>>(
+    rows: &mut [R],
+    lines: &Lines<S>,
+    offset: usize,
+    parallel: bool,
+    sums: &mut Sums,
+) {
+    let chunk = |(c, rows): (usize, &mut [R])| {
+        let mut part = Measure::default();
+        visit(rows, &[0, rows.len() as u32], lines, &mut part);
+        part.sums(offset + c * CHUNK)
+    };
+    if parallel {
+        let parts = rows.par_chunks_mut(CHUNK).enumerate().map(chunk);
+        let parts: Vec<Sums> = parts.collect();
+        parts.iter().for_each(|part| sums.merge(part));
+    } else {
+        let parts = rows.chunks_mut(CHUNK).enumerate().map(chunk);
+        parts.for_each(|part| sums.merge(&part));
+    }
+}
+
+/// What the error is measured against.
+pub(super) fn scale<S: Space>(problem: &Problem<S>, free: Scale) -> Scale {
+    let mut work = 0.0;
+    let bodies = problem
+        .lines
+        .iter()
+        .zip(&problem.free)
+        .zip(problem.masses.iter().zip(&problem.lengths));
+    for ((line, (v, w)), ((inverse_mass, _), length)) in bodies {
+        let dv = line.v - *v;
+        for k in 0..S::D {
+            if inverse_mass[k] > 0.0 {
+                work += dv[k] * dv[k] / inverse_mass[k];
+            }
+        }
+        if line.is > 0.0 {
+            let ds = line.s - *w * *length;
+            work += ds.dot(&ds) / line.is;
+        }
+    }
+    Scale { work, ..free }
+}
+
+/// What the free velocities give to measure against; leaves them in the lines.
+pub(super) fn free_velocity<S: Space>(problem: &mut Problem<S>) -> Scale {
+    problem.set_free();
+    let lines = Lines::new(&mut problem.lines);
+    let mut free = [Free::default(), Free::default(), Free::default()];
+    squared(&mut problem.plain, &lines, &mut free[0]);
+    squared(&mut problem.full, &lines, &mut free[1]);
+    squared(&mut problem.general, &lines, &mut free[2]);
+    let mut out = Scale::default();
+    for part in free.map(|f| f.scale()) {
+        out.free += part.free;
+        out.energy += part.energy;
+        out.noise += part.noise;
+    }
+    out
+}
+
+fn squared<S: Space, R: Row<S>>(rows: &mut [R], lines: &Lines<S>, free: &mut Free) {
+    visit(rows, &[0, rows.len() as u32], lines, free);
+}
+
+impl<S: Space> Problem<S> {
+    /// Gives every body its free velocity.
+    pub(super) fn set_free(&mut self) {
+        let bodies = self.lines.iter_mut().zip(&self.free).zip(&self.lengths);
+        for ((line, free), length) in bodies {
+            line.v = free.0;
+            line.s = free.1 * *length;
+        }
+    }
+}

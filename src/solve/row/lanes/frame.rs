@@ -1,0 +1,249 @@
+//! Relative velocities and impulses of several contacts at once, as `relative` and `push` of one.
+
+use super::vector::*;
+use crate::geometry::space::{Plane, Solid, Space};
+use crate::solve::row::Line;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// What [`Columns`] can do, whatever their number.
+pub trait Tuple<const U: usize>:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Lanes<U>, Output = Self> + Neg<Output = Self>
+{
+    fn null() -> Self;
+    fn dot(self, with: Self) -> Lanes<U>;
+    fn norm(self) -> Lanes<U>;
+    fn limited(self, bound: Lanes<U>) -> Self;
+    fn chosen(which: Mask<U>, yes: Self, no: Self) -> Self;
+    /// How many numbers.
+    const SIZE: usize;
+    fn number(&self, k: usize) -> Lanes<U>;
+    /// # Panics
+    /// Where there are fewer.
+    fn from_numbers(numbers: &[Lanes<U>]) -> Self;
+}
+
+impl<const U: usize, const R: usize> Tuple<U> for Columns<U, R> {
+    #[inline(always)]
+    fn null() -> Self {
+        Columns::null()
+    }
+    #[inline(always)]
+    fn dot(self, with: Self) -> Lanes<U> {
+        Columns::dot(self, with)
+    }
+    #[inline(always)]
+    fn norm(self) -> Lanes<U> {
+        Columns::norm(self)
+    }
+    #[inline(always)]
+    fn limited(self, bound: Lanes<U>) -> Self {
+        Columns::limited(self, bound)
+    }
+    #[inline(always)]
+    fn chosen(which: Mask<U>, yes: Self, no: Self) -> Self {
+        which.choose_columns(yes, no)
+    }
+    const SIZE: usize = R;
+    #[inline(always)]
+    fn number(&self, k: usize) -> Lanes<U> {
+        self.0[k]
+    }
+    #[inline(always)]
+    fn from_numbers(numbers: &[Lanes<U>]) -> Self {
+        Self(std::array::from_fn(|k| numbers[k]))
+    }
+}
+
+/// The lines of the first or second bodies.
+#[derive(Clone, Copy)]
+pub struct Moving<F: Frame, const U: usize> {
+    pub v: F::V<U>,
+    pub s: F::T<U>,
+    pub im: Lanes<U>,
+    pub is: Lanes<U>,
+}
+
+impl<F: Frame, const U: usize> Moving<F, U> {
+    /// # Safety
+    /// The lines are there.
+    #[inline(always)]
+    pub unsafe fn load(from: &Records<Line<F>, U>) -> Self {
+        // SAFETY: as asked for.
+        unsafe { F::lines(from) }
+    }
+
+    /// Writes back the lines of bodies that move.
+    ///
+    /// # Safety
+    /// The lines are there.
+    #[inline(always)]
+    pub unsafe fn keep(&self, to: &Records<Line<F>, U>) {
+        let zero = Lanes::all(0.0);
+        let moves = self.im.above(zero).or(self.is.above(zero)).bits();
+        // SAFETY: as asked for.
+        unsafe { F::keep(to, self, moves) }
+    }
+}
+
+/// A space in columns.
+pub trait Frame: Space {
+    /// A vector.
+    type V<const U: usize>: Tuple<U>;
+    /// A tangent, and a spin.
+    type T<const U: usize>: Tuple<U>;
+
+    /// # Safety
+    /// The lines are there.
+    unsafe fn lines<const U: usize>(from: &Records<Line<Self>, U>) -> Moving<Self, U>;
+    /// Writes back the lines of a mask.
+    ///
+    /// # Safety
+    /// The lines are there.
+    unsafe fn keep<const U: usize>(
+        to: &Records<Line<Self>, U>,
+        body: &Moving<Self, U>,
+        mask: [i32; U],
+    );
+    /// The part of a velocity along the tangent.
+    fn across<const U: usize>(n: &Self::V<U>, d: &Self::V<U>, un: Lanes<U>) -> Self::T<U>;
+    /// The tangential velocity of a spin.
+    fn rolling<const U: usize>(spin: &Self::T<U>, n: &Self::V<U>) -> Self::T<U>;
+    /// The impulse in world axes.
+    fn impulse<const U: usize>(n: &Self::V<U>, dn: Lanes<U>, dt: &Self::T<U>) -> Self::V<U>;
+    /// The moment of a tangential impulse over the length of its body.
+    fn turning<const U: usize>(n: &Self::V<U>, dt: &Self::T<U>) -> Self::T<U>;
+}
+
+/// u_n and u_t.
+#[inline(always)]
+pub fn relative<F: Frame, const U: usize>(
+    n: &F::V<U>,
+    a: &Moving<F, U>,
+    b: &Moving<F, U>,
+) -> (Lanes<U>, F::T<U>) {
+    let d = a.v - b.v;
+    let un = n.dot(d);
+    (un, F::across(n, &d, un) - F::rolling(&(a.s + b.s), n))
+}
+
+/// What an impulse does to the velocities.
+#[inline(always)]
+pub fn push<F: Frame, const U: usize>(
+    n: &F::V<U>,
+    dn: Lanes<U>,
+    dt: F::T<U>,
+    a: &mut Moving<F, U>,
+    b: &mut Moving<F, U>,
+) {
+    let impulse = F::impulse(n, dn, &dt);
+    let twist = F::turning(n, &dt);
+    a.v = a.v + impulse * a.im;
+    b.v = b.v - impulse * b.im;
+    a.s = a.s - twist * a.is;
+    b.s = b.s - twist * b.is;
+}
+
+impl Frame for Plane {
+    type V<const U: usize> = Columns<U, 2>;
+    type T<const U: usize> = Columns<U, 1>;
+
+    #[inline(always)]
+    unsafe fn lines<const U: usize>(from: &Records<Line<Self>, U>) -> Moving<Self, U> {
+        // SAFETY: as asked for; the line is v, s, im, is.
+        unsafe {
+            let [v0, v1, s, im] = load(from, 0);
+            Moving {
+                v: Columns([v0, v1]),
+                s: Columns([s]),
+                im,
+                is: load_one(from, 4),
+            }
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn keep<const U: usize>(
+        to: &Records<Line<Self>, U>,
+        body: &Moving<Self, U>,
+        mask: [i32; U],
+    ) {
+        let Moving { v, s, im, .. } = body;
+        // SAFETY: as asked for.
+        unsafe { store(to, 0, mask, [v.0[0], v.0[1], s.0[0], *im]) }
+    }
+
+    #[inline(always)]
+    fn across<const U: usize>(n: &Self::V<U>, d: &Self::V<U>, _: Lanes<U>) -> Self::T<U> {
+        Columns([n.0[0] * d.0[1] - n.0[1] * d.0[0]])
+    }
+
+    #[inline(always)]
+    fn rolling<const U: usize>(spin: &Self::T<U>, _: &Self::V<U>) -> Self::T<U> {
+        *spin
+    }
+
+    #[inline(always)]
+    fn impulse<const U: usize>(n: &Self::V<U>, dn: Lanes<U>, dt: &Self::T<U>) -> Self::V<U> {
+        let dt = dt.0[0];
+        Columns([n.0[0] * dn - n.0[1] * dt, n.0[1] * dn + n.0[0] * dt])
+    }
+
+    #[inline(always)]
+    fn turning<const U: usize>(_: &Self::V<U>, dt: &Self::T<U>) -> Self::T<U> {
+        *dt
+    }
+}
+
+impl Frame for Solid {
+    type V<const U: usize> = Columns<U, 3>;
+    type T<const U: usize> = Columns<U, 3>;
+
+    #[inline(always)]
+    unsafe fn lines<const U: usize>(from: &Records<Line<Self>, U>) -> Moving<Self, U> {
+        // SAFETY: as asked for; the line is v, s, im, is.
+        unsafe {
+            let [v0, v1, v2, s0] = load(from, 0);
+            let [s1, s2, im, is] = load(from, 4);
+            Moving {
+                v: Columns([v0, v1, v2]),
+                s: Columns([s0, s1, s2]),
+                im,
+                is,
+            }
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn keep<const U: usize>(
+        to: &Records<Line<Self>, U>,
+        body: &Moving<Self, U>,
+        mask: [i32; U],
+    ) {
+        let Moving { v, s, im, is } = body;
+        // SAFETY: as asked for.
+        unsafe {
+            store(to, 0, mask, [v.0[0], v.0[1], v.0[2], s.0[0]]);
+            store(to, 4, mask, [s.0[1], s.0[2], *im, *is]);
+        }
+    }
+
+    #[inline(always)]
+    fn across<const U: usize>(n: &Self::V<U>, d: &Self::V<U>, un: Lanes<U>) -> Self::T<U> {
+        *d - *n * un
+    }
+
+    #[inline(always)]
+    fn rolling<const U: usize>(spin: &Self::T<U>, n: &Self::V<U>) -> Self::T<U> {
+        spin.cross(*n)
+    }
+
+    #[inline(always)]
+    fn impulse<const U: usize>(n: &Self::V<U>, dn: Lanes<U>, dt: &Self::T<U>) -> Self::V<U> {
+        *n * dn + *dt
+    }
+
+    #[inline(always)]
+    fn turning<const U: usize>(n: &Self::V<U>, dt: &Self::T<U>) -> Self::T<U> {
+        n.cross(*dt)
+    }
+}

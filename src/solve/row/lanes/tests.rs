@@ -1,0 +1,166 @@
+use crate::geometry::space::{Plane, Solid, Space, VectorLike};
+use crate::solve::form::{ContactForm, Elastic};
+use crate::solve::row::visit::{Free, Load, Measure, Update, Visit};
+use crate::solve::row::{FullRow, Line, Lines, PlainRow, Row};
+
+/// Between -1 and 1, and much the same for no two.
+fn wave(k: usize, of: u32) -> f64 {
+    (1.7 * k as f64 + 0.9 * f64::from(of * of % 101)).sin()
+}
+
+/// Bodies with velocities and masses; every fourteenth is fixed.
+fn lines<S: Space>(count: u32) -> Vec<Line<S>> {
+    let line = |body: u32| {
+        let fixed = body % 14 == 1;
+        let mut line = Line::<S> {
+            v: S::Vector::null(),
+            s: S::Spin::null(),
+            im: if fixed {
+                0.0
+            } else {
+                1.0 + 0.3 * wave(9, body)
+            },
+            is: if fixed {
+                0.0
+            } else {
+                2.0 + 0.5 * wave(10, body)
+            },
+        };
+        for k in 0..S::D {
+            line.v[k] = wave(k, body);
+        }
+        for k in 0..S::Spin::N {
+            line.s[k] = wave(k + 4, body);
+        }
+        line
+    };
+    (0..count).map(line).collect()
+}
+
+/// A contact of every pair of bodies, some of which stick, some slide and some open.
+fn contact<S: Space>(pair: u32) -> ContactForm<S> {
+    let mut normal = S::Vector::null();
+    for k in 0..S::D {
+        normal[k] = wave(k + 20, pair);
+    }
+    let normal = normal * (1.0 / normal.norm());
+    ContactForm {
+        bodies: [2 * pair, 2 * pair + 1],
+        normal,
+        arms: [-normal, normal],
+        central: true,
+        shift_n: 0.1 * wave(30, pair),
+        shift_t: S::Tangent::null(),
+        friction: 0.3 + 0.3 * wave(31, pair),
+        tension: 0.0,
+        cohesion: 0.0,
+        elastic: None,
+        impulse: normal * (1.0 + wave(32, pair)),
+    }
+}
+
+/// With bonds, some of which only pull, cohesion, restitution, or none of them.
+fn bonded<S: Space>(pair: u32) -> ContactForm<S> {
+    let mut tangent = S::Tangent::null();
+    for k in 0..S::Tangent::N {
+        tangent[k] = 0.3 * wave(k + 40, pair);
+    }
+    let elastic = Elastic {
+        a_n: 0.4 * wave(33, pair),
+        a_t: tangent,
+        b_n: 0.5 + 0.5 * wave(34, pair),
+        b_t: 0.5 + 0.4 * wave(35, pair),
+        tension_only: pair.is_multiple_of(2),
+        loss_n: 0.0,
+        loss_t: 0.0,
+    };
+    ContactForm {
+        shift_t: tangent * f64::from(pair % 3),
+        tension: 0.2 * f64::from(pair % 4),
+        cohesion: 0.1 * f64::from(pair % 5),
+        elastic: (!pair.is_multiple_of(7)).then_some(elastic),
+        ..contact(pair)
+    }
+}
+
+struct State<R, S: Space> {
+    rows: Vec<R>,
+    lines: Vec<Line<S>>,
+}
+
+impl<S: Space, R: Row<S>> State<R, S> {
+    fn bits(&self) -> Vec<u64> {
+        let mut out = Vec::new();
+        self.rows.iter().for_each(|row| row.store(&mut out));
+        for line in &self.lines {
+            out.extend(line.v.padded());
+            out.extend(line.s.padded());
+            out.extend([line.im, line.is]);
+        }
+        // The two zeros are one number.
+        out.into_iter().map(|x| (x + 0.0).to_bits()).collect()
+    }
+
+    /// Several at a time where the machine can, and one by one.
+    fn visit<V: Visit>(&mut self, groups: Option<&[u32]>, what: &mut V) {
+        let lines = Lines::new(&mut self.lines);
+        match groups {
+            Some(groups) => assert!(super::visit(&mut self.rows, groups, &lines, what)),
+            None => {
+                let rows = self.rows.iter_mut().enumerate();
+                rows.for_each(|(at, row)| what.one(row, &lines, at));
+            }
+        }
+    }
+}
+
+fn same<S: Space, R: Row<S>>(
+    form: impl Fn(u32) -> ContactForm<S>,
+    row: impl Fn(&ContactForm<S>, f64, f64) -> R,
+) {
+    if !is_x86_feature_detected!("avx2") {
+        return;
+    }
+    // Groups of all remainders, and lines called for to the end.
+    let groups: Vec<u32> = vec![0, 1, 3, 6, 10, 15, 21, 28, 36, 45, 145];
+    let lines = lines::<S>(290);
+    let row = |pair: u32| {
+        let [a, b] = [2 * pair, 2 * pair + 1].map(|k| &lines[k as usize]);
+        let w_n = a.im + b.im;
+        row(&form(pair), w_n, w_n + a.is + b.is)
+    };
+    let rows: Vec<R> = (0..145).map(row).collect();
+    let mut one = State {
+        rows: rows.clone(),
+        lines: lines.clone(),
+    };
+    let mut four = State { rows, lines };
+    for relaxation in [1.0, 1.45, 1.0] {
+        one.visit(None, &mut Update(relaxation));
+        four.visit(Some(&groups), &mut Update(relaxation));
+        assert!(one.bits() == four.bits());
+        let mut sums = [Measure::default(), Measure::default()];
+        one.visit(None, &mut sums[0]);
+        four.visit(Some(&[0, 145]), &mut sums[1]);
+        let [a, b] = sums.map(|s| s.sums(3));
+        assert!(a.residual > 0.0 && a == b, "{a:?} {b:?}");
+        let mut free = [Free::default(), Free::default()];
+        one.visit(None, &mut free[0]);
+        four.visit(Some(&[0, 145]), &mut free[1]);
+        let [a, b] = free.map(|f| f.scale());
+        assert!(a.free > 0.0 && a == b, "{a:?} {b:?}");
+    }
+    one.visit(None, &mut Load);
+    four.visit(Some(&groups), &mut Load);
+    assert!(one.bits() == four.bits());
+    let open = one.rows.iter().filter(|r| r.normal() == 0.0).count();
+    assert!(open < one.rows.len());
+}
+
+#[test]
+fn lanes_give_the_bits_of_single_contacts() {
+    same(contact::<Plane>, PlainRow::new);
+    same(contact::<Solid>, PlainRow::new);
+    same(bonded::<Plane>, FullRow::new);
+    same(bonded::<Solid>, FullRow::new);
+}

@@ -1,0 +1,429 @@
+//! The rows whose contacts are solved several at a time. The operations are those of one contact in their
+//! order, so the bits are its own.
+
+use super::frame::{Frame, Moving, Tuple, push, relative};
+use super::vector::*;
+use crate::solve::row::{FullRow, PlainRow, Row};
+
+/// As [`super::super::Residual`], in columns.
+pub struct Residuals<const U: usize> {
+    pub squared: Lanes<U>,
+    pub velocity: Lanes<U>,
+    pub impulse: Lanes<U>,
+    pub power: Lanes<U>,
+}
+
+/// What the rows are and how they weigh: normal, impulse, the step of the natural map, friction.
+pub struct Stand<F: Frame, const U: usize> {
+    pub n: F::V<U>,
+    pub pn: Lanes<U>,
+    pub pt: F::T<U>,
+    pub rho: Lanes<U>,
+    pub mu: Lanes<U>,
+}
+
+/// Rows that begin with the normal, the normal and the tangential impulse.
+pub trait Wide: Row<Self::Space> {
+    type Space: Frame;
+
+    /// A row that nothing moves.
+    fn idle() -> Self;
+    /// Solves the contacts and updates the velocities.
+    ///
+    /// # Safety
+    /// The rows are there.
+    unsafe fn updates<const U: usize>(
+        rows: &Records<Self, U>,
+        a: &mut Moving<Self::Space, U>,
+        b: &mut Moving<Self::Space, U>,
+        relaxation: Lanes<U>,
+    );
+    /// # Safety
+    /// The rows are there.
+    unsafe fn stand<const U: usize>(rows: &Records<Self, U>) -> Stand<Self::Space, U>;
+    /// # Safety
+    /// The rows are there.
+    unsafe fn residuals<const U: usize>(
+        rows: &Records<Self, U>,
+        a: &Moving<Self::Space, U>,
+        b: &Moving<Self::Space, U>,
+    ) -> Residuals<U>;
+}
+
+/// Numbers in a vector, and in a tangent.
+const fn sizes<F: Frame>() -> [usize; 2] {
+    if F::D == 2 { [2, 1] } else { [3, 3] }
+}
+
+/// Takes the numbers of a record one after the other.
+struct Reader<const U: usize> {
+    numbers: [Lanes<U>; 28],
+    at: usize,
+}
+
+impl<const U: usize> Reader<U> {
+    /// Of `count` numbers from `skip` on, and up to three more.
+    ///
+    /// # Safety
+    /// They are there.
+    #[inline(always)]
+    unsafe fn new<T>(rows: &Records<T, U>, skip: usize, count: usize) -> Self {
+        let mut numbers = [Lanes::all(0.0); 28];
+        for four in 0..count.div_ceil(4) {
+            // SAFETY: as asked for.
+            let columns = unsafe { load(rows, skip + 4 * four) };
+            numbers[4 * four..4 * four + 4].copy_from_slice(&columns);
+        }
+        Self { numbers, at: 0 }
+    }
+
+    #[inline(always)]
+    fn number(&mut self) -> Lanes<U> {
+        self.at += 1;
+        self.numbers[self.at - 1]
+    }
+
+    #[inline(always)]
+    fn tuple<T: Tuple<U>>(&mut self, size: usize) -> T {
+        self.at += size;
+        T::from_numbers(&self.numbers[self.at - size..self.at])
+    }
+}
+
+/// Writes impulses back.
+///
+/// # Safety
+/// The rows are there and begin with n, p_n, p_t.
+#[inline(always)]
+unsafe fn keep<R, F: Frame, const U: usize>(
+    rows: &Records<R, U>,
+    n: &F::V<U>,
+    pn: Lanes<U>,
+    pt: &F::T<U>,
+) {
+    let all = [15; U];
+    // SAFETY: as asked for.
+    unsafe {
+        if F::D == 2 {
+            store(rows, 0, all, [n.number(0), n.number(1), pn, pt.number(0)]);
+        } else {
+            let t = [0, 1, 2].map(|k| pt.number(k));
+            store(rows, 3, all, [pn, t[0], t[1], t[2]]);
+        }
+    }
+}
+
+struct Plain<F: Frame, const U: usize> {
+    n: F::V<U>,
+    pn: Lanes<U>,
+    pt: F::T<U>,
+    shift: Lanes<U>,
+    iwn: Lanes<U>,
+    iwt: Lanes<U>,
+    mu: Lanes<U>,
+}
+
+impl<F: Frame, const U: usize> Plain<F, U> {
+    #[inline(always)]
+    unsafe fn new(rows: &Records<PlainRow<F>, U>) -> Self {
+        let [v, t] = const { sizes::<F>() };
+        // SAFETY: the row is those numbers and then two indices.
+        let mut r = unsafe { Reader::new(rows, 0, v + t + 5) };
+        Self {
+            n: r.tuple(v),
+            pn: r.number(),
+            pt: r.tuple(t),
+            shift: r.number(),
+            iwn: r.number(),
+            iwt: r.number(),
+            mu: r.number(),
+        }
+    }
+}
+
+impl<F: Frame> Wide for PlainRow<F> {
+    type Space = F;
+
+    fn idle() -> Self {
+        Self::idle()
+    }
+
+    #[inline(always)]
+    unsafe fn updates<const U: usize>(
+        rows: &Records<Self, U>,
+        a: &mut Moving<F, U>,
+        b: &mut Moving<F, U>,
+        relaxation: Lanes<U>,
+    ) {
+        // SAFETY: as asked for.
+        unsafe {
+            let r = Plain::<F, U>::new(rows);
+            let (un, ut) = relative(&r.n, a, b);
+            let pn = r.pn - (un + r.shift) * (r.iwn * relaxation);
+            let pn = pn.max(Lanes::all(0.0));
+            let pt = (r.pt - ut * (r.iwt * relaxation)).limited(r.mu * pn);
+            push(&r.n, pn - r.pn, pt - r.pt, a, b);
+            keep::<_, F, U>(rows, &r.n, pn, &pt);
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn stand<const U: usize>(rows: &Records<Self, U>) -> Stand<F, U> {
+        // SAFETY: as asked for.
+        let r = unsafe { Plain::<F, U>::new(rows) };
+        Stand {
+            n: r.n,
+            pn: r.pn,
+            pt: r.pt,
+            rho: r.iwn.min(r.iwt),
+            mu: r.mu,
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn residuals<const U: usize>(
+        rows: &Records<Self, U>,
+        a: &Moving<F, U>,
+        b: &Moving<F, U>,
+    ) -> Residuals<U> {
+        // SAFETY: as asked for.
+        let r = unsafe { Plain::<F, U>::new(rows) };
+        let (un, ut) = relative(&r.n, a, b);
+        let rho = r.iwn.min(r.iwt);
+        let shift = (r.shift, Tuple::null());
+        natural_map((r.pn, r.pt), (un, ut), shift, rho, r.mu, Lanes::all(0.0))
+    }
+}
+
+/// A direction of a bonded contact, see `full.rs`.
+struct Direction<const U: usize, T> {
+    w: Lanes<U>,
+    iw: Lanes<U>,
+    q: T,
+    k: T,
+    c: Lanes<U>,
+}
+
+struct Full<F: Frame, const U: usize> {
+    n: F::V<U>,
+    pn: Lanes<U>,
+    pt: F::T<U>,
+    normal: Direction<U, Lanes<U>>,
+    tangent: Direction<U, F::T<U>>,
+    q_slack: Lanes<U>,
+    limit: Lanes<U>,
+    mu: Lanes<U>,
+    tension: Lanes<U>,
+    grip: Lanes<U>,
+}
+
+impl<F: Frame, const U: usize> Full<F, U> {
+    #[inline(always)]
+    unsafe fn new(rows: &Records<FullRow<F>, U>) -> Self {
+        let [v, t] = const { sizes::<F>() };
+        // SAFETY: the row is those numbers, then those of `Bonds` and two indices.
+        let mut r = unsafe { Reader::new(rows, 0, Bonds::<F, U>::BEFORE) };
+        Self {
+            n: r.tuple(v),
+            pn: r.number(),
+            pt: r.tuple(t),
+            normal: Direction {
+                w: r.number(),
+                iw: r.number(),
+                q: r.number(),
+                k: r.number(),
+                c: r.number(),
+            },
+            tangent: Direction {
+                w: r.number(),
+                iw: r.number(),
+                q: r.tuple(t),
+                k: r.tuple(t),
+                c: r.number(),
+            },
+            q_slack: r.number(),
+            limit: r.number(),
+            mu: r.number(),
+            tension: r.number(),
+            grip: r.number(),
+        }
+    }
+}
+
+/// What the convergence test needs beside.
+struct Bonds<F: Frame, const U: usize> {
+    cohesion: Lanes<U>,
+    a_n: Lanes<U>,
+    b_n: Lanes<U>,
+    shift_n: Lanes<U>,
+    a_t: F::T<U>,
+    b_t: Lanes<U>,
+    shift_t: F::T<U>,
+}
+
+impl<F: Frame, const U: usize> Bonds<F, U> {
+    /// Numbers of a row before these.
+    const BEFORE: usize = {
+        let [v, t] = sizes::<F>();
+        v + 3 * t + 14
+    };
+
+    #[inline(always)]
+    unsafe fn new(rows: &Records<FullRow<F>, U>) -> Self {
+        let [_, t] = const { sizes::<F>() };
+        // SAFETY: the row ends with them and two indices.
+        let mut r = unsafe { Reader::new(rows, Self::BEFORE, 2 * t + 5) };
+        Self {
+            cohesion: r.number(),
+            a_n: r.number(),
+            b_n: r.number(),
+            shift_n: r.number(),
+            a_t: r.tuple(t),
+            b_t: r.number(),
+            shift_t: r.tuple(t),
+        }
+    }
+
+    #[inline(always)]
+    fn rho(&self, row: &Full<F, U>) -> Lanes<U> {
+        let rho = (row.normal.iw + self.b_n).min(row.tangent.iw + self.b_t);
+        let zero = Lanes::all(0.0);
+        row.normal.iw.above(zero).choose(rho, zero)
+    }
+}
+
+impl<F: Frame> Wide for FullRow<F> {
+    type Space = F;
+
+    fn idle() -> Self {
+        Self::idle()
+    }
+
+    #[inline(always)]
+    unsafe fn updates<const U: usize>(
+        rows: &Records<Self, U>,
+        a: &mut Moving<F, U>,
+        b: &mut Moving<F, U>,
+        relaxation: Lanes<U>,
+    ) {
+        // SAFETY: as asked for.
+        unsafe {
+            let r = Full::<F, U>::new(rows);
+            let (n, t) = (&r.normal, &r.tangent);
+            let (un, ut) = relative(&r.n, a, b);
+            let f = un - n.w * r.pn;
+            let with = (n.q - f * n.iw).max(-r.tension);
+            let pull = -(n.k + n.c * (n.w * with + f));
+            let without = (r.q_slack - f * n.iw).max(-r.tension);
+            let slack = pull.above(r.limit);
+            let sn = slack.choose(without, with);
+            let en = slack.choose(Lanes::all(0.0), pull);
+            let f = ut - r.pt * t.w;
+            let st = (t.q - f * t.iw).limited(r.mu * sn + r.grip);
+            let et = -(t.k + (st * t.w + f) * t.c);
+            let (dn, dt) = (sn + en - r.pn, st + et - r.pt);
+            let (dn, dt) = (dn * relaxation, dt * relaxation);
+            push(&r.n, dn, dt, a, b);
+            keep::<_, F, U>(rows, &r.n, r.pn + dn, &(r.pt + dt));
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn stand<const U: usize>(rows: &Records<Self, U>) -> Stand<F, U> {
+        // SAFETY: as asked for.
+        let (r, bonds) = unsafe { (Full::<F, U>::new(rows), Bonds::<F, U>::new(rows)) };
+        Stand {
+            n: r.n,
+            pn: r.pn,
+            pt: r.pt,
+            rho: bonds.rho(&r),
+            mu: r.mu,
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn residuals<const U: usize>(
+        rows: &Records<Self, U>,
+        a: &Moving<F, U>,
+        b: &Moving<F, U>,
+    ) -> Residuals<U> {
+        // SAFETY: as asked for.
+        let (r, bonds) = unsafe { (Full::<F, U>::new(rows), Bonds::<F, U>::new(rows)) };
+        let (un, ut) = relative(&r.n, a, b);
+        let pull = -(bonds.a_n + bonds.b_n * un);
+        let en = pull.above(r.limit).choose(Lanes::all(0.0), pull);
+        let et = -(bonds.a_t + ut * bonds.b_t);
+        let shifted = (r.pn - en + r.tension, r.pt - et);
+        let shift = (bonds.shift_n, bonds.shift_t);
+        natural_map(
+            shifted,
+            (un, ut),
+            shift,
+            bonds.rho(&r),
+            r.mu,
+            bonds.cohesion,
+        )
+    }
+}
+
+/// As `natural_map` of one contact; nothing where rho is 0.
+#[inline(always)]
+fn natural_map<T: Tuple<U>, const U: usize>(
+    (pn, pt): (Lanes<U>, T),
+    (un, ut): (Lanes<U>, T),
+    (sn, st): (Lanes<U>, T),
+    rho: Lanes<U>,
+    mu: Lanes<U>,
+    c: Lanes<U>,
+) -> Residuals<U> {
+    let (zero, one) = (Lanes::all(0.0), Lanes::all(1.0));
+    let slide = ut + st;
+    let (zn, zt) = project(
+        pn - rho * (un + sn + mu * slide.norm()),
+        pt - slide * rho,
+        mu,
+        c,
+    );
+    let any = rho.above(zero);
+    let over = any.choose(one / rho, zero);
+    let (rn, rt) = ((pn - zn) * over, (pt - zt) * over);
+    let natural = rn * rn + rt.dot(rt);
+    let most = (pn * over).min(un + sn);
+    let squared_mu = (mu * mu).min(Lanes::all(f64::MAX));
+    let lost = most * (squared_mu / (one + squared_mu));
+    let larger = natural.max(lost * lost);
+    let squared = (most * most).not_above(natural).choose(natural, larger);
+    let power = pn * rn + pt.dot(rt);
+    Residuals {
+        squared: any.choose(squared, zero),
+        velocity: any.choose(un * un + ut.dot(ut), zero),
+        impulse: (pn * pn + pt.dot(pt)) * (over * over),
+        power: any.choose(power, zero),
+    }
+}
+
+/// As [`crate::solve::cone::project`].
+#[inline(always)]
+fn project<T: Tuple<U>, const U: usize>(
+    normal: Lanes<U>,
+    tangent: T,
+    mu: Lanes<U>,
+    c: Lanes<U>,
+) -> (Lanes<U>, T) {
+    let (zero, one) = (Lanes::all(0.0), Lanes::all(1.0));
+    let length = tangent.norm();
+    let inside = normal
+        .not_below(zero)
+        .and(length.not_above(mu * normal + c));
+    let foot = (normal + mu * (length - c)) / (one + mu * mu);
+    let slides = length.above(c).and(foot.above(zero));
+    let foot = slides.choose(foot, zero);
+    let bound = slides.choose(mu * foot + c, length.min(c));
+    let n = inside.choose(normal, foot);
+    if T::SIZE == 1 {
+        let on = T::from_numbers(&[bound.signed_as(tangent.number(0))]);
+        return (n, T::chosen(inside, tangent, on));
+    }
+    let share = length.above(zero).choose(bound / length, zero);
+    (n, tangent * inside.choose(one, share))
+}

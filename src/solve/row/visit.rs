@@ -1,0 +1,244 @@
+//! What is done to every row in turn: several contacts at a time where the machine has the vectors for
+//! it, else one by one, with the same bits.
+
+#[cfg(target_arch = "x86_64")]
+use super::lanes::{self, Moving, Records, Tuple, Wide, push, relative};
+use super::{Line, Lines, Row};
+use crate::geometry::space::{Space, VectorLike, least};
+use crate::solve::error::{Scale, Sums};
+
+/// Something done to rows.
+pub trait Visit {
+    /// Two vectors of contacts at a time in space, so that one does something while the other waits.
+    const TWO: bool;
+
+    /// To one row, the `at`-th of those visited.
+    fn one<S: Space, R: Row<S>>(&mut self, row: &mut R, lines: &Lines<S>, at: usize);
+
+    /// To the rows from the `at`-th on, which share no movable body or are only read.
+    ///
+    /// # Safety
+    /// Rows and lines are there, and no one else writes them.
+    #[cfg(target_arch = "x86_64")]
+    unsafe fn several<W: Wide, const U: usize>(
+        &mut self,
+        rows: &Records<W, U>,
+        a: &Records<Line<W::Space>, U>,
+        b: &Records<Line<W::Space>, U>,
+        at: usize,
+    );
+}
+
+/// Visits a block of rows, given the starts of its groups and the end of the last: contacts of a group share
+/// no movable body.
+pub fn visit<S: Space, R: Row<S>>(
+    rows: &mut [R],
+    groups: &[u32],
+    lines: &Lines<S>,
+    what: &mut impl Visit,
+) {
+    // A lone contact a group leaves three lanes of four idle.
+    #[cfg(target_arch = "x86_64")]
+    if rows.len() >= 2 * groups.len() && lanes::visit(rows, groups, lines, what) {
+        return;
+    }
+    for (at, row) in rows.iter_mut().enumerate() {
+        what.one(row, lines, at);
+    }
+}
+
+/// Solves the contact for the velocities at hand, goes so many times as far, and updates them.
+pub struct Update(pub f64);
+
+impl Visit for Update {
+    const TWO: bool = true;
+
+    #[inline(always)]
+    fn one<S: Space, R: Row<S>>(&mut self, row: &mut R, lines: &Lines<S>, _: usize) {
+        lines.with(row.bodies(), |a, b| row.update(a, b, self.0));
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn several<W: Wide, const U: usize>(
+        &mut self,
+        rows: &Records<W, U>,
+        a: &Records<Line<W::Space>, U>,
+        b: &Records<Line<W::Space>, U>,
+        _: usize,
+    ) {
+        // SAFETY: as asked for.
+        unsafe {
+            let (mut i, mut j) = (Moving::load(a), Moving::load(b));
+            W::updates(rows, &mut i, &mut j, lanes::Lanes::all(self.0));
+            i.keep(a);
+            j.keep(b);
+        }
+    }
+}
+
+/// Adds what the stored impulse does to the velocities.
+pub struct Load;
+
+impl Visit for Load {
+    const TWO: bool = true;
+
+    #[inline(always)]
+    fn one<S: Space, R: Row<S>>(&mut self, row: &mut R, lines: &Lines<S>, _: usize) {
+        lines.with(row.bodies(), |a, b| row.load(a, b));
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn several<W: Wide, const U: usize>(
+        &mut self,
+        rows: &Records<W, U>,
+        a: &Records<Line<W::Space>, U>,
+        b: &Records<Line<W::Space>, U>,
+        _: usize,
+    ) {
+        // SAFETY: as asked for.
+        unsafe {
+            let (mut i, mut j) = (Moving::load(a), Moving::load(b));
+            let row = W::stand(rows);
+            push(&row.n, row.pn, row.pt, &mut i, &mut j);
+            i.keep(a);
+            j.keep(b);
+        }
+    }
+}
+
+/// Contacts whose sums are formed apart: the lanes of a vector.
+const APART: usize = 4;
+
+/// Sums what the convergence test reads off contacts.
+#[derive(Default)]
+pub struct Measure {
+    residual: [f64; APART],
+    velocity: [f64; APART],
+    impulse: [f64; APART],
+    power: [f64; APART],
+    worst: [f64; APART],
+    worst_at: [f64; APART],
+}
+
+impl Measure {
+    /// The sums; contacts are counted from `first`.
+    pub fn sums(&self, first: usize) -> Sums {
+        let mut out = Sums::default();
+        for k in 0..APART {
+            out.merge(&Sums {
+                residual: self.residual[k],
+                velocity: self.velocity[k],
+                impulse: self.impulse[k],
+                power: self.power[k],
+                worst: self.worst[k],
+                worst_at: first + self.worst_at[k] as usize,
+            });
+        }
+        out
+    }
+}
+
+impl Visit for Measure {
+    const TWO: bool = false;
+
+    #[inline(always)]
+    fn one<S: Space, R: Row<S>>(&mut self, row: &mut R, lines: &Lines<S>, at: usize) {
+        let (a, b) = lines.read(row.bodies());
+        let (r, k) = (row.residual(&a, &b), at % APART);
+        self.residual[k] += r.squared;
+        self.velocity[k] += r.velocity;
+        self.impulse[k] += r.impulse;
+        self.power[k] += r.power;
+        if r.squared > self.worst[k] {
+            self.worst[k] = r.squared;
+            self.worst_at[k] = at as f64;
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn several<W: Wide, const U: usize>(
+        &mut self,
+        rows: &Records<W, U>,
+        a: &Records<Line<W::Space>, U>,
+        b: &Records<Line<W::Space>, U>,
+        at: usize,
+    ) {
+        // SAFETY: as asked for.
+        let r = unsafe { W::residuals(rows, &Moving::load(a), &Moving::load(b)) };
+        r.squared.add_to(&mut self.residual);
+        r.velocity.add_to(&mut self.velocity);
+        r.impulse.add_to(&mut self.impulse);
+        r.power.add_to(&mut self.power);
+        r.squared.raise(&mut self.worst, &mut self.worst_at, at);
+    }
+}
+
+/// Sums what the free velocities, which are those at hand, give to measure against.
+#[derive(Default)]
+pub struct Free {
+    free: [f64; APART],
+    energy: [f64; APART],
+    noise: [f64; APART],
+}
+
+/// Roundings in a relative velocity, squared.
+const ROUNDINGS: f64 = 256.0 * f64::EPSILON * f64::EPSILON;
+/// The natural map multiplies that of a slip by mu, which beyond this is no excuse.
+const MOST: f64 = 1e6;
+
+impl Free {
+    /// The sums.
+    pub fn scale(&self) -> Scale {
+        let [free, energy, noise] =
+            [self.free, self.energy, self.noise].map(|x| (x[0] + x[1]) + (x[2] + x[3]));
+        Scale {
+            free,
+            energy,
+            noise,
+            work: 0.0,
+        }
+    }
+}
+
+impl Visit for Free {
+    const TWO: bool = false;
+
+    #[inline(always)]
+    fn one<S: Space, R: Row<S>>(&mut self, row: &mut R, lines: &Lines<S>, at: usize) {
+        let (a, b) = lines.read(row.bodies());
+        let (speed, k) = (row.speed(&a, &b), at % APART);
+        self.free[k] += speed;
+        self.energy[k] += row.rho() * speed;
+        let own = a.v.dot(&a.v) + a.s.dot(&a.s) + b.v.dot(&b.v) + b.s.dot(&b.s);
+        let mu = least(row.friction(), MOST);
+        self.noise[k] += own * (1.0 + mu * mu) * ROUNDINGS;
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn several<W: Wide, const U: usize>(
+        &mut self,
+        rows: &Records<W, U>,
+        a: &Records<Line<W::Space>, U>,
+        b: &Records<Line<W::Space>, U>,
+        _: usize,
+    ) {
+        // SAFETY: as asked for.
+        unsafe {
+            let (a, b) = (Moving::<W::Space, U>::load(a), Moving::load(b));
+            let row = W::stand(rows);
+            let (un, ut) = relative(&row.n, &a, &b);
+            let speed = un * un + ut.dot(ut);
+            speed.add_to(&mut self.free);
+            (row.rho * speed).add_to(&mut self.energy);
+            let own = a.v.dot(a.v) + a.s.dot(a.s) + b.v.dot(b.v) + b.s.dot(b.s);
+            let mu = row.mu.min(lanes::Lanes::all(MOST));
+            let one = lanes::Lanes::all(1.0);
+            let noise = own * (one + mu * mu) * lanes::Lanes::all(ROUNDINGS);
+            noise.add_to(&mut self.noise);
+        }
+    }
+}
