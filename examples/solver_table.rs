@@ -339,8 +339,9 @@ counted and goes on.
     out += "
 A missing row is a method that was not run at that tolerance: the first step after the bonds are made takes the
 gradients and `nlgs-symmetric` 10 to 30 s at 1e-4 already. They hold a bond and the contact it lies in as two unknowns,
-where the sweeps over bodies solve both at once, which may be why (not measured). At 1e-6
-and 1e-8 no method reaches the tolerance in the first steps of the slip within its iterations; errors stay at some 1e-5.
+where the sweeps over bodies solve both at once: [what that costs](solvers.md#bonds-as-unknowns-of-their-own). At 1e-6
+and 1e-8 no method reaches the tolerance in the first steps of the slip within its iterations; errors stay at some 1e-5:
+[why](solvers.md#the-first-slip-of-the-fretting-case).
 ";
     out += "\nThe case is chaotic: another order of the same sums leads to other rearrangements. What that is worth, by `auto` at 1e-4 with other samples:\n\n| seed | friction by cycle | time (s) |\n|---|---|---|\n";
     for seed in SEEDS {

@@ -37,6 +37,12 @@ fn line<'a>(text: &'a str, label: &str) -> &'a str {
 const ALL: &str = "auto, nlgs, nlgs-symmetric, anderson, pg, cpg, pcpg, apgd, newton, interior";
 const GRADIENTS: &str = "auto, nlgs, nlgs-symmetric, anderson, pg, cpg, pcpg, apgd";
 
+/// A contact law with shear cohesion.
+const COHESIVE: [&str; 2] = [
+    "interfaces.0.contact=mohr-coulomb",
+    "interfaces.0.parameters.contact={}",
+];
+
 #[test]
 fn the_methods_of_a_case_are_listed() {
     // Coulomb friction alone: all of them.
@@ -44,15 +50,14 @@ fn the_methods_of_a_case_are_listed() {
     assert!(fine);
     assert_eq!(line(&text, "methods"), ALL);
     assert_eq!(line(&text, "method"), "auto serves this case");
-    // Bonds: not the interior point.
+    // Bonds: all of them, unless the law asks for shear cohesion too.
     let (fine, text) = check("beam_2d", &["solver.method=Newton"]);
     assert!(fine);
-    assert_eq!(line(&text, "methods"), format!("{GRADIENTS}, newton"));
-    assert_eq!(line(&text, "method"), "newton serves this case");
-    assert!(
-        text.contains("not interior, interface `") && text.contains("bonds"),
-        "{text}"
+    assert_eq!(
+        line(&text, "methods"),
+        format!("{GRADIENTS}, newton, interior?")
     );
+    assert_eq!(line(&text, "method"), "newton serves this case");
     // Friction against rotation: neither of the two.
     let (fine, text) = check("rolling_stop_sphere", &[]);
     assert!(fine);
@@ -61,9 +66,13 @@ fn the_methods_of_a_case_are_listed() {
         text.contains("not newton, interface `") && text.contains("rotation"),
         "{text}"
     );
-    // Attraction without an opening.
-    let (_, text) = check("hanging", &[]);
-    assert!(text.contains("not interior"), "{text}");
+    // Shear cohesion: not the interior point.
+    let (_, text) = check("column", &COHESIVE);
+    assert_eq!(line(&text, "methods"), format!("{GRADIENTS}, newton"));
+    assert!(
+        text.contains("not interior, interface `") && text.contains("cohesion"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -88,18 +97,25 @@ fn a_method_that_cannot_is_refused_before_the_run() {
     for (case, method, word) in [
         ("rolling_stop_disk", "Newton", "rotation"),
         ("rolling_stop_sphere", "Interior", "rotation"),
-        ("beam_3d", "Interior", "bonds"),
-        ("hanging", "Interior", "cohesion"),
+        ("column", "Interior", "cohesion"),
     ] {
         let set = format!("solver.method={method}");
-        let (fine, text) = check(case, &[&set]);
+        let mut sets = vec![set.as_str()];
+        if word == "cohesion" {
+            sets.extend(COHESIVE);
+        }
+        let (fine, text) = check(case, &sets);
         assert!(
             !fine && text.contains(word) && text.contains("interface `"),
             "{case} {text}"
         );
         let path = format!("cases/verification/{case}.ron");
         let out = std::env::temp_dir().join(format!("fretwork-refused-{}", std::process::id()));
-        let output = fretwork(&["run", &path, "--set", &set, "--out", out.to_str().unwrap()]);
+        let mut args = vec!["run", &path, "--out", out.to_str().unwrap()];
+        for set in &sets {
+            args.extend(["--set", set]);
+        }
+        let output = fretwork(&args);
         assert_eq!(output.status.code(), Some(2));
         assert!(!out.exists(), "nothing is written");
     }

@@ -209,11 +209,12 @@ fn any_unit_of_mass() {
 fn other_laws<const D: usize>(seed: u64) {
     let mut rng = rng(seed);
     let mut problems = Vec::new();
-    let kinds: [(&str, &[usize]); 6] = [
+    let kinds: [(&str, &[usize]); 7] = [
         ("cohesive", &[1]),
         ("free", &[2]),
         ("pull", &[3]),
         ("moment", &[0, 4]),
+        ("contacts and bonds", &[0, 2, 3]),
         ("all but moments", &[0, 1, 2, 3]),
         ("all", &[0, 1, 2, 3, 4]),
     ];
@@ -262,9 +263,14 @@ fn other_laws<const D: usize>(seed: u64) {
             );
         },
     );
-    let error = Method::Interior.serves(&[Law::Coulomb(0.0), Law::Free]);
+    let cohesive = Law::Cohesive {
+        mu: 0.3,
+        cohesion: 0.3,
+    };
+    let error = Method::Interior.serves(&[Law::Coulomb(0.0), cohesive]);
     assert!(error.unwrap_err().contains("block 1"));
-    assert!(Method::Interior.serves(&[Law::Coulomb(0.0)]).is_ok());
+    let bonds = [Law::Coulomb(0.0), Law::Free, Law::Pull];
+    assert!(Method::Interior.serves(&bonds).is_ok());
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What the laws of an interface ask of a solver, found out before a step is done.
 //!
-//! Flags tell of bonds. Friction against rotation and attraction are numbers that a contact law gives at run
+//! Flags tell of bonds. Friction against rotation and shear cohesion are numbers that a contact law gives at run
 //! time: a law that is constant is asked once, any other on a bench of trial contacts.
 
 use super::bench::{Bench, Motion, State};
@@ -40,8 +40,8 @@ impl Asked {
 pub struct Demand {
     /// Friction against rotation.
     pub rotation: Asked,
-    /// Bonds, tension or cohesion.
-    pub attraction: Asked,
+    /// Shear cohesion; unseen of laws of bonds, which are tried in no trial.
+    pub cohesion: Asked,
 }
 
 impl Interface {
@@ -61,7 +61,7 @@ impl Interface {
         .compose()?;
         let constant = acting.constant_contact();
         let simple = constant && acting.cohesion.is_none();
-        let (mut turns, mut pulls) = (Vec::new(), Vec::new());
+        let (mut turns, mut grips) = (Vec::new(), Vec::new());
         for radius in radii {
             let mut bench = Bench::new(acting.clone(), dimension, *radius);
             let (mut states, motions) = trials(&bench, *radius);
@@ -69,16 +69,16 @@ impl Interface {
             for (answer, motion) in answers.iter().zip(&motions) {
                 let touches = motion.gap <= 0.0;
                 turns.push((touches, answer.rolling.iter().any(|x| *x > 0.0)));
-                pulls.push((touches, answer.strength.iter().any(|x| *x > 0.0)));
+                grips.push((touches, answer.strength[1] > 0.0));
             }
         }
         Ok(Demand {
             rotation: Asked::of(&turns, constant),
-            attraction: if bonds {
-                Asked::Always
+            cohesion: Asked::of(&grips, simple).max(if bonds {
+                Asked::Unseen
             } else {
-                Asked::of(&pulls, simple)
-            },
+                Asked::Never
+            }),
         })
     }
 }

@@ -45,9 +45,9 @@ impl Demands {
             // The reason of a refusal, and how surely it will come.
             let (asked, reason) = match demand {
                 Some(demand) => {
-                    let (rotation, attraction) = (demand.rotation, demand.attraction);
+                    let (rotation, cohesion) = (demand.rotation, demand.cohesion);
                     let turns = refusal(method, true, false).map_or(Asked::Never, |_| rotation);
-                    let pulls = refusal(method, false, true).map_or(Asked::Never, |_| attraction);
+                    let pulls = refusal(method, false, true).map_or(Asked::Never, |_| cohesion);
                     let most = turns.max(pulls);
                     (most, refusal(method, most == turns, most == pulls))
                 }
@@ -79,11 +79,8 @@ impl Demands {
 mod tests {
     use super::*;
 
-    fn service(rotation: Asked, attraction: Asked, method: Method) -> Service {
-        let demand = Demand {
-            rotation,
-            attraction,
-        };
+    fn service(rotation: Asked, cohesion: Asked, method: Method) -> Service {
+        let demand = Demand { rotation, cohesion };
         Demands(vec![("a".into(), Some(demand))]).service(method)
     }
 
@@ -103,7 +100,7 @@ mod tests {
         assert!(text(service(Sometimes, Never, Method::Newton)).contains("some contacts"));
         assert!(text(service(Unseen, Never, Method::Newton)).contains("trials"));
         let both = service(Unseen, Always, Method::Interior);
-        assert!(matches!(both, Service::Refuses(t) if t.contains("bonds")));
+        assert!(matches!(both, Service::Refuses(t) if t.contains("cohesion")));
         let failed = Demands(vec![("a".into(), None)]);
         assert!(matches!(failed.service(Method::Newton), Service::May(_)));
         assert_eq!(failed.service(Method::Pg), Service::Serves);

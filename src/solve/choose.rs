@@ -204,13 +204,13 @@ impl<S: Space> Pieces<'_, S> {
 }
 
 /// Why a method cannot solve a case with these moments and laws, if it cannot.
-pub fn refusal(method: Method, rotation: bool, other_than_coulomb: bool) -> Option<&'static str> {
+pub fn refusal(method: Method, rotation: bool, cohesion: bool) -> Option<&'static str> {
     match method {
         Method::Newton if rotation => Some(
             "friction against rotation is bounded by another unknown, which newton does not follow; use auto, anderson or a gradient",
         ),
-        Method::Interior if rotation || other_than_coulomb => Some(
-            "interior solves Coulomb's cone alone, without bonds, cohesion or friction against rotation; use auto, newton or anderson",
+        Method::Interior if rotation || cohesion => Some(
+            "interior solves Coulomb's cone and bonds, without shear cohesion or friction against rotation; use auto, newton or anderson",
         ),
         _ => None,
     }

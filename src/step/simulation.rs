@@ -306,11 +306,8 @@ impl<S: Space> Simulation<S> {
             .moments
             .iter()
             .any(|m| m.rolling > 0.0 || m.spinning > 0.0);
-        let other = self
-            .forms
-            .iter()
-            .any(|f| f.elastic.is_some() || f.cohesion > 0.0 || f.tension > 0.0);
-        match solve::choose::refusal(method, rolls, other) {
+        let cohesion = self.forms.iter().any(|f| f.cohesion > 0.0);
+        match solve::choose::refusal(method, rolls, cohesion) {
             None => Ok(()),
             Some(reason) => Err(StepError::Method {
                 step: self.steps + 1,

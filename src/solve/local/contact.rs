@@ -146,8 +146,14 @@ impl<const D: usize> Local<D> {
         const ROUNDS: usize = 20;
         let rho = 1.0 / largest(&self.w);
         let mut p = *start;
-        if *law == Law::Free && self.inverse != [[0.0; D]; D] {
-            return times(&self.inverse, f).map(|x| -x);
+        if matches!(law, Law::Free | Law::Pull) && self.inverse != [[0.0; D]; D] {
+            let held = times(&self.inverse, f).map(|x| -x);
+            if *law == Law::Free || held[0] <= 0.0 {
+                return held;
+            }
+            if let Some(slack) = self.slack(f) {
+                return slack;
+            }
         }
         if !rho.is_finite() {
             return p;
@@ -168,6 +174,19 @@ impl<const D: usize> Local<D> {
             }
         }
         p
+    }
+
+    /// No normal impulse and no slip; none where the tangents' block is singular.
+    fn slack(&self, f: &[f64; D]) -> Option<[f64; D]> {
+        let (w, mut p) = (&self.w, [0.0; D]);
+        if D == 2 {
+            p[1] = -f[1] / w[1][1];
+        } else {
+            let d = w[1][1] * w[2][2] - w[1][2] * w[2][1];
+            p[1] = (w[1][2] * f[2] - w[2][2] * f[1]) / d;
+            p[2] = (w[2][1] * f[1] - w[1][1] * f[2]) / d;
+        }
+        p.iter().all(|x| x.is_finite()).then_some(p)
     }
 
     fn slide_space(&mut self, f: &[f64; D]) -> [f64; D] {
@@ -243,6 +262,7 @@ impl<const D: usize> Local<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solve::local::law::slip;
     use rand::{RngExt, SeedableRng};
 
     /// Distance from the law: the natural map with rho = 1.
@@ -274,6 +294,38 @@ mod tests {
             let r = residual(&w, &f, &p, mu);
             assert!(r < 1e-12, "{r} {w:?} {f:?} {mu} {p:?}");
         }
+    }
+
+    /// What pulls only: u = 0, or no normal impulse, u_n < 0 and no slip.
+    fn pulls<const D: usize>() {
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(4);
+        let mut slack = 0;
+        for _ in 0..500 {
+            let g: Block<D> =
+                std::array::from_fn(|_| std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
+            let w: Block<D> = std::array::from_fn(|i| {
+                std::array::from_fn(|j| {
+                    (0..D).map(|k| g[i][k] * g[j][k]).sum::<f64>() + f64::from(i == j)
+                })
+            });
+            let f: [f64; D] = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
+            let start: [f64; D] = std::array::from_fn(|_| rng.random_range(-9.0..9.0));
+            let p = Local::new(&w, 0.0).solve_rare(&f, &Law::Pull, &start, &[]);
+            let mut u = times(&w, &p);
+            for k in 0..D {
+                u[k] += f[k];
+            }
+            assert!(p[0] <= 0.0 && u[0] <= 1e-12 && (p[0] * u[0]).abs() < 1e-12);
+            assert!(slip(&u) < 1e-12, "{u:?}");
+            slack += u32::from(p[0] == 0.0);
+        }
+        assert!((100..400).contains(&slack), "{slack} of 500 are slack");
+    }
+
+    #[test]
+    fn pulls_in_the_plane_and_in_space() {
+        pulls::<2>();
+        pulls::<3>();
     }
 
     #[test]

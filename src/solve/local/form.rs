@@ -1,6 +1,7 @@
 //! What a solver sees: the operator W, the free velocities q and the law of each block of unknowns.
 
 use super::block::{Block, BlockMatrix};
+use super::factored;
 use super::law::{self, Law};
 use crate::solve::error::{Norm, Scale, Sums, residual};
 use crate::solve::extrapolation;
@@ -20,6 +21,27 @@ pub trait Delassus<const D: usize> {
     fn velocity(&self, p: &[[f64; D]], q: &[[f64; D]], u: &mut [[f64; D]]);
     /// W as a matrix; formed where it is not at hand.
     fn matrix(&self) -> &BlockMatrix<D>;
+    /// The factors of N W N + S; none where it is singular to rounding.
+    fn shifted(&self, shift: &Shift<D>) -> Option<Box<dyn Shifted<D> + '_>> {
+        factored::factor(self.matrix(), shift)
+    }
+}
+
+/// What is added to W, and in which units.
+#[derive(Clone, Copy, Debug)]
+pub struct Shift<'a, const D: usize> {
+    /// S by its diagonal blocks.
+    pub s: &'a [Block<D>],
+    /// So many of the first components of each block take part.
+    pub sizes: &'a [usize],
+    /// N: what the normal component of each block is multiplied by.
+    pub normal: &'a [f64],
+}
+
+/// Factors of N W N + S.
+pub trait Shifted<const D: usize> {
+    /// x = (N W N + S)^-1 x, zero in components that do not take part; whether it is finite.
+    fn solve(&self, x: &mut [[f64; D]]) -> bool;
 }
 
 impl<const D: usize> Delassus<D> for BlockMatrix<D> {

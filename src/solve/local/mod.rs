@@ -14,6 +14,7 @@ pub mod block;
 pub mod contact;
 pub mod csr;
 pub mod factor;
+pub mod factored;
 pub mod form;
 pub mod global;
 pub mod gradient;

@@ -1,8 +1,10 @@
 //! W of a step, matrix-free from its bodies; assembled only when a method asks for the matrix.
 
+use super::motion::Pattern;
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::local::block::{Block, BlockMatrix};
-use crate::solve::local::form::Delassus;
+use crate::solve::local::factored;
+use crate::solve::local::form::{Delassus, Shift, Shifted};
 use std::cell::{OnceCell, RefCell};
 
 /// What a component of a block pushes along.
@@ -61,6 +63,7 @@ pub struct Bodies<'a, S: Space, const D: usize> {
     pub diagonal: Vec<Block<D>>,
     scratch: RefCell<Vec<Motion<S>>>,
     matrix: OnceCell<BlockMatrix<D>>,
+    pattern: OnceCell<Pattern>,
 }
 
 impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
@@ -72,7 +75,13 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
             diagonal: Vec::new(),
             scratch: RefCell::new(Vec::new()),
             matrix: OnceCell::new(),
+            pattern: OnceCell::new(),
         }
+    }
+
+    /// Which bodies meet.
+    pub(super) fn pattern(&self) -> &Pattern {
+        self.pattern.get_or_init(|| Pattern::new(self))
     }
 
     /// M^-1 of an impulse and moment on a body.
@@ -160,6 +169,15 @@ impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
             for k in 0..D {
                 u[k] += q[c][k] + self.unknowns[c].axes[k].compliance * p[c][k];
             }
+        }
+    }
+
+    fn shifted(&self, shift: &Shift<D>) -> Option<Box<dyn Shifted<D> + '_>> {
+        // Where the motions are more, they only add rounding.
+        if self.pattern().rows() < D * self.len() {
+            self.factor(shift)
+        } else {
+            factored::factor(self.matrix(), shift)
         }
     }
 

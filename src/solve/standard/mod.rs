@@ -6,6 +6,7 @@
 //! moments of a bond likewise. Tension c_n and what does not depend on velocities go into the free ones.
 
 mod bodies;
+mod motion;
 
 use super::error::Norm;
 use super::form::{ContactForm, Problem};

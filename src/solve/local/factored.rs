@@ -1,0 +1,75 @@
+//! N W N + S of a matrix W and diagonal blocks S, factorised.
+
+use super::block::BlockMatrix;
+use super::form::{Shift, Shifted};
+use super::linear::{Factor, Rows};
+
+struct Factored {
+    factor: Factor,
+    /// First row of each block; one more than blocks.
+    starts: Vec<usize>,
+}
+
+/// See [`super::form::Delassus::shifted`].
+pub fn factor<'a, const D: usize>(
+    w: &BlockMatrix<D>,
+    shift: &Shift<D>,
+) -> Option<Box<dyn Shifted<D> + 'a>> {
+    let Shift { s, sizes, normal } = *shift;
+    let mut starts = vec![0];
+    for size in sizes {
+        starts.push(starts[starts.len() - 1] + size);
+    }
+    let mut a = Rows::default();
+    a.starts.push(0);
+    for c in 0..s.len() {
+        for i in 0..sizes[c] {
+            let left = if i == 0 { normal[c] } else { 1.0 };
+            let push = |a: &mut Rows, e: usize, row: &[f64; D]| {
+                for (j, x) in row.iter().take(sizes[e]).enumerate() {
+                    a.columns.push(starts[e] + j);
+                    a.values
+                        .push(left * x * if j == 0 { normal[e] } else { 1.0 });
+                }
+            };
+            let own = |a: &mut Rows| {
+                for j in 0..sizes[c] {
+                    let right = if j == 0 { normal[c] } else { 1.0 };
+                    a.columns.push(starts[c] + j);
+                    a.values
+                        .push(left * right * w.diagonal[c][i][j] + s[c][i][j]);
+                }
+            };
+            let mut put = false;
+            for (e, block) in w.row(c) {
+                if !put && e > c {
+                    own(&mut a);
+                    put = true;
+                }
+                push(&mut a, e, &block[i]);
+            }
+            if !put {
+                own(&mut a);
+            }
+            a.starts.push(a.columns.len());
+        }
+    }
+    let factor = Factor::new(&a)?;
+    Some(Box::new(Factored { factor, starts }))
+}
+
+impl<const D: usize> Shifted<D> for Factored {
+    fn solve(&self, x: &mut [[f64; D]]) -> bool {
+        let size = |c: usize| self.starts[c + 1] - self.starts[c];
+        let mut packed = Vec::with_capacity(self.starts[x.len()]);
+        for (c, x) in x.iter().enumerate() {
+            packed.extend_from_slice(&x[..size(c)]);
+        }
+        let finite = self.factor.solve(&mut packed);
+        for (c, x) in x.iter_mut().enumerate() {
+            *x = [0.0; D];
+            x[..size(c)].copy_from_slice(&packed[self.starts[c]..self.starts[c + 1]]);
+        }
+        finite
+    }
+}

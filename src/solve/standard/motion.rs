@@ -1,0 +1,291 @@
+//! (N W N + S) x = b, S block by block, solved for the motions of the bodies.
+//!
+//! With S and b divided by N it is W + S. W = H^T M^-1 H + C with the compliances C, so with y = M^-1 H x and R = (S + C)^-1
+//! (M + H R H^T) y = H R b and x = R (b - H^T y) (Woodbury). There are fewer motions than impulses where a set is
+//! hyperstatic or bonded, and a body meets its neighbours alone, where a contact meets all of theirs.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "loops over the components of blocks read like their formulas"
+)]
+
+use super::bodies::Bodies;
+use crate::geometry::space::{Space, VectorLike};
+use crate::solve::local::block::{Block, times};
+use crate::solve::local::form::{Delassus, Shift, Shifted};
+use crate::solve::local::linear::{Factor, Rows};
+
+/// Which pairs of bodies meet.
+pub(super) struct Pattern {
+    /// First row of each body; none of its rows where it cannot move.
+    starts: Vec<usize>,
+    /// Bodies that meet a body, itself among them, rising; only those that move.
+    near: Vec<Vec<u32>>,
+}
+
+/// Degrees of freedom of a body.
+fn size<S: Space>() -> usize {
+    S::D + S::Spin::N
+}
+
+/// Inverse mass or inertia of a degree of freedom.
+fn inverse<S: Space>((mass, inertia): &(S::Vector, f64), k: usize) -> f64 {
+    if k < S::D { mass[k] } else { *inertia }
+}
+
+impl Pattern {
+    pub fn new<S: Space, const D: usize>(w: &Bodies<S, D>) -> Self {
+        let moves: Vec<bool> = w
+            .masses
+            .iter()
+            .map(|m| (0..size::<S>()).any(|k| inverse::<S>(m, k) > 0.0))
+            .collect();
+        let mut near: Vec<Vec<u32>> = (0..w.masses.len())
+            .map(|b| if moves[b] { vec![b as u32] } else { Vec::new() })
+            .collect();
+        for unknown in &w.unknowns {
+            let [a, b] = unknown.bodies;
+            if moves[a as usize] && moves[b as usize] {
+                near[a as usize].push(b);
+                near[b as usize].push(a);
+            }
+        }
+        let mut starts = vec![0];
+        for (near, moves) in near.iter_mut().zip(&moves) {
+            near.sort_unstable();
+            near.dedup();
+            starts.push(starts[starts.len() - 1] + if *moves { size::<S>() } else { 0 });
+        }
+        Self { starts, near }
+    }
+
+    /// Degrees of freedom in all.
+    pub fn rows(&self) -> usize {
+        self.starts[self.near.len()]
+    }
+
+    fn moves(&self, body: u32) -> bool {
+        !self.near[body as usize].is_empty()
+    }
+}
+
+/// The inverse of the leading block of `size` rows, zeros beside it; none where it is singular.
+fn invert<const D: usize>(s: &Block<D>, size: usize) -> Option<Block<D>> {
+    let (mut a, mut out) = (*s, [[0.0; D]; D]);
+    for (k, row) in out.iter_mut().enumerate().take(size) {
+        row[k] = 1.0;
+    }
+    for k in 0..size {
+        let pivot = (k..size).max_by(|i, j| a[*i][k].abs().total_cmp(&a[*j][k].abs()))?;
+        a.swap(k, pivot);
+        out.swap(k, pivot);
+        let over = 1.0 / a[k][k];
+        if !over.is_finite() {
+            return None;
+        }
+        for j in 0..size {
+            a[k][j] *= over;
+            out[k][j] *= over;
+        }
+        for i in (0..size).filter(|i| *i != k) {
+            let factor = a[i][k];
+            for j in 0..size {
+                a[i][j] -= factor * a[k][j];
+                out[i][j] -= factor * out[k][j];
+            }
+        }
+    }
+    Some(out)
+}
+
+/// The factors, and what leads to and from the motions.
+struct Factors<'a, S: Space, const D: usize> {
+    w: &'a Bodies<'a, S, D>,
+    s: Vec<Block<D>>,
+    r: Vec<Block<D>>,
+    sizes: Vec<usize>,
+    /// 1/N.
+    over: Vec<f64>,
+    lu: Factor,
+}
+
+impl<S: Space, const D: usize> Bodies<'_, S, D> {
+    /// The column of H of a component, on one side: along the degrees of freedom of its body.
+    fn column(&self, c: usize, k: usize, side: usize) -> [f64; 6] {
+        let axis = &self.unknowns[c].axes[k];
+        let sign = if side == 0 { 1.0 } else { -1.0 };
+        std::array::from_fn(|i| {
+            if i < S::D {
+                sign * axis.linear[i]
+            } else if i < size::<S>() {
+                sign * axis.angular[side][i - S::D]
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// See the module.
+    pub(super) fn factor(&self, shift: &Shift<D>) -> Option<Box<dyn Shifted<D> + '_>> {
+        let (sizes, over) = (shift.sizes, shift.normal.iter().map(|n| 1.0 / n));
+        let mut s = shift.s.to_vec();
+        for (s, over) in s.iter_mut().zip(over.clone()) {
+            for k in 0..D {
+                s[0][k] *= over;
+                s[k][0] *= over;
+            }
+        }
+        let pattern = self.pattern();
+        let d = size::<S>();
+        let mut r = Vec::with_capacity(s.len());
+        for (c, s) in s.iter().enumerate() {
+            let mut s = *s;
+            for k in 0..D {
+                s[k][k] += self.unknowns[c].axes[k].compliance;
+            }
+            r.push(invert(&s, sizes[c])?);
+        }
+        let mut a = self.masses_alone(pattern);
+        for (c, unknown) in self.unknowns.iter().enumerate() {
+            let columns: [[[f64; 6]; D]; 2] =
+                std::array::from_fn(|side| std::array::from_fn(|k| self.column(c, k, side)));
+            for i in 0..2 {
+                for j in 0..2 {
+                    let (x, y) = (unknown.bodies[i], unknown.bodies[j]);
+                    if !pattern.moves(x) || !pattern.moves(y) {
+                        continue;
+                    }
+                    let near = &pattern.near[x as usize];
+                    let place = near.binary_search(&y).ok()?;
+                    for p in 0..d {
+                        if inverse::<S>(&self.masses[x as usize], p) == 0.0 {
+                            continue;
+                        }
+                        let row = a.starts[pattern.starts[x as usize] + p] + place * d;
+                        for k in 0..D {
+                            let left: f64 = (0..D).map(|l| columns[i][l][p] * r[c][l][k]).sum();
+                            for q in 0..d {
+                                if inverse::<S>(&self.masses[y as usize], q) > 0.0 {
+                                    a.values[row + q] += left * columns[j][k][q];
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        let lu = Factor::new(&a)?;
+        Some(Box::new(Factors {
+            w: self,
+            s,
+            r,
+            sizes: sizes.to_vec(),
+            over: over.collect(),
+            lu,
+        }))
+    }
+
+    /// M, with room for what meets; a degree of freedom without motion has a row of its own.
+    fn masses_alone(&self, pattern: &Pattern) -> Rows {
+        let d = size::<S>();
+        let mut a = Rows::default();
+        a.starts.push(0);
+        for (b, near) in pattern.near.iter().enumerate() {
+            if near.is_empty() {
+                continue;
+            }
+            for p in 0..d {
+                let inverse = inverse::<S>(&self.masses[b], p);
+                for e in near {
+                    for q in 0..d {
+                        a.columns.push(pattern.starts[*e as usize] + q);
+                        let own = *e as usize == b && p == q;
+                        let mass = if inverse > 0.0 { 1.0 / inverse } else { 1.0 };
+                        a.values.push(if own { mass } else { 0.0 });
+                    }
+                }
+                a.starts.push(a.columns.len());
+            }
+        }
+        a
+    }
+}
+
+impl<S: Space, const D: usize> Factors<'_, S, D> {
+    /// One solve by the factors.
+    fn once(&self, b: &[[f64; D]]) -> Option<Vec<[f64; D]>> {
+        let pattern = self.w.pattern();
+        let mut y = vec![0.0; pattern.rows()];
+        for (c, unknown) in self.w.unknowns.iter().enumerate() {
+            let x = times(&self.r[c], &b[c]);
+            for (side, body) in unknown.bodies.into_iter().enumerate() {
+                if !pattern.moves(body) {
+                    continue;
+                }
+                for k in 0..D {
+                    let column = self.w.column(c, k, side);
+                    for p in 0..size::<S>() {
+                        if inverse::<S>(&self.w.masses[body as usize], p) > 0.0 {
+                            y[pattern.starts[body as usize] + p] += column[p] * x[k];
+                        }
+                    }
+                }
+            }
+        }
+        if !self.lu.solve(&mut y) {
+            return None;
+        }
+        let x = self.w.unknowns.iter().enumerate().map(|(c, unknown)| {
+            let mut left = b[c];
+            for (side, body) in unknown.bodies.into_iter().enumerate() {
+                if pattern.moves(body) {
+                    for k in 0..D {
+                        let column = self.w.column(c, k, side);
+                        for p in 0..size::<S>() {
+                            left[k] -= column[p] * y[pattern.starts[body as usize] + p];
+                        }
+                    }
+                }
+            }
+            times(&self.r[c], &left)
+        });
+        Some(x.collect())
+    }
+}
+
+impl<S: Space, const D: usize> Shifted<D> for Factors<'_, S, D> {
+    fn solve(&self, b: &mut [[f64; D]]) -> bool {
+        /// R may be large: what rounding takes is given back.
+        const REFINEMENTS: usize = 1;
+        let zero = vec![[0.0; D]; b.len()];
+        let mut wx = zero.clone();
+        for (b, over) in b.iter_mut().zip(&self.over) {
+            b[0] *= over;
+        }
+        let Some(mut x) = self.once(b) else {
+            return false;
+        };
+        for _ in 0..REFINEMENTS {
+            self.w.velocity(&x, &zero, &mut wx);
+            let mut left = zero.clone();
+            for c in 0..b.len() {
+                let sx = times(&self.s[c], &x[c]);
+                for k in 0..self.sizes[c] {
+                    left[c][k] = b[c][k] - wx[c][k] - sx[k];
+                }
+            }
+            let Some(more) = self.once(&left) else {
+                return false;
+            };
+            for (x, more) in x.iter_mut().zip(&more) {
+                for k in 0..D {
+                    x[k] += more[k];
+                }
+            }
+        }
+        b.copy_from_slice(&x);
+        for (b, over) in b.iter_mut().zip(&self.over) {
+            b[0] *= over;
+        }
+        b.as_flattened().iter().all(|x| x.is_finite())
+    }
+}
