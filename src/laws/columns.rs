@@ -126,9 +126,17 @@ impl Outputs {
         };
         written
             .iter()
-            .filter_map(|column| column.iter().position(|x| !x.is_finite()))
+            .filter_map(|column| first_not_finite(column))
             .min()
     }
+}
+
+/// Nearly always none: all are looked at, without a branch each, before the first is searched for.
+fn first_not_finite(column: &[f64]) -> Option<usize> {
+    if column.iter().fold(true, |all, x| all & x.is_finite()) {
+        return None;
+    }
+    column.iter().position(|x| !x.is_finite())
 }
 
 impl Columns {
@@ -157,8 +165,8 @@ impl Columns {
 
     /// The first contact with a new internal variable that is not finite.
     pub fn state_not_finite(&self) -> Option<usize> {
-        let first = |column: &Vec<f64>| column.iter().position(|x| !x.is_finite());
-        self.state_next.iter().filter_map(first).min()
+        let columns = self.state_next.iter();
+        columns.filter_map(|column| first_not_finite(column)).min()
     }
 
     /// Empties the inputs.
