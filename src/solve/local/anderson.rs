@@ -17,8 +17,11 @@ pub struct Anderson {
 const PLAIN: usize = 8;
 /// Over-relaxation of these.
 const RELAXED: f64 = 1.3;
-/// So many more of them are waited for, where they would do at the rate of the last [`WINDOW`].
-const SOON: i32 = 3 * WINDOW as i32;
+/// So many times [`WINDOW`] more of them are waited for, where they would do at the rate of the last: in the
+/// plane an extrapolation costs as much as a sweep, in space less than half.
+const fn soon<const D: usize>() -> i32 {
+    if D == 2 { 3 } else { 1 }
+}
 /// Sweeps over which the rate is formed.
 const WINDOW: usize = 4;
 
@@ -52,11 +55,11 @@ impl<const D: usize> Solver<D> for Anderson {
         let mut best = Best::of(state);
         let mut tests = Tests::default();
         let mut changes = [f64::INFINITY; WINDOW];
-        let mut soon = false;
+        let mut near = false;
         let mut done = 0;
         while !budget.ends(state) {
             loop {
-                if sequence.is_none() && (done < PLAIN || soon) {
+                if sequence.is_none() && (done < PLAIN || near) {
                     // The first sweep often ends it, so it is not relaxed.
                     let relaxation = if done == 0 { 1.0 } else { RELAXED };
                     sweep.forward(&mut state.p, relaxation);
@@ -76,8 +79,8 @@ impl<const D: usize> Solver<D> for Anderson {
                 // Squared, as changes are.
                 let rate = sweep.change / changes[done % WINDOW];
                 changes[done % WINDOW] = sweep.change;
-                let end = tests.expected(&sweep, state) * rate.powi(SOON / WINDOW as i32);
-                soon = end <= budget.tolerance * budget.tolerance;
+                let end = tests.expected(&sweep, state) * rate.powi(soon::<D>());
+                near = end <= budget.tolerance * budget.tolerance;
                 done += 1;
                 state.iterations += 1;
                 if tests.due(&sweep, state, budget) {
