@@ -4,6 +4,7 @@ use super::form::Form;
 use super::nlgs::{Sweep, Tests};
 use super::state::{Best, Budget, Solver, State};
 use crate::solve::extrapolation::{Extrapolation, Safeguard};
+use pulp::{Arch, Simd, WithSimd};
 
 /// The method and its parameters.
 #[derive(Clone, Copy, Debug)]
@@ -13,9 +14,16 @@ pub struct Anderson {
 }
 
 /// Sweeps before the memory is begun: where few do, its sums would cost more than they save.
-const PLAIN: u32 = 8;
+const PLAIN: usize = 8;
 /// Over-relaxation of these.
 const RELAXED: f64 = 1.3;
+/// So many times [`WINDOW`] more of them are waited for, where they would do at the rate of the last: in the
+/// plane an extrapolation costs as much as a sweep, in space less than half.
+const fn soon<const D: usize>() -> i32 {
+    if D == 2 { 3 } else { 1 }
+}
+/// Sweeps over which the rate is formed.
+const WINDOW: usize = 4;
 
 impl Default for Anderson {
     fn default() -> Self {
@@ -23,13 +31,21 @@ impl Default for Anderson {
     }
 }
 
-/// p and the start = the admissible point next to it.
-fn adopt<const D: usize>(form: &Form<D>, start: &mut [f64], state: &mut State<D>) {
-    state.p.as_flattened_mut().copy_from_slice(start);
-    for c in 0..state.p.len() {
-        state.p[c] = form.laws[c].project(&state.p[c], &state.p);
+/// p and the start = the admissible point next to it, for the vectors at hand.
+struct Adopt<'a, const D: usize>(&'a Form<'a, D>, &'a mut [f64], &'a mut [[f64; D]]);
+
+impl<const D: usize> WithSimd for Adopt<'_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) {
+        let Self(form, start, p) = self;
+        p.as_flattened_mut().copy_from_slice(start);
+        for c in 0..p.len() {
+            p[c] = form.laws[c].project(&p[c], p);
+        }
+        start.copy_from_slice(p.as_flattened());
     }
-    start.copy_from_slice(state.p.as_flattened());
 }
 
 impl<const D: usize> Solver<D> for Anderson {
@@ -38,10 +54,12 @@ impl<const D: usize> Solver<D> for Anderson {
         let mut sequence: Option<Extrapolation> = None;
         let mut best = Best::of(state);
         let mut tests = Tests::default();
+        let mut changes = [f64::INFINITY; WINDOW];
+        let mut near = false;
         let mut done = 0;
         while !budget.ends(state) {
             loop {
-                if done < PLAIN {
+                if sequence.is_none() && (done < PLAIN || near) {
                     // The first sweep often ends it, so it is not relaxed.
                     let relaxation = if done == 0 { 1.0 } else { RELAXED };
                     sweep.forward(&mut state.p, relaxation);
@@ -54,10 +72,15 @@ impl<const D: usize> Solver<D> for Anderson {
                         }
                     }
                     if let Some(sequence) = &mut sequence {
-                        adopt(form, &mut sequence.start, state);
+                        Arch::new().dispatch(Adopt(form, &mut sequence.start, &mut state.p));
                     }
                     sweep.forward(&mut state.p, 1.0);
                 }
+                // Squared, as changes are.
+                let rate = sweep.change / changes[done % WINDOW];
+                changes[done % WINDOW] = sweep.change;
+                let end = tests.expected(&sweep, state) * rate.powi(soon::<D>());
+                near = end <= budget.tolerance * budget.tolerance;
                 done += 1;
                 state.iterations += 1;
                 if tests.due(&sweep, state, budget) {

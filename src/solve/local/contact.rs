@@ -16,6 +16,8 @@ pub struct Local<const D: usize> {
     w: Block<D>,
     inverse: Block<D>,
     mu: f64,
+    /// In the plane: 1 / (W_nn - s mu W_nt) for s = 1 and -1, what answers a normal velocity while sliding.
+    slides: [f64; 2],
     lambda: f64,
 }
 
@@ -81,6 +83,11 @@ impl<const D: usize> Local<D> {
             w: *w,
             inverse,
             mu,
+            slides: if D == 2 {
+                [mu, -mu].map(|s| 1.0 / (w[0][0] - s * w[0][1]))
+            } else {
+                [0.0; 2]
+            },
             lambda: 0.0,
         }
     }
@@ -101,11 +108,13 @@ impl<const D: usize> Local<D> {
     fn solve_plane(&self, f: &[f64; D]) -> [f64; D] {
         let stick = times(&self.inverse, f);
         // Sliding: p_t = -s mu p_n, s the sign of u_t, which is that of the impulse it lacks.
-        let s = self.mu.copysign(stick[1]);
-        let slide_n = -f[0] / (self.w[0][0] - s * self.w[0][1]);
+        let [forth, back] = self.slides.map(|x| -f[0] * x);
+        let negative = stick[1].is_sign_negative();
+        let n = select_unpredictable(negative, back, forth);
+        let t = select_unpredictable(negative, self.mu * back, -self.mu * forth);
         let sticks = stick[0] < 0.0 && stick[1].abs() <= -self.mu * stick[0];
-        let n = select_unpredictable(sticks, -stick[0], slide_n);
-        let t = select_unpredictable(sticks, -stick[1], -s * slide_n);
+        let n = select_unpredictable(sticks, -stick[0], n);
+        let t = select_unpredictable(sticks, -stick[1], t);
         let closed = f[0] < 0.0 && self.w[0][0] > 0.0;
         let mut p = [0.0; D];
         p[0] = select_unpredictable(closed, n.max(0.0), 0.0);
@@ -191,6 +200,8 @@ impl<const D: usize> Local<D> {
 
     fn slide_space(&mut self, f: &[f64; D]) -> [f64; D] {
         const STEPS: usize = 30;
+        /// Of |p_t|: so close, what is left after a linear step is rounding.
+        const CLOSE: f64 = 1e-8;
         let (w, mu) = (&self.w, self.mu);
         let (a, _) = schur(w);
         let iwnn = 1.0 / w[0][0];
@@ -211,7 +222,8 @@ impl<const D: usize> Local<D> {
                 -(d0 * b[1] - a[1][0] * b[0]) * over,
             ];
             let n = -(f[0] + w[0][1] * t[0] + w[0][2] * t[1]) * iwnn;
-            let length = (t[0] * t[0] + t[1] * t[1]).sqrt();
+            let squared = t[0] * t[0] + t[1] * t[1];
+            let length = squared.sqrt();
             (p[0], p[1], p[2]) = (n, t[0], t[1]);
             let ratio = mu * n - length;
             if ratio.abs() <= 1e-15 * length || determinant <= 0.0 && lambda > 0.0 {
@@ -228,11 +240,9 @@ impl<const D: usize> Local<D> {
                 -(d0 * t[1] - a[1][0] * t[0]) * over,
             ];
             let dn = -(w[0][1] * dt[0] + w[0][2] * dt[1]) * iwnn;
-            let dlength = (t[0] * dt[0] + t[1] * dt[1]) / length;
-            // Newton on mu n / |t| - 1.
-            let value = ratio / length;
-            let slope = (mu * dn * length - mu * n * dlength) / (length * length);
-            let mut next = lambda - value / slope;
+            // Newton on mu n / |t| - 1; all is multiplied by |t|^2, which spares divisions.
+            let slope = mu * (dn * squared - n * (t[0] * dt[0] + t[1] * dt[1]));
+            let mut next = lambda - ratio * squared / slope;
             if !(next > low && next < high) {
                 next = if high.is_finite() {
                     0.5 * (low + high)
@@ -240,10 +250,12 @@ impl<const D: usize> Local<D> {
                     2.0 * lambda + a[0][0].abs().max(a[1][1].abs())
                 };
             }
-            if (next - lambda).abs() <= 1e-15 * next {
+            let step = next - lambda;
+            lambda = next;
+            if ratio.abs() <= CLOSE * length || step.abs() <= 1e-15 * next {
+                (p[0], p[1], p[2]) = (n + dn * step, t[0] + dt[0] * step, t[1] + dt[1] * step);
                 break;
             }
-            lambda = next;
         }
         self.lambda = lambda;
         // On the cone to the last bit that matters.

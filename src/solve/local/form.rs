@@ -2,6 +2,7 @@
 
 use super::block::{Block, BlockMatrix};
 use super::factored;
+use super::judge;
 use super::law::{self, Law};
 use crate::solve::error::{Norm, Scale, Sums, residual};
 use crate::solve::extrapolation;
@@ -126,6 +127,39 @@ impl<'a, const D: usize> Form<'a, D> {
 
     /// The error of p, where u = W p + q.
     pub fn error(&self, p: &[[f64; D]], u: &[[f64; D]]) -> Measure {
+        let quick = match self.norm {
+            Norm::Field => judge::sums(p, u, self.laws),
+            _ => None,
+        };
+        let (sums, mut finite) = match quick {
+            Some(sums) => (sums, true),
+            None => self.sums(p, u),
+        };
+        let work = match self.norm {
+            Norm::Balance => dot(p, u) - dot(p, self.q),
+            _ => 0.0,
+        };
+        let scale = Scale {
+            free: self.free,
+            energy: self.energy,
+            noise: 0.0,
+            work,
+        };
+        // The projection of what is no number is 0, and what is divided by infinity too: neither is an
+        // error of 0.
+        finite &= (sums.residual + sums.velocity + sums.impulse + self.free).is_finite();
+        Measure {
+            error: if finite {
+                sums.error(self.norm, &scale)
+            } else {
+                f64::INFINITY
+            },
+            scale: sums.against(self.norm, self.free),
+        }
+    }
+
+    /// The sums of the error, and whether the velocities of blocks that nothing moves are numbers.
+    fn sums(&self, p: &[[f64; D]], u: &[[f64; D]]) -> (Sums, bool) {
         let mut sums = Sums::default();
         let mut finite = true;
         for c in 0..self.len() {
@@ -154,28 +188,7 @@ impl<'a, const D: usize> Form<'a, D> {
                 c,
             );
         }
-        let work = match self.norm {
-            Norm::Balance => dot(p, u) - dot(p, self.q),
-            _ => 0.0,
-        };
-        let scale = Scale {
-            free: self.free,
-            energy: self.energy,
-            noise: 0.0,
-            work,
-        };
-        // The projection of what is no number is 0, and what is divided by infinity too: neither is an
-        // error of 0.
-        finite &= (sums.residual + sums.velocity + sums.impulse + self.free).is_finite();
-        Measure {
-            error: if finite {
-                sums.error(self.norm, &scale)
-            } else {
-                f64::INFINITY
-            },
-            scale: sums.against(self.norm, self.free),
-            worst: sums.worst_at,
-        }
+        (sums, finite)
     }
 }
 
@@ -186,8 +199,6 @@ pub struct Measure {
     pub error: f64,
     /// What the residual was divided by.
     pub scale: f64,
-    /// The block with the largest residual.
-    pub worst: usize,
 }
 
 /// The largest eigenvalue of a block, from above (largest absolute row sum of the symmetric part).

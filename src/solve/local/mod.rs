@@ -19,6 +19,7 @@ pub mod form;
 pub mod global;
 pub mod gradient;
 pub mod interior;
+pub mod judge;
 pub mod law;
 pub mod linear;
 pub mod newton;

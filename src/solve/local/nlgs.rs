@@ -143,19 +143,24 @@ impl<const D: usize> WithSimd for Forward<'_, '_, D> {
     }
 }
 
-/// When to measure the error: a measure costs as much as a sweep, and the change of a sweep tells about
-/// how large it will be.
+/// When to measure the error, which costs about half a sweep: where it may be reached, if it followed the
+/// change of a sweep since it was measured last.
 #[derive(Default)]
 pub struct Tests {
     done: u32,
     since: u32,
+    /// [`Sweep::change`] at the last test.
+    change: f64,
 }
 
 impl Tests {
-    /// Sweeps at most between two tests.
+    /// Sweeps at most between two tests; fewer at first, where impulses may go on to change in directions that
+    /// the error does not see.
     const MOST: u32 = 10;
+    /// The expected error over the tolerance from which to test.
+    const NEAR: f64 = 1.5;
 
-    /// After a sweep: whether to measure. The first sweep often ends it.
+    /// After a sweep: whether to measure. The first often ends it.
     pub fn due<const D: usize>(
         &mut self,
         sweep: &Sweep<D>,
@@ -164,15 +169,24 @@ impl Tests {
     ) -> bool {
         self.done += 1;
         self.since += 1;
-        let goal = 2.0 * budget.tolerance * state.scale;
-        let due = self.done == 1
-            || self.since >= Self::MOST
-            || sweep.change <= goal * goal
+        let near = Self::NEAR * budget.tolerance;
+        let due = self.since >= (self.done / 2).clamp(1, Self::MOST)
+            || self.expected(sweep, state) <= near * near
             || state.iterations >= budget.max_iterations;
         if due {
             self.since = 0;
+            self.change = sweep.change;
         }
         due
+    }
+
+    /// Square of the error to expect after a sweep. 0 where nothing changes any more: that is to be
+    /// measured.
+    pub fn expected<const D: usize>(&self, sweep: &Sweep<D>, state: &State<D>) -> f64 {
+        if sweep.change == 0.0 {
+            return 0.0;
+        }
+        state.error * state.error * (sweep.change / self.change)
     }
 }
 

@@ -14,8 +14,6 @@ pub struct State<const D: usize> {
     pub error: f64,
     /// What the residual is divided by.
     pub scale: f64,
-    /// The block with the largest residual.
-    pub worst: usize,
     /// Iterations done, in the solver's own unit.
     pub iterations: u32,
 }
@@ -28,7 +26,6 @@ impl<const D: usize> State<D> {
             p,
             error: f64::INFINITY,
             scale: 0.0,
-            worst: 0,
             iterations: 0,
         };
         if state.p.iter().all(|p| *p == [0.0; D]) {
@@ -49,7 +46,7 @@ impl<const D: usize> State<D> {
     /// Recomputes the error; `u` must belong to `p`.
     pub fn judge(&mut self, form: &Form<D>) -> f64 {
         let measure = form.error(&self.p, &self.u);
-        (self.error, self.scale, self.worst) = (measure.error, measure.scale, measure.worst);
+        (self.error, self.scale) = (measure.error, measure.scale);
         if self.error.is_nan() {
             self.error = f64::INFINITY;
         }
