@@ -31,7 +31,7 @@ pub fn all(table: &mut Table) {
         table,
         "beam_3d",
         &["time.end=0.2"],
-        &["Auto", "Anderson", "Newton", "Apgd", "Cpg"],
+        &["Auto", "Anderson", "Newton", "Apgd", "Cpg", "Interior"],
     );
     // Friction against rotation, bounded by another unknown.
     alike::<Solid>(
@@ -47,7 +47,7 @@ pub fn all(table: &mut Table) {
         table,
         "pulled_friction",
         &[],
-        &["Auto", "Anderson", "Newton", "Apgd"],
+        &["Auto", "Anderson", "Newton", "Apgd", "Interior"],
     );
     refused();
 }
@@ -184,7 +184,6 @@ fn alike<S: Dimensional>(table: &mut Table, case: &str, sets: &[&str], methods: 
 /// first step that asks for it.
 fn refused() {
     for (case, method, word) in [
-        ("beam_2d", "Interior", "bonds"),
         ("rolling_stop_sphere", "Newton", "rotation"),
         ("rolling_stop_disk", "Interior", "rotation"),
     ] {
