@@ -25,6 +25,49 @@ const fn soon<const D: usize>() -> i32 {
 /// Sweeps over which the rate is formed.
 const WINDOW: usize = 4;
 
+/// Ends a stall: where the error does not fall for long, extrapolations go round in circles between contacts'
+/// branches, and plain sweeps lead out.
+struct Rest {
+    error: f64,
+    at: usize,
+    left: usize,
+}
+
+impl Default for Rest {
+    fn default() -> Self {
+        Self {
+            error: f64::INFINITY,
+            at: 0,
+            left: 0,
+        }
+    }
+}
+
+impl Rest {
+    /// Sweeps without a fall by a fifth that are a stall.
+    const STALL: usize = 100;
+    /// Plain sweeps after it.
+    const LENGTH: usize = 40;
+
+    /// After a test: whether a rest begins.
+    fn begins(&mut self, error: f64, done: usize) -> bool {
+        if error < 0.8 * self.error {
+            (self.error, self.at) = (error, done);
+        } else if done > self.at + Self::STALL {
+            (self.at, self.left) = (done, Self::LENGTH);
+            return true;
+        }
+        false
+    }
+
+    /// Before a sweep: whether it is one of the rest.
+    fn lasts(&mut self) -> bool {
+        let rests = self.left > 0;
+        self.left = self.left.saturating_sub(1);
+        rests
+    }
+}
+
 impl Default for Anderson {
     fn default() -> Self {
         Self { memory: 8 }
@@ -56,10 +99,13 @@ impl<const D: usize> Solver<D> for Anderson {
         let mut tests = Tests::default();
         let mut changes = [f64::INFINITY; WINDOW];
         let mut near = false;
+        let mut rest = Rest::default();
         let mut done = 0;
         while !budget.ends(state) {
             loop {
-                if sequence.is_none() && (done < PLAIN || near) {
+                if rest.lasts() {
+                    sweep.forward(&mut state.p, 1.0);
+                } else if sequence.is_none() && (done < PLAIN || near) {
                     // The first sweep often ends it, so it is not relaxed.
                     let relaxation = if done == 0 { 1.0 } else { RELAXED };
                     sweep.forward(&mut state.p, relaxation);
@@ -88,6 +134,9 @@ impl<const D: usize> Solver<D> for Anderson {
                 }
             }
             state.measure(form);
+            if rest.begins(state.error, done) {
+                sequence = None;
+            }
             best.keep(state);
         }
         best.restore(form, state);
