@@ -6,8 +6,8 @@ use fretwork::solve::local::LocalProblem;
 use fretwork::solve::local::solver::{Limits, Method, solve};
 use std::path::Path;
 
-/// The contact problem of a step in which 100 disks are compressed.
-fn step(mu: &str) -> LocalProblem {
+/// The contact problems of steps in which 100 disks are compressed.
+fn steps(mu: &str) -> Vec<LocalProblem> {
     let case = format!("{}/cases/biaxial.ron", env!("CARGO_MANIFEST_DIR"));
     let mut sets: Vec<String> = [
         "grains.0.count=100",
@@ -24,42 +24,37 @@ fn step(mu: &str) -> LocalProblem {
         panic!("the case is plane");
     };
     let mut s = built.simulation;
-    while s.time < 0.5 {
-        s.step().unwrap_or_else(|e| panic!("{e}"));
+    let mut problems = Vec::new();
+    for time in [0.44, 0.48, 0.52, 0.56] {
+        while s.time < time {
+            s.step().unwrap_or_else(|e| panic!("{e}"));
+        }
+        problems.push(s.local_problem().expect("Coulomb contacts alone"));
     }
-    s.local_problem().expect("Coulomb contacts alone")
+    problems
 }
 
 /// Where sliding contacts fell behind their thresholds, stick and slip took turns in every iteration and the
-/// conjugate gradients were no faster than plain ones.
+/// conjugate gradients were no faster than plain ones. Over several steps, since how much faster they are on one
+/// hangs on the packing.
 #[test]
 fn conjugate_gradients_are_faster_than_sweeps() {
     for mu in ["0", "0.1", "0.4"] {
-        let problem = step(mu);
-        let iterations = |method| {
+        let problems = steps(mu);
+        let iterations = |method: Method| {
             let limits = Limits {
                 tolerance: 1e-6,
                 max_iterations: 20_000,
                 seconds: 60.0,
             };
-            let outcome = solve(&problem, method, &limits);
-            println!(
-                "mu {mu}, {} contacts: {} {} {:.1e}",
-                problem.mu.len(),
-                method.name(),
-                outcome.iterations,
-                outcome.error
-            );
-            outcome.iterations
+            let solved = problems.iter().map(|p| solve(p, method, &limits));
+            let each: Vec<u32> = solved.map(|outcome| outcome.iterations).collect();
+            println!("mu {mu}, {}: {each:?}", method.name());
+            each.iter().sum::<u32>()
         };
         let [nlgs, pg, cpg, pcpg] =
             [Method::Nlgs, Method::Pg, Method::Cpg, Method::Pcpg].map(iterations);
-        // How much faster hangs on the packing where friction is large.
-        let least = if mu == "0.4" { 1 } else { 2 };
-        assert!(
-            least * cpg < nlgs && least * cpg < pg,
-            "mu {mu}: {cpg} of {nlgs}"
-        );
-        assert!(least * pcpg < nlgs, "mu {mu}: {pcpg} of {nlgs}");
+        assert!(2 * cpg < nlgs && 2 * cpg < pg, "mu {mu}: {cpg} of {nlgs}");
+        assert!(2 * pcpg < nlgs, "mu {mu}: {pcpg} of {nlgs}");
     }
 }

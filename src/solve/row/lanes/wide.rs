@@ -126,7 +126,11 @@ struct Plain<F: Frame, const U: usize> {
 impl<F: Frame, const U: usize> Plain<F, U> {
     #[inline(always)]
     unsafe fn new(rows: &Records<PlainRow<F>, U>) -> Self {
-        let [v, t] = const { sizes::<F>() };
+        let [v, t] = const {
+            let [v, t] = sizes::<F>();
+            assert!(size_of::<PlainRow<F>>() == 8 * (v + t + 5 + 1));
+            [v, t]
+        };
         // SAFETY: the row is those numbers and then two indices.
         let mut r = unsafe { Reader::new(rows, 0, v + t + 5) };
         Self {
@@ -220,7 +224,11 @@ struct Full<F: Frame, const U: usize> {
 impl<F: Frame, const U: usize> Full<F, U> {
     #[inline(always)]
     unsafe fn new(rows: &Records<FullRow<F>, U>) -> Self {
-        let [v, t] = const { sizes::<F>() };
+        let [v, t] = const {
+            let [v, t] = sizes::<F>();
+            assert!(size_of::<FullRow<F>>() == 8 * (Bonds::<F, U>::BEFORE + 2 * t + 5 + 1));
+            [v, t]
+        };
         // SAFETY: the row is those numbers, then those of `Bonds` and two indices.
         let mut r = unsafe { Reader::new(rows, 0, Bonds::<F, U>::BEFORE) };
         Self {
