@@ -39,34 +39,35 @@ fn place(s: &Simulation<Plane>, name: &str) -> usize {
 }
 
 fn held(s: &Simulation<Plane>) -> f64 {
-    let grains = (0..s.bodies.len()).filter(|b| s.bodies.driven.iter().all(|d| d.body as usize != *b));
+    let grains =
+        (0..s.bodies.len()).filter(|b| s.bodies.driven.iter().all(|d| d.body as usize != *b));
     let inside = grains.filter(|b| s.bodies.position[*b].y > 0.0);
     inside.map(|b| s.bodies.mass[b]).sum()
 }
 
-/// At rest gate and walls carry the weight together, the walls a good part of it (Janssen). Opened, the silo
+/// While the gate is lowered slowly gate and walls carry the weight together, the walls a good part of it (Janssen). Opened, the silo
 /// discharges at a rate that does not depend on how much it holds, and of Beverloo's size.
 #[test]
 fn a_silo_saturates_and_drains_at_a_constant_rate() {
     let (_, built) = case("silo", &["grains.0.count=600", "grains.0.high=[0.16,0.5]"]);
     let mut s = built.simulation;
-    let (mut gate, mut walls, mut count) = (0.0, 0.0, 0.0);
     let all = held(&s);
     let [gate_at, left, right] = ["gate", "left", "right"].map(|n| place(&s, n));
-    let mut last: Vec<[f64; 2]> = Vec::new();
-    while s.control.phase() < 2 {
+    let (mut gate, mut walls, mut count) = (0.0, 0.0, 0.0);
+    while s.control.phase() < 3 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
-        let up = |k: usize| -s.received[k].0.y / s.scheme.h;
-        last.push([up(gate_at), up(left) + up(right)]);
-    }
-    for [g, w] in last.iter().rev().skip(1).take(60) {
-        (gate, walls, count) = (gate + g, walls + w, count + 1.0);
+        let begun = s.control.begun().last();
+        if begun.is_some_and(|b| b.name == "lower" && s.time > b.start + 0.03) {
+            let up = |k: usize| -s.received[k].0.y / s.scheme.h;
+            (gate, walls) = (gate + up(gate_at), walls + up(left) + up(right));
+            count += 1.0;
+        }
     }
     let weight = all * G;
     let (gate, walls) = (gate / count / weight, walls / count / weight);
     println!("gate {gate:.3}, walls {walls:.3} of the weight");
     assert!((gate + walls - 1.0).abs() < 0.03, "{gate} + {walls}");
-    assert!(gate < 0.95 && walls > 0.05, "{gate} and {walls}");
+    assert!(gate < 0.9 && walls > 0.1, "{gate} and {walls}");
     let start = s.time;
     let mut times = Vec::new();
     let parts = [0.9, 0.7, 0.5];
@@ -89,11 +90,20 @@ fn a_silo_saturates_and_drains_at_a_constant_rate() {
 /// keeps the pressure.
 #[test]
 fn plane_shear_has_the_friction_of_its_inertial_number() {
-    let sets = ["output.frames=0", "output.views=0", "output.figures=false", "phases.shear.until=After(1.4)"];
+    let sets = [
+        "output.frames=0",
+        "output.views=0",
+        "output.figures=false",
+        "phases.shear.until=After(1.4)",
+    ];
     let summary = finished("plane_shear", &sets, |_| {});
     let m = |name: &str| summary.measures[&format!("bulk_{name}")];
     let (i, mu, phi, p) = (m("I"), m("mu"), m("phi"), m("p"));
-    println!("I {i:.4}: mu {mu:.3} ({:.3}), phi {phi:.3} ({:.3}), p {p:.0}", 0.25 + 1.1 * i, 0.81 - 0.31 * i);
+    println!(
+        "I {i:.4}: mu {mu:.3} ({:.3}), phi {phi:.3} ({:.3}), p {p:.0}",
+        0.25 + 1.1 * i,
+        0.81 - 0.31 * i
+    );
     assert!((0.01..0.2).contains(&i), "{i}");
     assert!((p / 1000.0 - 1.0).abs() < 0.05, "{p}");
     assert!((mu - 0.25 - 1.1 * i).abs() < 0.04, "{mu} at {i}");
@@ -121,7 +131,11 @@ fn a_drum_has_a_steady_slope_over_a_turning_bed() {
     let summary = finished("rotating_drum_2d", &sets, |out| {
         let text = std::fs::read_to_string(out.join("centre.csv")).unwrap_or_default();
         for line in text.lines().skip(1) {
-            rows.push(line.split(',').map(|x| x.parse().unwrap_or(f64::NAN)).collect());
+            rows.push(
+                line.split(',')
+                    .map(|x| x.parse().unwrap_or(f64::NAN))
+                    .collect(),
+            );
         }
         assert!(out.join("centre.png").exists() && out.join("slope.png").exists());
     });
@@ -134,6 +148,10 @@ fn a_drum_has_a_steady_slope_over_a_turning_bed() {
     println!("{rows:?}");
     // Up the slope at the wall, as the drum: -omega y with y < 0.
     let rigid = -0.63 * deep[0];
-    assert!((deep[2] / rigid - 1.0).abs() < 0.2, "{} and {rigid}", deep[2]);
+    assert!(
+        (deep[2] / rigid - 1.0).abs() < 0.2,
+        "{} and {rigid}",
+        deep[2]
+    );
     assert!(top[2] < 0.0, "the surface flows down: {}", top[2]);
 }

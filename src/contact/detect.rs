@@ -141,9 +141,9 @@ fn rebuild<S: Space>(
     let balls = &shapes.balls;
     let still = bodies.still();
     let gone = |i: u32| bodies.gone[i as usize];
-    let touch = |i: u32, j: u32| {
-        i != j && !(still[i as usize] && still[j as usize]) && !gone(i) && !gone(j)
-    };
+    let never =
+        |i: u32, j: u32| i == j || gone(i) || gone(j) || (still[i as usize] && still[j as usize]);
+    let touch = |i: u32, j: u32| !never(i, j);
     let mut pairs = grid::pairs(centres, &radii, reach, &shapes.periodic, |a, b| {
         let (a, b) = (&balls[a as usize], &balls[b as usize]);
         touch(a.body, b.body) && laws.get(a.material, b.material).is_some()

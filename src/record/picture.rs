@@ -308,10 +308,16 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
     out
 }
 
-/// What is outside a closed chain that runs anticlockwise: a square `far` wide with the chain cut out.
+/// What is outside a closed convex chain that runs anticlockwise: a square `far` wide with the chain cut out; a
+/// seam to the right joins the two.
 fn around(chain: &[[f64; 2]], far: f64) -> Vec<[f64; 2]> {
-    let [x, y] = chain[0];
-    let mut polygon = chain.to_vec();
+    let ring = &chain[..chain.len() - 1];
+    let right = (0..ring.len()).max_by(|a, b| ring[*a][0].total_cmp(&ring[*b][0]));
+    let right = right.unwrap_or(0);
+    let [x, y] = ring[right];
+    let mut polygon: Vec<[f64; 2]> = (0..=ring.len())
+        .map(|k| ring[(right + k) % ring.len()])
+        .collect();
     polygon.extend([
         [x + far, y],
         [x + far, y - far],

@@ -134,9 +134,8 @@ pub struct SolverSpec {
     pub test_every: u32,
     /// Over-relaxation, 1 to below 2: how much farther than its own solution a contact goes in a sweep.
     pub relaxation: f64,
-    /// Share of a penetration that a step takes back, 0 to 1. Rigid contacts under a load that changes
-    /// slowly creep into each other by the solver's tolerance, step after step; 0.1 bounds that to ten
-    /// steps' worth. Its work, which is small, is booked with the impacts.
+    /// Share of a penetration that a step takes back, 0 to 1. Rigid contacts under a slowly changing load creep into
+    /// each other by the solver's tolerance; 0.1 bounds that to ten steps' worth. Its work is an entry of the ledger.
     pub correction: f64,
 }
 
@@ -404,7 +403,7 @@ pub struct OneGrain {
     pub spin: Vec<f64>,
 }
 
-/// A friction test: the body that rubs, along which axis, pressed along which.
+/// A friction test.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionSpec {
@@ -457,7 +456,7 @@ pub struct OutputSpec {
     pub width: u32,
     /// What frames show (m): xmin, xmax, ymin, ymax (2D); what there is by default.
     pub window: Option<[f64; 4]>,
-    /// Thickness (m) of layers that frames shade by where grains stood at the start, along the last axis.
+    /// Thickness (m) of layers along the last axis that frames tell apart by shade.
     pub layers: Option<f64>,
     /// Steps between two that are written as FCLIB problems, `fclib/step-N.hdf5`; 0 for none.
     pub fclib: u64,
