@@ -82,7 +82,8 @@ fn a_silo_saturates_and_drains_at_a_constant_rate() {
     // C rho_bulk sqrt(g) (A - k d)^(3/2) with C = 0.58, k = 1.4, a bulk density of 0.8 that of glass.
     let beverloo = 0.58 * 2500.0 * 0.8 * G.sqrt() * (0.064f64 - 1.4 * 0.008).powf(1.5);
     println!("rates {early:.2} and {late:.2} kg/(m s), Beverloo {beverloo:.2}");
-    assert!((early / late - 1.0).abs() < 0.2, "{early} and {late}");
+    // Each is a flow of 120 grains, which comes in bursts.
+    assert!((early / late - 1.0).abs() < 0.25, "{early} and {late}");
     assert!((0.5..2.0).contains(&(early / beverloo)));
 }
 
