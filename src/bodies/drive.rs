@@ -188,6 +188,17 @@ pub enum Dof {
     Displacement(TimeFunction),
     /// Imposed force (N; N/m of depth in 2D) or moment.
     Force(TimeFunction),
+    /// Servo: a force that is a pressure times the current area between walls, see [`super::pressure`].
+    Pressure {
+        /// The pressure (Pa), with the sign of the force along the axis.
+        value: TimeFunction,
+        /// Walls that face each other, a pair for each other axis that is not periodic.
+        #[serde(default)]
+        between: Vec<(String, String)>,
+        /// Current area (m^2; a length in 2D, m), measured at every step.
+        #[serde(skip)]
+        area: f64,
+    },
     /// One drive after another, see [`Stage`].
     Stages(Vec<Stage>),
 }
@@ -220,13 +231,13 @@ impl Dof {
     /// Whether contacts can move it at some time.
     pub fn yields(&self) -> bool {
         self.drives()
-            .any(|d| matches!(d, Self::Free | Self::Force(_)))
+            .any(|d| matches!(d, Self::Free | Self::Force(_) | Self::Pressure { .. }))
     }
 
     /// The velocity imposed at a time, if one is.
     pub fn imposed_velocity(&self, t: f64) -> Option<f64> {
         match self {
-            Self::Free | Self::Force(_) => None,
+            Self::Free | Self::Force(_) | Self::Pressure { .. } => None,
             Self::Fixed => Some(0.0),
             Self::Velocity(f) => Some(f.value(t)),
             Self::Displacement(f) => Some(f.rate(t)),
@@ -238,6 +249,7 @@ impl Dof {
     pub fn force(&self, t: f64) -> f64 {
         match self {
             Self::Force(f) => f.value(t),
+            Self::Pressure { value, area, .. } => value.value(t) * area,
             Self::Stages(_) => self.at(t).force(t),
             _ => 0.0,
         }
@@ -248,6 +260,7 @@ impl Dof {
         match self {
             Self::Free | Self::Fixed => None,
             Self::Velocity(f) | Self::Displacement(f) | Self::Force(f) => Some(f),
+            Self::Pressure { value, .. } => Some(value),
             Self::Stages(stages) => stages.last().and_then(|s| s.drive.function()),
         }
     }

@@ -1,5 +1,7 @@
 //! Rigid bodies: their state, inertia, and the degrees of freedom that are driven.
+pub mod delay;
 pub mod drive;
+pub mod pressure;
 pub mod stages;
 pub mod state;
 

@@ -28,6 +28,8 @@ pub struct Bodies<S: Space> {
     pub inverse_inertia: Vec<f64>,
     /// The driven first bodies.
     pub driven: Vec<Driven>,
+    /// Which bodies were taken away: they touch nothing and are not shown.
+    pub gone: Vec<bool>,
 }
 
 impl<S: Space> Default for Bodies<S> {
@@ -44,6 +46,7 @@ impl<S: Space> Default for Bodies<S> {
             inverse_mass: Vec::new(),
             inverse_inertia: Vec::new(),
             driven: Vec::new(),
+            gone: Vec::new(),
         }
     }
 }
@@ -76,6 +79,7 @@ impl<S: Space> Bodies<S> {
         }
         self.inverse_mass.push(inverse);
         self.inverse_inertia.push(one_over(inertia));
+        self.gone.push(false);
         index as u32
     }
 
@@ -104,6 +108,35 @@ impl<S: Space> Bodies<S> {
                 self.engage(place, time);
             }
         }
+    }
+
+    /// Gives a driven body another drive on one degree of freedom, in force at a time.
+    pub fn redrive(&mut self, place: usize, dof: usize, drive: Dof, time: f64) {
+        self.driven[place].dofs[dof] = drive;
+        self.engage(place, time);
+    }
+
+    /// Takes a driven body away for good.
+    pub fn remove(&mut self, place: usize) {
+        let driven = &mut self.driven[place];
+        self.gone[driven.body as usize] = true;
+        driven.dofs.fill(Dof::Fixed);
+        self.engage(place, 0.0);
+    }
+
+    /// Kinetic energy of the grains alone, the driven bodies apart (J).
+    pub fn kinetic_energy_of_grains(&self) -> f64 {
+        let driven: f64 = self
+            .driven
+            .iter()
+            .map(|d| self.energy_of(d.body as usize))
+            .sum();
+        (self.kinetic_energy() - driven).max(0.0)
+    }
+
+    fn energy_of(&self, b: usize) -> f64 {
+        let (v, w) = (&self.velocity[b], &self.spin[b]);
+        0.5 * (self.mass[b] * v.dot(v) + self.inertia[b] * w.dot(w))
     }
 
     /// Imposed degrees of freedom have no compliance, the others that of their inertia.
@@ -141,12 +174,7 @@ impl<S: Space> Bodies<S> {
 
     /// Kinetic energy (J). An imposed degree of freedom keeps its mass here.
     pub fn kinetic_energy(&self) -> f64 {
-        (0..self.len())
-            .map(|b| {
-                let (v, w) = (&self.velocity[b], &self.spin[b]);
-                0.5 * (self.mass[b] * v.dot(v) + self.inertia[b] * w.dot(w))
-            })
-            .sum()
+        (0..self.len()).map(|b| self.energy_of(b)).sum()
     }
 }
 

@@ -116,7 +116,7 @@ fn must_rebuild<S: Space>(
     if shapes
         .surfaces
         .iter()
-        .any(|s| bodies.spin[s.body as usize] != S::Spin::null())
+        .any(|s| !s.shape.keeps_place(&bodies.spin[s.body as usize]))
     {
         return true;
     }
@@ -140,7 +140,10 @@ fn rebuild<S: Space>(
     let reach = network.alert + network.skin;
     let balls = &shapes.balls;
     let still = bodies.still();
-    let touch = |i: u32, j: u32| i != j && !(still[i as usize] && still[j as usize]);
+    let gone = |i: u32| bodies.gone[i as usize];
+    let never =
+        |i: u32, j: u32| i == j || gone(i) || gone(j) || (still[i as usize] && still[j as usize]);
+    let touch = |i: u32, j: u32| !never(i, j);
     let mut pairs = grid::pairs(centres, &radii, reach, &shapes.periodic, |a, b| {
         let (a, b) = (&balls[a as usize], &balls[b as usize]);
         touch(a.body, b.body) && laws.get(a.material, b.material).is_some()
@@ -158,7 +161,9 @@ fn rebuild<S: Space>(
         }
     }
     // A bond may be longer than the reach.
-    let held = |c: &&Contact<S>| network.bond(c).is_some_and(|b| b.intact());
+    let held = |c: &&Contact<S>| {
+        network.bond(c).is_some_and(|b| b.intact()) && !c.bodies.iter().any(|b| gone(*b))
+    };
     pairs.extend(network.contacts.iter().filter(held).map(|c| c.key.pair()));
     pairs.sort_unstable();
     pairs.dedup();

@@ -98,6 +98,11 @@ pub struct Network<S: Space> {
 }
 
 impl<S: Space> Network<S> {
+    /// Has the neighbour list made anew at the next step: what may touch has changed.
+    pub fn forget_neighbours(&mut self) {
+        self.seen_at.clear();
+    }
+
     /// An empty network for so many interface laws.
     pub fn new(alert: f64, skin: f64, variables: &[usize]) -> Self {
         Self {

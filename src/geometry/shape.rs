@@ -39,6 +39,14 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn near(&self, centre: &S::Vector, reach: f64) -> bool;
     /// Corners for pictures and files (m): polylines in 2D, polygons in 3D, in the surface's frame.
     fn outline(&self) -> Vec<Vec<S::Vector>>;
+    /// The outward normal, if the surface is a plane.
+    fn flat(&self) -> Option<S::Vector> {
+        None
+    }
+    /// Whether turning about the body's origin with this spin leaves the surface where it is.
+    fn keeps_place(&self, spin: &S::Spin) -> bool {
+        *spin == S::Spin::null()
+    }
 }
 
 /// A half-space: solid below the plane through the origin with outward unit normal.
@@ -65,6 +73,15 @@ impl<S: Space> Surface<S> for HalfSpace<S> {
 
     fn near(&self, centre: &S::Vector, reach: f64) -> bool {
         centre.dot(&self.normal) < reach
+    }
+
+    fn flat(&self) -> Option<S::Vector> {
+        Some(self.normal)
+    }
+
+    fn keeps_place(&self, spin: &S::Spin) -> bool {
+        *spin == S::Spin::null()
+            || (S::D == 3 && S::split_spin(&self.normal, spin).1 == S::Spin::null())
     }
 
     fn outline(&self) -> Vec<Vec<S::Vector>> {

@@ -7,6 +7,7 @@ pub mod figures;
 pub mod friction;
 pub mod layer;
 pub mod ledger;
+pub mod measure;
 pub mod picture;
 pub mod results;
 pub mod run;

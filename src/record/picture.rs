@@ -3,19 +3,54 @@
 use crate::contact::{Contact, Key};
 use crate::geometry::space::{Space, VectorLike};
 use crate::report::{Disk, Frame, Link, LinkState, Outline, ReportError, View, project_spheres};
+use crate::scene::case::OutputSpec;
 use crate::step::Simulation;
 use std::path::Path;
 
 /// What a frame shows of the scene.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Camera {
     window: [f64; 4],
+    fixed: bool,
     width: u32,
+    /// Thickness of the layers that are told apart by shade (m).
+    layers: Option<f64>,
+    /// Shade of each ball, where there are layers.
+    shades: Vec<f64>,
 }
 
 impl Camera {
-    /// Looks at the whole scene as it stands.
-    pub fn new<S: Space>(simulation: &Simulation<S>, width: u32) -> Self {
+    /// Looks at the whole scene as it stands, or at the window that the case names.
+    pub fn new<S: Space>(simulation: &Simulation<S>, output: &OutputSpec) -> Self {
+        let mut camera = Self {
+            window: output.window.unwrap_or_default(),
+            fixed: output.window.is_some() && S::D == 2,
+            width: output.width,
+            layers: output.layers,
+            shades: Vec::new(),
+        };
+        camera.follow(simulation);
+        camera.shade(simulation);
+        camera
+    }
+
+    /// Shades the grains by the layers in which they stand now.
+    pub fn shade<S: Space>(&mut self, simulation: &Simulation<S>) {
+        let Some(thickness) = self.layers else { return };
+        let layer = |z: f64| (z / thickness).floor().rem_euclid(2.0);
+        self.shades = balls(simulation)
+            .map(|(centre, _)| 0.05 + 0.75 * layer(centre[S::D - 1]))
+            .collect();
+    }
+
+    /// Looks at the scene as it stands now, unless the case names a window.
+    pub fn follow<S: Space>(&mut self, simulation: &Simulation<S>) {
+        if !self.fixed {
+            self.window = Self::whole(simulation);
+        }
+    }
+
+    fn whole<S: Space>(simulation: &Simulation<S>) -> [f64; 4] {
         let periodic = &simulation.shapes.periodic;
         let mut w = [
             f64::INFINITY,
@@ -49,7 +84,7 @@ impl Camera {
         }
         w[2] -= margin;
         w[3] += margin;
-        Self { window: w, width }
+        w
     }
 
     /// Draws a frame.
@@ -65,12 +100,12 @@ impl Camera {
     ) -> Result<(), ReportError> {
         let (disks, links, bodies) = if S::D == 2 {
             (
-                disks(simulation, self.window),
+                disks(simulation, self.window, &self.shades),
                 links(simulation, self.window),
                 outlines(simulation, self.window),
             )
         } else {
-            (spheres(simulation), Vec::new(), Vec::new())
+            (spheres(simulation, &self.shades), Vec::new(), Vec::new())
         };
         Frame {
             title: title.to_owned(),
@@ -108,10 +143,13 @@ fn images(x: f64, reach: f64, window: [f64; 4], period: Option<f64>) -> Vec<f64>
         .collect()
 }
 
-fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Disk> {
+fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4], shades: &[f64]) -> Vec<Disk> {
     let period = s.shapes.periodic.period[0];
     let mut out = Vec::with_capacity(s.shapes.balls.len());
-    for (ball, (centre, radius)) in s.shapes.balls.iter().zip(balls(s)) {
+    for (k, (ball, (centre, radius))) in s.shapes.balls.iter().zip(balls(s)).enumerate() {
+        if s.bodies.gone[ball.body as usize] {
+            continue;
+        }
         let angle = S::rotation_numbers(&s.bodies.rotation[ball.body as usize])[0];
         let first = s.bodies.driven.iter().any(|d| d.body == ball.body);
         for x in images(centre[0], radius, window, period) {
@@ -119,16 +157,23 @@ fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Disk> {
                 centre: [x, centre[1]],
                 radius,
                 angle,
-                shade: if first { 0.9 } else { 0.25 },
+                shade: if first {
+                    0.9
+                } else {
+                    shades.get(k).copied().unwrap_or(0.25)
+                },
             });
         }
     }
     out
 }
 
-fn spheres<S: Space>(s: &Simulation<S>) -> Vec<Disk> {
-    let list: Vec<([f64; 3], f64, f64)> = balls(s)
-        .map(|(c, r)| (s.shapes.periodic.wrapped(c).padded(), r, 0.3))
+fn spheres<S: Space>(s: &Simulation<S>, shades: &[f64]) -> Vec<Disk> {
+    let shade = |k: usize| shades.get(k).copied().unwrap_or(0.3);
+    let all = s.shapes.balls.iter().zip(balls(s)).enumerate();
+    let list: Vec<([f64; 3], f64, f64)> = all
+        .filter(|(_, (b, _))| !s.bodies.gone[b.body as usize])
+        .map(|(k, (_, (c, r)))| (s.shapes.periodic.wrapped(c).padded(), r, shade(k)))
         .collect();
     project_spheres(&list, &view())
 }
@@ -200,7 +245,8 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
     let period = s.shapes.periodic.period[0];
     let far = 2.0 * ((window[1] - window[0]) + (window[3] - window[2]));
     let mut out = Vec::new();
-    for surface in &s.shapes.surfaces {
+    let shown = |body: u32| !s.bodies.gone[body as usize];
+    for surface in s.shapes.surfaces.iter().filter(|f| shown(f.body)) {
         let b = surface.body as usize;
         let (position, rotation) = (s.bodies.position[b], s.bodies.rotation[b]);
         let name = s
@@ -218,6 +264,18 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
             let (Some(first), Some(last)) = (points.first(), points.last()) else {
                 continue;
             };
+            let name = if name.starts_with("wall_") {
+                String::new()
+            } else {
+                name.clone()
+            };
+            if points.len() > 3 && first == last {
+                out.push(Outline {
+                    points: around(&points, far),
+                    label: String::new(),
+                });
+                continue;
+            }
             let spans = period.is_some_and(|p| ((last[0] - first[0]).abs() / p - 1.0).abs() < 1e-6);
             let mut polygon = Vec::new();
             match period.filter(|_| spans) {
@@ -243,13 +301,30 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
             polygon.push([a[0] + nx, a[1] + ny]);
             out.push(Outline {
                 points: polygon,
-                label: if name.starts_with("wall_") {
-                    String::new()
-                } else {
-                    name.clone()
-                },
+                label: name,
             });
         }
     }
     out
+}
+
+/// What is outside a closed convex chain that runs anticlockwise: a square `far` wide with the chain cut out; a
+/// seam to the right joins the two.
+fn around(chain: &[[f64; 2]], far: f64) -> Vec<[f64; 2]> {
+    let ring = &chain[..chain.len() - 1];
+    let right = (0..ring.len()).max_by(|a, b| ring[*a][0].total_cmp(&ring[*b][0]));
+    let right = right.unwrap_or(0);
+    let [x, y] = ring[right];
+    let mut polygon: Vec<[f64; 2]> = (0..=ring.len())
+        .map(|k| ring[(right + k) % ring.len()])
+        .collect();
+    polygon.extend([
+        [x + far, y],
+        [x + far, y - far],
+        [x - far, y - far],
+        [x - far, y + far],
+        [x + far, y + far],
+        [x + far, y],
+    ]);
+    polygon
 }

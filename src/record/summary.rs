@@ -4,6 +4,7 @@ use super::biaxial::Outcome;
 use super::choice::Choice;
 use super::friction::Cycle;
 use super::ledger::Energy;
+use crate::step::control::Begun;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -110,6 +111,12 @@ pub struct Summary {
     pub cycles: Vec<Cycle>,
     /// What a biaxial test found; null without one.
     pub biaxial: Option<Outcome>,
+    /// Phases that began, with their times; empty without phases.
+    pub phases: Vec<Begun>,
+    /// Names of the phases that the run did not reach.
+    pub phases_missed: Vec<String>,
+    /// What the case's measures found, by name (SI).
+    pub measures: std::collections::BTreeMap<String, f64>,
     /// Energy ledger (J; J/m).
     pub energy: Energy,
     /// Residual over the largest energy seen.
@@ -187,6 +194,27 @@ impl Summary {
         }
         for (label, text) in self.biaxial.iter().flat_map(Outcome::lines) {
             line(label, text);
+        }
+        for p in &self.phases {
+            let text = match (p.end, p.ended_by) {
+                (Some(end), Some(why)) => {
+                    format!("from {:.4e} to {end:.4e} s, ended by {why}", p.start)
+                }
+                _ => format!("from {:.4e} s to the end of the run", p.start),
+            };
+            line(&format!("phase {}", p.name), text);
+        }
+        if !self.phases_missed.is_empty() {
+            line(
+                "NOT REACHED",
+                format!(
+                    "the run ended before the phases {}; let it run longer (time.end)",
+                    self.phases_missed.join(", ")
+                ),
+            );
+        }
+        for (name, value) in &self.measures {
+            line(name, format!("{value:.5e}"));
         }
         let e = &self.energy;
         line(

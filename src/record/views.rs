@@ -138,7 +138,8 @@ fn bodies<S: Space>(s: &Simulation<S>) -> Part {
         data: vec![Vec::new(); 1],
         ..Part::default()
     };
-    for surface in &s.shapes.surfaces {
+    let shown = |body: u32| !s.bodies.gone[body as usize];
+    for surface in s.shapes.surfaces.iter().filter(|f| shown(f.body)) {
         let b = surface.body as usize;
         for chain in surface.shape.outline() {
             let first = part.points.len() as i64 / 3;

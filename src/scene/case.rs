@@ -1,9 +1,12 @@
 //! A case file: what the user writes.
 
+use super::measures::MeasureSpec;
+use super::phases::PhaseSpec;
 use crate::bodies::Dof;
 use crate::laws::BondRule;
 use crate::solve::error::Norm;
 use crate::solve::local::solver::Method;
+use crate::step::control::GravityDrive;
 use crate::step::coupling::Coupling;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -27,6 +30,12 @@ pub struct Case {
     /// Acceleration of gravity (m/s^2), one number an axis.
     #[serde(default)]
     pub gravity: Vec<f64>,
+    /// How gravity changes in time.
+    #[serde(default)]
+    pub gravity_drive: Option<GravityDrive>,
+    /// Phases of the run, one after another.
+    #[serde(default)]
+    pub phases: Vec<PhaseSpec>,
     /// Factor on all densities, for quasi-static runs without gravity: inertia is scaled so that steps
     /// resolve the motion, not the sound (da Cruz et al. 2005: results do not depend on it while the
     /// inertial number stays below 1e-3). Reported densities and wear are unscaled.
@@ -61,6 +70,9 @@ pub struct Case {
     /// What is measured as a biaxial test.
     #[serde(default)]
     pub biaxial: Option<BiaxialSpec>,
+    /// Other quantities that are measured.
+    #[serde(default)]
+    pub measures: Vec<MeasureSpec>,
     /// What is written, and how often.
     #[serde(default)]
     pub output: OutputSpec,
@@ -122,9 +134,8 @@ pub struct SolverSpec {
     pub test_every: u32,
     /// Over-relaxation, 1 to below 2: how much farther than its own solution a contact goes in a sweep.
     pub relaxation: f64,
-    /// Share of a penetration that a step takes back, 0 to 1. Rigid contacts under a load that changes
-    /// slowly creep into each other by the solver's tolerance, step after step; 0.1 bounds that to ten
-    /// steps' worth. Its work, which is small, is booked with the impacts.
+    /// Share of a penetration that a step takes back, 0 to 1. Rigid contacts under a slowly changing load creep into
+    /// each other by the solver's tolerance; 0.1 bounds that to ten steps' worth. Its work is an entry of the ledger.
     pub correction: f64,
 }
 
@@ -215,6 +226,9 @@ pub struct BodySpec {
     /// Moment of inertia (kg m^2; per metre in 2D).
     #[serde(default)]
     pub inertia: Option<f64>,
+    /// When the body is taken away (s); never by default.
+    #[serde(default)]
+    pub vanishes: Option<f64>,
     /// Degrees of freedom; fixed where not given.
     #[serde(default)]
     pub dofs: DofSpec,
@@ -302,6 +316,14 @@ pub enum ShapeSpec {
     },
     /// Balls fixed to the body: (position relative to the body's frame, radius).
     Balls(Vec<(Vec<f64>, f64)>),
+    /// The inside of a cylinder about the body's origin, solid outside: a drum.
+    Drum {
+        /// Radius (m).
+        radius: f64,
+        /// Axis of the cylinder in 3D: 0, 1 or 2.
+        #[serde(default)]
+        axis: usize,
+    },
     /// The cluster of this name in a scene file.
     Cluster {
         /// Path relative to the case.
@@ -381,7 +403,7 @@ pub struct OneGrain {
     pub spin: Vec<f64>,
 }
 
-/// A friction test: the body that rubs, along which axis, pressed along which.
+/// A friction test.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionSpec {
@@ -432,6 +454,10 @@ pub struct OutputSpec {
     pub figures: bool,
     /// Width of a frame (pixels).
     pub width: u32,
+    /// What frames show (m): xmin, xmax, ymin, ymax (2D); what there is by default.
+    pub window: Option<[f64; 4]>,
+    /// Thickness (m) of layers along the last axis that frames tell apart by shade.
+    pub layers: Option<f64>,
     /// Steps between two that are written as FCLIB problems, `fclib/step-N.hdf5`; 0 for none.
     pub fclib: u64,
 }
@@ -444,6 +470,8 @@ impl Default for OutputSpec {
             every: 1,
             figures: true,
             width: 1400,
+            window: None,
+            layers: None,
             fclib: 0,
         }
     }

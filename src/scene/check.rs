@@ -74,7 +74,8 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
     if s.test_every == 0 {
         return Err(Fault::new("solver.test_every", "must be at least 1"));
     }
-    if case.inertia_scaling != 1.0 && case.gravity.iter().any(|g| *g != 0.0) {
+    let weighs = case.gravity_drive.is_some() || case.gravity.iter().any(|g| *g != 0.0);
+    if case.inertia_scaling != 1.0 && weighs {
         return Err(Fault::new(
             "inertia_scaling",
             "scales weights with the masses; switch gravity off, or leave the scaling out",
@@ -118,16 +119,32 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
             ));
         }
     }
+    if let Some(w) = case.output.window
+        && !(w.iter().all(|x| x.is_finite()) && w[0] < w[1] && w[2] < w[3])
+    {
+        let message = "a window is (xmin, xmax, ymin, ymax) with xmin < xmax and ymin < ymax";
+        return Err(Fault::new("output.window", message));
+    }
+    if let Some(layers) = case.output.layers {
+        positive("output.layers", layers)?;
+    }
     if case.output.frames > 0 && !(200..=16_384).contains(&case.output.width) {
         let message = format!("a frame cannot be {} pixels wide", case.output.width);
         return Err(Fault::new("output.width", message).expected("200 to 16384 pixels"));
     }
     super::biaxial::check(case)?;
+    super::phases::gravity_drive(case.gravity_drive.as_ref(), dimension)?;
+    super::phases::check(case)?;
+    super::measures::check(case)?;
     friction(case, dimension)
 }
 
 fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), Fault> {
-    for (name, value) in [("mass", body.mass), ("inertia", body.inertia)] {
+    for (name, value) in [
+        ("mass", body.mass),
+        ("inertia", body.inertia),
+        ("vanishes", body.vanishes),
+    ] {
         if let Some(value) = value
             && !(value.is_finite() && value > 0.0)
         {

@@ -12,6 +12,7 @@
 //!                                                ▼
 //!                               record (ledgers, statistics, files)
 //! ```
+pub mod control;
 pub mod coupling;
 pub mod motion;
 pub mod simulation;

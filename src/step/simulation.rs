@@ -124,6 +124,8 @@ pub struct Simulation<S: Space> {
     pub energy: Energy,
     /// Contact impulses and moments on the driven bodies in the last step, in their order.
     pub received: Vec<(S::Vector, S::Spin)>,
+    /// What acts from outside and changes in time.
+    pub control: super::control::Control<S>,
     habit: solve::Habit,
     passes: Passes,
     problem: Problem<S>,
@@ -175,6 +177,7 @@ impl<S: Space> Simulation<S> {
                 ..Energy::default()
             },
             received,
+            control: Default::default(),
             habit: solve::Habit::default(),
             passes: Passes::default(),
             problem: Problem::default(),
@@ -197,8 +200,7 @@ impl<S: Space> Simulation<S> {
             theta,
         };
         let start = Before::new(&self.bodies);
-        self.bodies.engage_stages(self.time + 0.5 * h);
-
+        self.obey();
         let clock = Instant::now();
         motion::advance(&mut self.bodies, (1.0 - theta) * h);
         detect(
@@ -233,6 +235,7 @@ impl<S: Space> Simulation<S> {
             .count();
         self.time += h;
         self.steps += 1;
+        self.end_phase();
         Ok(report)
     }
 

@@ -33,6 +33,10 @@ impl<S: Dimensional> Recorder<'_, S> {
         if let Some(test) = &self.biaxial {
             summary.biaxial = Some(Outcome::new(&self.table, start, test.grain_mass(s)));
         }
+        summary.phases = s.control.begun().to_vec();
+        let phases = s.control.phases.iter().skip(summary.phases.len());
+        summary.phases_missed = phases.map(|p| p.name.clone()).collect();
+        summary.measures = self.measures.outcome(&self.table);
         summary.energy = s.energy;
         summary.energy_residual_relative = s.energy.relative_residual();
         let time = s.time.max(f64::MIN_POSITIVE);
@@ -65,6 +69,8 @@ impl<S: Dimensional> Recorder<'_, S> {
                 self.cycles.as_ref().map(|c| &c.0),
                 S::D,
             )?;
+            self.measures
+                .draw(&self.out, &self.loaded.case.name, &self.table)?;
             if self.biaxial.is_some() {
                 let title = &self.loaded.case.name;
                 biaxial::draw(&self.out.join("biaxial.png"), title, &self.table, start)?;

@@ -7,6 +7,7 @@ use super::biaxial::Biaxial;
 use super::fclib;
 use super::friction::{Cycles, Sample};
 use super::layer::{Balance, Layer};
+use super::measure::Measures;
 use super::picture::Camera;
 use super::results::{Results, ResultsError};
 use super::statistics::Table;
@@ -110,6 +111,7 @@ struct Recorder<'a, S: Space> {
     camera: Camera,
     cycles: Option<(Cycles, usize)>,
     biaxial: Option<Biaxial>,
+    measures: Measures<S>,
     layer: Layer<S>,
     sample: Option<Sample>,
     slide: f64,
@@ -146,7 +148,9 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         });
         let spec = case.biaxial.as_ref();
         let biaxial = spec.and_then(|spec| Biaxial::new(spec, &simulation));
-        let columns = row::columns(&simulation, cycles.is_some(), biaxial.is_some());
+        let measures = Measures::new(&case.measures);
+        let mut columns = row::columns(&simulation, cycles.is_some(), biaxial.is_some());
+        columns.extend(measures.columns());
         let table_path = options.out.join("statistics.csv");
         let table =
             Table::create(&table_path, columns.clone()).map_err(|e| unwritable(&table_path, &e))?;
@@ -176,12 +180,13 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             .map(|s| s.body)
             .or(simulation.bodies.driven.first().map(|d| d.body));
         Ok(Self {
-            camera: Camera::new(&simulation, case.output.width),
+            camera: Camera::new(&simulation, &case.output),
             out: options.out.clone(),
             table,
             results,
             cycles,
             biaxial,
+            measures,
             layer: Layer::new(&simulation),
             sample: None,
             slide: 0.0,
@@ -203,26 +208,36 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         self.views()?;
         self.frame(0)?;
         for step in 1..=self.total {
-            let before = self.balance();
+            let (before, phase) = (self.balance(), self.simulation.control.phase());
             let report = self.simulation.step()?;
             self.follow(&report, before);
+            if phase == 1 && self.simulation.control.phase() == 2 {
+                self.camera.shade(&self.simulation);
+            }
+            let finished = self.simulation.control.finished();
+            let last = step == self.total || finished;
             if output.fclib > 0 && step % output.fclib == 0 {
                 self.dump(step, &report)?;
             }
-            if step % output.every.max(1) == 0 || step == self.total {
-                let row = self.row(&report);
+            if step % output.every.max(1) == 0 || last {
+                let mut row = self.row(&report);
+                row.extend(self.measures.sample(&self.simulation));
                 self.table
                     .push(&row)
                     .map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
                 self.results.append_statistics(&row)?;
             }
-            if due(step, self.total, output.views) {
+            if due(step, self.total, output.views) || finished {
                 self.views()?;
             }
-            if due(step, self.total, output.frames) {
+            let turned = phase > 0 && self.simulation.control.phase() > phase;
+            if due(step, self.total, output.frames) || finished || turned {
                 self.frame(step)?;
             }
             progress(&self.progress(step, &report));
+            if finished {
+                break;
+            }
         }
         Ok(())
     }
@@ -357,6 +372,9 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             return Ok(());
         }
         let mut caption = vec![format!("t = {:.4e} s", self.simulation.time)];
+        if let Some(phase) = self.simulation.control.begun().last() {
+            caption.push(phase.name.clone());
+        }
         if let Some((cycles, _)) = &self.cycles {
             caption.push(format!(
                 "cycle {} of {}",
@@ -370,7 +388,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         if self.simulation.network.bonds_made() > 0 {
             caption.push(format!("damage ratio {:.3}", self.damage_ratio()));
         }
-        self.camera = Camera::new(&self.simulation, self.loaded.case.output.width);
+        self.camera.follow(&self.simulation);
         let path = self.out.join("frames").join(format!("frame_{step:08}.png"));
         Ok(self
             .camera

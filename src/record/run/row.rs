@@ -53,6 +53,9 @@ impl<S: Dimensional> Recorder<'_, S> {
         if let Some(test) = &self.biaxial {
             row.extend(test.state(s).row());
         }
+        if !s.control.phases.is_empty() {
+            row.push(s.control.phase() as f64);
+        }
         for (d, driven) in s
             .bodies
             .driven
@@ -115,6 +118,9 @@ pub(super) fn columns<S: Space>(s: &Simulation<S>, friction: bool, biaxial: bool
     }
     if biaxial {
         out.extend(Biaxial::columns());
+    }
+    if !s.control.phases.is_empty() {
+        out.push(c("phase", "", "number of the phase, from 1"));
     }
     let axes = ["x", "y", "z"];
     for driven in s.bodies.driven.iter().filter(|d| shown(&d.name)) {

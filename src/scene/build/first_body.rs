@@ -124,9 +124,9 @@ impl<S: Dimensional> Builder<'_, S> {
     }
 
     fn check_dofs(&self, here: &str, spec: &BodySpec, has_mass: bool) -> Result<(), InputError> {
-        let dofs = spec.ordered(S::D);
+        let drives = crate::scene::phases::drives_of(self.case, spec);
         let moves = crate::bodies::Dof::yields;
-        if dofs.iter().any(moves) && spec.mass.is_none() && !has_mass {
+        if drives.iter().any(|d| moves(&d.1)) && spec.mass.is_none() && !has_mass {
             return Err(self.fail(
                 here,
                 format!(
@@ -135,7 +135,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 ),
             ));
         }
-        if dofs[S::D..].iter().any(moves) {
+        if drives.iter().any(|d| d.0 >= S::D && moves(&d.1)) {
             if S::D == 3 {
                 return Err(self.fail(format!("{here}.dofs"), "a first body cannot turn freely in three dimensions yet; fix or drive rx, ry and rz"));
             }

@@ -287,6 +287,7 @@ impl<S: Dimensional> Builder<'_, S> {
             return Err(self.source.locate(Fault::new("solver.method", reason)));
         }
         simulation.gravity = gravity;
+        super::phases::install(case, &mut simulation).map_err(|f| source.locate(f))?;
         simulation.correction = case.solver.correction;
         simulation.coupling = case.coupling;
         simulation.scheme = Scheme {

@@ -1,6 +1,7 @@
 //! Surfaces of first bodies.
 
 use super::Builder;
+use crate::geometry::drum::Drum;
 use crate::geometry::height_field::HeightField;
 use crate::geometry::polyline::Polyline;
 use crate::geometry::shape::{HalfSpace, Surface};
@@ -111,6 +112,14 @@ impl<S: Dimensional> Builder<'_, S> {
                         shown,
                     }),
                 ))
+            }
+            ShapeSpec::Drum { radius, axis } => {
+                let radius = self.radius(&format!("{here}.radius"), *radius)?;
+                if *axis > 2 {
+                    let message = format!("axis {axis} does not exist; use 0, 1 or 2");
+                    return Err(self.fail(format!("{here}.axis"), message));
+                }
+                Ok((null, Box::new(Drum::new(radius, *axis))))
             }
             ShapeSpec::Profile { points, side } => {
                 // A chain that spans the period repeats.

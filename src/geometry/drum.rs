@@ -1,0 +1,151 @@
+//! The inside of a cylinder: a drum. A circle in 2D; in 3D an endless cylinder along an axis of its body.
+
+use super::shape::{Surface, Touch};
+use super::space::{Space, VectorLike};
+use std::f64::consts::TAU;
+
+/// A cylinder about the origin, open inside and solid outside.
+#[derive(Clone, Debug)]
+pub struct Drum {
+    radius: f64,
+    axis: usize,
+}
+
+impl Drum {
+    /// A drum of this radius (m); `axis` is 0, 1 or 2 in 3D and counts for nothing in 2D.
+    pub fn new(radius: f64, axis: usize) -> Self {
+        Self { radius, axis }
+    }
+
+    /// The part of a vector across the axis.
+    fn across<S: Space>(&self, v: &S::Vector) -> S::Vector {
+        let mut across = *v;
+        if S::D == 3 {
+            across[self.axis] = 0.0;
+        }
+        across
+    }
+
+    /// Two axes across the cylinder's.
+    fn plane<S: Space>(&self) -> [usize; 2] {
+        if S::D == 2 {
+            [0, 1]
+        } else {
+            [(self.axis + 1) % 3, (self.axis + 2) % 3]
+        }
+    }
+}
+
+impl<S: Space> Surface<S> for Drum {
+    fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<Touch<S::Vector>>) {
+        let across = self.across::<S>(centre);
+        let r = across.norm();
+        let distance = self.radius - r;
+        if distance >= reach {
+            return;
+        }
+        let normal = if r > 0.0 {
+            across * (-1.0 / r)
+        } else {
+            // On the axis all directions are as near; one of them.
+            let mut n = S::Vector::null();
+            n[self.plane::<S>()[0]] = -1.0;
+            n
+        };
+        out.push(Touch {
+            foot: *centre - normal * distance,
+            normal,
+            distance,
+            feature: 0,
+        });
+    }
+
+    fn near(&self, centre: &S::Vector, reach: f64) -> bool {
+        self.radius - self.across::<S>(centre).norm() < reach
+    }
+
+    fn outline(&self) -> Vec<Vec<S::Vector>> {
+        let [i, j] = self.plane::<S>();
+        let point = |k: usize, along: f64| {
+            let (sin, cos) = (TAU * k as f64 / 180.0).sin_cos();
+            let mut p = S::Vector::null();
+            (p[i], p[j]) = (self.radius * cos, self.radius * sin);
+            if S::D == 3 {
+                p[self.axis] = along;
+            }
+            p
+        };
+        if S::D == 2 {
+            // Solid on the right, as with profiles: anticlockwise, closed.
+            return vec![(0..=180).map(|k| point(k % 180, 0.0)).collect()];
+        }
+        let half = 0.5 * self.radius;
+        (0..180)
+            .map(|k| {
+                vec![
+                    point(k, -half),
+                    point(k + 1, -half),
+                    point(k + 1, half),
+                    point(k, half),
+                ]
+            })
+            .collect()
+    }
+
+    fn keeps_place(&self, spin: &S::Spin) -> bool {
+        let mut axis = S::Vector::null();
+        if S::D == 3 {
+            axis[self.axis] = 1.0;
+        }
+        S::D == 2 || S::split_spin(&axis, spin).1 == S::Spin::null()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::{Plane, Solid};
+    use nalgebra::{Vector2, Vector3};
+
+    fn touch<S: Space>(drum: &Drum, at: S::Vector, reach: f64) -> Vec<Touch<S::Vector>> {
+        let mut out = Vec::new();
+        Surface::<S>::touches(drum, &at, reach, &mut out);
+        out
+    }
+
+    #[test]
+    fn distances_are_those_of_a_circle() {
+        let drum = Drum::new(2.0, 0);
+        let found = touch::<Plane>(&drum, Vector2::new(0.9, -1.2), 0.6)[0];
+        assert!((found.distance - 0.5).abs() < 1e-15);
+        assert!((found.normal - Vector2::new(-0.6, 0.8)).norm() < 1e-15);
+        assert!((found.foot - Vector2::new(1.2, -1.6)).norm() < 1e-15);
+        assert!(touch::<Plane>(&drum, Vector2::new(0.9, -1.2), 0.5).is_empty());
+        // Behind the wall the distance is negative.
+        let behind = touch::<Plane>(&drum, Vector2::new(0.0, 2.25), 0.1)[0];
+        assert!((behind.distance + 0.25).abs() < 1e-15);
+        // On the axis a wide reach still gives a unit normal.
+        assert_eq!(
+            touch::<Plane>(&drum, Vector2::zeros(), 3.0)[0].distance,
+            2.0
+        );
+    }
+
+    #[test]
+    fn a_cylinder_does_not_see_its_axis() {
+        for axis in 0..3 {
+            let drum = Drum::new(2.0, axis);
+            let mut at = Vector3::zeros();
+            (at[(axis + 1) % 3], at[(axis + 2) % 3], at[axis]) = (0.9, -1.2, 7.0);
+            let found = touch::<Solid>(&drum, at, 0.6)[0];
+            assert!((found.distance - 0.5).abs() < 1e-15);
+            assert_eq!(found.normal[axis], 0.0);
+            assert_eq!(found.foot[axis], 7.0);
+            let mut spin = Vector3::zeros();
+            spin[axis] = 3.0;
+            assert!(Surface::<Solid>::keeps_place(&drum, &spin));
+            spin[(axis + 1) % 3] = 1e-3;
+            assert!(!Surface::<Solid>::keeps_place(&drum, &spin));
+        }
+    }
+}

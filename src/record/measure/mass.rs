@@ -1,0 +1,53 @@
+//! Mass above a level: what a silo still holds.
+
+use super::{Measure, grains, line, since};
+use crate::geometry::space::Space;
+use crate::record::statistics::{Column, Table};
+use crate::report::{Axis, Chart, ReportError, Series};
+use crate::step::Simulation;
+use std::path::Path;
+
+/// See [`crate::scene::measures::MeasureSpec::Mass`].
+#[derive(Clone, Debug)]
+pub struct Mass {
+    pub(super) name: String,
+    pub(super) axis: usize,
+    pub(super) above: f64,
+    pub(super) start: f64,
+}
+
+impl<S: Space> Measure<S> for Mass {
+    fn columns(&self) -> Vec<Column> {
+        let unit = if S::D == 2 { "kg/m" } else { "kg" };
+        vec![Column::new(
+            self.name.clone(),
+            unit,
+            "mass of the grains above a level",
+        )]
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        let above = grains(s).filter(|(x, _, _)| x[self.axis] > self.above);
+        vec![above.map(|(_, b, _)| s.bodies.mass[b]).sum()]
+    }
+
+    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
+        let points = since(table, &self.name, self.start);
+        let rate = line(points.iter().copied());
+        rate.map(|r| (format!("{}_rate", self.name), r))
+            .into_iter()
+            .collect()
+    }
+
+    fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError> {
+        let unit = if S::D == 2 { "kg/m" } else { "kg" };
+        let mut chart = Chart::new(
+            format!("mass `{}` against time", self.name),
+            Axis::new("time", "s"),
+            Axis::new("mass", unit),
+        )
+        .with(Series::new(String::new(), since(table, &self.name, 0.0)));
+        chart.subtitle = Some(title.to_owned());
+        chart.draw(&dir.join(format!("{}.png", self.name)))
+    }
+}

@@ -1,0 +1,155 @@
+//! Quantities that a case asks for: sampled when a row of the statistics is written.
+
+mod mass;
+mod profile;
+mod shear;
+mod slope;
+
+use super::statistics::{Column, Table};
+use crate::geometry::space::Space;
+use crate::report::ReportError;
+use crate::scene::measures::MeasureSpec;
+use crate::step::Simulation;
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+use std::path::Path;
+
+/// One measure.
+pub trait Measure<S: Space>: Debug {
+    /// Its columns in the statistics.
+    fn columns(&self) -> Vec<Column>;
+    /// Values of its columns at the end of a step; it may keep what it needs for the end.
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64>;
+    /// What it says in the summary, by name.
+    fn outcome(&self, table: &Table) -> Vec<(String, f64)>;
+    /// Writes its files and figures.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError>;
+}
+
+/// All measures of a run.
+#[derive(Debug)]
+pub struct Measures<S: Space> {
+    list: Vec<Box<dyn Measure<S>>>,
+}
+
+impl<S: Space> Measures<S> {
+    /// From the words of the case.
+    pub fn new(specs: &[MeasureSpec]) -> Self {
+        let make = |spec: &MeasureSpec| -> Box<dyn Measure<S>> {
+            match spec.clone() {
+                MeasureSpec::Mass {
+                    name,
+                    axis,
+                    above,
+                    start,
+                } => Box::new(mass::Mass {
+                    name,
+                    axis,
+                    above,
+                    start,
+                }),
+                MeasureSpec::Slope {
+                    name,
+                    from,
+                    to,
+                    start,
+                } => Box::new(slope::Slope {
+                    name,
+                    from,
+                    to,
+                    start,
+                }),
+                MeasureSpec::Profile {
+                    name,
+                    axis,
+                    low,
+                    high,
+                    bins,
+                    turned,
+                    start,
+                } => Box::new(profile::Profile::<S>::new(
+                    name, axis, &low, &high, bins, turned, start,
+                )),
+                MeasureSpec::Shear {
+                    name,
+                    low,
+                    high,
+                    start,
+                } => Box::new(shear::Shear {
+                    name,
+                    low,
+                    high,
+                    start,
+                }),
+            }
+        };
+        Self {
+            list: specs.iter().map(make).collect(),
+        }
+    }
+
+    /// Columns of all, in the order of the case.
+    pub fn columns(&self) -> Vec<Column> {
+        self.list.iter().flat_map(|m| m.columns()).collect()
+    }
+
+    /// Values of [`Measures::columns`].
+    pub fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        self.list.iter_mut().flat_map(|m| m.sample(s)).collect()
+    }
+
+    /// What stands in the summary.
+    pub fn outcome(&self, table: &Table) -> BTreeMap<String, f64> {
+        self.list.iter().flat_map(|m| m.outcome(table)).collect()
+    }
+
+    /// Writes files and figures.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError> {
+        self.list.iter().try_for_each(|m| m.draw(dir, title, table))
+    }
+}
+
+/// The grains: centre, index of the body, radius. Balls of driven bodies are none.
+fn grains<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (S::Vector, usize, f64)> + '_ {
+    let mut driven = vec![false; s.bodies.len()];
+    for d in &s.bodies.driven {
+        driven[d.body as usize] = true;
+    }
+    let balls = s.shapes.balls.iter();
+    balls
+        .filter(move |b| !driven[b.body as usize])
+        .map(|b| (crate::contact::detect::centre(b, &s.bodies), b))
+        .map(|(x, b)| (s.shapes.periodic.wrapped(x), b.body as usize, b.radius))
+}
+
+/// (time, value) of a column from a time on.
+fn since(table: &Table, column: &str, start: f64) -> Vec<(f64, f64)> {
+    let pairs = table.column("time").into_iter().zip(table.column(column));
+    pairs
+        .filter(|(t, v)| *t >= start && v.is_finite())
+        .collect()
+}
+
+/// Mean of the values, none where there are none.
+fn mean(points: &[(f64, f64)]) -> Option<f64> {
+    (!points.is_empty()).then(|| points.iter().map(|p| p.1).sum::<f64>() / points.len() as f64)
+}
+
+/// Slope of the straight line through points by least squares; none below two places.
+fn line(points: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
+    let n = points.clone().count() as f64;
+    let (x, y) = points
+        .clone()
+        .fold((0.0, 0.0), |(a, b), p| (a + p.0, b + p.1));
+    let (x, y) = (x / n, y / n);
+    let (xx, xy) = points.fold((0.0, 0.0), |(a, b), p| {
+        (a + (p.0 - x) * (p.0 - x), b + (p.0 - x) * (p.1 - y))
+    });
+    (xx > 0.0).then(|| xy / xx)
+}

@@ -1,0 +1,85 @@
+//! The angle of a free surface: a straight line through the tops of the grains, column by column.
+
+use super::{Measure, grains, line, mean, since};
+use crate::geometry::space::{Space, VectorLike};
+use crate::record::statistics::{Column, Table};
+use crate::report::{Axis, Chart, ReportError, Series};
+use crate::step::Simulation;
+use std::path::Path;
+
+/// See [`crate::scene::measures::MeasureSpec::Slope`].
+#[derive(Clone, Debug)]
+pub struct Slope {
+    pub(super) name: String,
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) start: f64,
+}
+
+impl<S: Space> Measure<S> for Slope {
+    fn columns(&self) -> Vec<Column> {
+        vec![Column::new(
+            self.name.clone(),
+            "rad",
+            "angle of the free surface",
+        )]
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        // A grain in flight is no surface.
+        let mut touched = vec![false; s.bodies.len()];
+        for contact in &s.network.contacts {
+            if contact.impulse != S::Vector::null() {
+                contact
+                    .bodies
+                    .iter()
+                    .for_each(|b| touched[*b as usize] = true);
+            }
+        }
+        let wide = self.to - self.from;
+        let all = grains(s).map(|g| 2.0 * g.2);
+        let (sum, count) = all.fold((0.0, 0usize), |(a, n), d| (a + d, n + 1));
+        // Columns of two diameters.
+        let width = 2.0 * sum / count.max(1) as f64;
+        let columns = if width > 0.0 {
+            (wide / width).floor().clamp(2.0, 1e6) as usize
+        } else {
+            2
+        };
+        let mut tops = vec![None::<f64>; columns];
+        for (x, b, r) in grains(s) {
+            let k = ((x[0] - self.from) / wide * columns as f64).floor();
+            if touched[b] && k >= 0.0 && (k as usize) < columns {
+                let top = x[S::D - 1] + r;
+                let old = &mut tops[k as usize];
+                *old = Some(old.map_or(top, |o| o.max(top)));
+            }
+        }
+        let points = tops
+            .iter()
+            .enumerate()
+            .filter_map(|(k, top)| Some(((k as f64 + 0.5) / columns as f64 * wide, (*top)?)));
+        vec![line(points).map_or(f64::NAN, f64::atan)]
+    }
+
+    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
+        let mean = mean(&since(table, &self.name, self.start));
+        mean.map(|m| (self.name.clone(), m)).into_iter().collect()
+    }
+
+    fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError> {
+        let degrees = since(table, &self.name, 0.0);
+        let degrees = degrees
+            .into_iter()
+            .map(|(t, a)| (t, a.to_degrees()))
+            .collect();
+        let mut chart = Chart::new(
+            format!("angle `{}` against time", self.name),
+            Axis::new("time", "s"),
+            Axis::new("angle", "deg"),
+        )
+        .with(Series::new(String::new(), degrees));
+        chart.subtitle = Some(title.to_owned());
+        chart.draw(&dir.join(format!("{}.png", self.name)))
+    }
+}

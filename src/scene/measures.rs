@@ -1,0 +1,171 @@
+//! Quantities that a case asks to be measured, beside those of friction and biaxial tests.
+
+use super::case::Case;
+use super::source::Fault;
+use serde::Deserialize;
+
+/// A quantity, or a few that belong together. "Up" is the last axis: y in 2D, z in 3D.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum MeasureSpec {
+    /// Mass of the grains whose centres stand above a level along an axis (kg; kg/m in 2D).
+    Mass {
+        /// Name of the column.
+        name: String,
+        /// The axis.
+        axis: usize,
+        /// The level (m).
+        above: f64,
+        /// From when on the rate of change is fitted for the summary (s).
+        #[serde(default)]
+        start: f64,
+    },
+    /// Angle of the free surface (rad), from the tops of the grains between two places along x.
+    Slope {
+        /// Name of the column.
+        name: String,
+        /// Left end (m).
+        from: f64,
+        /// Right end (m).
+        to: f64,
+        /// From when on the mean is formed for the summary (s).
+        #[serde(default)]
+        start: f64,
+    },
+    /// Solid fraction, velocity and spin in slices of a box, as means over time: `name.csv`, `name.png`.
+    Profile {
+        /// Name of the files.
+        name: String,
+        /// Axis along which the box is sliced.
+        axis: usize,
+        /// Low corner of the box (m).
+        low: Vec<f64>,
+        /// High corner (m).
+        high: Vec<f64>,
+        /// Number of slices.
+        bins: usize,
+        /// Angle by which the box and the axes of the velocity are turned about the origin (rad, 2D).
+        #[serde(default)]
+        turned: f64,
+        /// From when on (s).
+        #[serde(default)]
+        start: f64,
+    },
+    /// Plane shear along x between two heights: shear rate, pressure, stress ratio, solid fraction and
+    /// inertial number of the grains, away from the walls. x (and y in 3D) must be periodic.
+    Shear {
+        /// Prefix of the columns.
+        name: String,
+        /// Lower height (m).
+        low: f64,
+        /// Upper height (m).
+        high: f64,
+        /// From when on means are formed for the summary (s).
+        #[serde(default)]
+        start: f64,
+    },
+}
+
+impl MeasureSpec {
+    /// Its name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Mass { name, .. }
+            | Self::Slope { name, .. }
+            | Self::Profile { name, .. }
+            | Self::Shear { name, .. } => name,
+        }
+    }
+}
+
+/// Refuses measures that mean nothing.
+///
+/// # Errors
+/// The first fault, with its path.
+pub(super) fn check(case: &Case) -> Result<(), Fault> {
+    for (k, spec) in case.measures.iter().enumerate() {
+        let twice = case.measures[..k].iter().any(|m| m.name() == spec.name());
+        let said = if twice {
+            Err(("name", format!("two measures are named `{}`", spec.name())))
+        } else {
+            one(case, spec)
+        };
+        said.map_err(|(field, message)| Fault::new(format!("measures.{k}.{field}"), message))?;
+    }
+    Ok(())
+}
+
+fn one(case: &Case, spec: &MeasureSpec) -> Result<(), (&'static str, String)> {
+    let dimension = case.dimension as usize;
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if spec.name().is_empty() || !spec.name().chars().all(plain) {
+        let message = "a name is made of letters, digits, `-` and `_`: it names columns and files";
+        return Err(("name", message.into()));
+    }
+    let axis = |axis: usize| {
+        if axis < dimension {
+            Ok(())
+        } else {
+            let message = format!("axis {axis} does not exist; use a number below {dimension}");
+            Err(("axis", message))
+        }
+    };
+    let rises = |field: &'static str, low: f64, high: f64| {
+        if low.is_finite() && high.is_finite() && low < high {
+            Ok(())
+        } else {
+            Err((field, format!("must be above {low}, got {high}")))
+        }
+    };
+    match spec {
+        MeasureSpec::Mass { axis: a, above, .. } => {
+            axis(*a)?;
+            if above.is_finite() {
+                Ok(())
+            } else {
+                Err(("above", format!("must be finite, got {above}")))
+            }
+        }
+        MeasureSpec::Slope { from, to, .. } => rises("to", *from, *to),
+        MeasureSpec::Profile {
+            axis: a,
+            low,
+            high,
+            bins,
+            turned,
+            ..
+        } => {
+            axis(*a)?;
+            if low.len() != dimension || high.len() != dimension {
+                let message = format!("a corner has {dimension} numbers in this case");
+                return Err((
+                    if low.len() == dimension {
+                        "high"
+                    } else {
+                        "low"
+                    },
+                    message,
+                ));
+            }
+            for (l, h) in low.iter().zip(high) {
+                rises("high", *l, *h)?;
+            }
+            if !(1..=100_000).contains(bins) {
+                return Err(("bins", format!("needs 1 to 100000 slices, got {bins}")));
+            }
+            if !turned.is_finite() || (dimension == 3 && *turned != 0.0) {
+                let message = "a box can be turned in two dimensions only, by a finite angle (rad)";
+                return Err(("turned", message.into()));
+            }
+            Ok(())
+        }
+        MeasureSpec::Shear { low, high, .. } => {
+            rises("high", *low, *high)?;
+            if case.periodic.x.is_none() || (dimension == 3 && case.periodic.y.is_none()) {
+                let message = "plane shear is measured in a cell that is periodic along x (and y in 3D); add `periodic`";
+                return Err(("name", message.into()));
+            }
+            Ok(())
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! What acts on a scene from outside and changes in time: phases, gravity, servo pressures, gates.
+//!
+//! Each step begins by obeying it: the phase at hand, then what is taken away, then gravity, areas and drives.
+
+mod gravity;
+mod phases;
+
+pub use gravity::GravityDrive;
+pub use phases::{Begun, Changes, Phase, Until};
+
+use super::Simulation;
+use crate::bodies::pressure::Servo;
+use crate::geometry::space::{Space, VectorLike};
+use phases::Clock;
+
+/// The programme of a run.
+#[derive(Clone, Debug)]
+pub struct Control<S: Space> {
+    /// Gravity before any drive of it (m/s^2).
+    pub gravity: S::Vector,
+    /// How gravity changes in time.
+    pub gravity_drive: Option<GravityDrive>,
+    /// Drives that follow an area.
+    pub servos: Vec<Servo>,
+    /// Bodies that vanish, by their place among the driven ones, and when (s).
+    pub gates: Vec<(usize, f64)>,
+    /// Phases, one after another.
+    pub phases: Vec<Phase<S>>,
+    clock: Clock,
+}
+
+impl<S: Space> Default for Control<S> {
+    fn default() -> Self {
+        Self {
+            gravity: S::Vector::null(),
+            gravity_drive: None,
+            servos: Vec::new(),
+            gates: Vec::new(),
+            phases: Vec::new(),
+            clock: Clock::default(),
+        }
+    }
+}
+
+impl<S: Space> Control<S> {
+    /// Number of the phase at hand, from 1; 0 before the first step and without phases.
+    pub fn phase(&self) -> usize {
+        self.clock.begun.len()
+    }
+
+    /// The phases that began, in their order.
+    pub fn begun(&self) -> &[Begun] {
+        &self.clock.begun
+    }
+
+    /// Whether the last phase has come to its end.
+    pub fn finished(&self) -> bool {
+        self.phase() > 0 && self.phase() == self.phases.len() && self.clock.turns()
+    }
+}
+
+impl<S: Space> Simulation<S> {
+    /// Puts in force what acts over the step that begins.
+    pub(super) fn obey(&mut self) {
+        if self.control.clock.turns() {
+            self.begin_phase();
+        }
+        self.loads();
+    }
+
+    /// Ends the phase at hand where its condition holds after a step.
+    pub(super) fn end_phase(&mut self) {
+        let Some(phase) = self.control.phase().checked_sub(1) else {
+            return;
+        };
+        let Some(until) = self.control.phases[phase].until.clone() else {
+            return;
+        };
+        let now = self.moment();
+        if let Some(why) = self.control.clock.ends(&until, &now) {
+            self.control.clock.close(&now, why);
+        }
+    }
+
+    fn begin_phase(&mut self) {
+        let Some(phase) = self.control.phases.get(self.control.phase()).cloned() else {
+            return;
+        };
+        self.control.clock.open(&phase.name, self.time, self.steps);
+        let (changes, time) = (phase.changes, self.time);
+        for (place, dof, drive) in changes.drives {
+            let servos = Servo::of(&self.bodies, &self.shapes, place, dof, &drive);
+            self.control.servos.retain(|s| !s.serves(place, dof));
+            // They were checked when the scene was built.
+            self.control.servos.extend(servos.unwrap_or_default());
+            let middle = time + 0.5 * self.scheme.h;
+            self.bodies.redrive(place, dof, drive.delayed(time), middle);
+        }
+        if let Some(gravity) = changes.gravity {
+            (self.control.gravity, self.control.gravity_drive) = (gravity, None);
+            self.gravity = gravity;
+        }
+        if let Some(drive) = changes.gravity_drive {
+            self.control.gravity_drive = Some(drive.delayed(time));
+        }
+        for (law, parameter, value) in changes.contact {
+            self.laws[law].contact.parameters[parameter] = value;
+        }
+        for place in changes.open {
+            self.bodies.remove(place);
+        }
+        if let Some(tolerance) = changes.tolerance {
+            self.solver.tolerance = tolerance;
+        }
+        // What is still, and what is there, may have changed.
+        self.network.forget_neighbours();
+    }
+
+    fn loads(&mut self) {
+        let (time, h, theta) = (self.time, self.scheme.h, self.scheme.theta);
+        let (due, later) = std::mem::take(&mut self.control.gates)
+            .into_iter()
+            .partition(|gate: &(usize, f64)| time + 0.5 * h > gate.1);
+        self.control.gates = later;
+        let due: Vec<(usize, f64)> = due;
+        for (place, _) in &due {
+            self.bodies.remove(*place);
+            self.network.forget_neighbours();
+        }
+        if let Some(drive) = &self.control.gravity_drive {
+            self.gravity = drive.at::<S>(&self.control.gravity, time + theta * h);
+        }
+        self.measure_areas();
+        self.bodies.engage_stages(time + 0.5 * h);
+    }
+
+    /// Measures the areas of all servo pressures.
+    pub fn measure_areas(&mut self) {
+        for servo in &self.control.servos {
+            servo.measure(&mut self.bodies);
+        }
+    }
+
+    /// What conditions of phases look at.
+    fn moment(&self) -> phases::Moment {
+        let mut grain = vec![true; self.bodies.len()];
+        for driven in &self.bodies.driven {
+            grain[driven.body as usize] = false;
+        }
+        let of_grains = (0..self.bodies.len()).filter(|b| grain[*b]);
+        // The work that gravity does on a grain over its own diameter, summed up.
+        let weights: f64 = of_grains
+            .map(|b| self.bodies.mass[b] * 2.0 * self.bodies.length[b])
+            .sum();
+        phases::Moment {
+            time: self.time,
+            step: self.steps,
+            h: self.scheme.h,
+            kinetic: self.bodies.kinetic_energy_of_grains(),
+            scale: weights * self.gravity.norm(),
+        }
+    }
+}
