@@ -258,7 +258,7 @@ fn round_trip<S: Dimensional>(name: &str, grains: &str) {
 #[test]
 fn a_state_of_another_run_goes_on_bit_by_bit() {
     round_trip::<Plane>("plane", DEPOSIT);
-    let solid = r#"Deposit(material: "grain", count: 300, low: [0.0, 0.0, 0.0], high: [0.2, 0.1, 0.05],
+    let solid = r#"Deposit(material: "grain", count: 150, low: [0.0, 0.0, 0.0], high: [0.2, 0.1, 0.05],
         sizes: Uniform(radius: (5e-3, 8e-3)))"#;
     round_trip::<Solid>("solid", solid);
 }
