@@ -57,7 +57,7 @@ const FEATURES: [Feature; 9] = [
 ];
 
 /// Steps of a round, and rounds.
-const STEPS: u32 = 20;
+const STEPS: u32 = 10;
 const ROUNDS: usize = 5;
 
 /// A scene under test and the least times (s) of a step: whole, in the detection, the laws, the solver by sweep.
@@ -119,7 +119,7 @@ fn trial<S: Dimensional>(case: &str, feature: &Feature) -> Trial<S> {
     let built = loaded.build_in::<S>(&SearchPath::new(&[]));
     let mut simulation = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     // The load crosses the packing first; a frictionless one would flow for long.
-    simulation.solver.max_iterations = 1_000;
+    simulation.solver.max_iterations = 200;
     for _ in 0..10 {
         simulation
             .step()

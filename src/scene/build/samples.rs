@@ -74,7 +74,7 @@ impl<S: Dimensional> Builder<'_, S> {
             let message = "the smallest radius comes first";
             return Err(self.fail(format!("{here}.radius"), message));
         }
-        if !(exponent.abs() <= 20.0) {
+        if exponent.is_nan() || exponent.abs() > 20.0 {
             let fault = Fault::new(format!("{here}.exponent"), format!("got {exponent}"));
             let expected = "a number between -20 and 20";
             return Err(self.source.locate(fault.expected(expected)));
