@@ -52,6 +52,13 @@ impl<S: Space> Default for Bodies<S> {
 }
 
 impl<S: Space> Bodies<S> {
+    /// Bytes of a body over all columns.
+    pub const BYTES: usize = size_of::<u64>()
+        + 3 * size_of::<S::Vector>()
+        + size_of::<S::Rotation>()
+        + size_of::<S::Spin>()
+        + 4 * size_of::<f64>();
+
     /// Number of bodies.
     pub fn len(&self) -> usize {
         self.id.len()

@@ -1,17 +1,18 @@
 //! `fretwork check`: what a scene activates, its size and dimensionless groups; runs nothing.
 
+mod features;
+
 use super::{CaseArgs, Failure, say};
 use crate::bodies::Dof;
-use crate::contact::Contact;
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::Space;
 use crate::record::biaxial::Biaxial;
 use crate::scene::build::Built;
 use crate::scene::methods::{Demands, Service};
 use crate::scene::{Loaded, Scene, load};
 use crate::solve::local::solver::Method;
-use crate::solve::row::Line;
 use crate::step::Simulation;
 use clap::Args;
+use features::{Features, memory};
 use std::fmt::Write as _;
 
 #[derive(Args, Debug)]
@@ -65,28 +66,6 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
             s.shapes.surfaces.len()
         ),
     );
-    let axes: Vec<&str> = ["x", "y", "z"]
-        .into_iter()
-        .enumerate()
-        .filter(|(k, _)| s.shapes.periodic.period[*k].is_some())
-        .map(|a| a.1)
-        .collect();
-    line(
-        "periodic",
-        if axes.is_empty() {
-            "no".into()
-        } else {
-            axes.join(", ")
-        },
-    );
-    line(
-        "gravity",
-        if s.gravity.norm() > 0.0 {
-            format!("{:.3e} m/s^2", s.gravity.norm())
-        } else {
-            "off".into()
-        },
-    );
     line("contacts at start", s.network.contacts.len().to_string());
     line(
         "solver",
@@ -128,14 +107,17 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
             }
         }
     }
-    line(
-        "memory",
-        format!(
-            "{} bytes a body in the solver, {} a contact",
-            size_of::<Line<S>>(),
-            size_of::<Contact<S>>()
-        ),
-    );
+    let [grain, contact] = memory(s);
+    line("memory a grain", grain);
+    line("memory a contact", contact);
+    for sample in &built.samples {
+        line("sample", sample.clone());
+    }
+    let Features { on, off } = Features::of(case, built);
+    for (k, text) in on.into_iter().enumerate() {
+        line(if k == 0 { "on" } else { "" }, text);
+    }
+    line("off", off.join(", "));
     groups(loaded, built, high, &mut line);
     biaxial_groups(loaded, built, &mut line);
     out

@@ -38,6 +38,8 @@ impl Asked {
 /// What an interface asks of a solver beyond Coulomb's cone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Demand {
+    /// Friction against sliding.
+    pub friction: Asked,
     /// Friction against rotation.
     pub rotation: Asked,
     /// Shear cohesion; unseen of laws of bonds, which are tried in no trial.
@@ -61,18 +63,20 @@ impl Interface {
         .compose()?;
         let constant = acting.constant_contact();
         let simple = constant && acting.cohesion.is_none();
-        let (mut turns, mut grips) = (Vec::new(), Vec::new());
+        let (mut rubs, mut turns, mut grips) = (Vec::new(), Vec::new(), Vec::new());
         for radius in radii {
             let mut bench = Bench::new(acting.clone(), dimension, *radius);
             let (mut states, motions) = trials(&bench, *radius);
             let answers = bench.step(&mut states, &motions, STEP)?;
             for (answer, motion) in answers.iter().zip(&motions) {
                 let touches = motion.gap <= 0.0;
+                rubs.push((touches, answer.mu > 0.0));
                 turns.push((touches, answer.rolling.iter().any(|x| *x > 0.0)));
                 grips.push((touches, answer.strength[1] > 0.0));
             }
         }
         Ok(Demand {
+            friction: Asked::of(&rubs, constant),
             rotation: Asked::of(&turns, constant),
             cohesion: Asked::of(&grips, simple).max(if bonds {
                 Asked::Unseen

@@ -20,6 +20,8 @@ pub fn header(
 ) -> Header {
     let c = Column::new;
     let newton = if dimension == 2 { "N/m" } else { "N" };
+    let axes = ["spin_x", "spin_y", "spin_z"].map(|name| c(name, "rad/s", "angular velocity"));
+    let axes = if dimension == 2 { &[][..] } else { &axes };
     Header {
         case_name: loaded.case.name.clone(),
         case_text: loaded.source.text().to_owned(),
@@ -30,7 +32,7 @@ pub fn header(
         version: summary.version.clone(),
         statistics: statistics.to_vec(),
         fields: [
-            vec![
+            [
                 c("id", "", "identity of the body"),
                 c("radius", "m", "radius"),
                 c("material", "", "index of the material"),
@@ -39,7 +41,10 @@ pub fn header(
                 c("velocity_y", "m/s", "velocity"),
                 c("velocity_z", "m/s", "velocity"),
                 c("spin", "rad/s", "angular velocity, its norm in 3D"),
-            ],
+            ]
+            .into_iter()
+            .chain(axes.iter().cloned())
+            .collect(),
             vec![
                 c("state", "", "0 contact, 1 intact bond, 2 broken bond"),
                 c("damage", "", "damage D; 1 where there is no bond"),
@@ -59,6 +64,12 @@ pub fn header(
     }
 }
 
+/// Bytes that a state takes a grain and a contact: points, cells and fields of 8 bytes.
+pub fn bytes(dimension: usize) -> [usize; 2] {
+    let fields = if dimension == 2 { 8 } else { 11 };
+    [8 * (3 + 2 + fields), 8 * (6 + 3 + 8)]
+}
+
 /// Appends the state at hand.
 ///
 /// # Errors
@@ -68,8 +79,9 @@ pub fn append<S: Space>(results: &mut Results, s: &Simulation<S>) -> Result<(), 
 }
 
 fn grains<S: Space>(s: &Simulation<S>) -> Part {
+    let axes = if S::D == 2 { 0 } else { 3 };
     let mut part = Part {
-        data: vec![Vec::new(); 8],
+        data: vec![Vec::new(); 8 + axes],
         ..Part::default()
     };
     for (k, ball) in s.shapes.balls.iter().enumerate() {
@@ -95,6 +107,9 @@ fn grains<S: Space>(s: &Simulation<S>) -> Part {
             spin,
         ];
         push(&mut part, &values);
+        for (column, value) in part.data[8..].iter_mut().zip(s.bodies.spin[b].padded()) {
+            column.push(value);
+        }
     }
     part
 }

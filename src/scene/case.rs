@@ -4,6 +4,7 @@ use super::measures::MeasureSpec;
 use super::phases::PhaseSpec;
 use crate::bodies::Dof;
 use crate::laws::BondRule;
+use crate::scene::sample::spec::{CsvSpec, DepositSpec, StateSpec};
 use crate::solve::error::Norm;
 use crate::solve::local::solver::Method;
 use crate::step::control::GravityDrive;
@@ -385,6 +386,12 @@ pub enum GrainSpec {
         #[serde(default)]
         walls: Option<String>,
     },
+    /// A loose random deposit in a box.
+    Deposit(DepositSpec),
+    /// The grains of a table.
+    Csv(CsvSpec),
+    /// The grains of a state of another run.
+    State(StateSpec),
 }
 
 /// One grain.

@@ -38,6 +38,11 @@ impl Demands {
         Self(simulation.laws.iter().map(ask).collect())
     }
 
+    /// Interfaces by name and what they ask for.
+    pub fn each(&self) -> impl Iterator<Item = (&str, Option<&Demand>)> {
+        self.0.iter().map(|(name, d)| (name.as_str(), d.as_ref()))
+    }
+
     /// Whether a method serves them.
     pub fn service(&self, method: Method) -> Service {
         let mut may = None;
@@ -80,7 +85,11 @@ mod tests {
     use super::*;
 
     fn service(rotation: Asked, cohesion: Asked, method: Method) -> Service {
-        let demand = Demand { rotation, cohesion };
+        let demand = Demand {
+            rotation,
+            cohesion,
+            ..Demand::default()
+        };
         Demands(vec![("a".into(), Some(demand))]).service(method)
     }
 

@@ -1,5 +1,10 @@
 //! Samples of grains.
 
+pub mod deposit;
+pub mod sizes;
+pub mod spec;
+pub mod table;
+
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 

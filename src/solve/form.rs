@@ -144,6 +144,19 @@ impl<S: Space> Default for Problem<S> {
 }
 
 impl<S: Space> Problem<S> {
+    /// Bytes of a body: its line, its free velocity, length and inverse masses.
+    pub const BYTES_A_BODY: usize = size_of::<Line<S>>()
+        + size_of::<(S::Vector, S::Spin)>()
+        + size_of::<f64>()
+        + size_of::<(S::Vector, f64)>();
+
+    /// Bytes of a contact's row: of two balls, the same with a bond, and with levers.
+    pub const BYTES_A_CONTACT: [usize; 3] = [
+        size_of::<PlainRow<S>>(),
+        size_of::<FullRow<S>>(),
+        size_of::<GeneralRow<S>>(),
+    ];
+
     /// Empties the problem, keeping its memory.
     pub fn clear(&mut self) {
         self.lines.clear();

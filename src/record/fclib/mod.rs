@@ -16,6 +16,7 @@ mod write;
 
 pub use read::read;
 pub use solution::{Solution, read_solution, write_with_solution};
+pub(super) use source::guard;
 pub use write::{write, write_global, write_local};
 
 use crate::solve::local::{GlobalProblem, LocalProblem, Multipliers};

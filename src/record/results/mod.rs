@@ -8,6 +8,7 @@
 //! /VTKHDF      the grains' view, for ParaView             contacts.vtkhdf, bodies.vtkhdf: links to the others
 //! ```
 
+pub mod state;
 mod store;
 mod view;
 

@@ -1,4 +1,4 @@
-//! The only file that knows the HDF5 crate: growing datasets through its SWMR writer, whose files can
+//! The only file of this folder, with `state.rs`, that knows the HDF5 crate: growing datasets through its SWMR writer, whose files can
 //! be read up to the last flush after a crash.
 
 use hdf5::swmr::SwmrFileWriter;

@@ -12,7 +12,7 @@ use crate::scene::source::{Fault, InputError};
 const MOST_GRAINS: usize = 10_000_000;
 
 /// A grain to be: place, radius, material, density, velocity, spin, and where the case has it.
-type Seed<S> = (
+pub(super) type Seed<S> = (
     <S as Space>::Vector,
     f64,
     u16,
@@ -75,24 +75,9 @@ impl<S: Dimensional> Builder<'_, S> {
                         );
                     }
                     for (name, corner) in [("low", low), ("high", high)] {
-                        let path = format!("{here}.{name}");
-                        self.vector(&path, corner)?;
-                        if corner.is_empty() {
-                            return Err(self.source.locate(
-                                Fault::new(path, "a corner of the box is empty")
-                                    .expected(format!("{} numbers", S::D)),
-                            ));
-                        }
+                        self.corner(&format!("{here}.{name}"), corner)?;
                     }
-                    if *count > MOST_GRAINS {
-                        return Err(self.source.locate(
-                            Fault::new(
-                                format!("{here}.count"),
-                                format!("{count} grains are too many"),
-                            )
-                            .expected(format!("at most {MOST_GRAINS}")),
-                        ));
-                    }
+                    self.few_enough(&format!("{here}.count"), *count)?;
                     let periodic = self.shapes.periodic.period[0].is_some();
                     let list =
                         sample::lattice(S::D, periodic, *count, *radius, low, high, self.case.seed);
@@ -139,6 +124,9 @@ impl<S: Dimensional> Builder<'_, S> {
                         }
                     }
                 }
+                GrainSpec::Deposit(spec) => found.extend(self.deposit(k, spec)?),
+                GrainSpec::Csv(spec) => found.extend(self.grains_of_csv(k, spec)?),
+                GrainSpec::State(spec) => found.extend(self.grains_of_run(k, spec)?),
             }
         }
         // Neighbours in space become neighbours in memory.
@@ -165,6 +153,26 @@ impl<S: Dimensional> Builder<'_, S> {
             });
         }
         Ok(())
+    }
+
+    /// A corner of a box; it must be there.
+    pub(super) fn corner(&self, path: &str, corner: &[f64]) -> Result<S::Vector, InputError> {
+        if corner.is_empty() {
+            return Err(self.source.locate(
+                Fault::new(path, "a corner of the box is empty")
+                    .expected(format!("{} numbers", S::D)),
+            ));
+        }
+        self.vector(path, corner)
+    }
+
+    pub(super) fn few_enough(&self, path: &str, count: usize) -> Result<(), InputError> {
+        if count <= MOST_GRAINS {
+            return Ok(());
+        }
+        let fault = Fault::new(path, format!("{count} grains are too many"));
+        let fault = fault.expected(format!("at most {MOST_GRAINS}"));
+        Err(self.source.locate(fault))
     }
 
     fn add_wall(&mut self, name: String, at: S::Vector, shape: Box<dyn Surface<S>>, material: u16) {

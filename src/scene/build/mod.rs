@@ -2,6 +2,7 @@
 
 mod first_body;
 mod grains;
+mod samples;
 mod surface;
 
 pub use surface::Dimensional;
@@ -51,6 +52,8 @@ pub struct Built<S: Space> {
     pub materials: Vec<(String, String)>,
     /// The body under test and the names of the driven bodies, in their order.
     pub names: Vec<String>,
+    /// What samples that were made at random, or read, turned out to be: one line each.
+    pub samples: Vec<String>,
 }
 
 /// Reads a case and applies `--set`s.
@@ -103,6 +106,7 @@ impl Loaded {
                 .collect(),
             files: BTreeMap::new(),
             origins: Vec::new(),
+            samples: Vec::new(),
             bodies: Bodies::default(),
             shapes: Shapes {
                 balls: Vec::new(),
@@ -124,11 +128,13 @@ impl Loaded {
             .iter()
             .map(|d| d.name.clone())
             .collect();
+        let samples = std::mem::take(&mut builder.samples);
         let simulation = builder.finish(laws.interfaces, laws.table)?;
         Ok(Built {
             simulation,
             materials,
             names,
+            samples,
         })
     }
 
@@ -184,6 +190,8 @@ struct Builder<'a, S: Space> {
     shapes: Shapes<S>,
     /// Where the case writes each body: the place in `grains`, in that list, or in `bodies`.
     origins: Vec<Origin>,
+    /// See [`Built::samples`].
+    samples: Vec<String>,
 }
 
 /// The place of a body in the case.

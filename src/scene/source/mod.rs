@@ -48,38 +48,10 @@ impl Source {
     /// Reads a file.
     ///
     /// # Errors
-    /// A file that is missing, unreadable, a folder, too large, empty, or not UTF-8.
+    /// See [`read_text`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, InputError> {
         let path = path.as_ref();
-        let refused = |message: String| InputError::about(path.display(), message);
-        let unreadable = |error: std::io::Error| InputError::file(path, &error);
-        let file = std::fs::File::open(path).map_err(unreadable)?;
-        if file.metadata().map_err(unreadable)?.is_dir() {
-            return Err(refused("cannot be read: it is a folder, not a file".into()));
-        }
-        // The length a file declares is not to be trusted: a device has none.
-        let mut bytes = Vec::new();
-        let mut limited = file.take(MAX_BYTES + 1);
-        limited.read_to_end(&mut bytes).map_err(unreadable)?;
-        if bytes.len() as u64 > MAX_BYTES {
-            let most = MAX_BYTES >> 20;
-            return Err(refused(format!("is larger than {most} MiB")));
-        }
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let valid = error.utf8_error().valid_up_to();
-            let before = String::from_utf8_lossy(&error.as_bytes()[..valid]).into_owned();
-            InputError::at(
-                &path.display().to_string(),
-                &before,
-                valid..valid,
-                "is not UTF-8 text",
-            )
-            .help("save the file as UTF-8")
-        })?;
-        if text.trim_start_matches('\u{feff}').trim().is_empty() {
-            return Err(refused("is empty".into()));
-        }
-        Ok(Self::from_text(path, text))
+        Ok(Self::from_text(path, read_text(path)?))
     }
 
     /// Takes a text under a name, which errors give as the file.
@@ -214,6 +186,42 @@ impl Source {
         let message = format!("values are nested more than {MAX_DEPTH} levels deep");
         Some(self.error_in(&(at..at + 1), message))
     }
+}
+
+/// Reads a text file.
+///
+/// # Errors
+/// A file that is missing, unreadable, a folder, too large, empty, or not UTF-8.
+pub fn read_text(path: &Path) -> Result<String, InputError> {
+    let refused = |message: String| InputError::about(path.display(), message);
+    let unreadable = |error: std::io::Error| InputError::file(path, &error);
+    let file = std::fs::File::open(path).map_err(unreadable)?;
+    if file.metadata().map_err(unreadable)?.is_dir() {
+        return Err(refused("cannot be read: it is a folder, not a file".into()));
+    }
+    // The length a file declares is not to be trusted: a device has none.
+    let mut bytes = Vec::new();
+    let mut limited = file.take(MAX_BYTES + 1);
+    limited.read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        let most = MAX_BYTES >> 20;
+        return Err(refused(format!("is larger than {most} MiB")));
+    }
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let before = String::from_utf8_lossy(&error.as_bytes()[..valid]).into_owned();
+        InputError::at(
+            &path.display().to_string(),
+            &before,
+            valid..valid,
+            "is not UTF-8 text",
+        )
+        .help("save the file as UTF-8")
+    })?;
+    if text.trim_start_matches('\u{feff}').trim().is_empty() {
+        return Err(refused("is empty".into()));
+    }
+    Ok(text)
 }
 
 /// Whether `one` was found further into the text than `other`.

@@ -28,7 +28,8 @@ impl<S: Space> PlainRow<S> {
             bodies: contact.bodies,
             n,
             pn: n.dot(&contact.impulse),
-            pt: S::tangential(&n, &contact.impulse),
+            // Without friction there is no tangential impulse, now or ever.
+            pt: grip::<S>(&n, &contact.impulse, contact.friction),
             shift: contact.shift_n,
             iwn: inverse(w_n),
             iwt: inverse_along(w_t, w_n),
@@ -43,6 +44,15 @@ impl<S: Space> PlainRow<S> {
     }
 }
 
+/// The tangential part of an impulse to begin with; none without friction.
+fn grip<S: Space>(n: &S::Vector, impulse: &S::Vector, mu: f64) -> S::Tangent {
+    if mu == 0.0 {
+        S::Tangent::null()
+    } else {
+        S::tangential(n, impulse)
+    }
+}
+
 impl<S: Space> Row<S> for PlainRow<S> {
     #[inline(always)]
     fn bodies(&self) -> [u32; 2] {
@@ -51,6 +61,15 @@ impl<S: Space> Row<S> for PlainRow<S> {
 
     #[inline(always)]
     fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64) {
+        if self.mu == 0.0 {
+            let un = self.n.dot(&(a.v - b.v));
+            let pn = greatest(self.pn - (un + self.shift) * (self.iwn * relaxation), 0.0);
+            let impulse = self.n * (pn - self.pn);
+            a.v += impulse * a.im;
+            b.v -= impulse * b.im;
+            self.pn = pn;
+            return;
+        }
         let (un, ut) = relative(&self.n, a, b);
         let pn = greatest(self.pn - (un + self.shift) * (self.iwn * relaxation), 0.0);
         let pt = (self.pt - ut * (self.iwt * relaxation)).limited(self.mu * pn);
@@ -73,7 +92,7 @@ impl<S: Space> Row<S> for PlainRow<S> {
 
     fn set(&mut self, impulse: &S::Vector) {
         self.pn = self.n.dot(impulse);
-        self.pt = S::tangential(&self.n, impulse);
+        self.pt = grip::<S>(&self.n, impulse, self.mu);
     }
 
     fn normal(&self) -> f64 {

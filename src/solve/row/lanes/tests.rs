@@ -37,6 +37,14 @@ fn lines<S: Space>(count: u32) -> Vec<Line<S>> {
     (0..count).map(line).collect()
 }
 
+/// The same without friction.
+fn smooth<S: Space>(pair: u32) -> ContactForm<S> {
+    ContactForm {
+        friction: 0.0,
+        ..contact(pair)
+    }
+}
+
 /// A contact of every pair of bodies, some of which stick, some slide and some open.
 fn contact<S: Space>(pair: u32) -> ContactForm<S> {
     let mut normal = S::Vector::null();
@@ -161,6 +169,8 @@ fn same<S: Space, R: Row<S>>(
 fn lanes_give_the_bits_of_single_contacts() {
     same(contact::<Plane>, PlainRow::new);
     same(contact::<Solid>, PlainRow::new);
+    same(smooth::<Plane>, PlainRow::new);
+    same(smooth::<Solid>, PlainRow::new);
     same(bonded::<Plane>, FullRow::new);
     same(bonded::<Solid>, FullRow::new);
 }

@@ -162,9 +162,20 @@ impl<F: Frame> Wide for PlainRow<F> {
         // SAFETY: as asked for.
         unsafe {
             let r = Plain::<F, U>::new(rows);
+            let zero = Lanes::all(0.0);
+            // One unknown a contact where nothing rubs.
+            if r.mu.above(zero).bits() == [0; U] {
+                let un = r.n.dot(a.v - b.v);
+                let pn = (r.pn - (un + r.shift) * (r.iwn * relaxation)).max(zero);
+                let impulse = r.n * (pn - r.pn);
+                a.v = a.v + impulse * a.im;
+                b.v = b.v - impulse * b.im;
+                keep::<_, F, U>(rows, &r.n, pn, &r.pt);
+                return;
+            }
             let (un, ut) = relative(&r.n, a, b);
             let pn = r.pn - (un + r.shift) * (r.iwn * relaxation);
-            let pn = pn.max(Lanes::all(0.0));
+            let pn = pn.max(zero);
             let pt = (r.pt - ut * (r.iwt * relaxation)).limited(r.mu * pn);
             push(&r.n, pn - r.pn, pt - r.pt, a, b);
             keep::<_, F, U>(rows, &r.n, pn, &pt);

@@ -1,0 +1,270 @@
+//! Cost of a step and memory against the number of grains.
+//!
+//! `cargo run --release --example scale [-- MOST]` settles layers of disks (20 deep) and spheres (10 deep), as wide
+//! as their number asks, from 1,000 to MOST grains (1,000,000), each in a process of its own; prints the table of
+//! `docs/performance.md` and draws `docs/figures/scale.png`. The depth stays the same, and with it the number of
+//! sweeps that a load needs to cross the layer.
+
+use fretwork::geometry::grid;
+use fretwork::geometry::space::{Plane, Solid};
+use fretwork::laws::SearchPath;
+use fretwork::report::{Axis, Chart, Series, draw_panels};
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::source::Source;
+use fretwork::scene::{Loaded, case::Case};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+/// What one run measured.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    grains: f64,
+    contacts: f64,
+    /// Of the fastest step at rest (s).
+    step: f64,
+    /// Of it in the detection, the laws and the solver (s).
+    parts: [f64; 3],
+    /// Sweeps a step.
+    sweeps: f64,
+    /// To make the neighbour list anew (s).
+    list: f64,
+    /// Steps at rest in which it was made anew, of all.
+    rebuilt: f64,
+    /// Peak of the memory (bytes).
+    memory: f64,
+}
+
+impl Row {
+    const N: usize = 10;
+
+    fn numbers(&self) -> [f64; Self::N] {
+        let [detect, laws, solve] = self.parts;
+        [
+            self.grains,
+            self.contacts,
+            self.step,
+            detect,
+            laws,
+            solve,
+            self.sweeps,
+            self.list,
+            self.rebuilt,
+            self.memory,
+        ]
+    }
+
+    fn of(n: &[f64]) -> Option<Self> {
+        let n: &[f64; Self::N] = n.try_into().ok()?;
+        Some(Self {
+            grains: n[0],
+            contacts: n[1],
+            step: n[2],
+            parts: [n[3], n[4], n[5]],
+            sweeps: n[6],
+            list: n[7],
+            rebuilt: n[8],
+            memory: n[9],
+        })
+    }
+
+    /// Time of a step a contact (ns).
+    fn each(&self) -> f64 {
+        self.step / self.contacts * 1e9
+    }
+}
+
+type Failure = Box<dyn std::error::Error>;
+
+fn main() -> Result<(), Failure> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    match &args[..] {
+        [one, dimension, count] if one == "one" => {
+            let count = count.parse()?;
+            let row = if dimension == "2" {
+                measure::<Plane>(count)?
+            } else {
+                measure::<Solid>(count)?
+            };
+            let numbers = row.numbers().map(|x| format!("{x:e}"));
+            println!("{}", numbers.join(" "));
+            Ok(())
+        }
+        [] => table(1_000_000),
+        [most] => table(most.parse()?),
+        _ => Err("give the largest number of grains, or nothing".into()),
+    }
+}
+
+fn table(most: usize) -> Result<(), Failure> {
+    println!(
+        "| grains | contacts | step | a contact | sweeps | detection | laws | solver | list made anew | in steps | memory | a grain |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
+    let mut charts = Vec::new();
+    let mut all = Vec::new();
+    for (dimension, name) in [("2", "disks"), ("3", "spheres")] {
+        let mut rows = Vec::new();
+        let mut count = 1_000;
+        while count <= most {
+            for n in [count, 3 * count].into_iter().filter(|n| *n <= most) {
+                let row = apart(dimension, n)?;
+                print(name, &row);
+                rows.push(row);
+            }
+            count *= 10;
+        }
+        all.push((name, rows));
+    }
+    let mut figure = |title: &str, y: Axis, value: &dyn Fn(&Row) -> f64| {
+        let mut chart = Chart::new(title, Axis::new("grains", "").log(), y);
+        chart.size_px = (660, 450);
+        for (name, rows) in &all {
+            let points = rows.iter().map(|r| (r.grains, value(r))).collect();
+            chart = chart.with(Series::new(*name, points));
+        }
+        charts.push(chart);
+    };
+    figure(
+        "Time of a step at rest",
+        Axis::new("time", "s").log(),
+        &|r| r.step,
+    );
+    figure(
+        "Memory, at its peak",
+        Axis::new("memory", "bytes").log(),
+        &|r| r.memory,
+    );
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures/scale.png");
+    draw_panels(&charts, 2, &path)?;
+    println!("drawn to docs/figures/scale.png");
+    Ok(())
+}
+
+fn print(name: &str, r: &Row) {
+    let share = |part: f64| 100.0 * part / r.step;
+    println!(
+        "| {:.0} {name} | {:.0} | {:.3} ms | {:.0} ns | {:.1} | {:.0} % | {:.0} % | {:.0} % | {:.2} ms | {:.0} % | {:.0} MB | {:.0} B |",
+        r.grains,
+        r.contacts,
+        1e3 * r.step,
+        r.each(),
+        r.sweeps,
+        share(r.parts[0]),
+        share(r.parts[1]),
+        share(r.parts[2]),
+        1e3 * r.list,
+        100.0 * r.rebuilt,
+        r.memory / 1e6,
+        r.memory / r.grains
+    );
+}
+
+/// Measures in a process of its own, whose peak of memory is that of this size.
+fn apart(dimension: &str, count: usize) -> Result<Row, Failure> {
+    let output = Command::new(std::env::current_exe()?)
+        .args(["one", dimension, &count.to_string()])
+        .output()?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let numbers: Vec<f64> = text
+        .split_whitespace()
+        .filter_map(|w| w.parse().ok())
+        .collect();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    Row::of(&numbers).ok_or_else(|| format!("{count} grains: {said}").into())
+}
+
+const RADIUS: f64 = 1e-3;
+
+/// A layer of so many grains above a floor, periodic along the others.
+fn layer<S: Dimensional>(count: usize) -> String {
+    let wide = 2.0 * RADIUS * (1.0 + 2e-6);
+    let (period, low, high, up) = if S::D == 2 {
+        let width = (count as f64 / 20.0).ceil() * wide;
+        let period = format!("(x: {width:e})");
+        let high = format!("[{width:e}, {:e}]", 25.0 * wide);
+        (period, "[0.0, 0.0]".to_owned(), high, "0.0, 1.0")
+    } else {
+        let side = (count as f64 / 10.0).sqrt().ceil() * wide;
+        let period = format!("(x: {side:e}, y: {side:e})");
+        let high = format!("[{side:e}, {side:e}, {:e}]", 12.0 * wide);
+        (period, "[0.0, 0.0, 0.0]".to_owned(), high, "0.0, 0.0, 1.0")
+    };
+    let gravity = up.replace("1.0", "-9.81");
+    format!(
+        r#"(
+    name: "a layer", dimension: {}, time: (step: 1e-4, end: 1.0), gravity: [{gravity}], periodic: {period},
+    materials: {{"grain": "glass_bead"}},
+    interfaces: [(name: "grains", between: ("grain", "grain"), contact: "coulomb", parameters: (contact: {{"mu": 0.3}}))],
+    bodies: [(name: "floor", material: "grain", shapes: [HalfSpace(normal: [{up}])])],
+    grains: [Lattice(material: "grain", count: {count}, radius: ({RADIUS:e}, {RADIUS:e}), low: {low}, high: {high})],
+)"#,
+        S::D
+    )
+}
+
+fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("cases/layer.ron");
+    let source = Source::from_text(&path, layer::<S>(count));
+    let case: Case = source.parse()?;
+    let loaded = Loaded { source, case, path };
+    let mut s = loaded.build_in::<S>(&SearchPath::new(&[]))?.simulation;
+    for _ in 0..20 {
+        s.step()?;
+    }
+    // As many steps as give some ten million updates of a contact.
+    let steps = (3_000_000 / count).clamp(8, 200);
+    let (mut parts, mut step) = ([0.0; 3], f64::INFINITY);
+    let (mut sweeps, rebuilds) = (0.0, s.network.rebuilds);
+    for _ in 0..steps {
+        let clock = Instant::now();
+        let report = s.step()?;
+        let time = clock.elapsed().as_secs_f64();
+        // The fastest step: what else the machine does counts as little as it can.
+        if time < step {
+            let t = &report.timing;
+            (step, parts) = (time, [t.detect, t.laws, t.solve].map(|t| t.as_secs_f64()));
+        }
+        sweeps += f64::from(report.solver.iterations) / steps as f64;
+    }
+    let memory = peak();
+    let rebuilt = (s.network.rebuilds - rebuilds) as f64 / steps as f64;
+    let balls = &s.shapes.balls;
+    let radii: Vec<f64> = balls.iter().map(|b| b.radius).collect();
+    let centres: Vec<S::Vector> = balls
+        .iter()
+        .map(|b| s.bodies.position[b.body as usize])
+        .collect();
+    let reach = s.network.alert + s.network.skin;
+    let mut list = f64::INFINITY;
+    for _ in 0..5 {
+        let clock = Instant::now();
+        let all = |_, _| true;
+        std::hint::black_box(grid::pairs(
+            &centres,
+            &radii,
+            reach,
+            &s.shapes.periodic,
+            all,
+        ));
+        list = list.min(clock.elapsed().as_secs_f64());
+    }
+    Ok(Row {
+        grains: balls.len() as f64,
+        contacts: s.network.contacts.len() as f64,
+        step,
+        parts,
+        sweeps,
+        list,
+        rebuilt,
+        memory,
+    })
+}
+
+/// Peak of the memory of this process (bytes); none where the system does not tell.
+fn peak() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
+    let number = line.and_then(|l| l.split_whitespace().next()?.parse().ok());
+    number.map_or(f64::NAN, |k: f64| 1024.0 * k)
+}

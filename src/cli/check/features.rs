@@ -1,0 +1,211 @@
+//! What a scene has switched on and what is off, and what a grain and a contact take in memory.
+
+use crate::bodies::Bodies;
+use crate::contact::{Bond, Contact};
+use crate::geometry::shape::Ball;
+use crate::geometry::space::{Space, VectorLike};
+use crate::laws::Interface;
+use crate::laws::demand::{Asked, Demand};
+use crate::record::views;
+use crate::scene::build::Built;
+use crate::scene::case::Case;
+use crate::scene::methods::Demands;
+use crate::solve::{ContactForm, Problem};
+use crate::step::Simulation;
+use crate::step::coupling::Coupling;
+
+/// Lines on what is on and what is off.
+#[derive(Default)]
+pub struct Features {
+    pub on: Vec<String>,
+    pub off: Vec<String>,
+}
+
+impl Features {
+    /// Those of a scene.
+    pub fn of<S: Space>(case: &Case, built: &Built<S>) -> Self {
+        let s = &built.simulation;
+        let mut out = Self::default();
+        out.motion(s);
+        out.laws(s);
+        out.scheme(case, s);
+        out.output(case, S::D);
+        out
+    }
+
+    fn say(&mut self, name: &str, on: Option<String>) {
+        match on {
+            Some(text) => self.on.push(format!("{name}: {text}")),
+            None => self.off.push(name.to_owned()),
+        }
+    }
+
+    fn motion<S: Space>(&mut self, s: &Simulation<S>) {
+        let text = format!("{} velocities, {} spins a body", S::D, S::Spin::N);
+        self.say("dimensions", Some(text));
+        let turning = s.bodies.inverse_inertia.iter().filter(|i| **i > 0.0);
+        let turning = turning.count();
+        // Only what acts beside the centre turns a grain.
+        let levers = s.network.contacts.iter().any(|c| !c.central);
+        let turned = levers || asks(s, |d| d.friction) || s.laws.iter().any(Interface::opens);
+        let text = format!("{turning} bodies turn freely");
+        self.say("rotation", (turned && turning > 0).then_some(text));
+        let axes: Vec<&str> = ["x", "y", "z"]
+            .into_iter()
+            .zip(s.shapes.periodic.period)
+            .filter_map(|(name, period)| period.map(|_| name))
+            .collect();
+        self.say(
+            "periodic",
+            (!axes.is_empty()).then(|| format!("along {}", axes.join(", "))),
+        );
+        let g = s.gravity.norm();
+        self.say("gravity", (g > 0.0).then(|| format!("{g:.3e} m/s^2")));
+    }
+
+    fn laws<S: Space>(&mut self, s: &Simulation<S>) {
+        let demands = Demands::of(s);
+        let names = |which: fn(&Demand) -> Asked| {
+            let each = demands.each().filter_map(|(name, demand)| {
+                let asked = demand.map_or(Asked::Unseen, which);
+                let sure = if asked == Asked::Unseen { "?" } else { "" };
+                (asked != Asked::Never).then(|| format!("{name}{sure}"))
+            });
+            let each: Vec<String> = each.collect();
+            (!each.is_empty()).then(|| format!("in {}", each.join(", ")))
+        };
+        self.say("friction", names(|d| d.friction));
+        self.say("friction against rotation", names(|d| d.rotation));
+        let laws = |text: &dyn Fn(&Interface) -> Option<String>| {
+            let each = s.laws.iter().filter_map(|law| Some((law, text(law)?)));
+            let each: Vec<String> = each.map(|(l, t)| format!("in {}, {t}", l.name)).collect();
+            (!each.is_empty()).then(|| each.join("; "))
+        };
+        let named = |slot: &dyn Fn(&Interface) -> Option<String>| laws(slot);
+        let bonding = |law: &Interface| law.bonding_time().is_some() || law.healing.is_some();
+        self.say(
+            "bonds",
+            laws(&|law| {
+                let turn = if law.rotates() {
+                    size_of::<S::Spin>()
+                } else {
+                    0
+                };
+                let cohesion = law
+                    .cohesion
+                    .as_ref()
+                    .filter(|_| law.opens() && bonding(law))?;
+                let bytes = size_of::<Bond<S>>() + turn;
+                Some(format!("{}, {bytes} bytes a bond", cohesion.plugin.name))
+            }),
+        );
+        self.say(
+            "attraction without bonds",
+            named(&|law| {
+                let cohesion = law.cohesion.as_ref().filter(|_| !law.opens());
+                cohesion.map(|l| l.plugin.name.clone())
+            }),
+        );
+        self.say(
+            "damage",
+            named(&|law| {
+                let cohesion = law.cohesion.as_ref().filter(|_| law.damages());
+                let by = law.damage.as_ref().or(cohesion);
+                by.map(|l| l.plugin.name.clone())
+            }),
+        );
+        self.say(
+            "healing",
+            laws(&|law| law.healing.map(|time| format!("after {time:e} s"))),
+        );
+        self.say(
+            "wear",
+            named(&|law| law.wear.as_ref().map(|l| l.plugin.name.clone())),
+        );
+        self.say(
+            "history variables",
+            laws(&|law| {
+                let n = law.variables();
+                let whose = if law.variables_of_contacts() > 0 {
+                    "contact"
+                } else {
+                    "bond"
+                };
+                (n > 0).then(|| format!("{n}, {} bytes a {whose}", 8 * n))
+            }),
+        );
+    }
+
+    fn scheme<S: Space>(&mut self, case: &Case, s: &Simulation<S>) {
+        let share = s.correction;
+        self.say(
+            "position correction",
+            (share > 0.0).then(|| format!("{share} of a penetration a step")),
+        );
+        let implicit = match s.coupling {
+            Coupling::Implicit { tolerance, .. } => Some(format!("to {tolerance:e}")),
+            Coupling::Explicit => None,
+        };
+        self.say("implicit coupling", implicit);
+        let scaling = case.inertia_scaling;
+        self.say(
+            "inertia scaling",
+            (scaling != 1.0).then(|| format!("{scaling:e}")),
+        );
+        let body = case.friction.as_ref().map(|f| f.body.clone());
+        self.say("friction test", body);
+        let walls = case.biaxial.as_ref().map(|b| format!("{:?}", b.axial));
+        self.say("biaxial test", walls);
+    }
+
+    fn output(&mut self, case: &Case, dimension: usize) {
+        let o = &case.output;
+        self.say("statistics", Some(format!("every {} steps", o.every)));
+        self.say(
+            "frames",
+            (o.frames > 0).then(|| format!("{} of {} pixels", o.frames, o.width)),
+        );
+        let [grain, contact] = views::bytes(dimension);
+        self.say(
+            "views",
+            (o.views > 0)
+                .then(|| format!("{}, {grain} bytes a grain, {contact} a contact", o.views)),
+        );
+        self.say("figures", o.figures.then(|| "at the end".to_owned()));
+        let every = format!("every {} steps", o.fclib);
+        self.say("FCLIB problems", (o.fclib > 0).then_some(every));
+    }
+}
+
+fn asks<S: Space>(s: &Simulation<S>, which: fn(&Demand) -> Asked) -> bool {
+    let demands = Demands::of(s);
+    let mut each = demands.each();
+    each.any(|(_, d)| d.is_none_or(|d| which(d) != Asked::Never))
+}
+
+/// Bytes that a grain and a contact take, from the types that hold them.
+pub fn memory<S: Space>(s: &Simulation<S>) -> [String; 2] {
+    let (state, line) = (Bodies::<S>::BYTES, Problem::<S>::BYTES_A_BODY);
+    let kept = state + size_of::<Ball<S>>() + size_of::<S::Vector>();
+    let [plain, full, general] = Problem::<S>::BYTES_A_CONTACT;
+    let bonded = s.laws.iter().any(|law| law.cohesion.is_some());
+    let central = s.network.contacts.iter().all(|c| c.central);
+    let mut rows = vec![if bonded {
+        format!("{full} bytes in the sweep")
+    } else {
+        format!("{plain} bytes in the sweep")
+    }];
+    if !central {
+        rows.push(format!("{general} where it has levers"));
+    }
+    // The contacts of this step and of the last, their forms, and a pair of the neighbour list.
+    let beside =
+        2 * size_of::<Contact<S>>() + size_of::<ContactForm<S>>() + size_of::<(u32, u32)>();
+    [
+        format!(
+            "{} bytes: {kept} of state, {line} in the solver",
+            kept + line
+        ),
+        format!("{}, {beside} of geometry and memory", rows.join(", ")),
+    ]
+}

@@ -1,0 +1,306 @@
+//! Grains that are made at random or read: from tables, grading curves and other runs.
+
+use fretwork::geometry::space::{Plane, Solid, VectorLike};
+use fretwork::laws::SearchPath;
+use fretwork::scene::build::{Built, Dimensional};
+use fretwork::scene::load;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A case of a dimension with one entry of `grains`.
+fn case(dimension: usize, grains: &str) -> String {
+    let (up, zeros) = if dimension == 2 {
+        ("0.0, 1.0", "0.0, -9.81")
+    } else {
+        ("0.0, 0.0, 1.0", "0.0, 0.0, -9.81")
+    };
+    format!(
+        r#"(
+    name: "a sample", dimension: {dimension}, seed: 4,
+    time: (step: 5e-5, end: 0.02), gravity: [{zeros}], periodic: (x: 0.2),
+    materials: {{"grain": "stone"}},
+    interfaces: [(name: "grains", between: ("grain", "grain"), contact: "coulomb")],
+    bodies: [(name: "floor", material: "grain", shapes: [HalfSpace(normal: [{up}])])],
+    grains: [{grains}],
+    output: (frames: 0, views: 4, figures: false),
+)"#
+    )
+}
+
+const STONE: &str = r#"(doc: "stone", density: (value: 2600.0, unit: "kg/m^3", source: "quartz"))"#;
+
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let name = format!("fretwork-samples-{}-{name}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(folder.join("materials")).unwrap();
+        let folder = Self(folder);
+        folder.write("materials/stone.ron", STONE);
+        folder
+    }
+
+    fn write(&self, name: &str, text: &str) -> PathBuf {
+        let path = self.0.join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    }
+
+    fn build<S: Dimensional>(&self, grains: &str) -> Result<Built<S>, String> {
+        let path = self.write("case.ron", &case(S::D, grains));
+        let loaded = load(&path, &[]).map_err(|e| e.to_string())?;
+        let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+        built.map_err(|e| e.to_string())
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        std::fs::remove_dir_all(&self.0).ok();
+    }
+}
+
+fn refusal<T>(result: Result<T, String>) -> String {
+    match result {
+        Ok(_) => panic!("it was taken"),
+        Err(e) => e,
+    }
+}
+
+const DEPOSIT: &str = r#"Deposit(material: "grain", count: 300, low: [0.0, 0.0], high: [0.2, 0.2],
+    sizes: PowerLaw(exponent: 2.5, radius: (2e-3, 8e-3), by: Mass))"#;
+
+#[test]
+fn a_deposit_is_what_the_case_asks_for() {
+    let folder = Folder::new("deposit");
+    let built = folder
+        .build::<Plane>(DEPOSIT)
+        .unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(built.simulation.shapes.balls.len(), 300);
+    assert!(built.samples[0].contains("300 grains placed at random"));
+    let none = folder.build::<Plane>(&DEPOSIT.replace("count: 300", "count: 30000"));
+    let said = refusal(none);
+    assert!(said.contains("of 30000 grains found room"), "{said}");
+    for (old, new, says) in [
+        (
+            "(2e-3, 8e-3)",
+            "(8e-3, 1e-3)",
+            "the smallest radius comes first",
+        ),
+        ("(2e-3, 8e-3)", "(0.0, 1e-3)", "a radius must be positive"),
+        ("exponent: 2.5", "exponent: 1e9", "between -20 and 20"),
+        ("[0.2, 0.2]", "[0.2, 0.0]", "greater than that of `low`"),
+        ("[0.2, 0.2]", "[0.2]", "2 numbers"),
+    ] {
+        let said = refusal(folder.build::<Plane>(&DEPOSIT.replace(old, new)));
+        assert!(said.contains(says), "{said}");
+    }
+}
+
+#[test]
+fn a_grading_curve_gives_the_sizes() {
+    let folder = Folder::new("sieve");
+    let grains = r#"Deposit(material: "grain", count: 2000, low: [0.0, 0.0, 0.0], high: [0.2, 0.2, 0.2],
+        sizes: Sieve(file: "curve.csv"))"#;
+    folder.write("curve.csv", "size,passing\n4e-3,0\n8e-3,0.5\n16e-3,1\n");
+    let built = folder
+        .build::<Solid>(grains)
+        .unwrap_or_else(|e| panic!("{e}"));
+    let cubes = built
+        .simulation
+        .shapes
+        .balls
+        .iter()
+        .map(|b| (b.radius, b.radius.powi(3)));
+    let (below, total) = cubes.fold((0.0, 0.0), |(b, t), (r, c)| {
+        (if r <= 4e-3 { b + c } else { b }, t + c)
+    });
+    // By no more than the heaviest grain, twice for the total.
+    assert!((below / total - 0.5_f64).abs() < 2.0 * 8e-3f64.powi(3) / total);
+    for (curve, line, says) in [
+        ("size,passing\n4e-3,0.1\n8e-3,1\n", ":2:", "must be 0"),
+        ("size,passing\n4e-3,0\n8e-3,0.9\n", ":3:", "must be 1"),
+        ("size,passing\n4e-3,0\n4e-3,1\n", ":3:", "sizes must rise"),
+        (
+            "size,passing\n4e-3,0\n5e-3,50\n9e-3,100\n",
+            ":3:",
+            "divide percentages by 100",
+        ),
+        (
+            "size,passing\n1e-3,0\n4e-3,0.5\n5e-3,0.2\n9e-3,1\n",
+            ":4:",
+            "must not fall",
+        ),
+        (
+            "size,pasing\n4e-3,0\n",
+            ":1:",
+            "no use for a column `pasing`",
+        ),
+    ] {
+        folder.write("curve.csv", curve);
+        let said = refusal(folder.build::<Solid>(grains));
+        assert!(said.contains(says) && said.contains(line), "{said}");
+    }
+}
+
+#[test]
+fn a_table_gives_grains() {
+    let folder = Folder::new("csv");
+    let grains = r#"Csv(file: "grains.csv", material: "grain")"#;
+    folder.write(
+        "grains.csv",
+        "radius,x,y,spin,velocity_y\n1e-2,0.05,0.01,3,-1\n2e-2,0.1,0.02,0,0\n",
+    );
+    let built = folder
+        .build::<Plane>(grains)
+        .unwrap_or_else(|e| panic!("{e}"));
+    let (bodies, balls) = (&built.simulation.bodies, &built.simulation.shapes.balls);
+    assert_eq!((balls[0].radius, balls[1].radius), (1e-2, 2e-2));
+    assert_eq!(bodies.position[0].padded(), [0.05, 0.01, 0.0]);
+    assert_eq!((bodies.velocity[0].y, bodies.spin[0].x), (-1.0, 3.0));
+    for (table, line, says) in [
+        (
+            "x,y,radius\n0.1,0.1,-1e-3\n",
+            ":2:",
+            "a radius must be positive",
+        ),
+        (
+            "x,y,radius\n0.1,0.1,1e-3\n0.1,1e-3\n",
+            ":3:",
+            "2 values and the header 3 columns",
+        ),
+        ("x,y,radius\n0.1,abc,1e-3\n", ":2:", "`abc` of `y`"),
+        (
+            "x,y,z,radius\n0.1,0.1,0.1,1e-3\n",
+            ":1:",
+            "no use for a column `z`",
+        ),
+    ] {
+        folder.write("grains.csv", table);
+        let said = refusal(folder.build::<Plane>(grains));
+        assert!(said.contains(says) && said.contains(line), "{said}");
+    }
+    folder.write("grains.csv", "x,y,radius\n0.1,0.1,1e-2\n0.105,0.1,1e-2\n");
+    assert!(refusal(folder.build::<Plane>(grains)).contains("overlap by"));
+    assert!(
+        refusal(folder.build::<Plane>(&grains.replace("grains.", "grain.")))
+            .contains("no such file")
+    );
+}
+
+/// Positions, velocities and spins of a run's end are those that another case begins with, bit by bit.
+fn round_trip<S: Dimensional>(name: &str, grains: &str) {
+    let folder = Folder::new(name);
+    let path = folder.write("first.ron", &case(S::D, grains));
+    let out = folder.0.join("out");
+    let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+        .args([
+            "run".as_ref(),
+            path.as_os_str(),
+            "--out".as_ref(),
+            out.as_os_str(),
+        ])
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    // The same run in this process.
+    let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let mut first = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let steps = |s: &mut fretwork::step::Simulation<S>, n: u32| {
+        for _ in 0..n {
+            s.step().unwrap_or_else(|e| panic!("{e}"));
+        }
+    };
+    steps(&mut first, 400);
+    let state = r#"State(results: "out", material: "grain")"#;
+    let second = folder.build::<S>(state).unwrap_or_else(|e| panic!("{e}"));
+    assert!(
+        second.samples[0].contains("state 4"),
+        "{}",
+        second.samples[0]
+    );
+    let all = |s: &fretwork::step::Simulation<S>| {
+        let mut all: Vec<Vec<u64>> = s
+            .shapes
+            .balls
+            .iter()
+            .map(|ball| {
+                let b = ball.body as usize;
+                let at = s.shapes.periodic.wrapped(s.bodies.position[b]).padded();
+                let (v, w) = (s.bodies.velocity[b].padded(), s.bodies.spin[b].padded());
+                let numbers = [at, v, w, [ball.radius, 0.0, 0.0]].concat();
+                // -0 is 0.
+                numbers.iter().map(|x| (x + 0.0).to_bits()).collect()
+            })
+            .collect();
+        all.sort_unstable();
+        all
+    };
+    assert_eq!(all(&first), all(&second.simulation));
+    assert!(first.bodies.spin.iter().any(|w| *w != S::Spin::null()));
+    // An earlier state, and one that is not there.
+    let number = |n: u32| state.replace(")", &format!(", frame: Number({n}))"));
+    let start = folder
+        .build::<S>(&number(0))
+        .unwrap_or_else(|e| panic!("{e}"));
+    assert_ne!(all(&first), all(&start.simulation));
+    let said = refusal(folder.build::<S>(&number(5)));
+    assert!(
+        said.contains("has the states 0 to 4, not number 5"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_state_of_another_run_goes_on_bit_by_bit() {
+    round_trip::<Plane>("plane", DEPOSIT);
+    let solid = r#"Deposit(material: "grain", count: 150, low: [0.0, 0.0, 0.0], high: [0.2, 0.1, 0.05],
+        sizes: Uniform(radius: (5e-3, 8e-3)))"#;
+    round_trip::<Solid>("solid", solid);
+}
+
+#[test]
+fn states_that_cannot_be_read_are_refused_with_a_sentence() {
+    let folder = Folder::new("damaged");
+    let state = |results: &Path| {
+        format!(
+            r#"State(results: "{}", material: "grain")"#,
+            results.display()
+        )
+    };
+    let missing = refusal(folder.build::<Plane>(&state(&folder.0.join("nowhere"))));
+    assert!(missing.contains("cannot read"), "{missing}");
+    let text = folder.write("text.h5", "no HDF5 at all");
+    let said = refusal(folder.build::<Plane>(&state(&text)));
+    assert!(said.contains("not a file of results"), "{said}");
+    let other = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fclib/gfc3d_OneContact.hdf5");
+    let said = refusal(folder.build::<Plane>(&state(&other)));
+    assert!(said.contains("no `/views/grains`"), "{said}");
+    // A file cut off at any place: a state or a sentence, never a panic.
+    let path = folder.write("first.ron", &case(2, DEPOSIT));
+    let out = folder.0.join("out");
+    let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+        .args([
+            "run".as_ref(),
+            path.as_os_str(),
+            "--out".as_ref(),
+            out.as_os_str(),
+        ])
+        .output()
+        .unwrap();
+    assert!(output.status.success());
+    let whole = std::fs::read(out.join("results.h5")).unwrap();
+    let cut = folder.0.join("cut.h5");
+    for part in 1..40 {
+        std::fs::write(&cut, &whole[..whole.len() * part / 40]).unwrap();
+        drop(folder.build::<Plane>(&state(&cut)));
+    }
+    let said = refusal(folder.build::<Solid>(&state(&out.join("results.h5"))));
+    assert!(said.contains("dimension 2"), "{said}");
+}
