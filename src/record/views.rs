@@ -159,7 +159,8 @@ fn bodies<S: Space>(s: &Simulation<S>) -> Part {
             corners.extend(corners.first().copied());
         }
         let first = part.points.len() as i64 / 3;
-        part.points.extend(corners.iter().flat_map(VectorLike::padded));
+        part.points
+            .extend(corners.iter().flat_map(VectorLike::padded));
         part.cells
             .push((first..first + corners.len() as i64).collect());
         push(&mut part, &[s.bodies.id[piece.body as usize] as f64]);

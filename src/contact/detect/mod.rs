@@ -7,8 +7,8 @@ use super::network::{Contact, Key, Network};
 use crate::bodies::Bodies;
 use crate::geometry::grid;
 use crate::geometry::shape::{Ball, Shapes};
-use narrow::Narrow;
 use crate::geometry::space::{Space, VectorLike};
+use narrow::Narrow;
 
 /// Which interface law governs a pair of materials, row by row; `None` when none is given.
 #[derive(Clone, Debug)]
@@ -65,7 +65,12 @@ pub fn detect<S: Space>(
 ) {
     // The pieces' centres follow those of the balls.
     let mut centres: Vec<S::Vector> = shapes.balls.iter().map(|b| centre(b, bodies)).collect();
-    centres.extend(shapes.pieces.iter().map(|p| frame(p.body, &p.offset, bodies).0));
+    centres.extend(
+        shapes
+            .pieces
+            .iter()
+            .map(|p| frame(p.body, &p.offset, bodies).0),
+    );
     if must_rebuild(network, shapes, bodies, &centres) {
         rebuild(network, shapes, bodies, laws, &centres);
     }

@@ -54,7 +54,11 @@ impl<'a, S: Space> Narrow<'a, S> {
     }
 
     /// The old contacts of a pair; drops those of pairs passed over.
-    pub(super) fn old_of(&mut self, network: &mut Network<S>, pair: (u32, u32)) -> std::ops::Range<usize> {
+    pub(super) fn old_of(
+        &mut self,
+        network: &mut Network<S>,
+        pair: (u32, u32),
+    ) -> std::ops::Range<usize> {
         while self.at < network.old.len() && network.old[self.at].key.pair() < pair {
             drop_contact(network, self.at);
             self.at += 1;
@@ -213,7 +217,12 @@ impl<'a, S: Space> Narrow<'a, S> {
     }
 
     /// Takes a contact in, with what an old one of the same name remembers.
-    pub(super) fn admit(&self, network: &mut Network<S>, mut found: Contact<S>, old: Option<usize>) {
+    pub(super) fn admit(
+        &self,
+        network: &mut Network<S>,
+        mut found: Contact<S>,
+        old: Option<usize>,
+    ) {
         match old {
             Some(k) => {
                 let old = &network.old[k];

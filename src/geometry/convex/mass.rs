@@ -91,8 +91,8 @@ impl Sum {
         let own = middle * (4.0 * radius * s / (3.0 * angle));
         self.area += area;
         self.first += (corner + own) * area;
-        self.second += area * (corner.norm_squared() + 2.0 * corner.dot(&own))
-            + 0.25 * angle * radius.powi(4);
+        self.second +=
+            area * (corner.norm_squared() + 2.0 * corner.dot(&own)) + 0.25 * angle * radius.powi(4);
     }
 }
 
@@ -148,10 +148,7 @@ mod tests {
         let corner = quarter * (0.5 * r * r - 2.0 * c * c + 2.0 * (1.0 + c).powi(2));
         let side = a * r * ((a * a + r * r) / 12.0 + (1.0 + 0.5 * r).powi(2));
         assert!(close(m.area, a * a + 4.0 * a * r + PI * r * r));
-        assert!(close(
-            m.polar,
-            a.powi(4) / 6.0 + 4.0 * side + 4.0 * corner
-        ));
+        assert!(close(m.polar, a.powi(4) / 6.0 + 4.0 * side + 4.0 * corner));
         assert!(m.centre.norm() < 1e-14);
     }
 }

@@ -218,12 +218,7 @@ impl Core<Plane> for Polygon {
         polygon_pair::meet(self, other, apart, roundings, gauge, out);
     }
 
-    fn meet_ball(
-        &self,
-        apart: &Vector2<f64>,
-        radius: f64,
-        rounding: f64,
-    ) -> Meeting<Vector2<f64>> {
+    fn meet_ball(&self, apart: &Vector2<f64>, radius: f64, rounding: f64) -> Meeting<Vector2<f64>> {
         let (distance, normal, _) = self.distance(apart);
         Meeting {
             on_candidate: apart - normal * radius,

@@ -300,12 +300,18 @@ mod tests {
             let gap = points.iter().map(|m| m.gap).fold(f64::INFINITY, f64::min);
             if one.max(two) <= 1e-9 {
                 // They overlap: the way out is the shortest along any side's normal.
-                assert!((gap + 0.15 - one.max(two)).abs() < 1e-12, "{gap} {one} {two}");
+                assert!(
+                    (gap + 0.15 - one.max(two)).abs() < 1e-12,
+                    "{gap} {one} {two}"
+                );
                 continue;
             }
             let distance = brute(&a, &b, apart);
             assert!((gap + 0.15 - distance).abs() < 1e-12, "{gap} {distance}");
-            let nearest = points.iter().min_by(|x, y| x.gap.total_cmp(&y.gap)).unwrap();
+            let nearest = points
+                .iter()
+                .min_by(|x, y| x.gap.total_cmp(&y.gap))
+                .unwrap();
             // The two feet are as far apart as the gap says, along the normal.
             let way = nearest.on_candidate - nearest.on_antagonist;
             assert!((way - nearest.normal * gap).norm() < 1e-12);

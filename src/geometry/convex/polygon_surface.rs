@@ -11,6 +11,8 @@ type V = Vector2<f64>;
 
 /// How far a normal may be out of a corner's cone and still count as in it.
 const CONE: f64 = 1e-9;
+/// Two faces of a profile are met at one place when it is no wider than this part of the reach.
+const SEAM: f64 = 1e-9;
 
 /// Meetings of the polygon, centred at `at` in the surface's frame, in the order of their features.
 pub fn meet(
@@ -29,7 +31,15 @@ pub fn meet(
         let p = point + at;
         touches.clear();
         surface.touches(&p, reach, &mut touches);
-        for touch in &touches {
+        for (t, touch) in touches.iter().enumerate() {
+            // Over a seam both faces are met alike.
+            let alike = |other: &Touch<V>| {
+                (other.foot - touch.foot).norm() <= SEAM * reach
+                    && other.normal.dot(&touch.normal) >= 1.0 - SEAM
+            };
+            if touches[..t].iter().any(alike) {
+                continue;
+            }
             // Of the side that faces the surface, or a corner that points to it.
             let facing = polygon.facing(&touch.normal);
             if k != facing && k != (facing + 1) % n {

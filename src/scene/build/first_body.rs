@@ -128,7 +128,9 @@ impl<S: Dimensional> Builder<'_, S> {
         }
         for part in parts {
             let offset = part.centre - centre;
-            self.shapes.pieces.push(part.carried(body, offset, material));
+            self.shapes
+                .pieces
+                .push(part.carried(body, offset, material));
         }
         for (offset, shape) in surfaces {
             self.shapes.surfaces.push(Carried {

@@ -2,7 +2,7 @@
 
 use super::{Builder, Dimensional, Origin};
 use crate::geometry::convex::Part;
-use crate::geometry::convex::polygon::Polygon;
+use crate::geometry::convex::polygon::{Polygon, PolygonError};
 use crate::geometry::space::{Space, VectorLike};
 use crate::scene::case::{GrainSpec, OnePolygon};
 use crate::scene::source::InputError;
@@ -112,7 +112,8 @@ impl<S: Dimensional> Builder<'_, S> {
             return Err(self.fail(format!("{here}.rounding"), message));
         }
         let points = points.iter().map(|p| Vector2::new(p.0, p.1)).collect();
-        let polygon = Polygon::new(points).map_err(|e| self.fail(here, e.to_string()))?;
+        let bad = |e: PolygonError| self.fail(format!("{here}.points"), e.to_string());
+        let polygon = Polygon::new(points).map_err(bad)?;
         S::part(&polygon, rounding).map_err(|e| self.fail(here, e))
     }
 
@@ -128,7 +129,8 @@ impl<S: Dimensional> Builder<'_, S> {
         let (from, to) = (Vector2::new(from.0, from.1), Vector2::new(to.0, to.1));
         let length = (to - from).norm();
         if !(length.is_finite() && length > 0.0) {
-            let message = "the ends of a capsule must be two different points; for a disk use Balls";
+            let message =
+                "the ends of a capsule must be two different points; for a disk use Balls";
             return Err(self.fail(here, message));
         }
         S::part(&Polygon::segment(from, to), radius).map_err(|e| self.fail(here, e))
