@@ -219,28 +219,25 @@ fn a_capsule_falls_and_lies() {
 
 #[test]
 fn painleves_rod_has_a_finite_impulse() {
-    for velocity in [-1.0, 1.0] {
-        let set = format!("grains.0.grains.0.velocity=[{velocity:?}, 0.0]");
-        let mut s = scene("painleve_rod", &[set]);
-        let energy = |s: &Simulation<Plane>| {
-            s.bodies.kinetic_energy() + s.bodies.mass[0] * G * s.bodies.position[0].y
-        };
-        let (start, mass) = (energy(&s), s.bodies.mass[0]);
-        let mut before = start;
-        let mut largest = 0.0f64;
-        for _ in 0..1000 {
-            one(&mut s);
-            let now = energy(&s);
-            // The turning of the arms within a step is of second order in it.
-            assert!(now <= before + 1e-6 * start, "{now} {before}");
-            before = now;
-            for c in &s.network.contacts {
-                largest = largest.max(c.impulse.norm());
-            }
+    let mut s = scene("painleve_rod", &[]);
+    let energy = |s: &Simulation<Plane>| {
+        s.bodies.kinetic_energy() + s.bodies.mass[0] * G * s.bodies.position[0].y
+    };
+    let (start, mass) = (energy(&s), s.bodies.mass[0]);
+    let mut before = start;
+    let mut largest = 0.0f64;
+    for _ in 0..1000 {
+        one(&mut s);
+        let now = energy(&s);
+        // The turning of the arms within a step is of second order in it.
+        assert!(now <= before + 1e-6 * start, "{now} {before}");
+        before = now;
+        for c in &s.network.contacts {
+            largest = largest.max(c.impulse.norm());
         }
-        assert!(before < start, "{before} {start}");
-        assert!(largest > 0.0 && largest < 10.0 * mass, "{largest}");
     }
+    assert!(before < start, "{before} {start}");
+    assert!(largest > 0.0 && largest < 10.0 * mass, "{largest}");
 }
 
 #[test]
