@@ -11,6 +11,8 @@ mod mutations;
 mod names;
 #[path = "bad_input/numbers.rs"]
 mod numbers;
+#[path = "bad_input/polygons.rs"]
+mod polygons;
 #[path = "bad_input/stages.rs"]
 mod stages;
 #[path = "bad_input/text.rs"]

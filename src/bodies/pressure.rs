@@ -144,6 +144,7 @@ mod tests {
         let mut bodies = Bodies::<Solid>::default();
         let mut shapes = Shapes {
             balls: Vec::new(),
+            pieces: Vec::new(),
             surfaces: Vec::new(),
             periodic: Periodic {
                 period: [None, Some(0.5), None],

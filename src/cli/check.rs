@@ -56,6 +56,9 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
             format!("{}, radius {low:.3e} to {high:.3e} m", radii.len()),
         );
     }
+    if !s.shapes.pieces.is_empty() {
+        line("convex pieces", s.shapes.pieces.len().to_string());
+    }
     let names: Vec<&str> = s.bodies.driven.iter().map(|d| d.name.as_str()).collect();
     line(
         "first bodies",

@@ -4,21 +4,29 @@ use super::memory::Memory;
 use crate::geometry::space::Space;
 use std::collections::HashSet;
 
-/// The name of a contact, stable in time: candidate ball, antagonist (a ball, or a surface with
-/// [`Key::SURFACE`] set) and, on a surface, the face, edge or vertex.
+/// The name of a contact, stable in time: candidate (a ball, or a convex piece with [`Key::PIECE`] set),
+/// antagonist (the same, or a surface with [`Key::SURFACE`] set) and the face, edge or vertex that is
+/// touched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Key {
-    /// Index of the candidate ball.
+    /// Index of the candidate.
     pub candidate: u32,
     /// Index of the antagonist.
     pub antagonist: u32,
-    /// Feature of a surface, 0 for a ball.
-    pub feature: u32,
+    /// Feature of a surface or piece, 0 between balls.
+    pub feature: u64,
 }
 
 impl Key {
     /// Marks an antagonist that is a surface.
     pub const SURFACE: u32 = 1 << 31;
+    /// Marks a candidate or antagonist that is a convex piece.
+    pub const PIECE: u32 = 1 << 30;
+
+    /// The candidate ball's index, when it is one.
+    pub fn ball(&self) -> Option<usize> {
+        (self.candidate & Self::PIECE == 0).then_some(self.candidate as usize)
+    }
 
     /// The surface's index, when the antagonist is one.
     pub fn surface(&self) -> Option<usize> {

@@ -1,4 +1,5 @@
 //! Shapes, distances and the search for neighbours.
+pub mod convex;
 pub mod drum;
 pub mod grid;
 pub mod height_field;

@@ -1,6 +1,6 @@
 //! The profile of a first body in the plane: a chain of segments, solid on its right-hand side.
 
-use super::shape::{Surface, Touch};
+use super::shape::{Corner, Surface, Touch};
 use super::space::Plane;
 use nalgebra::Vector2;
 use rstar::primitives::{GeomWithData, Line};
@@ -179,6 +179,48 @@ impl Surface<Plane> for Polyline {
             .locate_in_envelope_intersecting(window)
             .next()
             .is_some()
+    }
+
+    fn corners(
+        &self,
+        low: &Vector2<f64>,
+        high: &Vector2<f64>,
+        out: &mut Vec<Corner<Vector2<f64>>>,
+    ) {
+        // The chain's images are one period to each side of its own.
+        let middle = (low + high) * 0.5;
+        let (_, shift) = self.wrapped(&middle);
+        let window = AABB::from_corners([low.x - shift, low.y], [high.x - shift, high.y]);
+        let first = out.len();
+        for segment in self.tree.locate_in_envelope_intersecting(window) {
+            let (a, b) = (
+                Vector2::from(segment.geom().from),
+                Vector2::from(segment.geom().to),
+            );
+            let k = segment.data as usize;
+            let next = if k + 1 < self.segments() {
+                k + 1
+            } else if self.period.is_some() {
+                0
+            } else {
+                continue;
+            };
+            let (before, after) = (b - a, self.points[next + 1] - self.points[next]);
+            let normal = |v: Vector2<f64>| Vector2::new(-v.y, v.x) / v.norm();
+            let normals = [normal(before), normal(after)];
+            let at = b + Vector2::new(shift, 0.0);
+            let inside = (0..2).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis]);
+            // Solid on the right: a corner that points out turns to the right.
+            if inside && normals[0].perp(&normals[1]) < -1e-9 {
+                let feature = 2 * segment.data + 1;
+                out.push(Corner {
+                    at,
+                    normals,
+                    feature,
+                });
+            }
+        }
+        out[first..].sort_by_key(|c| c.feature);
     }
 
     fn outline(&self) -> Vec<Vec<Vector2<f64>>> {

@@ -1,5 +1,6 @@
-//! What a ball can touch: balls, and surfaces carried by first bodies.
+//! What can touch: balls, convex pieces, and surfaces carried by first bodies.
 
+use super::convex::Piece;
 use super::periodic::Periodic;
 use super::space::{Space, VectorLike};
 use std::fmt::Debug;
@@ -30,6 +31,17 @@ pub struct Touch<V> {
     pub feature: u32,
 }
 
+/// A corner of a surface that points to the open side (2D).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner<V> {
+    /// Where it is (m).
+    pub at: V,
+    /// Unit normals of the faces before and after it; the corner is nearest to what lies between them.
+    pub normals: [V; 2],
+    /// Its name, stable in time.
+    pub feature: u32,
+}
+
 /// A boundary of a first body: solid on one side, open on the other.
 pub trait Surface<S: Space>: Debug + Send + Sync {
     /// All places where a ball centred at `centre` is nearest to the surface within `reach` (m), in the
@@ -37,6 +49,9 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<Touch<S::Vector>>);
     /// Whether a ball may be within `reach`: cheap, may say yes too often.
     fn near(&self, centre: &S::Vector, reach: f64) -> bool;
+    /// Corners of the surface in the box from `low` to `high` (m) on which a flat side may come to lie, in
+    /// the order of their features; none for a plane.
+    fn corners(&self, _low: &S::Vector, _high: &S::Vector, _out: &mut Vec<Corner<S::Vector>>) {}
     /// Corners for pictures and files (m): polylines in 2D, polygons in 3D, in the surface's frame.
     fn outline(&self) -> Vec<Vec<S::Vector>>;
     /// The outward normal, if the surface is a plane.
@@ -120,6 +135,8 @@ pub struct Carried<S: Space> {
 pub struct Shapes<S: Space> {
     /// Disks or spheres.
     pub balls: Vec<Ball<S>>,
+    /// Convex pieces.
+    pub pieces: Vec<Piece<S>>,
     /// Surfaces of first bodies.
     pub surfaces: Vec<Carried<S>>,
     /// Periodic boundaries.

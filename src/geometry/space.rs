@@ -199,6 +199,8 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     type Tangent: VectorLike;
     /// Orientation of a body: an angle in 2D, a unit quaternion in 3D.
     type Rotation: Copy + Debug + Send + Sync + PartialEq + 'static;
+    /// Cores of convex pieces.
+    type Core: super::convex::Core<Self>;
 
     /// Velocity of a point at `arm` from the centre of a body that turns: omega x arm.
     fn sweep(spin: &Self::Spin, arm: &Self::Vector) -> Self::Vector;
@@ -237,6 +239,8 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     fn rotate(rotation: &Self::Rotation, v: &Self::Vector) -> Self::Vector;
     /// From the world to the body's frame.
     fn unrotate(rotation: &Self::Rotation, v: &Self::Vector) -> Self::Vector;
+    /// The rotation back.
+    fn inverse(rotation: &Self::Rotation) -> Self::Rotation;
     /// The rotation as numbers: angle, or quaternion (w, x, y, z).
     fn rotation_numbers(rotation: &Self::Rotation) -> [f64; 4];
     /// Two tangents which with `n` make a right-handed frame; in 2D the first is n turned by +90
@@ -252,6 +256,10 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     fn spin_from(n: &Self::Vector, components: [f64; 3]) -> Self::Spin;
     /// Volume of a ball (2D: area of a disk times unit depth).
     fn ball_volume(radius: f64) -> f64;
+    /// Radius of the ball of a volume.
+    fn ball_radius(volume: f64) -> f64 {
+        (volume / Self::ball_volume(1.0)).powf(1.0 / Self::D as f64)
+    }
     /// Moment of inertia of a homogeneous ball over m r^2: 1/2 for a disk, 2/5 for a sphere.
     const BALL_INERTIA: f64;
 }
@@ -270,6 +278,7 @@ impl Space for Plane {
     type Matrix = Matrix2<f64>;
     type Tangent = Vector1<f64>;
     type Rotation = f64;
+    type Core = super::convex::polygon::Polygon;
     const BALL_INERTIA: f64 = 0.5;
 
     #[inline(always)]
@@ -327,6 +336,9 @@ impl Space for Plane {
     fn unrotate(rotation: &f64, v: &Self::Vector) -> Self::Vector {
         Self::rotate(&-rotation, v)
     }
+    fn inverse(rotation: &f64) -> f64 {
+        -rotation
+    }
     fn rotation_numbers(rotation: &f64) -> [f64; 4] {
         [*rotation, 0.0, 0.0, 0.0]
     }
@@ -360,6 +372,7 @@ impl Space for Solid {
     type Matrix = Matrix3<f64>;
     type Tangent = Vector3<f64>;
     type Rotation = nalgebra::UnitQuaternion<f64>;
+    type Core = super::convex::none::NoCore;
     const BALL_INERTIA: f64 = 0.4;
 
     #[inline(always)]
@@ -433,6 +446,9 @@ impl Space for Solid {
     }
     fn unrotate(rotation: &Self::Rotation, v: &Self::Vector) -> Self::Vector {
         rotation.inverse_transform_vector(v)
+    }
+    fn inverse(rotation: &Self::Rotation) -> Self::Rotation {
+        rotation.inverse()
     }
     fn rotation_numbers(rotation: &Self::Rotation) -> [f64; 4] {
         [rotation.w, rotation.i, rotation.j, rotation.k]

@@ -1,6 +1,7 @@
 //! The state of a simulation as pictures and as points, lines and outlines for files.
 
 use crate::contact::{Contact, Key};
+use crate::geometry::convex::{Core, Piece};
 use crate::geometry::space::{Space, VectorLike};
 use crate::report::{Disk, Frame, Link, LinkState, Outline, ReportError, View, project_spheres};
 use crate::scene::case::OutputSpec;
@@ -58,7 +59,11 @@ impl Camera {
             f64::INFINITY,
             f64::NEG_INFINITY,
         ];
-        for (centre, radius) in balls(simulation) {
+        let pieces = &simulation.shapes.pieces;
+        let pieces = pieces
+            .iter()
+            .map(|p| (piece_centre(simulation, p), p.bound));
+        for (centre, radius) in balls(simulation).chain(pieces) {
             let at = if S::D == 2 {
                 let c = periodic.wrapped(centre);
                 [c[0], c[1]]
@@ -102,7 +107,11 @@ impl Camera {
             (
                 disks(simulation, self.window, &self.shades),
                 links(simulation, self.window),
-                outlines(simulation, self.window),
+                [
+                    outlines(simulation, self.window),
+                    pieces(simulation, self.window),
+                ]
+                .concat(),
             )
         } else {
             (spheres(simulation, &self.shades), Vec::new(), Vec::new())
@@ -131,6 +140,35 @@ fn balls<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (S::Vector, f64)> 
         .balls
         .iter()
         .map(|b| (crate::contact::detect::centre(b, &s.bodies), b.radius))
+}
+
+fn piece_centre<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> S::Vector {
+    let b = piece.body as usize;
+    s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &piece.offset)
+}
+
+/// The corners of a piece (m).
+pub fn piece_outline<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> Vec<S::Vector> {
+    let rotation = &s.bodies.rotation[piece.body as usize];
+    let corners = piece.core.turned(rotation).outline(piece.rounding);
+    let centre = s.shapes.periodic.wrapped(piece_centre(s, piece));
+    corners.iter().map(|c| *c + centre).collect()
+}
+
+fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
+    let period = s.shapes.periodic.period[0];
+    let mut out = Vec::with_capacity(s.shapes.pieces.len());
+    for piece in &s.shapes.pieces {
+        let corners = piece_outline(s, piece);
+        let x = s.shapes.periodic.wrapped(piece_centre(s, piece))[0];
+        for image in images(x, piece.bound, window, period) {
+            out.push(Outline {
+                points: corners.iter().map(|c| [c[0] - x + image, c[1]]).collect(),
+                label: String::new(),
+            });
+        }
+    }
+    out
 }
 
 /// The images of a point that show in the window.
@@ -192,16 +230,30 @@ pub fn state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> LinkState {
 /// The two ends of a contact: the candidate's centre, and the antagonist's centre or the foot on a
 /// surface.
 pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
-    let ball = &s.shapes.balls[contact.key.candidate as usize];
+    let key = &contact.key;
+    let (Some(candidate), 0) = (key.ball(), key.antagonist & Key::PIECE) else {
+        return ends_of_piece(s, contact);
+    };
+    let ball = &s.shapes.balls[candidate];
     let a = crate::contact::detect::centre(ball, &s.bodies);
-    let length = match contact.key.surface() {
+    let length = match key.surface() {
         Some(_) => ball.radius + contact.gap,
         None => {
-            let other = &s.shapes.balls[(contact.key.antagonist & !Key::SURFACE) as usize];
+            let other = &s.shapes.balls[key.antagonist as usize];
             ball.radius + other.radius + contact.gap
         }
     };
     (a, a - contact.normal * length)
+}
+
+/// The same where a piece is in it: by way of the contact point.
+fn ends_of_piece<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
+    let a = s.bodies.position[contact.bodies[0] as usize];
+    let foot = a + contact.arms[0] - contact.normal * contact.gap;
+    match contact.key.surface() {
+        Some(_) => (a, foot),
+        None => (a, foot - contact.arms[1]),
+    }
 }
 
 fn links<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Link> {

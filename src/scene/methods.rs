@@ -23,7 +23,9 @@ pub struct Demands(Vec<(String, Option<Demand>)>);
 impl Demands {
     /// Asks the laws.
     pub fn of<S: Space>(simulation: &Simulation<S>) -> Self {
-        let radii = simulation.shapes.balls.iter().map(|b| b.radius);
+        let shapes = &simulation.shapes;
+        let pieces = shapes.pieces.iter().map(|p| p.size);
+        let radii = shapes.balls.iter().map(|b| b.radius).chain(pieces);
         let (low, high) = radii.fold((f64::INFINITY, 0.0f64), |(l, h), r| (l.min(r), h.max(r)));
         // Two of the smallest; the largest against a flat body.
         let radii = if high > 0.0 {

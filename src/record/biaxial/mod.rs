@@ -82,16 +82,17 @@ impl Biaxial {
         let pair = |names: &(String, String), axis: usize| {
             Some([wall(&names.0, axis)?, wall(&names.1, axis)?])
         };
-        let grains = s.shapes.balls.iter().filter(|b| {
-            let mut driven = s.bodies.driven.iter();
-            !driven.any(|d| d.body == b.body)
-        });
+        let balls = s.shapes.balls.iter().map(|b| (b.body, b.radius));
+        let pieces = s.shapes.pieces.iter().map(|p| (p.body, p.size));
+        let grains = balls
+            .chain(pieces)
+            .filter(|(body, _)| !s.bodies.driven.iter().any(|d| d.body == *body));
         let mut test = Self {
             axes,
             walls: [pair(&spec.axial, axes[0])?, pair(&spec.lateral, axes[1])?],
             start: spec.start,
             reference: [1.0; 2],
-            solid: grains.map(|b| S::ball_volume(b.radius)).sum(),
+            solid: grains.map(|(_, radius)| S::ball_volume(radius)).sum(),
         };
         test.reference = test.lengths(s);
         Some(test)

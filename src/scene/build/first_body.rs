@@ -1,8 +1,9 @@
-//! First bodies: balls and surfaces that move together, driven or free.
+//! First bodies: balls, convex pieces and surfaces that move together, driven or free.
 
 use super::surface::Placed;
 use super::{Builder, Dimensional, Origin};
 use crate::bodies::Driven;
+use crate::geometry::convex::Part;
 use crate::geometry::shape::{Ball, Carried};
 use crate::geometry::space::VectorLike;
 use crate::scene::case::{BodySpec, ShapeSpec};
@@ -21,6 +22,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let (material, density) = self.material(&format!("{here}.material"), &spec.material)?;
         let position = self.vector(&format!("{here}.position"), &spec.position)?;
         let mut balls: Vec<(S::Vector, f64)> = Vec::new();
+        let mut parts: Vec<Part<S>> = Vec::new();
         let mut surfaces: Vec<Placed<S>> = Vec::new();
         for (s, shape) in spec.shapes.iter().enumerate() {
             let here = format!("{here}.shapes.{s}");
@@ -51,28 +53,40 @@ impl<S: Dimensional> Builder<'_, S> {
                             .map(|(x, r)| (S::Vector::from_slice(x), *r)),
                     );
                 }
+                ShapeSpec::Polygon { points, rounding } => {
+                    parts.push(self.polygon(&here, points, *rounding)?);
+                }
+                ShapeSpec::Capsule { from, to, radius } => {
+                    parts.push(self.capsule(&here, *from, *to, *radius)?);
+                }
                 other => surfaces.push(self.surface(&here, other)?),
             }
         }
-        if balls.is_empty() && surfaces.is_empty() {
+        if balls.is_empty() && parts.is_empty() && surfaces.is_empty() {
             return Err(self.fail(
                 format!("{here}.shapes"),
                 "a first body needs at least one shape",
             ));
         }
-        // A body made of balls has its frame at their centre of mass.
-        let weight: f64 = balls.iter().map(|b| S::ball_volume(b.1)).sum();
+        // A body made of balls and convex pieces has its frame at their centre of mass.
+        let volumes = || {
+            let balls = balls.iter().map(|(x, r)| {
+                let volume = S::ball_volume(*r);
+                (*x, volume, S::BALL_INERTIA * r * r * volume)
+            });
+            balls.chain(parts.iter().map(|p| (p.centre, p.volume, p.inertia)))
+        };
+        let weight: f64 = volumes().map(|v| v.1).sum();
         let mut centre = S::Vector::null();
         if weight > 0.0 && surfaces.is_empty() {
-            for (x, r) in &balls {
-                centre += *x * (S::ball_volume(*r) / weight);
+            for (x, volume, _) in volumes() {
+                centre += x * (volume / weight);
             }
         }
-        let inertia: f64 = balls
-            .iter()
-            .map(|(x, r)| {
-                let d = *x - centre;
-                density * S::ball_volume(*r) * (S::BALL_INERTIA * r * r + d.dot(&d))
+        let inertia: f64 = volumes()
+            .map(|(x, volume, own)| {
+                let d = x - centre;
+                density * (own + volume * d.dot(&d))
             })
             .sum();
         let dofs = spec.ordered(S::D);
@@ -83,7 +97,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let inertia = spec
             .inertia
             .unwrap_or(if inertia > 0.0 { inertia } else { 1.0 });
-        let only = if surfaces.is_empty() && balls.len() == 1 {
+        let only = if surfaces.is_empty() && parts.is_empty() && balls.len() == 1 {
             balls[0].1
         } else {
             0.0
@@ -111,6 +125,12 @@ impl<S: Dimensional> Builder<'_, S> {
                 offset,
                 material,
             });
+        }
+        for part in parts {
+            let offset = part.centre - centre;
+            self.shapes
+                .pieces
+                .push(part.carried(body, offset, material));
         }
         for (offset, shape) in surfaces {
             self.shapes.surfaces.push(Carried {

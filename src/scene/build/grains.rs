@@ -35,25 +35,14 @@ impl<S: Dimensional> Builder<'_, S> {
                         let at = self.vector(&format!("{here}.at"), &grain.at)?;
                         let radius = self.radius(&format!("{here}.radius"), grain.radius)?;
                         let velocity = self.vector(&format!("{here}.velocity"), &grain.velocity)?;
-                        if !grain.spin.is_empty() && grain.spin.len() != S::Spin::N {
-                            return Err(self.fail(
-                                format!("{here}.spin"),
-                                format!("a spin has {} components here", S::Spin::N),
-                            ));
-                        }
-                        if grain.spin.iter().any(|x| !x.is_finite()) {
-                            return Err(self.fail(
-                                format!("{here}.spin"),
-                                "the components must be finite numbers",
-                            ));
-                        }
+                        let spin = self.spin(&format!("{here}.spin"), &grain.spin)?;
                         found.push((
                             at,
                             radius,
                             m,
                             density,
                             velocity,
-                            S::Spin::from_slice(&grain.spin),
+                            spin,
                             Origin::Grain(k, Some(g)),
                         ));
                     }
@@ -95,6 +84,8 @@ impl<S: Dimensional> Builder<'_, S> {
                         (at, r, m, density, none.0, none.1, Origin::Grain(k, None))
                     }));
                 }
+                // After the balls, which stand first in memory.
+                GrainSpec::Polygons { .. } | GrainSpec::Arch { .. } => {}
                 GrainSpec::Scene {
                     file,
                     material,
@@ -152,7 +143,18 @@ impl<S: Dimensional> Builder<'_, S> {
                 material,
             });
         }
-        Ok(())
+        self.polygons()
+    }
+
+    pub(super) fn spin(&self, path: &str, values: &[f64]) -> Result<S::Spin, InputError> {
+        if !values.is_empty() && values.len() != S::Spin::N {
+            let message = format!("a spin has {} components here", S::Spin::N);
+            return Err(self.fail(path, message));
+        }
+        if values.iter().any(|x| !x.is_finite()) {
+            return Err(self.fail(path, "the components must be finite numbers"));
+        }
+        Ok(S::Spin::from_slice(values))
     }
 
     /// A corner of a box; it must be there.

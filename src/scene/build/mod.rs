@@ -1,7 +1,9 @@
 //! From a case to a scene that steps.
 
+mod arch;
 mod first_body;
 mod grains;
+mod polygons;
 mod samples;
 mod surface;
 
@@ -110,6 +112,7 @@ impl Loaded {
             bodies: Bodies::default(),
             shapes: Shapes {
                 balls: Vec::new(),
+                pieces: Vec::new(),
                 surfaces: Vec::new(),
                 periodic: Periodic {
                     period: [
@@ -275,12 +278,7 @@ impl<S: Dimensional> Builder<'_, S> {
         table: crate::contact::detect::LawTable,
     ) -> Result<Simulation<S>, InputError> {
         let case = self.case;
-        let smallest = self
-            .shapes
-            .balls
-            .iter()
-            .map(|b| b.radius)
-            .fold(f64::INFINITY, f64::min);
+        let smallest = self.radii().fold(f64::INFINITY, f64::min);
         let smallest = if smallest.is_finite() { smallest } else { 1.0 };
         let alert = case.detection.alert.unwrap_or(0.05 * smallest);
         let skin = case.detection.skin.unwrap_or(0.3 * smallest);
@@ -317,14 +315,15 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(simulation)
     }
 
+    /// Radii of all balls, and of the balls that hold the pieces (m).
+    fn radii(&self) -> impl Iterator<Item = f64> + '_ {
+        let pieces = self.shapes.pieces.iter().map(|p| p.bound);
+        self.shapes.balls.iter().map(|b| b.radius).chain(pieces)
+    }
+
     /// Two balls must not touch each other twice around a period.
     fn refuse_small_period(&self, reach: f64) -> Result<(), InputError> {
-        let widest = self
-            .shapes
-            .balls
-            .iter()
-            .map(|b| b.radius)
-            .fold(0.0, f64::max);
+        let widest = self.radii().fold(0.0, f64::max);
         for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
             let period = self.shapes.periodic.period[k];
             if period.is_some_and(|p| 2.0 * (2.0 * widest + reach) > p) && reach > 2.0 * widest {

@@ -1,6 +1,8 @@
 //! Surfaces of first bodies.
 
 use super::Builder;
+use crate::geometry::convex::Part;
+use crate::geometry::convex::polygon::Polygon;
 use crate::geometry::drum::Drum;
 use crate::geometry::height_field::HeightField;
 use crate::geometry::polyline::Polyline;
@@ -32,6 +34,11 @@ pub trait Dimensional: Space {
         heights: Vec<f64>,
         periodic: [bool; 2],
     ) -> Result<Box<dyn Surface<Self>>, String>;
+    /// A convex part of a body.
+    ///
+    /// # Errors
+    /// That the dimension has none.
+    fn part(polygon: &Polygon, rounding: f64) -> Result<Part<Self>, String>;
 }
 
 impl Dimensional for Plane {
@@ -62,6 +69,9 @@ impl Dimensional for Plane {
     ) -> Result<Box<dyn Surface<Self>>, String> {
         Err("a height field needs three dimensions; use a Profile or RoughProfile in two".into())
     }
+    fn part(polygon: &Polygon, rounding: f64) -> Result<Part<Self>, String> {
+        Ok(polygon.part(rounding))
+    }
 }
 
 impl Dimensional for Solid {
@@ -86,6 +96,9 @@ impl Dimensional for Solid {
             periodic,
         );
         Ok(Box::new(field.map_err(|e| e.to_string())?))
+    }
+    fn part(_: &Polygon, _: f64) -> Result<Part<Self>, String> {
+        Err("polygons, capsules and arches need two dimensions; use Balls in three".into())
     }
 }
 
@@ -203,9 +216,10 @@ impl<S: Dimensional> Builder<'_, S> {
                     S::height_field(*points, *spacing, heights, periodic).map_err(bad)?,
                 ))
             }
-            ShapeSpec::Balls(_) | ShapeSpec::Cluster { .. } => {
-                Err(bad("balls are not a surface".into()))
-            }
+            ShapeSpec::Balls(_)
+            | ShapeSpec::Cluster { .. }
+            | ShapeSpec::Polygon { .. }
+            | ShapeSpec::Capsule { .. } => Err(bad("this shape is not a surface".into())),
         }
     }
 }

@@ -1,10 +1,15 @@
 //! A case file: what the user writes.
 
+mod grains;
+mod shapes;
+
+pub use grains::{Edges, GrainSpec, OneGrain, OnePolygon};
+pub use shapes::{ShapeSpec, Side};
+
 use super::measures::MeasureSpec;
 use super::phases::PhaseSpec;
 use crate::bodies::Dof;
 use crate::laws::BondRule;
-use crate::scene::sample::spec::{CsvSpec, DepositSpec, StateSpec};
 use crate::solve::error::Norm;
 use crate::solve::local::solver::Method;
 use crate::step::control::GravityDrive;
@@ -267,150 +272,7 @@ impl Default for DofSpec {
     }
 }
 
-/// On which side of a profile the solid is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-pub enum Side {
-    /// Solid below, open above: a rail.
-    Below,
-    /// Solid above, open below: a wheel.
-    Above,
-}
-
-/// A part of a first body.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum ShapeSpec {
-    /// Solid behind a plane; `at` is a point of it (m), `normal` points to the open side.
-    HalfSpace {
-        /// Outward normal.
-        normal: Vec<f64>,
-        /// A point of the plane.
-        #[serde(default)]
-        at: Vec<f64>,
-    },
-    /// A profile by its points, left to right (2D).
-    Profile {
-        /// Points (m).
-        points: Vec<(f64, f64)>,
-        /// Where the solid is.
-        side: Side,
-    },
-    /// A self-affine rough profile over the period of x (2D): random phases, spectrum |q|^(-1-2H).
-    RoughProfile {
-        /// Points along the period.
-        points: usize,
-        /// Root-mean-square height (m).
-        rms: f64,
-        /// Hurst exponent.
-        #[serde(default = "hurst")]
-        hurst: f64,
-        /// Longest wavelength (m); the period by default.
-        #[serde(default)]
-        longest: Option<f64>,
-        /// Shortest wavelength (m).
-        shortest: f64,
-        /// Mean height (m).
-        #[serde(default)]
-        height: f64,
-        /// Where the solid is.
-        side: Side,
-    },
-    /// Balls fixed to the body: (position relative to the body's frame, radius).
-    Balls(Vec<(Vec<f64>, f64)>),
-    /// The inside of a cylinder about the body's origin, solid outside: a drum.
-    Drum {
-        /// Radius (m).
-        radius: f64,
-        /// Axis of the cylinder in 3D: 0, 1 or 2.
-        #[serde(default)]
-        axis: usize,
-    },
-    /// The cluster of this name in a scene file.
-    Cluster {
-        /// Path relative to the case.
-        file: String,
-        /// Name in the file.
-        name: String,
-    },
-    /// Heights over a regular grid (3D), solid below; periodic where the cell is.
-    HeightField {
-        /// Points along x and y.
-        points: (usize, usize),
-        /// Spacing (m).
-        spacing: (f64, f64),
-        /// Heights (m), row by row; or none with `rms`.
-        #[serde(default)]
-        heights: Vec<f64>,
-        /// Root-mean-square of random heights (m).
-        #[serde(default)]
-        rms: Option<f64>,
-    },
-}
-
-fn hurst() -> f64 {
-    0.8
-}
-
-/// Grains.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum GrainSpec {
-    /// One by one.
-    List {
-        /// Material.
-        material: String,
-        /// Balls.
-        grains: Vec<OneGrain>,
-    },
-    /// A hexagonal (2D) or cubic (3D) lattice, radii drawn uniformly between two, shuffled by the seed;
-    /// no overlaps. Fills the box from its low corner up.
-    Lattice {
-        /// Material.
-        material: String,
-        /// How many at most.
-        count: usize,
-        /// Smallest and largest radius (m).
-        radius: (f64, f64),
-        /// Low corner of the box (m).
-        low: Vec<f64>,
-        /// High corner of the box (m).
-        high: Vec<f64>,
-    },
-    /// The free balls of a scene file, and its fixed walls as half-spaces of material `walls`.
-    Scene {
-        /// Path relative to the case.
-        file: String,
-        /// Material of the grains.
-        material: String,
-        /// Material of the walls.
-        #[serde(default)]
-        walls: Option<String>,
-    },
-    /// A loose random deposit in a box.
-    Deposit(DepositSpec),
-    /// The grains of a table.
-    Csv(CsvSpec),
-    /// The grains of a state of another run.
-    State(StateSpec),
-}
-
-/// One grain.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct OneGrain {
-    /// Centre (m).
-    pub at: Vec<f64>,
-    /// Radius (m).
-    pub radius: f64,
-    /// Velocity (m/s).
-    #[serde(default)]
-    pub velocity: Vec<f64>,
-    /// Angular velocity (rad/s): one number in 2D, three in 3D.
-    #[serde(default)]
-    pub spin: Vec<f64>,
-}
-
-/// A friction test.
+/// A friction test: the body that rubs, along which axis, pressed along which.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionSpec {

@@ -1,0 +1,218 @@
+//! Detection at q_m: a neighbour list with a skin (broad), then gaps and normals (narrow).
+
+mod narrow;
+mod pieces;
+
+use super::network::{Contact, Key, Network};
+use crate::bodies::Bodies;
+use crate::geometry::grid;
+use crate::geometry::shape::{Ball, Shapes};
+use crate::geometry::space::{Space, VectorLike};
+use narrow::Narrow;
+
+/// Which interface law governs a pair of materials, row by row; `None` when none is given.
+#[derive(Clone, Debug)]
+pub struct LawTable {
+    materials: usize,
+    laws: Vec<Option<u16>>,
+}
+
+impl LawTable {
+    /// No pair has a law yet.
+    pub fn new(materials: usize) -> Self {
+        Self {
+            materials,
+            laws: vec![None; materials * materials],
+        }
+    }
+
+    /// Sets the law of a pair, in both orders.
+    pub fn set(&mut self, a: u16, b: u16, law: u16) {
+        let (a, b) = (a as usize, b as usize);
+        self.laws[a * self.materials + b] = Some(law);
+        self.laws[b * self.materials + a] = Some(law);
+    }
+
+    /// The law of a pair.
+    #[inline]
+    pub fn get(&self, a: u16, b: u16) -> Option<u16> {
+        self.laws[a as usize * self.materials + b as usize]
+    }
+}
+
+/// Where a ball's centre stands (m).
+#[inline]
+pub fn centre<S: Space>(ball: &Ball<S>, bodies: &Bodies<S>) -> S::Vector {
+    let b = ball.body as usize;
+    if ball.offset == S::Vector::null() {
+        bodies.position[b]
+    } else {
+        bodies.position[b] + S::rotate(&bodies.rotation[b], &ball.offset)
+    }
+}
+
+/// Finds the contacts of this step at the positions at hand and carries memories over.
+///
+/// Contacts that vanish lose their memory; a bond that holds keeps its contact whatever its gap. `h` is the
+/// time since the last detection.
+pub fn detect<S: Space>(
+    network: &mut Network<S>,
+    shapes: &Shapes<S>,
+    bodies: &Bodies<S>,
+    laws: &LawTable,
+    time: f64,
+    h: f64,
+) {
+    // The pieces' centres follow those of the balls.
+    let mut centres: Vec<S::Vector> = shapes.balls.iter().map(|b| centre(b, bodies)).collect();
+    centres.extend(
+        shapes
+            .pieces
+            .iter()
+            .map(|p| frame(p.body, &p.offset, bodies).0),
+    );
+    if must_rebuild(network, shapes, bodies, &centres) {
+        rebuild(network, shapes, bodies, laws, &centres);
+    }
+    std::mem::swap(&mut network.contacts, &mut network.old);
+    network.contacts.clear();
+    let candidates = std::mem::take(&mut network.candidates);
+    let mut narrow = Narrow::new(shapes, bodies, &centres, laws, time, h);
+    for &(a, b) in &candidates {
+        if (a | b) & Key::PIECE != 0 {
+            narrow.pieces(network, a, b);
+        } else if b & Key::SURFACE == 0 {
+            narrow.balls(network, a, b);
+        } else {
+            narrow.surface(network, a, b);
+        }
+    }
+    let left = narrow.left();
+    network.candidates = candidates;
+    for k in left..network.old.len() {
+        drop_contact(network, k);
+    }
+}
+
+/// Where the neighbour list watches: the centres of balls and pieces, then the frames of the surfaces.
+fn watched<'a, S: Space>(
+    shapes: &'a Shapes<S>,
+    bodies: &'a Bodies<S>,
+    centres: &'a [S::Vector],
+) -> impl Iterator<Item = S::Vector> + 'a {
+    let frames = shapes
+        .surfaces
+        .iter()
+        .map(|s| bodies.position[s.body as usize]);
+    centres.iter().copied().chain(frames)
+}
+
+fn must_rebuild<S: Space>(
+    network: &Network<S>,
+    shapes: &Shapes<S>,
+    bodies: &Bodies<S>,
+    centres: &[S::Vector],
+) -> bool {
+    if network.seen_at.len() != centres.len() + shapes.surfaces.len() {
+        return true;
+    }
+    // A surface that turns sweeps more than its frame moves.
+    if shapes
+        .surfaces
+        .iter()
+        .any(|s| !s.shape.keeps_place(&bodies.spin[s.body as usize]))
+    {
+        return true;
+    }
+    let limit = 0.25 * network.skin * network.skin;
+    watched(shapes, bodies, centres)
+        .zip(&network.seen_at)
+        .any(|(x, seen)| {
+            let d = x - *seen;
+            d.dot(&d) > limit
+        })
+}
+
+fn rebuild<S: Space>(
+    network: &mut Network<S>,
+    shapes: &Shapes<S>,
+    bodies: &Bodies<S>,
+    laws: &LawTable,
+    centres: &[S::Vector],
+) {
+    let mut radii: Vec<f64> = shapes.balls.iter().map(|b| b.radius).collect();
+    radii.extend(shapes.pieces.iter().map(|p| p.bound));
+    let reach = network.alert + network.skin;
+    let balls = shapes.balls.len();
+    // Body, material and name of the ball or piece at a place of the list of centres.
+    let owner = |at: u32| match shapes.balls.get(at as usize) {
+        Some(ball) => (ball.body, ball.material, at),
+        None => {
+            let k = at - balls as u32;
+            let piece = &shapes.pieces[k as usize];
+            (piece.body, piece.material, k | Key::PIECE)
+        }
+    };
+    let still = bodies.still();
+    let gone = |i: u32| bodies.gone[i as usize];
+    let never =
+        |i: u32, j: u32| i == j || gone(i) || gone(j) || (still[i as usize] && still[j as usize]);
+    let touch = |i: u32, j: u32| !never(i, j);
+    let mut pairs = grid::pairs(centres, &radii, reach, &shapes.periodic, |a, b| {
+        let (a, b) = (owner(a), owner(b));
+        touch(a.0, b.0) && laws.get(a.1, b.1).is_some()
+    });
+    if !shapes.pieces.is_empty() {
+        pairs = pairs.iter().map(|p| (owner(p.0).2, owner(p.1).2)).collect();
+    }
+    for (s, surface) in shapes.surfaces.iter().enumerate() {
+        let (origin, rotation) = frame(surface.body, &surface.offset, bodies);
+        for (at, radius) in radii.iter().enumerate() {
+            let (body, material, name) = owner(at as u32);
+            let known = laws.get(material, surface.material).is_some();
+            if known && touch(body, surface.body) {
+                let local = S::unrotate(&rotation, &(centres[at] - origin));
+                if surface.shape.near(&local, radius + reach) {
+                    pairs.push((name, s as u32 | Key::SURFACE));
+                }
+            }
+        }
+    }
+    // A bond may be longer than the reach.
+    let held = |c: &&Contact<S>| {
+        network.bond(c).is_some_and(|b| b.intact()) && !c.bodies.iter().any(|b| gone(*b))
+    };
+    pairs.extend(network.contacts.iter().filter(held).map(|c| c.key.pair()));
+    pairs.sort_unstable();
+    pairs.dedup();
+    network.candidates = pairs;
+    network.seen_at.clear();
+    network.seen_at.extend(watched(shapes, bodies, centres));
+    network.rebuilds += 1;
+}
+
+/// Origin and rotation of a surface carried by a body.
+fn frame<S: Space>(body: u32, offset: &S::Vector, bodies: &Bodies<S>) -> (S::Vector, S::Rotation) {
+    let b = body as usize;
+    let rotation = bodies.rotation[b];
+    (bodies.position[b] + S::rotate(&rotation, offset), rotation)
+}
+
+fn drop_contact<S: Space>(network: &mut Network<S>, k: usize) {
+    let contact = &network.old[k];
+    if let Some(slot) = contact.memory() {
+        let memory = &mut network.memory[contact.law as usize];
+        let bond = &memory.bonds[slot];
+        if bond.intact() {
+            // A grain that left its surface's reach tears the bond.
+            network.torn_energy += bond.energy;
+            memory.broken += 1;
+            network.broken_pairs.insert(contact.key.pair());
+        }
+        memory.release(slot as u32);
+    }
+}
+
+fn held<S: Space>(network: &Network<S>, old: Option<usize>) -> bool {
+    old.is_some_and(|k| network.bond(&network.old[k]).is_some_and(|b| b.intact()))
+}

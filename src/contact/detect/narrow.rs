@@ -1,0 +1,263 @@
+//! Gaps and normals of candidate pairs, and what their contacts remember.
+
+use super::{LawTable, drop_contact, frame, held};
+use crate::bodies::Bodies;
+use crate::contact::network::{Contact, Key, Network};
+use crate::geometry::convex::{Core, Meeting, Piece};
+use crate::geometry::shape::{Ball, Shapes, Touch};
+use crate::geometry::space::{Space, VectorLike};
+
+/// One pass over the candidates, in order, and over the old contacts beside them.
+pub(super) struct Narrow<'a, S: Space> {
+    pub(super) shapes: &'a Shapes<S>,
+    pub(super) bodies: &'a Bodies<S>,
+    /// Of the balls, then of the pieces (m).
+    pub(super) centres: &'a [S::Vector],
+    /// Cores of the pieces in the world's axes.
+    pub(super) cores: Vec<S::Core>,
+    pub(super) laws: &'a LawTable,
+    pub(super) time: f64,
+    h: f64,
+    /// Next old contact not yet met.
+    at: usize,
+    touches: Vec<Touch<S::Vector>>,
+    pub(super) meetings: Vec<Meeting<S::Vector>>,
+}
+
+impl<'a, S: Space> Narrow<'a, S> {
+    pub(super) fn new(
+        shapes: &'a Shapes<S>,
+        bodies: &'a Bodies<S>,
+        centres: &'a [S::Vector],
+        laws: &'a LawTable,
+        time: f64,
+        h: f64,
+    ) -> Self {
+        let turned = |p: &Piece<S>| p.core.turned(&bodies.rotation[p.body as usize]);
+        Self {
+            shapes,
+            bodies,
+            centres,
+            cores: shapes.pieces.iter().map(turned).collect(),
+            laws,
+            time,
+            h,
+            at: 0,
+            touches: Vec::new(),
+            meetings: Vec::new(),
+        }
+    }
+
+    /// The first old contact behind the last candidate.
+    pub(super) fn left(&self) -> usize {
+        self.at
+    }
+
+    /// The old contacts of a pair; drops those of pairs passed over.
+    pub(super) fn old_of(
+        &mut self,
+        network: &mut Network<S>,
+        pair: (u32, u32),
+    ) -> std::ops::Range<usize> {
+        while self.at < network.old.len() && network.old[self.at].key.pair() < pair {
+            drop_contact(network, self.at);
+            self.at += 1;
+        }
+        let first = self.at;
+        while self.at < network.old.len() && network.old[self.at].key.pair() == pair {
+            self.at += 1;
+        }
+        first..self.at
+    }
+
+    pub(super) fn balls(&mut self, network: &mut Network<S>, a: u32, b: u32) {
+        let (p, q) = (
+            &self.shapes.balls[a as usize],
+            &self.shapes.balls[b as usize],
+        );
+        let d = self
+            .shapes
+            .periodic
+            .shortest(self.centres[a as usize] - self.centres[b as usize]);
+        let old = self.old_of(network, (a, b)).next();
+        let sum = p.radius + q.radius;
+        let squared = d.dot(&d);
+        let limit = sum + network.alert;
+        if squared >= limit * limit && !held(network, old) {
+            if let Some(k) = old {
+                drop_contact(network, k);
+            }
+            return;
+        }
+        let length = squared.sqrt();
+        let normal = if length > 0.0 {
+            d * (1.0 / length)
+        } else {
+            S::Vector::from_slice(&[1.0])
+        };
+        let (i, j) = (p.body as usize, q.body as usize);
+        let isotropic = |b: usize| {
+            (1..S::D).all(|k| self.bodies.inverse_mass[b][k] == self.bodies.inverse_mass[b][0])
+        };
+        let simple = |ball: &Ball<S>, b: usize| {
+            (ball.offset == S::Vector::null()
+                && self.bodies.length[b] == ball.radius
+                && isotropic(b))
+                || (self.bodies.immovable(b) && self.bodies.spin[b] == S::Spin::null())
+        };
+        let Some(law) = self.laws.get(p.material, q.material) else {
+            return;
+        };
+        let foot = self.centres[a as usize] - normal * p.radius;
+        let central = simple(p, i) && simple(q, j);
+        let arms = if central {
+            [normal * -p.radius, normal * q.radius]
+        } else {
+            let other = self.centres[b as usize] + normal * q.radius;
+            [
+                foot - self.bodies.position[i],
+                other - self.bodies.position[j],
+            ]
+        };
+        let found = Contact {
+            key: Key {
+                candidate: a,
+                antagonist: b,
+                feature: 0,
+            },
+            bodies: [p.body, q.body],
+            law,
+            central,
+            broken: false,
+            slot: Contact::<S>::NO_MEMORY,
+            gap: length - sum,
+            normal,
+            arms,
+            radius: p.radius * q.radius / sum,
+            impulse: S::Vector::null(),
+            moment: S::Spin::null(),
+            born: self.time,
+            pressed: 0.0,
+        };
+        self.admit(network, found, old);
+    }
+
+    pub(super) fn surface(&mut self, network: &mut Network<S>, a: u32, b: u32) {
+        let ball = &self.shapes.balls[a as usize];
+        let surface = &self.shapes.surfaces[(b & !Key::SURFACE) as usize];
+        let old = self.old_of(network, (a, b));
+        let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
+        let local = S::unrotate(&rotation, &(self.centres[a as usize] - origin));
+        let margin = reach(network, old.clone());
+        let mut touches = std::mem::take(&mut self.touches);
+        touches.clear();
+        surface
+            .shape
+            .touches(&local, ball.radius + margin, &mut touches);
+        let Some(law) = self.laws.get(ball.material, surface.material) else {
+            return;
+        };
+        let mut taken = vec![false; old.len()];
+        let (i, j) = (ball.body as usize, surface.body as usize);
+        for touch in &touches {
+            // The same feature, or the nearest of those that are no longer touched.
+            let same = old
+                .clone()
+                .find(|k| network.old[*k].key.feature == u64::from(touch.feature));
+            let matched = same.or_else(|| {
+                old.clone().find(|k| {
+                    !taken[k - old.start]
+                        && !touches
+                            .iter()
+                            .any(|t| u64::from(t.feature) == network.old[*k].key.feature)
+                })
+            });
+            let gap = touch.distance - ball.radius;
+            if gap >= network.alert && !held(network, matched) {
+                continue;
+            }
+            if let Some(k) = matched {
+                taken[k - old.start] = true;
+            }
+            let normal = S::rotate(&rotation, &touch.normal);
+            let foot = origin + S::rotate(&rotation, &touch.foot);
+            let still = self.bodies.immovable(j) && self.bodies.spin[j] == S::Spin::null();
+            let centred = ball.offset == S::Vector::null() && self.bodies.length[i] == ball.radius;
+            let arm = self.centres[a as usize] - normal * ball.radius - self.bodies.position[i];
+            let found = Contact {
+                key: Key {
+                    candidate: a,
+                    antagonist: b,
+                    feature: u64::from(touch.feature),
+                },
+                bodies: [ball.body, surface.body],
+                law,
+                central: still
+                    && centred
+                    && self.bodies.inverse_mass[i][0] == self.bodies.inverse_mass[i][S::D - 1],
+                broken: false,
+                slot: Contact::<S>::NO_MEMORY,
+                gap,
+                normal,
+                arms: [arm, foot - self.bodies.position[j]],
+                radius: ball.radius,
+                impulse: S::Vector::null(),
+                moment: S::Spin::null(),
+                born: self.time,
+                pressed: 0.0,
+            };
+            self.admit(network, found, matched);
+        }
+        for k in old.clone() {
+            if !taken[k - old.start] {
+                drop_contact(network, k);
+            }
+        }
+        self.touches = touches;
+    }
+
+    /// Takes a contact in, with what an old one of the same name remembers.
+    pub(super) fn admit(
+        &self,
+        network: &mut Network<S>,
+        mut found: Contact<S>,
+        old: Option<usize>,
+    ) {
+        match old {
+            Some(k) => {
+                let old = &network.old[k];
+                found.impulse = old.impulse;
+                found.moment = old.moment;
+                found.born = old.born;
+                found.pressed = old.pressed;
+                found.slot = old.slot;
+                found.broken = old.broken;
+                let from = old.normal;
+                if let Some(slot) = found.memory() {
+                    // What a bond remembers turns with the pair.
+                    let [i, j] = found.bodies.map(|b| self.bodies.spin[b as usize]);
+                    let angle = 0.5 * self.h * S::split_spin(&found.normal, &(i + j)).0;
+                    let memory = &mut network.memory[found.law as usize];
+                    let bond = &mut memory.bonds[slot];
+                    bond.opening_t = S::carry(&from, &found.normal, angle, &bond.opening_t);
+                    if let Some(rotation) = memory.rotations.get_mut(slot) {
+                        *rotation = S::carry_spin(&from, &found.normal, angle, rotation);
+                    }
+                }
+            }
+            None => found.broken = network.broken_pairs.contains(&found.key.pair()),
+        }
+        network.contacts.push(found);
+    }
+}
+
+/// How far the contacts of a pair are looked for (m): a bond reaches as far as it is stretched, and again as
+/// far within a step.
+pub(super) fn reach<S: Space>(network: &Network<S>, old: std::ops::Range<usize>) -> f64 {
+    let stretch = |k: usize| {
+        let old = &network.old[k];
+        let bond = network.bond(old).filter(|b| b.intact())?;
+        Some(network.skin + 2.0 * (old.gap.max(0.0) + bond.opening_t.norm()))
+    };
+    network.alert + old.filter_map(stretch).fold(0.0, f64::max)
+}

@@ -1,0 +1,180 @@
+//! Contacts of convex pieces: with balls, with each other and with surfaces, several points a pair.
+
+use super::narrow::{Narrow, reach};
+use super::{drop_contact, frame, held};
+use crate::contact::network::{Contact, Key, Network};
+use crate::geometry::convex::{Core, Gauge, Meeting};
+use crate::geometry::space::{Space, VectorLike};
+
+/// Corners that stand nearer along a face than this part of the alert distance are seen as on it.
+const SLACK: f64 = 0.01;
+
+/// Who meets: bodies, materials, and the size where the meeting gives none (m).
+struct Pair {
+    name: (u32, u32),
+    bodies: [u32; 2],
+    law: u16,
+    radius: f64,
+}
+
+impl<S: Space> Narrow<'_, S> {
+    /// A pair of which one at least is a piece.
+    pub(super) fn pieces(&mut self, network: &mut Network<S>, a: u32, b: u32) {
+        let old = self.old_of(network, (a, b));
+        let gauge = Gauge {
+            reach: reach(network, old.clone()),
+            slack: SLACK * network.alert,
+        };
+        let mut meetings = std::mem::take(&mut self.meetings);
+        meetings.clear();
+        if let Some((pair, to_candidate, to_antagonist)) = self.meet(a, b, &gauge, &mut meetings) {
+            self.keep(
+                network,
+                &pair,
+                &meetings,
+                old,
+                [to_candidate, to_antagonist],
+            );
+        } else {
+            old.for_each(|k| drop_contact(network, k));
+        }
+        self.meetings = meetings;
+    }
+
+    /// Finds the meetings of a pair in world axes, and where their origin stands from the centres of the
+    /// two bodies. None where the pair has no law.
+    fn meet(
+        &self,
+        a: u32,
+        b: u32,
+        gauge: &Gauge,
+        out: &mut Vec<Meeting<S::Vector>>,
+    ) -> Option<(Pair, S::Vector, S::Vector)> {
+        let balls = self.shapes.balls.len();
+        let at = |name: u32| (name & !Key::PIECE) as usize;
+        let of = |body: u32| self.bodies.position[body as usize];
+        if b & Key::SURFACE != 0 {
+            let k = at(a);
+            let (piece, surface) = (
+                &self.shapes.pieces[k],
+                &self.shapes.surfaces[(b & !Key::SURFACE) as usize],
+            );
+            let law = self.laws.get(piece.material, surface.material)?;
+            let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
+            let place = S::unrotate(&rotation, &(self.centres[balls + k] - origin));
+            // The core in the surface's axes.
+            let core = self.cores[k].turned(&S::inverse(&rotation));
+            core.meet_surface(surface.shape.as_ref(), &place, piece.rounding, gauge, out);
+            for m in out.iter_mut() {
+                m.normal = S::rotate(&rotation, &m.normal);
+                m.on_candidate = S::rotate(&rotation, &m.on_candidate);
+                m.on_antagonist = S::rotate(&rotation, &m.on_antagonist);
+            }
+            let pair = Pair {
+                name: (a, b),
+                bodies: [piece.body, surface.body],
+                law,
+                radius: piece.size,
+            };
+            return Some((pair, origin - of(piece.body), origin - of(surface.body)));
+        }
+        let k = at(b);
+        let (other, centre) = (&self.shapes.pieces[k], self.centres[balls + k]);
+        let (pair, own_centre, apart);
+        if a & Key::PIECE == 0 {
+            let ball = &self.shapes.balls[a as usize];
+            own_centre = self.centres[a as usize];
+            apart = self.shapes.periodic.shortest(own_centre - centre);
+            let meeting = self.cores[k].meet_ball(&apart, ball.radius, other.rounding);
+            if meeting.gap <= gauge.reach {
+                out.push(meeting);
+            }
+            pair = Pair {
+                name: (a, b),
+                bodies: [ball.body, other.body],
+                law: self.laws.get(ball.material, other.material)?,
+                radius: ball.radius,
+            };
+        } else {
+            let piece = &self.shapes.pieces[at(a)];
+            own_centre = self.centres[balls + at(a)];
+            apart = self.shapes.periodic.shortest(own_centre - centre);
+            let roundings = [piece.rounding, other.rounding];
+            self.cores[at(a)].meet(&self.cores[k], &apart, roundings, gauge, out);
+            pair = Pair {
+                name: (a, b),
+                bodies: [piece.body, other.body],
+                law: self.laws.get(piece.material, other.material)?,
+                radius: piece.size * other.size / (piece.size + other.size),
+            };
+        }
+        // The antagonist's centre as the candidate sees it may be an image.
+        let to_candidate = own_centre - apart - of(pair.bodies[0]);
+        let to_antagonist = centre - of(pair.bodies[1]);
+        Some((pair, to_candidate, to_antagonist))
+    }
+
+    /// Makes contacts of the meetings within the alert distance, with what old ones remember.
+    fn keep(
+        &mut self,
+        network: &mut Network<S>,
+        pair: &Pair,
+        meetings: &[Meeting<S::Vector>],
+        old: std::ops::Range<usize>,
+        origins: [S::Vector; 2],
+    ) {
+        // The same corner first; then, of the old ones whose corner is met no more, the nearest.
+        let mut matched: Vec<Option<usize>> = meetings
+            .iter()
+            .map(|m| {
+                old.clone()
+                    .find(|k| network.old[*k].key.feature == m.feature)
+            })
+            .collect();
+        for (k, m) in meetings.iter().enumerate() {
+            if matched[k].is_none() {
+                let arm = m.on_candidate + origins[0];
+                let away = |at: &usize| (network.old[*at].arms[0] - arm).norm();
+                matched[k] = old
+                    .clone()
+                    .filter(|at| !matched.contains(&Some(*at)))
+                    .min_by(|x, y| away(x).total_cmp(&away(y)));
+            }
+        }
+        let mut taken = vec![false; old.len()];
+        for (m, before) in meetings.iter().zip(matched) {
+            if m.gap >= network.alert && !held(network, before) {
+                continue;
+            }
+            if let Some(k) = before {
+                taken[k - old.start] = true;
+            }
+            let found = Contact {
+                key: Key {
+                    candidate: pair.name.0,
+                    antagonist: pair.name.1,
+                    feature: m.feature,
+                },
+                bodies: pair.bodies,
+                law: pair.law,
+                central: false,
+                broken: false,
+                slot: Contact::<S>::NO_MEMORY,
+                gap: m.gap,
+                normal: m.normal,
+                arms: [m.on_candidate + origins[0], m.on_antagonist + origins[1]],
+                radius: if m.share > 0.0 { m.share } else { pair.radius },
+                impulse: S::Vector::null(),
+                moment: S::Spin::null(),
+                born: self.time,
+                pressed: 0.0,
+            };
+            self.admit(network, found, before);
+        }
+        for k in old.clone() {
+            if !taken[k - old.start] {
+                drop_contact(network, k);
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Convex pieces: a convex core and a rounding about it, carried by a body.
+//!
+//! Two points with a rounding are a capsule; several pieces on a body are a cluster. Cores are polygons in
+//! two dimensions; three have none yet.
+
+pub mod mass;
+pub mod none;
+pub mod polygon;
+pub mod polygon_pair;
+pub mod polygon_surface;
+
+use super::shape::Surface;
+use super::space::Space;
+use std::fmt::Debug;
+
+/// A convex part of a body: all points within `rounding` of its core.
+#[derive(Clone, Debug)]
+pub struct Piece<S: Space> {
+    /// Index of the body.
+    pub body: u32,
+    /// The core, about the piece's centre, in the body's axes.
+    pub core: S::Core,
+    /// The piece's centre in the body's frame (m).
+    pub offset: S::Vector,
+    /// Radius of the rounding (m); zero for sharp corners.
+    pub rounding: f64,
+    /// Radius of a ball about the piece's centre that holds it all (m).
+    pub bound: f64,
+    /// Radius of the ball of the same volume (m): its size in a contact of one point.
+    pub size: f64,
+    /// Index of the material.
+    pub material: u16,
+}
+
+/// The shape of a piece and its mass properties, before it has a body.
+#[derive(Clone, Debug)]
+pub struct Part<S: Space> {
+    /// The core, about its centre of mass.
+    pub core: S::Core,
+    /// The centre of mass (m).
+    pub centre: S::Vector,
+    /// Radius of the rounding (m).
+    pub rounding: f64,
+    /// Radius of a ball about the centre of mass that holds it all (m).
+    pub bound: f64,
+    /// Volume, rounding included (m^3; 2D: area times unit depth).
+    pub volume: f64,
+    /// Moment of inertia about the centre of mass at unit density (m^5).
+    pub inertia: f64,
+}
+
+impl<S: Space> Part<S> {
+    /// A part of a body, its centre of mass at `offset` in the body's frame (m).
+    pub fn carried(self, body: u32, offset: S::Vector, material: u16) -> Piece<S> {
+        Piece {
+            body,
+            core: self.core,
+            offset,
+            rounding: self.rounding,
+            bound: self.bound,
+            size: S::ball_radius(self.volume),
+            material,
+        }
+    }
+}
+
+/// Where two bodies are near: one point of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Meeting<V> {
+    /// Point of the candidate's surface (m).
+    pub on_candidate: V,
+    /// Point of the antagonist's surface (m).
+    pub on_antagonist: V,
+    /// Unit normal, from the antagonist to the candidate.
+    pub normal: V,
+    /// Gap (m), negative where they overlap.
+    pub gap: f64,
+    /// Name of the corner that is touched; stable while the bodies slide along each other.
+    pub feature: u64,
+    /// Length of the face that this point stands for (m); zero for a corner.
+    pub share: f64,
+}
+
+/// How near is near.
+#[derive(Clone, Copy, Debug)]
+pub struct Gauge {
+    /// Meetings with a larger gap are not looked for (m).
+    pub reach: f64,
+    /// Two corners that are no farther apart along a face are seen as corner on face (m): between corners
+    /// that coincide there is no direction.
+    pub slack: f64,
+}
+
+/// What the narrow phase asks of a convex core. Vectors are in the world's axes, places relative to the
+/// antagonist's centre.
+pub trait Core<S: Space>: Clone + Debug + Send + Sync {
+    /// The core of a body that turned.
+    #[must_use]
+    fn turned(&self, rotation: &S::Rotation) -> Self;
+
+    /// Meetings with another core, in the order of their features: this is the candidate and stands at
+    /// `apart`; `roundings` are the candidate's and the antagonist's (m).
+    fn meet(
+        &self,
+        other: &Self,
+        apart: &S::Vector,
+        roundings: [f64; 2],
+        gauge: &Gauge,
+        out: &mut Vec<Meeting<S::Vector>>,
+    );
+
+    /// The meeting with a ball whose centre stands at `apart`; the ball is the candidate, the gap that to
+    /// the rounded core.
+    fn meet_ball(&self, apart: &S::Vector, radius: f64, rounding: f64) -> Meeting<S::Vector>;
+
+    /// Meetings with a surface of a first body, in the order of their features. The core is in the
+    /// surface's frame, its centre at `at`.
+    fn meet_surface(
+        &self,
+        surface: &dyn Surface<S>,
+        at: &S::Vector,
+        rounding: f64,
+        gauge: &Gauge,
+        out: &mut Vec<Meeting<S::Vector>>,
+    );
+
+    /// Corners of the rounded core for pictures and files (m), a closed line without its last point.
+    fn outline(&self, rounding: f64) -> Vec<S::Vector>;
+}

@@ -1,0 +1,306 @@
+//! Convex polygons in the plane.
+
+use super::{Core, Gauge, Meeting, Part, mass, polygon_pair, polygon_surface};
+use crate::geometry::shape::Surface;
+use crate::geometry::space::{Plane, Space};
+use nalgebra::Vector2;
+
+/// Corners that go round against the clock, and the outward unit normals of the sides that begin in them.
+/// Two points are a segment with two sides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polygon {
+    points: Vec<Vector2<f64>>,
+    normals: Vec<Vector2<f64>>,
+}
+
+/// Why points are no convex polygon.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum PolygonError {
+    /// Fewer than three points.
+    #[error("a polygon needs at least three points, got {0}")]
+    TooFew(usize),
+    /// Not a number.
+    #[error("point {0} of the polygon is not finite")]
+    NotFinite(usize),
+    /// Two consecutive points coincide.
+    #[error("points {0} and {1} of the polygon coincide; remove one of them")]
+    Coincident(usize, usize),
+    /// The other way round.
+    #[error("the points of a polygon go round against the clock; turn their order")]
+    Clockwise,
+    /// All on a line.
+    #[error("the points of the polygon lie on one line")]
+    Flat,
+    /// A corner that points inwards.
+    #[error(
+        "the polygon is not convex at point {0}; make it of several convex ones (a body may have several shapes)"
+    )]
+    NotConvex(usize),
+    /// Three points on a line.
+    #[error("point {0} of the polygon lies on the line between its neighbours; remove it")]
+    Straight(usize),
+    /// The line turns more than once.
+    #[error("the line of the polygon crosses itself")]
+    Crosses,
+}
+
+impl Polygon {
+    /// From corners (m) that go round against the clock.
+    ///
+    /// # Errors
+    /// Too few, coincident or non-finite points, points on a line, a polygon that is not convex.
+    pub fn new(points: Vec<Vector2<f64>>) -> Result<Self, PolygonError> {
+        let n = points.len();
+        if n < 3 {
+            return Err(PolygonError::TooFew(n));
+        }
+        if let Some(k) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+            return Err(PolygonError::NotFinite(k));
+        }
+        let side = |k: usize| points[(k + 1) % n] - points[k];
+        let size = (0..n).map(|k| side(k).norm()).fold(0.0, f64::max);
+        if let Some(k) = (0..n).find(|k| side(*k).norm() <= 1e-9 * size) {
+            return Err(PolygonError::Coincident(k, (k + 1) % n));
+        }
+        let twice: f64 = (0..n)
+            .map(|k| (points[k] - points[0]).perp(&(points[(k + 1) % n] - points[0])))
+            .sum();
+        if twice.abs() <= 1e-9 * size * size {
+            return Err(PolygonError::Flat);
+        }
+        if twice < 0.0 {
+            return Err(PolygonError::Clockwise);
+        }
+        let mut turn = 0.0;
+        for k in 0..n {
+            let (before, after) = (side((k + n - 1) % n), side(k));
+            let sine = before.perp(&after) / (before.norm() * after.norm());
+            if sine.abs() <= 1e-9 {
+                return Err(PolygonError::Straight(k));
+            }
+            if sine < 0.0 {
+                return Err(PolygonError::NotConvex(k));
+            }
+            turn += sine.atan2(before.dot(&after) / (before.norm() * after.norm()));
+        }
+        if turn > 1.5 * std::f64::consts::TAU {
+            return Err(PolygonError::Crosses);
+        }
+        Ok(Self::with_normals(points))
+    }
+
+    /// The segment between two points (m), which are not the same: the core of a capsule.
+    pub fn segment(from: Vector2<f64>, to: Vector2<f64>) -> Self {
+        Self::with_normals(vec![from, to])
+    }
+
+    /// A regular polygon about the origin, its first corner on the x axis at `radius` (m); at least three
+    /// sides.
+    pub fn regular(sides: usize, radius: f64) -> Self {
+        let angle = |k: usize| std::f64::consts::TAU * k as f64 / sides as f64;
+        let corner = |k: usize| Vector2::new(angle(k).cos(), angle(k).sin()) * radius;
+        Self::with_normals((0..sides).map(corner).collect())
+    }
+
+    fn with_normals(points: Vec<Vector2<f64>>) -> Self {
+        let n = points.len();
+        let normal = |k: usize| {
+            let along = points[(k + 1) % n] - points[k];
+            Vector2::new(along.y, -along.x) / along.norm()
+        };
+        let normals = (0..n).map(normal).collect();
+        Self { points, normals }
+    }
+
+    /// The part of a body with this core and a rounding (m).
+    pub fn part(&self, rounding: f64) -> Part<Plane> {
+        let properties = mass::of(&self.points, rounding);
+        let core = Self {
+            points: self.points.iter().map(|p| p - properties.centre).collect(),
+            normals: self.normals.clone(),
+        };
+        Part {
+            bound: core.farthest() + rounding,
+            core,
+            centre: properties.centre,
+            rounding,
+            volume: properties.area,
+            inertia: properties.polar,
+        }
+    }
+
+    /// Corners (m).
+    pub fn points(&self) -> &[Vector2<f64>] {
+        &self.points
+    }
+
+    /// Outward unit normals of the sides; side k goes from corner k to the next.
+    pub fn normals(&self) -> &[Vector2<f64>] {
+        &self.normals
+    }
+
+    /// The two ends of a side (m).
+    pub fn side(&self, k: usize) -> (Vector2<f64>, Vector2<f64>) {
+        (self.points[k], self.points[(k + 1) % self.points.len()])
+    }
+
+    /// Distance of the farthest corner from the origin (m).
+    pub fn farthest(&self) -> f64 {
+        self.points.iter().map(|p| p.norm()).fold(0.0, f64::max)
+    }
+
+    /// The side whose normal points most against a direction.
+    pub fn facing(&self, direction: &Vector2<f64>) -> usize {
+        let against = |k: &usize| self.normals[*k].dot(direction);
+        (0..self.normals.len())
+            .min_by(|a, b| against(a).total_cmp(&against(b)))
+            .unwrap_or(0)
+    }
+
+    /// Signed distance of a point from the boundary (m, negative inside), the unit normal at the nearest
+    /// point of it, and the corner where that is one.
+    pub fn distance(&self, point: &Vector2<f64>) -> (f64, Vector2<f64>, Option<usize>) {
+        let depth = |k: usize| (point - self.points[k]).dot(&self.normals[k]);
+        let n = self.points.len();
+        let deepest = (0..n)
+            .max_by(|a, b| depth(*a).total_cmp(&depth(*b)))
+            .unwrap_or(0);
+        let (a, b) = self.side(deepest);
+        let s = (point - a).dot(&(b - a));
+        if depth(deepest) <= 0.0 || (s >= 0.0 && s <= (b - a).norm_squared()) {
+            return (depth(deepest), self.normals[deepest], None);
+        }
+        // Outside, beyond the ends of that side: the nearest side or corner of all.
+        let mut best = (f64::INFINITY, self.normals[deepest], None);
+        for k in 0..n {
+            let (a, b) = self.side(k);
+            let along = b - a;
+            let s = ((point - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+            let d = point - (a + along * s);
+            let length = d.norm();
+            if length < best.0 && length > 0.0 {
+                let corner = if s == 0.0 {
+                    Some(k)
+                } else if s == 1.0 {
+                    Some((k + 1) % n)
+                } else {
+                    None
+                };
+                best = (length, d / length, corner);
+            }
+        }
+        if best.0.is_infinite() {
+            // On a corner: the normal between those of its two sides.
+            return (0.0, self.normals[deepest], Some(deepest));
+        }
+        best
+    }
+}
+
+impl Core<Plane> for Polygon {
+    fn turned(&self, rotation: &f64) -> Self {
+        let (s, c) = rotation.sin_cos();
+        let turn = |v: &Vector2<f64>| Vector2::new(c * v.x - s * v.y, s * v.x + c * v.y);
+        Self {
+            points: self.points.iter().map(turn).collect(),
+            normals: self.normals.iter().map(turn).collect(),
+        }
+    }
+
+    fn meet(
+        &self,
+        other: &Self,
+        apart: &Vector2<f64>,
+        roundings: [f64; 2],
+        gauge: &Gauge,
+        out: &mut Vec<Meeting<Vector2<f64>>>,
+    ) {
+        polygon_pair::meet(self, other, apart, roundings, gauge, out);
+    }
+
+    fn meet_ball(&self, apart: &Vector2<f64>, radius: f64, rounding: f64) -> Meeting<Vector2<f64>> {
+        let (distance, normal, _) = self.distance(apart);
+        Meeting {
+            on_candidate: apart - normal * radius,
+            on_antagonist: apart - normal * (distance - rounding),
+            normal,
+            gap: distance - radius - rounding,
+            feature: 0,
+            share: 0.0,
+        }
+    }
+
+    fn meet_surface(
+        &self,
+        surface: &dyn Surface<Plane>,
+        at: &Vector2<f64>,
+        rounding: f64,
+        gauge: &Gauge,
+        out: &mut Vec<Meeting<Vector2<f64>>>,
+    ) {
+        polygon_surface::meet(self, surface, at, rounding, gauge, out);
+    }
+
+    fn outline(&self, rounding: f64) -> Vec<Vector2<f64>> {
+        if rounding == 0.0 {
+            return self.points.clone();
+        }
+        let n = self.points.len();
+        let mut out = Vec::new();
+        for k in 0..n {
+            let (before, after) = (self.normals[(k + n - 1) % n], self.normals[k]);
+            let mut angle = before.perp(&after).atan2(before.dot(&after));
+            if angle < 0.0 {
+                angle += std::f64::consts::TAU;
+            }
+            let parts = (angle / 0.2).ceil().max(1.0) as usize;
+            for part in 0..=parts {
+                let turn = angle * part as f64 / parts as f64;
+                out.push(self.points[k] + Plane::rotate(&turn, &before) * rounding);
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn polygon(points: &[(f64, f64)]) -> Result<Polygon, PolygonError> {
+        Polygon::new(points.iter().map(|p| Vector2::new(p.0, p.1)).collect())
+    }
+
+    #[test]
+    fn what_is_no_convex_polygon_is_refused() {
+        let of = |points: &[(f64, f64)]| polygon(points).unwrap_err();
+        assert_eq!(of(&[(0.0, 0.0), (1.0, 0.0)]), PolygonError::TooFew(2));
+        let nan = [(0.0, 0.0), (1.0, f64::NAN), (0.0, 1.0)];
+        assert_eq!(of(&nan), PolygonError::NotFinite(1));
+        let twice = [(0.0, 0.0), (1.0, 0.0), (1.0, 0.0), (0.0, 1.0)];
+        assert_eq!(of(&twice), PolygonError::Coincident(1, 2));
+        let clock = [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)];
+        assert_eq!(of(&clock), PolygonError::Clockwise);
+        let line = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)];
+        assert_eq!(of(&line), PolygonError::Flat);
+        let dart = [(0.0, 0.0), (2.0, 0.0), (0.5, 0.5), (0.0, 2.0)];
+        assert_eq!(of(&dart), PolygonError::NotConvex(2));
+        let straight = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 2.0)];
+        assert_eq!(of(&straight), PolygonError::Straight(1));
+        let angle = |k: usize| std::f64::consts::TAU * 0.4 * k as f64;
+        let star: Vec<_> = (0..5).map(|k| (angle(k).cos(), angle(k).sin())).collect();
+        assert_eq!(of(&star), PolygonError::Crosses);
+    }
+
+    #[test]
+    fn a_ball_meets_sides_and_corners() {
+        let square = polygon(&[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]).unwrap();
+        let m = square.meet_ball(&Vector2::new(0.3, 1.7), 0.5, 0.1);
+        assert!((m.gap - 0.1).abs() < 1e-15 && m.normal == Vector2::new(0.0, 1.0));
+        assert!((m.on_antagonist - Vector2::new(0.3, 1.1)).norm() < 1e-15);
+        let m = square.meet_ball(&Vector2::new(4.0, 5.0), 0.5, 0.0);
+        assert!((m.gap - 4.5).abs() < 1e-15 && (m.normal - Vector2::new(0.6, 0.8)).norm() < 1e-15);
+        let m = square.meet_ball(&Vector2::new(0.9, 0.2), 0.5, 0.0);
+        assert!((m.gap + 0.6).abs() < 1e-15 && m.normal == Vector2::new(1.0, 0.0));
+    }
+}

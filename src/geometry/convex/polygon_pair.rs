@@ -1,0 +1,403 @@
+//! Two convex polygons: the side with the greatest separation, and the facing side clipped to it.
+//!
+//! The distance of two polygons apart is the greatest separation over all directions (separating axes). It is
+//! either along the normal of a side, and then the facing side clipped to that side gives one or two
+//! points; or between two corners, and then there is one. Points are named after the corners they are at,
+//! so that names do not change when the two sides change their parts.
+
+use super::polygon::Polygon;
+use super::{Gauge, Meeting};
+use nalgebra::Vector2;
+
+type V = Vector2<f64>;
+
+/// Meetings of the candidate `a`, whose centre stands at `apart`, with `b` at the origin; `roundings` are
+/// theirs (m). In the order of their features.
+pub fn meet(
+    a: &Polygon,
+    b: &Polygon,
+    apart: &V,
+    roundings: [f64; 2],
+    gauge: &Gauge,
+    out: &mut Vec<Meeting<V>>,
+) {
+    let reach = gauge.reach + roundings[0] + roundings[1];
+    let (from_a, side_a) = separation(a, b, &-apart);
+    let (from_b, side_b) = separation(b, a, apart);
+    if from_a.max(from_b) > reach {
+        return;
+    }
+    // Of two sides that are as good the candidate's, however they are rounded.
+    let a_leads = from_a + gauge.slack * 1e-3 >= from_b;
+    let best = if a_leads { from_a } else { from_b };
+    if best > 0.0 {
+        let corners = nearest_corners(a, b, apart);
+        let (i, j, d) = corners;
+        let (distance, slack) = (d.norm(), gauge.slack);
+        let corner = distance * distance - best * best > slack * slack;
+        if corner && distance < nearest_side(a, b, apart) {
+            if distance <= reach {
+                let normal = d / distance;
+                let (pa, pb) = (a.points()[i] + apart, b.points()[j]);
+                out.push(Meeting {
+                    on_candidate: pa - normal * roundings[0],
+                    on_antagonist: pb + normal * roundings[1],
+                    normal,
+                    gap: distance - roundings[0] - roundings[1],
+                    feature: name(i, true),
+                    share: 0.0,
+                });
+            }
+            return;
+        }
+    }
+    let first = out.len();
+    let (lead, other, side, at_lead, at_other) = if a_leads {
+        (a, b, side_a, *apart, V::zeros())
+    } else {
+        (b, a, side_b, V::zeros(), *apart)
+    };
+    let (lead_rounding, other_rounding) = if a_leads {
+        (roundings[0], roundings[1])
+    } else {
+        (roundings[1], roundings[0])
+    };
+    for point in clip(lead, other, side, &(at_other - at_lead), gauge.slack) {
+        let normal = lead.normals()[side];
+        let gap = point.height - lead_rounding - other_rounding;
+        if gap > gauge.reach {
+            continue;
+        }
+        let on_other = at_lead + point.at - normal * other_rounding;
+        let on_lead = at_lead + point.at - normal * (point.height - lead_rounding);
+        let feature = name(point.corner, point.of_lead == a_leads);
+        let (on_candidate, on_antagonist, normal) = if a_leads {
+            (on_lead, on_other, -normal)
+        } else {
+            (on_other, on_lead, normal)
+        };
+        out.push(Meeting {
+            on_candidate,
+            on_antagonist,
+            normal,
+            gap,
+            feature,
+            share: point.share,
+        });
+    }
+    out[first..].sort_by_key(|m| m.feature);
+}
+
+/// The name of a corner of the candidate or the antagonist.
+fn name(corner: usize, of_candidate: bool) -> u64 {
+    2 * corner as u64 + u64::from(!of_candidate)
+}
+
+/// The greatest separation along a side of `of`, and that side; `to` stands at `apart` from it.
+fn separation(of: &Polygon, to: &Polygon, apart: &V) -> (f64, usize) {
+    let mut best = (f64::NEG_INFINITY, 0);
+    for (k, n) in of.normals().iter().enumerate() {
+        let lowest = to
+            .points()
+            .iter()
+            .map(|p| p.dot(n))
+            .fold(f64::INFINITY, f64::min);
+        let s = lowest + (apart - of.points()[k]).dot(n);
+        if s > best.0 {
+            best = (s, k);
+        }
+    }
+    best
+}
+
+/// The two nearest corners and the way from that of `b` to that of `a`.
+fn nearest_corners(a: &Polygon, b: &Polygon, apart: &V) -> (usize, usize, V) {
+    let mut best = (0, 0, a.points()[0] + apart - b.points()[0]);
+    for (i, p) in a.points().iter().enumerate() {
+        for (j, q) in b.points().iter().enumerate() {
+            let d = p + apart - q;
+            if d.norm_squared() < best.2.norm_squared() {
+                best = (i, j, d);
+            }
+        }
+    }
+    best
+}
+
+/// The least distance between a corner of one and the inner part of a side of the other.
+fn nearest_side(a: &Polygon, b: &Polygon, apart: &V) -> f64 {
+    let one = |of: &Polygon, to: &Polygon, apart: &V| {
+        let mut best = f64::INFINITY;
+        for k in 0..of.points().len() {
+            let (from, end) = of.side(k);
+            let along = end - from;
+            for p in to.points() {
+                let d = p + apart - from;
+                let s = d.dot(&along);
+                if s > 0.0 && s < along.norm_squared() {
+                    best = best.min(d.dot(&of.normals()[k]).abs());
+                }
+            }
+        }
+        best
+    };
+    one(a, b, &-apart).min(one(b, a, apart))
+}
+
+/// An end of the common part of two sides.
+struct End {
+    /// Place on the other side, relative to the leading polygon's centre (m).
+    at: V,
+    /// Its height over the leading side (m).
+    height: f64,
+    /// The corner it is at.
+    corner: usize,
+    /// Whether that is a corner of the leading polygon.
+    of_lead: bool,
+    share: f64,
+}
+
+/// The side of `other` that faces a side of `lead`, as far as it lies over it: its ends.
+fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> Vec<End> {
+    let normal = lead.normals()[side];
+    let (from, to) = lead.side(side);
+    let length = (to - from).norm();
+    let along = (to - from) / length;
+    let n = other.points().len();
+    let facing = other.facing(&normal);
+    // Against the leading side's direction: the second end comes first.
+    let place = |corner: usize| {
+        let p = other.points()[corner] + apart;
+        ((p - from).dot(&along), p, corner)
+    };
+    let (low, high) = (place((facing + 1) % n), place(facing));
+    let (low, high) = if low.0 <= high.0 {
+        (low, high)
+    } else {
+        (high, low)
+    };
+    let height = |p: &V| (p - from).dot(&normal);
+    let of_other = |end: (f64, V, usize)| End {
+        at: end.1,
+        height: height(&end.1),
+        corner: end.2,
+        of_lead: false,
+        share: 0.0,
+    };
+    // Where the facing side is over a corner of the leading one.
+    let over = |t: f64, corner: usize| {
+        let s = ((t - low.0) / (high.0 - low.0)).clamp(0.0, 1.0);
+        let at = low.1 + (high.1 - low.1) * s;
+        End {
+            at,
+            height: height(&at),
+            corner,
+            of_lead: true,
+            share: 0.0,
+        }
+    };
+    let (left, right) = (low.0.max(0.0), high.0.min(length));
+    if right - left <= slack {
+        // Corner on corner, or a side seen from its end: the lower one.
+        let lower = if height(&low.1) <= height(&high.1) {
+            low
+        } else {
+            high
+        };
+        let inside = lower.0 >= -slack && lower.0 <= length + slack;
+        return if inside || high.0 <= low.0 {
+            vec![of_other(lower)]
+        } else if lower.0 < 0.0 {
+            vec![over(0.0, side)]
+        } else {
+            vec![over(length, (side + 1) % lead.points().len())]
+        };
+    }
+    let mut ends = [
+        if low.0 >= 0.0 {
+            of_other(low)
+        } else {
+            over(0.0, side)
+        },
+        if high.0 <= length {
+            of_other(high)
+        } else {
+            over(length, (side + 1) % lead.points().len())
+        },
+    ];
+    for end in &mut ends {
+        end.share = 0.5 * (right - left);
+    }
+    Vec::from(ends)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::convex::Core;
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    const EXACT: Gauge = Gauge {
+        reach: 1e9,
+        slack: 0.0,
+    };
+
+    fn met(a: &Polygon, b: &Polygon, apart: V, roundings: [f64; 2]) -> Vec<Meeting<V>> {
+        let mut out = Vec::new();
+        meet(a, b, &apart, roundings, &EXACT, &mut out);
+        out
+    }
+
+    /// Corners on an ellipse: convex, of any number, at random.
+    fn random(rng: &mut Pcg64) -> Polygon {
+        loop {
+            let n = rng.random_range(3..9);
+            let mut angles: Vec<f64> = (0..n)
+                .map(|_| rng.random_range(0.0..std::f64::consts::TAU))
+                .collect();
+            angles.sort_by(f64::total_cmp);
+            let flat = rng.random_range(0.2..1.0);
+            let points = angles
+                .iter()
+                .map(|a| V::new(a.cos(), flat * a.sin()))
+                .collect();
+            if let Ok(polygon) = Polygon::new(points) {
+                return polygon.turned(&rng.random_range(0.0..6.0));
+            }
+        }
+    }
+
+    /// Distance of two polygons apart by every pair of sides.
+    fn brute(a: &Polygon, b: &Polygon, apart: V) -> f64 {
+        let mut best = f64::INFINITY;
+        let mut one = |p: V, (from, to): (V, V)| {
+            let along = to - from;
+            let s = ((p - from).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+            best = best.min((p - from - along * s).norm());
+        };
+        for i in 0..a.points().len() {
+            for j in 0..b.points().len() {
+                one(a.points()[i] + apart, b.side(j));
+                one(b.points()[j] - apart, a.side(i));
+            }
+        }
+        best
+    }
+
+    #[test]
+    fn gaps_and_normals_are_those_of_the_nearest_points() {
+        let mut rng = Pcg64::seed_from_u64(5);
+        let (mut corners, mut sides) = (0, 0);
+        for _ in 0..20_000 {
+            let (a, b) = (random(&mut rng), random(&mut rng));
+            let direction = rng.random_range(0.0..std::f64::consts::TAU);
+            let apart =
+                V::new(f64::cos(direction), f64::sin(direction)) * rng.random_range(1.0..3.0);
+            let (one, two) = (separation(&a, &b, &-apart).0, separation(&b, &a, &apart).0);
+            let r = [0.1, 0.05];
+            let points = met(&a, &b, apart, r);
+            let gap = points.iter().map(|m| m.gap).fold(f64::INFINITY, f64::min);
+            if one.max(two) <= 1e-9 {
+                // They overlap: the way out is the shortest along any side's normal.
+                assert!(
+                    (gap + 0.15 - one.max(two)).abs() < 1e-12,
+                    "{gap} {one} {two}"
+                );
+                continue;
+            }
+            let distance = brute(&a, &b, apart);
+            assert!((gap + 0.15 - distance).abs() < 1e-12, "{gap} {distance}");
+            let nearest = points
+                .iter()
+                .min_by(|x, y| x.gap.total_cmp(&y.gap))
+                .unwrap();
+            // The two feet are as far apart as the gap says, along the normal.
+            let way = nearest.on_candidate - nearest.on_antagonist;
+            assert!((way - nearest.normal * gap).norm() < 1e-12);
+            assert!((nearest.normal.norm() - 1.0).abs() < 1e-12);
+            if points.len() == 1 && nearest.share == 0.0 {
+                corners += 1;
+            } else {
+                sides += 1;
+            }
+        }
+        assert!(corners > 1000 && sides > 1000, "{corners} {sides}");
+    }
+
+    #[test]
+    fn a_pair_is_the_same_seen_from_the_other_side() {
+        let mut rng = Pcg64::seed_from_u64(6);
+        for _ in 0..5000 {
+            let (a, b) = (random(&mut rng), random(&mut rng));
+            let apart = V::new(rng.random_range(-2.0..2.0), rng.random_range(-2.0..2.0));
+            let (one, two) = (met(&a, &b, apart, [0.0; 2]), met(&b, &a, -apart, [0.0; 2]));
+            assert_eq!(one.len(), two.len());
+            for m in &one {
+                let other = two.iter().find(|o| o.feature == m.feature ^ 1);
+                let Some(other) = other.or((one.len() == 1).then(|| &two[0])) else {
+                    panic!("{one:?} {two:?}");
+                };
+                assert!((other.normal + m.normal).norm() < 1e-9);
+                assert!((other.gap - m.gap).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn stacked_boxes_touch_at_two_points_with_half_the_face_each() {
+        let of = |w: f64, h: f64| {
+            Polygon::new(vec![
+                V::new(-w, -h),
+                V::new(w, -h),
+                V::new(w, h),
+                V::new(-w, h),
+            ])
+            .unwrap()
+        };
+        let (top, low) = (of(1.0, 1.0), of(3.0, 1.0));
+        let points = met(&top, &low, V::new(0.5, 2.25), [0.1, 0.1]);
+        assert_eq!(points.len(), 2);
+        for p in &points {
+            assert_eq!(p.normal, V::new(0.0, 1.0));
+            assert!((p.gap - 0.05).abs() < 1e-14 && (p.share - 1.0).abs() < 1e-14);
+        }
+        // Of the same width: no corner is beyond the other, up to the slack.
+        let gauge = Gauge {
+            reach: 0.1,
+            slack: 1e-6,
+        };
+        for shift in [0.0, 1e-12, -1e-9, 5e-7] {
+            for gap in [-1e-9, 0.0, 1e-13, 1e-9, 0.05] {
+                let mut out = Vec::new();
+                let apart = V::new(shift, 2.0 + gap);
+                meet(&top, &top, &apart, [0.0; 2], &gauge, &mut out);
+                assert_eq!(out.len(), 2, "{shift:e} {gap:e}");
+                assert!(out.iter().all(|m| (m.normal.y - 1.0).abs() < 1e-15));
+                assert!(out.iter().all(|m| (m.gap - gap).abs() < 1e-15));
+            }
+        }
+        // Beside each other's corner: one point, along the way between the corners.
+        let mut out = Vec::new();
+        let apart = V::new(2.03, 2.04);
+        meet(&top, &top, &apart, [0.0; 2], &gauge, &mut out);
+        assert_eq!(out.len(), 1);
+        assert!((out[0].gap - 0.05).abs() < 1e-14);
+        assert!((out[0].normal - V::new(0.6, 0.8)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn capsules_side_by_side_and_crossed() {
+        let lying = Polygon::segment(V::new(-1.0, 0.0), V::new(1.0, 0.0));
+        let points = met(&lying, &lying, V::new(0.5, 0.25), [0.1, 0.1]);
+        assert_eq!(points.len(), 2);
+        assert!(points.iter().all(|m| (m.gap - 0.05).abs() < 1e-15));
+        let standing = lying.turned(&std::f64::consts::FRAC_PI_2);
+        let points = met(&standing, &lying, V::new(0.2, 1.3), [0.1, 0.1]);
+        let least = points.iter().map(|m| m.gap).fold(f64::INFINITY, f64::min);
+        assert!((least - 0.1).abs() < 1e-15);
+        // End to end.
+        let points = met(&lying, &lying, V::new(2.3, 0.4), [0.1, 0.1]);
+        assert!(points.len() == 1 && (points[0].gap - 0.3).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,151 @@
+//! A convex polygon and a surface of a first body: the polygon's corners on the surface's faces and
+//! corners, and the surface's corners on the polygon's sides.
+
+use super::polygon::Polygon;
+use super::{Gauge, Meeting};
+use crate::geometry::shape::{Surface, Touch};
+use crate::geometry::space::Plane;
+use nalgebra::Vector2;
+
+type V = Vector2<f64>;
+
+/// How far a normal may be out of a corner's cone and still count as in it.
+const CONE: f64 = 1e-9;
+/// Two faces of a profile are met at one place when it is no wider than this part of the reach.
+const SEAM: f64 = 1e-9;
+
+/// Meetings of the polygon, centred at `at` in the surface's frame, in the order of their features.
+pub fn meet(
+    polygon: &Polygon,
+    surface: &dyn Surface<Plane>,
+    at: &V,
+    rounding: f64,
+    gauge: &Gauge,
+    out: &mut Vec<Meeting<V>>,
+) {
+    let first = out.len();
+    let reach = gauge.reach + rounding;
+    let n = polygon.points().len();
+    let mut touches: Vec<Touch<V>> = Vec::new();
+    for (k, point) in polygon.points().iter().enumerate() {
+        let p = point + at;
+        touches.clear();
+        surface.touches(&p, reach, &mut touches);
+        for (t, touch) in touches.iter().enumerate() {
+            // Over a seam both faces are met alike.
+            let alike = |other: &Touch<V>| {
+                (other.foot - touch.foot).norm() <= SEAM * reach
+                    && other.normal.dot(&touch.normal) >= 1.0 - SEAM
+            };
+            if touches[..t].iter().any(alike) {
+                continue;
+            }
+            // Of the side that faces the surface, or a corner that points to it.
+            let facing = polygon.facing(&touch.normal);
+            if k != facing && k != (facing + 1) % n {
+                continue;
+            }
+            let (from, to) = polygon.side(facing);
+            out.push(Meeting {
+                on_candidate: p - touch.normal * rounding,
+                on_antagonist: touch.foot,
+                normal: touch.normal,
+                gap: touch.distance - rounding,
+                feature: ((u64::from(touch.feature) << 24) | k as u64) << 1,
+                share: 0.5 * (to - from).norm(),
+            });
+        }
+    }
+    let extent = V::repeat(polygon.farthest() + reach);
+    let mut corners = Vec::new();
+    surface.corners(&(at - extent), &(at + extent), &mut corners);
+    for corner in &corners {
+        let (distance, outward, own) = polygon.distance(&(corner.at - at));
+        // Corner on corner was met above.
+        if own.is_some() || distance > reach {
+            continue;
+        }
+        let normal = -outward;
+        let [before, after] = corner.normals;
+        let inside = before.perp(&normal) <= CONE && normal.perp(&after) <= CONE;
+        if !inside || normal.dot(&(before + after)) <= 0.0 {
+            continue;
+        }
+        out.push(Meeting {
+            on_candidate: corner.at - outward * (distance - rounding),
+            on_antagonist: corner.at,
+            normal,
+            gap: distance - rounding,
+            feature: (u64::from(corner.feature) << 1) | 1,
+            share: 0.0,
+        });
+    }
+    out[first..].sort_by_key(|m| m.feature);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::polyline::Polyline;
+    use crate::geometry::shape::HalfSpace;
+
+    const GAUGE: Gauge = Gauge {
+        reach: 0.2,
+        slack: 1e-4,
+    };
+
+    fn square() -> Polygon {
+        Polygon::new(vec![
+            V::new(-1.0, -1.0),
+            V::new(1.0, -1.0),
+            V::new(1.0, 1.0),
+            V::new(-1.0, 1.0),
+        ])
+        .unwrap()
+    }
+
+    fn met(surface: &dyn Surface<Plane>, polygon: &Polygon, at: V, r: f64) -> Vec<Meeting<V>> {
+        let mut out = Vec::new();
+        meet(polygon, surface, &at, r, &GAUGE, &mut out);
+        out
+    }
+
+    #[test]
+    fn a_box_lies_on_two_corners_of_a_floor() {
+        let floor = HalfSpace::<Plane> {
+            normal: V::new(0.0, 1.0),
+            shown: 1.0,
+        };
+        let points = met(&floor, &square(), V::new(7.0, 1.15), 0.1);
+        assert_eq!(points.len(), 2);
+        assert!(points.iter().all(|m| (m.gap - 0.05).abs() < 1e-15));
+        assert!((points[0].on_candidate.y - 0.05).abs() < 1e-15);
+        assert_eq!(points.iter().map(|m| m.feature).collect::<Vec<_>>(), [0, 2]);
+    }
+
+    #[test]
+    fn a_box_slides_over_the_seams_of_a_flat_profile() {
+        let points = (0..20).map(|k| V::new(f64::from(k), 0.0)).collect();
+        let flat = Polyline::new(points, None).unwrap();
+        for k in 0..200 {
+            let at = V::new(3.0 + 0.0501 * f64::from(k), 0.99);
+            let points = met(&flat, &square(), at, 0.0);
+            assert_eq!(points.len(), 2, "{at:?} {points:?}");
+            assert!(points.iter().all(|m| m.normal == V::new(0.0, 1.0)));
+        }
+    }
+
+    #[test]
+    fn a_box_on_a_ridge_touches_its_corner() {
+        let ridge = Polyline::new(
+            vec![V::new(-5.0, -2.0), V::new(0.0, 0.0), V::new(5.0, -2.0)],
+            None,
+        )
+        .unwrap();
+        let points = met(&ridge, &square(), V::new(0.4, 1.01), 0.0);
+        assert_eq!(points.len(), 1, "{points:?}");
+        assert_eq!(points[0].normal, V::new(0.0, 1.0));
+        assert!((points[0].gap - 0.01).abs() < 1e-15);
+        assert_eq!(points[0].on_antagonist, V::zeros());
+    }
+}

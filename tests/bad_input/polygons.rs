@@ -1,0 +1,103 @@
+//! Convex polygons, capsules and arches.
+
+use crate::trial::{PLANE, SOLID, refused, with};
+
+/// The plane case with these grains beside its own.
+fn grains(more: &str) -> String {
+    with(
+        PLANE,
+        "    grains: [\n",
+        &format!("    grains: [\n{more},\n"),
+    )
+}
+
+/// The plane case with this shape as its lid.
+fn lid(shape: &str) -> String {
+    with(PLANE, "HalfSpace(normal: [0.0, -1.0])", shape)
+}
+
+#[test]
+fn polygons_that_are_none() {
+    let of = |points: &str, sentence: &str| {
+        let grain = format!("(at: [0.3, 0.05], points: ‸[{points}])");
+        let list = format!("Polygons(material: \"grain\", grains: [{grain}])");
+        refused(&grains(&list), &[sentence]);
+    };
+    of("(0.0, 0.0), (0.01, 0.0)", "at least three points, got 2");
+    of(
+        "(0.0, 0.0), (0.0, 0.01), (0.01, 0.0)",
+        "against the clock; turn their order",
+    );
+    of("(0.0, 0.0), (0.01, 0.0), (0.02, 0.0)", "lie on one line");
+    of(
+        "(0.0, 0.0), (0.02, 0.0), (0.005, 0.005), (0.0, 0.02)",
+        "not convex at point 2; make it of several convex ones",
+    );
+    of(
+        "(0.0, 0.0), (0.01, 0.0), (0.01, 0.0), (0.0, 0.01)",
+        "points 1 and 2 of the polygon coincide",
+    );
+}
+
+#[test]
+fn regular_polygons_and_roundings() {
+    let of = |fields: &str, sentence: &str| {
+        let list = format!("Polygons(material: \"grain\", grains: [(at: [0.3, 0.05], {fields})])");
+        refused(&grains(&list), &[sentence]);
+    };
+    of("regular: ‸(2, 0.01)", "has 3 to 10000 sides, got 2");
+    of(
+        "regular: ‸(5, -0.01)",
+        "a radius must be positive, got -0.01",
+    );
+    of(
+        "regular: (5, 0.01), rounding: ‸-1.0",
+        "must not be negative, got -1",
+    );
+    of(
+        "regular: (5, 0.01), spin: ‸[0.0, 1.0]",
+        "a spin has 1 components",
+    );
+}
+
+#[test]
+fn capsules_without_length() {
+    refused(
+        &lid("‸Capsule(from: (0.0, 0.0), to: (0.0, 0.0), radius: 0.01)"),
+        &["two different points; for a disk use Balls"],
+    );
+}
+
+#[test]
+fn arches_that_cannot_be() {
+    let of = |fields: &str, sentence: &str| {
+        refused(
+            &grains(&format!("Arch(material: \"grain\", {fields})")),
+            &[sentence],
+        );
+    };
+    of(
+        "blocks: ‸1, radius: 0.03, thickness: 0.005",
+        "an arch has 2 to 1000000 blocks, got 1",
+    );
+    of(
+        "blocks: 5, radius: 0.03, thickness: ‸0.06",
+        "below twice the radius (6e-2 m), got 0.06",
+    );
+    of(
+        "blocks: 5, radius: 0.03, thickness: 0.005, span: ‸4.0",
+        "at most pi (half a circle), got 4",
+    );
+}
+
+#[test]
+fn polygons_in_space() {
+    let capsule = "‸Capsule(from: (0.0, 0.0), to: (0.0, 1.0), radius: 0.01)";
+    let body = format!(
+        "    bodies: [\n        (name: \"rod\", material: \"grain\", shapes: [{capsule}]),\n"
+    );
+    refused(
+        &with(SOLID, "    bodies: [\n", &body),
+        &["need two dimensions; use Balls in three"],
+    );
+}
