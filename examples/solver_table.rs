@@ -297,7 +297,7 @@ the same in every run, by `auto` at 1e-4; then the method and the tolerance of t
 wall time, by default {budget:.0} s, tested between steps; where it took longer, the row says how much of it was done, and
 from 1 % on its total is extrapolated. The first steps of the slip are the hardest. A step may take 2,000 iterations (20 of `newton` and `interior`, which
 factorise; 20,000 of `auto`, `nlgs` and `anderson` at 1e-4): what has not reached the tolerance by then is
-counted and goes on.
+counted and goes on. The machine was shared: times vary by a factor of two.
 
 | tolerance | method | time of the run (s) | ms a step | iterations a step | not converged | friction by cycle |
 |---|---|---|---|---|---|---|
@@ -351,7 +351,7 @@ counted and goes on.
         }
     }
     out += "
-In the first steps of the slip no method reaches 1e-6 or 1e-8, in twenty times as many iterations either:
+In the first steps of the slip no method reaches 1e-6 or 1e-8, in fifty times as many sweeps either:
 [why](solvers.md#the-first-slip-of-the-fretting-case). `nlgs-symmetric`, the gradients, `newton` and `interior` hold a
 bond and the contact it lies in as two unknowns, where the sweeps over bodies solve both at once:
 [what that costs](solvers.md#bonds-as-unknowns-of-their-own).
