@@ -131,17 +131,23 @@ impl<S: Space> Bodies<S> {
         self.engage(place, 0.0);
     }
 
-    /// Kinetic energy of the grains alone, the driven bodies apart (J).
-    pub fn kinetic_energy_of_grains(&self) -> f64 {
-        let driven: f64 = self
-            .driven
-            .iter()
-            .map(|d| self.energy_of(d.body as usize))
-            .sum();
-        (self.kinetic_energy() - driven).max(0.0)
+    /// Which bodies are grains: those that are not driven.
+    pub fn grain_flags(&self) -> Vec<bool> {
+        let mut grain = vec![true; self.len()];
+        for driven in &self.driven {
+            grain[driven.body as usize] = false;
+        }
+        grain
     }
 
-    fn energy_of(&self, b: usize) -> f64 {
+    /// The grains.
+    pub fn grains(&self) -> impl Iterator<Item = usize> {
+        let grain = self.grain_flags();
+        (0..self.len()).filter(move |b| grain[*b])
+    }
+
+    /// Kinetic energy of a body (J).
+    pub fn energy_of(&self, b: usize) -> f64 {
         let (v, w) = (&self.velocity[b], &self.spin[b]);
         0.5 * (self.mass[b] * v.dot(v) + self.inertia[b] * w.dot(w))
     }

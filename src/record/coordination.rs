@@ -21,10 +21,7 @@ pub struct Coordination {
 
 /// Counts the contacts of the last step.
 pub fn coordination<S: Space>(s: &Simulation<S>) -> Coordination {
-    let mut free = vec![true; s.bodies.len()];
-    for driven in &s.bodies.driven {
-        free[driven.body as usize] = false;
-    }
+    let free = s.bodies.grain_flags();
     let force = |c: &crate::contact::Contact<S>| c.normal.dot(&c.impulse);
     let carrying = s.network.contacts.iter().filter(|c| force(c) > 0.0);
     let (sum, count) = carrying.fold((0.0, 0), |(f, n), c| (f + force(c), n + 1));

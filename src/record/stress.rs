@@ -9,10 +9,7 @@ use crate::step::Simulation;
 /// f is the mean force of the last step, l goes from a grain's centre to the contact: to the wall's face, or
 /// to the middle of the gap to another grain. At rest the stress is what the walls feel.
 pub fn love_weber<S: Space>(s: &Simulation<S>, volume: f64) -> [[f64; 3]; 3] {
-    let mut free = vec![true; s.bodies.len()];
-    for driven in &s.bodies.driven {
-        free[driven.body as usize] = false;
-    }
+    let free = s.bodies.grain_flags();
     let mut moment = [[0.0; 3]; 3];
     let factor = 1.0 / (s.scheme.h * volume);
     for contact in &s.network.contacts {

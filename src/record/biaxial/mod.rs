@@ -126,12 +126,8 @@ impl Biaxial {
 
     /// Mean mass of a grain (kg; kg/m in 2D), inertia scaled as in the run.
     pub fn grain_mass<S: Space>(&self, s: &Simulation<S>) -> f64 {
-        let mut grain = vec![true; s.bodies.len()];
-        for driven in &s.bodies.driven {
-            grain[driven.body as usize] = false;
-        }
-        let masses = || s.bodies.mass.iter().zip(&grain).filter(|(_, g)| **g);
-        masses().map(|(m, _)| m).sum::<f64>() / masses().count().max(1) as f64
+        let masses = || s.bodies.grains().map(|b| s.bodies.mass[b]);
+        masses().sum::<f64>() / masses().count().max(1) as f64
     }
 
     /// What the last step gives.

@@ -117,13 +117,10 @@ impl<S: Space> Measures<S> {
 
 /// The grains: centre, index of the body, radius. Balls of driven bodies are none.
 fn grains<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (S::Vector, usize, f64)> + '_ {
-    let mut driven = vec![false; s.bodies.len()];
-    for d in &s.bodies.driven {
-        driven[d.body as usize] = true;
-    }
+    let grain = s.bodies.grain_flags();
     let balls = s.shapes.balls.iter();
     balls
-        .filter(move |b| !driven[b.body as usize])
+        .filter(move |b| grain[b.body as usize])
         .map(|b| (crate::contact::detect::centre(b, &s.bodies), b))
         .map(|(x, b)| (s.shapes.periodic.wrapped(x), b.body as usize, b.radius))
 }

@@ -433,9 +433,9 @@ fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
     if !(length.is_finite() && length > 0.0) {
         return 0.0;
     }
-    let driven = |b: usize| s.bodies.driven.iter().any(|d| d.body as usize == b);
+    let grain = s.bodies.grain_flags();
     grains()
-        .filter(|b| !driven(*b))
+        .filter(|b| grain[*b])
         .map(|b| s.bodies.mass[b] * s.bodies.velocity[b][along].abs())
         .sum::<f64>()
         / length

@@ -76,10 +76,16 @@ impl<S: Space> Simulation<S> {
         let Some(until) = self.control.phases[phase].until.clone() else {
             return;
         };
-        let now = self.moment();
-        if let Some(why) = self.control.clock.ends(&until, &now) {
-            self.control.clock.close(&now, why);
+        let now = phases::Moment {
+            time: self.time,
+            step: self.steps,
+            h: self.scheme.h,
+        };
+        let mut clock = std::mem::take(&mut self.control.clock);
+        if let Some(why) = clock.ends(&until, &now, || self.motion_of_grains()) {
+            clock.close(&now, why);
         }
+        self.control.clock = clock;
     }
 
     fn begin_phase(&mut self) {
@@ -141,23 +147,14 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// What conditions of phases look at.
-    fn moment(&self) -> phases::Moment {
-        let mut grain = vec![true; self.bodies.len()];
-        for driven in &self.bodies.driven {
-            grain[driven.body as usize] = false;
-        }
-        let of_grains = (0..self.bodies.len()).filter(|b| grain[*b]);
-        // The work that gravity does on a grain over its own diameter, summed up.
-        let weights: f64 = of_grains
-            .map(|b| self.bodies.mass[b] * 2.0 * self.bodies.length[b])
-            .sum();
-        phases::Moment {
-            time: self.time,
-            step: self.steps,
-            h: self.scheme.h,
-            kinetic: self.bodies.kinetic_energy_of_grains(),
-            scale: weights * self.gravity.norm(),
+    /// What a condition of rest looks at.
+    fn motion_of_grains(&self) -> phases::Motion {
+        let bodies = &self.bodies;
+        // The work that gravity does on a grain over its own diameter.
+        let weight = |b: usize| bodies.mass[b] * 2.0 * bodies.length[b];
+        phases::Motion {
+            kinetic: bodies.grains().map(|b| bodies.energy_of(b)).sum(),
+            scale: bodies.grains().map(weight).sum::<f64>() * self.gravity.norm(),
         }
     }
 }

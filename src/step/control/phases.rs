@@ -74,14 +74,18 @@ pub struct Begun {
     pub ended_by: Option<&'static str>,
 }
 
-/// What the conditions look at.
+/// Where the run stands after a step.
 pub(super) struct Moment {
     pub time: f64,
     pub step: u64,
     pub h: f64,
-    /// Kinetic energy of the grains (J).
+}
+
+/// How much the grains move.
+pub(super) struct Motion {
+    /// Their kinetic energy (J).
     pub kinetic: f64,
-    /// Sum of m g d over the grains (J).
+    /// Sum of m g d over them (J).
     pub scale: f64,
 }
 
@@ -116,8 +120,13 @@ impl Clock {
         }
     }
 
-    /// Why the phase ends now, if it does.
-    pub fn ends(&mut self, until: &Until, now: &Moment) -> Option<&'static str> {
+    /// Why the phase ends now, if it does; `motion` is measured where that depends on it.
+    pub fn ends(
+        &mut self,
+        until: &Until,
+        now: &Moment,
+        motion: impl FnOnce() -> Motion,
+    ) -> Option<&'static str> {
         let begun = self.begun.last()?;
         let (start, first_step) = (begun.start, begun.first_step);
         // Times are sums of steps: half a step is on neither side of an end.
@@ -132,8 +141,9 @@ impl Clock {
                 held,
                 at_most,
             } => {
-                let still = share.is_none_or(|s| now.kinetic < s * now.scale)
-                    && energy.is_none_or(|e| now.kinetic < e);
+                let Motion { kinetic, scale } = motion();
+                let still = share.is_none_or(|s| kinetic < s * scale)
+                    && energy.is_none_or(|e| kinetic < e);
                 if !still {
                     self.still_since = None;
                 } else if reached(*self.still_since.get_or_insert(now.time) + held) {
