@@ -7,7 +7,7 @@
 //! threads must give the bits of the sweep on one. Best of many runs: what else the machine does counts as
 //! little as it can. A word of the command line chooses the problems whose name holds it.
 
-use fretwork::geometry::space::{Plane, Solid, Space, VectorLike};
+use fretwork::geometry::space::{MatrixLike, Plane, Solid, Space, VectorLike};
 use fretwork::solve::nlgs::{prepare, sweeps};
 use fretwork::solve::{ContactForm, Problem};
 use rand::{RngExt, SeedableRng};
@@ -393,11 +393,12 @@ fn problem<S: Space, const D: usize>(lattice: Lattice<D>) -> Problem<S> {
             v[k] = random(-0.01, 0.01);
         }
         v[D - 1] -= 1.0;
-        p.push_body(v, S::Spin::null(), m, 1.0 / (S::BALL_INERTIA * mass), 1.0);
+        let inverse = S::Tensor::uniform(1.0 / (S::BALL_INERTIA * mass));
+        p.push_body(v, S::Spin::null(), m, inverse, 1.0);
     }
     let floor = centres.len() as u32;
     let null = S::Vector::null();
-    p.push_body(null, S::Spin::null(), null, 0.0, 1.0);
+    p.push_body(null, S::Spin::null(), null, S::Tensor::uniform(0.0), 1.0);
     // Neighbours by cells one reach wide.
     let reach = 2.15;
     let mut cells = std::collections::HashMap::<[i64; D], Vec<u32>>::new();

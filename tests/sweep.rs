@@ -1,6 +1,6 @@
 //! The sweep of Gauss-Seidel gives the same bits on any number of threads.
 
-use fretwork::geometry::space::{Plane, Solid, Space, VectorLike};
+use fretwork::geometry::space::{MatrixLike, Plane, Solid, Space, VectorLike};
 use fretwork::solve::nlgs::{prepare, solve, sweeps};
 use fretwork::solve::{ContactForm, Options, Problem};
 
@@ -19,10 +19,10 @@ fn lattice<S: Space>(side: u32) -> Problem<S> {
             mass[d] = 1.0 + 0.2 * wave;
         }
         let inertia = mass[0] / S::BALL_INERTIA;
-        p.push_body(v, S::Spin::null(), mass, inertia, 1.0);
+        p.push_body(v, S::Spin::null(), mass, S::Tensor::uniform(inertia), 1.0);
     }
     let null = S::Vector::null();
-    p.push_body(null, S::Spin::null(), null, 0.0, 1.0);
+    p.push_body(null, S::Spin::null(), null, S::Tensor::uniform(0.0), 1.0);
     for k in 0..count {
         for d in 0..S::D {
             let step = side.pow(d as u32);

@@ -4,6 +4,7 @@ pub mod drive;
 pub mod pressure;
 pub mod stages;
 pub mod state;
+pub mod tensor;
 
 pub use drive::{Dof, Driven, TimeFunction};
 pub use stages::Stage;

@@ -1,7 +1,8 @@
 //! Positions, velocities and inertia of all bodies, in columns.
 
 use super::drive::{Dof, Driven};
-use crate::geometry::space::{Space, VectorLike};
+use super::tensor::{self, Tensor};
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
 /// All bodies of a scene, in columns; grains and first bodies alike. In 2D masses are per metre.
 #[derive(Clone, Debug)]
@@ -18,8 +19,10 @@ pub struct Bodies<S: Space> {
     pub spin: Vec<S::Spin>,
     /// Masses (kg).
     pub mass: Vec<f64>,
-    /// Moments of inertia (kg m^2); bodies that turn freely are isotropic or planar.
+    /// Moments of inertia (kg m^2), the mean one where they differ by axis.
     pub inertia: Vec<f64>,
+    /// Moments of inertia that differ by axis; empty where no body has such.
+    pub tensors: Vec<Option<Tensor<S>>>,
     /// A length that makes spins velocities in the solver (m): the radius of a grain.
     pub length: Vec<f64>,
     /// One over the mass, axis by axis; zero where the motion is imposed (1/kg).
@@ -42,6 +45,7 @@ impl<S: Space> Default for Bodies<S> {
             spin: Vec::new(),
             mass: Vec::new(),
             inertia: Vec::new(),
+            tensors: Vec::new(),
             length: Vec::new(),
             inverse_mass: Vec::new(),
             inverse_inertia: Vec::new(),
@@ -88,6 +92,45 @@ impl<S: Space> Bodies<S> {
         self.inverse_inertia.push(one_over(inertia));
         self.gone.push(false);
         index as u32
+    }
+
+    /// The same with moments of inertia by axis, in the body's own axes (kg m^2).
+    pub fn add_shaped(
+        &mut self,
+        position: S::Vector,
+        mass: f64,
+        inertia: &S::Tensor,
+        length: f64,
+    ) -> u32 {
+        let body = self.add(position, mass, tensor::mean::<S>(inertia), length);
+        if let Some(tensor) = Tensor::new(*inertia) {
+            self.tensors.resize(self.len(), None);
+            self.tensors[body as usize] = Some(tensor);
+        }
+        body
+    }
+
+    /// The moments of inertia by axis, where they differ and the body turns freely.
+    pub fn tensor(&self, body: usize) -> Option<&Tensor<S>> {
+        let tensor = self.tensors.get(body)?.as_ref()?;
+        (self.inverse_inertia[body] > 0.0).then_some(tensor)
+    }
+
+    /// The inverse of the moments of inertia in the world's axes; zero where the rotation is imposed
+    /// (1/(kg m^2)).
+    pub fn inverse_tensor(&self, body: usize) -> S::Tensor {
+        match self.tensor(body) {
+            Some(tensor) => tensor.inverse(&self.rotation[body]),
+            None => S::Tensor::uniform(self.inverse_inertia[body]),
+        }
+    }
+
+    /// Angular momentum of a body at a spin (kg m^2/s).
+    pub fn angular_momentum(&self, body: usize, spin: &S::Spin) -> S::Spin {
+        match self.tensor(body) {
+            Some(tensor) => tensor.momentum(&self.rotation[body], spin),
+            None => *spin * self.inertia[body],
+        }
     }
 
     /// Adds a homogeneous ball (kg/m^3).
@@ -149,7 +192,7 @@ impl<S: Space> Bodies<S> {
     /// Kinetic energy of a body (J).
     pub fn energy_of(&self, b: usize) -> f64 {
         let (v, w) = (&self.velocity[b], &self.spin[b]);
-        0.5 * (self.mass[b] * v.dot(v) + self.inertia[b] * w.dot(w))
+        0.5 * (self.mass[b] * v.dot(v) + w.dot(&self.angular_momentum(b, w)))
     }
 
     /// Imposed degrees of freedom have no compliance, the others that of their inertia.

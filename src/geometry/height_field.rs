@@ -1,5 +1,6 @@
 //! A rough plane in space: heights over a regular grid, solid below.
 
+use super::facets::{self, Facet};
 use super::shape::{Surface, Touch};
 use super::space::Solid;
 use nalgebra::Vector3;
@@ -86,31 +87,12 @@ impl HeightField {
         let z = self.heights[self.vertex(i, j)];
         Vector3::new(i as f64 * self.spacing[0], j as f64 * self.spacing[1], z)
     }
-
-    /// How many triangles share a part: two an edge, six a vertex, fewer at the border.
-    fn sharing(&self, corners: &[(i64, i64)]) -> usize {
-        let inside = |i: i64, j: i64| {
-            (self.periodic[0] || (0..self.cells(0)).contains(&i))
-                && (self.periodic[1] || (0..self.cells(1)).contains(&j))
-        };
-        let mut count = 0;
-        let (i0, j0) = corners[0];
-        for i in i0 - 2..=i0 + 2 {
-            for j in j0 - 2..=j0 + 2 {
-                if !inside(i, j) {
-                    continue;
-                }
-                for t in triangles(i, j) {
-                    count += usize::from(corners.iter().all(|c| t.contains(c)));
-                }
-            }
-        }
-        count
-    }
 }
 
-/// A part of the surface, how many triangles found it, the nearest point, and a normal there.
-type Found = (Vec<(i64, i64)>, usize, Vector3<f64>, Vector3<f64>);
+/// A number of a row that tells its images apart.
+fn image(i: i64) -> u64 {
+    (i + (1 << 30)) as u64
+}
 
 fn triangles(i: i64, j: i64) -> [[(i64, i64); 3]; 2] {
     [
@@ -119,58 +101,22 @@ fn triangles(i: i64, j: i64) -> [[(i64, i64); 3]; 2] {
     ]
 }
 
-/// Nearest point of a triangle and the corners involved (one: vertex, two: edge, three: face).
-/// Ericson, Real-Time Collision Detection (2005), section 5.1.5.
-fn nearest(
-    p: Vector3<f64>,
-    a: Vector3<f64>,
-    b: Vector3<f64>,
-    c: Vector3<f64>,
-) -> (Vector3<f64>, [bool; 3]) {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return (a, [true, false, false]);
-    }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return (b, [false, true, false]);
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return (a + ab * (d1 / (d1 - d3)), [true, true, false]);
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return (c, [false, false, true]);
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return (a + ac * (d2 / (d2 - d6)), [true, false, true]);
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        return (
-            b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))),
-            [false, true, true],
-        );
-    }
-    let denominator = 1.0 / (va + vb + vc);
-    (
-        a + ab * (vb * denominator) + ac * (vc * denominator),
-        [true; 3],
-    )
-}
-
 impl Surface<Solid> for HeightField {
     fn touches(&self, centre: &Vector3<f64>, reach: f64, out: &mut Vec<Touch<Vector3<f64>>>) {
-        let start = out.len();
+        let (extent, mut near) = (Vector3::repeat(reach), Vec::new());
+        self.facets(&(centre - extent), &(centre + extent), &mut near);
+        facets::touches(&near, centre, reach, out);
+    }
+
+    fn facets(&self, low: &Vector3<f64>, high: &Vector3<f64>, out: &mut Vec<Facet<Vector3<f64>>>) {
+        if low.z > self.highest || high.z < self.lowest {
+            return;
+        }
+        // One cell more: all that meet at a point of the box.
         let range = |axis: usize| {
             let (low, high) = (
-                ((centre[axis] - reach) / self.spacing[axis]).floor() as i64 - 1,
-                ((centre[axis] + reach) / self.spacing[axis]).floor() as i64 + 1,
+                (low[axis] / self.spacing[axis]).floor() as i64 - 1,
+                (high[axis] / self.spacing[axis]).floor() as i64 + 1,
             );
             if self.periodic[axis] {
                 (low, high)
@@ -179,53 +125,18 @@ impl Surface<Solid> for HeightField {
             }
         };
         let ((i0, i1), (j0, j1)) = (range(0), range(1));
-        // Each part found, how many triangles found it, and where.
-        let mut found: Vec<Found> = Vec::new();
         for i in i0..=i1 {
             for j in j0..=j1 {
-                for corners in triangles(i, j) {
-                    let [a, b, c] = corners.map(|(i, j)| self.point(i, j));
-                    let (foot, used): (Vector3<f64>, [bool; 3]) = nearest(*centre, a, b, c);
-                    let up = (b - a).cross(&(c - a)).normalize();
-                    let mut part: Vec<_> =
-                        (0..3).filter(|k| used[*k]).map(|k| corners[k]).collect();
-                    part.sort_unstable();
-                    match found.iter_mut().find(|f| f.0 == part) {
-                        Some(f) => f.1 += 1,
-                        None => found.push((part, 1, foot, up)),
-                    }
+                let cell = self.vertex(i, j) as u32;
+                for (k, corners) in triangles(i, j).into_iter().enumerate() {
+                    out.push(Facet {
+                        corners: corners.map(|(i, j)| self.point(i, j)),
+                        names: corners.map(|(i, j)| image(i) << 32 | image(j)),
+                        name: 2 * cell + k as u32,
+                    });
                 }
             }
         }
-        for (part, count, foot, up) in found {
-            let face = part.len() == 3;
-            // An edge or vertex counts when all triangles around it find it: else a face is nearer.
-            if !face && count < self.sharing(&part) {
-                continue;
-            }
-            let arm = centre - foot;
-            let inside = arm.dot(&up) < 0.0;
-            let distance = if inside { -arm.norm() } else { arm.norm() };
-            if distance.abs() >= reach {
-                continue;
-            }
-            let normal = if face || distance <= 0.0 {
-                up
-            } else {
-                arm / distance
-            };
-            let first = self.vertex(part[0].0, part[0].1) as u32;
-            let code = part.iter().fold(0u32, |code, (i, j)| {
-                code | 1 << (2 * (i - part[0].0) + (j - part[0].1)).rem_euclid(4)
-            });
-            out.push(Touch {
-                foot,
-                normal,
-                distance,
-                feature: first * 16 + code,
-            });
-        }
-        out[start..].sort_by_key(|t| t.feature);
     }
 
     fn near(&self, centre: &Vector3<f64>, reach: f64) -> bool {
@@ -237,6 +148,10 @@ impl Surface<Solid> for HeightField {
             && centre.z + reach >= self.lowest
             && within(0)
             && within(1)
+    }
+
+    fn bounded(&self) -> bool {
+        true
     }
 
     fn outline(&self) -> Vec<Vec<Vector3<f64>>> {

@@ -1,8 +1,11 @@
 //! Shapes, distances and the search for neighbours.
+pub mod algebra;
 pub mod convex;
 pub mod drum;
+pub mod facets;
 pub mod grid;
 pub mod height_field;
+pub mod mesh;
 pub mod periodic;
 pub mod polyline;
 pub mod shape;

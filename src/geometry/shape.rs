@@ -1,6 +1,7 @@
 //! What can touch: balls, convex pieces, and surfaces carried by first bodies.
 
 use super::convex::Piece;
+use super::facets::Facet;
 use super::periodic::Periodic;
 use super::space::{Space, VectorLike};
 use std::fmt::Debug;
@@ -52,8 +53,15 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     /// Corners of the surface in the box from `low` to `high` (m) on which a flat side may come to lie, in
     /// the order of their features; none for a plane.
     fn corners(&self, _low: &S::Vector, _high: &S::Vector, _out: &mut Vec<Corner<S::Vector>>) {}
+    /// Triangles of the surface that come into the box from `low` to `high` (m), and all that share their corners
+    /// there (3D); none where a body's corners alone can touch: a plane, the inside of a drum.
+    fn facets(&self, _low: &S::Vector, _high: &S::Vector, _out: &mut Vec<Facet<S::Vector>>) {}
     /// Corners for pictures and files (m): polylines in 2D, polygons in 3D, in the surface's frame.
     fn outline(&self) -> Vec<Vec<S::Vector>>;
+    /// Whether the outline shows all of it.
+    fn bounded(&self) -> bool {
+        false
+    }
     /// The outward normal, if the surface is a plane.
     fn flat(&self) -> Option<S::Vector> {
         None

@@ -3,186 +3,9 @@
 //! Everything that steps, detects or solves is generic over [`Space`]; each dimension is compiled to
 //! its own code and carries none of the other's data.
 
-use nalgebra::{Matrix2, Matrix3, Vector1, Vector2, Vector3};
+pub use super::algebra::{MatrixLike, VectorLike, greatest, least};
+use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use std::fmt::Debug;
-use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
-
-/// The greater of two numbers; of equal ones, or where `a` is none, `b`: what vector units do.
-#[inline(always)]
-pub fn greatest(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
-
-/// The lesser of two numbers; of equal ones, or where `a` is none, `b`.
-#[inline(always)]
-pub fn least(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// Arithmetic shared by positions, velocities and spins of either dimension.
-pub trait VectorLike:
-    Copy
-    + Debug
-    + Send
-    + Sync
-    + PartialEq
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + AddAssign
-    + SubAssign
-    + Neg<Output = Self>
-    + Mul<f64, Output = Self>
-    + Index<usize, Output = f64>
-    + IndexMut<usize>
-    + 'static
-{
-    /// Number of components.
-    const N: usize;
-    /// The null vector.
-    fn null() -> Self;
-    /// Scalar product.
-    fn dot(&self, other: &Self) -> f64;
-    /// Euclidean norm.
-    fn norm(&self) -> f64;
-    /// The nearest vector not longer than `bound` (not negative).
-    fn limited(self, bound: f64) -> Self;
-    /// From a slice; missing components are zero.
-    fn from_slice(values: &[f64]) -> Self {
-        let mut v = Self::null();
-        for (k, x) in values.iter().take(Self::N).enumerate() {
-            v[k] = *x;
-        }
-        v
-    }
-    /// Component by component product.
-    fn scaled_by(&self, other: &Self) -> Self {
-        let mut v = *self;
-        for k in 0..Self::N {
-            v[k] *= other[k];
-        }
-        v
-    }
-    /// The components padded with zeros to three.
-    fn padded(&self) -> [f64; 3] {
-        let mut out = [0.0; 3];
-        for (k, slot) in out.iter_mut().enumerate().take(Self::N) {
-            *slot = self[k];
-        }
-        out
-    }
-    /// Whether every component is finite.
-    fn is_finite(&self) -> bool {
-        (0..Self::N).all(|k| self[k].is_finite())
-    }
-}
-
-macro_rules! vector_like {
-    ($type:ty, $n:literal) => {
-        impl VectorLike for $type {
-            const N: usize = $n;
-            #[inline(always)]
-            fn null() -> Self {
-                Self::zeros()
-            }
-            #[inline(always)]
-            fn dot(&self, other: &Self) -> f64 {
-                let products = self.iter().zip(other.iter()).map(|(a, b)| a * b);
-                products.reduce(|sum, x| sum + x).unwrap_or(0.0)
-            }
-            #[inline(always)]
-            fn norm(&self) -> f64 {
-                if $n == 1 {
-                    self[0].abs()
-                } else {
-                    VectorLike::dot(self, self).sqrt()
-                }
-            }
-            #[inline(always)]
-            fn limited(mut self, bound: f64) -> Self {
-                if $n == 1 {
-                    // One number needs neither a root nor a branch.
-                    self[0] = least(greatest(self[0], -bound), bound);
-                    return self;
-                }
-                let squared = VectorLike::dot(&self, &self);
-                if squared <= bound * bound {
-                    self
-                } else {
-                    self * (bound / squared.sqrt())
-                }
-            }
-        }
-    };
-}
-vector_like!(Vector1<f64>, 1);
-vector_like!(Vector2<f64>, 2);
-vector_like!(Vector3<f64>, 3);
-
-/// Arithmetic of the small square matrices of contact blocks.
-pub trait MatrixLike:
-    Copy + Debug + Send + Sync + PartialEq + Add<Output = Self> + Sub<Output = Self> + 'static
-{
-    /// The vector it acts on.
-    type V: VectorLike;
-    /// Diagonal matrix.
-    fn diagonal(d: &Self::V) -> Self;
-    /// Matrix times vector.
-    fn apply(&self, v: &Self::V) -> Self::V;
-    /// Matrix times matrix.
-    fn times(&self, other: &Self) -> Self;
-    /// Dyadic product a b^T.
-    fn dyad(a: &Self::V, b: &Self::V) -> Self;
-    /// Inverse, if there is one.
-    fn inverse(&self) -> Option<Self>;
-    /// Transpose.
-    fn transposed(&self) -> Self;
-    /// Matrix times number.
-    fn scaled(&self, s: f64) -> Self;
-    /// Entry in row `i`, column `j`.
-    fn entry(&self, i: usize, j: usize) -> f64;
-}
-
-macro_rules! matrix_like {
-    ($type:ty, $vector:ty) => {
-        impl MatrixLike for $type {
-            type V = $vector;
-            #[inline(always)]
-            fn diagonal(d: &Self::V) -> Self {
-                Self::from_diagonal(d)
-            }
-            #[inline(always)]
-            fn apply(&self, v: &Self::V) -> Self::V {
-                self * v
-            }
-            #[inline(always)]
-            fn times(&self, other: &Self) -> Self {
-                self * other
-            }
-            #[inline(always)]
-            fn dyad(a: &Self::V, b: &Self::V) -> Self {
-                a * b.transpose()
-            }
-            #[inline(always)]
-            fn inverse(&self) -> Option<Self> {
-                self.try_inverse()
-            }
-            #[inline(always)]
-            fn transposed(&self) -> Self {
-                self.transpose()
-            }
-            #[inline(always)]
-            fn scaled(&self, s: f64) -> Self {
-                self * s
-            }
-            #[inline(always)]
-            fn entry(&self, i: usize, j: usize) -> f64 {
-                self[(i, j)]
-            }
-        }
-    };
-}
-matrix_like!(Matrix2<f64>, Vector2<f64>);
-matrix_like!(Matrix3<f64>, Vector3<f64>);
 
 /// A dimension of space.
 pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
@@ -192,6 +15,8 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     type Vector: VectorLike;
     /// Angular velocities and moments: one component in 2D, three in 3D.
     type Spin: VectorLike;
+    /// Moments of inertia: one number in 2D.
+    type Tensor: MatrixLike<V = Self::Spin>;
     /// Contact blocks of the Delassus operator.
     type Matrix: MatrixLike<V = Self::Vector>;
     /// Tangential part of a contact vector: one number along t1 in 2D; in 3D a vector normal to n, so
@@ -206,8 +31,21 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     fn sweep(spin: &Self::Spin, arm: &Self::Vector) -> Self::Vector;
     /// Moment of a force at `arm`: arm x force.
     fn moment(arm: &Self::Vector, force: &Self::Vector) -> Self::Spin;
-    /// The matrix S with S p = (moment(arm, p)) x arm, for unit inverse inertia.
-    fn rotation_block(arm: &Self::Vector) -> Self::Matrix;
+    /// The matrix S with S p = (I^-1 moment(arm, p)) x arm.
+    fn rotation_block(arm: &Self::Vector, inverse_inertia: &Self::Tensor) -> Self::Matrix;
+    /// Moment of inertia of a unit mass at `arm`.
+    fn steiner(arm: &Self::Vector) -> Self::Tensor;
+    /// A tensor of a body's axes in the world's.
+    fn turned_tensor(rotation: &Self::Rotation, tensor: &Self::Tensor) -> Self::Tensor;
+    /// The rotation by a rotation vector in the body's own axes, then by `rotation`; a Cayley map: `half` is
+    /// the axis times tan(angle/2).
+    fn turned_within(rotation: &Self::Rotation, half: &Self::Spin) -> Self::Rotation;
+    /// A spin of the body's axes in the world's.
+    fn rotate_spin(rotation: &Self::Rotation, spin: &Self::Spin) -> Self::Spin;
+    /// A spin of the world's axes in the body's.
+    fn unrotate_spin(rotation: &Self::Rotation, spin: &Self::Spin) -> Self::Spin;
+    /// The vector product of two spins; null in 2D.
+    fn spin_cross(a: &Self::Spin, b: &Self::Spin) -> Self::Spin;
     /// Tangential part of a vector at a contact of unit normal `n`.
     fn tangential(n: &Self::Vector, v: &Self::Vector) -> Self::Tangent;
     /// The vector of a tangential part.
@@ -275,6 +113,7 @@ impl Space for Plane {
     const D: usize = 2;
     type Vector = Vector2<f64>;
     type Spin = Vector1<f64>;
+    type Tensor = Matrix1<f64>;
     type Matrix = Matrix2<f64>;
     type Tangent = Vector1<f64>;
     type Rotation = f64;
@@ -289,9 +128,27 @@ impl Space for Plane {
     fn moment(arm: &Self::Vector, force: &Self::Vector) -> Self::Spin {
         Vector1::new(arm[0] * force[1] - arm[1] * force[0])
     }
-    fn rotation_block(arm: &Self::Vector) -> Self::Matrix {
+    fn rotation_block(arm: &Self::Vector, inverse_inertia: &Self::Tensor) -> Self::Matrix {
         let s = Vector2::new(-arm[1], arm[0]);
-        s * s.transpose()
+        s * s.transpose() * inverse_inertia[0]
+    }
+    fn steiner(arm: &Self::Vector) -> Self::Tensor {
+        Matrix1::new(arm.norm_squared())
+    }
+    fn turned_tensor(_: &f64, tensor: &Self::Tensor) -> Self::Tensor {
+        *tensor
+    }
+    fn turned_within(rotation: &f64, half: &Self::Spin) -> f64 {
+        rotation + 2.0 * half[0].atan()
+    }
+    fn rotate_spin(_: &f64, spin: &Self::Spin) -> Self::Spin {
+        *spin
+    }
+    fn unrotate_spin(_: &f64, spin: &Self::Spin) -> Self::Spin {
+        *spin
+    }
+    fn spin_cross(_: &Self::Spin, _: &Self::Spin) -> Self::Spin {
+        Vector1::zeros()
     }
     #[inline(always)]
     fn tangential(n: &Self::Vector, v: &Self::Vector) -> Self::Tangent {
@@ -369,10 +226,11 @@ impl Space for Solid {
     const D: usize = 3;
     type Vector = Vector3<f64>;
     type Spin = Vector3<f64>;
+    type Tensor = Matrix3<f64>;
     type Matrix = Matrix3<f64>;
     type Tangent = Vector3<f64>;
     type Rotation = nalgebra::UnitQuaternion<f64>;
-    type Core = super::convex::none::NoCore;
+    type Core = super::convex::polyhedron::Polyhedron;
     const BALL_INERTIA: f64 = 0.4;
 
     #[inline(always)]
@@ -383,8 +241,31 @@ impl Space for Solid {
     fn moment(arm: &Self::Vector, force: &Self::Vector) -> Self::Spin {
         arm.cross(force)
     }
-    fn rotation_block(arm: &Self::Vector) -> Self::Matrix {
+    fn rotation_block(arm: &Self::Vector, inverse_inertia: &Self::Tensor) -> Self::Matrix {
+        let cross = arm.cross_matrix();
+        -(cross * inverse_inertia * cross)
+    }
+    fn steiner(arm: &Self::Vector) -> Self::Tensor {
         Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()
+    }
+    fn turned_tensor(rotation: &Self::Rotation, tensor: &Self::Tensor) -> Self::Tensor {
+        let r = rotation.to_rotation_matrix();
+        r * tensor * r.transpose()
+    }
+    fn turned_within(rotation: &Self::Rotation, half: &Self::Spin) -> Self::Rotation {
+        let cayley = nalgebra::Quaternion::new(1.0, half[0], half[1], half[2]);
+        let mut turned = rotation * nalgebra::UnitQuaternion::from_quaternion(cayley);
+        turned.renormalize_fast();
+        turned
+    }
+    fn rotate_spin(rotation: &Self::Rotation, spin: &Self::Spin) -> Self::Spin {
+        rotation * spin
+    }
+    fn unrotate_spin(rotation: &Self::Rotation, spin: &Self::Spin) -> Self::Spin {
+        rotation.inverse_transform_vector(spin)
+    }
+    fn spin_cross(a: &Self::Spin, b: &Self::Spin) -> Self::Spin {
+        a.cross(b)
     }
     #[inline(always)]
     fn tangential(n: &Self::Vector, v: &Self::Vector) -> Self::Tangent {
@@ -439,7 +320,10 @@ impl Space for Solid {
         nalgebra::UnitQuaternion::identity()
     }
     fn turned(rotation: &Self::Rotation, angle: &Self::Spin) -> Self::Rotation {
-        nalgebra::UnitQuaternion::from_scaled_axis(*angle) * rotation
+        let mut turned = nalgebra::UnitQuaternion::from_scaled_axis(*angle) * rotation;
+        // Rounding takes from the norm, always on the same side.
+        turned.renormalize_fast();
+        turned
     }
     fn rotate(rotation: &Self::Rotation, v: &Self::Vector) -> Self::Vector {
         rotation * v
@@ -498,8 +382,9 @@ mod tests {
         );
         let power = Solid::sweep(&w, &arm).dot(&f);
         assert!((power - w.dot(&Solid::moment(&arm, &f))).abs() < 1e-14);
-        let block = Solid::sweep(&Solid::moment(&arm, &f), &arm);
-        assert!((block - Solid::rotation_block(&arm) * f).norm() < 1e-14);
+        let inverse = Matrix3::new(2.0, 0.3, -0.1, 0.3, 1.0, 0.2, -0.1, 0.2, 0.7);
+        let block = Solid::sweep(&(inverse * Solid::moment(&arm, &f)), &arm);
+        assert!((block - Solid::rotation_block(&arm, &inverse) * f).norm() < 1e-14);
         let (arm, f, w) = (
             Vector2::new(1.0, -2.0),
             Vector2::new(0.3, 0.7),
@@ -507,8 +392,9 @@ mod tests {
         );
         let power = Plane::sweep(&w, &arm).dot(&f);
         assert!((power - w[0] * Plane::moment(&arm, &f)[0]).abs() < 1e-14);
-        let block = Plane::sweep(&Plane::moment(&arm, &f), &arm);
-        assert!((block - Plane::rotation_block(&arm) * f).norm() < 1e-14);
+        let inverse = Matrix1::new(0.3);
+        let block = Plane::sweep(&(inverse * Plane::moment(&arm, &f)), &arm);
+        assert!((block - Plane::rotation_block(&arm, &inverse) * f).norm() < 1e-14);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::contact::{Contact, Key};
 use crate::geometry::convex::{Core, Piece};
 use crate::geometry::space::{Space, VectorLike};
-use crate::report::{Disk, Frame, Link, LinkState, Outline, ReportError, View, project_spheres};
+use crate::report::{self, Disk, Frame, Link, LinkState, Outline, ReportError, Solid, View};
 use crate::scene::case::OutputSpec;
 use crate::step::Simulation;
 use std::path::Path;
@@ -103,7 +103,13 @@ impl Camera {
         caption: Vec<String>,
         path: &Path,
     ) -> Result<(), ReportError> {
-        let (disks, links, bodies) = if S::D == 2 {
+        let flat = S::D == 2;
+        let solids = if flat {
+            Vec::new()
+        } else {
+            solids(simulation, &self.shades)
+        };
+        let (disks, links, bodies) = if flat {
             (
                 disks(simulation, self.window, &self.shades),
                 links(simulation, self.window),
@@ -114,7 +120,7 @@ impl Camera {
                 .concat(),
             )
         } else {
-            (spheres(simulation, &self.shades), Vec::new(), Vec::new())
+            (Vec::new(), Vec::new(), Vec::new())
         };
         Frame {
             title: title.to_owned(),
@@ -124,7 +130,7 @@ impl Camera {
             disks: &disks,
             links: &links,
             arrows: &[],
-            shaded: S::D == 3,
+            solids: &solids,
             width_px: self.width,
         }
         .draw(path)
@@ -147,19 +153,20 @@ fn piece_centre<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> S::Vector {
     s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &piece.offset)
 }
 
-/// The corners of a piece (m).
-pub fn piece_outline<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> Vec<S::Vector> {
+/// The corners of a piece (m): one line around it in the plane, its faces in space.
+pub fn piece_outline<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> Vec<Vec<S::Vector>> {
     let rotation = &s.bodies.rotation[piece.body as usize];
-    let corners = piece.core.turned(rotation).outline(piece.rounding);
+    let faces = piece.core.turned(rotation).outline(piece.rounding);
     let centre = s.shapes.periodic.wrapped(piece_centre(s, piece));
-    corners.iter().map(|c| *c + centre).collect()
+    let moved = |face: Vec<S::Vector>| face.iter().map(|c| *c + centre).collect();
+    faces.into_iter().map(moved).collect()
 }
 
 fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
     let period = s.shapes.periodic.period[0];
     let mut out = Vec::with_capacity(s.shapes.pieces.len());
     for piece in &s.shapes.pieces {
-        let corners = piece_outline(s, piece);
+        let corners = piece_outline(s, piece).concat();
         let x = s.shapes.periodic.wrapped(piece_centre(s, piece))[0];
         for image in images(x, piece.bound, window, period) {
             out.push(Outline {
@@ -206,14 +213,40 @@ fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4], shades: &[f64]) -> Vec<D
     out
 }
 
-fn spheres<S: Space>(s: &Simulation<S>, shades: &[f64]) -> Vec<Disk> {
+/// Grains in space, before them the meshes of first bodies.
+fn solids<S: Space>(s: &Simulation<S>, shades: &[f64]) -> Vec<Solid> {
     let shade = |k: usize| shades.get(k).copied().unwrap_or(0.3);
     let all = s.shapes.balls.iter().zip(balls(s)).enumerate();
     let list: Vec<([f64; 3], f64, f64)> = all
         .filter(|(_, (b, _))| !s.bodies.gone[b.body as usize])
         .map(|(k, (_, (c, r)))| (s.shapes.periodic.wrapped(c).padded(), r, shade(k)))
         .collect();
-    project_spheres(&list, &view())
+    let padded = |face: &Vec<S::Vector>| face.iter().map(VectorLike::padded).collect();
+    let piece = |p: &Piece<S>| {
+        let faces = piece_outline(s, p);
+        (faces.iter().map(padded).collect(), 0.3)
+    };
+    let shown = |b: u32| !s.bodies.gone[b as usize];
+    let pieces = s.shapes.pieces.iter().filter(|p| shown(p.body));
+    let pieces: Vec<report::Body> = pieces.map(piece).collect();
+    let mut out = Vec::new();
+    let meshes = s.shapes.surfaces.iter();
+    // Planes and drums have no end: they would hide all.
+    for mesh in meshes.filter(|m| shown(m.body) && m.shape.bounded()) {
+        let b = mesh.body as usize;
+        let world = |p: &S::Vector| {
+            let own = mesh.offset + *p;
+            (s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &own)).padded()
+        };
+        let outline = mesh.shape.outline();
+        let faces: Vec<Vec<[f64; 3]>> = outline
+            .iter()
+            .map(|f| f.iter().map(world).collect())
+            .collect();
+        out.push(Solid::Faces(report::faces(&faces, 0.9, &view())));
+    }
+    out.extend(report::project(&list, &pieces, &view()));
+    out
 }
 
 /// The state of a contact in pictures and files.

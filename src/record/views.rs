@@ -169,17 +169,18 @@ fn bodies<S: Space>(s: &Simulation<S>) -> Part {
         }
     }
     for piece in &s.shapes.pieces {
-        let mut corners = picture::piece_outline(s, piece);
-        // Lines are closed, polygons close themselves.
-        if S::D == 2 {
-            corners.extend(corners.first().copied());
+        for mut corners in picture::piece_outline(s, piece) {
+            // Lines are closed, polygons close themselves.
+            if S::D == 2 {
+                corners.extend(corners.first().copied());
+            }
+            let first = part.points.len() as i64 / 3;
+            part.points
+                .extend(corners.iter().flat_map(VectorLike::padded));
+            part.cells
+                .push((first..first + corners.len() as i64).collect());
+            push(&mut part, &[s.bodies.id[piece.body as usize] as f64]);
         }
-        let first = part.points.len() as i64 / 3;
-        part.points
-            .extend(corners.iter().flat_map(VectorLike::padded));
-        part.cells
-            .push((first..first + corners.len() as i64).collect());
-        push(&mut part, &[s.bodies.id[piece.body as usize] as f64]);
     }
     part
 }

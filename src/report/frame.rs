@@ -7,6 +7,7 @@ use tiny_skia::PathBuilder;
 use super::canvas::{Canvas, INK, ReportError, Rgb, SOFT_INK, mix};
 use super::font::{Anchor, TextStyle, text_width};
 use super::furniture::{self, caption_lines, centroid, push_bar};
+use super::solid::{self, Solid};
 use super::sphere::paint_sphere;
 
 /// A first body (rail, wheel).
@@ -89,8 +90,8 @@ pub struct Frame<'a> {
     pub links: &'a [Link],
     /// Loads and motions.
     pub arrows: &'a [Arrow],
-    /// Draws grains as lit spheres, in place of flat disks.
-    pub shaded: bool,
+    /// Grains in space, drawn in order over the disks.
+    pub solids: &'a [Solid],
     /// Width of the picture in pixels; the height follows from the window.
     pub width_px: u32,
 }
@@ -156,11 +157,8 @@ impl Frame<'_> {
         let mut field = Canvas::new(field_width as u32, field_height as u32)?;
 
         self.draw_bodies(&mut field, &map, u);
-        if self.shaded {
-            self.draw_spheres(&mut field, &map);
-        } else {
-            self.draw_disks(&mut field, &map, u);
-        }
+        self.draw_disks(&mut field, &map, u);
+        self.draw_solids(&mut field, &map, u);
         self.draw_links(&mut field, &map, u);
         self.draw_labels(&mut field, &map, u);
         page.paste(&field, side as usize, top as usize);
@@ -199,8 +197,7 @@ impl Frame<'_> {
     fn draw_disks(&self, field: &mut Canvas, map: &Map, u: f32) {
         let mut ticks = PathBuilder::new();
         let edge = GRAIN_EDGE.map(f32::from);
-        let seen: Vec<_> = self.seen(field, map).collect();
-        for (disk, at, radius) in seen {
+        for (disk, at, radius) in self.seen(field, map) {
             let grain = mix(GRAIN[0], GRAIN[1], disk.shade).map(f32::from);
             let inner = radius - (1.3 * u).min(0.3 * radius);
             field.disk(at, radius, |_, distance| {
@@ -219,11 +216,23 @@ impl Frame<'_> {
         }
     }
 
-    /// Grains as spheres, each over those before it.
-    fn draw_spheres(&self, field: &mut Canvas, map: &Map) {
-        let seen: Vec<_> = self.seen(field, map).collect();
-        for (disk, at, radius) in seen {
-            paint_sphere(field, at, radius, mix(GRAIN[0], GRAIN[1], disk.shade));
+    /// Grains in space, each over those before it.
+    fn draw_solids(&self, field: &mut Canvas, map: &Map, u: f32) {
+        for solid in self.solids {
+            match solid {
+                Solid::Sphere(disk) => {
+                    if let Some((at, radius)) = pixels(disk, field, map) {
+                        paint_sphere(field, at, radius, mix(GRAIN[0], GRAIN[1], disk.shade));
+                    }
+                }
+                Solid::Faces(faces) => {
+                    for face in faces {
+                        let corners = visible(&face.points, field, map);
+                        let base = mix(GRAIN[0], GRAIN[1], face.shade);
+                        solid::paint(field, &corners, face.light, base, 0.8 * u);
+                    }
+                }
+            }
         }
     }
 
@@ -232,6 +241,7 @@ impl Frame<'_> {
     fn line_unit(&self, field: &Canvas, map: &Map, u: f32) -> f32 {
         let (sum, count) = self
             .seen(field, map)
+            .iter()
             .fold((0.0, 0.0), |(sum, n), (_, _, r)| (sum + r, n + 1.0));
         if count > 0.0 {
             (0.12 * sum / count).clamp(0.62 * u, 1.4 * u)
@@ -241,15 +251,11 @@ impl Frame<'_> {
     }
 
     /// Grains that touch the field, with centre and radius in pixels.
-    fn seen(&self, field: &Canvas, map: &Map) -> impl Iterator<Item = (&Disk, [f32; 2], f32)> {
-        let map = *map;
-        let (width, height) = (field.pixmap.width() as f32, field.pixmap.height() as f32);
-        self.disks.iter().filter_map(move |disk| {
-            let at = map.point(disk.centre);
-            let r = (disk.radius * map.scale) as f32;
-            let near = |v: f32, length: f32| v > -r && v < length + r;
-            (r > 0.0 && near(at[0], width) && near(at[1], height)).then_some((disk, at, r))
-        })
+    fn seen(&self, field: &Canvas, map: &Map) -> Vec<(&Disk, [f32; 2], f32)> {
+        let disks = self.disks.iter();
+        disks
+            .filter_map(|disk| pixels(disk, field, map).map(|(at, r)| (disk, at, r)))
+            .collect()
     }
 
     /// Links of one colour are filled together; plain ones lie below.
@@ -303,6 +309,15 @@ impl Frame<'_> {
     }
 }
 
+/// Centre and radius of a disk in pixels, if it touches the field.
+fn pixels(disk: &Disk, field: &Canvas, map: &Map) -> Option<([f32; 2], f32)> {
+    let at = map.point(disk.centre);
+    let r = (disk.radius * map.scale) as f32;
+    let (width, height) = (field.pixmap.width() as f32, field.pixmap.height() as f32);
+    let near = |v: f32, length: f32| v > -r && v < length + r;
+    (r > 0.0 && near(at[0], width) && near(at[1], height)).then_some((at, r))
+}
+
 /// A body cut to the field and a margin, in pixels: a wheel of half a metre
 /// round a field of a tenth of a millimetre is beyond single precision.
 fn visible(points: &[[f64; 2]], field: &Canvas, map: &Map) -> Vec<[f32; 2]> {
@@ -341,6 +356,7 @@ fn visible(points: &[[f64; 2]], field: &Canvas, map: &Map) -> Vec<[f32; 2]> {
 mod tests {
     use super::*;
     use crate::report::canvas::png_size;
+    use crate::report::solid::Face;
 
     const UM: f64 = 1e-6;
 
@@ -353,7 +369,7 @@ mod tests {
             disks,
             links,
             arrows: &[],
-            shaded: false,
+            solids: &[],
             width_px: 400,
         }
     }
@@ -415,8 +431,17 @@ mod tests {
             ..Disk::default()
         }];
         let mut odd = frame(&hollow, &bad, &[]);
-        odd.shaded = true;
         drawn(&odd, "odd");
+        let solids = [
+            Solid::Sphere(bad[0].clone()),
+            Solid::Faces(vec![Face {
+                points: Vec::new(),
+                shade: 0.0,
+                light: 1.0,
+            }]),
+        ];
+        odd.solids = &solids;
+        drawn(&odd, "solids");
         odd.window = [0.0, 1e-6, 0.0, 1.0];
         let tall = drawn(&odd, "tall");
         assert!(tall.height() < 2 * tall.width());

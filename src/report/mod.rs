@@ -7,6 +7,7 @@ mod frame;
 mod furniture;
 mod legend;
 mod panels;
+mod solid;
 mod sphere;
 
 pub use axis::Axis;
@@ -14,4 +15,5 @@ pub use canvas::ReportError;
 pub use chart::{Chart, Series, Style};
 pub use frame::{Arrow, Disk, Frame, Link, LinkState, Outline};
 pub use panels::draw_panels;
-pub use sphere::{View, project_spheres, sphere_disk};
+pub use solid::{Body, Face, Solid, faces, project};
+pub use sphere::{View, sphere_disk};

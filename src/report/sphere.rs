@@ -46,29 +46,6 @@ pub fn sphere_disk(centre: [f64; 3], radius: f64, shade: f64, view: &View) -> (D
     (disk, depth)
 }
 
-/// The disks that show spheres `(centre, radius, shade)`, the farthest first,
-/// for a frame with `shaded: true`, which draws them in that order. Far
-/// spheres are made darker, to show the depth of the bed.
-pub fn project_spheres(spheres: &[([f64; 3], f64, f64)], view: &View) -> Vec<Disk> {
-    let mut disks: Vec<_> = spheres
-        .iter()
-        .map(|&(centre, radius, shade)| sphere_disk(centre, radius, shade, view))
-        .collect();
-    disks.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let (far, near) = match (disks.first(), disks.last()) {
-        (Some(first), Some(last)) => (first.1, last.1),
-        _ => return Vec::new(),
-    };
-    let span = if near > far { near - far } else { 1.0 };
-    disks
-        .into_iter()
-        .map(|(disk, depth)| Disk {
-            shade: disk.shade + (1.0 - disk.shade) * (near - depth) / span * 0.8,
-            ..disk
-        })
-        .collect()
-}
-
 /// Paints one lit sphere, centre and radius in pixels.
 pub(super) fn paint_sphere(field: &mut Canvas, at: [f32; 2], radius: f32, base: Rgb) {
     // Light from the left above, in front of the picture; unit length.
@@ -106,14 +83,5 @@ mod tests {
             dot(v.right, v.towards),
         ];
         assert!(skew.iter().all(|d| d.abs() < 1e-12));
-    }
-
-    #[test]
-    fn far_spheres_come_first() {
-        let spheres = [([0.0, -1.0, 0.0], 1.0, 0.0), ([5.0, 3.0, 0.0], 1.0, 0.0)];
-        let disks = project_spheres(&spheres, &View::new(0.0, 0.0));
-        assert_eq!(disks[0].centre[0], 5.0);
-        assert!(disks[0].shade > disks[1].shade);
-        assert!(project_spheres(&[], &View::new(0.0, 0.0)).is_empty());
     }
 }

@@ -6,6 +6,7 @@ pub mod check;
 pub mod interfaces;
 pub mod material;
 pub mod measures;
+pub mod mesh_file;
 pub mod methods;
 pub mod phases;
 pub mod profile;

@@ -76,16 +76,16 @@ pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) 
 
 /// Degrees of freedom of a body that can move, with rotation or without.
 fn freedoms<S: Space>(problem: &Problem<S>, body: usize, turns: bool) -> usize {
-    let (mass, inertia) = &problem.masses[body];
-    let shifts = (0..S::D).filter(|k| mass[*k] > 0.0).count();
+    let mobility = &problem.masses[body];
+    let shifts = (0..S::D).filter(|k| mobility.mass[*k] > 0.0).count();
     let axes = if S::D == 2 { 1 } else { 3 };
-    shifts + if turns && *inertia > 0.0 { axes } else { 0 }
+    shifts + if turns && mobility.turns() { axes } else { 0 }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::{Plane, Space};
+    use crate::geometry::space::{MatrixLike, Plane, Space};
     use nalgebra::Vector2;
 
     /// A ball on `supports` fixed bodies, all of which carry.
@@ -93,7 +93,8 @@ mod tests {
         let mut problem = Problem::<Plane>::default();
         let body = |p: &mut Problem<Plane>, inverse: f64| {
             let mass = Vector2::new(inverse, inverse);
-            p.push_body(Vector2::zeros(), VectorLike::null(), mass, inverse, 1.0);
+            let inertia = MatrixLike::uniform(inverse);
+            p.push_body(Vector2::zeros(), VectorLike::null(), mass, inertia, 1.0);
         };
         body(&mut problem, 1.0);
         let mut forms = Vec::new();

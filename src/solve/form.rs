@@ -96,6 +96,64 @@ pub struct ContactSolution<S: Space> {
     pub unilateral_t: S::Tangent,
 }
 
+/// What an impulse does to a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Mobility<S: Space> {
+    /// Inverse mass, axis by axis (1/kg).
+    pub mass: S::Vector,
+    /// Inverse of the moments of inertia (1/(kg m^2)).
+    pub inertia: S::Tensor,
+}
+
+impl<S: Space> Mobility<S> {
+    /// Velocity and angular velocity that an impulse and a moment give.
+    #[inline]
+    pub fn apply(&self, p: &S::Vector, moment: &S::Spin) -> (S::Vector, S::Spin) {
+        (p.scaled_by(&self.mass), self.inertia.apply(moment))
+    }
+
+    /// Inverse mass or inertia of a degree of freedom, zero where it cannot move.
+    pub fn along(&self, k: usize) -> f64 {
+        if k < S::D {
+            self.mass[k]
+        } else {
+            self.inertia.entry(k - S::D, k - S::D)
+        }
+    }
+
+    /// Whether moments turn it.
+    pub fn turns(&self) -> bool {
+        self.inertia.entry(0, 0) > 0.0
+    }
+
+    /// Whether anything moves it.
+    pub fn moves(&self) -> bool {
+        self.turns() || (0..S::D).any(|k| self.mass[k] > 0.0)
+    }
+
+    /// The largest inverse inertia about any axis, or more; exact where all axes are alike (1/(kg m^2)).
+    pub fn quickest(&self) -> f64 {
+        let n = S::Spin::N;
+        let row = |i: usize| (0..n).map(|j| self.inertia.entry(i, j).abs()).sum::<f64>();
+        (0..n).map(row).fold(0.0, f64::max)
+    }
+
+    /// Twice the kinetic energy of a change of velocity, imposed parts apart (J).
+    pub fn energy(&self, dv: &S::Vector, dw: &S::Spin) -> f64 {
+        let masses = (0..S::D).filter(|k| self.mass[*k] > 0.0);
+        let shift: f64 = masses.map(|k| dv[k] * dv[k] / self.mass[k]).sum();
+        if !self.turns() {
+            return shift;
+        }
+        let about = self.inertia.entry(0, 0);
+        if self.inertia == S::Tensor::uniform(about) {
+            return shift + dw.dot(dw) / about;
+        }
+        let inertia = self.inertia.inverse();
+        shift + inertia.map_or(0.0, |i| dw.dot(&i.apply(dw)))
+    }
+}
+
 /// Where a contact's row stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
@@ -112,7 +170,7 @@ pub struct Problem<S: Space> {
     /// Free velocities, as the lines.
     pub free: Vec<(S::Vector, S::Spin)>,
     pub(super) lengths: Vec<f64>,
-    pub(super) masses: Vec<(S::Vector, f64)>,
+    pub(super) masses: Vec<Mobility<S>>,
     /// Contacts of two balls (or a ball and an immovable body), without memory: the fast path.
     pub(super) plain: Vec<PlainRow<S>>,
     /// The same with bonds, cohesion or tangential restitution.
@@ -148,7 +206,7 @@ impl<S: Space> Problem<S> {
     pub const BYTES_A_BODY: usize = size_of::<Line<S>>()
         + size_of::<(S::Vector, S::Spin)>()
         + size_of::<f64>()
-        + size_of::<(S::Vector, f64)>();
+        + size_of::<Mobility<S>>();
 
     /// Bytes of a contact's row: of two balls, the same with a bond, and with levers.
     pub const BYTES_A_CONTACT: [usize; 3] = [
@@ -170,25 +228,29 @@ impl<S: Space> Problem<S> {
         self.places.clear();
     }
 
-    /// Adds a body by its free velocity, inverse masses, inverse inertia and length for spins.
+    /// Adds a body by its free velocity, inverse masses, inverse moments of inertia and length for spins.
     pub fn push_body(
         &mut self,
         v: S::Vector,
         w: S::Spin,
         inverse_mass: S::Vector,
-        inverse_inertia: f64,
+        inverse_inertia: S::Tensor,
         length: f64,
     ) {
         let isotropic = inverse_mass[0];
+        let mobility = Mobility::<S> {
+            mass: inverse_mass,
+            inertia: inverse_inertia,
+        };
         self.lines.push(Line {
             v,
             s: w * length,
             im: isotropic,
-            is: inverse_inertia * length * length,
+            is: mobility.quickest() * length * length,
         });
         self.free.push((v, w));
         self.lengths.push(length);
-        self.masses.push((inverse_mass, inverse_inertia));
+        self.masses.push(mobility);
     }
 
     /// Adds a contact.
@@ -212,10 +274,7 @@ impl<S: Space> Problem<S> {
         } else {
             self.places.push(Place::General(self.general.len() as u32));
             let block = self.block(contact);
-            let row = GeneralRow::new(contact, block, |b| {
-                let (mass, inertia) = self.masses[b];
-                (mass, inertia, self.lengths[b])
-            });
+            let row = GeneralRow::new(contact, block, |b| (self.masses[b], self.lengths[b]));
             self.general.push(row);
         }
     }
@@ -228,7 +287,7 @@ impl<S: Space> Problem<S> {
             self.places[form.contact as usize],
             contact.bodies,
             contact.normal,
-            [self.masses[i].1, self.masses[j].1],
+            [&self.masses[i], &self.masses[j]],
             [self.lengths[i], self.lengths[j]],
         ));
     }
@@ -254,8 +313,8 @@ impl<S: Space> Problem<S> {
     fn block(&self, contact: &ContactForm<S>) -> S::Matrix {
         let mut w = S::Matrix::diagonal(&S::Vector::null());
         for (body, arm) in contact.bodies.iter().zip(&contact.arms) {
-            let (mass, inertia) = &self.masses[*body as usize];
-            w = w + S::Matrix::diagonal(mass) + S::rotation_block(arm).scaled(*inertia);
+            let Mobility { mass, inertia } = &self.masses[*body as usize];
+            w = w + S::Matrix::diagonal(mass) + S::rotation_block(arm, inertia);
         }
         w
     }

@@ -3,7 +3,7 @@
 use super::error::{Scale, Sums};
 use super::form::Problem;
 use super::row::{Free, Lines, Measure, Row, visit};
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::Space;
 use rayon::prelude::*;
 
 /// Contacts a thread takes at a time. Sums are formed by chunk and added in order.
@@ -54,17 +54,8 @@ pub(super) fn scale<S: Space>(problem: &Problem<S>, free: Scale) -> Scale {
         .iter()
         .zip(&problem.free)
         .zip(problem.masses.iter().zip(&problem.lengths));
-    for ((line, (v, w)), ((inverse_mass, _), length)) in bodies {
-        let dv = line.v - *v;
-        for k in 0..S::D {
-            if inverse_mass[k] > 0.0 {
-                work += dv[k] * dv[k] / inverse_mass[k];
-            }
-        }
-        if line.is > 0.0 {
-            let ds = line.s - *w * *length;
-            work += ds.dot(&ds) / line.is;
-        }
+    for ((line, (v, w)), (mobility, length)) in bodies {
+        work += mobility.energy(&(line.v - *v), &(line.s * (1.0 / length) - *w));
     }
     Scale { work, ..free }
 }

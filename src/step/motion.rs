@@ -1,17 +1,24 @@
 //! The bodies' part of the Moreau-Jean theta-scheme: half moves, free velocities, work.
+//!
+//! Where inertia differs by axis the spin changes as the body turns: half moves follow the free motion, and the
+//! step's velocities are those at q_m.
 
 use crate::bodies::Bodies;
 use crate::geometry::space::{Space, VectorLike};
 use crate::record::ledger::BodyWork;
 
-/// Moves positions and orientations by `time` at the velocities at hand.
+/// Moves positions and orientations by `time` without forces.
 pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64) {
     for b in 0..bodies.len() {
         let v = bodies.velocity[b];
         bodies.position[b] += v * time;
         let w = bodies.spin[b];
         if w != S::Spin::null() {
-            bodies.rotation[b] = S::turned(&bodies.rotation[b], &(w * time));
+            let rotation = bodies.rotation[b];
+            (bodies.rotation[b], bodies.spin[b]) = match bodies.tensor(b) {
+                Some(tensor) => tensor.coast(&rotation, &w, time),
+                None => (S::turned(&rotation, &(w * time)), w),
+            };
         }
     }
 }
@@ -74,6 +81,15 @@ impl<S: Space> Before<S> {
         }
     }
 
+    /// Takes the spins that bodies came to by turning freely over the first half move.
+    pub fn coasted(&mut self, bodies: &Bodies<S>) {
+        for b in 0..bodies.tensors.len() {
+            if bodies.tensor(b).is_some() {
+                self.spin[b] = bodies.spin[b];
+            }
+        }
+    }
+
     /// The spin of a body at the start of the step.
     pub fn spin(&self, body: usize) -> S::Spin {
         self.spin[body]
@@ -98,8 +114,8 @@ impl<S: Space> Before<S> {
             let average = v * (1.0 - theta) + bodies.velocity[b] * theta;
             work.potential -= h * bodies.mass[b] * gravity.dot(&average);
             let (dv, dw) = (bodies.velocity[b] - v, bodies.spin[b] - w);
-            work.scheme +=
-                (theta - 0.5) * (bodies.mass[b] * dv.dot(&dv) + bodies.inertia[b] * dw.dot(&dw));
+            work.scheme += (theta - 0.5)
+                * (bodies.mass[b] * dv.dot(&dv) + dw.dot(&bodies.angular_momentum(b, &dw)));
         }
         for (driven, (impulse, moment)) in bodies.driven.iter().zip(received) {
             let b = driven.body as usize;

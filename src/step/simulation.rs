@@ -199,10 +199,11 @@ impl<S: Space> Simulation<S> {
             h,
             theta,
         };
-        let start = Before::new(&self.bodies);
+        let mut start = Before::new(&self.bodies);
         self.obey();
         let clock = Instant::now();
         motion::advance(&mut self.bodies, (1.0 - theta) * h);
+        start.coasted(&self.bodies);
         detect(
             &mut self.network,
             &self.shapes,
@@ -227,8 +228,8 @@ impl<S: Space> Simulation<S> {
         report.totals = committed.map_err(|e| self.law_error(e))?;
         report.timing.laws += clock.elapsed();
 
-        motion::advance(&mut self.bodies, theta * h);
         self.book(&start, &report.totals);
+        motion::advance(&mut self.bodies, theta * h);
         report.active = sites
             .iter()
             .filter(|s| s.solution.impulse != S::Vector::null())
@@ -389,7 +390,7 @@ impl<S: Space> Simulation<S> {
                 *v,
                 *w,
                 bodies.inverse_mass[b],
-                bodies.inverse_inertia[b],
+                bodies.inverse_tensor(b),
                 bodies.length[b],
             );
         }

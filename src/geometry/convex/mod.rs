@@ -1,13 +1,20 @@
 //! Convex pieces: a convex core and a rounding about it, carried by a body.
 //!
-//! Two points with a rounding are a capsule; several pieces on a body are a cluster. Cores are polygons in
-//! two dimensions; three have none yet.
+//! Two points with a rounding are a capsule; several pieces on a body are a cluster. Cores are polygons in the
+//! plane and polyhedra in space.
 
 pub mod mass;
-pub mod none;
 pub mod polygon;
 pub mod polygon_pair;
 pub mod polygon_surface;
+pub mod polyhedron;
+mod polyhedron_clip;
+pub mod polyhedron_mass;
+mod polyhedron_outline;
+mod polyhedron_pair;
+mod polyhedron_surface;
+#[cfg(test)]
+mod polyhedron_tests;
 
 use super::shape::Surface;
 use super::space::Space;
@@ -45,8 +52,8 @@ pub struct Part<S: Space> {
     pub bound: f64,
     /// Volume, rounding included (m^3; 2D: area times unit depth).
     pub volume: f64,
-    /// Moment of inertia about the centre of mass at unit density (m^5).
-    pub inertia: f64,
+    /// Moments of inertia about the centre of mass at unit density (m^5).
+    pub inertia: S::Tensor,
 }
 
 impl<S: Space> Part<S> {
@@ -77,7 +84,8 @@ pub struct Meeting<V> {
     pub gap: f64,
     /// Name of the corner that is touched; stable while the bodies slide along each other.
     pub feature: u64,
-    /// Length of the face that this point stands for (m); zero for a corner.
+    /// Length of the face that this point stands for (m); in space the radius of a disk of its area; zero for a
+    /// corner.
     pub share: f64,
 }
 
@@ -124,6 +132,7 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
         out: &mut Vec<Meeting<S::Vector>>,
     );
 
-    /// Corners of the rounded core for pictures and files (m), a closed line without its last point.
-    fn outline(&self, rounding: f64) -> Vec<S::Vector>;
+    /// Corners of the rounded core for pictures and files (m): one closed line without its last point in the
+    /// plane, a polygon for every face in space.
+    fn outline(&self, rounding: f64) -> Vec<Vec<S::Vector>>;
 }

@@ -3,7 +3,7 @@
 use super::{Core, Gauge, Meeting, Part, mass, polygon_pair, polygon_surface};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{Plane, Space};
-use nalgebra::Vector2;
+use nalgebra::{Matrix1, Vector2};
 
 /// Corners that go round against the clock, and the outward unit normals of the sides that begin in them.
 /// Two points are a segment with two sides.
@@ -125,7 +125,7 @@ impl Polygon {
             centre: properties.centre,
             rounding,
             volume: properties.area,
-            inertia: properties.polar,
+            inertia: Matrix1::new(properties.polar),
         }
     }
 
@@ -241,9 +241,9 @@ impl Core<Plane> for Polygon {
         polygon_surface::meet(self, surface, at, rounding, gauge, out);
     }
 
-    fn outline(&self, rounding: f64) -> Vec<Vector2<f64>> {
+    fn outline(&self, rounding: f64) -> Vec<Vec<Vector2<f64>>> {
         if rounding == 0.0 {
-            return self.points.clone();
+            return vec![self.points.clone()];
         }
         let n = self.points.len();
         let mut out = Vec::new();
@@ -259,7 +259,7 @@ impl Core<Plane> for Polygon {
                 out.push(self.points[k] + Plane::rotate(&turn, &before) * rounding);
             }
         }
-        out
+        vec![out]
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::polygons::Block;
 use super::{Builder, Dimensional};
-use crate::geometry::space::VectorLike;
+use crate::geometry::space::{MatrixLike, VectorLike};
 use crate::scene::case::{Edges, GrainSpec};
 use crate::scene::source::InputError;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -60,7 +60,11 @@ impl<S: Dimensional> Builder<'_, S> {
                 Edges::Straight => (part.centre, part.volume, part.inertia),
                 Edges::Curved => {
                     let (at, volume, inertia) = ring_piece(inner, outer, from, to);
-                    (S::Vector::from_slice(&at), volume, inertia)
+                    (
+                        S::Vector::from_slice(&at),
+                        volume,
+                        S::Tensor::uniform(inertia),
+                    )
                 }
             };
             out.push(Block {

@@ -85,7 +85,10 @@ impl<S: Dimensional> Builder<'_, S> {
                     }));
                 }
                 // After the balls, which stand first in memory.
-                GrainSpec::Polygons { .. } | GrainSpec::Arch { .. } => {}
+                GrainSpec::Polygons { .. }
+                | GrainSpec::Arch { .. }
+                | GrainSpec::Polyhedra { .. }
+                | GrainSpec::Clusters { .. } => {}
                 GrainSpec::Scene {
                     file,
                     material,
@@ -143,7 +146,9 @@ impl<S: Dimensional> Builder<'_, S> {
                 material,
             });
         }
-        self.polygons()
+        self.polygons()?;
+        self.polyhedra()?;
+        self.clusters()
     }
 
     pub(super) fn spin(&self, path: &str, values: &[f64]) -> Result<S::Spin, InputError> {

@@ -4,8 +4,10 @@ mod arch;
 mod first_body;
 mod grains;
 mod polygons;
+mod polyhedra;
 mod samples;
 mod surface;
+mod union;
 
 pub use surface::Dimensional;
 

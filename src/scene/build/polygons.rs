@@ -1,10 +1,11 @@
 //! Convex polygons: grains and parts of first bodies.
 
 use super::{Builder, Dimensional, Origin};
+use crate::bodies::tensor;
 use crate::geometry::convex::Part;
 use crate::geometry::convex::polygon::{Polygon, PolygonError};
-use crate::geometry::space::{Space, VectorLike};
-use crate::scene::case::{GrainSpec, OnePolygon};
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use crate::scene::case::{Coordinates, GrainSpec, OnePolygon};
 use crate::scene::source::InputError;
 use nalgebra::Vector2;
 
@@ -15,7 +16,7 @@ const MOST_SIDES: usize = 10_000;
 pub(super) struct Block<S: Space> {
     pub at: S::Vector,
     pub volume: f64,
-    pub inertia: f64,
+    pub inertia: S::Tensor,
     pub part: Part<S>,
     /// Where the part's centre stands from the block's centre of mass (m).
     pub offset: S::Vector,
@@ -48,10 +49,15 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(())
     }
 
-    fn add_block(&mut self, block: Block<S>, (material, density): (u16, f64), origin: Origin) {
-        let length = (block.inertia / block.volume).sqrt();
-        let (mass, inertia) = (density * block.volume, density * block.inertia);
-        let body = self.bodies.add(block.at, mass, inertia, length);
+    pub(super) fn add_block(
+        &mut self,
+        block: Block<S>,
+        (material, density): (u16, f64),
+        origin: Origin,
+    ) {
+        let length = (tensor::mean::<S>(&block.inertia) / block.volume).sqrt();
+        let (mass, inertia) = (density * block.volume, block.inertia.scaled(density));
+        let body = self.bodies.add_shaped(block.at, mass, &inertia, length);
         self.bodies.velocity[body as usize] = block.velocity;
         self.bodies.spin[body as usize] = block.spin;
         self.origins.push(origin);
@@ -111,28 +117,33 @@ impl<S: Dimensional> Builder<'_, S> {
             let message = format!("must not be negative, got {rounding}");
             return Err(self.fail(format!("{here}.rounding"), message));
         }
+        if S::D == 3 {
+            let message = "polygons and arches need two dimensions; use polyhedra in three";
+            return Err(self.fail(here, message));
+        }
         let points = points.iter().map(|p| Vector2::new(p.0, p.1)).collect();
         let bad = |e: PolygonError| self.fail(format!("{here}.points"), e.to_string());
         let polygon = Polygon::new(points).map_err(bad)?;
-        S::part(&polygon, rounding).map_err(|e| self.fail(here, e))
+        S::polygon(&polygon, rounding).map_err(|e| self.fail(here, e))
     }
 
     /// A capsule.
     pub(super) fn capsule(
         &self,
         here: &str,
-        from: (f64, f64),
-        to: (f64, f64),
+        from: &Coordinates,
+        to: &Coordinates,
         radius: f64,
     ) -> Result<Part<S>, InputError> {
         self.radius(&format!("{here}.radius"), radius)?;
-        let (from, to) = (Vector2::new(from.0, from.1), Vector2::new(to.0, to.1));
+        let from = self.vector(&format!("{here}.from"), &from.0)?;
+        let to = self.vector(&format!("{here}.to"), &to.0)?;
         let length = (to - from).norm();
         if !(length.is_finite() && length > 0.0) {
             let message =
                 "the ends of a capsule must be two different points; for a disk use Balls";
             return Err(self.fail(here, message));
         }
-        S::part(&Polygon::segment(from, to), radius).map_err(|e| self.fail(here, e))
+        Ok(S::capsule(&from, &to, radius))
     }
 }

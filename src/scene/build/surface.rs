@@ -3,8 +3,10 @@
 use super::Builder;
 use crate::geometry::convex::Part;
 use crate::geometry::convex::polygon::Polygon;
+use crate::geometry::convex::polyhedron::Polyhedron;
 use crate::geometry::drum::Drum;
 use crate::geometry::height_field::HeightField;
+use crate::geometry::mesh::Mesh;
 use crate::geometry::polyline::Polyline;
 use crate::geometry::shape::{HalfSpace, Surface};
 use crate::geometry::space::{Plane, Solid, Space, VectorLike};
@@ -34,11 +36,23 @@ pub trait Dimensional: Space {
         heights: Vec<f64>,
         periodic: [bool; 2],
     ) -> Result<Box<dyn Surface<Self>>, String>;
-    /// A convex part of a body.
+    /// A surface of triangles.
     ///
     /// # Errors
     /// That the dimension has none.
-    fn part(polygon: &Polygon, rounding: f64) -> Result<Part<Self>, String>;
+    fn mesh(mesh: Mesh) -> Result<Box<dyn Surface<Self>>, String>;
+    /// A polygon of a body.
+    ///
+    /// # Errors
+    /// That the dimension has none.
+    fn polygon(core: &Polygon, rounding: f64) -> Result<Part<Self>, String>;
+    /// A polyhedron of a body.
+    ///
+    /// # Errors
+    /// That the dimension has none.
+    fn polyhedron(core: &Polyhedron, rounding: f64) -> Result<Part<Self>, String>;
+    /// All that is within a radius of a segment.
+    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> Part<Self>;
 }
 
 impl Dimensional for Plane {
@@ -69,8 +83,17 @@ impl Dimensional for Plane {
     ) -> Result<Box<dyn Surface<Self>>, String> {
         Err("a height field needs three dimensions; use a Profile or RoughProfile in two".into())
     }
-    fn part(polygon: &Polygon, rounding: f64) -> Result<Part<Self>, String> {
-        Ok(polygon.part(rounding))
+    fn mesh(_: Mesh) -> Result<Box<dyn Surface<Self>>, String> {
+        Err("a mesh needs three dimensions; use a Profile in two".into())
+    }
+    fn polygon(core: &Polygon, rounding: f64) -> Result<Part<Self>, String> {
+        Ok(core.part(rounding))
+    }
+    fn polyhedron(_: &Polyhedron, _: f64) -> Result<Part<Self>, String> {
+        Err("polyhedra and boxes need three dimensions; use polygons in two".into())
+    }
+    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> Part<Self> {
+        Polygon::segment(*from, *to).part(radius)
     }
 }
 
@@ -97,8 +120,17 @@ impl Dimensional for Solid {
         );
         Ok(Box::new(field.map_err(|e| e.to_string())?))
     }
-    fn part(_: &Polygon, _: f64) -> Result<Part<Self>, String> {
-        Err("polygons, capsules and arches need two dimensions; use Balls in three".into())
+    fn mesh(mesh: Mesh) -> Result<Box<dyn Surface<Self>>, String> {
+        Ok(Box::new(mesh))
+    }
+    fn polygon(_: &Polygon, _: f64) -> Result<Part<Self>, String> {
+        Err("polygons and arches need two dimensions; use polyhedra in three".into())
+    }
+    fn polyhedron(core: &Polyhedron, rounding: f64) -> Result<Part<Self>, String> {
+        Ok(core.part(rounding))
+    }
+    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> Part<Self> {
+        Polyhedron::segment(*from, *to).part(radius)
     }
 }
 
@@ -216,9 +248,18 @@ impl<S: Dimensional> Builder<'_, S> {
                     S::height_field(*points, *spacing, heights, periodic).map_err(bad)?,
                 ))
             }
+            ShapeSpec::Mesh { file, scale, at } => {
+                let at = self.vector(&format!("{here}.at"), at)?;
+                let (points, triangles) = self.mesh_file(here, file, *scale)?;
+                let mesh = Mesh::new(points, triangles);
+                let mesh = mesh.map_err(|e| self.fail(format!("{here}.file"), e.to_string()))?;
+                Ok((at, S::mesh(mesh).map_err(bad)?))
+            }
             ShapeSpec::Balls(_)
             | ShapeSpec::Cluster { .. }
             | ShapeSpec::Polygon { .. }
+            | ShapeSpec::Polyhedron { .. }
+            | ShapeSpec::Box { .. }
             | ShapeSpec::Capsule { .. } => Err(bad("this shape is not a surface".into())),
         }
     }

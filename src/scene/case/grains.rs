@@ -1,5 +1,6 @@
 //! Grains of a case.
 
+use super::shapes::ShapeSpec;
 use crate::scene::sample::spec::{CsvSpec, DepositSpec, StateSpec};
 use serde::Deserialize;
 
@@ -34,6 +35,20 @@ pub enum GrainSpec {
         material: String,
         /// Polygons.
         grains: Vec<OnePolygon>,
+    },
+    /// Convex polyhedra, one by one (3D).
+    Polyhedra {
+        /// Material.
+        material: String,
+        /// Polyhedra.
+        grains: Vec<OnePolyhedron>,
+    },
+    /// Rigid unions of balls and convex shapes, one by one.
+    Clusters {
+        /// Material.
+        material: String,
+        /// Clusters.
+        grains: Vec<OneCluster>,
     },
     /// Voussoirs of an arch with radial joints, from right to left (2D).
     Arch {
@@ -89,6 +104,10 @@ pub struct OneGrain {
     pub spin: Vec<f64>,
 }
 
+fn one() -> f64 {
+    1.0
+}
+
 fn half_circle() -> f64 {
     std::f64::consts::PI
 }
@@ -121,6 +140,54 @@ pub struct OnePolygon {
     /// Angle by which the corners are turned about their origin (rad).
     #[serde(default)]
     pub angle: f64,
+    /// Velocity of its centre of mass (m/s).
+    #[serde(default)]
+    pub velocity: Vec<f64>,
+    /// Angular velocity (rad/s).
+    #[serde(default)]
+    pub spin: Vec<f64>,
+}
+
+/// One polyhedron: a cuboid, the hull of its corners, or that of a mesh.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OnePolyhedron {
+    /// Where the origin of its corners stands (m); the centre of a cuboid.
+    pub at: Vec<f64>,
+    /// Corners (m), in any order.
+    #[serde(default)]
+    pub points: Vec<(f64, f64, f64)>,
+    /// Lengths of the edges of a cuboid (m), in place of points.
+    #[serde(default)]
+    pub size: Option<(f64, f64, f64)>,
+    /// An STL or OBJ file beside the case whose hull it is, in place of points.
+    #[serde(default)]
+    pub file: Option<String>,
+    /// By what the lengths of the file are multiplied.
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// Rotation vector (rad) by which the corners are turned about their origin.
+    #[serde(default)]
+    pub turned: Vec<f64>,
+    /// Radius of the rounding about it (m).
+    #[serde(default)]
+    pub rounding: f64,
+    /// Velocity of its centre of mass (m/s).
+    #[serde(default)]
+    pub velocity: Vec<f64>,
+    /// Angular velocity (rad/s).
+    #[serde(default)]
+    pub spin: Vec<f64>,
+}
+
+/// One rigid union.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OneCluster {
+    /// Where the origin of its shapes stands (m).
+    pub at: Vec<f64>,
+    /// Balls and convex shapes; where they overlap they weigh twice.
+    pub shapes: Vec<ShapeSpec>,
     /// Velocity of its centre of mass (m/s).
     #[serde(default)]
     pub velocity: Vec<f64>,

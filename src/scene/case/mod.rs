@@ -3,8 +3,8 @@
 mod grains;
 mod shapes;
 
-pub use grains::{Edges, GrainSpec, OneGrain, OnePolygon};
-pub use shapes::{ShapeSpec, Side};
+pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
+pub use shapes::{Coordinates, ShapeSpec, Side};
 
 use super::measures::MeasureSpec;
 use super::phases::PhaseSpec;

@@ -58,14 +58,47 @@ pub enum ShapeSpec {
         #[serde(default)]
         rounding: f64,
     },
-    /// All that is within a radius of a segment (2D).
+    /// All that is within a radius of a segment.
     Capsule {
         /// One end of the segment (m).
-        from: (f64, f64),
+        from: Coordinates,
         /// The other end (m).
-        to: (f64, f64),
+        to: Coordinates,
         /// Radius (m).
         radius: f64,
+    },
+    /// A convex polyhedron with rounded edges (3D).
+    Polyhedron {
+        /// Corners (m), in any order.
+        points: Vec<(f64, f64, f64)>,
+        /// Radius of the rounding about it (m).
+        #[serde(default)]
+        rounding: f64,
+    },
+    /// A cuboid with rounded edges (3D).
+    Box {
+        /// Lengths of its edges (m).
+        size: (f64, f64, f64),
+        /// Its centre (m).
+        #[serde(default)]
+        at: Vec<f64>,
+        /// Rotation vector (rad) by which it is turned about its centre.
+        #[serde(default)]
+        turned: Vec<f64>,
+        /// Radius of the rounding about it (m).
+        #[serde(default)]
+        rounding: f64,
+    },
+    /// A surface of triangles from an STL or OBJ file (3D), solid behind them.
+    Mesh {
+        /// Path relative to the case.
+        file: String,
+        /// By what the lengths of the file are multiplied.
+        #[serde(default = "one")]
+        scale: f64,
+        /// Where the origin of the file stands (m).
+        #[serde(default)]
+        at: Vec<f64>,
     },
     /// Balls fixed to the body: (position relative to the body's frame, radius).
     Balls(Vec<(Vec<f64>, f64)>),
@@ -97,6 +130,37 @@ pub enum ShapeSpec {
         #[serde(default)]
         rms: Option<f64>,
     },
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// A place by its coordinates, (x, y) or (x, y, z).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coordinates(pub Vec<f64>);
+
+impl<'de> Deserialize<'de> for Coordinates {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Numbers;
+        impl<'de> serde::de::Visitor<'de> for Numbers {
+            type Value = Coordinates;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("coordinates, (x, y) or (x, y, z)")
+            }
+            fn visit_seq<A: serde::de::SeqAccess<'de>>(
+                self,
+                mut from: A,
+            ) -> Result<Coordinates, A::Error> {
+                let mut out = Vec::new();
+                while let Some(x) = from.next_element()? {
+                    out.push(x);
+                }
+                Ok(Coordinates(out))
+            }
+        }
+        deserializer.deserialize_any(Numbers)
+    }
 }
 
 fn hurst() -> f64 {

@@ -2,7 +2,7 @@
 
 use super::{Line, Residual, Row, inverse, inverse_along, natural_map};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
-use crate::solve::form::{ContactForm, ContactSolution, Elastic};
+use crate::solve::form::{ContactForm, ContactSolution, Elastic, Mobility};
 
 /// (1 + W B)^-1 and W' = (1 + W B)^-1 W of a block.
 #[derive(Clone, Debug)]
@@ -46,7 +46,8 @@ pub(in crate::solve) struct GeneralRow<S: Space> {
     /// Arms over the lengths of the bodies.
     arms: [S::Vector; 2],
     inverse_masses: [S::Vector; 2],
-    inverse_spins: [f64; 2],
+    /// Inverse inertia times the lengths squared (1/kg).
+    inverse_spins: [S::Tensor; 2],
     p: S::Vector,
     block: S::Matrix,
     pulled: Block<S>,
@@ -65,7 +66,7 @@ impl<S: Space> GeneralRow<S> {
     pub fn new(
         contact: &ContactForm<S>,
         block: S::Matrix,
-        inertia: impl Fn(usize) -> (S::Vector, f64, f64),
+        inertia: impl Fn(usize) -> (Mobility<S>, f64),
     ) -> Self {
         let n = contact.normal;
         let [i, j] = contact.bodies.map(|b| inertia(b as usize));
@@ -77,9 +78,9 @@ impl<S: Space> GeneralRow<S> {
         Self {
             bodies: contact.bodies,
             n,
-            arms: [contact.arms[0] * (1.0 / i.2), contact.arms[1] * (1.0 / j.2)],
-            inverse_masses: [i.0, j.0],
-            inverse_spins: [i.1 * i.2 * i.2, j.1 * j.2 * j.2],
+            arms: [contact.arms[0] * (1.0 / i.1), contact.arms[1] * (1.0 / j.1)],
+            inverse_masses: [i.0.mass, j.0.mass],
+            inverse_spins: [i, j].map(|(m, length)| m.inertia.scaled(length).scaled(length)),
             p: contact.impulse,
             block,
             pulled,
@@ -102,8 +103,8 @@ impl<S: Space> GeneralRow<S> {
     fn push(&self, p: &S::Vector, a: &mut Line<S>, b: &mut Line<S>) {
         a.v += p.scaled_by(&self.inverse_masses[0]);
         b.v -= p.scaled_by(&self.inverse_masses[1]);
-        a.s += S::moment(&self.arms[0], p) * self.inverse_spins[0];
-        b.s -= S::moment(&self.arms[1], p) * self.inverse_spins[1];
+        a.s += self.inverse_spins[0].apply(&S::moment(&self.arms[0], p));
+        b.s -= self.inverse_spins[1].apply(&S::moment(&self.arms[1], p));
     }
 
     /// Solves the contact with block `w`: alternates the normal and the tangential part. Two rounds: the

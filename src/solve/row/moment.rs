@@ -4,8 +4,8 @@
 //! opposes w with |M_sc| <= (friction length) p_n, bending and twist apart.
 
 use super::{Line, Residual, inverse};
-use crate::geometry::space::{Space, VectorLike};
-use crate::solve::form::Place;
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use crate::solve::form::{Mobility, Place};
 
 /// What a contact does against rotation. Moments over the step are in N m s.
 #[derive(Clone, Copy, Debug)]
@@ -51,6 +51,9 @@ pub(in crate::solve) struct MomentRow<S: Space> {
     n: S::Vector,
     /// One over the lengths of the bodies (1/m).
     over: [f64; 2],
+    /// Inverse inertias times the lengths (1/(kg m)).
+    inverse_spins: [S::Tensor; 2],
+    /// Relative spin of a unit moment; the largest, where inertia differs by axis.
     w: f64,
     iw: f64,
     lever: f64,
@@ -63,16 +66,17 @@ impl<S: Space> MomentRow<S> {
         place: Place,
         bodies: [u32; 2],
         n: S::Vector,
-        inverse_inertias: [f64; 2],
+        mobilities: [&Mobility<S>; 2],
         lengths: [f64; 2],
     ) -> Self {
-        let w = inverse_inertias[0] + inverse_inertias[1];
+        let w = mobilities[0].quickest() + mobilities[1].quickest();
         Self {
             form: *form,
             place,
             bodies,
             n,
             over: lengths.map(|l| 1.0 / l),
+            inverse_spins: std::array::from_fn(|k| mobilities[k].inertia.scaled(lengths[k])),
             w,
             iw: inverse(w),
             lever: lengths[0].min(lengths[1]),
@@ -85,8 +89,8 @@ impl<S: Space> MomentRow<S> {
     }
 
     fn push(&self, moment: &S::Spin, a: &mut Line<S>, b: &mut Line<S>) {
-        a.s += *moment * (a.is * self.over[0]);
-        b.s -= *moment * (b.is * self.over[1]);
+        a.s += self.inverse_spins[0].apply(moment);
+        b.s -= self.inverse_spins[1].apply(moment);
     }
 
     /// Solves for the spins at hand under the normal impulse `pn`.

@@ -2,6 +2,7 @@
 
 use super::motion::Pattern;
 use crate::geometry::space::{Space, VectorLike};
+use crate::solve::form::Mobility;
 use crate::solve::local::block::{Block, BlockMatrix};
 use crate::solve::local::factored;
 use crate::solve::local::form::{Delassus, Shift, Shifted};
@@ -55,8 +56,8 @@ pub type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
 /// W of a step, from its bodies.
 pub struct Bodies<'a, S: Space, const D: usize> {
-    /// Inverse masses and inertias by body.
-    pub masses: &'a [(S::Vector, f64)],
+    /// What impulses do, by body.
+    pub masses: &'a [Mobility<S>],
     /// The blocks.
     pub unknowns: Vec<Unknown<S, D>>,
     /// W_cc of every block; to be set once all are there.
@@ -68,7 +69,7 @@ pub struct Bodies<'a, S: Space, const D: usize> {
 
 impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
     /// Of bodies with these inverse masses and inertias, without unknowns yet.
-    pub fn new(masses: &'a [(S::Vector, f64)]) -> Self {
+    pub fn new(masses: &'a [Mobility<S>]) -> Self {
         Self {
             masses,
             unknowns: Vec::new(),
@@ -86,8 +87,7 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
 
     /// M^-1 of an impulse and moment on a body.
     pub fn mobility(&self, body: u32, (p, m): Motion<S>) -> Motion<S> {
-        let (mass, inertia) = &self.masses[body as usize];
-        (p.scaled_by(mass), m * *inertia)
+        self.masses[body as usize].apply(&p, &m)
     }
 
     /// Adds what the impulses of a block do to its bodies.
@@ -189,10 +189,7 @@ impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
                     of_body[body as usize].push(c as u32);
                 }
             }
-            let moves = |b: u32| {
-                let (mass, inertia) = &self.masses[b as usize];
-                *inertia > 0.0 || (0..S::D).any(|k| mass[k] > 0.0)
-            };
+            let moves = |b: u32| self.masses[b as usize].moves();
             let mut out = BlockMatrix::new(self.diagonal.clone());
             for (c, unknown) in self.unknowns.iter().enumerate() {
                 let mut near: Vec<u32> = unknown

@@ -93,10 +93,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
     }
 
     fn moves(problem: &Problem<S>, bodies: [u32; 2]) -> bool {
-        bodies.iter().any(|b| {
-            let (mass, inertia) = &problem.masses[*b as usize];
-            *inertia > 0.0 || (0..S::D).any(|k| mass[k] > 0.0)
-        })
+        bodies.iter().any(|b| problem.masses[*b as usize].moves())
     }
 
     fn add(&mut self, bodies: [u32; 2], axes: [Axis<S>; D], law: Law) -> u32 {
@@ -129,7 +126,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             // Whatever the velocities, it carries no normal impulse: w p = 0, apart from the bodies.
             let mobility = |b: &u32| {
                 form.normal
-                    .dot(&form.normal.scaled_by(&problem.masses[*b as usize].0))
+                    .dot(&form.normal.scaled_by(&problem.masses[*b as usize].mass))
             };
             own[0] = Axis {
                 compliance: form.bodies.iter().map(mobility).sum(),
@@ -173,7 +170,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         k: usize,
     ) -> Places {
         let mut places = Places::default();
-        let turns = |b: &u32| problem.masses[*b as usize].1 > 0.0;
+        let turns = |b: &u32| problem.masses[*b as usize].turns();
         let Some(of) = self.places[form.contact as usize].contact else {
             return places;
         };

@@ -9,7 +9,8 @@
 )]
 
 use super::bodies::Bodies;
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use crate::solve::form::Mobility;
 use crate::solve::local::block::{Block, times};
 use crate::solve::local::form::{Delassus, Shift, Shifted};
 use crate::solve::local::linear::{Factor, Rows};
@@ -27,18 +28,9 @@ fn size<S: Space>() -> usize {
     S::D + S::Spin::N
 }
 
-/// Inverse mass or inertia of a degree of freedom.
-fn inverse<S: Space>((mass, inertia): &(S::Vector, f64), k: usize) -> f64 {
-    if k < S::D { mass[k] } else { *inertia }
-}
-
 impl Pattern {
     pub fn new<S: Space, const D: usize>(w: &Bodies<S, D>) -> Self {
-        let moves: Vec<bool> = w
-            .masses
-            .iter()
-            .map(|m| (0..size::<S>()).any(|k| inverse::<S>(m, k) > 0.0))
-            .collect();
+        let moves: Vec<bool> = w.masses.iter().map(Mobility::moves).collect();
         let mut near: Vec<Vec<u32>> = (0..w.masses.len())
             .map(|b| if moves[b] { vec![b as u32] } else { Vec::new() })
             .collect();
@@ -66,6 +58,23 @@ impl Pattern {
     fn moves(&self, body: u32) -> bool {
         !self.near[body as usize].is_empty()
     }
+}
+
+/// Mass matrix of a body; ones where it cannot move.
+fn mass<S: Space>(mobility: &Mobility<S>) -> [[f64; 6]; 6] {
+    let mut out = [[0.0; 6]; 6];
+    for (k, row) in out.iter_mut().enumerate().take(size::<S>()) {
+        let inverse = mobility.along(k);
+        row[k] = if inverse > 0.0 { 1.0 / inverse } else { 1.0 };
+    }
+    if let (true, Some(inertia)) = (mobility.turns(), mobility.inertia.inverse()) {
+        for i in 0..S::Spin::N {
+            for j in 0..S::Spin::N {
+                out[S::D + i][S::D + j] = inertia.entry(i, j);
+            }
+        }
+    }
+    out
 }
 
 /// The inverse of the leading block of `size` rows, zeros beside it; none where it is singular.
@@ -157,14 +166,14 @@ impl<S: Space, const D: usize> Bodies<'_, S, D> {
                     let near = &pattern.near[x as usize];
                     let place = near.binary_search(&y).ok()?;
                     for p in 0..d {
-                        if inverse::<S>(&self.masses[x as usize], p) == 0.0 {
+                        if self.masses[x as usize].along(p) == 0.0 {
                             continue;
                         }
                         let row = a.starts[pattern.starts[x as usize] + p] + place * d;
                         for k in 0..D {
                             let left: f64 = (0..D).map(|l| columns[i][l][p] * r[c][l][k]).sum();
                             for q in 0..d {
-                                if inverse::<S>(&self.masses[y as usize], q) > 0.0 {
+                                if self.masses[y as usize].along(q) > 0.0 {
                                     a.values[row + q] += left * columns[j][k][q];
                                 }
                             }
@@ -193,14 +202,12 @@ impl<S: Space, const D: usize> Bodies<'_, S, D> {
             if near.is_empty() {
                 continue;
             }
-            for p in 0..d {
-                let inverse = inverse::<S>(&self.masses[b], p);
+            let mass = mass(&self.masses[b]);
+            for row in mass.iter().take(d) {
                 for e in near {
-                    for q in 0..d {
+                    for (q, m) in row.iter().enumerate().take(d) {
                         a.columns.push(pattern.starts[*e as usize] + q);
-                        let own = *e as usize == b && p == q;
-                        let mass = if inverse > 0.0 { 1.0 / inverse } else { 1.0 };
-                        a.values.push(if own { mass } else { 0.0 });
+                        a.values.push(if *e as usize == b { *m } else { 0.0 });
                     }
                 }
                 a.starts.push(a.columns.len());
@@ -224,7 +231,7 @@ impl<S: Space, const D: usize> Factors<'_, S, D> {
                 for k in 0..D {
                     let column = self.w.column(c, k, side);
                     for p in 0..size::<S>() {
-                        if inverse::<S>(&self.w.masses[body as usize], p) > 0.0 {
+                        if self.w.masses[body as usize].along(p) > 0.0 {
                             y[pattern.starts[body as usize] + p] += column[p] * x[k];
                         }
                     }

@@ -1,0 +1,191 @@
+//! Arithmetic of vectors and small square matrices, of one to three components.
+
+use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
+
+/// The greater of two numbers; of equal ones, or where `a` is none, `b`: what vector units do.
+#[inline(always)]
+pub fn greatest(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The lesser of two numbers; of equal ones, or where `a` is none, `b`.
+#[inline(always)]
+pub fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// Arithmetic shared by positions, velocities and spins of either dimension.
+pub trait VectorLike:
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + PartialEq
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + AddAssign
+    + SubAssign
+    + Neg<Output = Self>
+    + Mul<f64, Output = Self>
+    + Index<usize, Output = f64>
+    + IndexMut<usize>
+    + 'static
+{
+    /// Number of components.
+    const N: usize;
+    /// The null vector.
+    fn null() -> Self;
+    /// Scalar product.
+    fn dot(&self, other: &Self) -> f64;
+    /// Euclidean norm.
+    fn norm(&self) -> f64;
+    /// The nearest vector not longer than `bound` (not negative).
+    fn limited(self, bound: f64) -> Self;
+    /// From a slice; missing components are zero.
+    fn from_slice(values: &[f64]) -> Self {
+        let mut v = Self::null();
+        for (k, x) in values.iter().take(Self::N).enumerate() {
+            v[k] = *x;
+        }
+        v
+    }
+    /// Component by component product.
+    fn scaled_by(&self, other: &Self) -> Self {
+        let mut v = *self;
+        for k in 0..Self::N {
+            v[k] *= other[k];
+        }
+        v
+    }
+    /// The components padded with zeros to three.
+    fn padded(&self) -> [f64; 3] {
+        let mut out = [0.0; 3];
+        for (k, slot) in out.iter_mut().enumerate().take(Self::N) {
+            *slot = self[k];
+        }
+        out
+    }
+    /// Whether every component is finite.
+    fn is_finite(&self) -> bool {
+        (0..Self::N).all(|k| self[k].is_finite())
+    }
+}
+
+macro_rules! vector_like {
+    ($type:ty, $n:literal) => {
+        impl VectorLike for $type {
+            const N: usize = $n;
+            #[inline(always)]
+            fn null() -> Self {
+                Self::zeros()
+            }
+            #[inline(always)]
+            fn dot(&self, other: &Self) -> f64 {
+                let products = self.iter().zip(other.iter()).map(|(a, b)| a * b);
+                products.reduce(|sum, x| sum + x).unwrap_or(0.0)
+            }
+            #[inline(always)]
+            fn norm(&self) -> f64 {
+                if $n == 1 {
+                    self[0].abs()
+                } else {
+                    VectorLike::dot(self, self).sqrt()
+                }
+            }
+            #[inline(always)]
+            fn limited(mut self, bound: f64) -> Self {
+                if $n == 1 {
+                    // One number needs neither a root nor a branch.
+                    self[0] = least(greatest(self[0], -bound), bound);
+                    return self;
+                }
+                let squared = VectorLike::dot(&self, &self);
+                if squared <= bound * bound {
+                    self
+                } else {
+                    self * (bound / squared.sqrt())
+                }
+            }
+        }
+    };
+}
+vector_like!(Vector1<f64>, 1);
+vector_like!(Vector2<f64>, 2);
+vector_like!(Vector3<f64>, 3);
+
+/// Arithmetic of the small square matrices of contact blocks.
+pub trait MatrixLike:
+    Copy + Debug + Send + Sync + PartialEq + Add<Output = Self> + Sub<Output = Self> + 'static
+{
+    /// The vector it acts on.
+    type V: VectorLike;
+    /// Diagonal matrix.
+    fn diagonal(d: &Self::V) -> Self;
+    /// A number times the identity.
+    fn uniform(x: f64) -> Self {
+        let mut d = Self::V::null();
+        for k in 0..Self::V::N {
+            d[k] = x;
+        }
+        Self::diagonal(&d)
+    }
+    /// Matrix times vector.
+    fn apply(&self, v: &Self::V) -> Self::V;
+    /// Matrix times matrix.
+    fn times(&self, other: &Self) -> Self;
+    /// Dyadic product a b^T.
+    fn dyad(a: &Self::V, b: &Self::V) -> Self;
+    /// Inverse, if there is one.
+    fn inverse(&self) -> Option<Self>;
+    /// Transpose.
+    fn transposed(&self) -> Self;
+    /// Matrix times number.
+    fn scaled(&self, s: f64) -> Self;
+    /// Entry in row `i`, column `j`.
+    fn entry(&self, i: usize, j: usize) -> f64;
+}
+
+macro_rules! matrix_like {
+    ($type:ty, $vector:ty) => {
+        impl MatrixLike for $type {
+            type V = $vector;
+            #[inline(always)]
+            fn diagonal(d: &Self::V) -> Self {
+                Self::from_diagonal(d)
+            }
+            #[inline(always)]
+            fn apply(&self, v: &Self::V) -> Self::V {
+                self * v
+            }
+            #[inline(always)]
+            fn times(&self, other: &Self) -> Self {
+                self * other
+            }
+            #[inline(always)]
+            fn dyad(a: &Self::V, b: &Self::V) -> Self {
+                a * b.transpose()
+            }
+            #[inline(always)]
+            fn inverse(&self) -> Option<Self> {
+                self.try_inverse()
+            }
+            #[inline(always)]
+            fn transposed(&self) -> Self {
+                self.transpose()
+            }
+            #[inline(always)]
+            fn scaled(&self, s: f64) -> Self {
+                self * s
+            }
+            #[inline(always)]
+            fn entry(&self, i: usize, j: usize) -> f64 {
+                self[(i, j)]
+            }
+        }
+    };
+}
+matrix_like!(Matrix1<f64>, Vector1<f64>);
+matrix_like!(Matrix2<f64>, Vector2<f64>);
+matrix_like!(Matrix3<f64>, Vector3<f64>);

@@ -1,0 +1,375 @@
+//! Two convex polyhedra: a face with the facing face clipped to it, or the two nearest points of edges and corners.
+//!
+//! Of all faces the one with the greatest separation leads. If the other polyhedron's lowest point lies over it,
+//! that separation is the distance, and the facing face, cut off at the sides of the leading one, gives the points.
+//! Otherwise two edges (their corners among them) are nearest: there is one point. Where the two overlap it is the
+//! axis of least depth among the faces' normals and the edges' products (separating axes); an edge pair counts if
+//! the normal cones of both hold the axis (D. Gregorius, GDC 2013). Points are named after the corners and edges
+//! they are at, so that names do not change when the two faces change their parts.
+
+use super::polyhedron::{Polyhedron, across};
+use super::polyhedron_clip::{self, Lead, name};
+use super::{Gauge, Meeting};
+use nalgebra::Vector3;
+
+type V = Vector3<f64>;
+
+/// One axis is as good as another within this part of the slack,
+const ALIKE: f64 = 1e-3;
+/// and, for rounding, of the distance of the centres.
+const ROUNDING: f64 = 1e-13;
+
+/// Meetings of the candidate `a`, whose centre stands at `apart`, with `b` at the origin; `roundings` are theirs
+/// (m). In the order of their features.
+pub fn meet(
+    a: &Polyhedron,
+    b: &Polyhedron,
+    apart: &V,
+    roundings: [f64; 2],
+    gauge: &Gauge,
+    out: &mut Vec<Meeting<V>>,
+) {
+    let reach = gauge.reach + roundings[0] + roundings[1];
+    let alike = ALIKE * gauge.slack + ROUNDING * apart.norm();
+    let (from_a, face_a) = separation(a, b, &-apart);
+    let (from_b, face_b) = separation(b, a, apart);
+    if from_a.max(from_b) > reach {
+        return;
+    }
+    // Of two faces that are as good the candidate's, however they are rounded.
+    let a_leads = from_a + alike >= from_b;
+    let best = from_a.max(from_b);
+    let pair = Pair {
+        a,
+        b,
+        apart: *apart,
+        roundings,
+    };
+    let points = if best.is_finite() {
+        let (face, own) = if a_leads { (face_a, a) } else { (face_b, b) };
+        let (other, way) = if a_leads { (b, -apart) } else { (a, *apart) };
+        let lead = Lead {
+            own,
+            other,
+            face,
+            apart: way,
+            of_candidate: a_leads,
+        };
+        polyhedron_clip::clip(&lead, gauge.slack)
+    } else {
+        Vec::new()
+    };
+    let first = out.len();
+    let over = |p: &polyhedron_clip::Point| p.height <= best + alike;
+    if best >= -gauge.slack && points.iter().any(over) {
+        pair.face(&points, a_leads, gauge, out);
+        out[first..].sort_by_key(|m| m.feature);
+        return;
+    }
+    let rods = a.normals().is_empty() && b.normals().is_empty();
+    let crossed = if best > 0.0 || rods {
+        None
+    } else {
+        crossing(a, b, apart)
+    };
+    if best > 0.0 || rods || crossed.as_ref().is_some_and(|c| c.depth > 0.0) {
+        let near = nearest(a, b, apart);
+        let distance = near.way.norm();
+        // Beside the face by no more than the slack.
+        let beside = best > 0.0
+            && distance * distance - best * best <= gauge.slack * gauge.slack
+            && !points.is_empty();
+        if !beside {
+            if distance <= reach {
+                pair.edges(&near, gauge, out);
+            }
+            return;
+        }
+    } else if let Some(crossed) = crossed.filter(|c| c.depth > best + alike || points.is_empty()) {
+        pair.push(
+            &crossed.points,
+            &crossed.normal,
+            crossed.depth,
+            crossed.feature,
+            out,
+        );
+        return;
+    }
+    pair.face(&points, a_leads, gauge, out);
+    out[first..].sort_by_key(|m| m.feature);
+}
+
+/// The two, and where they stand.
+struct Pair<'a> {
+    a: &'a Polyhedron,
+    b: &'a Polyhedron,
+    apart: V,
+    roundings: [f64; 2],
+}
+
+impl Pair<'_> {
+    fn thickness(&self) -> f64 {
+        self.roundings[0] + self.roundings[1]
+    }
+
+    /// One point, from the points of the two cores (m) and their signed distance.
+    fn push(
+        &self,
+        at: &[V; 2],
+        normal: &V,
+        distance: f64,
+        feature: u64,
+        out: &mut Vec<Meeting<V>>,
+    ) {
+        out.push(Meeting {
+            on_candidate: at[0] - normal * self.roundings[0],
+            on_antagonist: at[1] + normal * self.roundings[1],
+            normal: *normal,
+            gap: distance - self.thickness(),
+            feature,
+            share: 0.0,
+        });
+    }
+
+    /// The points of a face.
+    fn face(
+        &self,
+        points: &[polyhedron_clip::Point],
+        a_leads: bool,
+        gauge: &Gauge,
+        out: &mut Vec<Meeting<V>>,
+    ) {
+        for point in points {
+            let gap = point.height - self.thickness();
+            if gap > gauge.reach {
+                continue;
+            }
+            // The point is on the other core; its foot on the leading one is below it.
+            let at = if a_leads {
+                point.at + self.apart
+            } else {
+                point.at
+            };
+            let foot = at - point.normal * point.height;
+            let (places, normal) = if a_leads {
+                ([foot, at], -point.normal)
+            } else {
+                ([at, foot], point.normal)
+            };
+            self.push(&places, &normal, point.height, point.feature, out);
+            if let Some(last) = out.last_mut() {
+                last.share = point.share;
+            }
+        }
+    }
+
+    /// Two edges that are nearest; two points where they are those of capsules side by side.
+    fn edges(&self, near: &Nearest, gauge: &Gauge, out: &mut Vec<Meeting<V>>) {
+        let distance = near.way.norm();
+        let [e, f] = near.edges;
+        let rods = self.a.normals().is_empty() && self.b.normals().is_empty();
+        if rods
+            && let Some(ends) = side_by_side(
+                self.a.ends(e).map(|p| p + self.apart),
+                self.b.ends(f),
+                gauge.slack + ROUNDING * distance,
+            )
+        {
+            let far = |at: &[V; 2]| (at[0] - at[1]).norm();
+            if ends.iter().all(|at| far(at) <= distance + gauge.slack) {
+                for (k, at) in ends.iter().enumerate() {
+                    let normal = (at[0] - at[1]) / far(at);
+                    self.push(at, &normal, far(at), name::corner(k, true), out);
+                }
+                return;
+            }
+        }
+        let along = |ends: [V; 2]| ends[1] - ends[0];
+        let (u, v) = (along(self.a.ends(e)), along(self.b.ends(f)));
+        let normal = across_both(&u, &v, &near.way, ROUNDING * self.apart.norm());
+        self.push(&near.points, &normal, distance, name::crossing(e, f), out);
+    }
+}
+
+/// The direction of a way between two edges. Where that is the edges' product but for rounding (m) it is that:
+/// between edges that all but touch the way alone has no direction.
+fn across_both(u: &V, v: &V, way: &V, rounding: f64) -> V {
+    let distance = way.norm();
+    let product = u.cross(v).try_normalize(1e-9 * u.norm() * v.norm());
+    if let Some(n) = product
+        && (way - n * way.dot(&n)).norm() <= rounding
+    {
+        return if way.dot(&n) < 0.0 { -n } else { n };
+    }
+    if distance > 0.0 {
+        way / distance
+    } else {
+        across(u)
+    }
+}
+
+/// The greatest separation along a face of `of`, and that face; `to` stands at `apart` from it. Minus infinity where
+/// there is no face.
+fn separation(of: &Polyhedron, to: &Polyhedron, apart: &V) -> (f64, usize) {
+    let mut best = (f64::NEG_INFINITY, 0);
+    for (f, n) in of.normals().iter().enumerate() {
+        let lowest = to
+            .points()
+            .iter()
+            .map(|p| p.dot(n))
+            .fold(f64::INFINITY, f64::min);
+        let corner = of.topology().faces[f][0] as usize;
+        let s = lowest + (apart - of.points()[corner]).dot(n);
+        if s > best.0 {
+            best = (s, f);
+        }
+    }
+    best
+}
+
+/// Two edges that cross.
+struct Crossing {
+    /// Signed distance along the axis (m).
+    depth: f64,
+    /// From `b` to `a`.
+    normal: V,
+    /// The nearest points of the two lines (m).
+    points: [V; 2],
+    feature: u64,
+}
+
+/// The pair of edges with the greatest separation along their product; none where no pair counts.
+fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
+    let mut best: Option<Crossing> = None;
+    for e in 0..a.topology().edges.len() {
+        let [p0, p1] = a.ends(e).map(|p| p + apart);
+        let along_a = p1 - p0;
+        for f in 0..b.topology().edges.len() {
+            let [q0, q1] = b.ends(f);
+            let along_b = q1 - q0;
+            let product = along_a.cross(&along_b);
+            // Parallel edges have no axis of their own.
+            let size = product.norm();
+            if size <= 1e-6 * along_a.norm() * along_b.norm() {
+                continue;
+            }
+            for axis in [product / size, product / -size] {
+                let depth = (p0 - q0).dot(&axis);
+                if best.as_ref().is_some_and(|b| b.depth >= depth) {
+                    continue;
+                }
+                if holds(a, e, &-axis) && holds(b, f, &axis) {
+                    best = Some(Crossing {
+                        depth,
+                        normal: axis,
+                        points: lines(&[p0, p1], &[q0, q1]),
+                        feature: name::crossing(e, f),
+                    });
+                }
+            }
+        }
+    }
+    best
+}
+
+/// Whether a direction normal to an edge is between the normals of its faces.
+fn holds(of: &Polyhedron, edge: usize, axis: &V) -> bool {
+    let Some(faces) = of.topology().edges[edge].faces else {
+        return true;
+    };
+    let [m, n] = faces.map(|f| of.normals()[f as usize]);
+    let [p, q] = of.ends(edge);
+    let along = q - p;
+    // The first face goes along the edge: the normals turn about it from that face's to the other's.
+    m.cross(axis).dot(&along) >= 0.0 && axis.cross(&n).dot(&along) >= 0.0
+}
+
+/// The nearest points of two lines that are not parallel.
+fn lines([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
+    let (u, v, w) = (p1 - p0, q1 - q0, p0 - q0);
+    let (a, b, c) = (u.norm_squared(), u.dot(&v), v.norm_squared());
+    let (d, e) = (u.dot(&w), v.dot(&w));
+    let over = a * c - b * b;
+    [
+        p0 + u * ((b * e - c * d) / over),
+        q0 + v * ((a * e - b * d) / over),
+    ]
+}
+
+/// The nearest points of the edges of two polyhedra.
+struct Nearest {
+    edges: [usize; 2],
+    /// On `a` and on `b` (m).
+    points: [V; 2],
+    /// From `b` to `a` (m).
+    way: V,
+}
+
+fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
+    let mut best = Nearest {
+        edges: [0, 0],
+        points: [V::zeros(); 2],
+        way: V::repeat(f64::INFINITY),
+    };
+    let mut least = f64::INFINITY;
+    for e in 0..a.topology().edges.len() {
+        let one = a.ends(e).map(|p| p + apart);
+        for f in 0..b.topology().edges.len() {
+            let points = segments(&one, &b.ends(f));
+            let way = points[0] - points[1];
+            let squared = way.norm_squared();
+            if squared < least {
+                least = squared;
+                best = Nearest {
+                    edges: [e, f],
+                    points,
+                    way,
+                };
+            }
+        }
+    }
+    best
+}
+
+/// The nearest points of two segments. Ericson, Real-Time Collision Detection (2005), section 5.1.9.
+fn segments([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
+    let (u, v, r) = (p1 - p0, q1 - q0, p0 - q0);
+    let (a, e, f) = (u.norm_squared(), v.norm_squared(), v.dot(&r));
+    let (b, c) = (u.dot(&v), u.dot(&r));
+    let over = a * e - b * b;
+    let mut s = if over > 1e-14 * a * e {
+        ((b * f - c * e) / over).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let mut t = (b * s + f) / e;
+    if t < 0.0 {
+        t = 0.0;
+        s = (-c / a).clamp(0.0, 1.0);
+    } else if t > 1.0 {
+        t = 1.0;
+        s = ((b - c) / a).clamp(0.0, 1.0);
+    }
+    [p0 + u * s, q0 + v * t]
+}
+
+/// Where two segments lie side by side: at both ends of the common part the points of both. None where that part
+/// is no longer than `slack` (m).
+fn side_by_side([p0, p1]: [V; 2], [q0, q1]: [V; 2], slack: f64) -> Option<[[V; 2]; 2]> {
+    let u = p1 - p0;
+    let place = |x: &V| (x - p0).dot(&u) / u.norm_squared();
+    let (mut s, mut t) = (place(&q0), place(&q1));
+    if s > t {
+        std::mem::swap(&mut s, &mut t);
+    }
+    let (low, high) = (s.max(0.0), t.min(1.0));
+    if (high - low) * u.norm() <= slack {
+        return None;
+    }
+    let v = q1 - q0;
+    let foot = |x: V| q0 + v * ((x - q0).dot(&v) / v.norm_squared()).clamp(0.0, 1.0);
+    Some([low, high].map(|s| {
+        let on = p0 + u * s;
+        [on, foot(on)]
+    }))
+}

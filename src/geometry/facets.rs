@@ -1,0 +1,192 @@
+//! Triangles of a surface in space: where a ball touches them, without ghosts at their seams.
+
+use super::shape::Touch;
+use nalgebra::Vector3;
+
+type V = Vector3<f64>;
+
+/// A triangle of a surface; its corners go round against the clock seen from the open side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facet<V> {
+    /// Corners (m).
+    pub corners: [V; 3],
+    /// Names of the corners, the same in all facets that share them.
+    pub names: [u64; 3],
+    /// Name of the facet.
+    pub name: u32,
+}
+
+/// A part of a facet: its corners that are in it, by place.
+type Part = [bool; 3];
+
+impl Facet<V> {
+    /// Unit normal, towards the open side.
+    pub fn normal(&self) -> V {
+        let [a, b, c] = self.corners;
+        (b - a).cross(&(c - a)).normalize()
+    }
+
+    /// The angle at a corner (rad).
+    pub fn angle(&self, k: usize) -> f64 {
+        let (u, v) = (
+            self.corners[(k + 1) % 3] - self.corners[k],
+            self.corners[(k + 2) % 3] - self.corners[k],
+        );
+        u.cross(&v).norm().atan2(u.dot(&v))
+    }
+
+    /// The names of a part, sorted, unused places last.
+    pub fn part(&self, part: Part) -> [u64; 3] {
+        let mut names = [u64::MAX; 3];
+        for k in 0..3 {
+            if part[k] {
+                names[k] = self.names[k];
+            }
+        }
+        names.sort_unstable();
+        names
+    }
+
+    /// Whether all corners of a part are its own.
+    pub fn has(&self, part: &[u64; 3]) -> bool {
+        part.iter()
+            .all(|n| *n == u64::MAX || self.names.contains(n))
+    }
+}
+
+/// What found a part: how many facets, from where, and through which facet first.
+struct Found {
+    part: [u64; 3],
+    corners: usize,
+    count: usize,
+    foot: V,
+    first: usize,
+}
+
+/// All places where a ball centred at `centre` is nearest to the surface within `reach` (m), in the order of their
+/// features. `facets` are all that come into the box of that size about it.
+pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Touch<V>>) {
+    let start = out.len();
+    let mut found: Vec<Found> = Vec::new();
+    for (k, facet) in facets.iter().enumerate() {
+        let [a, b, c] = facet.corners;
+        let (foot, used) = nearest(*centre, a, b, c);
+        if (foot - centre).norm() >= reach {
+            continue;
+        }
+        let part = facet.part(used);
+        match found.iter_mut().find(|f| f.part == part) {
+            Some(f) => f.count += 1,
+            None => found.push(Found {
+                part,
+                corners: used.iter().filter(|u| **u).count(),
+                count: 1,
+                foot,
+                first: k,
+            }),
+        }
+    }
+    for f in found {
+        let about = || facets.iter().filter(|g| g.has(&f.part));
+        // An edge or a corner counts when all facets about it find it: else a face is nearer.
+        if f.count < about().count() {
+            continue;
+        }
+        let up = pseudo_normal(about(), &f.part, f.corners);
+        let arm = centre - f.foot;
+        let length = arm.norm();
+        let inside = arm.dot(&up) < 0.0;
+        let face = f.corners == 3;
+        out.push(Touch {
+            foot: f.foot,
+            normal: if face || inside || length == 0.0 {
+                up
+            } else {
+                arm / length
+            },
+            distance: if inside { -length } else { length },
+            feature: feature(facets, f.first, &f.part, f.corners),
+        });
+    }
+    out[start..].sort_by_key(|t| t.feature);
+}
+
+/// The mean normal about a part, weighed by the angles of the facets: it tells inside from outside. Baerentzen and
+/// Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG 11 (2005).
+fn pseudo_normal<'a>(
+    about: impl Iterator<Item = &'a Facet<V>>,
+    part: &[u64; 3],
+    corners: usize,
+) -> V {
+    let weight = |f: &Facet<V>| {
+        let at = f.names.iter().position(|n| *n == part[0]);
+        match at.filter(|_| corners == 1) {
+            Some(k) => f.angle(k),
+            None => 1.0,
+        }
+    };
+    let sum: V = about.map(|f| f.normal() * weight(f)).sum();
+    sum.try_normalize(0.0).unwrap_or_else(V::z)
+}
+
+/// A name of a part: by the lowest name of the facets about it.
+fn feature(facets: &[Facet<V>], first: usize, part: &[u64; 3], corners: usize) -> u32 {
+    let owner = facets
+        .iter()
+        .filter(|g| g.has(part))
+        .min_by_key(|g| g.name)
+        .unwrap_or(&facets[first]);
+    let place = |name: u64| owner.names.iter().position(|n| *n == name).unwrap_or(0) as u32;
+    owner.name * 8
+        + match corners {
+            // An edge by the corner that is not on it.
+            2 => 1 + (3 - place(part[0]) - place(part[1])),
+            1 => 4 + place(part[0]),
+            _ => 0,
+        }
+}
+
+/// Nearest point of a triangle and the corners involved (one: a corner, two: an edge, three: the face).
+/// Ericson, Real-Time Collision Detection (2005), section 5.1.5.
+pub fn nearest(
+    p: Vector3<f64>,
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+    c: Vector3<f64>,
+) -> (Vector3<f64>, [bool; 3]) {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return (a, [true, false, false]);
+    }
+    let bp = p - b;
+    let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return (b, [false, true, false]);
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return (a + ab * (d1 / (d1 - d3)), [true, true, false]);
+    }
+    let cp = p - c;
+    let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return (c, [false, false, true]);
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return (a + ac * (d2 / (d2 - d6)), [true, false, true]);
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        return (
+            b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))),
+            [false, true, true],
+        );
+    }
+    let denominator = 1.0 / (va + vb + vc);
+    (
+        a + ab * (vb * denominator) + ac * (vc * denominator),
+        [true; 3],
+    )
+}

@@ -1,0 +1,229 @@
+//! A surface of triangles in space, solid behind them: a first body from a file.
+
+use super::facets::{self, Facet};
+use super::shape::{Surface, Touch};
+use super::space::Solid;
+use nalgebra::Vector3;
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+use std::collections::HashMap;
+
+type V = Vector3<f64>;
+type Placed = GeomWithData<Rectangle<[f64; 3]>, u32>;
+
+/// Triangles that share their corners; against the clock seen from the open side.
+#[derive(Debug)]
+pub struct Mesh {
+    points: Vec<V>,
+    triangles: Vec<[u32; 3]>,
+    tree: RTree<Placed>,
+}
+
+/// Why triangles are no surface.
+#[derive(Debug, thiserror::Error, PartialEq, Eq)]
+pub enum MeshError {
+    /// No triangle.
+    #[error("the mesh has no triangles")]
+    Empty,
+    /// More than names can tell apart.
+    #[error("the mesh has {0} triangles; at most {MOST} are told apart: take a coarser one")]
+    TooMany(usize),
+    /// Not a number.
+    #[error("point {0} of the mesh is not finite")]
+    NotFinite(usize),
+    /// A corner that is not there.
+    #[error("triangle {0} of the mesh names a point that is not there")]
+    NoPoint(usize),
+    /// No area.
+    #[error("triangle {0} of the mesh has no area; remove it")]
+    Flat(usize),
+    /// An edge passed twice in the same direction.
+    #[error(
+        "triangles {0} and {1} of the mesh go along their common edge in the same direction: one of them is turned over, or more than two meet there; mend the mesh"
+    )]
+    Turned(usize, usize),
+}
+
+/// What the names of contacts can tell apart.
+pub const MOST: usize = 1 << 28;
+
+impl Mesh {
+    /// From points (m) and triangles of them.
+    ///
+    /// # Errors
+    /// No triangles, points that are not finite, triangles without area, turned over, or more than two at an edge.
+    pub fn new(points: Vec<V>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        if triangles.is_empty() {
+            return Err(MeshError::Empty);
+        }
+        if triangles.len() > MOST {
+            return Err(MeshError::TooMany(triangles.len()));
+        }
+        if let Some(k) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+            return Err(MeshError::NotFinite(k));
+        }
+        let there = |t: &[u32; 3]| t.iter().all(|c| (*c as usize) < points.len());
+        if let Some(k) = triangles.iter().position(|t| !there(t)) {
+            return Err(MeshError::NoPoint(k));
+        }
+        let flat = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|c| points[c as usize]);
+            let long = (b - a).norm().max((c - a).norm()).max((c - b).norm());
+            (b - a).cross(&(c - a)).norm() <= 1e-12 * long * long
+        };
+        if let Some(k) = triangles.iter().position(flat) {
+            return Err(MeshError::Flat(k));
+        }
+        let mut known = HashMap::new();
+        for (k, t) in triangles.iter().enumerate() {
+            for side in 0..3 {
+                if let Some(other) = known.insert((t[side], t[(side + 1) % 3]), k) {
+                    return Err(MeshError::Turned(other, k));
+                }
+            }
+        }
+        let placed = triangles.iter().enumerate().map(|(k, t)| {
+            let corners = t.map(|c| <[f64; 3]>::from(points[c as usize]));
+            let bounds = AABB::from_points(&corners);
+            Placed::new(Rectangle::from_aabb(bounds), k as u32)
+        });
+        let tree = RTree::bulk_load(placed.collect());
+        Ok(Self {
+            points,
+            triangles,
+            tree,
+        })
+    }
+
+    /// Number of triangles.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    fn facet(&self, k: u32) -> Facet<V> {
+        let t = self.triangles[k as usize];
+        Facet {
+            corners: t.map(|c| self.points[c as usize]),
+            names: t.map(u64::from),
+            name: k,
+        }
+    }
+}
+
+fn bounds(low: &V, high: &V) -> AABB<[f64; 3]> {
+    AABB::from_corners((*low).into(), (*high).into())
+}
+
+impl Surface<Solid> for Mesh {
+    fn touches(&self, centre: &V, reach: f64, out: &mut Vec<Touch<V>>) {
+        let (extent, mut near) = (V::repeat(reach), Vec::new());
+        self.facets(&(centre - extent), &(centre + extent), &mut near);
+        facets::touches(&near, centre, reach, out);
+    }
+
+    fn facets(&self, low: &V, high: &V, out: &mut Vec<Facet<V>>) {
+        let first = out.len();
+        let found = self.tree.locate_in_envelope_intersecting(bounds(low, high));
+        out.extend(found.map(|p| self.facet(p.data)));
+        out[first..].sort_unstable_by_key(|f| f.name);
+    }
+
+    fn near(&self, centre: &V, reach: f64) -> bool {
+        let extent = V::repeat(reach);
+        let near = bounds(&(centre - extent), &(centre + extent));
+        self.tree
+            .locate_in_envelope_intersecting(near)
+            .next()
+            .is_some()
+    }
+
+    fn bounded(&self) -> bool {
+        true
+    }
+
+    fn outline(&self) -> Vec<Vec<V>> {
+        (0..self.triangles.len() as u32)
+            .map(|k| self.facet(k).corners.to_vec())
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The cube from -1 to 1.
+    fn cube() -> Mesh {
+        let at = |k: u32, bit: u32| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let points = (0..8)
+            .map(|k| V::new(at(k, 0), at(k, 1), at(k, 2)))
+            .collect();
+        let faces = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        let triangles = faces
+            .iter()
+            .flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]);
+        Mesh::new(points, triangles.collect()).unwrap()
+    }
+
+    fn touches(at: [f64; 3], reach: f64) -> Vec<Touch<V>> {
+        let mut out = Vec::new();
+        cube().touches(&V::from(at), reach, &mut out);
+        out
+    }
+
+    #[test]
+    fn a_ball_touches_faces_edges_and_corners_once() {
+        // Over a face, on its diagonal seam too.
+        for at in [[0.3, 0.1, 1.2], [0.25, 0.25, 1.2], [-0.5, 0.5, 1.2]] {
+            let t = touches(at, 0.5);
+            assert_eq!(t.len(), 1, "{t:?}");
+            assert!((t[0].normal - V::z()).norm() < 1e-15 && (t[0].distance - 0.2).abs() < 1e-15);
+        }
+        let t = touches([1.3, 0.2, 1.4], 0.6);
+        assert_eq!(t.len(), 1);
+        assert!((t[0].distance - 0.5).abs() < 1e-15);
+        assert!((t[0].normal - V::new(0.6, 0.0, 0.8)).norm() < 1e-14);
+        let t = touches([2.0, 3.0, 3.0], 3.1);
+        assert_eq!(t.len(), 1);
+        assert!((t[0].distance - 3.0).abs() < 1e-15);
+        // Inside, pushed out by the nearest faces alone.
+        let t = touches([0.9, 0.0, 0.0], 0.2);
+        assert!(t.len() == 1 && (t[0].distance + 0.1).abs() < 1e-15 && t[0].normal == V::x());
+    }
+
+    #[test]
+    fn features_stay_while_a_ball_slides_on_a_face() {
+        let names: Vec<u32> = (0..5)
+            .map(|k| touches([0.5 - 0.1 * f64::from(k), -0.6, 1.1], 0.3)[0].feature)
+            .collect();
+        assert!(names.windows(2).all(|w| w[0] == w[1]), "{names:?}");
+    }
+
+    #[test]
+    fn triangles_that_are_no_surface_are_told() {
+        let cube = cube();
+        let (p, t) = (cube.points, cube.triangles);
+        let of = |t: Vec<[u32; 3]>| Mesh::new(p.clone(), t).unwrap_err();
+        assert_eq!(of(vec![]), MeshError::Empty);
+        assert_eq!(of(vec![[0, 1, 9]]), MeshError::NoPoint(0));
+        assert_eq!(of(vec![[0, 1, 1]]), MeshError::Flat(0));
+        let mut turned = t.clone();
+        turned[0].swap(0, 1);
+        assert!(matches!(of(turned), MeshError::Turned(0, _)));
+        let mut bad = p.clone();
+        bad[2].y = f64::INFINITY;
+        assert_eq!(Mesh::new(bad, t).unwrap_err(), MeshError::NotFinite(2));
+    }
+}

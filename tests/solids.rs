@@ -1,0 +1,161 @@
+//! Solids in space: polyhedra, capsules, clusters and meshes, and inertia that differs by axis.
+
+use fretwork::geometry::space::{MatrixLike, Solid};
+use fretwork::laws::SearchPath;
+use fretwork::scene::load;
+use fretwork::step::Simulation;
+use nalgebra::Vector3;
+use std::path::Path;
+
+type V = Vector3<f64>;
+
+/// Acceleration of gravity (m/s^2).
+const G: f64 = 9.81;
+
+fn scene(case: &str, sets: &[String]) -> Simulation<Solid> {
+    let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
+    let loaded = load(Path::new(&file), sets).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded
+        .build_in::<Solid>(&SearchPath::new(&[]))
+        .unwrap_or_else(|e| panic!("{e}"));
+    built.simulation
+}
+
+/// Steps until a time; every step must converge.
+fn until(s: &mut Simulation<Solid>, end: f64) {
+    while s.time < end - 0.5 * s.scheme.h {
+        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+        let solver = &report.solver;
+        assert!(solver.converged, "step {}: {solver:?}", s.steps);
+    }
+}
+
+/// The greatest speed of a grain (m/s).
+fn fastest(s: &Simulation<Solid>) -> f64 {
+    let speeds = s.bodies.velocity.iter().map(|v| v.norm());
+    speeds.fold(0.0, f64::max)
+}
+
+/// Tilts the table about y (slide and topple along x) or about x.
+fn tilted(degrees: f64, axis: usize) -> String {
+    let a = degrees.to_radians();
+    let mut g = [0.0, 0.0, -G * a.cos()];
+    g[axis] = G * a.sin();
+    format!("gravity={g:?}")
+}
+
+#[test]
+fn a_block_at_rest_keeps_its_four_points() {
+    let mut s = scene("verification/tilted_block_3d", &[tilted(10.0, 0)]);
+    until(&mut s, 1.0);
+    assert_eq!(s.network.contacts.len(), 4);
+    assert!(s.network.contacts.iter().all(|c| c.born < 1e-3));
+    let turned = s.bodies.rotation[0].angle();
+    assert!(fastest(&s) < 1e-9 && turned < 1e-9, "{turned:e}");
+}
+
+#[test]
+fn a_block_slides_at_atan_mu_or_topples_at_atan_of_its_shape() {
+    for (axis, b) in [(0, 0.2), (1, 0.3)] {
+        for mu in [0.3, 0.9f64] {
+            let set = format!("interfaces.joints.parameters.contact.mu={mu}");
+            let run = |degrees: f64| {
+                let mut s = scene(
+                    "verification/tilted_block_3d",
+                    &[tilted(degrees, axis), set.clone()],
+                );
+                until(&mut s, 0.4);
+                s
+            };
+            let (slides, topples) = (mu.atan().to_degrees(), f64::atan(b / 0.4).to_degrees());
+            let critical = slides.min(topples);
+            let s = run(critical - 0.1);
+            assert!(fastest(&s) < 1e-9, "{axis} {mu}: {:e}", fastest(&s));
+            let s = run(critical + 0.5);
+            let (spin, v) = (s.bodies.spin[0].norm(), s.bodies.velocity[0][axis]);
+            if slides < topples {
+                // g (sin a - mu cos a) t.
+                let a = (critical + 0.5).to_radians();
+                let known = G * (a.sin() - mu * a.cos()) * 0.4;
+                assert!(
+                    (v - known).abs() < 1e-9 && spin < 1e-9,
+                    "{v} {known} {spin:e}"
+                );
+            } else {
+                assert!(spin > 0.01 && v > 0.0, "{spin} {v}");
+                // About the lower edge: across the tilt alone.
+                assert!(s.bodies.spin[0][axis].abs() + s.bodies.spin[0][2].abs() < 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_rod_that_falls_on_its_end_gets_the_impulse_of_its_lever() {
+    let mut s = scene("verification/rod_falls_on_its_end", &[]);
+    let (m, v) = (s.bodies.mass[0], 2.0);
+    let inverse = s.bodies.inverse_tensor(0).entry(1, 1);
+    assert!((inverse * m * (1.0 + 0.05f64.powi(2)) / 12.0 - 1.0).abs() < 1e-12);
+    until(&mut s, 0.1);
+    // Turned about y by 0.4 the end at +x is low; of its two lower corners the one on the lower face.
+    let (sin, cos) = 0.4f64.sin_cos();
+    let lever = 0.5 * cos - 0.025 * sin;
+    let impulse = v / (1.0 / m + lever * lever * inverse);
+    let spin = -lever * impulse * inverse;
+    let (now, turning) = (s.bodies.velocity[0], s.bodies.spin[0]);
+    assert!((now.z + v - impulse / m).abs() < 1e-9 * v, "{now:?}");
+    assert!(
+        (turning - V::new(0.0, spin, 0.0)).norm() < 1e-9 * spin.abs(),
+        "{turning:?} {spin}"
+    );
+    // What the impact takes: half of m_eff v^2.
+    let lost = 0.5 * impulse * v;
+    assert!((s.energy.residual / lost).abs() < 1e-12);
+    assert!((s.bodies.kinetic_energy() - (0.5 * m * v * v - lost)).abs() < 1e-9 * lost);
+}
+
+#[test]
+fn a_plate_thrown_tumbles_and_keeps_energy_and_momentum() {
+    let mut s = scene("verification/tumbling", &[]);
+    let of = |s: &Simulation<Solid>| {
+        (
+            s.bodies.kinetic_energy(),
+            s.bodies.angular_momentum(0, &s.bodies.spin[0]),
+        )
+    };
+    let (energy, momentum) = of(&s);
+    let mut turned_over = false;
+    while s.time < 20.0 {
+        s.step().unwrap_or_else(|e| panic!("{e}"));
+        turned_over |= (s.bodies.rotation[0] * V::y()).dot(&momentum) < 0.0;
+    }
+    let (e, l) = of(&s);
+    assert!((e / energy - 1.0).abs() < 1e-10 && (l - momentum).norm() < 1e-10 * momentum.norm());
+    // The middle axis is not stable.
+    assert!(turned_over);
+}
+
+#[test]
+fn solids_of_all_kinds_come_to_rest_on_a_mesh() {
+    let mut s = scene("verification/solids", &[]);
+    let (mut start, mut worst) = (0.0f64, 0.0f64);
+    while s.time < 1.5 {
+        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+        assert!(report.solver.converged, "{}: {:?}", s.steps, report.solver);
+        start = start.max(s.energy.kinetic);
+        worst = worst.max(s.energy.residual.abs());
+    }
+    assert!(worst < 1e-9 * start, "{worst:e} of {start:e}");
+    assert!(
+        s.bodies.kinetic_energy() < 1e-3 * start,
+        "{:e}",
+        s.bodies.kinetic_energy()
+    );
+    // All above the two slopes.
+    for x in &s.bodies.position[..6] {
+        let floor = x.x.abs() * 0.36397023;
+        assert!(x.z > floor && x.z < floor + 0.4, "{x:?}");
+    }
+    let deepest = s.network.contacts.iter().map(|c| c.gap).fold(0.0, f64::min);
+    assert!(deepest > -2e-3, "{deepest:e}");
+}
