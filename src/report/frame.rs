@@ -433,7 +433,7 @@ mod tests {
         let mut odd = frame(&hollow, &bad, &[]);
         drawn(&odd, "odd");
         let solids = [
-            Solid::Sphere(bad[0].clone()),
+            Solid::Sphere(bad[0]),
             Solid::Faces(vec![Face {
                 points: Vec::new(),
                 shade: 0.0,
