@@ -142,7 +142,8 @@ fn balls<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (S::Vector, f64)> 
         .map(|b| (crate::contact::detect::centre(b, &s.bodies), b.radius))
 }
 
-fn piece_centre<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> S::Vector {
+/// Where the centre of a piece stands (m).
+pub fn piece_centre<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> S::Vector {
     let b = piece.body as usize;
     s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &piece.offset)
 }

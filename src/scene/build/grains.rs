@@ -85,7 +85,10 @@ impl<S: Dimensional> Builder<'_, S> {
                     }));
                 }
                 // After the balls, which stand first in memory.
-                GrainSpec::Polygons { .. } | GrainSpec::Arch { .. } => {}
+                GrainSpec::Polygons { .. }
+                | GrainSpec::Arch { .. }
+                | GrainSpec::Voronoi(_)
+                | GrainSpec::BlockWall(_) => {}
                 GrainSpec::Scene {
                     file,
                     material,

@@ -142,8 +142,8 @@ impl Clock {
                 at_most,
             } => {
                 let Motion { kinetic, scale } = motion();
-                let still = share.is_none_or(|s| kinetic < s * scale)
-                    && energy.is_none_or(|e| kinetic < e);
+                let still =
+                    share.is_none_or(|s| kinetic < s * scale) && energy.is_none_or(|e| kinetic < e);
                 if !still {
                     self.still_since = None;
                 } else if reached(*self.still_since.get_or_insert(now.time) + held) {
