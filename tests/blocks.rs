@@ -175,7 +175,7 @@ fn a_plate_that_tears_pays_for_its_crack() {
         }
     };
     let memory = &s.network.memory[0];
-    assert_eq!(memory.bonds.len() as u64, s.network.bonds_made());
+    assert_eq!(memory.bonds.len() as u64, memory.made);
     let expected: f64 = memory.bonds.iter().map(|b| b.area * lost(b.damage)).sum();
     let broken = memory.bonds.iter().filter(|b| b.damage >= 1.0).count() as u64;
     let found = s.energy.fracture;

@@ -160,16 +160,26 @@ fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
     let period = s.shapes.periodic.period[0];
     let mut out = Vec::with_capacity(s.shapes.pieces.len());
     for piece in &s.shapes.pieces {
+        if s.bodies.gone[piece.body as usize] {
+            continue;
+        }
+        let shade = (!is_first(s, piece.body)).then_some(0.25);
         let corners = piece_outline(s, piece);
         let x = s.shapes.periodic.wrapped(piece_centre(s, piece))[0];
         for image in images(x, piece.bound, window, period) {
             out.push(Outline {
                 points: corners.iter().map(|c| [c[0] - x + image, c[1]]).collect(),
                 label: String::new(),
+                shade,
             });
         }
     }
     out
+}
+
+/// Whether a body is a first body.
+fn is_first<S: Space>(s: &Simulation<S>, body: u32) -> bool {
+    s.bodies.driven.iter().any(|d| d.body == body)
 }
 
 /// The images of a point that show in the window.
@@ -190,7 +200,7 @@ fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4], shades: &[f64]) -> Vec<D
             continue;
         }
         let angle = S::rotation_numbers(&s.bodies.rotation[ball.body as usize])[0];
-        let first = s.bodies.driven.iter().any(|d| d.body == ball.body);
+        let first = is_first(s, ball.body);
         for x in images(centre[0], radius, window, period) {
             out.push(Disk {
                 centre: [x, centre[1]],
@@ -247,14 +257,19 @@ pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S:
     (a, a - contact.normal * length)
 }
 
-/// The same where a piece is in it: by way of the contact point.
+/// The same where a piece is in it: by way of the contact point, which is the end at a first body.
 fn ends_of_piece<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
-    let a = s.bodies.position[contact.bodies[0] as usize];
-    let foot = a + contact.arms[0] - contact.normal * contact.gap;
-    match contact.key.surface() {
-        Some(_) => (a, foot),
-        None => (a, foot - contact.arms[1]),
-    }
+    let centre = s.bodies.position[contact.bodies[0] as usize];
+    let at = centre + contact.arms[0];
+    let foot = at - contact.normal * contact.gap;
+    let [first, other] = contact.bodies.map(|b| is_first(s, b));
+    let a = if first { at } else { centre };
+    let b = if other || contact.key.surface().is_some() {
+        foot
+    } else {
+        foot - contact.arms[1]
+    };
+    (a, b)
 }
 
 fn links<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Link> {
@@ -326,6 +341,7 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
                 out.push(Outline {
                     points: around(&points, far),
                     label: String::new(),
+                    shade: None,
                 });
                 continue;
             }
@@ -355,6 +371,7 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
             out.push(Outline {
                 points: polygon,
                 label: name,
+                shade: None,
             });
         }
     }
