@@ -38,7 +38,7 @@ impl<S: Dimensional> Builder<'_, S> {
         };
         let size = self.length(&format!("{here}.size"), spec.size)?;
         let cells = corners.volume() / (size * size);
-        if !(cells < MOST_BLOCKS as f64 + 0.5) {
+        if cells > MOST_BLOCKS as f64 {
             let message = format!("the region would hold {cells:.3e} cells of this size");
             let fault = Fault::new(format!("{here}.size"), message);
             let advice = format!("larger cells, at most {MOST_BLOCKS}");
