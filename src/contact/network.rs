@@ -51,6 +51,8 @@ pub struct Contact<S: Space> {
     pub law: u16,
     /// See [`crate::solve::ContactForm::central`].
     pub central: bool,
+    /// A corner of a polygon touches, not a side: there is no face to bond over.
+    pub sharp: bool,
     /// Whether a bond of this pair broke.
     pub broken: bool,
     /// Place in the memory of its interface law, or [`Contact::NO_MEMORY`].

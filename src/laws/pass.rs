@@ -130,7 +130,7 @@ impl Passes {
                 let healed = law
                     .healing
                     .is_some_and(|time| contact.pressed > 0.0 && contact.pressed >= time);
-                let bonds = !intact && (due || healed);
+                let bonds = !intact && !contact.sharp && (due || healed);
                 match contact.memory() {
                     Some(slot) if bonds => {
                         memory.bond(slot, contact.gap, area);

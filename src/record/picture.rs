@@ -148,7 +148,8 @@ fn balls<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (S::Vector, f64)> 
         .map(|b| (crate::contact::detect::centre(b, &s.bodies), b.radius))
 }
 
-fn piece_centre<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> S::Vector {
+/// Where the centre of a piece stands (m).
+pub fn piece_centre<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> S::Vector {
     let b = piece.body as usize;
     s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &piece.offset)
 }
@@ -166,16 +167,26 @@ fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
     let period = s.shapes.periodic.period[0];
     let mut out = Vec::with_capacity(s.shapes.pieces.len());
     for piece in &s.shapes.pieces {
+        if s.bodies.gone[piece.body as usize] {
+            continue;
+        }
+        let shade = (!is_first(s, piece.body)).then_some(0.25);
         let corners = piece_outline(s, piece).concat();
         let x = s.shapes.periodic.wrapped(piece_centre(s, piece))[0];
         for image in images(x, piece.bound, window, period) {
             out.push(Outline {
                 points: corners.iter().map(|c| [c[0] - x + image, c[1]]).collect(),
                 label: String::new(),
+                shade,
             });
         }
     }
     out
+}
+
+/// Whether a body is a first body.
+fn is_first<S: Space>(s: &Simulation<S>, body: u32) -> bool {
+    s.bodies.driven.iter().any(|d| d.body == body)
 }
 
 /// The images of a point that show in the window.
@@ -196,7 +207,7 @@ fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4], shades: &[f64]) -> Vec<D
             continue;
         }
         let angle = S::rotation_numbers(&s.bodies.rotation[ball.body as usize])[0];
-        let first = s.bodies.driven.iter().any(|d| d.body == ball.body);
+        let first = is_first(s, ball.body);
         for x in images(centre[0], radius, window, period) {
             out.push(Disk {
                 centre: [x, centre[1]],
@@ -279,14 +290,19 @@ pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S:
     (a, a - contact.normal * length)
 }
 
-/// The same where a piece is in it: by way of the contact point.
+/// The same where a piece is in it: by way of the contact point, which is the end at a first body.
 fn ends_of_piece<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
-    let a = s.bodies.position[contact.bodies[0] as usize];
-    let foot = a + contact.arms[0] - contact.normal * contact.gap;
-    match contact.key.surface() {
-        Some(_) => (a, foot),
-        None => (a, foot - contact.arms[1]),
-    }
+    let centre = s.bodies.position[contact.bodies[0] as usize];
+    let at = centre + contact.arms[0];
+    let foot = at - contact.normal * contact.gap;
+    let [first, other] = contact.bodies.map(|b| is_first(s, b));
+    let a = if first { at } else { centre };
+    let b = if other || contact.key.surface().is_some() {
+        foot
+    } else {
+        foot - contact.arms[1]
+    };
+    (a, b)
 }
 
 fn links<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Link> {
@@ -358,6 +374,7 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
                 out.push(Outline {
                     points: around(&points, far),
                     label: String::new(),
+                    shade: None,
                 });
                 continue;
             }
@@ -387,6 +404,7 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
             out.push(Outline {
                 points: polygon,
                 label: name,
+                shade: None,
             });
         }
     }

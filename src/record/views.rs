@@ -5,6 +5,7 @@ use super::results::{Header, Part, Results, ResultsError};
 use super::statistics::Column;
 use super::summary::Summary;
 use crate::contact::detect::centre;
+use crate::geometry::convex::Core;
 use crate::geometry::space::{Space, VectorLike};
 use crate::report::LinkState;
 use crate::scene::build::Loaded;
@@ -34,13 +35,18 @@ pub fn header(
         fields: [
             [
                 c("id", "", "identity of the body"),
-                c("radius", "m", "radius"),
+                c(
+                    "radius",
+                    "m",
+                    "radius; of a polygon that of the disk of its area",
+                ),
                 c("material", "", "index of the material"),
-                c("first_body", "", "1 for balls of a first body"),
+                c("first_body", "", "1 for parts of a first body"),
                 c("velocity_x", "m/s", "velocity"),
                 c("velocity_y", "m/s", "velocity"),
                 c("velocity_z", "m/s", "velocity"),
                 c("spin", "rad/s", "angular velocity, its norm in 3D"),
+                c("corners", "", "corners of a polygon, 0 for a ball"),
             ]
             .into_iter()
             .chain(axes.iter().cloned())
@@ -66,7 +72,7 @@ pub fn header(
 
 /// Bytes that a state takes a grain and a contact: points, cells and fields of 8 bytes.
 pub fn bytes(dimension: usize) -> [usize; 2] {
-    let fields = if dimension == 2 { 8 } else { 11 };
+    let fields = if dimension == 2 { 9 } else { 12 };
     [8 * (3 + 2 + fields), 8 * (6 + 3 + 8)]
 }
 
@@ -81,37 +87,56 @@ pub fn append<S: Space>(results: &mut Results, s: &Simulation<S>) -> Result<(), 
 fn grains<S: Space>(s: &Simulation<S>) -> Part {
     let axes = if S::D == 2 { 0 } else { 3 };
     let mut part = Part {
-        data: vec![Vec::new(); 8 + axes],
+        data: vec![Vec::new(); 9 + axes],
         ..Part::default()
     };
-    for (k, ball) in s.shapes.balls.iter().enumerate() {
-        let b = ball.body as usize;
-        part.points
-            .extend(s.shapes.periodic.wrapped(centre(ball, &s.bodies)).padded());
-        part.cells.push(vec![k as i64]);
-        let first = s.bodies.driven.iter().any(|d| d.body == ball.body);
-        let v = s.bodies.velocity[b].padded();
-        let spin = if S::D == 2 {
-            s.bodies.spin[b][0]
-        } else {
-            s.bodies.spin[b].norm()
-        };
-        let values = [
-            s.bodies.id[b] as f64,
+    for ball in &s.shapes.balls {
+        let at = centre(ball, &s.bodies);
+        grain(
+            s,
+            &mut part,
+            at,
+            [ball.body, ball.material.into(), 0],
             ball.radius,
-            f64::from(ball.material),
-            f64::from(u8::from(first)),
-            v[0],
-            v[1],
-            v[2],
-            spin,
-        ];
-        push(&mut part, &values);
-        for (column, value) in part.data[8..].iter_mut().zip(s.bodies.spin[b].padded()) {
-            column.push(value);
-        }
+        );
+    }
+    for piece in &s.shapes.pieces {
+        let at = picture::piece_centre(s, piece);
+        let corners = piece.core.outline(0.0).len() as u32;
+        let of = [piece.body, piece.material.into(), corners];
+        grain(s, &mut part, at, of, piece.size);
     }
     part
+}
+
+/// One ball or polygon: where it stands, its body, material and number of corners, its radius (m).
+fn grain<S: Space>(s: &Simulation<S>, part: &mut Part, at: S::Vector, of: [u32; 3], radius: f64) {
+    let [body, material, corners] = of;
+    let b = body as usize;
+    part.cells.push(vec![part.points.len() as i64 / 3]);
+    part.points.extend(s.shapes.periodic.wrapped(at).padded());
+    let first = s.bodies.driven.iter().any(|d| d.body == body);
+    let v = s.bodies.velocity[b].padded();
+    let spin = if S::D == 2 {
+        s.bodies.spin[b][0]
+    } else {
+        s.bodies.spin[b].norm()
+    };
+    let values = [
+        s.bodies.id[b] as f64,
+        radius,
+        f64::from(material),
+        f64::from(u8::from(first)),
+        v[0],
+        v[1],
+        v[2],
+        spin,
+        f64::from(corners),
+    ];
+    push(part, &values);
+    for (column, value) in part.data[9..].iter_mut().zip(s.bodies.spin[b].padded()) {
+        column.push(value);
+    }
 }
 
 fn contacts<S: Space>(s: &Simulation<S>) -> Part {

@@ -10,13 +10,15 @@ use super::furniture::{self, caption_lines, centroid, push_bar};
 use super::solid::{self, Solid};
 use super::sphere::paint_sphere;
 
-/// A first body (rail, wheel).
+/// A first body (rail, wheel), or a grain with corners.
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
     /// Corners of a closed polygon, metres; may reach out of the window.
     pub points: Vec<[f64; 2]>,
     /// Name written in the body; empty for none.
     pub label: String,
+    /// Grey of a grain, as [`Disk::shade`]; none for a first body.
+    pub shade: Option<f64>,
 }
 
 /// A grain.
@@ -82,7 +84,7 @@ pub struct Frame<'a> {
     /// xmin, xmax, ymin, ymax, metres. The picture shows all of it at the same
     /// scale in both directions, and more where the picture would be too flat.
     pub window: [f64; 4],
-    /// First bodies.
+    /// First bodies, and grains with corners.
     pub bodies: &'a [Outline],
     /// Grains, drawn in order.
     pub disks: &'a [Disk],
@@ -189,8 +191,12 @@ impl Frame<'_> {
     fn draw_bodies(&self, field: &mut Canvas, map: &Map, u: f32) {
         for body in self.bodies {
             let polygon = visible(&body.points, field, map);
-            field.polygon(&polygon, STEEL);
-            field.stroke(&polygon, true, 2.0 * u, STEEL_EDGE, None);
+            let (fill, edge, width) = match body.shade {
+                Some(shade) => (mix(GRAIN[0], GRAIN[1], shade), GRAIN_EDGE, 1.3 * u),
+                None => (STEEL, STEEL_EDGE, 2.0 * u),
+            };
+            field.polygon(&polygon, fill);
+            field.stroke(&polygon, true, width, edge, None);
         }
     }
 

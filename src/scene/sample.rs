@@ -4,6 +4,7 @@ pub mod deposit;
 pub mod sizes;
 pub mod spec;
 pub mod table;
+pub mod voronoi;
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

@@ -91,6 +91,89 @@ fn arches_that_cannot_be() {
 }
 
 #[test]
+fn voronoi_cells_that_cannot_be() {
+    let of = |fields: &str, sentence: &str| {
+        refused(
+            &grains(&format!("Voronoi(material: \"grain\", {fields})")),
+            &[sentence],
+        );
+    };
+    let region = "low: [0.2, 0.03], high: [0.3, 0.06]";
+    of(
+        &format!("size: ‸-0.01, {region}"),
+        "a length must be positive, got -0.01",
+    );
+    of(
+        &format!("size: ‸1e-6, {region}"),
+        "would hold 3.000e9 cells of this size",
+    );
+    of(
+        &format!("size: ‸0.1, {region}"),
+        "wider and higher than half of that",
+    );
+    of(
+        "size: 0.01, low: [0.2, 0.03], high: ‸[0.3, 0.03]",
+        "the region has no area",
+    );
+    of(
+        "size: 0.01, low: [0.0, 0.03], high: ‸[0.5, 0.06]",
+        "wider than the period `periodic.x` (4e-1 m)",
+    );
+    of(
+        &format!("size: 0.01, rounds: ‸100000, {region}"),
+        "at most 1000 rounds",
+    );
+    of(
+        &format!("size: 0.01, gap: ‸-1e-4, {region}"),
+        "must not be negative, got -0.0001",
+    );
+    of(
+        &format!("size: 0.01, rounding: ‸0.02, {region}"),
+        "leaves nothing of the thinnest cell; make them smaller",
+    );
+    of(
+        "size: 0.01, low: ‸[0.2, 0.03, 0.0], high: [0.3, 0.06]",
+        "3 components in a case of dimension 2",
+    );
+}
+
+#[test]
+fn walls_that_cannot_be() {
+    let of = |fields: &str, sentence: &str| {
+        refused(
+            &grains(&format!("BlockWall(material: \"grain\", {fields})")),
+            &[sentence],
+        );
+    };
+    of(
+        "rows: 2, columns: ‸0, block: (0.02, 0.01)",
+        "a wall has at least one",
+    );
+    of(
+        "rows: 2, columns: 3, block: (0.02, ‸0.0)",
+        "a length must be positive, got 0",
+    );
+    of(
+        "rows: 2, columns: 3, block: (0.02, 0.01), gap: ‸0.02",
+        "must be smaller than a block (2e-2 m), got 2e-2",
+    );
+    of(
+        "rows: ‸100000000, columns: 3, block: (0.02, 0.01)",
+        "400000000 blocks are too many",
+    );
+}
+
+#[test]
+fn voronoi_cells_in_space() {
+    let cells =
+        "‸Voronoi(material: \"grain\", size: 0.1, low: [0.0, 0.0, 0.0], high: [1.0, 1.0, 1.0])";
+    refused(
+        &with(SOLID, "    grains: [", &format!("    grains: [{cells}, ")),
+        &["need two dimensions; use a Deposit of balls in three"],
+    );
+}
+
+#[test]
 fn polygons_in_space() {
     let capsule = "‸Capsule(from: (0.0, 0.0), to: (0.0, 1.0), radius: 0.01)";
     let body = format!(

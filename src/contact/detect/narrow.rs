@@ -128,6 +128,7 @@ impl<'a, S: Space> Narrow<'a, S> {
             bodies: [p.body, q.body],
             law,
             central,
+            sharp: false,
             broken: false,
             slot: Contact::<S>::NO_MEMORY,
             gap: length - sum,
@@ -195,6 +196,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                 central: still
                     && centred
                     && self.bodies.inverse_mass[i][0] == self.bodies.inverse_mass[i][S::D - 1],
+                sharp: false,
                 broken: false,
                 slot: Contact::<S>::NO_MEMORY,
                 gap,

@@ -24,6 +24,7 @@ impl<S: Space> Narrow<'_, S> {
         let gauge = Gauge {
             reach: reach(network, old.clone()),
             slack: SLACK * network.alert,
+            held: old.clone().any(|k| held(network, Some(k))),
         };
         let mut meetings = std::mem::take(&mut self.meetings);
         meetings.clear();
@@ -123,24 +124,7 @@ impl<S: Space> Narrow<'_, S> {
         old: std::ops::Range<usize>,
         origins: [S::Vector; 2],
     ) {
-        // The same corner first; then, of the old ones whose corner is met no more, the nearest.
-        let mut matched: Vec<Option<usize>> = meetings
-            .iter()
-            .map(|m| {
-                old.clone()
-                    .find(|k| network.old[*k].key.feature == m.feature)
-            })
-            .collect();
-        for (k, m) in meetings.iter().enumerate() {
-            if matched[k].is_none() {
-                let arm = m.on_candidate + origins[0];
-                let away = |at: &usize| (network.old[*at].arms[0] - arm).norm();
-                matched[k] = old
-                    .clone()
-                    .filter(|at| !matched.contains(&Some(*at)))
-                    .min_by(|x, y| away(x).total_cmp(&away(y)));
-            }
-        }
+        let matched = matches(&network.old, meetings, old.clone(), &origins[0]);
         let mut taken = vec![false; old.len()];
         for (m, before) in meetings.iter().zip(matched) {
             if m.gap >= network.alert && !held(network, before) {
@@ -158,6 +142,7 @@ impl<S: Space> Narrow<'_, S> {
                 bodies: pair.bodies,
                 law: pair.law,
                 central: false,
+                sharp: !m.facing,
                 broken: false,
                 slot: Contact::<S>::NO_MEMORY,
                 gap: m.gap,
@@ -176,5 +161,99 @@ impl<S: Space> Narrow<'_, S> {
                 drop_contact(network, k);
             }
         }
+    }
+}
+
+/// The old contact that each meeting goes on from: of the same corner first; then the nearest of those whose corner
+/// is met no more, the nearest pair before all others. Where only one is left of two, a new point at the other
+/// end of the face must not take it from the one beside it.
+fn matches<S: Space>(
+    contacts: &[Contact<S>],
+    meetings: &[Meeting<S::Vector>],
+    old: std::ops::Range<usize>,
+    origin: &S::Vector,
+) -> Vec<Option<usize>> {
+    let mut matched: Vec<Option<usize>> = meetings
+        .iter()
+        .map(|m| old.clone().find(|k| contacts[*k].key.feature == m.feature))
+        .collect();
+    let mut ways = Vec::new();
+    for (k, m) in meetings.iter().enumerate() {
+        for at in old.clone() {
+            if matched[k].is_none() && !matched.contains(&Some(at)) {
+                let way = contacts[at].arms[0] - (m.on_candidate + *origin);
+                ways.push((way.norm(), k, at));
+            }
+        }
+    }
+    ways.sort_by(|x, y| x.0.total_cmp(&y.0));
+    for (_, k, at) in ways {
+        if matched[k].is_none() && !matched.contains(&Some(at)) {
+            matched[k] = Some(at);
+        }
+    }
+    matched
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::Plane;
+    use nalgebra::Vector2;
+
+    fn meeting(x: f64, feature: u64) -> Meeting<Vector2<f64>> {
+        let at = Vector2::new(x, 0.0);
+        Meeting {
+            on_candidate: at,
+            on_antagonist: at,
+            normal: Vector2::new(0.0, 1.0),
+            gap: 0.0,
+            feature,
+            share: 1.0,
+            facing: true,
+        }
+    }
+
+    fn contact(x: f64, feature: u64) -> Contact<Plane> {
+        let arm = Vector2::new(x, 0.0);
+        Contact {
+            key: Key {
+                candidate: Key::PIECE,
+                antagonist: Key::PIECE | 1,
+                feature,
+            },
+            bodies: [0, 1],
+            law: 0,
+            central: false,
+            sharp: false,
+            broken: false,
+            slot: 0,
+            gap: 0.0,
+            normal: Vector2::new(0.0, 1.0),
+            arms: [arm, arm],
+            radius: 1.0,
+            impulse: Vector2::zeros(),
+            moment: nalgebra::Vector1::zeros(),
+            born: 0.0,
+            pressed: 0.0,
+        }
+    }
+
+    /// The bond at one end of a face broke and its contact went; at the other end the corner got another name.
+    #[test]
+    fn a_bond_stays_at_its_end_of_the_face_when_names_change() {
+        let of = |old: &[Contact<Plane>], new: &[Meeting<Vector2<f64>>]| {
+            matches(old, new, 0..old.len(), &Vector2::zeros())
+        };
+        let new = [meeting(-1.0, 4), meeting(1.0, 6)];
+        assert_eq!(of(&[contact(1.0, 3)], &new), [None, Some(0)]);
+        assert_eq!(of(&[contact(-1.0, 3)], &new), [Some(0), None]);
+        // The same name goes before the nearest place; the rest to the nearest that is left.
+        assert_eq!(
+            of(&[contact(0.9, 4), contact(0.8, 3)], &new),
+            [Some(0), Some(1)]
+        );
+        let both = [contact(0.9, 7), contact(-0.5, 9)];
+        assert_eq!(of(&both, &new), [Some(1), Some(0)]);
     }
 }

@@ -87,6 +87,8 @@ pub struct Meeting<V> {
     /// Length of the face that this point stands for (m); in space the radius of a disk of its area; zero for a
     /// corner.
     pub share: f64,
+    /// Whether a bond can hold here: sides face each other, or a ball or an end of a capsule touches.
+    pub facing: bool,
 }
 
 /// How near is near.
@@ -97,6 +99,9 @@ pub struct Gauge {
     /// Two corners that are no farther apart along a face are seen as corner on face (m): between corners
     /// that coincide there is no direction.
     pub slack: f64,
+    /// Whether a bond holds the pair: its sides are met even where two corners are nearer, so that what is
+    /// pulled open aslant keeps its points.
+    pub held: bool,
 }
 
 /// What the narrow phase asks of a convex core. Vectors are in the world's axes, places relative to the

@@ -5,6 +5,9 @@ use crate::geometry::shape::Surface;
 use crate::geometry::space::{Plane, Space};
 use nalgebra::{Matrix1, Vector2};
 
+/// Cosine of the angle below which two sides face each other: some five degrees.
+const FACING: f64 = 0.996;
+
 /// Corners that go round against the clock, and the outward unit normals of the sides that begin in them.
 /// Two points are a segment with two sides.
 #[derive(Clone, Debug, PartialEq)]
@@ -139,6 +142,12 @@ impl Polygon {
         &self.normals
     }
 
+    /// Whether a side with this outward normal lies along the side that faces it, within some five degrees. The
+    /// round end of a capsule does so everywhere.
+    pub fn faces(&self, normal: &Vector2<f64>) -> bool {
+        self.points.len() == 2 || self.normals[self.facing(normal)].dot(normal) < -FACING
+    }
+
     /// The two ends of a side (m).
     pub fn side(&self, k: usize) -> (Vector2<f64>, Vector2<f64>) {
         (self.points[k], self.points[(k + 1) % self.points.len()])
@@ -227,6 +236,7 @@ impl Core<Plane> for Polygon {
             gap: distance - radius - rounding,
             feature: 0,
             share: 0.0,
+            facing: true,
         }
     }
 

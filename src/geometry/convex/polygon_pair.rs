@@ -35,7 +35,7 @@ pub fn meet(
         let (i, j, d) = corners;
         let (distance, slack) = (d.norm(), gauge.slack);
         let corner = distance * distance - best * best > slack * slack;
-        if corner && distance < nearest_side(a, b, apart) {
+        if corner && !gauge.held && distance < nearest_side(a, b, apart) {
             if distance <= reach {
                 let normal = d / distance;
                 let (pa, pb) = (a.points()[i] + apart, b.points()[j]);
@@ -46,6 +46,7 @@ pub fn meet(
                     gap: distance - roundings[0] - roundings[1],
                     feature: name(i, true),
                     share: 0.0,
+                    facing: a.points().len() == 2 || b.points().len() == 2,
                 });
             }
             return;
@@ -62,8 +63,11 @@ pub fn meet(
     } else {
         (roundings[1], roundings[0])
     };
-    for point in clip(lead, other, side, &(at_other - at_lead), gauge.slack) {
-        let normal = lead.normals()[side];
+    let normal = lead.normals()[side];
+    let ends = clip(lead, other, side, &(at_other - at_lead), gauge.slack);
+    let along = ends.len() == 2 && other.faces(&normal);
+    let facing = along || lead.points().len() == 2 || other.points().len() == 2;
+    for point in ends {
         let gap = point.height - lead_rounding - other_rounding;
         if gap > gauge.reach {
             continue;
@@ -83,6 +87,7 @@ pub fn meet(
             gap,
             feature,
             share: point.share,
+            facing,
         });
     }
     out[first..].sort_by_key(|m| m.feature);
@@ -241,6 +246,7 @@ mod tests {
     const EXACT: Gauge = Gauge {
         reach: 1e9,
         slack: 0.0,
+        held: false,
     };
 
     fn met(a: &Polygon, b: &Polygon, apart: V, roundings: [f64; 2]) -> Vec<Meeting<V>> {
@@ -366,6 +372,7 @@ mod tests {
         let gauge = Gauge {
             reach: 0.1,
             slack: 1e-6,
+            held: false,
         };
         for shift in [0.0, 1e-12, -1e-9, 5e-7] {
             for gap in [-1e-9, 0.0, 1e-13, 1e-9, 0.05] {
@@ -384,6 +391,34 @@ mod tests {
         assert_eq!(out.len(), 1);
         assert!((out[0].gap - 0.05).abs() < 1e-14);
         assert!((out[0].normal - V::new(0.6, 0.8)).norm() < 1e-12);
+    }
+
+    /// Opened aslant about a corner that has slid past the other's end, two corners are nearest; a bond over the
+    /// face still needs its two points.
+    #[test]
+    fn what_a_bond_holds_keeps_its_face() {
+        let square = |turn: f64| {
+            let of = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+            let polygon = Polygon::new(of.map(|c| V::new(c.0, c.1)).to_vec()).unwrap();
+            polygon.turned(&turn)
+        };
+        let (low, top) = (square(0.0), square(-0.05));
+        // The lower right corner of the upper square stands 0.02 above and 5e-4 beyond that of the lower one.
+        let right = top.points()[1];
+        let apart = V::new(1.0 + 5e-4, 1.0 + 0.02) - right;
+        for held in [false, true] {
+            let gauge = Gauge {
+                reach: 0.5,
+                slack: 1e-6,
+                held,
+            };
+            let mut out = Vec::new();
+            meet(&top, &low, &apart, [0.0; 2], &gauge, &mut out);
+            assert_eq!(out.len(), 1 + usize::from(held), "{out:?}");
+            let share: f64 = out.iter().map(|m| m.share).sum();
+            assert!(!held || (share - 2.0).abs() < 0.01, "{share}");
+            assert!(out.iter().all(|m| m.facing == held));
+        }
     }
 
     #[test]

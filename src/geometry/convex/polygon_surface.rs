@@ -53,6 +53,7 @@ pub fn meet(
                 gap: touch.distance - rounding,
                 feature: ((u64::from(touch.feature) << 24) | k as u64) << 1,
                 share: 0.5 * (to - from).norm(),
+                facing: polygon.faces(&touch.normal),
             });
         }
     }
@@ -78,6 +79,7 @@ pub fn meet(
             gap: distance - rounding,
             feature: (u64::from(corner.feature) << 1) | 1,
             share: 0.0,
+            facing: n == 2,
         });
     }
     out[first..].sort_by_key(|m| m.feature);
@@ -92,6 +94,7 @@ mod tests {
     const GAUGE: Gauge = Gauge {
         reach: 0.2,
         slack: 1e-4,
+        held: false,
     };
 
     fn square() -> Polygon {

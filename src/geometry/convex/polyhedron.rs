@@ -68,6 +68,9 @@ pub enum PolyhedronError {
     Open,
 }
 
+/// Cosine of the angle below which two faces face each other: some five degrees.
+const FACING: f64 = 0.996;
+
 /// What the names of contact points can tell apart.
 pub const MOST_EDGES: usize = 1 << 14;
 
@@ -280,6 +283,12 @@ impl Polyhedron {
             .map(|f| *f as usize)
     }
 
+    /// Whether a face with this outward normal lies along the face that faces it, within some five degrees. A
+    /// segment does so everywhere.
+    pub fn faces(&self, normal: &V) -> bool {
+        self.facing(normal).is_none_or(|f| self.normals[f].dot(normal) < -FACING)
+    }
+
     /// Signed distance of a point from the boundary (m, negative inside) and the unit normal at the nearest point
     /// of it.
     pub fn distance(&self, point: &V) -> (f64, V) {
@@ -444,6 +453,7 @@ impl Core<Solid> for Polyhedron {
             gap: distance - radius - rounding,
             feature: 0,
             share: 0.0,
+            facing: true,
         }
     }
 

@@ -46,6 +46,8 @@ pub struct Point {
     pub feature: u64,
     /// Radius of a disk with its part of the common area (m).
     pub share: f64,
+    /// Whether the two faces lie along each other.
+    pub facing: bool,
 }
 
 /// What a side of the polygon at hand lies along.
@@ -95,7 +97,7 @@ pub fn clip(lead: &Lead, slack: f64) -> Vec<Point> {
         polygon = kept;
     }
     merge(&mut polygon, slack);
-    let share = share(&polygon, &normal);
+    let (share, facing) = (share(&polygon, &normal), lead.other.faces(&normal));
     let height = |c: &Corner| (c.at - corners[0]).dot(&normal);
     polygon
         .iter()
@@ -105,6 +107,7 @@ pub fn clip(lead: &Lead, slack: f64) -> Vec<Point> {
             normal,
             feature: c.feature,
             share,
+            facing,
         })
         .collect()
 }

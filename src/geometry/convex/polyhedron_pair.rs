@@ -79,7 +79,7 @@ pub fn meet(
         let beside = best > 0.0
             && distance * distance - best * best <= gauge.slack * gauge.slack
             && !points.is_empty();
-        if !beside {
+        if !beside && !(gauge.held && best > 0.0 && !points.is_empty()) {
             if distance <= reach {
                 pair.edges(&near, gauge, out);
             }
@@ -128,6 +128,7 @@ impl Pair<'_> {
             gap: distance - self.thickness(),
             feature,
             share: 0.0,
+            facing: self.a.normals().is_empty() || self.b.normals().is_empty(),
         });
     }
 
@@ -159,6 +160,7 @@ impl Pair<'_> {
             self.push(&places, &normal, point.height, point.feature, out);
             if let Some(last) = out.last_mut() {
                 last.share = point.share;
+                last.facing = last.facing || (point.share > 0.0 && point.facing);
             }
         }
     }

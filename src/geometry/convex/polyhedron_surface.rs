@@ -67,6 +67,7 @@ fn corners(
                 gap: touch.distance - rounding,
                 feature: u64::from(touch.feature) << 32 | k as u64,
                 share: facing.map_or(0.0, |f| share(core, f)),
+                facing: core.faces(&touch.normal),
             });
         }
     }
@@ -110,6 +111,7 @@ fn sides(
                 gap: m.gap,
                 feature: u64::from(facet.name) << 32 | m.feature & 0xffff_ffff,
                 share: 0.0,
+                facing: m.facing,
             };
             if !stands(&meeting, facet, facets, own_corner, gauge.slack) {
                 continue;

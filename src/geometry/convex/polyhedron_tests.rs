@@ -18,10 +18,12 @@ type V = Vector3<f64>;
 const EXACT: Gauge = Gauge {
     reach: 1e9,
     slack: 0.0,
+    held: false,
 };
 const FINE: Gauge = Gauge {
     reach: 0.1,
     slack: 1e-6,
+    held: false,
 };
 
 fn met(

@@ -149,6 +149,19 @@ impl Grains {
                 .map(|n| column(n))
                 .collect::<Result<Vec<_>, _>>()
         };
+        // Files of older versions list balls alone.
+        let corners = match self.rows("PointData/corners") {
+            Ok(_) => column("corners")?,
+            Err(_) => vec![0.0; count],
+        };
+        let polygons = (0..count)
+            .filter(|k| body[*k] == 0.0 && corners[*k] > 0.0)
+            .count();
+        if polygons > 0 {
+            return Err(format!(
+                "state {frame} holds {polygons} polygons; only balls can be taken from another run"
+            ));
+        }
         let velocity = axes(&["velocity_x", "velocity_y", "velocity_z"])?;
         let spin = axes(spins)?;
         let at = |columns: &[Vec<f64>], k: usize| -> [f64; 3] {

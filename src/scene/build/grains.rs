@@ -88,7 +88,9 @@ impl<S: Dimensional> Builder<'_, S> {
                 GrainSpec::Polygons { .. }
                 | GrainSpec::Arch { .. }
                 | GrainSpec::Polyhedra { .. }
-                | GrainSpec::Clusters { .. } => {}
+                | GrainSpec::Clusters { .. }
+                | GrainSpec::Voronoi(_)
+                | GrainSpec::BlockWall(_) => {}
                 GrainSpec::Scene {
                     file,
                     material,

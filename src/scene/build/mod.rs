@@ -1,6 +1,7 @@
 //! From a case to a scene that steps.
 
 mod arch;
+mod blocks;
 mod first_body;
 mod grains;
 mod polygons;

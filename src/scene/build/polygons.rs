@@ -24,6 +24,21 @@ pub(super) struct Block<S: Space> {
     pub spin: S::Spin,
 }
 
+impl<S: Space> Block<S> {
+    /// A part at rest where it stands.
+    pub fn of(part: Part<S>) -> Self {
+        Self {
+            at: part.centre,
+            volume: part.volume,
+            inertia: part.inertia,
+            offset: S::Vector::null(),
+            velocity: S::Vector::null(),
+            spin: S::Spin::null(),
+            part,
+        }
+    }
+}
+
 impl<S: Dimensional> Builder<'_, S> {
     /// The grains that are polygons.
     pub(super) fn polygons(&mut self) -> Result<(), InputError> {
@@ -40,6 +55,18 @@ impl<S: Dimensional> Builder<'_, S> {
                 GrainSpec::Arch { material, .. } => {
                     let of = self.material(&format!("{here}.material"), material)?;
                     for block in self.arch(&here, spec)? {
+                        self.add_block(block, of, Origin::Grain(k, None));
+                    }
+                }
+                GrainSpec::Voronoi(spec) => {
+                    let of = self.material(&format!("{here}.material"), &spec.material)?;
+                    for block in self.voronoi(k, spec)? {
+                        self.add_block(block, of, Origin::Grain(k, None));
+                    }
+                }
+                GrainSpec::BlockWall(spec) => {
+                    let of = self.material(&format!("{here}.material"), &spec.material)?;
+                    for block in self.block_wall(&here, spec)? {
                         self.add_block(block, of, Origin::Grain(k, None));
                     }
                 }
@@ -95,14 +122,12 @@ impl<S: Dimensional> Builder<'_, S> {
             .map(|(x, y)| (c * x - s * y, s * x + c * y))
             .collect();
         let part = self.polygon(here, &turned, grain.rounding)?;
+        let block = Block::of(part);
         Ok(Block {
-            at: at + part.centre,
-            volume: part.volume,
-            inertia: part.inertia,
-            part,
-            offset: S::Vector::null(),
+            at: at + block.at,
             velocity,
             spin,
+            ..block
         })
     }
 

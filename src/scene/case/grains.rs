@@ -1,7 +1,7 @@
 //! Grains of a case.
 
 use super::shapes::ShapeSpec;
-use crate::scene::sample::spec::{CsvSpec, DepositSpec, StateSpec};
+use crate::scene::sample::spec::{BlockWallSpec, CsvSpec, DepositSpec, StateSpec, VoronoiSpec};
 use serde::Deserialize;
 
 /// Grains.
@@ -70,6 +70,10 @@ pub enum GrainSpec {
         #[serde(default)]
         edges: Edges,
     },
+    /// Voronoi cells that fill a box (2D).
+    Voronoi(VoronoiSpec),
+    /// A wall of blocks in running bond (2D).
+    BlockWall(BlockWallSpec),
     /// The free balls of a scene file, and its fixed walls as half-spaces of material `walls`.
     Scene {
         /// Path relative to the case.

@@ -18,6 +18,49 @@ pub struct DepositSpec {
     pub high: Vec<f64>,
 }
 
+/// Voronoi cells that fill a box side by side (2D); see [`super::voronoi`].
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VoronoiSpec {
+    /// Material.
+    pub material: String,
+    /// Mean size of a cell, the root of its area (m).
+    pub size: f64,
+    /// Low corner of the box (m).
+    pub low: Vec<f64>,
+    /// High corner of the box (m).
+    pub high: Vec<f64>,
+    /// Lloyd's rounds: more make the cells more alike.
+    #[serde(default)]
+    pub rounds: usize,
+    /// Distance between neighbours (m).
+    #[serde(default)]
+    pub gap: f64,
+    /// Radius to which corners are rounded (m).
+    #[serde(default)]
+    pub rounding: f64,
+}
+
+/// A wall of blocks in running bond (2D): every second course begins and ends with half a block.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BlockWallSpec {
+    /// Material.
+    pub material: String,
+    /// Courses.
+    pub rows: usize,
+    /// Whole blocks in the lowest course.
+    pub columns: usize,
+    /// Width and height of a block (m).
+    pub block: (f64, f64),
+    /// Width of the open joints between blocks (m).
+    #[serde(default)]
+    pub gap: f64,
+    /// Low left corner of the wall (m).
+    #[serde(default)]
+    pub at: Vec<f64>,
+}
+
 /// A distribution of sizes.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
