@@ -6,6 +6,7 @@ mod font;
 mod frame;
 mod furniture;
 mod legend;
+mod paint;
 mod panels;
 mod sphere;
 
@@ -13,5 +14,6 @@ pub use axis::Axis;
 pub use canvas::ReportError;
 pub use chart::{Chart, Series, Style};
 pub use frame::{Arrow, Disk, Frame, Link, LinkState, Outline};
+pub use paint::{Paint, Scale};
 pub use panels::draw_panels;
 pub use sphere::{View, project_spheres, sphere_disk};

@@ -2,6 +2,7 @@
 
 use super::canvas::{Canvas, Rgb};
 use super::frame::Disk;
+use super::paint::Paint;
 
 /// Direction of an orthographic view.
 #[derive(Clone, Copy, Debug)]
@@ -34,25 +35,26 @@ impl View {
 }
 
 /// The disk that shows one sphere, and its distance towards the viewer.
-/// Centre and radius in metres, shade in 0..1 (see [`Disk::shade`]).
-pub fn sphere_disk(centre: [f64; 3], radius: f64, shade: f64, view: &View) -> (Disk, f64) {
+/// Centre and radius in metres, and what its colour says.
+pub fn sphere_disk(centre: [f64; 3], radius: f64, paint: Paint, view: &View) -> (Disk, f64) {
     let (centre, depth) = view.project(centre);
     let disk = Disk {
         centre,
         radius,
         angle: 0.0,
-        shade,
+        shade: SPHERE,
+        paint,
     };
     (disk, depth)
 }
 
-/// The disks that show spheres `(centre, radius, shade)`, the farthest first,
+/// The disks that show spheres `(centre, radius, paint)`, the farthest first,
 /// for a frame with `shaded: true`, which draws them in that order. Far
 /// spheres are made darker, to show the depth of the bed.
-pub fn project_spheres(spheres: &[([f64; 3], f64, f64)], view: &View) -> Vec<Disk> {
+pub fn project_spheres(spheres: &[([f64; 3], f64, Paint)], view: &View) -> Vec<Disk> {
     let mut disks: Vec<_> = spheres
         .iter()
-        .map(|&(centre, radius, shade)| sphere_disk(centre, radius, shade, view))
+        .map(|&(centre, radius, paint)| sphere_disk(centre, radius, paint, view))
         .collect();
     disks.sort_by(|a, b| a.1.total_cmp(&b.1));
     let (far, near) = match (disks.first(), disks.last()) {
@@ -68,6 +70,9 @@ pub fn project_spheres(spheres: &[([f64; 3], f64, f64)], view: &View) -> Vec<Dis
         })
         .collect()
 }
+
+/// Shade of the nearest sphere.
+const SPHERE: f64 = 0.3;
 
 /// Paints one lit sphere, centre and radius in pixels.
 pub(super) fn paint_sphere(field: &mut Canvas, at: [f32; 2], radius: f32, base: Rgb) {
@@ -110,7 +115,7 @@ mod tests {
 
     #[test]
     fn far_spheres_come_first() {
-        let spheres = [([0.0, -1.0, 0.0], 1.0, 0.0), ([5.0, 3.0, 0.0], 1.0, 0.0)];
+        let spheres = [[0.0, -1.0, 0.0], [5.0, 3.0, 0.0]].map(|x| (x, 1.0, Paint::Grey));
         let disks = project_spheres(&spheres, &View::new(0.0, 0.0));
         assert_eq!(disks[0].centre[0], 5.0);
         assert!(disks[0].shade > disks[1].shade);

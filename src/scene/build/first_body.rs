@@ -8,6 +8,7 @@ use crate::geometry::shape::{Ball, Carried};
 use crate::geometry::space::VectorLike;
 use crate::scene::case::{BodySpec, ShapeSpec};
 use crate::scene::source::{self, Fault, InputError};
+use std::f64::consts::PI;
 
 impl<S: Dimensional> Builder<'_, S> {
     pub(super) fn first_bodies(&mut self) -> Result<(), InputError> {
@@ -32,6 +33,11 @@ impl<S: Dimensional> Builder<'_, S> {
                         balls.push((self.vector(&here, x)?, self.radius(&here, *r)?));
                     }
                 }
+                ShapeSpec::Plate {
+                    radius,
+                    hole,
+                    balls: ball,
+                } => balls.extend(self.plate(&here, *radius, *hole, *ball)?),
                 ShapeSpec::Cluster { file, name } => {
                     let scene = self.scene_file(file)?;
                     let cluster = scene.clusters.iter().find(|c| c.0 == *name);
@@ -141,6 +147,46 @@ impl<S: Dimensional> Builder<'_, S> {
             });
         }
         Ok(())
+    }
+
+    /// The balls of a plate with a hole: no grain as large as they are gets through between them.
+    fn plate(
+        &self,
+        here: &str,
+        radius: f64,
+        hole: f64,
+        ball: f64,
+    ) -> Result<Vec<(S::Vector, f64)>, InputError> {
+        if S::D == 2 {
+            return Err(self.fail(
+                here,
+                "a plate with a round hole needs three dimensions; use two profiles",
+            ));
+        }
+        let ball = self.radius(&format!("{here}.balls"), ball)?;
+        let radius = self.radius(&format!("{here}.radius"), radius)?;
+        if !(hole.is_finite() && hole >= 0.0 && hole < 2.0 * radius) {
+            let message = format!("a hole is narrower than the plate, got {hole} m");
+            return Err(self.fail(format!("{here}.hole"), message));
+        }
+        if radius / ball > 1000.0 {
+            let message = "the plate would take millions of balls; use larger ones";
+            return Err(self.fail(format!("{here}.balls"), message));
+        }
+        let mut balls = Vec::new();
+        let mut ring = 0.5 * hole + ball;
+        while ring - ball < radius {
+            let count = (PI / (ball / ring).min(1.0).asin()).floor().max(1.0);
+            for k in 0..count as usize {
+                let (sin, cos) = (2.0 * PI * k as f64 / count).sin_cos();
+                balls.push((
+                    S::Vector::from_slice(&[ring * cos, ring * sin, -ball]),
+                    ball,
+                ));
+            }
+            ring += 2.0 * ball;
+        }
+        Ok(balls)
     }
 
     fn check_dofs(&self, here: &str, spec: &BodySpec, has_mass: bool) -> Result<(), InputError> {

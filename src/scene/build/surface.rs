@@ -218,6 +218,7 @@ impl<S: Dimensional> Builder<'_, S> {
             }
             ShapeSpec::Balls(_)
             | ShapeSpec::Cluster { .. }
+            | ShapeSpec::Plate { .. }
             | ShapeSpec::Polygon { .. }
             | ShapeSpec::Capsule { .. } => Err(bad("this shape is not a surface".into())),
         }

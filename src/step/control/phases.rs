@@ -57,6 +57,8 @@ pub struct Phase<S: Space> {
     pub until: Option<Until>,
     /// What changes at its start.
     pub changes: Changes<S>,
+    /// Whether the same phase comes again: only its last time is worth a picture.
+    pub recurs: bool,
 }
 
 /// A phase that began.
@@ -142,8 +144,8 @@ impl Clock {
                 at_most,
             } => {
                 let Motion { kinetic, scale } = motion();
-                let still = share.is_none_or(|s| kinetic < s * scale)
-                    && energy.is_none_or(|e| kinetic < e);
+                let still =
+                    share.is_none_or(|s| kinetic < s * scale) && energy.is_none_or(|e| kinetic < e);
                 if !still {
                     self.still_since = None;
                 } else if reached(*self.still_since.get_or_insert(now.time) + held) {
