@@ -143,7 +143,12 @@ impl Camera {
         let (disks, links, bodies) = if S::D == 2 {
             (
                 disks(simulation, self.window, paints),
-                if linked {
+                if matches!(subject, Subject::Bonds) {
+                    // A map of the state alone: forces would hide it.
+                    let bonds = links(simulation, self.window).into_iter();
+                    let bonds = bonds.filter(|l| l.state != LinkState::Plain);
+                    bonds.map(|l| Link { width: 0.3, ..l }).collect()
+                } else if linked {
                     links(simulation, self.window)
                 } else {
                     Vec::new()
