@@ -2,6 +2,7 @@
 
 use crate::contact::{Contact, Key};
 use crate::geometry::convex::{Core, Piece};
+use crate::geometry::shape::Ball;
 use crate::geometry::space::{Space, VectorLike};
 use crate::report::{
     Disk, Frame, Link, LinkState, Outline, Paint, ReportError, Scale, View, project_spheres,
@@ -58,10 +59,16 @@ impl Camera {
     /// Dyes the grains by the layers in which they stand now.
     pub fn dye<S: Space>(&mut self, simulation: &Simulation<S>) {
         let Some(thickness) = self.layers else { return };
-        let layer = |z: f64| Paint::Layer((z / thickness).floor() as i64);
-        self.paints = balls(simulation)
-            .map(|(centre, _)| layer(centre[S::D - 1]))
-            .collect();
+        let grain = simulation.bodies.grain_flags();
+        let all = simulation.shapes.balls.iter().zip(balls(simulation));
+        let paint = |(ball, (centre, _)): (&Ball<S>, (S::Vector, f64))| {
+            if grain[ball.body as usize] {
+                Paint::Layer((centre[S::D - 1] / thickness).floor() as i64)
+            } else {
+                Paint::Grey
+            }
+        };
+        self.paints = all.map(paint).collect();
     }
 
     /// Looks at the scene as it stands now, unless the case names a window.
@@ -247,7 +254,7 @@ fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Vec
                     (false, true) => 0.25,
                     (false, false) => 0.0,
                 },
-                paint: if first { Paint::Grey } else { paint(paints, k) },
+                paint: paint(paints, k),
             });
         }
     }
