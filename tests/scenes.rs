@@ -229,8 +229,9 @@ fn cohesion_strengthens_a_sheared_layer_as_mohr_and_coulomb_say() {
     );
     assert!((p / 1000.0 - 1.0).abs() < 0.1, "{p}");
     assert!(attraction > 1000.0, "{attraction}");
-    // Without the attraction the law would give a third of it.
-    assert!((tau / expected - 1.0).abs() < 0.2, "{tau} and {expected}");
+    // An estimate: it has every contact within the range pull, and the friction of the layer unchanged. Without the attraction it would
+    // be a third of this.
+    assert!((tau / expected - 1.0).abs() < 0.3, "{tau} and {expected}");
 }
 
 /// End walls that turn with a drum carry the layer between them: in a drum four diameters wide the surface is steeper than

@@ -91,7 +91,7 @@ fn shear<S: Space>(pairs: impl Iterator<Item = (S::Vector, S::Vector)>) -> f64 {
     let (moment, moved) = (square(&moment), square(&moved));
     // Neighbours on a line give no gradient across it.
     let spread = moment.clone().symmetric_eigenvalues();
-    if !(spread.min() > 1e-3 * spread.max()) {
+    if spread.min() <= 1e-3 * spread.max() {
         return f64::NAN;
     }
     let Some(inverse) = moment.try_inverse() else {
