@@ -370,3 +370,25 @@ fn groups_that_cannot_be_repeated_are_refused() {
         refused(&format!("{head}{phases}"), said);
     }
 }
+
+#[test]
+fn bands_and_plates_that_mean_nothing_are_refused() {
+    let head = "time: (step: 1e-3, end: 1.0), ";
+    for (lines, said) in [
+        (
+            "measures: [Band(name: \"b\", low: [0.0, 0.0], high: [1.0, 1.0], above: 0.0)]",
+            "a shear must be positive",
+        ),
+        (
+            "measures: [Band(name: \"b\", low: [0.0], high: [1.0, 1.0], above: 0.5)]",
+            "a corner has 2 numbers",
+        ),
+        ("output: (shear: -1.0)", "must be positive"),
+        (
+            "bodies: [(name: \"plate\", material: \"glass\", shapes: [Plate(radius: 1.0, hole: 0.1, balls: 0.01)])]",
+            "needs three dimensions",
+        ),
+    ] {
+        refused(&format!("{head}{lines}"), said);
+    }
+}
