@@ -275,3 +275,120 @@ fn a_sphere_swings_in_a_cylinder() {
     close(crossing / (0.25 * period), 1.0, 2e-3);
     close(s.bodies.position[0].y, 0.3, 1e-9);
 }
+
+/// A block rubs to and fro under its weight, five cycles of a group of two phases: it ends where it began, and
+/// friction has taken mu m g along the whole path.
+#[test]
+fn a_group_of_phases_is_repeated() {
+    let (speed, stroke, cycles) = (0.1, 0.02, 5);
+    let mut s = build::<Plane>(
+        "time: (step: 1e-3, end: 9.0), gravity: [0.0, -9.81],
+        bodies: [
+            (name: \"floor\", material: \"glass\", shapes: [HalfSpace(normal: [0.0, 1.0])]),
+            (name: \"block\", material: \"glass\", shapes: [Balls([([0.0, 0.01], 0.01)])], dofs: (y: Free)),
+        ],
+        phases: [
+            (name: \"rest\", until: Steps(3)),
+            (name: \"to\", until: After(0.2), drives: {\"block\": (x: Velocity(Constant(0.1)))}),
+            (name: \"fro\", until: After(0.2), drives: {\"block\": (x: Velocity(Constant(-0.1)))},
+             repeat: (from: \"to\", times: 5)),
+            (name: \"last\", until: Steps(1), drives: {\"block\": (x: Velocity(Constant(0.0)))}),
+        ]",
+    );
+    let block = body(&s.bodies, "block");
+    let mut furthest = 0.0f64;
+    while !s.control.finished() {
+        steps(&mut s, 1);
+        furthest = furthest.max(s.bodies.position[block].x);
+    }
+    let names: Vec<&str> = s.control.begun().iter().map(|b| b.name.as_str()).collect();
+    let group = ["to", "fro"].repeat(cycles);
+    assert_eq!(names, [&["rest"][..], &group, &["last"]].concat());
+    // Over the step of a reversal the mean velocity is none: one step of the path is lost at each end.
+    let step = speed * s.scheme.h;
+    close(furthest, stroke, step);
+    close(s.bodies.position[block].x, 0.0, step);
+    let work = 0.5 * s.bodies.mass[block] * G * 2.0 * stroke * cycles as f64;
+    close(s.energy.friction / work, 1.0, 0.02);
+    assert!(s.energy.relative_residual() < 1e-9);
+}
+
+/// A floor taps a grain three times: it flies for 2 V/g each time, and the next tap waits until it rests.
+#[test]
+fn taps_wait_for_rest() {
+    let (v, held) = (0.3, 0.02);
+    let mut s = build::<Plane>(
+        "time: (step: 1e-4, end: 9.0), gravity: [0.0, -9.81],
+        bodies: [(name: \"floor\", material: \"glass\", shapes: [HalfSpace(normal: [0.0, 1.0])])],
+        grains: [List(material: \"glass\", grains: [(at: [0.0, 0.01], radius: 0.01)])],
+        phases: [
+            (name: \"tap\", until: Steps(50), drives: {\"floor\": (y: Velocity(Constant(0.3)))}),
+            (name: \"settle\", until: AtRest(share: 1e-4, held: 0.02), drives: {\"floor\": (y: Velocity(Constant(0.0)))},
+             repeat: (from: \"tap\", times: 3)),
+        ]",
+    );
+    while !s.control.finished() {
+        steps(&mut s, 1);
+    }
+    let settled = s.control.begun().iter().filter(|b| b.name == "settle");
+    let times: Vec<f64> = settled
+        .map(|b| b.end.unwrap_or(f64::NAN) - b.start)
+        .collect();
+    assert_eq!(times.len(), 3);
+    for t in times {
+        close(t, 2.0 * v / G + held, 5e-4);
+    }
+}
+
+#[test]
+fn groups_that_cannot_be_repeated_are_refused() {
+    let head = "time: (step: 1e-3, end: 1.0), bodies: [(name: \"floor\", material: \"glass\",
+        shapes: [HalfSpace(normal: [0.0, 1.0])])], phases: ";
+    for (phases, said) in [
+        (
+            "[(name: \"a\", repeat: (times: 2))]",
+            "`a` is repeated, so it needs `until`",
+        ),
+        (
+            "[(name: \"a\", until: Steps(1), repeat: (times: 0))]",
+            "is done at least once",
+        ),
+        (
+            "[(name: \"a\", until: Steps(1), repeat: (from: \"b\", times: 2)), (name: \"b\")]",
+            "there is no phase up to here named `b`",
+        ),
+        (
+            "[(name: \"a\", until: Steps(1), repeat: (times: 2)),
+              (name: \"b\", until: Steps(1), repeat: (from: \"a\", times: 2))]",
+            "one group cannot hold another",
+        ),
+        (
+            "[(name: \"a\", until: Steps(1), repeat: (times: 2000000))]",
+            "a run has at most 1000000",
+        ),
+    ] {
+        refused(&format!("{head}{phases}"), said);
+    }
+}
+
+#[test]
+fn bands_and_plates_that_mean_nothing_are_refused() {
+    let head = "time: (step: 1e-3, end: 1.0), ";
+    for (lines, said) in [
+        (
+            "measures: [Band(name: \"b\", low: [0.0, 0.0], high: [1.0, 1.0], above: 0.0)]",
+            "a shear must be positive",
+        ),
+        (
+            "measures: [Band(name: \"b\", low: [0.0], high: [1.0, 1.0], above: 0.5)]",
+            "a corner has 2 numbers",
+        ),
+        ("output: (shear: -1.0)", "must be positive"),
+        (
+            "bodies: [(name: \"plate\", material: \"glass\", shapes: [Plate(radius: 1.0, hole: 0.1, balls: 0.01)])]",
+            "needs three dimensions",
+        ),
+    ] {
+        refused(&format!("{head}{lines}"), said);
+    }
+}

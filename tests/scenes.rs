@@ -1,20 +1,26 @@
 //! Silo, drum and plane shear, smaller than in `cases/`: what an expert would look at first.
 
-use fretwork::geometry::space::Plane;
+use fretwork::contact::detect::centre;
+use fretwork::geometry::space::{Plane, Solid};
 use fretwork::laws::SearchPath;
 use fretwork::record::{RunOptions, Summary, run};
-use fretwork::scene::build::Built;
+use fretwork::scene::build::{Built, Dimensional};
 use fretwork::scene::{Loaded, load};
 use fretwork::step::Simulation;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const G: f64 = 9.81;
 
 fn case(name: &str, sets: &[&str]) -> (Loaded, Built<Plane>) {
+    case_in(name, sets)
+}
+
+fn case_in<S: Dimensional>(name: &str, sets: &[&str]) -> (Loaded, Built<S>) {
     let path = format!("{}/cases/{name}.ron", env!("CARGO_MANIFEST_DIR"));
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Plane>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
     let built = built.unwrap_or_else(|e| panic!("{e}"));
     (loaded, built)
 }
@@ -22,12 +28,19 @@ fn case(name: &str, sets: &[&str]) -> (Loaded, Built<Plane>) {
 /// Runs a case to its end, in a folder that is left for `look` and then removed.
 fn finished(name: &str, sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
     let (loaded, built) = case(name, sets);
-    let out: PathBuf = std::env::temp_dir().join(format!("fretwork-{name}-{}", std::process::id()));
+    recorded(&loaded, built, look)
+}
+
+fn recorded<S: Dimensional>(loaded: &Loaded, built: Built<S>, look: impl FnOnce(&Path)) -> Summary {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let number = COUNT.fetch_add(1, Ordering::Relaxed);
+    let name = format!("fretwork-scenes-{}-{number}", std::process::id());
+    let out: PathBuf = std::env::temp_dir().join(name);
     let options = RunOptions {
         out: out.clone(),
         threads: 1,
     };
-    let summary = run(&loaded, built, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
+    let summary = run(loaded, built, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
     look(&out);
     let _ = std::fs::remove_dir_all(out);
     summary
@@ -155,4 +168,209 @@ fn a_drum_has_a_steady_slope_over_a_turning_bed() {
         deep[2]
     );
     assert!(top[2] < 0.0, "the surface flows down: {}", top[2]);
+}
+
+/// What is not drawn or written in a test.
+const QUIET: [&str; 3] = ["output.frames=0", "output.views=0", "output.figures=false"];
+
+/// Attraction N acts as a pressure of its own, that of its forces by Love and Weber, sum N l/(2 A), or phi z N/(pi d)
+/// for a coordination z (H. Rumpf, Chem. Ing. Tech. 30 (1958) 144, in two dimensions): friction is mu(I) times the sum
+/// of both, as Mohr and Coulomb have it with a cohesion of mu(I) times that pressure.
+#[test]
+fn cohesion_strengthens_a_sheared_layer_as_mohr_and_coulomb_say() {
+    let (low, high, force, range) = (0.03, 0.13, 16.0, 1e-4);
+    let (_, built) = case("cohesive_shear", &QUIET);
+    let mut s = built.simulation;
+    let grain = s.bodies.grain_flags();
+    let (mut tau, mut pressure, mut attraction) = (0.0, 0.0, 0.0);
+    let (mut speeds, mut samples) = (0.0, 0.0);
+    while s.time < 2.4 {
+        s.step().unwrap_or_else(|e| panic!("{e}"));
+        if s.time < 1.2 || s.steps % 10 != 0 {
+            continue;
+        }
+        let area = 0.2 * (high - low);
+        samples += 1.0;
+        for c in &s.network.contacts {
+            let ball = |k: u32| &s.shapes.balls[k as usize];
+            let (a, b) = (ball(c.key.candidate), ball(c.key.antagonist));
+            let middle = 0.5 * (centre(a, &s.bodies).y + centre(b, &s.bodies).y);
+            if !(low..high).contains(&middle) {
+                continue;
+            }
+            let length = a.radius + b.radius + c.gap;
+            let branch = c.normal * length;
+            let f = c.impulse * (1.0 / s.scheme.h);
+            tau -= f.x * branch.y / area;
+            pressure += f.y * branch.y / area;
+            if c.gap <= range {
+                attraction += force * length / (2.0 * area);
+            }
+        }
+        // The shear rate from the mean velocities of the two halves.
+        let mean = |from: f64, to: f64| {
+            let inside = |b: &usize| grain[*b] && (from..to).contains(&s.bodies.position[*b].y);
+            let v: Vec<f64> = (0..s.bodies.len())
+                .filter(inside)
+                .map(|b| s.bodies.velocity[b].x)
+                .collect();
+            v.iter().sum::<f64>() / v.len().max(1) as f64
+        };
+        let middle = 0.5 * (low + high);
+        speeds += (mean(middle, high) - mean(low, middle)) / (middle - low);
+    }
+    let [tau, p, attraction, rate] = [tau, pressure, attraction, speeds].map(|x| x / samples);
+    let mass = 2500.0 * std::f64::consts::PI * 0.004 * 0.004;
+    let i = rate * (mass / p).sqrt();
+    let law = 0.25 + 1.1 * i;
+    let expected = law * (p + attraction);
+    println!(
+        "I {i:.4}: tau {tau:.0} Pa, p {p:.0}, attraction {attraction:.0}, expected {expected:.0} Pa"
+    );
+    assert!((p / 1000.0 - 1.0).abs() < 0.1, "{p}");
+    assert!(attraction > 1000.0, "{attraction}");
+    // An estimate: it has every contact within the range pull, and the friction of the layer unchanged. Without the attraction it would
+    // be a third of this.
+    assert!((tau / expected - 1.0).abs() < 0.3, "{tau} and {expected}");
+}
+
+/// End walls that turn with a drum carry the layer between them: in a drum four diameters wide the surface is steeper than
+/// without them; without them it has the angle of the field's drums, 20 to 30 degrees.
+#[test]
+fn end_walls_make_a_narrow_drum_steeper() {
+    let angle = |more: &[&str]| {
+        let sets = [
+            &QUIET[..],
+            &[
+                "grains.0.count=190",
+                "grains.0.sizes=Uniform(radius:(4.7e-3,5.3e-3))",
+                "grains.0.high=[0.05,0.04299,0.048]",
+                "bodies.ends.shapes.1.at=[0,0.043,0]",
+                "phases.turn.until=After(2.2)",
+                "measures.slope.start=1.1",
+            ],
+            more,
+        ];
+        let (loaded, built) = case_in::<Solid>("rotating_drum_3d", &sets.concat());
+        recorded(&loaded, built, |_| {}).measures["slope"].to_degrees()
+    };
+    let walls = angle(&[]);
+    let endless = angle(&["bodies.ends.vanishes=1e-6", "periodic=(y:0.043)"]);
+    println!("{walls:.1} degrees between walls, {endless:.1} without");
+    assert!((17.0..33.0).contains(&endless), "{endless}");
+    assert!(walls > endless + 3.0, "{walls} and {endless}");
+}
+
+type Vector = nalgebra::Vector2<f64>;
+
+/// Smaller layers over a base that moves: 640 disks of twice the size, without bonds.
+const COARSE: [&str; 4] = [
+    "grains.0.count=640",
+    "grains.0.radius=(3.2e-3,4.8e-3)",
+    "interfaces.grains.bonds=Never",
+    "solver.tolerance=1e-4",
+];
+
+/// A layer that was moved: where its grains were when the second phase began, how far they went, and how far the
+/// block of its base went.
+struct Moved {
+    grains: Vec<(Vector, Vector)>,
+    block: Vector,
+}
+
+impl Moved {
+    fn new(mut s: Simulation<Plane>) -> Self {
+        let mut before = s.bodies.position.clone();
+        while !s.control.finished() {
+            if s.control.phase() < 2 {
+                before.clone_from(&s.bodies.position);
+            }
+            s.step().unwrap_or_else(|e| panic!("{e}"));
+        }
+        assert!(s.energy.relative_residual() < 1e-9);
+        let block = s.bodies.driven[place(&s, "block")].body as usize;
+        let gone = |b: usize| s.bodies.position[b] - before[b];
+        Self {
+            grains: s.bodies.grains().map(|b| (before[b], gone(b))).collect(),
+            block: gone(block),
+        }
+    }
+
+    /// Mean displacement of the grains between two places along x.
+    fn mean(&self, from: f64, to: f64) -> Vector {
+        let there = self.grains.iter().filter(|g| (from..to).contains(&g.0.x));
+        let (sum, n) = there.fold((Vector::zeros(), 0.0), |(sum, n), g| (sum + g.1, n + 1.0));
+        assert!(n > 20.0, "{n} grains from {from} to {to} m");
+        sum / n
+    }
+
+    /// That this is another scene in the mirror x = 0.25 m: in ten columns no more than `most` of the block's way apart.
+    fn mirrors(&self, other: &Self, most: f64) {
+        for k in 0..10 {
+            let (from, to) = (0.05 * f64::from(k), 0.05 * f64::from(k + 1));
+            let (here, there) = (self.mean(from, to), other.mean(0.5 - to, 0.5 - from));
+            let apart = (here - Vector::new(-there.x, there.y)).norm() / self.block.norm();
+            assert!(
+                apart < most,
+                "from {from} m: {here} and, in the mirror, {there}"
+            );
+        }
+    }
+}
+
+/// A case with its grains in the mirror x = 0.25 m.
+fn mirrored(name: &str, sets: &[&str]) -> Simulation<Plane> {
+    let mut s = case(name, sets).1.simulation;
+    for b in s.bodies.grains().collect::<Vec<_>>() {
+        s.bodies.position[b].x = 0.5 - s.bodies.position[b].x;
+    }
+    s
+}
+
+/// Beside a fault both sides of the layer move as what they stand on; the ledger closes; and the scene in the
+/// mirror does the same in the mirror.
+#[test]
+fn a_fault_offsets_its_layer_by_its_throw() {
+    let sets = [&QUIET[..], &COARSE].concat();
+    let straight = Moved::new(case("fault_propagation", &sets).1.simulation);
+    let block = straight.block;
+    // 40 mm/s for 0.75 s less half of the 0.02 s of the ramp, along 60 degrees.
+    let (sin, cos) = 60f64.to_radians().sin_cos();
+    let throw = Vector::new(-cos, sin) * 0.04 * 0.74;
+    assert!((block - throw).norm() < 1e-3 * throw.norm(), "{block}");
+    let over = straight.mean(0.42, 0.5);
+    assert!(
+        (over - throw).norm() < 0.1 * throw.norm(),
+        "{over} over {throw}"
+    );
+    let beside = straight.mean(0.0, 0.08);
+    assert!(beside.norm() < 0.1 * throw.norm(), "{beside}");
+    let mirror = [
+        "bodies.block.shapes.0.points=[(-1.5,-0.0003),(0.22,-0.0003),(0.22,-1)]",
+        "phases.push.drives={\"left\":(x:Velocity(Ramp(from:0.0,to:0.02,start:0.0,end:0.02))),\
+         \"block\":(x:Velocity(Ramp(from:0.0,to:0.02,start:0.0,end:0.02)),\
+         y:Velocity(Ramp(from:0.0,to:0.03464,start:0.0,end:0.02)))}",
+    ];
+    let mirrored = mirrored("fault_propagation", &[&sets[..], &mirror].concat());
+    Moved::new(mirrored).mirrors(&straight, 0.25);
+}
+
+/// Over the middle of a block that rises the layer rises with it, far from it nothing moves, and the grains in the
+/// mirror do the same in the mirror.
+#[test]
+fn a_fold_lifts_its_layer_with_the_block() {
+    let sets = [&QUIET[..], &COARSE].concat();
+    let straight = Moved::new(case("forced_fold", &sets).1.simulation);
+    let rise = straight.block;
+    assert!((rise - Vector::new(0.0, 0.025)).norm() < 1e-4, "{rise}");
+    let over = straight.mean(0.225, 0.275);
+    assert!(
+        (over - rise).norm() < 0.15 * rise.norm(),
+        "{over} over {rise}"
+    );
+    for (from, to) in [(0.0, 0.06), (0.44, 0.5)] {
+        let beside = straight.mean(from, to);
+        assert!(beside.norm() < 0.1 * rise.norm(), "{beside} from {from} m");
+    }
+    Moved::new(mirrored("forced_fold", &sets)).mirrors(&straight, 0.25);
 }

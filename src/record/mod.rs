@@ -12,6 +12,7 @@ pub mod picture;
 pub mod results;
 pub mod run;
 pub mod statistics;
+pub mod strain;
 pub mod stress;
 pub mod summary;
 pub mod views;

@@ -2,8 +2,11 @@
 
 use crate::contact::{Contact, Key};
 use crate::geometry::convex::{Core, Piece};
+use crate::geometry::shape::Ball;
 use crate::geometry::space::{Space, VectorLike};
-use crate::report::{self, Disk, Frame, Link, LinkState, Outline, ReportError, Solid, View};
+use crate::report::{
+    self, Disk, Frame, Link, LinkState, Outline, Paint, ReportError, Scale, Solid, View,
+};
 use crate::scene::case::OutputSpec;
 use crate::step::Simulation;
 use std::path::Path;
@@ -14,10 +17,28 @@ pub struct Camera {
     window: [f64; 4],
     fixed: bool,
     width: u32,
-    /// Thickness of the layers that are told apart by shade (m).
+    /// Thickness of the layers that are told apart by colour (m).
     layers: Option<f64>,
-    /// Shade of each ball, where there are layers.
-    shades: Vec<f64>,
+    /// Paint of each ball, where there are layers.
+    paints: Vec<Paint>,
+}
+
+/// What a picture shows.
+#[derive(Clone, Copy, Debug)]
+pub enum Subject<'a> {
+    /// Grains, in the colours of their layers where there are layers, else with the forces and bonds between them.
+    Scene,
+    /// The bonds, intact and broken.
+    Bonds,
+    /// A value of each ball, from 0 to `top`.
+    Values {
+        /// The values.
+        values: &'a [f64],
+        /// What they are.
+        label: &'a str,
+        /// What is drawn darkest.
+        top: f64,
+    },
 }
 
 impl Camera {
@@ -28,20 +49,26 @@ impl Camera {
             fixed: output.window.is_some() && S::D == 2,
             width: output.width,
             layers: output.layers,
-            shades: Vec::new(),
+            paints: Vec::new(),
         };
         camera.follow(simulation);
-        camera.shade(simulation);
+        camera.dye(simulation);
         camera
     }
 
-    /// Shades the grains by the layers in which they stand now.
-    pub fn shade<S: Space>(&mut self, simulation: &Simulation<S>) {
+    /// Dyes the grains by the layers in which they stand now.
+    pub fn dye<S: Space>(&mut self, simulation: &Simulation<S>) {
         let Some(thickness) = self.layers else { return };
-        let layer = |z: f64| (z / thickness).floor().rem_euclid(2.0);
-        self.shades = balls(simulation)
-            .map(|(centre, _)| 0.05 + 0.75 * layer(centre[S::D - 1]))
-            .collect();
+        let grain = simulation.bodies.grain_flags();
+        let all = simulation.shapes.balls.iter().zip(balls(simulation));
+        let paint = |(ball, (centre, _)): (&Ball<S>, (S::Vector, f64))| {
+            if grain[ball.body as usize] {
+                Paint::Layer((centre[S::D - 1] / thickness).floor() as i64)
+            } else {
+                Paint::Grey
+            }
+        };
+        self.paints = all.map(paint).collect();
     }
 
     /// Looks at the scene as it stands now, unless the case names a window.
@@ -92,27 +119,53 @@ impl Camera {
         w
     }
 
-    /// Draws a frame.
+    /// Draws a frame of a subject.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn draw<S: Space>(
         &self,
         simulation: &Simulation<S>,
+        subject: Subject<'_>,
         title: &str,
         caption: Vec<String>,
         path: &Path,
     ) -> Result<(), ReportError> {
+        let values: Vec<Paint>;
+        let (paints, scale) = match subject {
+            Subject::Scene => (&self.paints[..], None),
+            Subject::Bonds => (&[][..], None),
+            Subject::Values {
+                values: list,
+                label,
+                top,
+            } => {
+                values = list.iter().map(|v| Paint::Value(v / top)).collect();
+                let label = label.to_owned();
+                (&values[..], Some(Scale { label, top }))
+            }
+        };
+        // Colours say something of the grains: nothing is drawn over them.
+        let linked = paints.is_empty();
         let flat = S::D == 2;
         let solids = if flat {
             Vec::new()
         } else {
-            solids(simulation, &self.shades)
+            solids(simulation, paints)
         };
         let (disks, links, bodies) = if flat {
             (
-                disks(simulation, self.window, &self.shades),
-                links(simulation, self.window),
+                disks(simulation, self.window, paints),
+                if matches!(subject, Subject::Bonds) {
+                    // A map of the state alone: forces would hide it.
+                    let bonds = links(simulation, self.window).into_iter();
+                    let bonds = bonds.filter(|l| l.state != LinkState::Plain);
+                    bonds.map(|l| Link { width: 0.3, ..l }).collect()
+                } else if linked {
+                    links(simulation, self.window)
+                } else {
+                    Vec::new()
+                },
                 [
                     outlines(simulation, self.window),
                     pieces(simulation, self.window),
@@ -130,6 +183,7 @@ impl Camera {
             disks: &disks,
             links: &links,
             arrows: &[],
+            scale,
             solids: &solids,
             width_px: self.width,
         }
@@ -199,7 +253,7 @@ fn images(x: f64, reach: f64, window: [f64; 4], period: Option<f64>) -> Vec<f64>
         .collect()
 }
 
-fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4], shades: &[f64]) -> Vec<Disk> {
+fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Vec<Disk> {
     let period = s.shapes.periodic.period[0];
     let mut out = Vec::with_capacity(s.shapes.balls.len());
     for (k, (ball, (centre, radius))) in s.shapes.balls.iter().zip(balls(s)).enumerate() {
@@ -213,24 +267,28 @@ fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4], shades: &[f64]) -> Vec<D
                 centre: [x, centre[1]],
                 radius,
                 angle,
-                shade: if first {
-                    0.9
-                } else {
-                    shades.get(k).copied().unwrap_or(0.25)
+                shade: match (first, paints.is_empty()) {
+                    (true, _) => 0.9,
+                    (false, true) => 0.25,
+                    (false, false) => 0.0,
                 },
+                paint: paint(paints, k),
             });
         }
     }
     out
 }
 
+fn paint(paints: &[Paint], ball: usize) -> Paint {
+    paints.get(ball).copied().unwrap_or_default()
+}
+
 /// Grains in space, before them the meshes of first bodies.
-fn solids<S: Space>(s: &Simulation<S>, shades: &[f64]) -> Vec<Solid> {
-    let shade = |k: usize| shades.get(k).copied().unwrap_or(0.3);
+fn solids<S: Space>(s: &Simulation<S>, paints: &[Paint]) -> Vec<Solid> {
     let all = s.shapes.balls.iter().zip(balls(s)).enumerate();
-    let list: Vec<([f64; 3], f64, f64)> = all
+    let list: Vec<([f64; 3], f64, Paint)> = all
         .filter(|(_, (b, _))| !s.bodies.gone[b.body as usize])
-        .map(|(k, (_, (c, r)))| (s.shapes.periodic.wrapped(c).padded(), r, shade(k)))
+        .map(|(k, (_, (c, r)))| (s.shapes.periodic.wrapped(c).padded(), r, paint(paints, k)))
         .collect();
     let padded = |face: &Vec<S::Vector>| face.iter().map(VectorLike::padded).collect();
     let piece = |p: &Piece<S>| {

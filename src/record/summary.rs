@@ -195,7 +195,20 @@ impl Summary {
         for (label, text) in self.biaxial.iter().flat_map(Outcome::lines) {
             line(label, text);
         }
-        for p in &self.phases {
+        for (k, p) in self.phases.iter().enumerate() {
+            let same = || self.phases.iter().filter(|q| q.name == p.name);
+            let (count, last) = (same().count(), same().next_back());
+            if self.phases[..k].iter().any(|q| q.name == p.name) {
+                continue;
+            }
+            if let (true, Some(last)) = (count > 1, last) {
+                let end = last
+                    .end
+                    .map_or_else(|| "the end of the run".to_owned(), |t| format!("{t:.4e} s"));
+                let text = format!("{count} times, from {:.4e} s to {end}", p.start);
+                line(&format!("phase {}", p.name), text);
+                continue;
+            }
             let text = match (p.end, p.ended_by) {
                 (Some(end), Some(why)) => {
                     format!("from {:.4e} to {end:.4e} s, ended by {why}", p.start)

@@ -23,6 +23,11 @@ pub fn header(
     let newton = if dimension == 2 { "N/m" } else { "N" };
     let axes = ["spin_x", "spin_y", "spin_z"].map(|name| c(name, "rad/s", "angular velocity"));
     let axes = if dimension == 2 { &[][..] } else { &axes };
+    let shear = loaded.case.output.shear.map(|_| {
+        let doc =
+            "local shear since the second phase began, or the start; not a number on first bodies";
+        c("shear", "", doc)
+    });
     Header {
         case_name: loaded.case.name.clone(),
         case_text: loaded.source.text().to_owned(),
@@ -50,6 +55,7 @@ pub fn header(
             ]
             .into_iter()
             .chain(axes.iter().cloned())
+            .chain(shear)
             .collect(),
             vec![
                 c("state", "", "0 contact, 1 intact bond, 2 broken bond"),
@@ -76,12 +82,18 @@ pub fn bytes(dimension: usize) -> [usize; 2] {
     [8 * (3 + 2 + fields), 8 * (6 + 3 + 8)]
 }
 
-/// Appends the state at hand.
+/// Appends the state at hand; `shear` is a column of the grains where the header has it.
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn append<S: Space>(results: &mut Results, s: &Simulation<S>) -> Result<(), ResultsError> {
-    results.append_views(s.time, &[grains(s), contacts(s), bodies(s)])
+pub fn append<S: Space>(
+    results: &mut Results,
+    s: &Simulation<S>,
+    shear: Option<Vec<f64>>,
+) -> Result<(), ResultsError> {
+    let mut grains = grains(s);
+    grains.data.extend(shear);
+    results.append_views(s.time, &[grains, contacts(s), bodies(s)])
 }
 
 fn grains<S: Space>(s: &Simulation<S>) -> Part {

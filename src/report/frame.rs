@@ -7,6 +7,7 @@ use tiny_skia::PathBuilder;
 use super::canvas::{Canvas, INK, ReportError, Rgb, SOFT_INK, mix};
 use super::font::{Anchor, TextStyle, text_width};
 use super::furniture::{self, caption_lines, centroid, push_bar};
+use super::paint::{self, Paint, Scale};
 use super::solid::{self, Solid};
 use super::sphere::paint_sphere;
 
@@ -30,8 +31,10 @@ pub struct Disk {
     pub radius: f64,
     /// Rotation since the start, radians, shown by a tick.
     pub angle: f64,
-    /// Grey of the grain: 0 light, 1 dark.
+    /// Shade of the grain: 0 light, 1 dark.
     pub shade: f64,
+    /// What its colour says.
+    pub paint: Paint,
 }
 
 /// State of an interaction.
@@ -92,6 +95,8 @@ pub struct Frame<'a> {
     pub links: &'a [Link],
     /// Loads and motions.
     pub arrows: &'a [Arrow],
+    /// What the values of the grains mean, where they are painted by one.
+    pub scale: Option<Scale>,
     /// Grains in space, drawn in order over the disks.
     pub solids: &'a [Solid],
     /// Width of the picture in pixels; the height follows from the window.
@@ -104,7 +109,6 @@ pub(super) const BROKEN: Rgb = [20, 92, 224];
 pub(super) const PLAIN: Rgb = [128, 133, 140];
 const STEEL: Rgb = [142, 150, 160];
 const STEEL_EDGE: Rgb = [70, 77, 86];
-const GRAIN: [Rgb; 2] = [[238, 238, 236], [150, 151, 152]];
 const GRAIN_EDGE: Rgb = [118, 120, 122];
 
 /// From metres to pixels of the field.
@@ -177,12 +181,11 @@ impl Frame<'_> {
             let y = title + (33.0 * (i as f32 + 1.0) + 1.0) * u;
             page.text(line, [side, y], &TextStyle::new(24.0 * u, SOFT_INK));
         }
-        furniture::legend(
-            &mut page,
-            self.links,
-            [side, top + field_height + 46.0 * u],
-            u,
-        );
+        let foot = [side, top + field_height + 46.0 * u];
+        match &self.scale {
+            Some(scale) => paint::scale(&mut page, scale, foot, u),
+            None => furniture::legend(&mut page, self.links, foot, u),
+        }
         let right = side + field_width;
         furniture::scale_bar(&mut page, [right, top + field_height + 46.0 * u], scale, u);
         page.save(path)
@@ -192,7 +195,7 @@ impl Frame<'_> {
         for body in self.bodies {
             let polygon = visible(&body.points, field, map);
             let (fill, edge, width) = match body.shade {
-                Some(shade) => (mix(GRAIN[0], GRAIN[1], shade), GRAIN_EDGE, 1.3 * u),
+                Some(shade) => (Paint::Grey.colour(shade), GRAIN_EDGE, 1.3 * u),
                 None => (STEEL, STEEL_EDGE, 2.0 * u),
             };
             field.polygon(&polygon, fill);
@@ -204,7 +207,7 @@ impl Frame<'_> {
         let mut ticks = PathBuilder::new();
         let edge = GRAIN_EDGE.map(f32::from);
         for (disk, at, radius) in self.seen(field, map) {
-            let grain = mix(GRAIN[0], GRAIN[1], disk.shade).map(f32::from);
+            let grain = disk.paint.colour(disk.shade).map(f32::from);
             let inner = radius - (1.3 * u).min(0.3 * radius);
             field.disk(at, radius, |_, distance| {
                 let t = (distance - inner + 0.5).clamp(0.0, 1.0);
@@ -228,13 +231,13 @@ impl Frame<'_> {
             match solid {
                 Solid::Sphere(disk) => {
                     if let Some((at, radius)) = pixels(disk, field, map) {
-                        paint_sphere(field, at, radius, mix(GRAIN[0], GRAIN[1], disk.shade));
+                        paint_sphere(field, at, radius, disk.paint.colour(disk.shade));
                     }
                 }
                 Solid::Faces(faces) => {
                     for face in faces {
                         let corners = visible(&face.points, field, map);
-                        let base = mix(GRAIN[0], GRAIN[1], face.shade);
+                        let base = Paint::Grey.colour(face.shade);
                         solid::paint(field, &corners, face.light, base, 0.8 * u);
                     }
                 }
@@ -375,6 +378,7 @@ mod tests {
             disks,
             links,
             arrows: &[],
+            scale: None,
             solids: &[],
             width_px: 400,
         }

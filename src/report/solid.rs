@@ -2,6 +2,7 @@
 
 use super::canvas::{Canvas, Rgb};
 use super::frame::Disk;
+use super::paint::Paint;
 use super::sphere::{View, sphere_disk};
 
 /// A thing of a frame in space.
@@ -27,12 +28,12 @@ pub struct Face {
 /// A convex body in space: its faces against the clock seen from outside, and its shade.
 pub type Body = (Vec<Vec<[f64; 3]>>, f64);
 
-/// All bodies and spheres `(centre, radius, shade)`, the farthest first. Far ones are darker, to show the depth of
+/// All bodies and spheres `(centre, radius, paint)`, the farthest first. Far ones are darker, to show the depth of
 /// the bed.
-pub fn project(spheres: &[([f64; 3], f64, f64)], bodies: &[Body], view: &View) -> Vec<Solid> {
+pub fn project(spheres: &[([f64; 3], f64, Paint)], bodies: &[Body], view: &View) -> Vec<Solid> {
     let mut seen: Vec<(Solid, f64)> = spheres
         .iter()
-        .map(|&(centre, radius, shade)| sphere_disk(centre, radius, shade, view))
+        .map(|&(centre, radius, paint)| sphere_disk(centre, radius, paint, view))
         .map(|(disk, depth)| (Solid::Sphere(disk), depth))
         .collect();
     for (faces, shade) in bodies {
@@ -137,7 +138,7 @@ mod tests {
 
     #[test]
     fn near_bodies_come_last_among_spheres() {
-        let spheres = [([0.0, 0.0, 0.0], 1.0, 0.0)];
+        let spheres = [([0.0, 0.0, 0.0], 1.0, Paint::Grey)];
         let bodies = [(cube(0.0, -3.0), 0.0), (cube(0.0, 3.0), 0.0)];
         let seen = project(&spheres, &bodies, &View::new(0.0, 0.0));
         assert!(matches!(seen[1], Solid::Sphere(_)) && seen.len() == 3);

@@ -2,6 +2,7 @@
 
 use super::canvas::{Canvas, Rgb};
 use super::frame::Disk;
+use super::paint::Paint;
 
 /// Direction of an orthographic view.
 #[derive(Clone, Copy, Debug)]
@@ -34,17 +35,21 @@ impl View {
 }
 
 /// The disk that shows one sphere, and its distance towards the viewer.
-/// Centre and radius in metres, shade in 0..1 (see [`Disk::shade`]).
-pub fn sphere_disk(centre: [f64; 3], radius: f64, shade: f64, view: &View) -> (Disk, f64) {
+/// Centre and radius in metres, and what its colour says.
+pub fn sphere_disk(centre: [f64; 3], radius: f64, paint: Paint, view: &View) -> (Disk, f64) {
     let (centre, depth) = view.project(centre);
     let disk = Disk {
         centre,
         radius,
         angle: 0.0,
-        shade,
+        shade: SPHERE,
+        paint,
     };
     (disk, depth)
 }
+
+/// Shade of the nearest sphere.
+const SPHERE: f64 = 0.3;
 
 /// Paints one lit sphere, centre and radius in pixels.
 pub(super) fn paint_sphere(field: &mut Canvas, at: [f32; 2], radius: f32, base: Rgb) {

@@ -128,6 +128,9 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
     if let Some(layers) = case.output.layers {
         positive("output.layers", layers)?;
     }
+    if let Some(shear) = case.output.shear {
+        positive("output.shear", shear)?;
+    }
     if case.output.frames > 0 && !(200..=16_384).contains(&case.output.width) {
         let message = format!("a frame cannot be {} pixels wide", case.output.width);
         return Err(Fault::new("output.width", message).expected("200 to 16384 pixels"));

@@ -51,6 +51,18 @@ pub enum MeasureSpec {
         #[serde(default)]
         start: f64,
     },
+    /// A shear band in a box: angle with the x axis (rad, 0 to pi), width across it (m) and number of the grains
+    /// whose local shear since the second phase began (since the start without phases) has passed a threshold.
+    Band {
+        /// Prefix of the columns.
+        name: String,
+        /// Low corner of the box (m).
+        low: Vec<f64>,
+        /// High corner (m).
+        high: Vec<f64>,
+        /// The shear from which on a grain belongs to the band.
+        above: f64,
+    },
     /// Plane shear along x between two heights: shear rate, pressure, stress ratio, solid fraction and
     /// inertial number of the grains, away from the walls. x (and y in 3D) must be periodic.
     Shear {
@@ -73,6 +85,7 @@ impl MeasureSpec {
             Self::Mass { name, .. }
             | Self::Slope { name, .. }
             | Self::Profile { name, .. }
+            | Self::Band { name, .. }
             | Self::Shear { name, .. } => name,
         }
     }
@@ -117,6 +130,16 @@ fn one(case: &Case, spec: &MeasureSpec) -> Result<(), (&'static str, String)> {
             Err((field, format!("must be above {low}, got {high}")))
         }
     };
+    let bounds = |low: &[f64], high: &[f64]| {
+        for (field, corner) in [("low", low), ("high", high)] {
+            if corner.len() != dimension {
+                let message = format!("a corner has {dimension} numbers in this case");
+                return Err((field, message));
+            }
+        }
+        let mut sides = low.iter().zip(high);
+        sides.try_for_each(|(l, h)| rises("high", *l, *h))
+    };
     match spec {
         MeasureSpec::Mass { axis: a, above, .. } => {
             axis(*a)?;
@@ -136,20 +159,7 @@ fn one(case: &Case, spec: &MeasureSpec) -> Result<(), (&'static str, String)> {
             ..
         } => {
             axis(*a)?;
-            if low.len() != dimension || high.len() != dimension {
-                let message = format!("a corner has {dimension} numbers in this case");
-                return Err((
-                    if low.len() == dimension {
-                        "high"
-                    } else {
-                        "low"
-                    },
-                    message,
-                ));
-            }
-            for (l, h) in low.iter().zip(high) {
-                rises("high", *l, *h)?;
-            }
+            bounds(low, high)?;
             if !(1..=100_000).contains(bins) {
                 return Err(("bins", format!("needs 1 to 100000 slices, got {bins}")));
             }
@@ -158,6 +168,16 @@ fn one(case: &Case, spec: &MeasureSpec) -> Result<(), (&'static str, String)> {
                 return Err(("turned", message.into()));
             }
             Ok(())
+        }
+        MeasureSpec::Band {
+            low, high, above, ..
+        } => {
+            bounds(low, high)?;
+            if above.is_finite() && *above > 0.0 {
+                Ok(())
+            } else {
+                Err(("above", format!("a shear must be positive, got {above}")))
+            }
         }
         MeasureSpec::Shear { low, high, .. } => {
             rises("high", *low, *high)?;

@@ -37,6 +37,20 @@ pub struct PhaseSpec {
     /// Tolerance of the solver.
     #[serde(default)]
     pub tolerance: Option<f64>,
+    /// When it ends the run goes back, until this was done so many times.
+    #[serde(default)]
+    pub repeat: Option<Repeat>,
+}
+
+/// A group of phases that is done several times, one after another: taps, cycles.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Repeat {
+    /// Name of the first phase of the group; the phase itself by default.
+    #[serde(default)]
+    pub from: Option<String>,
+    /// How many times the group is done in all.
+    pub times: u32,
 }
 
 /// The degrees of freedom of a body that get another drive.
@@ -95,9 +109,66 @@ pub(super) fn drives_of(case: &Case, body: &BodySpec) -> Vec<(usize, Dof)> {
 pub(super) fn check(case: &Case) -> Result<(), Fault> {
     for (k, phase) in case.phases.iter().enumerate() {
         let last = k + 1 == case.phases.len();
-        one(case, phase, last).map_err(|f| f.under(&format!("phases.{k}")))?;
+        one(case, phase, last)
+            .and_then(|()| repeat(case, k))
+            .map_err(|f| f.under(&format!("phases.{k}")))?;
+    }
+    let all: u64 = groups(case)
+        .map(|(group, times)| group.len() as u64 * u64::from(times))
+        .sum();
+    if all > MOST {
+        let message = format!("{all} phases with their repeats; a run has at most {MOST}");
+        return Err(Fault::new("phases", message));
     }
     Ok(())
+}
+
+/// Most phases of a run, repeats counted.
+const MOST: u64 = 1_000_000;
+
+/// Refuses a repeat that goes nowhere.
+fn repeat(case: &Case, k: usize) -> Result<(), Fault> {
+    let Some(spec) = &case.phases[k].repeat else {
+        return Ok(());
+    };
+    if spec.times == 0 {
+        let message = "a group of phases is done at least once";
+        return Err(Fault::new("repeat.times", message).expected("a number from 1"));
+    }
+    if case.phases[k].until.is_none() {
+        let message = format!("`{}` is repeated, so it needs `until`", case.phases[k].name);
+        return Err(Fault::new("repeat", message));
+    }
+    let Some(from) = &spec.from else {
+        return Ok(());
+    };
+    let before = case.phases[..=k].iter().map(|p| p.name.as_str());
+    known("repeat.from", "phase up to here named", from, before)?;
+    let first = first(case, k);
+    if case.phases[first..k].iter().any(|p| p.repeat.is_some()) {
+        let message =
+            format!("the group from `{from}` holds another repeat; one group cannot hold another");
+        return Err(Fault::new("repeat.from", message));
+    }
+    Ok(())
+}
+
+/// Where the group that ends with a phase begins.
+fn first(case: &Case, k: usize) -> usize {
+    let from = case.phases[k].repeat.as_ref().and_then(|r| r.from.as_ref());
+    let place = |name: &String| case.phases[..=k].iter().rposition(|p| p.name == *name);
+    from.and_then(place).unwrap_or(k)
+}
+
+/// Groups of phases in their order, and how many times each is done.
+fn groups(case: &Case) -> impl Iterator<Item = (std::ops::Range<usize>, u32)> + '_ {
+    let mut groups: Vec<(std::ops::Range<usize>, u32)> = Vec::new();
+    for (k, phase) in case.phases.iter().enumerate() {
+        let first = first(case, k);
+        groups.truncate(groups.len() - (k - first).min(groups.len()));
+        groups.push((first..k + 1, phase.repeat.as_ref().map_or(1, |r| r.times)));
+    }
+    groups.into_iter()
 }
 
 fn one(case: &Case, phase: &PhaseSpec, last: bool) -> Result<(), Fault> {
@@ -261,13 +332,21 @@ pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<()
             s.control.gates.push((place, time));
         }
     }
+    let mut phases = Vec::new();
     for (k, spec) in case.phases.iter().enumerate() {
-        let changes = changes(spec, s).map_err(|f| f.under(&format!("phases.{k}")))?;
-        s.control.phases.push(Phase {
+        phases.push(Phase {
             name: spec.name.clone(),
             until: spec.until.clone(),
-            changes,
+            changes: changes(spec, s).map_err(|f| f.under(&format!("phases.{k}")))?,
+            recurs: false,
         });
+    }
+    for (group, times) in groups(case) {
+        for round in 1..=times {
+            let recurs = round < times;
+            let once = phases[group.clone()].iter().cloned();
+            s.control.phases.extend(once.map(|p| Phase { recurs, ..p }));
+        }
     }
     s.measure_areas();
     Ok(())

@@ -175,12 +175,73 @@ fn voronoi_cells_in_space() {
 
 #[test]
 fn polygons_in_space() {
-    let capsule = "‸Capsule(from: (0.0, 0.0), to: (0.0, 1.0), radius: 0.01)";
-    let body = format!(
-        "    bodies: [\n        (name: \"rod\", material: \"grain\", shapes: [{capsule}]),\n"
+    let of = |shape: &str, sentence: &str| {
+        let body = format!(
+            "    bodies: [\n        (name: \"rod\", material: \"grain\", shapes: [{shape}]),\n"
+        );
+        refused(&with(SOLID, "    bodies: [\n", &body), &[sentence]);
+    };
+    of(
+        "‸Polygon(points: [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])",
+        "need two dimensions; use polyhedra in three",
     );
+    of(
+        "Capsule(from: ‸(0.0, 0.0), to: (0.0, 1.0), radius: 0.01)",
+        "2 components in a case of dimension 3",
+    );
+}
+
+#[test]
+fn polyhedra_that_are_none() {
+    let of = |grain: &str, sentence: &str| {
+        let list = format!("Polyhedra(material: \"grain\", grains: [{grain}])");
+        let more = format!("    grains: [\n{list},\n");
+        refused(&with(SOLID, "    grains: [\n", &more), &[sentence]);
+    };
+    let cube = "(0.0, 0.0, 0.0), (0.01, 0.0, 0.0), (0.0, 0.01, 0.0), (0.0, 0.0, 0.01)";
+    let at = "at: [0.3, 0.1, 0.3]";
+    of(
+        &format!("‸({at})"),
+        "needs one of `points`, `size` (a cuboid) and `file`",
+    );
+    of(
+        &format!("({at}, points: ‸[(0.0, 0.0, 0.0), (0.01, 0.0, 0.0), (0.0, 0.01, 0.0)])"),
+        "needs at least four points, got 3",
+    );
+    of(
+        &format!("({at}, points: ‸[{cube}, (0.002, 0.002, 0.002)])"),
+        "point 4 of the polyhedron is no corner of the hull",
+    );
+    of(
+        &format!("({at}, points: ‸[{cube}, (0.0, 0.0, 0.01)])"),
+        "points 3 and 4 of the polyhedron are at the same place",
+    );
+    of(
+        &format!(
+            "({at}, points: ‸[(0.0, 0.0, 0.0), (0.01, 0.0, 0.0), (0.0, 0.01, 0.0), (0.01, 0.01, 0.0)])"
+        ),
+        "lie in one plane",
+    );
+    of(
+        &format!("({at}, size: ‸(0.01, 0.0, 0.01))"),
+        "the edges of a cuboid must be positive",
+    );
+    of(
+        &format!("({at}, size: (0.01, 0.01, 0.01), rounding: ‸-1.0)"),
+        "must not be negative, got -1",
+    );
+    of(&format!("({at}, file: ‸\"missing.stl\")"), "cannot open");
+    of(
+        &format!("({at}, file: ‸\"case.ron\")"),
+        "neither an .stl nor an .obj file",
+    );
+}
+
+#[test]
+fn a_body_in_space_that_turns_about_one_axis() {
+    let body = "    bodies: [\n        (name: \"rod\", material: \"grain\", shapes: [Box(size: (0.1, 0.1, 0.1))], position: [0.3, 0.1, 0.4], dofs: ‸(x: Free, y: Free, z: Free, rx: Free)),\n";
     refused(
-        &with(SOLID, "    bodies: [\n", &body),
-        &["need two dimensions; use Balls in three"],
+        &with(SOLID, "    bodies: [\n", body),
+        &["turns freely about all axes or about none"],
     );
 }

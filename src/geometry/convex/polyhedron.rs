@@ -286,7 +286,8 @@ impl Polyhedron {
     /// Whether a face with this outward normal lies along the face that faces it, within some five degrees. A
     /// segment does so everywhere.
     pub fn faces(&self, normal: &V) -> bool {
-        self.facing(normal).is_none_or(|f| self.normals[f].dot(normal) < -FACING)
+        self.facing(normal)
+            .is_none_or(|f| self.normals[f].dot(normal) < -FACING)
     }
 
     /// Signed distance of a point from the boundary (m, negative inside) and the unit normal at the nearest point

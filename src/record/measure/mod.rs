@@ -1,12 +1,13 @@
 //! Quantities that a case asks for: sampled when a row of the statistics is written.
 
+mod band;
 mod mass;
 mod profile;
 mod shear;
 mod slope;
 
 use super::statistics::{Column, Table};
-use crate::geometry::space::Space;
+use crate::geometry::space::{Space, VectorLike};
 use crate::report::ReportError;
 use crate::scene::measures::MeasureSpec;
 use crate::step::Simulation;
@@ -16,6 +17,8 @@ use std::path::Path;
 
 /// One measure.
 pub trait Measure<S: Space>: Debug {
+    /// The state at hand is the one from which deformations count.
+    fn begin(&mut self, _: &Simulation<S>) {}
     /// Its columns in the statistics.
     fn columns(&self) -> Vec<Column>;
     /// Values of its columns at the end of a step; it may keep what it needs for the end.
@@ -73,6 +76,18 @@ impl<S: Space> Measures<S> {
                 } => Box::new(profile::Profile::<S>::new(
                     name, axis, &low, &high, bins, turned, start,
                 )),
+                MeasureSpec::Band {
+                    name,
+                    low,
+                    high,
+                    above,
+                } => Box::new(band::Band::<S> {
+                    name,
+                    low: S::Vector::from_slice(&low),
+                    high: S::Vector::from_slice(&high),
+                    above,
+                    strain: None,
+                }),
                 MeasureSpec::Shear {
                     name,
                     low,
@@ -89,6 +104,11 @@ impl<S: Space> Measures<S> {
         Self {
             list: specs.iter().map(make).collect(),
         }
+    }
+
+    /// The state at hand is the one from which deformations count.
+    pub fn begin(&mut self, s: &Simulation<S>) {
+        self.list.iter_mut().for_each(|m| m.begin(s));
     }
 
     /// Columns of all, in the order of the case.

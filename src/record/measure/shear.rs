@@ -3,7 +3,7 @@
 //! The shear rate is the slope of v_x over height, stresses are Love-Weber's of the contacts whose point lies
 //! between the heights, sum f l / V, and the solid fraction counts the part of each grain between them. The
 //! inertial number is rate sqrt(m/p) with the mean mass in 2D (da Cruz et al., Phys. Rev. E 72 (2005) 021309),
-//! rate d sqrt(density/p) in 3D.
+//! rate d sqrt(density/p) in 3D. In the summary mu and I are those of the mean stresses and of the mean rate.
 
 use super::{Measure, grains, line, mean, since};
 use crate::geometry::space::Space;
@@ -98,10 +98,27 @@ impl<S: Space> Measure<S> for Shear {
     }
 
     fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
-        let names = PARTS.iter().map(|p| self.column(p.0));
-        names
-            .filter_map(|n| Some((n.clone(), mean(&since(table, &n, self.start))?)))
-            .collect()
+        // Stresses come in bursts: a mean of ratios would count the lightest moments most.
+        let [rate, p, mu, phi, inertial] =
+            PARTS.map(|part| since(table, &self.column(part.0), self.start));
+        let with_p = |values: &[(f64, f64)], power: f64| {
+            let pairs = values.iter().zip(&p);
+            let products = pairs.map(|(v, p)| (v.0, v.1 * p.1.max(0.0).powf(power)));
+            mean(&products.collect::<Vec<_>>())
+        };
+        let load = mean(&p).filter(|p| *p > 0.0);
+        let over = |sum: Option<f64>, power: f64| Some(sum? / load?.powf(power));
+        let means = [
+            ("rate", mean(&rate)),
+            ("p", mean(&p)),
+            ("mu", over(with_p(&mu, 1.0), 1.0)),
+            ("phi", mean(&phi)),
+            ("I", over(with_p(&inertial, 0.5), 0.5)),
+        ];
+        let named = means
+            .into_iter()
+            .filter_map(|(part, value)| Some((self.column(part), value?)));
+        named.collect()
     }
 
     fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError> {

@@ -36,6 +36,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         summary.phases = s.control.begun().to_vec();
         let phases = s.control.phases.iter().skip(summary.phases.len());
         summary.phases_missed = phases.map(|p| p.name.clone()).collect();
+        summary.phases_missed.dedup();
         summary.measures = self.measures.outcome(&self.table);
         summary.energy = s.energy;
         summary.energy_residual_relative = s.energy.relative_residual();

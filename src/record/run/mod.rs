@@ -8,9 +8,10 @@ use super::fclib;
 use super::friction::{Cycles, Sample};
 use super::layer::{Balance, Layer};
 use super::measure::Measures;
-use super::picture::Camera;
+use super::picture::{Camera, Subject};
 use super::results::{Results, ResultsError};
 use super::statistics::Table;
+use super::strain::Strain;
 use super::summary::{PluginStamp, SolverSummary, Summary};
 use super::views;
 use crate::bodies::TimeFunction;
@@ -109,6 +110,8 @@ struct Recorder<'a, S: Space> {
     table: Table,
     results: Results,
     camera: Camera,
+    /// Shear since the second phase began, where the case asks for it.
+    strain: Option<Strain<S>>,
     cycles: Option<(Cycles, usize)>,
     biaxial: Option<Biaxial>,
     measures: Measures<S>,
@@ -181,6 +184,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             .or(simulation.bodies.driven.first().map(|d| d.body));
         Ok(Self {
             camera: Camera::new(&simulation, &case.output),
+            strain: case.output.shear.map(|_| Strain::new(&simulation)),
             out: options.out.clone(),
             table,
             results,
@@ -205,14 +209,18 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
 
     fn go(&mut self, progress: &mut dyn FnMut(&Progress)) -> Result<(), RunError> {
         let output = &self.loaded.case.output;
+        self.measures.begin(&self.simulation);
         self.views()?;
         self.frame(0)?;
         for step in 1..=self.total {
             let (before, phase) = (self.balance(), self.simulation.control.phase());
+            let recurs = self.simulation.control.recurs();
             let report = self.simulation.step()?;
             self.follow(&report, before);
             if phase == 1 && self.simulation.control.phase() == 2 {
-                self.camera.shade(&self.simulation);
+                self.camera.dye(&self.simulation);
+                self.measures.begin(&self.simulation);
+                self.strain = self.strain.take().map(|_| Strain::new(&self.simulation));
             }
             let finished = self.simulation.control.finished();
             let last = step == self.total || finished;
@@ -230,7 +238,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             if due(step, self.total, output.views) || finished {
                 self.views()?;
             }
-            let turned = phase > 0 && self.simulation.control.phase() > phase;
+            let turned = phase > 0 && self.simulation.control.phase() > phase && !recurs;
             if due(step, self.total, output.frames) || finished || turned {
                 self.frame(step)?;
             }
@@ -364,7 +372,11 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
     }
 
     fn views(&mut self) -> Result<(), RunError> {
-        Ok(views::append(&mut self.results, &self.simulation)?)
+        let shear = self
+            .strain
+            .as_ref()
+            .map(|strain| strain.shear(&self.simulation));
+        Ok(views::append(&mut self.results, &self.simulation, shear)?)
     }
 
     fn frame(&mut self, step: u64) -> Result<(), RunError> {
@@ -389,10 +401,28 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             caption.push(format!("damage ratio {:.3}", self.damage_ratio()));
         }
         self.camera.follow(&self.simulation);
-        let path = self.out.join("frames").join(format!("frame_{step:08}.png"));
-        Ok(self
-            .camera
-            .draw(&self.simulation, &self.loaded.case.name, caption, &path)?)
+        let shear = self
+            .strain
+            .as_ref()
+            .map(|strain| strain.shear(&self.simulation));
+        let mut subjects = vec![("frame", Subject::Scene)];
+        if let (Some(values), Some(top)) = (&shear, self.loaded.case.output.shear) {
+            let label = "local shear";
+            subjects.push(("shear", Subject::Values { values, label, top }));
+        }
+        if self.loaded.case.output.layers.is_some() && self.simulation.network.bonds_made() > 0 {
+            subjects.push(("bonds", Subject::Bonds));
+        }
+        for (name, subject) in subjects {
+            let path = self
+                .out
+                .join("frames")
+                .join(format!("{name}_{step:08}.png"));
+            let title = &self.loaded.case.name;
+            self.camera
+                .draw(&self.simulation, subject, title, caption.clone(), &path)?;
+        }
+        Ok(())
     }
 
     fn progress(&self, step: u64, report: &StepReport) -> Progress {

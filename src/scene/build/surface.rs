@@ -257,6 +257,7 @@ impl<S: Dimensional> Builder<'_, S> {
             }
             ShapeSpec::Balls(_)
             | ShapeSpec::Cluster { .. }
+            | ShapeSpec::Plate { .. }
             | ShapeSpec::Polygon { .. }
             | ShapeSpec::Polyhedron { .. }
             | ShapeSpec::Box { .. }

@@ -8,6 +8,7 @@ use crate::geometry::shape::{Ball, Carried};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::scene::case::{GrainSpec, ShapeSpec};
 use crate::scene::source::{self, Fault, InputError};
+use std::f64::consts::PI;
 
 /// Balls, convex parts and surfaces that move together.
 pub(super) struct Union<S: Space> {
@@ -86,6 +87,11 @@ impl<S: Dimensional> Builder<'_, S> {
                 ShapeSpec::Cluster { file, name } => {
                     out.balls.extend(self.cluster_of_file(&here, file, name)?);
                 }
+                ShapeSpec::Plate {
+                    radius,
+                    hole,
+                    balls,
+                } => out.balls.extend(self.plate(&here, *radius, *hole, *balls)?),
                 ShapeSpec::Polygon { points, rounding } => {
                     out.parts.push(self.polygon(&here, points, *rounding)?);
                 }
@@ -134,6 +140,46 @@ impl<S: Dimensional> Builder<'_, S> {
         };
         let ball = |(x, r): &(Vec<f64>, f64)| (S::Vector::from_slice(x), *r);
         Ok(cluster.1.iter().map(ball).collect())
+    }
+
+    /// The balls of a plate with a hole: no grain as large as they are gets through between them.
+    fn plate(
+        &self,
+        here: &str,
+        radius: f64,
+        hole: f64,
+        ball: f64,
+    ) -> Result<Vec<(S::Vector, f64)>, InputError> {
+        if S::D == 2 {
+            return Err(self.fail(
+                here,
+                "a plate with a round hole needs three dimensions; use two profiles",
+            ));
+        }
+        let ball = self.radius(&format!("{here}.balls"), ball)?;
+        let radius = self.radius(&format!("{here}.radius"), radius)?;
+        if !(hole.is_finite() && hole >= 0.0 && hole < 2.0 * radius) {
+            let message = format!("a hole is narrower than the plate, got {hole} m");
+            return Err(self.fail(format!("{here}.hole"), message));
+        }
+        if radius / ball > 1000.0 {
+            let message = "the plate would take millions of balls; use larger ones";
+            return Err(self.fail(format!("{here}.balls"), message));
+        }
+        let mut balls = Vec::new();
+        let mut ring = 0.5 * hole + ball;
+        while ring - ball < radius {
+            let count = (PI / (ball / ring).min(1.0).asin()).floor().max(1.0);
+            for k in 0..count as usize {
+                let (sin, cos) = (2.0 * PI * k as f64 / count).sin_cos();
+                balls.push((
+                    S::Vector::from_slice(&[ring * cos, ring * sin, -ball]),
+                    ball,
+                ));
+            }
+            ring += 2.0 * ball;
+        }
+        Ok(balls)
     }
 
     /// Gives a body, whose centre of mass is at `centre` (m), the shapes.

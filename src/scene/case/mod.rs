@@ -325,8 +325,10 @@ pub struct OutputSpec {
     pub width: u32,
     /// What frames show (m): xmin, xmax, ymin, ymax (2D); what there is by default.
     pub window: Option<[f64; 4]>,
-    /// Thickness (m) of layers along the last axis that frames tell apart by shade.
+    /// Thickness (m) of layers along the last axis that frames tell apart by colour.
     pub layers: Option<f64>,
+    /// The local shear that is darkest in pictures of it; recorded and drawn where given.
+    pub shear: Option<f64>,
     /// Steps between two that are written as FCLIB problems, `fclib/step-N.hdf5`; 0 for none.
     pub fclib: u64,
 }
@@ -341,6 +343,7 @@ impl Default for OutputSpec {
             width: 1400,
             window: None,
             layers: None,
+            shear: None,
             fclib: 0,
         }
     }

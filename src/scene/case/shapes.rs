@@ -102,6 +102,15 @@ pub enum ShapeSpec {
     },
     /// Balls fixed to the body: (position relative to the body's frame, radius).
     Balls(Vec<(Vec<f64>, f64)>),
+    /// A level plate of balls in rings about the z axis, with a round hole (3D): the balls touch z = 0 from below.
+    Plate {
+        /// Radius of the plate (m).
+        radius: f64,
+        /// Diameter of the hole (m).
+        hole: f64,
+        /// Radius of the balls (m).
+        balls: f64,
+    },
     /// The inside of a cylinder about the body's origin, solid outside: a drum.
     Drum {
         /// Radius (m).

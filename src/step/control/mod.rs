@@ -48,6 +48,12 @@ impl<S: Space> Control<S> {
         self.clock.begun.len()
     }
 
+    /// Whether the phase at hand comes again.
+    pub fn recurs(&self) -> bool {
+        let now = self.phase().checked_sub(1).and_then(|k| self.phases.get(k));
+        now.is_some_and(|p| p.recurs)
+    }
+
     /// The phases that began, in their order.
     pub fn begun(&self) -> &[Begun] {
         &self.clock.begun

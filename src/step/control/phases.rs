@@ -57,6 +57,8 @@ pub struct Phase<S: Space> {
     pub until: Option<Until>,
     /// What changes at its start.
     pub changes: Changes<S>,
+    /// Whether the same phase comes again: only its last time is worth a picture.
+    pub recurs: bool,
 }
 
 /// A phase that began.
