@@ -2,8 +2,8 @@
 //!
 //! Sweeps over bodies are matrix-free and nearly always enough. [`Method::Auto`] lets them run for as long as
 //! twenty factorisations of W would take (twice as long at a loose tolerance), then tries Newton on the
-//! assembled W, and sweeps on. On a hyperstatic set Newton comes ten times as late. Where it did not help it
-//! is tried half as early in the steps that follow, until it helps again. The lengths follow from sizes
+//! assembled W, and takes turns with longer sweeps until one of them ends. On a hyperstatic set Newton comes ten
+//! times as late. Where it did not help it is tried half as early in the steps that follow, until it helps again. The lengths follow from sizes
 //! alone: the same case takes the same path on any machine.
 
 use super::chosen::{Chosen, hyperstaticity};
@@ -169,37 +169,51 @@ impl<S: Space> Pieces<'_, S> {
             report.chosen = Chosen::Longer { hyperstaticity };
         }
         let after = report.iterations;
-        let left = options.max_iterations.saturating_sub(after);
-        if report.converged || left == 0 {
-            return report;
+        let mut round = 0;
+        while !report.converged && report.iterations < options.max_iterations {
+            let steps = NEWTON << round.min(16);
+            // What the sweeps came to may be a dead end for Newton: every other time it starts where they did.
+            self.newton(problem, &mut report, steps, round % 2 == 1);
+            report.chosen = Chosen::Newton {
+                after,
+                hyperstaticity,
+                ended: report.converged,
+            };
+            let left = options.max_iterations.saturating_sub(report.iterations);
+            if !report.converged && left > 0 {
+                let more = sweeps.saturating_mul(HYPERSTATIC << round.min(16));
+                report.add(&self.sweep(problem, true, left.min(more)));
+            }
+            round += 1;
         }
+        let Chosen::Newton { ended, .. } = report.chosen else {
+            return report;
+        };
+        habit.patience *= if ended { 0.5 } else { 2.0 };
+        habit.patience = habit.patience.clamp(1.0, 64.0);
+        report
+    }
+
+    /// Newton from the impulses at hand or from those of the forms; keeps those with the smaller error.
+    fn newton(&self, problem: &mut Problem<S>, report: &mut Report, steps: u32, anew: bool) {
         let mut saved = Vec::new();
         problem.store(&mut saved);
-        let swept = Report {
+        let before = Report {
             iterations: 0,
-            ..report
+            ..*report
         };
-        let steps = NEWTON.min(left);
-        report.add(&self.improve(problem, Method::Newton, 0.3 * options.tolerance, steps));
-        report.chosen = Chosen::Newton {
-            after,
-            hyperstaticity,
-            ended: report.converged,
-        };
-        if report.converged {
-            habit.patience = (0.5 * habit.patience).max(1.0);
-            return report;
+        if anew {
+            let impulses: Vec<_> = self.forms.iter().map(|f| Some(f.impulse)).collect();
+            let moments: Vec<_> = self.moments.iter().map(|m| Some(m.moment)).collect();
+            problem.adopt(&impulses, &moments);
         }
-        habit.patience = (2.0 * habit.patience).min(64.0);
-        if report.error > swept.error {
+        let left = self.options.max_iterations - report.iterations;
+        let tolerance = 0.3 * self.options.tolerance;
+        report.add(&self.improve(problem, Method::Newton, tolerance, steps.min(left)));
+        if !report.converged && report.error > before.error {
             problem.restore(&saved);
-            report.add(&swept);
+            report.add(&before);
         }
-        let left = options.max_iterations.saturating_sub(report.iterations);
-        if left > 0 {
-            report.add(&self.sweep(problem, true, left));
-        }
-        report
     }
 }
 
