@@ -374,3 +374,16 @@ fn a_fold_lifts_its_layer_with_the_block() {
     }
     Moved::new(mirrored("forced_fold", &sets)).mirrors(&straight, 0.25);
 }
+
+#[test]
+fn as_many_balls_leave_a_cradle_as_come() {
+    let (_, built) = case_in::<Solid>("newton_cradle", &[]);
+    let mut s = built.simulation;
+    while s.time < 0.06 {
+        s.step().unwrap_or_else(|e| panic!("{e}"));
+    }
+    let speeds: Vec<f64> = s.bodies.velocity.iter().map(|v| v.x).collect();
+    let known = [0.0, 0.0, 0.0, 1.0, 1.0];
+    let far = speeds.iter().zip(known).map(|(v, k)| (v - k).abs());
+    assert!(far.fold(0.0, f64::max) < 1e-12, "{speeds:?}");
+}

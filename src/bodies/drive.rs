@@ -234,6 +234,12 @@ impl Dof {
             .any(|d| matches!(d, Self::Free | Self::Force(_) | Self::Pressure { .. }))
     }
 
+    /// Whether its motion is imposed at some time.
+    pub fn imposes(&self) -> bool {
+        self.drives()
+            .any(|d| matches!(d, Self::Fixed | Self::Velocity(_) | Self::Displacement(_)))
+    }
+
     /// The velocity imposed at a time, if one is.
     pub fn imposed_velocity(&self, t: f64) -> Option<f64> {
         match self {

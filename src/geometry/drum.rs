@@ -1,6 +1,6 @@
 //! The inside of a cylinder: a drum. A circle in 2D; in 3D an endless cylinder along an axis of its body.
 
-use super::shape::{Surface, Touch};
+use super::shape::{Surface, Touch, about};
 use super::space::{Space, VectorLike};
 use std::f64::consts::TAU;
 
@@ -97,7 +97,7 @@ impl<S: Space> Surface<S> for Drum {
         if S::D == 3 {
             axis[self.axis] = 1.0;
         }
-        S::D == 2 || S::split_spin(&axis, spin).1 == S::Spin::null()
+        S::D == 2 || about::<S>(&axis, spin)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::shape::Touch;
 use nalgebra::Vector3;
+use std::collections::HashMap;
 
 type V = Vector3<f64>;
 
@@ -86,16 +87,23 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Touch<
             }),
         }
     }
-    for f in found {
-        let about = || facets.iter().filter(|g| g.has(&f.part));
-        // An edge or a corner counts when all facets about it find it: else a face is nearer.
-        if f.count < about().count() {
+    let about = |part: [u64; 3]| facets.iter().filter(move |g| g.has(&part));
+    // An edge or a corner counts when all facets about it find it: else a face is nearer.
+    found.retain(|f| f.count >= about(f.part).count());
+    let up = |f: &Found| pseudo_normal(about(f.part), &f.part, f.corners);
+    let arm = |f: &Found| centre - f.foot;
+    let nearest = |f: &&Found, g: &&Found| arm(f).norm_squared().total_cmp(&arm(g).norm_squared());
+    // The nearest part tells inside from outside: what lies behind it shows its back.
+    let inside = found
+        .iter()
+        .min_by(nearest)
+        .is_some_and(|f| arm(f).dot(&up(f)) < 0.0);
+    for f in &found {
+        let (up, arm) = (up(f), arm(f));
+        let length = arm.norm();
+        if (arm.dot(&up) < 0.0) != inside && length > 0.0 {
             continue;
         }
-        let up = pseudo_normal(about(), &f.part, f.corners);
-        let arm = centre - f.foot;
-        let length = arm.norm();
-        let inside = arm.dot(&up) < 0.0;
         let face = f.corners == 3;
         out.push(Touch {
             foot: f.foot,
@@ -144,6 +152,83 @@ fn feature(facets: &[Facet<V>], first: usize, part: &[u64; 3], corners: usize) -
             1 => 4 + place(part[0]),
             _ => 0,
         }
+}
+
+/// An edge of a surface that stands out: a sharp one, or one with a facet on one side alone.
+#[derive(Clone, Copy, Debug)]
+pub struct Ridge {
+    /// Its ends (m), along the side of its first facet.
+    pub ends: [V; 2],
+    /// Their names.
+    pub names: [u64; 2],
+    /// The first facet, and which of its sides it is.
+    pub facet: u32,
+    /// See `facet`.
+    pub side: u8,
+    /// Normals of the facets on both sides; behind an open border that of the first, turned round.
+    normals: [V; 2],
+}
+
+/// How far, in parts of the distance, a facet may stand out before a normal and still count as behind it.
+const BEHIND: f64 = 1e-6;
+
+impl Ridge {
+    /// Whether a direction across the edge is between the normals of its facets.
+    pub fn holds(&self, direction: &V) -> bool {
+        let along = self.ends[1] - self.ends[0];
+        let [m, n] = &self.normals;
+        m.cross(direction).dot(&along) >= 0.0 && direction.cross(n).dot(&along) >= 0.0
+    }
+}
+
+/// All edges that stand out.
+pub fn ridges(facets: &[Facet<V>]) -> Vec<Ridge> {
+    let mut out = Vec::new();
+    let mut about: HashMap<[u64; 2], Vec<usize>> = HashMap::new();
+    let pair = |a: u64, b: u64| [a.min(b), a.max(b)];
+    for (f, facet) in facets.iter().enumerate() {
+        for k in 0..3 {
+            let edge = pair(facet.names[k], facet.names[(k + 1) % 3]);
+            about.entry(edge).or_default().push(f);
+        }
+    }
+    for (f, facet) in facets.iter().enumerate() {
+        let normal = facet.normal();
+        for k in 0..3 {
+            let (a, b) = (k, (k + 1) % 3);
+            let names = [facet.names[a], facet.names[b]];
+            let beside = about[&pair(names[0], names[1])].iter().find(|g| **g != f);
+            let other = match beside {
+                Some(g) if *g < f => continue,
+                Some(g) => {
+                    let n = facets[*g].normal();
+                    let along = facet.corners[b] - facet.corners[a];
+                    if normal.cross(&n).dot(&along) <= BEHIND * along.norm() {
+                        continue;
+                    }
+                    n
+                }
+                None => -normal,
+            };
+            out.push(Ridge {
+                ends: [facet.corners[a], facet.corners[b]],
+                names,
+                facet: facet.name,
+                side: k as u8,
+                normals: [normal, other],
+            });
+        }
+    }
+    out
+}
+
+/// Whether all facets about a corner lie behind a normal there.
+pub fn behind(facets: &[Facet<V>], name: u64, place: &V, normal: &V) -> bool {
+    let height = |c: &V| (c - place).dot(normal);
+    let about = facets.iter().filter(|f| f.names.contains(&name));
+    about
+        .flat_map(|f| &f.corners)
+        .all(|c| height(c) <= BEHIND * (c - place).norm())
 }
 
 /// Nearest point of a triangle and the corners involved (one: a corner, two: an edge, three: the face).

@@ -204,6 +204,26 @@ mod tests {
     }
 
     #[test]
+    fn a_thin_plate_has_one_side_at_a_time() {
+        // Two faces 0.1 apart, both within reach.
+        let points = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let mut all: Vec<V> = points.iter().map(|p| V::new(p.0, p.1, 0.0)).collect();
+        all.extend(points.iter().map(|p| V::new(p.0, p.1, -0.1)));
+        let mut triangles = vec![[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]];
+        for k in 0..4u32 {
+            let next = (k + 1) % 4;
+            triangles.extend([[k, 4 + k, next], [next, 4 + k, 4 + next]]);
+        }
+        let plate = Mesh::new(all, triangles).unwrap();
+        for (z, side) in [(0.05, 1.0), (-0.15, -1.0)] {
+            let mut out = Vec::new();
+            plate.touches(&V::new(0.1, 0.2, z), 0.5, &mut out);
+            assert_eq!(out.len(), 1, "{out:?}");
+            assert!((out[0].distance - 0.05).abs() < 1e-15 && out[0].normal == V::z() * side);
+        }
+    }
+
+    #[test]
     fn features_stay_while_a_ball_slides_on_a_face() {
         let names: Vec<u32> = (0..5)
             .map(|k| touches([0.5 - 0.1 * f64::from(k), -0.6, 1.1], 0.3)[0].feature)

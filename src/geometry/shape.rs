@@ -66,10 +66,15 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn flat(&self) -> Option<S::Vector> {
         None
     }
-    /// Whether turning about the body's origin with this spin leaves the surface where it is.
+    /// Whether turning about the body's origin with this spin, in the body's axes, leaves the surface where it is.
     fn keeps_place(&self, spin: &S::Spin) -> bool {
         *spin == S::Spin::null()
     }
+}
+
+/// Whether a spin is about an axis, up to what turning its axes rounds.
+pub(super) fn about<S: Space>(axis: &S::Vector, spin: &S::Spin) -> bool {
+    S::split_spin(axis, spin).1.norm() <= 1e-9 * spin.norm()
 }
 
 /// A half-space: solid below the plane through the origin with outward unit normal.
@@ -103,8 +108,7 @@ impl<S: Space> Surface<S> for HalfSpace<S> {
     }
 
     fn keeps_place(&self, spin: &S::Spin) -> bool {
-        *spin == S::Spin::null()
-            || (S::D == 3 && S::split_spin(&self.normal, spin).1 == S::Spin::null())
+        *spin == S::Spin::null() || (S::D == 3 && about::<S>(&self.normal, spin))
     }
 
     fn outline(&self) -> Vec<Vec<S::Vector>> {

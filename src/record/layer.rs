@@ -60,7 +60,7 @@ impl<S: Space> Layer<S> {
             let (dv, dw) = (*v1 - *v0, *w1 - *w0);
             self.apart -= h * s.bodies.mass[b] * s.gravity.dot(&v);
             self.apart += (theta - 0.5)
-                * (s.bodies.mass[b] * dv.dot(&dv) + s.bodies.inertia[b] * dw.dot(&dw));
+                * (s.bodies.mass[b] * dv.dot(&dv) + dw.dot(&s.bodies.angular_momentum(b, &dw)));
         }
         self.velocity = now;
     }
@@ -72,7 +72,7 @@ impl<S: Space> Layer<S> {
         let kinetic: f64 = driven
             .map(|(driven, (v, w))| {
                 let b = driven.body as usize;
-                0.5 * (s.bodies.mass[b] * v.dot(v) + s.bodies.inertia[b] * w.dot(w))
+                0.5 * (s.bodies.mass[b] * v.dot(v) + w.dot(&s.bodies.angular_momentum(b, w)))
             })
             .sum();
         let kept = e.kinetic - kinetic + e.potential + e.elastic;

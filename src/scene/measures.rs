@@ -108,12 +108,59 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
     Ok(())
 }
 
+/// Columns and figures that a run has anyway.
+const RESERVED: [&str; 36] = [
+    "step",
+    "time",
+    "cycle",
+    "phase",
+    "contacts",
+    "active",
+    "iterations",
+    "error",
+    "converged",
+    "bonds_intact",
+    "bonds_broken",
+    "damage_ratio",
+    "mean_damage",
+    "kinetic",
+    "potential",
+    "elastic",
+    "fracture",
+    "friction",
+    "impact",
+    "adhesion",
+    "viscous",
+    "correction",
+    "external_work",
+    "residual",
+    "worn_first",
+    "worn_third",
+    "delta",
+    "Q",
+    "P",
+    "mu",
+    "energy",
+    "damage",
+    "loops",
+    "biaxial",
+    "bonds",
+    "shear",
+];
+
 fn one(case: &Case, spec: &MeasureSpec) -> Result<(), (&'static str, String)> {
     let dimension = case.dimension as usize;
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if spec.name().is_empty() || !spec.name().chars().all(plain) {
         let message = "a name is made of letters, digits, `-` and `_`: it names columns and files";
         return Err(("name", message.into()));
+    }
+    if RESERVED.contains(&spec.name()) {
+        let message = format!(
+            "`{}` is a column or a figure of every run; take another name",
+            spec.name()
+        );
+        return Err(("name", message));
     }
     let axis = |axis: usize| {
         if axis < dimension {

@@ -4,7 +4,7 @@
 //! step's velocities are those at q_m.
 
 use crate::bodies::Bodies;
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::record::ledger::BodyWork;
 
 /// Moves positions and orientations by `time` without forces.
@@ -46,6 +46,7 @@ pub fn free_velocities<S: Space>(
     for driven in &bodies.driven {
         let b = driven.body as usize;
         let (v, w) = &mut free[b];
+        let mut moment = S::Spin::null();
         for (k, dof) in driven.dofs.iter().enumerate() {
             let dof = dof.over(time, h);
             let imposed = dof.imposed_velocity(time + h);
@@ -58,10 +59,11 @@ pub fn free_velocities<S: Space>(
             } else {
                 match imposed {
                     Some(velocity) => w[k - S::D] = velocity,
-                    None => w[k - S::D] += h * bodies.inverse_inertia[b] * force,
+                    None => moment[k - S::D] = h * force,
                 }
             }
         }
+        *w += bodies.inverse_tensor(b).apply(&moment);
     }
     free
 }

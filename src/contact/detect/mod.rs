@@ -117,11 +117,11 @@ fn must_rebuild<S: Space>(
         return true;
     }
     // A surface that turns sweeps more than its frame moves.
-    if shapes
-        .surfaces
-        .iter()
-        .any(|s| !s.shape.keeps_place(&bodies.spin[s.body as usize]))
-    {
+    if shapes.surfaces.iter().any(|s| {
+        let b = s.body as usize;
+        let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
+        !s.shape.keeps_place(&spin)
+    }) {
         return true;
     }
     let limit = 0.25 * network.skin * network.skin;

@@ -96,13 +96,10 @@ impl<'a, S: Space> Narrow<'a, S> {
             S::Vector::from_slice(&[1.0])
         };
         let (i, j) = (p.body as usize, q.body as usize);
-        let isotropic = |b: usize| {
-            (1..S::D).all(|k| self.bodies.inverse_mass[b][k] == self.bodies.inverse_mass[b][0])
-        };
         let simple = |ball: &Ball<S>, b: usize| {
             (ball.offset == S::Vector::null()
                 && self.bodies.length[b] == ball.radius
-                && isotropic(b))
+                && self.isotropic(b))
                 || (self.bodies.immovable(b) && self.bodies.spin[b] == S::Spin::null())
         };
         let Some(law) = self.laws.get(p.material, q.material) else {
@@ -143,6 +140,12 @@ impl<'a, S: Space> Narrow<'a, S> {
         self.admit(network, found, old);
     }
 
+    /// Whether a body answers impulses along all axes alike.
+    fn isotropic(&self, b: usize) -> bool {
+        let mass = &self.bodies.inverse_mass[b];
+        self.bodies.tensor(b).is_none() && (1..S::D).all(|k| mass[k] == mass[0])
+    }
+
     pub(super) fn surface(&mut self, network: &mut Network<S>, a: u32, b: u32) {
         let ball = &self.shapes.balls[a as usize];
         let surface = &self.shapes.surfaces[(b & !Key::SURFACE) as usize];
@@ -162,9 +165,9 @@ impl<'a, S: Space> Narrow<'a, S> {
         let (i, j) = (ball.body as usize, surface.body as usize);
         for touch in &touches {
             // The same feature, or the nearest of those that are no longer touched.
-            let same = old
-                .clone()
-                .find(|k| network.old[*k].key.feature == u64::from(touch.feature));
+            let same = old.clone().find(|k| {
+                !taken[k - old.start] && network.old[*k].key.feature == u64::from(touch.feature)
+            });
             let matched = same.or_else(|| {
                 old.clone().find(|k| {
                     !taken[k - old.start]
@@ -193,9 +196,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                 },
                 bodies: [ball.body, surface.body],
                 law,
-                central: still
-                    && centred
-                    && self.bodies.inverse_mass[i][0] == self.bodies.inverse_mass[i][S::D - 1],
+                central: still && centred && self.isotropic(i),
                 sharp: false,
                 broken: false,
                 slot: Contact::<S>::NO_MEMORY,

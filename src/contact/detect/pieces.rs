@@ -173,10 +173,15 @@ fn matches<S: Space>(
     old: std::ops::Range<usize>,
     origin: &S::Vector,
 ) -> Vec<Option<usize>> {
-    let mut matched: Vec<Option<usize>> = meetings
-        .iter()
-        .map(|m| old.clone().find(|k| contacts[*k].key.feature == m.feature))
-        .collect();
+    let mut matched: Vec<Option<usize>> = Vec::with_capacity(meetings.len());
+    for m in meetings {
+        // Around a period two points may have one name.
+        let same = |k: &usize| contacts[*k].key.feature == m.feature;
+        let found = old
+            .clone()
+            .find(|k| same(k) && !matched.contains(&Some(*k)));
+        matched.push(found);
+    }
     let mut ways = Vec::new();
     for (k, m) in meetings.iter().enumerate() {
         for at in old.clone() {

@@ -204,17 +204,6 @@ impl Polyhedron {
         }
     }
 
-    /// A facet of a surface, seen from both sides, its front the first face; the topology is that of
-    /// [`Topology::facet`].
-    pub fn facet(points: [V; 3], topology: &Arc<Topology>) -> Self {
-        let front = normal(&points, &[0, 1, 2]);
-        Self {
-            points: points.to_vec(),
-            normals: vec![front, -front],
-            topology: Arc::clone(topology),
-        }
-    }
-
     /// The part of a body with this core and a rounding (m).
     pub fn part(&self, rounding: f64) -> Part<Solid> {
         let properties = polyhedron_mass::of(self, rounding);
@@ -392,13 +381,6 @@ impl Topology {
             .map(|c| out.around(c))
             .collect::<Result<_, _>>()?;
         Ok(out)
-    }
-
-    /// Of a triangle seen from both sides.
-    pub fn facet() -> Arc<Self> {
-        #[allow(clippy::expect_used, reason = "two faces that are written here")]
-        let both = Self::new(3, vec![vec![0, 1, 2], vec![2, 1, 0]]).expect("two faces close");
-        Arc::new(both)
     }
 
     /// Faces about a corner: the next one goes out along the edge on which this one comes in.

@@ -165,20 +165,17 @@ impl Pair<'_> {
         }
     }
 
-    /// Two edges that are nearest; two points where they are those of capsules side by side.
+    /// Two edges that are nearest; two points where they lie side by side.
     fn edges(&self, near: &Nearest, gauge: &Gauge, out: &mut Vec<Meeting<V>>) {
         let distance = near.way.norm();
         let [e, f] = near.edges;
-        let rods = self.a.normals().is_empty() && self.b.normals().is_empty();
-        if rods
-            && let Some(ends) = side_by_side(
-                self.a.ends(e).map(|p| p + self.apart),
-                self.b.ends(f),
-                gauge.slack + ROUNDING * distance,
-            )
-        {
+        if let Some(ends) = side_by_side(
+            self.a.ends(e).map(|p| p + self.apart),
+            self.b.ends(f),
+            gauge.slack + ROUNDING * distance,
+        ) {
             let far = |at: &[V; 2]| (at[0] - at[1]).norm();
-            if ends.iter().all(|at| far(at) <= distance + gauge.slack) {
+            if distance > 0.0 && ends.iter().all(|at| far(at) <= distance + gauge.slack) {
                 for (k, at) in ends.iter().enumerate() {
                     let normal = (at[0] - at[1]) / far(at);
                     self.push(at, &normal, far(at), name::corner(k, true), out);
@@ -275,7 +272,7 @@ fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
 }
 
 /// Whether a direction normal to an edge is between the normals of its faces.
-fn holds(of: &Polyhedron, edge: usize, axis: &V) -> bool {
+pub fn holds(of: &Polyhedron, edge: usize, axis: &V) -> bool {
     let Some(faces) = of.topology().edges[edge].faces else {
         return true;
     };

@@ -1,23 +1,24 @@
 //! A convex polyhedron and a surface of a first body.
 //!
-//! A surface of facets meets it facet by facet, as a pair of polyhedra. A point counts where the facets about it
-//! lie behind its normal (no ghosts at seams), and where it is a corner of the polyhedron or on a sharp edge of the
-//! surface: on a seam between facets of one plane there is nothing to touch. Planes and the insides of drums are
-//! touched by corners alone.
+//! Corners of the polyhedron touch the surface as small balls would. A surface of facets has corners and edges of its
+//! own: those that are sharp touch the polyhedron's faces and edges. A point counts where the facets about it lie
+//! behind its normal, so there are no ghosts at seams, and on a seam of one plane nothing touches. Planes and the
+//! insides of drums are touched by corners alone.
 
-use super::polyhedron::{Polyhedron, Topology};
-use super::{Gauge, Meeting, polyhedron_pair};
-use crate::geometry::facets::Facet;
+use super::polyhedron::Polyhedron;
+use super::polyhedron_pair::holds;
+use super::{Gauge, Meeting};
+use crate::geometry::facets::{self, Facet, Ridge};
 use crate::geometry::shape::{Surface, Touch};
 use crate::geometry::space::Solid;
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
 
-/// How far, in parts of the distance, a facet may stand out before a normal and still count as behind it.
-const BEHIND: f64 = 1e-6;
-/// Places nearer than this part of the reach are the same.
-const SEAM: f64 = 1e-9;
+/// How deep a corner may be behind a surface and still be pushed out, in parts of the polyhedron's size.
+const DEEP: f64 = 0.25;
+/// Places nearer than this part of the size are the same.
+const SAME: f64 = 1e-9;
 
 /// Meetings of the polyhedron, centred at `at` in the surface's frame, in the order of their features.
 pub fn meet(
@@ -28,47 +29,151 @@ pub fn meet(
     gauge: &Gauge,
     out: &mut Vec<Meeting<V>>,
 ) {
-    let extent = V::repeat(core.farthest() + rounding + gauge.reach);
+    let size = core.farthest() + rounding;
+    let extent = V::repeat(size + gauge.reach);
     let mut facets = Vec::new();
     surface.facets(&(at - extent), &(at + extent), &mut facets);
     let first = out.len();
-    if facets.is_empty() {
-        corners(core, surface, at, rounding, gauge.reach, out);
-    } else {
-        sides(core, &facets, at, rounding, gauge, out);
+    let near = Near {
+        core,
+        at,
+        rounding,
+        reach: gauge.reach + rounding,
+        deep: DEEP * size,
+        same: SAME * size,
+    };
+    near.corners(surface, !facets.is_empty(), out);
+    if !facets.is_empty() {
+        let ridges = facets::ridges(&facets);
+        near.points(&facets, &ridges, out);
+        near.edges(&ridges, out);
     }
     out[first..].sort_by_key(|m| m.feature);
 }
 
-/// Corners on a surface that has none of its own.
-fn corners(
-    core: &Polyhedron,
-    surface: &dyn Surface<Solid>,
-    at: &V,
+/// A polyhedron where it stands, and how near is near (m).
+struct Near<'a> {
+    core: &'a Polyhedron,
+    at: &'a V,
     rounding: f64,
+    /// Of the core.
     reach: f64,
-    out: &mut Vec<Meeting<V>>,
-) {
-    let mut touches: Vec<Touch<V>> = Vec::new();
-    for (k, point) in core.points().iter().enumerate() {
-        let p = point + at;
-        touches.clear();
-        surface.touches(&p, reach + rounding, &mut touches);
-        for touch in &touches {
-            // Of the face that faces the surface; a segment has none, and both its ends count.
-            let facing = core.facing(&touch.normal);
-            if facing.is_some_and(|f| !core.topology().faces[f].contains(&(k as u32))) {
-                continue;
+    deep: f64,
+    same: f64,
+}
+
+impl Near<'_> {
+    /// Corners of the polyhedron on the surface.
+    fn corners(&self, surface: &dyn Surface<Solid>, faceted: bool, out: &mut Vec<Meeting<V>>) {
+        let reach = if faceted {
+            self.reach.max(self.deep)
+        } else {
+            self.reach
+        };
+        let mut touches: Vec<Touch<V>> = Vec::new();
+        for (k, point) in self.core.points().iter().enumerate() {
+            let p = point + self.at;
+            touches.clear();
+            surface.touches(&p, reach, &mut touches);
+            for touch in touches.iter().filter(|t| t.distance < self.reach) {
+                // Of the face that faces the surface; a segment has none, and both its ends count.
+                let facing = self.core.facing(&touch.normal);
+                let faces = &self.core.topology().faces;
+                if facing.is_some_and(|f| !faces[f].contains(&(k as u32))) {
+                    continue;
+                }
+                out.push(Meeting {
+                    on_candidate: p - touch.normal * self.rounding,
+                    on_antagonist: touch.foot,
+                    normal: touch.normal,
+                    gap: touch.distance - self.rounding,
+                    feature: u64::from(touch.feature) << 32 | k as u64,
+                    share: facing.map_or(0.0, |f| share(self.core, f)),
+                    facing: self.core.faces(&touch.normal),
+                });
             }
-            out.push(Meeting {
-                on_candidate: p - touch.normal * rounding,
-                on_antagonist: touch.foot,
-                normal: touch.normal,
-                gap: touch.distance - rounding,
-                feature: u64::from(touch.feature) << 32 | k as u64,
-                share: facing.map_or(0.0, |f| share(core, f)),
-                facing: core.faces(&touch.normal),
-            });
+        }
+    }
+
+    /// Sharp corners of the surface on the faces and edges of the polyhedron.
+    fn points(&self, facets: &[Facet<V>], ridges: &[Ridge], out: &mut Vec<Meeting<V>>) {
+        let mut seen: Vec<u64> = Vec::new();
+        for ridge in ridges {
+            for (name, place) in ridge.names.into_iter().zip(ridge.ends) {
+                if seen.contains(&name) {
+                    continue;
+                }
+                seen.push(name);
+                let (distance, outward) = self.core.distance(&(place - self.at));
+                if distance > self.reach || distance < -self.deep {
+                    continue;
+                }
+                // Corner on corner is met as a corner of the polyhedron.
+                let foot = place - self.at - outward * distance;
+                let corner = |p: &V| (p - foot).norm() <= self.same;
+                if self.core.points().iter().any(corner)
+                    || !facets::behind(facets, name, &place, &-outward)
+                {
+                    continue;
+                }
+                out.push(Meeting {
+                    on_candidate: place - outward * (distance - self.rounding),
+                    on_antagonist: place,
+                    normal: -outward,
+                    gap: distance - self.rounding,
+                    feature: u64::from(ridge.facet) << 32 | 1 << 30 | (name & 0xfff_ffff),
+                    share: 0.0,
+                    facing: self.core.normals().is_empty(),
+                });
+            }
+        }
+    }
+
+    /// Sharp edges of the surface across edges of the polyhedron.
+    fn edges(&self, ridges: &[Ridge], out: &mut Vec<Meeting<V>>) {
+        for ridge in ridges {
+            let [p, q] = ridge.ends;
+            let u = q - p;
+            for e in 0..self.core.topology().edges.len() {
+                let [a, b] = self.core.ends(e).map(|x| x + self.at);
+                let v = b - a;
+                let Some(across) = u.cross(&v).try_normalize(1e-6 * u.norm() * v.norm()) else {
+                    continue;
+                };
+                let distance = (a - p).dot(&across);
+                if distance.abs() > self.reach.max(self.deep) {
+                    continue;
+                }
+                // The nearest points of the lines, in parts of the edges.
+                let w = p - a + across * distance;
+                let part = |x: &V, y: &V| w.cross(x).dot(&across) / y.cross(x).dot(&across);
+                let (s, t) = (-part(&v, &u), part(&u, &v));
+                let inside = |x: f64| (0.0..=1.0).contains(&x);
+                if !inside(s) || !inside(t) {
+                    continue;
+                }
+                for normal in [across, -across] {
+                    let gap = (a - p).dot(&normal);
+                    if gap < self.reach
+                        && gap > -self.deep
+                        && ridge.holds(&normal)
+                        && holds(self.core, e, &-normal)
+                    {
+                        out.push(Meeting {
+                            on_candidate: a + v * t - normal * self.rounding,
+                            on_antagonist: p + u * s,
+                            normal,
+                            gap: gap - self.rounding,
+                            feature: u64::from(ridge.facet) << 32
+                                | 2 << 30
+                                | u64::from(ridge.side) << 28
+                                | e as u64,
+                            share: 0.0,
+                            facing: self.core.normals().is_empty(),
+                        });
+                    }
+                }
+            }
         }
     }
 }
@@ -81,119 +186,4 @@ fn share(core: &Polyhedron, face: usize) -> f64 {
         .map(|k| from(k).cross(&from(k + 1)) * 0.5)
         .sum();
     (area.norm() / (corners.len() as f64 * std::f64::consts::PI)).sqrt()
-}
-
-/// Facet by facet.
-fn sides(
-    core: &Polyhedron,
-    facets: &[Facet<V>],
-    at: &V,
-    rounding: f64,
-    gauge: &Gauge,
-    out: &mut Vec<Meeting<V>>,
-) {
-    let topology = Topology::facet();
-    let (first, mut met) = (out.len(), Vec::new());
-    for facet in facets {
-        // About its own first corner: the two are near each other, wherever the surface's origin is.
-        let origin = facet.corners[0];
-        let triangle = Polyhedron::facet(facet.corners.map(|c| c - origin), &topology);
-        met.clear();
-        let apart = origin - at;
-        polyhedron_pair::meet(&triangle, core, &apart, [0.0, rounding], gauge, &mut met);
-        for m in &met {
-            // The facet was the candidate there.
-            let own_corner = m.feature & 3 == 1;
-            let meeting = Meeting {
-                on_candidate: m.on_antagonist + at,
-                on_antagonist: m.on_candidate + at,
-                normal: -m.normal,
-                gap: m.gap,
-                feature: u64::from(facet.name) << 32 | m.feature & 0xffff_ffff,
-                share: 0.0,
-                facing: m.facing,
-            };
-            if !stands(&meeting, facet, facets, own_corner, gauge.slack) {
-                continue;
-            }
-            let alike = |o: &Meeting<V>| {
-                (o.on_antagonist - meeting.on_antagonist).norm() <= SEAM * gauge.reach + gauge.slack
-                    && o.normal.dot(&meeting.normal) >= 1.0 - SEAM
-            };
-            if !out[first..].iter().any(alike) {
-                out.push(meeting);
-            }
-        }
-    }
-}
-
-/// Whether a point counts: see the module.
-fn stands(
-    m: &Meeting<V>,
-    facet: &Facet<V>,
-    facets: &[Facet<V>],
-    own_corner: bool,
-    slack: f64,
-) -> bool {
-    if m.normal.dot(&facet.normal()) <= 0.0 {
-        return false;
-    }
-    let foot = m.on_antagonist;
-    let used = on(facet, &foot, slack);
-    let part = facet.part(used);
-    let height = |c: &V| (c - foot).dot(&m.normal);
-    let far = |c: &V| (c - foot).norm();
-    let about = || facets.iter().filter(|f| f.has(&part));
-    let behind = |f: &Facet<V>| {
-        f.corners
-            .iter()
-            .all(|c| height(c) <= BEHIND * far(c) + slack)
-    };
-    if !about().all(behind) {
-        return false;
-    }
-    if own_corner {
-        return true;
-    }
-    match used.iter().filter(|u| **u).count() {
-        // An edge is sharp where a facet falls away from it, or none follows.
-        2 => {
-            let falls = |f: &Facet<V>| {
-                f.corners
-                    .iter()
-                    .any(|c| height(c) < -BEHIND * far(c) - slack)
-            };
-            about().count() == 1 || about().any(falls)
-        }
-        // Angles about a corner of a plane make a full turn.
-        1 => {
-            let angle = |f: &Facet<V>| {
-                let at = f.names.iter().position(|n| *n == part[0]);
-                at.map_or(0.0, |k| f.angle(k))
-            };
-            about().map(angle).sum::<f64>() < std::f64::consts::TAU * (1.0 - BEHIND)
-        }
-        _ => false,
-    }
-}
-
-/// The corners of the part of a facet that a point of it is on.
-fn on(facet: &Facet<V>, point: &V, slack: f64) -> [bool; 3] {
-    let normal = facet.normal();
-    let mut used = [true; 3];
-    for k in 0..3 {
-        let (a, b) = (facet.corners[k], facet.corners[(k + 1) % 3]);
-        let inward = normal.cross(&(b - a)).normalize();
-        if (point - a).dot(&inward) <= slack {
-            // On this side: without the corner that is not of it.
-            used[(k + 2) % 3] = false;
-        }
-    }
-    if used == [false; 3] {
-        // Smaller than the slack: the nearest corner.
-        let far = |k: &usize| (facet.corners[*k] - point).norm();
-        let nearest = (0..3).min_by(|a, b| far(a).total_cmp(&far(b)));
-        used[nearest.unwrap_or(0)] = true;
-    }
-    used
 }

@@ -415,3 +415,76 @@ fn a_ball_shaped_corner_in_a_valley_touches_both_sides() {
     );
     assert!(steep.iter().all(|m| (m.gap - 0.05).abs() < 1e-12));
 }
+
+/// A valley along y of this slope on both sides, of unequal triangles.
+fn crease(slope: f64) -> Mesh {
+    let mut points = Vec::new();
+    for (k, y) in [-3.0, -1.1, 0.2, 1.4, 3.0].into_iter().enumerate() {
+        let shift = if k % 2 == 1 { 0.3 } else { 0.0 };
+        for x in [-3.0, -1.5 + shift, 0.0, 1.2 - shift, 3.0] {
+            points.push(V::new(x, y, slope * f64::abs(x)));
+        }
+    }
+    let mut triangles = Vec::new();
+    for j in 0..4 {
+        for i in 0..4 {
+            let k = 5 * j + i;
+            triangles.extend([[k, k + 1, k + 6], [k, k + 6, k + 5]]);
+        }
+    }
+    Mesh::new(points, triangles).unwrap()
+}
+
+#[test]
+fn an_apex_in_a_crease_is_held_from_both_sides() {
+    let points = [
+        V::new(0.0, 0.0, 0.0),
+        V::new(0.2, 0.0, 1.0),
+        V::new(-0.2, 0.1, 1.0),
+        V::new(0.0, -0.2, 1.1),
+    ];
+    let gem = Polyhedron::hull(&points).unwrap();
+    for slope in [0.1, 1.0, 3.0] {
+        let valley = crease(slope);
+        for x in [0.0, 1e-9, 1e-6, -1e-3, 0.01] {
+            for y in [0.0, 0.2, 0.7, 1.4] {
+                for depth in [0.02, 0.0, -1e-6, -1e-3, -0.05] {
+                    let at = V::new(x, y, depth + slope * f64::abs(x));
+                    let points = on(&gem, &valley, at, 0.0);
+                    // Of the two slopes each that is near pushes, and none is met from behind.
+                    let of = |sign: f64| points.iter().any(|m| m.normal.x * sign > 0.05);
+                    let near = if x >= 0.0 { of(-1.0) } else { of(1.0) };
+                    assert!(near, "{slope} {x} {y} {depth} {points:?}");
+                    if f64::abs(x) < 1e-4 {
+                        assert!(of(1.0) && of(-1.0), "{slope} {x} {y} {depth} {points:?}");
+                    }
+                    assert!(points.iter().all(|m| m.normal.z > 0.0), "{points:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_corner_deep_below_a_seam_comes_out() {
+    // Deeper than the slack, on the seams of a flat floor and beside them.
+    let floor = floor(0.0);
+    let block = Polyhedron::cuboid([1.0, 1.3, 0.4]);
+    let tilted = block.turned(&UnitQuaternion::from_scaled_axis(V::new(0.5, 0.4, 0.1)));
+    let low = tilted.lowest(&V::z());
+    let apex = tilted.points()[low];
+    for seam in [0.0, 0.7, -0.7] {
+        for beside in [0.0, 1e-12, 1e-7, 1e-4, 0.01] {
+            for depth in [1e-5, 1e-3, 0.05] {
+                let at = V::new(seam + beside, 0.1, -depth) - apex;
+                let points = on(&tilted, &floor, at, 0.0);
+                let least = points.iter().map(|m| m.gap).fold(f64::INFINITY, f64::min);
+                assert!(
+                    (least + depth).abs() < 1e-12,
+                    "{seam} {beside} {depth} {points:?}"
+                );
+                assert!(points.iter().all(|m| (m.normal - V::z()).norm() < 1e-12));
+            }
+        }
+    }
+}

@@ -28,6 +28,11 @@ impl<S: Dimensional> Builder<'_, S> {
             .unwrap_or(if volume > 0.0 { density * volume } else { 1.0 });
         let inertia = match spec.inertia {
             Some(inertia) => S::Tensor::uniform(inertia),
+            // Driven about some axis at some time it counts with one number, so that its energy does not jump when a
+            // drive gives way.
+            None if volume > 0.0 && self.turned_by_drives(spec) => {
+                S::Tensor::uniform(tensor::mean::<S>(&own) * density)
+            }
             None if volume > 0.0 => own.scaled(density),
             None => S::Tensor::uniform(1.0),
         };
@@ -47,6 +52,12 @@ impl<S: Dimensional> Builder<'_, S> {
         });
         self.carry(union, body, material, &centre);
         Ok(())
+    }
+
+    /// Whether a rotation of the body is imposed at some time.
+    fn turned_by_drives(&self, spec: &BodySpec) -> bool {
+        let drives = crate::scene::phases::drives_of(self.case, spec);
+        drives.iter().any(|d| d.0 >= S::D && d.1.imposes())
     }
 
     fn check_dofs(&self, here: &str, spec: &BodySpec, has_mass: bool) -> Result<(), InputError> {

@@ -1,8 +1,10 @@
-//! A contact with levers or of a body that is free along some axes only: solved as a block.
+//! A contact with levers or of a body that is free along some axes only: solved as a block, exactly where there is
+//! no shear cohesion.
 
 use super::{Line, Residual, Row, inverse, inverse_along, natural_map};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic, Mobility};
+use crate::solve::local::contact::Local;
 
 /// (1 + W B)^-1 and W' = (1 + W B)^-1 W of a block.
 #[derive(Clone, Debug)]
@@ -11,10 +13,48 @@ struct Block<S: Space> {
     w: S::Matrix,
     iwn: f64,
     iwt: f64,
+    exact: Exact,
+}
+
+/// Coulomb's law with W' in the frame of the contact.
+#[derive(Clone, Debug)]
+enum Exact {
+    Plane(Local<2>),
+    Solid(Local<3>),
+}
+
+impl Exact {
+    fn new<S: Space>(w: &S::Matrix, n: &S::Vector, mu: f64) -> Self {
+        let [t1, t2] = S::tangents(n);
+        let axes = [*n, t1, t2];
+        let entry = |i: usize, j: usize| axes[i].dot(&w.apply(&axes[j]));
+        if S::D == 2 {
+            let w = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
+            Self::Plane(Local::new(&w, mu))
+        } else {
+            let w = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
+            Self::Solid(Local::new(&w, mu))
+        }
+    }
+
+    /// The impulse that answers a free velocity, its normal and its tangential part.
+    fn solve<S: Space>(&mut self, n: &S::Vector, f: &S::Vector) -> (f64, S::Tangent) {
+        let [t1, t2] = S::components(n, &S::tangential(n, f));
+        match self {
+            Self::Plane(local) => {
+                let p = local.solve(&[n.dot(f), t1]);
+                (p[0], S::from_components(n, p[1], 0.0))
+            }
+            Self::Solid(local) => {
+                let p = local.solve(&[n.dot(f), t1, t2]);
+                (p[0], S::from_components(n, p[1], p[2]))
+            }
+        }
+    }
 }
 
 impl<S: Space> Block<S> {
-    fn new(w: S::Matrix, n: &S::Vector, b_n: f64, b_t: f64) -> Self {
+    fn new(w: S::Matrix, n: &S::Vector, mu: f64, b_n: f64, b_t: f64) -> Self {
         let mut ones = S::Vector::null();
         for k in 0..S::D {
             ones[k] = 1.0;
@@ -31,6 +71,7 @@ impl<S: Space> Block<S> {
         let w_n = n.dot(&w.apply(n));
         Self {
             m,
+            exact: Exact::new::<S>(&w, n, mu),
             w,
             iwn: inverse(w_n),
             iwt: inverse_along(largest, w_n),
@@ -62,6 +103,54 @@ pub(in crate::solve) struct GeneralRow<S: Space> {
     st: S::Tangent,
 }
 
+/// The unilateral part of a contact.
+struct Terms<S: Space> {
+    n: S::Vector,
+    shift_n: f64,
+    shift_t: S::Tangent,
+    mu: f64,
+    tension: f64,
+    cohesion: f64,
+    start: (f64, S::Tangent),
+}
+
+impl<S: Space> Terms<S> {
+    /// Solves the contact with a block at a free velocity.
+    fn solve(&self, block: &mut Block<S>, f: &S::Vector) -> (f64, S::Tangent) {
+        let n = &self.n;
+        if self.cohesion > 0.0 {
+            return self.alternate(block, f);
+        }
+        // In P = s + tension and u + shift it is Coulomb's law.
+        let shift = *n * self.shift_n + S::lift(n, &self.shift_t);
+        let f = *f + shift - block.w.apply(&(*n * self.tension));
+        let (pn, pt) = block.exact.solve::<S>(n, &f);
+        (pn - self.tension, pt)
+    }
+
+    /// The normal and the tangential part in turns. Two rounds: the sweeps that follow do the rest, since each
+    /// begins where the last one ended.
+    fn alternate(&self, block: &Block<S>, f: &S::Vector) -> (f64, S::Tangent) {
+        const ALTERNATIONS: usize = 2;
+        let n = &self.n;
+        let (mut sn, mut st) = self.start;
+        for _ in 0..ALTERNATIONS {
+            let (old_n, old_t) = (sn, st);
+            let u = block.w.apply(&(*n * sn + S::lift(n, &st))) + *f;
+            sn = (sn - (n.dot(&u) + self.shift_n) * block.iwn).max(-self.tension);
+            let u = block.w.apply(&(*n * sn + S::lift(n, &st))) + *f;
+            let ut = S::tangential(n, &u) + self.shift_t;
+            let bound = self.mu * (sn + self.tension) + self.cohesion;
+            st = (st - ut * block.iwt).limited(bound);
+            let change = (sn - old_n).abs() + (st - old_t).norm();
+            if change <= 1e-14 * (sn.abs() + st.norm()) {
+                break;
+            }
+        }
+        (sn, st)
+    }
+}
+
 impl<S: Space> GeneralRow<S> {
     pub fn new(
         contact: &ContactForm<S>,
@@ -71,10 +160,10 @@ impl<S: Space> GeneralRow<S> {
         let n = contact.normal;
         let [i, j] = contact.bodies.map(|b| inertia(b as usize));
         let elastic = contact.elastic.unwrap_or_else(Elastic::none);
-        let pulled = Block::new(block, &n, elastic.b_n, elastic.b_t);
+        let pulled = Block::new(block, &n, contact.friction, elastic.b_n, elastic.b_t);
         let slack = elastic
             .tension_only
-            .then(|| Block::new(block, &n, 0.0, elastic.b_t));
+            .then(|| Block::new(block, &n, contact.friction, 0.0, elastic.b_t));
         Self {
             bodies: contact.bodies,
             n,
@@ -107,26 +196,17 @@ impl<S: Space> GeneralRow<S> {
         b.s -= self.inverse_spins[1].apply(&S::moment(&self.arms[1], p));
     }
 
-    /// Solves the contact with block `w`: alternates the normal and the tangential part. Two rounds: the
-    /// sweeps that follow do the rest, since each begins where the last one ended.
-    fn solve(&self, block: &Block<S>, f: &S::Vector) -> (f64, S::Tangent) {
-        const ALTERNATIONS: usize = 2;
-        let n = &self.n;
-        let (mut sn, mut st) = (self.sn, self.st);
-        for _ in 0..ALTERNATIONS {
-            let (old_n, old_t) = (sn, st);
-            let u = block.w.apply(&(*n * sn + S::lift(n, &st))) + *f;
-            sn = (sn - (n.dot(&u) + self.shift_n) * block.iwn).max(-self.tension);
-            let u = block.w.apply(&(*n * sn + S::lift(n, &st))) + *f;
-            let ut = S::tangential(n, &u) + self.shift_t;
-            let bound = self.mu * (sn + self.tension) + self.cohesion;
-            st = (st - ut * block.iwt).limited(bound);
-            let change = (sn - old_n).abs() + (st - old_t).norm();
-            if change <= 1e-14 * (sn.abs() + st.norm()) {
-                break;
-            }
+    /// What is unilateral and what rubs, at a free velocity of the block.
+    fn terms(&self) -> Terms<S> {
+        Terms {
+            n: self.n,
+            shift_n: self.shift_n,
+            shift_t: self.shift_t,
+            mu: self.mu,
+            tension: self.tension,
+            cohesion: self.cohesion,
+            start: (self.sn, self.st),
         }
-        (sn, st)
     }
 
     fn bond(&self, u: &S::Vector) -> (f64, S::Tangent) {
@@ -150,13 +230,14 @@ impl<S: Space> Row<S> for GeneralRow<S> {
             .pulled
             .m
             .apply(&(f - self.block.apply(&(n * e.a_n + at))));
-        let (mut sn, mut st) = self.solve(&self.pulled, &with);
+        let terms = self.terms();
+        let (mut sn, mut st) = terms.solve(&mut self.pulled, &with);
         let mut u = self.pulled.w.apply(&(n * sn + S::lift(&n, &st))) + with;
-        if let Some(slack) = &self.slack
+        if let Some(slack) = &mut self.slack
             && -(e.a_n + e.b_n * n.dot(&u)) > 0.0
         {
             let without = slack.m.apply(&(f - self.block.apply(&at)));
-            (sn, st) = self.solve(slack, &without);
+            (sn, st) = terms.solve(slack, &without);
             u = slack.w.apply(&(n * sn + S::lift(&n, &st))) + without;
         }
         let (en, et) = self.bond(&u);

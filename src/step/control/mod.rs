@@ -88,7 +88,7 @@ impl<S: Space> Simulation<S> {
             h: self.scheme.h,
         };
         let mut clock = std::mem::take(&mut self.control.clock);
-        if let Some(why) = clock.ends(&until, &now, || self.motion_of_grains()) {
+        if let Some(why) = clock.ends(&until, &now, || self.motion_of_free()) {
             clock.close(&now, why);
         }
         self.control.clock = clock;
@@ -153,14 +153,16 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// What a condition of rest looks at.
-    fn motion_of_grains(&self) -> phases::Motion {
+    /// What a condition of rest looks at: the grains, and first bodies of which nothing is imposed.
+    fn motion_of_free(&self) -> phases::Motion {
         let bodies = &self.bodies;
+        let free = |b: &usize| (0..S::D).all(|k| bodies.inverse_mass[*b][k] > 0.0);
+        let moving = || (0..bodies.len()).filter(free);
         // The work that gravity does on a grain over its own diameter.
         let weight = |b: usize| bodies.mass[b] * 2.0 * bodies.length[b];
         phases::Motion {
-            kinetic: bodies.grains().map(|b| bodies.energy_of(b)).sum(),
-            scale: bodies.grains().map(weight).sum::<f64>() * self.gravity.norm(),
+            kinetic: moving().map(|b| bodies.energy_of(b)).sum(),
+            scale: moving().map(weight).sum::<f64>() * self.gravity.norm(),
         }
     }
 }
