@@ -84,7 +84,8 @@ pub fn meet(
         let beside = best > 0.0
             && distance * distance - best * best <= gauge.slack * gauge.slack
             && !points.is_empty();
-        if !beside && !(gauge.held && best > 0.0 && !points.is_empty()) {
+        let over_face = beside || gauge.held && best > 0.0 && !points.is_empty();
+        if !over_face {
             if distance <= reach {
                 pair.edges(&near, gauge, out);
             }
