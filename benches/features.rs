@@ -2,15 +2,22 @@
 //!
 //! `cargo bench --bench features` steps the boxes of 5,000 disks and spheres at rest with one feature after another
 //! and prints the table of `docs/features.md`. Variants take turns, and the least of several rounds counts, so that
-//! what else the machine does counts as little as it can.
+//! what else the machine does counts as little as it can. `pieces` times the narrow phase of polyhedra, by pairs.
 
 use fretwork::contact::Bond;
+use fretwork::geometry::convex::polyhedron::Polyhedron;
+use fretwork::geometry::convex::{Core, Gauge};
+use fretwork::geometry::periodic::Periodic;
 use fretwork::geometry::space::{Plane, Solid, Space};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
+use fretwork::scene::sample::deposit::Corners;
+use fretwork::scene::sample::voronoi_space::tiling;
 use fretwork::solve::Problem;
 use fretwork::step::Simulation;
+use nalgebra::{UnitQuaternion, Vector3};
+use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
@@ -69,6 +76,10 @@ struct Trial<S: Space> {
 
 fn main() {
     let wanted = std::env::args().skip(1).find(|a| !a.starts_with('-'));
+    if wanted.as_deref() == Some("pieces") {
+        pieces();
+        return;
+    }
     println!(
         "| scene | feature | contacts | a contact: step | detection | laws | a sweep | row | memory of bonds and history |"
     );
@@ -150,5 +161,84 @@ fn round<S: Space>(t: &mut Trial<S>) {
     for (k, (least, sum)) in t.least.iter_mut().zip(sums).enumerate() {
         let count = if k == 3 { sweeps.max(1) } else { STEPS };
         *least = least.min(sum / f64::from(count));
+    }
+}
+
+/// Two polyhedra, and where the first one's centre stands from the second's (m).
+type Pair = (Polyhedron, Polyhedron, Vector3<f64>);
+
+/// What the narrow phase takes a pair: in contact as faces, as edges, and within the neighbour list only.
+fn pieces() {
+    const REACH: f64 = 1e-3;
+    let cube = Polyhedron::cuboid([1.0; 3]);
+    let turned = cube.turned(&UnitQuaternion::from_scaled_axis(Vector3::new(
+        0.0, 0.0, 0.3,
+    )));
+    let on_top: Pair = (turned, cube.clone(), Vector3::new(0.1, 0.2, 1.0));
+    // An edge along x over one along y.
+    let [x, y] = [Vector3::x(), Vector3::y()].map(|axis| {
+        cube.turned(&UnitQuaternion::from_scaled_axis(
+            axis * std::f64::consts::FRAC_PI_4,
+        ))
+    });
+    let crossed: Pair = (x, y, Vector3::new(0.1, 0.05, 2f64.sqrt() - 1e-6));
+    let (low, high) = (Vector3::zeros(), Vector3::repeat(6.0));
+    let sample = tiling(&Corners { low, high }, &Periodic::default(), 1.0, 3, 1);
+    let cells = sample.unwrap_or_else(|e| panic!("{e:?}")).cells;
+    let parts: Vec<_> = cells
+        .iter()
+        .map(|c| Polyhedron::from_faces(c.points.clone(), c.faces.clone()))
+        .map(|p| p.unwrap_or_else(|e| panic!("{e}")).part(0.0))
+        .collect();
+    let (mut neighbours, mut apart): (Vec<Pair>, Vec<Pair>) = Default::default();
+    for (i, a) in parts.iter().enumerate() {
+        for (j, b) in parts[..i].iter().enumerate() {
+            let way = a.centre - b.centre;
+            let pair = (a.core.clone(), b.core.clone(), way);
+            if cells[i].beyond.contains(&Some(j as u32)) {
+                neighbours.push(pair);
+            } else if way.norm() < a.bound + b.bound + REACH {
+                apart.push(pair);
+            }
+        }
+    }
+    println!("| polyhedra | pairs | points a pair | a pair |");
+    println!("|---|---|---|---|");
+    for (name, pairs) in [
+        ("cubes face on face", vec![on_top]),
+        ("cubes edge on edge", vec![crossed]),
+        ("Voronoi neighbours", neighbours),
+        (
+            "Voronoi cells near each other, without a face in common",
+            apart,
+        ),
+    ] {
+        let gauge = Gauge {
+            reach: REACH,
+            slack: 0.01 * REACH,
+            held: false,
+        };
+        let (mut least, mut points) = (f64::INFINITY, 0);
+        let repeats = 20_000 / pairs.len() + 1;
+        let mut out = Vec::new();
+        for _ in 0..ROUNDS {
+            points = 0;
+            let clock = Instant::now();
+            for _ in 0..repeats {
+                for (a, b, way) in &pairs {
+                    out.clear();
+                    a.meet(b, black_box(way), [0.0; 2], &gauge, &mut out);
+                    points += out.len();
+                }
+            }
+            least = least.min(clock.elapsed().as_secs_f64());
+        }
+        let met = (repeats * pairs.len()) as f64;
+        println!(
+            "| {name} | {} | {:.1} | {:.0} ns |",
+            pairs.len(),
+            points as f64 / met,
+            1e9 * least / met
+        );
     }
 }

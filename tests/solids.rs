@@ -186,7 +186,10 @@ fn a_fixed_axis_stays_fixed_on_a_slope() {
     let ball = at(&s, "s");
     until(&mut s, 0.1);
     assert!(s.network.contacts.iter().any(|c| c.impulse.norm() > 0.0));
-    assert_eq!((s.bodies.position[ball].y, s.bodies.velocity[ball].y), (0.0, 0.0));
+    assert_eq!(
+        (s.bodies.position[ball].y, s.bodies.velocity[ball].y),
+        (0.0, 0.0)
+    );
 }
 
 #[test]
@@ -194,7 +197,12 @@ fn a_wall_that_was_turned_and_turns_again_strikes() {
     let mut s = scene("verification/turned_wall", &[]);
     until(&mut s, 1.0);
     // It lies in the plane x sin a + y cos a = 0 and comes at the ball after 0.41 s of its turn.
-    let fast = s.bodies.velocity.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    let fast = s
+        .bodies
+        .velocity
+        .iter()
+        .map(|v| v.norm())
+        .fold(0.0, f64::max);
     assert!(fast > 0.5, "{fast}");
 }
 
@@ -202,5 +210,9 @@ fn a_wall_that_was_turned_and_turns_again_strikes() {
 fn a_drive_that_gives_way_leaves_the_energy() {
     let mut s = scene("verification/driven_then_free", &[]);
     until(&mut s, 0.2);
-    assert!(s.energy.kinetic > 0.1 && s.energy.relative_residual() < 1e-12, "{:?}", s.energy);
+    assert!(
+        s.energy.kinetic > 0.1 && s.energy.relative_residual() < 1e-12,
+        "{:?}",
+        s.energy
+    );
 }

@@ -1,10 +1,12 @@
 //! Samples of grains.
 
+pub mod cutting;
 pub mod deposit;
 pub mod sizes;
 pub mod spec;
 pub mod table;
 pub mod voronoi;
+pub mod voronoi_space;
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

@@ -165,11 +165,51 @@ fn walls_that_cannot_be() {
 
 #[test]
 fn voronoi_cells_in_space() {
-    let cells =
-        "‸Voronoi(material: \"grain\", size: 0.1, low: [0.0, 0.0, 0.0], high: [1.0, 1.0, 1.0])";
-    refused(
-        &with(SOLID, "    grains: [", &format!("    grains: [{cells}, ")),
-        &["need two dimensions; use a Deposit of balls in three"],
+    let of = |fields: &str, sentence: &str| {
+        let cells = format!("    grains: [Voronoi(material: \"grain\", {fields}), ");
+        refused(&with(SOLID, "    grains: [", &cells), &[sentence]);
+    };
+    let region = "low: [0.2, 0.03, 0.2], high: [0.3, 0.06, 0.3]";
+    of(
+        &format!("size: ‸1e-5, {region}"),
+        "would hold 3.000e11 cells of this size",
+    );
+    of(
+        &format!("size: ‸0.1, {region}"),
+        "wider and higher and deeper than half of that",
+    );
+    of(
+        "size: 0.01, low: [0.2, 0.03, 0.2], high: ‸[0.3, 0.06, 0.2]",
+        "the region has no volume",
+    );
+    of(
+        &format!("size: 0.01, rounding: ‸0.02, {region}"),
+        "take 2e-2 m off each face, which leaves nothing of the thinnest cell",
+    );
+    of(
+        &format!("size: 0.01, gap: ‸0.04, {region}"),
+        "take 2e-2 m off each face, which leaves nothing of the thinnest cell",
+    );
+    of(
+        "size: 0.01, low: ‸[0.2, 0.03], high: [0.3, 0.06, 0.3]",
+        "2 components in a case of dimension 3",
+    );
+}
+
+#[test]
+fn walls_in_space() {
+    let of = |case: &str, list: &str, sentence: &str| {
+        let more = format!("    grains: [{list}, ");
+        refused(&with(case, "    grains: [", &more), &[sentence]);
+    };
+    let wall = "BlockWall(material: \"grain\", rows: 2, columns: 3, block: (0.02, 0.01)";
+    let says = "has a `thickness` in three dimensions, and in three alone";
+    of(SOLID, &format!("‸{wall})"), says);
+    of(PLANE, &format!("‸{wall}, thickness: 0.1)"), says);
+    of(
+        SOLID,
+        &format!("{wall}, thickness: ‸-0.1)"),
+        "a length must be positive, got -0.1",
     );
 }
 

@@ -125,14 +125,23 @@ impl<S: Space> Narrow<'_, S> {
         origins: [S::Vector; 2],
     ) {
         let matched = matches(&network.old, meetings, old.clone(), &origins[0]);
-        let mut taken = vec![false; old.len()];
-        for (m, before) in meetings.iter().zip(matched) {
-            if m.gap >= network.alert && !held(network, before) {
-                continue;
+        let pairs = meetings.iter().copied().zip(matched);
+        let mut met: Vec<_> = pairs
+            .filter(|(m, before)| m.gap < network.alert || held(network, *before))
+            .collect();
+        // A face in space may lose a corner; a bond that held there goes on at the nearest that is left.
+        for k in old.clone() {
+            if held(network, Some(k)) && !met.iter().any(|m| m.1 == Some(k)) {
+                let at = network.old[k].arms[0] - origins[0];
+                let far = |m: &Meeting<S::Vector>| (m.on_candidate - at).norm();
+                let nearest = meetings.iter().min_by(|m, n| far(m).total_cmp(&far(n)));
+                let feature = network.old[k].key.feature;
+                met.extend(nearest.map(|m| (Meeting { feature, ..*m }, Some(k))));
             }
-            if let Some(k) = before {
-                taken[k - old.start] = true;
-            }
+        }
+        met.sort_by_key(|(m, _)| m.feature);
+        let taken: Vec<usize> = met.iter().filter_map(|m| m.1).collect();
+        for (m, before) in met {
             let found = Contact {
                 key: Key {
                     candidate: pair.name.0,
@@ -156,8 +165,8 @@ impl<S: Space> Narrow<'_, S> {
             };
             self.admit(network, found, before);
         }
-        for k in old.clone() {
-            if !taken[k - old.start] {
+        for k in old {
+            if !taken.contains(&k) {
                 drop_contact(network, k);
             }
         }

@@ -331,7 +331,7 @@ pub fn across(v: &V) -> V {
 }
 
 /// Outward normal of a face by its area vector: exact in the mean where corners are not quite in a plane.
-fn normal(points: &[V], face: &[u32]) -> V {
+pub fn normal(points: &[V], face: &[u32]) -> V {
     let origin = points[face[0] as usize];
     let at = |k: usize| points[face[k] as usize] - origin;
     let area: V = (1..face.len() - 1).map(|k| at(k).cross(&at(k + 1))).sum();

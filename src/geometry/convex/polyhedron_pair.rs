@@ -31,9 +31,12 @@ pub fn meet(
 ) {
     let reach = gauge.reach + roundings[0] + roundings[1];
     let alike = ALIKE * gauge.slack + ROUNDING * apart.norm();
-    let (from_a, face_a) = separation(a, b, &-apart);
-    let (from_b, face_b) = separation(b, a, apart);
-    if from_a.max(from_b) > reach {
+    let (from_a, face_a) = separation(a, b, &-apart, reach);
+    if from_a > reach {
+        return;
+    }
+    let (from_b, face_b) = separation(b, a, apart, reach);
+    if from_b > reach {
         return;
     }
     // Of two faces that are as good the candidate's, however they are rounded.
@@ -61,7 +64,9 @@ pub fn meet(
     };
     let first = out.len();
     let over = |p: &polyhedron_clip::Point| p.height <= best + alike;
-    if best >= -gauge.slack && points.iter().any(over) {
+    // What is bonded over a face stays so while it bends, though edges may be nearer then.
+    let bonded = gauge.held && points.len() > 2;
+    if bonded || best >= -gauge.slack && points.iter().any(over) {
         pair.face(&points, a_leads, gauge, out);
         out[first..].sort_by_key(|m| m.feature);
         return;
@@ -79,7 +84,8 @@ pub fn meet(
         let beside = best > 0.0
             && distance * distance - best * best <= gauge.slack * gauge.slack
             && !points.is_empty();
-        if !beside && !(gauge.held && best > 0.0 && !points.is_empty()) {
+        let over_face = beside || gauge.held && best > 0.0 && !points.is_empty();
+        if !over_face {
             if distance <= reach {
                 pair.edges(&near, gauge, out);
             }
@@ -208,19 +214,26 @@ fn across_both(u: &V, v: &V, way: &V, rounding: f64) -> V {
 }
 
 /// The greatest separation along a face of `of`, and that face; `to` stands at `apart` from it. Minus infinity where
-/// there is no face.
-fn separation(of: &Polyhedron, to: &Polyhedron, apart: &V) -> (f64, usize) {
+/// there is no face; the first that is beyond `reach` (m), where there is one.
+fn separation(of: &Polyhedron, to: &Polyhedron, apart: &V, reach: f64) -> (f64, usize) {
     let mut best = (f64::NEG_INFINITY, 0);
     for (f, n) in of.normals().iter().enumerate() {
-        let lowest = to
-            .points()
-            .iter()
-            .map(|p| p.dot(n))
-            .fold(f64::INFINITY, f64::min);
         let corner = of.topology().faces[f][0] as usize;
-        let s = lowest + (apart - of.points()[corner]).dot(n);
+        let first = (apart - of.points()[corner]).dot(n);
+        let mut lowest = f64::INFINITY;
+        for p in to.points() {
+            lowest = lowest.min(p.dot(n));
+            // No better than another face: the rest of the corners can only be lower.
+            if first + lowest <= best.0 {
+                break;
+            }
+        }
+        let s = lowest + first;
         if s > best.0 {
             best = (s, f);
+            if s > reach {
+                break;
+            }
         }
     }
     best
@@ -246,6 +259,9 @@ fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
         for f in 0..b.topology().edges.len() {
             let [q0, q1] = b.ends(f);
             let along_b = q1 - q0;
+            if !(turns(a, e, &along_b) && turns(b, f, &along_a)) {
+                continue;
+            }
             let product = along_a.cross(&along_b);
             // Parallel edges have no axis of their own.
             let size = product.norm();
@@ -269,6 +285,16 @@ fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
         }
     }
     best
+}
+
+/// Whether a plane normal to a direction can hold a normal between those of an edge's faces: the arc from the one to
+/// the other crosses it. What is said to do so for rounding alone is looked at again.
+fn turns(of: &Polyhedron, edge: usize, direction: &V) -> bool {
+    let Some(faces) = of.topology().edges[edge].faces else {
+        return true;
+    };
+    let [m, n] = faces.map(|f| of.normals()[f as usize].dot(direction));
+    m * n <= 1e-12 * direction.norm_squared()
 }
 
 /// Whether a direction normal to an edge is between the normals of its faces.
@@ -304,6 +330,7 @@ struct Nearest {
     way: V,
 }
 
+/// Edges whose balls are farther apart than the best so far are passed over.
 fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
     let mut best = Nearest {
         edges: [0, 0],
@@ -311,14 +338,25 @@ fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
         way: V::repeat(f64::INFINITY),
     };
     let mut least = f64::INFINITY;
+    let ball = |[p, q]: [V; 2]| ((p + q) * 0.5, 0.5 * (p - q).norm());
+    let others: Vec<(V, f64)> = (0..b.topology().edges.len())
+        .map(|f| ball(b.ends(f)))
+        .collect();
     for e in 0..a.topology().edges.len() {
         let one = a.ends(e).map(|p| p + apart);
-        for f in 0..b.topology().edges.len() {
+        let (middle, half) = ball(one);
+        let mut room = half + least.sqrt();
+        for (f, (other, other_half)) in others.iter().enumerate() {
+            let limit = room + other_half;
+            if (middle - other).norm_squared() > limit * limit {
+                continue;
+            }
             let points = segments(&one, &b.ends(f));
             let way = points[0] - points[1];
             let squared = way.norm_squared();
             if squared < least {
                 least = squared;
+                room = half + least.sqrt();
                 best = Nearest {
                     edges: [e, f],
                     points,

@@ -100,9 +100,10 @@ impl<S: Space> Measure<S> for Band<S> {
             })
             .filter(|x| (0..S::D).all(|k| (self.low[k]..self.high[k]).contains(&x[k])));
         let points: Vec<(f64, f64)> = sheared.map(|x| (x[0], x[up])).collect();
-        let (sum, n) = grains(s).fold((0.0, 0.0), |(sum, n), g| (sum + 2.0 * g.2, n + 1.0));
-        let (angle, width) =
-            shape(&points, self.low[up], 2.0 * sum / n).unwrap_or((f64::NAN, f64::NAN));
+        let all = grains(s);
+        let sum: f64 = all.iter().map(|g| 2.0 * g.radius).sum();
+        let (angle, width) = shape(&points, self.low[up], 2.0 * sum / all.len() as f64)
+            .unwrap_or((f64::NAN, f64::NAN));
         vec![angle, width, points.len() as f64]
     }
 

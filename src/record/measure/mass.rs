@@ -27,8 +27,9 @@ impl<S: Space> Measure<S> for Mass {
     }
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let above = grains(s).filter(|(x, _, _)| x[self.axis] > self.above);
-        vec![above.map(|(_, b, _)| s.bodies.mass[b]).sum()]
+        let all = grains(s);
+        let above = all.iter().filter(|g| g.at[self.axis] > self.above);
+        vec![above.map(|g| g.mass).sum()]
     }
 
     fn outcome(&self, table: &Table) -> Vec<(String, f64)> {

@@ -7,6 +7,7 @@ mod shear;
 mod slope;
 
 use super::statistics::{Column, Table};
+use crate::geometry::convex::{Core, Piece};
 use crate::geometry::space::{Space, VectorLike};
 use crate::report::ReportError;
 use crate::scene::measures::MeasureSpec;
@@ -135,14 +136,64 @@ impl<S: Space> Measures<S> {
     }
 }
 
-/// The grains: centre, index of the body, radius. Balls of driven bodies are none.
-fn grains<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (S::Vector, usize, f64)> + '_ {
-    let grain = s.bodies.grain_flags();
-    let balls = s.shapes.balls.iter();
-    balls
-        .filter(move |b| grain[b.body as usize])
-        .map(|b| (crate::contact::detect::centre(b, &s.bodies), b))
-        .map(|(x, b)| (s.shapes.periodic.wrapped(x), b.body as usize, b.radius))
+/// A grain, or one of the shapes of a grain that has several.
+struct Grain<'a, S: Space> {
+    /// Its centre, in the cell that begins at zero along a period (m).
+    at: S::Vector,
+    /// Index of the body.
+    body: usize,
+    /// Radius of the ball of its volume (m).
+    radius: f64,
+    /// Its part of the body's mass, by volume (kg; kg/m in 2D).
+    mass: f64,
+    /// What it is, where it is no ball.
+    piece: Option<&'a Piece<S>>,
+}
+
+impl<S: Space> Grain<'_, S> {
+    /// How far it reaches above its centre (m).
+    fn rise(&self, s: &Simulation<S>) -> f64 {
+        let Some(piece) = self.piece else {
+            return self.radius;
+        };
+        let mut up = S::Vector::null();
+        up[S::D - 1] = 1.0;
+        let up = S::unrotate(&s.bodies.rotation[self.body], &up);
+        let corners = piece.core.outline(0.0).concat();
+        let heights = corners.iter().map(|c| c.dot(&up));
+        heights.fold(f64::NEG_INFINITY, f64::max) + piece.rounding
+    }
+}
+
+/// The grains. What driven bodies carry is none.
+fn grains<S: Space>(s: &Simulation<S>) -> Vec<Grain<'_, S>> {
+    let flags = s.bodies.grain_flags();
+    let balls = s.shapes.balls.iter().map(|b| Grain {
+        at: crate::contact::detect::centre(b, &s.bodies),
+        body: b.body as usize,
+        radius: b.radius,
+        mass: 0.0,
+        piece: None,
+    });
+    let pieces = s.shapes.pieces.iter().map(|p| Grain {
+        at: crate::record::picture::piece_centre(s, p),
+        body: p.body as usize,
+        radius: p.size,
+        mass: 0.0,
+        piece: Some(p),
+    });
+    let all = balls.chain(pieces).filter(|g| flags[g.body]);
+    let mut all: Vec<Grain<'_, S>> = all.collect();
+    let mut volumes = vec![0.0; s.bodies.len()];
+    for g in &all {
+        volumes[g.body] += S::ball_volume(g.radius);
+    }
+    for g in &mut all {
+        let share = S::ball_volume(g.radius) / volumes[g.body];
+        g.mass = s.bodies.mass[g.body] * share;
+        g.at = s.shapes.periodic.wrapped(g.at);
+    }
+    all
 }
 
 /// (time, value) of a column from a time on.

@@ -114,21 +114,21 @@ impl<S: Space> Measure<S> for Profile<S> {
         }
         self.samples += 1;
         let bins = self.slices.len() as f64;
-        for (x, b, r) in grains(s) {
-            let x = self.turned(&x);
+        for g in grains(s) {
+            let x = self.turned(&g.at);
             if !(0..S::D).all(|k| (self.low[k]..self.high[k]).contains(&x[k])) {
                 continue;
             }
             let (low, high) = (self.low[self.axis], self.high[self.axis]);
             let place = ((x[self.axis] - low) / (high - low) * bins) as usize;
-            let velocity = self.turned(&s.bodies.velocity[b]);
+            let velocity = self.turned(&s.bodies.velocity[g.body]);
             let Some(slice) = self.slices.get_mut(place) else {
                 continue;
             };
-            let mass = s.bodies.mass[b];
-            let spin = &s.bodies.spin[b];
+            let mass = g.mass;
+            let spin = &s.bodies.spin[g.body];
             slice.mass += mass;
-            slice.volume += S::ball_volume(r);
+            slice.volume += S::ball_volume(g.radius);
             slice.momentum += velocity * mass;
             slice.spin += mass * if S::D == 2 { spin[0] } else { spin.norm() };
         }

@@ -57,9 +57,14 @@ impl<S: Space> Measure<S> for Shear {
             .product();
         let volume = section * (self.high - self.low);
         let inside = |z: f64| (self.low..self.high).contains(&z);
-        let layer: Vec<(f64, f64, f64, f64)> = grains(s)
-            .filter(|(x, _, r)| x[up] + r > self.low && x[up] - r < self.high)
-            .map(|(x, b, r)| (x[up], s.bodies.velocity[b][0], r, s.bodies.mass[b]))
+        let all = grains(s);
+        let layer: Vec<(f64, f64, f64, f64)> = all
+            .iter()
+            .filter(|g| g.at[up] + g.radius > self.low && g.at[up] - g.radius < self.high)
+            .map(|g| {
+                let velocity = s.bodies.velocity[g.body][0];
+                (g.at[up], velocity, g.radius, g.mass)
+            })
             .collect();
         let within = layer.iter().filter(|g| inside(g.0));
         let rate = line(within.clone().map(|g| (g.0, g.1))).unwrap_or(0.0);

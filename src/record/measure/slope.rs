@@ -37,20 +37,20 @@ impl<S: Space> Measure<S> for Slope {
             }
         }
         let wide = self.to - self.from;
-        let all = grains(s).map(|g| 2.0 * g.2);
-        let (sum, count) = all.fold((0.0, 0usize), |(a, n), d| (a + d, n + 1));
+        let all = grains(s);
+        let sum: f64 = all.iter().map(|g| 2.0 * g.radius).sum();
         // Columns of two diameters.
-        let width = 2.0 * sum / count.max(1) as f64;
+        let width = 2.0 * sum / all.len().max(1) as f64;
         let columns = if width > 0.0 {
             (wide / width).floor().clamp(2.0, 1e6) as usize
         } else {
             2
         };
         let mut tops = vec![None::<f64>; columns];
-        for (x, b, r) in grains(s) {
-            let k = ((x[0] - self.from) / wide * columns as f64).floor();
-            if touched[b] && k >= 0.0 && (k as usize) < columns {
-                let top = x[S::D - 1] + r;
+        for g in &all {
+            let k = ((g.at[0] - self.from) / wide * columns as f64).floor();
+            if touched[g.body] && k >= 0.0 && (k as usize) < columns {
+                let top = g.at[S::D - 1] + g.rise(s);
                 let old = &mut tops[k as usize];
                 *old = Some(old.map_or(top, |o| o.max(top)));
             }

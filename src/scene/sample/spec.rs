@@ -18,13 +18,13 @@ pub struct DepositSpec {
     pub high: Vec<f64>,
 }
 
-/// Voronoi cells that fill a box side by side (2D); see [`super::voronoi`].
+/// Voronoi cells that fill a box side by side; see [`super::voronoi`] and [`super::voronoi_space`].
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VoronoiSpec {
     /// Material.
     pub material: String,
-    /// Mean size of a cell, the root of its area (m).
+    /// Mean size of a cell, the root of its area, in 3D the cube root of its volume (m).
     pub size: f64,
     /// Low corner of the box (m).
     pub low: Vec<f64>,
@@ -36,12 +36,13 @@ pub struct VoronoiSpec {
     /// Distance between neighbours (m).
     #[serde(default)]
     pub gap: f64,
-    /// Radius to which corners are rounded (m).
+    /// Radius to which corners, in 3D edges too, are rounded (m).
     #[serde(default)]
     pub rounding: f64,
 }
 
-/// A wall of blocks in running bond (2D): every second course begins and ends with half a block.
+/// A wall of blocks in running bond: every second course begins and ends with half a block. In 3D it stands along x
+/// and z and is one block thick.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BlockWallSpec {
@@ -53,10 +54,13 @@ pub struct BlockWallSpec {
     pub columns: usize,
     /// Width and height of a block (m).
     pub block: (f64, f64),
+    /// Thickness of the wall along y (m), in 3D alone.
+    #[serde(default)]
+    pub thickness: Option<f64>,
     /// Width of the open joints between blocks (m).
     #[serde(default)]
     pub gap: f64,
-    /// Low left corner of the wall (m).
+    /// Low left (in 3D front) corner of the wall (m).
     #[serde(default)]
     pub at: Vec<f64>,
 }
