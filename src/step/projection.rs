@@ -99,10 +99,13 @@ impl<S: Space> Simulation<S> {
         let bodies = &self.bodies;
         let grain = bodies.grain_flags();
         let depth = |c: &Contact<S>| {
+            if c.gap >= 0.0 {
+                return 0.0;
+            }
             let [i, j] = c.bodies.map(|b| b as usize);
             let along = |b: usize| c.normal.scaled_by(&bodies.inverse_mass[b]).dot(&c.normal);
             let held = self.network.bond(c).is_some_and(|b| b.intact());
-            if c.gap >= 0.0 || held || along(i) + along(j) <= 0.0 {
+            if held || along(i) + along(j) <= 0.0 {
                 return 0.0;
             }
             let least = match (grain[i], grain[j]) {
