@@ -1,41 +1,42 @@
-//! Whether a long run drifts: penetrations in the shear cell, without and with the position correction.
+//! Whether a long run drifts: penetrations in the shear cell, with and without what takes them out.
 //!
-//! `cargo run --release --example drift [-- STEPS [CASE]]` takes 100,000 steps of `cases/shear_cell_3d.ron` for each
-//! share of a penetration that a step takes back, and prints the deepest penetration of the last tenth of the run in
-//! radii of the smaller grain, the energy that the correction gave as a share of the work from outside, the residual
-//! of the ledger and the time of a step.
+//! `cargo run --release --example drift [-- STEPS [SETTING...]]` takes 100,000 steps of `cases/shear_cell_3d.ron` with
+//! each setting of the solver alone (`none`, `correction=0.1`, `projection=1e-4`, ...) and prints, ten times on the way,
+//! the deepest penetration since the last line in radii of the smaller grain and at its last step, the mean over closed
+//! contacts, the steps that projected and their sweeps, the energy that was given by taking penetrations out as a share
+//! of the work from outside, the residual of the ledger, and the time of a step with its projections.
 
-use fretwork::geometry::space::{Plane, Solid, Space};
+use fretwork::geometry::space::Solid;
 use fretwork::laws::SearchPath;
-use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
-use std::path::{Path, PathBuf};
+use fretwork::step::Simulation;
+use std::path::Path;
 use std::time::Instant;
 
 type Failure = Box<dyn std::error::Error>;
 
+/// What the solver is set to where nothing is said.
+const SETTINGS: [&str; 3] = ["none", "correction=0.1", "projection=1e-4"];
+
 fn main() -> Result<(), Failure> {
     let mut args = std::env::args().skip(1);
     let steps: u64 = args.next().map_or(Ok(100_000), |a| a.parse())?;
-    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/shear_cell_3d.ron");
-    let case = args.next().map_or(own, PathBuf::from);
+    let mut settings: Vec<String> = args.collect();
+    if settings.is_empty() {
+        settings.extend(SETTINGS.map(str::to_owned));
+    }
     println!(
-        "| correction | steps | deepest / radius | mean / radius | given by the correction / work | residual / work | a step |"
+        "| setting | steps | deepest / radius | at the end | mean / radius | projected | sweeps each | given / work | residual / work | a step |"
     );
-    println!("|---|---|---|---|---|---|---|");
-    for share in ["0", "0.01", "0.1", "0.5"] {
-        let loaded = load(&case, &[format!("solver.correction={share}")])?;
-        if loaded.case.dimension == 2 {
-            run::<Plane>(&loaded, share, steps)?;
-        } else {
-            run::<Solid>(&loaded, share, steps)?;
-        }
+    println!("|---|---|---|---|---|---|---|---|---|---|");
+    for setting in &settings {
+        run(setting, steps)?;
     }
     Ok(())
 }
 
 /// Penetrations in radii of the smaller grain: the deepest, and the mean over closed contacts.
-fn penetrations<S: Space>(s: &fretwork::step::Simulation<S>) -> (f64, f64) {
+fn penetrations(s: &Simulation<Solid>) -> (f64, f64) {
     let (mut deepest, mut sum, mut closed) = (0.0f64, 0.0, 0u32);
     for contact in s.network.contacts.iter().filter(|c| c.gap < 0.0) {
         let radius = |ball: u32| s.shapes.balls[ball as usize].radius;
@@ -50,30 +51,43 @@ fn penetrations<S: Space>(s: &fretwork::step::Simulation<S>) -> (f64, f64) {
     (deepest, sum / f64::from(closed.max(1)))
 }
 
-fn run<S: Dimensional>(
-    loaded: &fretwork::scene::Loaded,
-    share: &str,
-    steps: u64,
-) -> Result<(), Failure> {
-    let mut s = loaded.build_in::<S>(&SearchPath::new(&[]))?.simulation;
-    let (mut deepest, mut mean) = (0.0f64, 0.0f64);
-    let clock = Instant::now();
-    for step in 0..steps {
-        s.step()?;
-        if step >= steps - steps / 10 {
-            let (most, middle) = penetrations(&s);
-            deepest = deepest.max(most);
-            mean = mean.max(middle);
-        }
+fn run(setting: &str, steps: u64) -> Result<(), Failure> {
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/shear_cell_3d.ron");
+    let mut sets = ["solver.correction=0", "solver.projection=0"]
+        .map(str::to_owned)
+        .to_vec();
+    if setting != "none" {
+        sets.push(format!("solver.{setting}"));
     }
-    let each = clock.elapsed().as_secs_f64() / steps as f64;
-    let e = &s.energy;
-    let work = e.external_work.abs().max(f64::MIN_POSITIVE);
-    println!(
-        "| {share} | {steps} | {deepest:.1e} | {mean:.1e} | {:.1e} | {:.1e} | {:.2} ms |",
-        -e.correction / work,
-        e.residual / work,
-        1e3 * each
-    );
+    let loaded = load(&case, &sets)?;
+    let mut s = loaded.build_in::<Solid>(&SearchPath::new(&[]))?.simulation;
+    let part = steps.div_ceil(10);
+    let (mut deepest, mut mean) = (0.0f64, 0.0f64);
+    let (mut projected, mut sweeps) = (0u64, 0u64);
+    let mut clock = Instant::now();
+    for step in 1..=steps {
+        if let Some(p) = s.step()?.projected {
+            projected += 1;
+            sweeps += u64::from(p.sweeps);
+        }
+        let (most, middle) = penetrations(&s);
+        deepest = deepest.max(most);
+        mean = mean.max(middle);
+        if step % part != 0 && step != steps {
+            continue;
+        }
+        let e = &s.energy;
+        let work = e.external_work.abs().max(f64::MIN_POSITIVE);
+        println!(
+            "| {setting} | {step} | {deepest:.1e} | {most:.1e} | {mean:.1e} | {projected} | {} | {:.1e} | {:.1e} | {:.2} ms |",
+            sweeps / projected.max(1),
+            -e.correction / work,
+            e.residual / work,
+            1e3 * clock.elapsed().as_secs_f64() / part as f64
+        );
+        (deepest, mean) = (0.0, 0.0);
+        (projected, sweeps) = (0, 0);
+        clock = Instant::now();
+    }
     Ok(())
 }

@@ -62,6 +62,7 @@ fn a_frictionless_scene_of_disks_has_neither_friction_nor_rotation_nor_memory() 
         "history variables",
         "periodic",
         "position correction",
+        "projection of overlaps",
         "implicit coupling",
         "inertia scaling",
     ] {
@@ -80,7 +81,7 @@ fn bonds_damage_and_history_are_listed_with_their_bytes() {
     let (shear, _, _) = check("shear_cell_3d", &[]);
     assert_eq!(on(&shear, "dimensions"), "3 velocities, 3 spins a body");
     assert!(on(&shear, "wear").contains("archard"));
-    assert!(on(&shear, "position correction").starts_with("0.1 "));
+    assert!(on(&shear, "projection of overlaps").starts_with("beyond 1e-4 "));
     assert_eq!(on(&shear, "periodic"), "along x, y");
     // Outputs as the case has them.
     assert!(on(&shear, "views").starts_with("10, "));

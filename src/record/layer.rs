@@ -77,7 +77,8 @@ impl<S: Space> Layer<S> {
             .sum();
         let kept = e.kinetic - kinetic + e.potential + e.elastic;
         Balance {
-            taken: e.dissipated() + e.scheme + kept - self.apart,
+            // What a projection gave against loads passed no contact.
+            taken: e.dissipated() + e.scheme + kept + s.lifted - self.apart,
             other: self.other,
         }
     }

@@ -27,7 +27,7 @@ pub struct Energy {
     pub adhesion: f64,
     /// Dissipated by damping of bonds.
     pub viscous: f64,
-    /// Given by the position correction, negative; see `solver.correction`.
+    /// Given by taking overlaps out, negative; see `solver.correction` and `solver.projection`.
     pub correction: f64,
     /// Dissipated by the scheme, (theta - 1/2) |v+ - v|_M^2; zero at theta = 1/2.
     pub scheme: f64,
@@ -83,6 +83,14 @@ impl Energy {
             sinks,
         ];
         self.scale = seen.iter().fold(self.scale, |m, x| m.max(x.abs()));
+    }
+
+    /// Books a move of bodies that leaves their velocities: the energy that it gives against gravity, and the work
+    /// of imposed forces along it (J). The step that is booked next closes the balance.
+    pub fn lift(&mut self, potential: f64, external: f64) {
+        self.potential += potential;
+        self.external_work += external;
+        self.correction -= potential - external;
     }
 
     /// Energy turned into heat and surfaces.

@@ -42,6 +42,12 @@ pub struct SolverSummary {
     pub coupling_iterations_mean: f64,
     /// The first of them, 0 if none.
     pub first_unconverged: u64,
+    /// Steps that took overlaps out by moving bodies.
+    pub projected_steps: u64,
+    /// Deepest overlap that such a step found, in parts of the smaller body's length.
+    pub overlap_before: f64,
+    /// Deepest overlap that such a step left.
+    pub overlap_after: f64,
     /// Tolerance.
     pub tolerance: f64,
     /// How the error is formed.
@@ -275,6 +281,15 @@ impl Summary {
             .map(|(name, steps)| format!("{name} ended {steps} steps"))
             .collect();
         line("method", format!("{}: {}", s.method, used.join(", ")));
+        if s.projected_steps > 0 {
+            line(
+                "projection",
+                format!(
+                    "{} steps took overlaps out: up to {:.2e} of a radius before, {:.2e} after",
+                    s.projected_steps, s.overlap_before, s.overlap_after
+                ),
+            );
+        }
         if s.method == "auto" {
             line("why", s.why.clone());
         }

@@ -65,6 +65,13 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
                 .expected("a number between 0 and 1"),
         );
     }
+    if !(0.0..1.0).contains(&s.projection) {
+        return Err(
+            Fault::new("solver.projection", format!("got {}", s.projection)).expected(
+                "0 (never) or the part of a radius beyond which an overlap is taken out, below 1",
+            ),
+        );
+    }
     if !(1.0..2.0).contains(&s.relaxation) {
         return Err(
             Fault::new("solver.relaxation", format!("got {}", s.relaxation))

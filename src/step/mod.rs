@@ -15,6 +15,8 @@
 pub mod control;
 pub mod coupling;
 pub mod motion;
+pub mod projection;
 pub mod simulation;
 
+pub use projection::Projected;
 pub use simulation::{Scheme, Simulation, StepError, StepReport};

@@ -2,6 +2,7 @@
 
 use super::coupling::{Coupling, CouplingReport, Progress};
 use super::motion::{self, Before};
+use super::projection::Projected;
 use crate::bodies::Bodies;
 use crate::contact::detect::{LawTable, detect};
 use crate::contact::{Contact, Network};
@@ -64,7 +65,7 @@ pub enum StepError {
 /// Where the time of a step went.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Timing {
-    /// Detection.
+    /// Detection, with the projection of overlaps.
     pub detect: Duration,
     /// The laws, prepare and commit.
     pub laws: Duration,
@@ -83,6 +84,8 @@ pub struct StepReport {
     pub totals: Totals,
     /// Contacts that carry an impulse.
     pub active: usize,
+    /// What the projection of overlaps did, where there was one.
+    pub projected: Option<Projected>,
     /// Time spent.
     pub timing: Timing,
 }
@@ -118,6 +121,11 @@ pub struct Simulation<S: Space> {
     pub steps: u64,
     /// Share of a penetration that a step takes back, 0 to 1; see [`crate::scene::case::SolverSpec`].
     pub correction: f64,
+    /// Overlap in parts of the smaller body's length beyond which bodies are moved apart; 0 for never. See
+    /// [`super::projection`].
+    pub projection: f64,
+    /// Energy that projections gave to driven bodies against imposed forces (J).
+    pub lifted: f64,
     /// How damage and opening are brought together within a step.
     pub coupling: Coupling,
     /// The energy ledger.
@@ -128,7 +136,7 @@ pub struct Simulation<S: Space> {
     pub control: super::control::Control<S>,
     habit: solve::Habit,
     passes: Passes,
-    problem: Problem<S>,
+    pub(super) problem: Problem<S>,
     forms: Vec<ContactForm<S>>,
     moments: Vec<MomentForm<S>>,
 }
@@ -170,6 +178,8 @@ impl<S: Space> Simulation<S> {
             time: 0.0,
             steps: 0,
             correction: 0.0,
+            projection: 0.0,
+            lifted: 0.0,
             coupling: Coupling::Explicit,
             energy: Energy {
                 kinetic,
@@ -203,7 +213,6 @@ impl<S: Space> Simulation<S> {
         self.obey();
         let clock = Instant::now();
         motion::advance(&mut self.bodies, (1.0 - theta) * h);
-        start.coasted(&self.bodies);
         detect(
             &mut self.network,
             &self.shapes,
@@ -212,6 +221,8 @@ impl<S: Space> Simulation<S> {
             self.time,
             h,
         );
+        report.projected = self.project();
+        start.coasted(&self.bodies);
         let remembered = self.passes.remember(&self.laws, &mut self.network, &info);
         remembered.map_err(|e| self.law_error(e))?;
         report.timing.detect = clock.elapsed();

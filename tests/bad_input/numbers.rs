@@ -93,3 +93,25 @@ fn a_frame_too_wide_to_draw() {
         &["expected 200 to 16384 pixels"],
     );
 }
+
+#[test]
+fn a_bound_for_overlaps_that_is_none() {
+    for (bad, said) in [
+        ("-1e-4", "-0.0001"),
+        ("NaN", "NaN"),
+        ("1.0", "1"),
+        ("inf", "inf"),
+    ] {
+        refused(
+            &with(
+                PLANE,
+                "materials:",
+                &format!("solver: (projection: ‸{bad}),\n    materials:"),
+            ),
+            &[
+                &format!("got {said}"),
+                "expected 0 (never) or the part of a radius beyond which an overlap is taken out, below 1",
+            ],
+        );
+    }
+}

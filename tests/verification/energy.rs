@@ -82,10 +82,7 @@ fn pulled(table: &mut Table) {
 /// The shear cell: ledger, and the impulses on all bodies sum to zero.
 fn three_dimensions(table: &mut Table) {
     let file = format!("{}/cases/shear_cell_3d.ron", env!("CARGO_MANIFEST_DIR"));
-    let sets = [
-        "time.end=0.07".to_owned(),
-        "solver.correction=0.0".to_owned(),
-    ];
+    let sets = ["time.end=0.07".to_owned()];
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
     let mut s: Simulation<Solid> = loaded
         .build_in(&SearchPath::new(&[]))

@@ -142,6 +142,11 @@ impl Features {
             "position correction",
             (share > 0.0).then(|| format!("{share} of a penetration a step")),
         );
+        let bound = s.projection;
+        self.say(
+            "projection of overlaps",
+            (bound > 0.0).then(|| format!("beyond {bound:e} of the smaller body's length")),
+        );
         let implicit = match s.coupling {
             Coupling::Implicit { tolerance, .. } => Some(format!("to {tolerance:e}")),
             Coupling::Explicit => None,

@@ -363,6 +363,11 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         solver.choice.add(&report.solver);
         self.couplings += u64::from(report.coupling.iterations);
         solver.uncoupled_steps += u64::from(report.coupling.missed);
+        if let Some(p) = &report.projected {
+            solver.projected_steps += 1;
+            solver.overlap_before = solver.overlap_before.max(p.before);
+            solver.overlap_after = solver.overlap_after.max(p.after);
+        }
         if !report.solver.converged {
             if solver.unconverged_steps == 0 {
                 solver.first_unconverged = s.steps;

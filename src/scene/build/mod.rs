@@ -298,6 +298,7 @@ impl<S: Dimensional> Builder<'_, S> {
         simulation.gravity = gravity;
         super::phases::install(case, &mut simulation).map_err(|f| source.locate(f))?;
         simulation.correction = case.solver.correction;
+        simulation.projection = case.solver.projection;
         simulation.coupling = case.coupling;
         simulation.scheme = Scheme {
             h: case.time.step,

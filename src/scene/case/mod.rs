@@ -143,6 +143,9 @@ pub struct SolverSpec {
     /// Share of a penetration that a step takes back, 0 to 1. Rigid contacts under a slowly changing load creep into
     /// each other by the solver's tolerance; 0.1 bounds that to ten steps' worth. Its work is an entry of the ledger.
     pub correction: f64,
+    /// Overlap in parts of the smaller body's length (a grain's radius) beyond which bodies are moved apart, without
+    /// a change of velocity; 0 (the default) for never. See [`crate::step::projection`].
+    pub projection: f64,
 }
 
 impl Default for SolverSpec {
@@ -155,6 +158,7 @@ impl Default for SolverSpec {
             test_every: 10,
             relaxation: 1.45,
             correction: 0.0,
+            projection: 0.0,
         }
     }
 }

@@ -1,0 +1,189 @@
+//! Overlaps are taken out by moving bodies, not by giving them velocity.
+//!
+//! The least move that leaves no contact below zero,
+//! min 1/2 |dq|_M^2  with  g + n . (relative dq) >= 0,
+//! is the contact problem of bodies at rest over a unit of time, without friction: the sweep solves it. A bond that
+//! holds keeps its two sides together (u = 0). Moreau, "Numerical aspects of the sweeping process", Comput. Methods
+//! Appl. Mech. Eng. 177 (1999), projects every step; here one only that finds an overlap beyond a bound.
+//!
+//! Velocities stay, so kinetic energy does; openings of bonds stay, so theirs does. What is moved against gravity or
+//! an imposed force gains what the ledger books as given by the correction.
+
+use super::Simulation;
+use crate::bodies::Bodies;
+use crate::contact::detect::detect;
+use crate::contact::{Contact, Network};
+use crate::geometry::space::{Space, VectorLike};
+use crate::solve::error::Norm;
+use crate::solve::{ContactForm, Options, Problem, nlgs};
+
+/// What a projection did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projected {
+    /// Deepest overlap found, in parts of the smaller body's length.
+    pub before: f64,
+    /// Deepest overlap left.
+    pub after: f64,
+    /// Sweeps of the solver.
+    pub sweeps: u32,
+    /// Energy given to driven bodies against imposed forces and moments (J; J/m in 2D).
+    pub against_loads: f64,
+}
+
+/// A move of a body: of its centre (m), and its turn (rad).
+type Move<S> = (<S as Space>::Vector, <S as Space>::Spin);
+
+/// Residual of the moves, over the moves. What is left is taken out by the next projection.
+const TOLERANCE: f64 = 1e-3;
+/// Between bodies that cannot make room no sweep ends.
+const MOST_SWEEPS: u32 = 5000;
+
+impl<S: Space> Simulation<S> {
+    /// Takes overlaps out where one is beyond the bound, detects again, and books what that gave.
+    pub(super) fn project(&mut self) -> Option<Projected> {
+        if self.projection <= 0.0 {
+            return None;
+        }
+        let before = self.deepest_overlap();
+        if before <= self.projection {
+            return None;
+        }
+        pose(&mut self.problem, &self.bodies, &self.network);
+        let options = Options {
+            tolerance: TOLERANCE,
+            norm: Norm::Velocity,
+            max_iterations: MOST_SWEEPS,
+            parallel: self.solver.parallel,
+            ..Options::default()
+        };
+        let solved = nlgs::solve(&mut self.problem, &options);
+        let moves: Vec<Move<S>> = (0..self.bodies.len())
+            .map(|b| self.problem.velocity(b))
+            .collect();
+        if !moves.iter().all(|(x, w)| x.is_finite() && w.is_finite()) {
+            return None;
+        }
+        let against_loads = self.book_moves(&moves);
+        for (b, (shift, turn)) in moves.iter().enumerate() {
+            displace(&mut self.bodies, b, shift, turn);
+        }
+        let driven = &self.bodies.driven;
+        if driven
+            .iter()
+            .any(|d| moves[d.body as usize].1 != S::Spin::null())
+        {
+            // A surface that turns sweeps more than its frame moves.
+            self.network.forget_neighbours();
+        }
+        // No time passes: what bonds remember follows the normals, and is not turned by spins again.
+        detect(
+            &mut self.network,
+            &self.shapes,
+            &self.bodies,
+            &self.table,
+            self.time,
+            0.0,
+        );
+        self.lifted += against_loads;
+        Some(Projected {
+            before,
+            after: self.deepest_overlap(),
+            sweeps: solved.iterations,
+            against_loads,
+        })
+    }
+
+    /// The deepest overlap that a move can take out, in parts of the smaller body's length: a grain's radius. Walls
+    /// have no size beside a grain.
+    pub fn deepest_overlap(&self) -> f64 {
+        let bodies = &self.bodies;
+        let grain = bodies.grain_flags();
+        let depth = |c: &Contact<S>| {
+            if c.gap >= 0.0 {
+                return 0.0;
+            }
+            let [i, j] = c.bodies.map(|b| b as usize);
+            let along = |b: usize| c.normal.scaled_by(&bodies.inverse_mass[b]).dot(&c.normal);
+            let held = self.network.bond(c).is_some_and(|b| b.intact());
+            if held || along(i) + along(j) <= 0.0 {
+                return 0.0;
+            }
+            let least = match (grain[i], grain[j]) {
+                (true, false) => bodies.length[i],
+                (false, true) => bodies.length[j],
+                _ => bodies.length[i].min(bodies.length[j]),
+            };
+            -c.gap / least
+        };
+        self.network.contacts.iter().map(depth).fold(0.0, f64::max)
+    }
+
+    /// Books what moves give against gravity and imposed forces; returns the part of the latter (J).
+    fn book_moves(&mut self, moves: &[Move<S>]) -> f64 {
+        let bodies = &self.bodies;
+        let (h, theta) = (self.scheme.h, self.scheme.theta);
+        let weights = moves.iter().zip(&bodies.mass);
+        let potential: f64 = weights
+            .map(|((shift, _), mass)| -mass * self.gravity.dot(shift))
+            .sum();
+        let mut external = 0.0;
+        for driven in &bodies.driven {
+            let (shift, turn) = &moves[driven.body as usize];
+            for (k, dof) in driven.dofs.iter().enumerate() {
+                let force = dof.over(self.time, h).force(self.time + theta * h);
+                external += force * if k < S::D { shift[k] } else { turn[k - S::D] };
+            }
+        }
+        self.energy.lift(potential, external);
+        -external
+    }
+}
+
+/// Moves a body and turns it, with its spin where inertia differs by axis: energy is kept.
+fn displace<S: Space>(bodies: &mut Bodies<S>, b: usize, shift: &S::Vector, turn: &S::Spin) {
+    bodies.position[b] += *shift;
+    if *turn == S::Spin::null() {
+        return;
+    }
+    let from = bodies.rotation[b];
+    bodies.rotation[b] = S::turned(&from, turn);
+    if bodies.tensor(b).is_some() {
+        let own = S::unrotate_spin(&from, &bodies.spin[b]);
+        bodies.spin[b] = S::rotate_spin(&bodies.rotation[b], &own);
+    }
+}
+
+/// Bodies at rest, and contacts whose gap is to be closed or opened in a unit of time.
+fn pose<S: Space>(problem: &mut Problem<S>, bodies: &Bodies<S>, network: &Network<S>) {
+    /// Times all mass moved by the deepest overlap: more than any impulse here.
+    const UNBREAKABLE: f64 = 1e6;
+    problem.clear();
+    for b in 0..bodies.len() {
+        problem.push_body(
+            S::Vector::null(),
+            S::Spin::null(),
+            bodies.inverse_mass[b],
+            bodies.inverse_tensor(b),
+            bodies.length[b],
+        );
+    }
+    let deepest = network.contacts.iter().map(|c| -c.gap).fold(0.0, f64::max);
+    let grip = UNBREAKABLE * deepest * bodies.mass.iter().sum::<f64>();
+    for contact in &network.contacts {
+        let held = network.bond(contact).is_some_and(|b| b.intact());
+        let hold = if held { grip } else { 0.0 };
+        problem.push(&ContactForm {
+            bodies: contact.bodies,
+            normal: contact.normal,
+            arms: contact.arms,
+            central: contact.central,
+            shift_n: if held { 0.0 } else { contact.gap },
+            shift_t: S::Tangent::null(),
+            friction: 0.0,
+            tension: hold,
+            cohesion: hold,
+            elastic: None,
+            impulse: S::Vector::null(),
+        });
+    }
+}

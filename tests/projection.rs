@@ -1,0 +1,238 @@
+//! Overlaps that are taken out by moving bodies: who moves how far, what that gives, and what stays.
+
+use fretwork::geometry::space::{Plane, Solid};
+use fretwork::laws::SearchPath;
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::load;
+use fretwork::step::Simulation;
+use nalgebra::{Vector2, Vector3};
+
+const G: f64 = 9.81;
+/// Depth of the overlaps (m): below what a case may begin with.
+const DEPTH: f64 = 4e-4;
+
+/// Builds a case of grains of radius 0.1 m or so, of 1000 kg/m^3, with `head` for what differs.
+fn built<S: Dimensional>(head: &str) -> Simulation<S> {
+    let text = format!(
+        r#"(
+    name: "overlaps",
+    time: (step: 1e-3, end: 1.0),
+    solver: (tolerance: 1e-12, norm: Velocity, max_iterations: 100000, projection: 1e-4),
+    detection: (alert: 5e-3, skin: 0.02),
+    materials: {{"grain": "verification_grain", "bead": "verification_grain"}},
+    output: (frames: 0, views: 0),
+    {head}
+)"#
+    );
+    let path = std::env::temp_dir().join(format!(
+        "fretwork-overlaps-{}-{:?}.ron",
+        std::process::id(),
+        std::thread::current().id()
+    ));
+    std::fs::write(&path, text).unwrap_or_else(|e| panic!("{e}"));
+    let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let _ = std::fs::remove_file(path);
+    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    built.unwrap_or_else(|e| panic!("{e}")).simulation
+}
+
+const SMOOTH: &str =
+    r#"interfaces: [(name: "all", between: ("grain", "grain"), contact: "frictionless")],"#;
+
+fn close(got: f64, wanted: f64, off: f64) {
+    assert!((got - wanted).abs() <= off, "{got:e} is not {wanted:e}");
+}
+
+/// Of two disks with masses 4 : 1 the light one goes four times as far, through a periodic boundary too.
+#[test]
+fn two_disks_come_apart_by_their_masses_and_stay_at_rest() {
+    for (period, shift) in [("", 0.0), ("periodic: (x: 1.0),", 0.95)] {
+        let way = Vector2::new(0.8, 0.6) * (0.15 - DEPTH);
+        let [x, y] = [shift + way.x - if shift > 0.0 { 1.0 } else { 0.0 }, way.y];
+        let mut s: Simulation<Plane> = built(&format!(
+            r#"dimension: 2, {period} {SMOOTH}
+            grains: [List(material: "grain", grains: [
+                (at: [{shift:?}, 0.0], radius: 0.1), (at: [{x:?}, {y:?}], radius: 0.05)])],"#
+        ));
+        let from = s.bodies.position.clone();
+        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+        let projected = report.projected.expect("the overlap is beyond the bound");
+        close(projected.before, DEPTH / 0.05, 1e-9);
+        close(projected.after, 0.0, 1e-12);
+        let moved: Vec<_> = (0..2).map(|b| s.bodies.position[b] - from[b]).collect();
+        let normal = Vector2::new(0.8, 0.6);
+        // Grains are put in order along space.
+        let light = usize::from(s.bodies.mass[1] < s.bodies.mass[0]);
+        for (moved, wanted) in [(moved[1 - light], -0.2), (moved[light], 0.8)] {
+            close(moved.dot(&normal), wanted * DEPTH, 1e-15);
+            close(moved.perp(&normal), 0.0, 1e-15);
+        }
+        assert!(s.bodies.velocity.iter().all(|v| v.norm() == 0.0));
+        let e = &s.energy;
+        assert_eq!([e.kinetic, e.potential, e.correction, e.residual], [0.0; 4]);
+        // Nothing is left to be done.
+        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+        assert!(report.projected.is_none());
+    }
+}
+
+/// An overlap within the bound is left alone, to the last bit.
+#[test]
+fn what_is_within_the_bound_stays() {
+    let mut s: Simulation<Plane> = built(&format!(
+        r#"dimension: 2, {SMOOTH}
+        grains: [List(material: "grain", grains: [
+            (at: [0.0, 0.0], radius: 0.1), (at: [0.19961, 0.0], radius: 0.1)])],"#
+    ));
+    s.projection = 4e-3;
+    let from = s.bodies.position.clone();
+    let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+    assert!(report.projected.is_none() && s.bodies.position == from);
+    s.projection = 3.8e-3;
+    let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+    assert!(report.projected.is_some());
+}
+
+/// Two disks sunk into each other and into the floor by d: they rise by d and 2 d, which takes 3 m g d.
+#[test]
+fn a_column_is_lifted_and_its_weight_is_booked() {
+    let [low, high] = [0.1 - DEPTH, 0.3 - 2.0 * DEPTH];
+    let mut s: Simulation<Plane> = built(&format!(
+        r#"dimension: 2, gravity: [0.0, -{G}], {SMOOTH}
+        bodies: [(name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 1.0])])],
+        grains: [List(material: "grain", grains: [
+            (at: [0.0, {low:?}], radius: 0.1), (at: [0.0, {high:?}], radius: 0.1)])],"#
+    ));
+    let grains: Vec<usize> = s.bodies.grains().collect();
+    let floor = (0..3).find(|b| !grains.contains(b)).expect("a floor");
+    let weight = G * s.bodies.mass[grains[0]];
+    let given = 3.0 * weight * DEPTH;
+    let (ground, heights) = (s.bodies.position[floor], [low, high]);
+    let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+    assert!(report.projected.is_some());
+    // To the tolerance of the moves.
+    for (k, b) in grains.iter().enumerate() {
+        let risen = s.bodies.position[*b].y - heights[k];
+        close(risen, (k as f64 + 1.0) * DEPTH, 2e-3 * DEPTH);
+    }
+    assert_eq!(s.bodies.position[floor], ground);
+    close(-s.energy.correction, given, 2e-3 * given);
+    let first = s.energy.correction;
+    for _ in 0..200 {
+        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+        assert!(report.projected.is_none());
+    }
+    let e = &s.energy;
+    assert_eq!(e.correction, first);
+    close(e.potential, given, 2e-3 * given);
+    assert!(e.kinetic < 1e-9 * given);
+    assert!(e.residual.abs() < 1e-13 * given, "{:e}", e.residual);
+}
+
+/// A disk between a floor and a lid that a force presses: the lid is lifted against its load, the floor stays.
+#[test]
+fn walls_that_are_fixed_stay_and_a_load_is_lifted() {
+    const LOAD: f64 = 50.0;
+    let [disk, lid] = [0.1 - DEPTH, 0.2 - 2.0 * DEPTH];
+    let mut s: Simulation<Plane> = built(&format!(
+        r#"dimension: 2, {SMOOTH}
+        bodies: [
+            (name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 1.0])]),
+            (name: "lid", material: "grain", shapes: [HalfSpace(normal: [0.0, -1.0])], position: [0.0, {lid:?}],
+             mass: 7.0, dofs: (x: Velocity(Constant(0.25)), y: Force(Constant(-{LOAD:?})))),
+        ],
+        grains: [List(material: "grain", grains: [(at: [0.0, {disk:?}], radius: 0.1)])],"#
+    ));
+    let place = |s: &Simulation<Plane>, name: &str| {
+        let driven = s.bodies.driven.iter().find(|d| d.name == name);
+        driven.expect("the body").body as usize
+    };
+    let [floor, lid] = [place(&s, "floor"), place(&s, "lid")];
+    let from = s.bodies.position.clone();
+    let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+    let projected = report.projected.expect("overlaps are beyond the bound");
+    let moved = s.bodies.position[lid] - from[lid];
+    close(moved.y, 2.0 * DEPTH, 4e-3 * DEPTH);
+    // The imposed motion is what it was: the scheme's half of a first step from rest, 0.25 h.
+    close(moved.x, 0.125e-3, 1e-15);
+    assert_eq!(s.bodies.position[floor], from[floor]);
+    let given = 2.0 * LOAD * DEPTH;
+    close(projected.against_loads, given, 2e-3 * given);
+    let e = &s.energy;
+    assert_eq!(e.correction, -projected.against_loads);
+    assert!(e.residual.abs() < 1e-12 * e.scale, "{:e}", e.residual);
+}
+
+/// Two bonded disks, whose cement fills an overlap, are hit by a third: they keep their distance and their energy, and
+/// move as one.
+#[test]
+fn a_bond_that_holds_is_not_pulled_apart() {
+    let second = 0.2 - DEPTH;
+    let third = second + 0.2;
+    let mut s: Simulation<Plane> = built(&format!(
+        r#"dimension: 2,
+        interfaces: [
+            (name: "bonded", between: ("grain", "grain"), contact: "frictionless", cohesion: "elastic-bond",
+             parameters: (cohesion: {{"k_n": 1e9, "k_t": 1e9}})),
+            (name: "loose", between: ("grain", "bead"), contact: "frictionless"),
+        ],
+        grains: [
+            List(material: "grain", grains: [(at: [0.0, 0.0], radius: 0.1), (at: [{second:?}, 0.0], radius: 0.1)]),
+            List(material: "bead", grains: [(at: [{third:?}, 0.0], radius: 0.1)]),
+        ],"#
+    ));
+    // Bonds are made in the first step, over the overlap.
+    let bound = std::mem::replace(&mut s.projection, 0.0);
+    s.step().unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(s.network.bonds_made(), 1);
+    s.projection = bound;
+    let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+    assert!(
+        report.projected.is_none(),
+        "what a bond fills is no overlap"
+    );
+
+    s.bodies.position[2].x -= DEPTH;
+    let (from, elastic) = (s.bodies.position.clone(), s.network.elastic_energy());
+    let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+    assert!(report.projected.is_some());
+    let moved: Vec<f64> = (0..3).map(|b| (s.bodies.position[b] - from[b]).x).collect();
+    let [pair, bead] = [2.0 * s.bodies.mass[0], s.bodies.mass[2]];
+    let share = bead / (pair + bead);
+    close(moved[1], -share * DEPTH, 2e-3 * DEPTH);
+    close(moved[2], (1.0 - share) * DEPTH, 2e-3 * DEPTH);
+    close(moved[0], moved[1], 2e-3 * DEPTH);
+    close(s.network.elastic_energy(), elastic, 0.0);
+    close(s.energy.kinetic, 0.0, 0.0);
+}
+
+/// A cuboid that spins about no axis of its own, a corner in a wall and leaving it: it turns, and no energy comes of it.
+#[test]
+fn a_body_whose_inertia_differs_by_axis_keeps_its_energy_as_it_is_turned() {
+    let corner = Vector3::new(0.3f64, 0.2, 0.1) * 0.5;
+    let turned = nalgebra::Rotation3::new(Vector3::new(0.4, -0.7, 0.2));
+    let lowest = (0..8)
+        .map(|k| {
+            let sign = |bit: usize| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
+            let own = Vector3::new(sign(0) * corner.x, sign(1) * corner.y, sign(2) * corner.z);
+            (turned * own).z
+        })
+        .fold(f64::INFINITY, f64::min);
+    let height = -lowest - DEPTH;
+    let mut s: Simulation<Solid> = built(&format!(
+        r#"dimension: 3, {SMOOTH}
+        bodies: [(name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 0.0, 1.0])])],
+        grains: [Polyhedra(material: "grain", grains: [(at: [0.0, 0.0, {height:?}], size: (0.3, 0.2, 0.1),
+            turned: [0.4, -0.7, 0.2], velocity: [0.0, 0.0, 3.0], spin: [1.0, 2.0, -1.5])])],"#
+    ));
+    s.scheme.h = 1e-9;
+    let grain = s.bodies.grains().next().expect("a grain");
+    let (before, kinetic) = (s.bodies.rotation[grain], s.bodies.kinetic_energy());
+    let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+    let projected = report.projected.expect("the overlap is beyond the bound");
+    assert!(projected.after < 1e-2 * projected.before, "{projected:?}");
+    let angle = before.angle_to(&s.bodies.rotation[grain]);
+    assert!(angle > 0.1 * DEPTH, "it turned by {angle:e}");
+    close(s.bodies.kinetic_energy(), kinetic, 1e-12 * kinetic);
+    assert!(s.energy.residual.abs() < 1e-12 * kinetic);
+}
