@@ -195,8 +195,8 @@ fn polygons_in_space() {
 fn polyhedra_that_are_none() {
     let of = |grain: &str, sentence: &str| {
         let list = format!("Polyhedra(material: \"grain\", grains: [{grain}])");
-        let more = format!("    grains: [\n{list},\n");
-        refused(&with(SOLID, "    grains: [\n", &more), &[sentence]);
+        let more = format!("    grains: [{list}, List(");
+        refused(&with(SOLID, "    grains: [List(", &more), &[sentence]);
     };
     let cube = "(0.0, 0.0, 0.0), (0.01, 0.0, 0.0), (0.0, 0.01, 0.0), (0.0, 0.0, 0.01)";
     let at = "at: [0.3, 0.1, 0.3]";
