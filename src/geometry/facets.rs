@@ -105,6 +105,23 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Touch<
             continue;
         }
         let face = f.corners == 3;
+        let rises = |g: &Facet<V>| {
+            let over = |c: &V| (c - f.foot).dot(&up) > BEHIND * (c - f.foot).norm();
+            g.corners.iter().any(over)
+        };
+        if (inside || length == 0.0) && about(f.part).any(rises) {
+            // At the bottom of a crease or below it: behind the planes of all its sides.
+            out.extend(about(f.part).map(|g| {
+                let (normal, distance) = (g.normal(), arm.dot(&g.normal()));
+                Touch {
+                    foot: centre - normal * distance,
+                    normal,
+                    distance,
+                    feature: g.name * 8,
+                }
+            }));
+            continue;
+        }
         out.push(Touch {
             foot: f.foot,
             normal: if face || inside || length == 0.0 {
