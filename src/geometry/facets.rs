@@ -93,6 +93,8 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Touch<
     let up = |f: &Found| pseudo_normal(about(f.part), &f.part, f.corners);
     let arm = |f: &Found| centre - f.foot;
     let nearest = |f: &&Found, g: &&Found| arm(f).norm_squared().total_cmp(&arm(g).norm_squared());
+    // A way of the size of rounding has no direction.
+    let tiny = 1e-13 * (centre.norm() + reach);
     // The nearest part tells inside from outside: what lies behind it shows its back.
     let inside = found
         .iter()
@@ -101,7 +103,7 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Touch<
     for f in &found {
         let (up, arm) = (up(f), arm(f));
         let length = arm.norm();
-        if (arm.dot(&up) < 0.0) != inside && length > 0.0 {
+        if (arm.dot(&up) < 0.0) != inside && length > tiny {
             continue;
         }
         let face = f.corners == 3;
@@ -109,7 +111,7 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Touch<
             let over = |c: &V| (c - f.foot).dot(&up) > BEHIND * (c - f.foot).norm();
             g.corners.iter().any(over)
         };
-        if (inside || length == 0.0) && about(f.part).any(rises) {
+        if (inside || length <= tiny) && about(f.part).any(rises) {
             // At the bottom of a crease or below it: behind the planes of all its sides.
             out.extend(about(f.part).map(|g| {
                 let (normal, distance) = (g.normal(), arm.dot(&g.normal()));
@@ -124,7 +126,7 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Touch<
         }
         out.push(Touch {
             foot: f.foot,
-            normal: if face || inside || length == 0.0 {
+            normal: if face || inside || length <= tiny {
                 up
             } else {
                 arm / length

@@ -124,7 +124,21 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
 
     /// The meeting with a ball whose centre stands at `apart`; the ball is the candidate, the gap that to
     /// the rounded core.
-    fn meet_ball(&self, apart: &S::Vector, radius: f64, rounding: f64) -> Meeting<S::Vector>;
+    fn meet_ball(&self, apart: &S::Vector, radius: f64, rounding: f64) -> Meeting<S::Vector> {
+        let (distance, normal) = self.outward(apart);
+        Meeting {
+            on_candidate: *apart - normal * radius,
+            on_antagonist: *apart - normal * (distance - rounding),
+            normal,
+            gap: distance - radius - rounding,
+            feature: 0,
+            share: 0.0,
+            facing: true,
+        }
+    }
+
+    /// Signed distance of a point from the core (m, negative inside) and the unit normal at the nearest point of it.
+    fn outward(&self, point: &S::Vector) -> (f64, S::Vector);
 
     /// Meetings with a surface of a first body, in the order of their features. The core is in the
     /// surface's frame, its centre at `at`.

@@ -227,17 +227,9 @@ impl Core<Plane> for Polygon {
         polygon_pair::meet(self, other, apart, roundings, gauge, out);
     }
 
-    fn meet_ball(&self, apart: &Vector2<f64>, radius: f64, rounding: f64) -> Meeting<Vector2<f64>> {
-        let (distance, normal, _) = self.distance(apart);
-        Meeting {
-            on_candidate: apart - normal * radius,
-            on_antagonist: apart - normal * (distance - rounding),
-            normal,
-            gap: distance - radius - rounding,
-            feature: 0,
-            share: 0.0,
-            facing: true,
-        }
+    fn outward(&self, point: &Vector2<f64>) -> (f64, Vector2<f64>) {
+        let (distance, normal, _) = self.distance(point);
+        (distance, normal)
     }
 
     fn meet_surface(

@@ -427,17 +427,8 @@ impl Core<Solid> for Polyhedron {
         polyhedron_pair::meet(self, other, apart, roundings, gauge, out);
     }
 
-    fn meet_ball(&self, apart: &V, radius: f64, rounding: f64) -> Meeting<V> {
-        let (distance, normal) = self.distance(apart);
-        Meeting {
-            on_candidate: apart - normal * radius,
-            on_antagonist: apart - normal * (distance - rounding),
-            normal,
-            gap: distance - radius - rounding,
-            feature: 0,
-            share: 0.0,
-            facing: true,
-        }
+    fn outward(&self, point: &V) -> (f64, V) {
+        self.distance(point)
     }
 
     fn meet_surface(

@@ -1,33 +1,12 @@
-//! Blocks that fit each other, and bonds over the faces between them: sizes and areas of samples, the law's
-//! closed form over a face, the ledger of a plate that tears.
+//! Polygons: sizes and areas of samples, the law's closed form over a face.
 
+use super::{scene, step};
 use fretwork::contact::Key;
 use fretwork::geometry::convex::Core;
 use fretwork::geometry::space::Plane;
-use fretwork::laws::SearchPath;
-use fretwork::scene::load;
 use fretwork::step::Simulation;
 use nalgebra::Vector2;
 use std::collections::HashMap;
-use std::path::Path;
-
-fn scene(case: &str, sets: &[&str]) -> Simulation<Plane> {
-    let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
-    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Plane>(&SearchPath::new(&[]));
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
-}
-
-/// One step, which must converge.
-fn step(s: &mut Simulation<Plane>) {
-    let report = s.step().unwrap_or_else(|e| panic!("{e}"));
-    assert!(
-        report.solver.converged,
-        "step {}: {:?}",
-        s.steps, report.solver
-    );
-}
 
 /// Corners of a piece where it stands (m).
 fn corners(s: &Simulation<Plane>, piece: usize) -> Vec<Vector2<f64>> {
@@ -57,13 +36,13 @@ fn common(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
 
 #[test]
 fn a_wall_in_running_bond() {
-    let s = scene("block_wall", &[]);
+    let s = scene::<Plane>("block_wall", &[]);
     assert_eq!(s.shapes.pieces.len(), 22);
     let density = s.bodies.mass[0] / 0.02;
     let mass: f64 = (0..22).map(|b| s.bodies.mass[b]).sum();
     assert!((mass / (density * 0.8 * 0.5) - 1.0).abs() < 1e-14);
     let open = ["grains.0.gap=0.01", "grains.0.at=[0.3, 0.2]"];
-    let s = scene("block_wall", &open);
+    let s = scene::<Plane>("block_wall", &open);
     for k in 0..22 {
         let points = corners(&s, k);
         let of = |axis: usize| points.iter().map(move |p| p[axis]);
@@ -81,9 +60,9 @@ fn a_wall_in_running_bond() {
 #[test]
 fn neighbours_are_bonded_over_their_sides_and_nothing_else_is() {
     for rounds in ["grains.0.rounds=0", "grains.0.rounds=5"] {
-        let mut s = scene("verification/voronoi_plate", &[rounds]);
+        let mut s = scene::<Plane>("verification/voronoi_plate", &[rounds]);
         let area: f64 = s.bodies.mass[..150].iter().sum();
-        let density = scene("block_wall", &[]).bodies.mass[0] / 0.02;
+        let density = scene::<Plane>("block_wall", &[]).bodies.mass[0] / 0.02;
         assert!((area / (density * 0.06) - 1.0).abs() < 1e-13);
         step(&mut s);
         let mut held: HashMap<(u32, u32), f64> = HashMap::new();
@@ -118,7 +97,7 @@ fn neighbours_are_bonded_over_their_sides_and_nothing_else_is() {
 fn a_face_opens_by_its_law_over_its_whole_length() {
     let (strength, energy, stiffness, face) = (3e5, 0.5, 1e12, 0.5);
     let (first, last) = (strength / stiffness, 2.0 * energy / strength);
-    let mut s = scene("verification/bonded_face", &[]);
+    let mut s = scene::<Plane>("verification/bonded_face", &[]);
     let (mut peak, mut work, mut begun, mut open) = (0.0f64, 0.0, None, 0.0);
     let grip = s
         .bodies
@@ -153,46 +132,4 @@ fn a_face_opens_by_its_law_over_its_whole_length() {
     assert!(close(open, last, 1e-3) && close(work, energy * face, 1e-3));
     assert!(close(s.energy.fracture, energy * face, 1e-3));
     assert!(s.energy.relative_residual() < 1e-12);
-}
-
-#[test]
-fn a_plate_that_tears_pays_for_its_crack() {
-    // Damage is coupled explicitly: what is missing goes with the step.
-    let far = [2.0, 1.0].map(|part| (paid(part) - 1.0).abs());
-    println!("{far:?}");
-    assert!(far[1] < 0.03 && far[1] < 0.7 * far[0], "{far:?}");
-}
-
-/// The fracture energy of the ledger over that of the law at the damages reached, with steps `part` times as long.
-fn paid(part: f64) -> f64 {
-    let (strength, energy, stiffness) = (1e6, 10.0, 1e12);
-    let mut s = scene("verification/voronoi_plate", &[]);
-    s.scheme.h *= part;
-    while s.time < 8e-4 {
-        step(&mut s);
-    }
-    let (first, last) = (strength / stiffness, 2.0 * energy / strength);
-    // (1 - D) K u = t = strength (uf - u)/(uf - u0); what is lost is all under the curve but the triangle that unloads.
-    let slope = strength / (last - first);
-    let lost = |damage: f64| {
-        let u = slope * last / ((1.0 - damage) * stiffness + slope);
-        let t = (1.0 - damage) * stiffness * u;
-        if damage == 0.0 {
-            0.0
-        } else {
-            energy - 0.5 * t * last
-        }
-    };
-    let memory = &s.network.memory[0];
-    assert_eq!(memory.bonds.len() as u64, memory.made);
-    let expected: f64 = memory.bonds.iter().map(|b| b.area * lost(b.damage)).sum();
-    let broken = memory.bonds.iter().filter(|b| b.damage >= 1.0).count() as u64;
-    let found = s.energy.fracture;
-    println!(
-        "broken {broken} of {}, fracture {found:e} of {expected:e}, {:?}",
-        memory.made, s.energy
-    );
-    assert!(broken > 20 && broken == s.network.bonds_broken());
-    assert!(s.energy.relative_residual() < 1e-9);
-    found / expected
 }

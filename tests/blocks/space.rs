@@ -1,38 +1,17 @@
-//! Blocks that fit each other in space, and bonds over the faces between them: sizes and areas of samples, the law's
-//! closed form over a face that is pulled, bent and twisted, the ledger of a plate that tears.
+//! Polyhedra: sizes and areas of samples, the law's closed form over a face that is pulled, bent and twisted.
 
+use super::{scene, step};
 use fretwork::contact::Key;
 use fretwork::geometry::convex::Core;
 use fretwork::geometry::space::Solid;
-use fretwork::laws::SearchPath;
 use fretwork::record::measure::Measures;
 use fretwork::record::statistics::Table;
-use fretwork::scene::load;
 use fretwork::scene::measures::MeasureSpec;
 use fretwork::step::Simulation;
 use nalgebra::Vector3;
 use std::collections::HashMap;
-use std::path::Path;
 
 type V = Vector3<f64>;
-
-fn scene(case: &str, sets: &[&str]) -> Simulation<Solid> {
-    let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
-    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Solid>(&SearchPath::new(&[]));
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
-}
-
-/// One step, which must converge.
-fn step(s: &mut Simulation<Solid>) {
-    let report = s.step().unwrap_or_else(|e| panic!("{e}"));
-    assert!(
-        report.solver.converged,
-        "step {}: {:?}",
-        s.steps, report.solver
-    );
-}
 
 /// The place of a driven body among them.
 fn driven(s: &Simulation<Solid>, name: &str) -> usize {
@@ -86,7 +65,7 @@ const WALL: [&str; 5] = [
 
 #[test]
 fn a_wall_in_running_bond() {
-    let s = scene("block_wall", &WALL);
+    let s = scene::<Solid>("block_wall", &WALL);
     assert_eq!(s.shapes.pieces.len(), 22);
     let density = s.bodies.mass[0] / (0.02 * 0.15);
     let mass: f64 = (0..22).map(|b| s.bodies.mass[b]).sum();
@@ -111,7 +90,7 @@ fn a_wall_stands_below_its_angle_of_friction_and_slides_above() {
     for (mu, slides) in [(0.4, false), (0.3, true)] {
         let mu_set = format!("interfaces.joints.parameters.contact.mu={mu}");
         let sets = [&WALL[..], &[mu_set.as_str()]].concat();
-        let mut s = scene("block_wall", &sets);
+        let mut s = scene::<Solid>("block_wall", &sets);
         while s.time < 0.05 {
             step(&mut s);
         }
@@ -127,7 +106,7 @@ fn a_wall_stands_below_its_angle_of_friction_and_slides_above() {
 fn a_face_opens_by_its_law_over_its_whole_area() {
     let (strength, energy, stiffness, face) = (3e5, 0.5, 1e12, 0.2);
     let (first, last) = (strength / stiffness, 2.0 * energy / strength);
-    let mut s = scene("verification/bonded_face_3d", &[]);
+    let mut s = scene::<Solid>("verification/bonded_face_3d", &[]);
     let (mut peak, mut work, mut begun, mut open) = (0.0f64, 0.0, None, 0.0);
     let grip = driven(&s, "grip");
     while s.network.bonds_broken() < 4 {
@@ -175,7 +154,7 @@ fn a_face_that_is_bent_and_twisted_resists_at_its_corners() {
     // The grip turns about its centre, half a metre above the face: the face follows sideways, and is held there.
     let (dx, dy) = (later(0.5 * ry), later(-0.5 * rx));
     let set = format!("bodies.grip.dofs=(x: {dx}, y: {dy}, z: {z}, rx: {x}, ry: {y}, rz: {t})");
-    let mut s = scene("verification/bonded_face_3d", &[&set]);
+    let mut s = scene::<Solid>("verification/bonded_face_3d", &[&set]);
     let grip = driven(&s, "grip");
     while s.time < 4.2e-6 {
         step(&mut s);
@@ -214,10 +193,10 @@ fn a_face_that_is_bent_and_twisted_resists_at_its_corners() {
 #[test]
 fn neighbours_are_bonded_over_their_faces_and_nothing_else_is() {
     for rounds in ["grains.0.rounds=0", "grains.0.rounds=5"] {
-        let mut s = scene("verification/voronoi_plate_3d", &[rounds]);
+        let mut s = scene::<Solid>("verification/voronoi_plate_3d", &[rounds]);
         let cells = s.shapes.pieces.len() - 2;
         assert_eq!(cells, 60);
-        let density = scene("block_wall", &WALL).bodies.mass[0] / (0.02 * 0.15);
+        let density = scene::<Solid>("block_wall", &WALL).bodies.mass[0] / (0.02 * 0.15);
         let mass: f64 = s.bodies.mass[..cells].iter().sum();
         assert!((mass / (density * 0.12 * 0.08 * 0.04) - 1.0).abs() < 1e-13);
         step(&mut s);
@@ -250,48 +229,6 @@ fn neighbours_are_bonded_over_their_faces_and_nothing_else_is() {
     }
 }
 
-#[test]
-fn a_plate_that_tears_pays_for_its_crack() {
-    // Damage is coupled explicitly: what is missing goes with the step.
-    let far = [2.0, 1.0].map(|part| (paid(part) - 1.0).abs());
-    println!("{far:?}");
-    assert!(far[1] < 0.03 && far[1] < 0.7 * far[0], "{far:?}");
-}
-
-/// The fracture energy of the ledger over that of the law at the damages reached, with steps `part` times as long.
-fn paid(part: f64) -> f64 {
-    let (strength, energy, stiffness) = (1e6, 10.0, 1e12);
-    let mut s = scene("verification/voronoi_plate_3d", &[]);
-    s.scheme.h *= part;
-    while s.time < 6e-4 {
-        step(&mut s);
-    }
-    let (first, last) = (strength / stiffness, 2.0 * energy / strength);
-    // (1 - D) K u = t = strength (uf - u)/(uf - u0); what is lost is all under the curve but the triangle that unloads.
-    let slope = strength / (last - first);
-    let lost = |damage: f64| {
-        let u = slope * last / ((1.0 - damage) * stiffness + slope);
-        let t = (1.0 - damage) * stiffness * u;
-        if damage == 0.0 {
-            0.0
-        } else {
-            energy - 0.5 * t * last
-        }
-    };
-    let memory = &s.network.memory[0];
-    assert_eq!(memory.bonds.len() as u64, memory.made);
-    let expected: f64 = memory.bonds.iter().map(|b| b.area * lost(b.damage)).sum();
-    let broken = memory.bonds.iter().filter(|b| b.damage >= 1.0).count() as u64;
-    let found = s.energy.fracture;
-    println!(
-        "broken {broken} of {}, fracture {found:e} of {expected:e}, {:?}",
-        memory.made, s.energy
-    );
-    assert!(broken > 40 && broken == s.network.bonds_broken());
-    assert!(s.energy.relative_residual() < 1e-9);
-    found / expected
-}
-
 /// Blocks count where grains are measured: their mass above a level, the tops of stairs, the wall without holes.
 #[test]
 fn blocks_are_measured() {
@@ -302,7 +239,7 @@ fn blocks_are_measured() {
         above: 0.2,
         start: 0.0,
     }]);
-    let mut s = scene("block_wall", &WALL);
+    let mut s = scene::<Solid>("block_wall", &WALL);
     let whole: f64 = s.bodies.mass[..22].iter().sum();
     // Centres of three of the five courses are above.
     assert!(close(mass.sample(&s)[0], 0.6 * whole, 1e-14));
@@ -344,7 +281,7 @@ fn blocks_are_measured() {
         "grains=[Polyhedra(material: \"grain\", grains: [{}])]",
         stairs.join(", ")
     );
-    let mut s = scene("block_wall", &[WALL[0], WALL[1], WALL[2], &grains]);
+    let mut s = scene::<Solid>("block_wall", &[WALL[0], WALL[1], WALL[2], &grains]);
     step(&mut s);
     let slope = MeasureSpec::Slope {
         name: name(),

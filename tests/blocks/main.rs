@@ -1,0 +1,31 @@
+//! Blocks that fit each other, and bonds over the faces between them, in the plane and in space: sizes and areas of
+//! samples, the law's closed form over a face, the ledger of a plate that tears.
+
+mod plane;
+mod plate;
+mod space;
+
+use fretwork::laws::SearchPath;
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::load;
+use fretwork::step::Simulation;
+use std::path::Path;
+
+/// A case of the project, with `--set`s.
+fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
+    let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
+    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
+    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    built.unwrap_or_else(|e| panic!("{e}")).simulation
+}
+
+/// One step, which must converge.
+fn step<S: Dimensional>(s: &mut Simulation<S>) {
+    let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+    assert!(
+        report.solver.converged,
+        "step {}: {:?}",
+        s.steps, report.solver
+    );
+}

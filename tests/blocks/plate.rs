@@ -1,0 +1,56 @@
+//! A bonded Voronoi plate that tears pays for its crack.
+
+use super::{scene, step};
+use fretwork::geometry::space::{Plane, Solid};
+use fretwork::scene::build::Dimensional;
+
+#[test]
+fn a_plate_pays_for_its_crack() {
+    pays::<Plane>("verification/voronoi_plate", 8e-4, 20);
+}
+
+#[test]
+fn a_plate_in_space_pays_for_its_crack() {
+    pays::<Solid>("verification/voronoi_plate_3d", 6e-4, 40);
+}
+
+/// Damage is coupled explicitly: what is missing goes with the step. More than `cracked` points break until `end` (s).
+fn pays<S: Dimensional>(case: &str, end: f64, cracked: u64) {
+    let far = [2.0, 1.0].map(|part| (paid::<S>(case, end, cracked, part) - 1.0).abs());
+    println!("{far:?}");
+    assert!(far[1] < 0.03 && far[1] < 0.7 * far[0], "{far:?}");
+}
+
+/// The fracture energy of the ledger over that of the law at the damages reached, with steps `part` times as long.
+fn paid<S: Dimensional>(case: &str, end: f64, cracked: u64, part: f64) -> f64 {
+    let (strength, energy, stiffness) = (1e6, 10.0, 1e12);
+    let mut s = scene::<S>(case, &[]);
+    s.scheme.h *= part;
+    while s.time < end {
+        step(&mut s);
+    }
+    let (first, last) = (strength / stiffness, 2.0 * energy / strength);
+    // (1 - D) K u = t = strength (uf - u)/(uf - u0); what is lost is all under the curve but the triangle that unloads.
+    let slope = strength / (last - first);
+    let lost = |damage: f64| {
+        let u = slope * last / ((1.0 - damage) * stiffness + slope);
+        let t = (1.0 - damage) * stiffness * u;
+        if damage == 0.0 {
+            0.0
+        } else {
+            energy - 0.5 * t * last
+        }
+    };
+    let memory = &s.network.memory[0];
+    assert_eq!(memory.bonds.len() as u64, memory.made);
+    let expected: f64 = memory.bonds.iter().map(|b| b.area * lost(b.damage)).sum();
+    let broken = memory.bonds.iter().filter(|b| b.damage >= 1.0).count() as u64;
+    let found = s.energy.fracture;
+    println!(
+        "broken {broken} of {}, fracture {found:e} of {expected:e}, {:?}",
+        memory.made, s.energy
+    );
+    assert!(broken > cracked && broken == s.network.bonds_broken());
+    assert!(s.energy.relative_residual() < 1e-9);
+    found / expected
+}
