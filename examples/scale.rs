@@ -6,12 +6,13 @@
 //! sweeps that a load needs to cross the layer.
 
 use fretwork::geometry::grid;
-use fretwork::geometry::space::{Plane, Solid};
+use fretwork::geometry::space::{Plane, Solid, Space};
 use fretwork::laws::SearchPath;
 use fretwork::report::{Axis, Chart, Series, draw_panels};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::source::Source;
 use fretwork::scene::{Loaded, case::Case};
+use fretwork::step::Simulation;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
@@ -176,6 +177,9 @@ fn apart(dimension: &str, count: usize) -> Result<Row, Failure> {
 
 const RADIUS: f64 = 1e-3;
 
+/// Steps that a layer has to come to rest; what takes more is measured as it is, and its sweeps show it.
+const SETTLING: u32 = 60;
+
 /// A layer of so many grains above a floor, periodic along the others.
 fn layer<S: Dimensional>(count: usize) -> String {
     let wide = 2.0 * RADIUS * (1.0 + 2e-6);
@@ -209,9 +213,7 @@ fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
     let case: Case = source.parse()?;
     let loaded = Loaded { source, case, path };
     let mut s = loaded.build_in::<S>(&SearchPath::new(&[]))?.simulation;
-    for _ in 0..20 {
-        s.step()?;
-    }
+    settle(&mut s)?;
     // As many steps as give some ten million updates of a contact.
     let steps = (3_000_000 / count).clamp(8, 200);
     let (mut parts, mut step) = ([0.0; 3], f64::INFINITY);
@@ -259,6 +261,19 @@ fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
         rebuilt,
         memory,
     })
+}
+
+/// Steps until the layer is at rest: ten in a row that the first test of convergence ends.
+fn settle<S: Space>(s: &mut Simulation<S>) -> Result<(), Failure> {
+    let (first, mut calm) = (s.solver.test_every.div_ceil(2), 0);
+    for _ in 0..SETTLING {
+        let sweeps = s.step()?.solver.iterations;
+        calm = if sweeps <= first { calm + 1 } else { 0 };
+        if calm == 10 {
+            break;
+        }
+    }
+    Ok(())
 }
 
 /// Peak of the memory of this process (bytes); none where the system does not tell.

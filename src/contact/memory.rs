@@ -1,5 +1,6 @@
 //! What bonded contacts remember: the opening, the damage, and the laws' internal variables.
 
+use super::events::Life;
 use crate::geometry::space::{Space, VectorLike};
 
 /// A bond: a contact with an opening and a damage.
@@ -19,6 +20,8 @@ pub struct Bond<S: Space> {
     pub area: f64,
     /// Energy stored (J).
     pub energy: f64,
+    /// What it went through.
+    pub life: Life,
     /// Whether this slot is in use.
     pub live: bool,
 }
@@ -34,6 +37,7 @@ impl<S: Space> Bond<S> {
             used: 1.0,
             area,
             energy: 0.0,
+            life: Life::default(),
             live: true,
         }
     }

@@ -1,7 +1,9 @@
 //! The contact network: who touches whom, where, and what each contact remembers.
 pub mod detect;
+pub mod events;
 pub mod memory;
 pub mod network;
 
+pub use events::{Break, Life, Spent};
 pub use memory::{Bond, Memory};
 pub use network::{Contact, Key, Network};

@@ -1,7 +1,9 @@
 //! Contacts of the current step and what carries over from the last one.
 
+use super::events::{Break, Spent};
 use super::memory::Memory;
-use crate::geometry::space::Space;
+use crate::bodies::Bodies;
+use crate::geometry::space::{Space, VectorLike};
 use std::collections::HashSet;
 
 /// The name of a contact, stable in time: candidate (a ball, or a convex piece with [`Key::PIECE`] set),
@@ -100,6 +102,10 @@ pub struct Network<S: Space> {
     pub skin: f64,
     /// Energy of bonds torn because their contact left all reach (J); the ledger takes it.
     pub torn_energy: f64,
+    /// Bonds that broke in the last step, in its order.
+    pub breaks: Vec<Break<S>>,
+    /// What the last step dissipated at its contacts, in their order; kept where something asked for it.
+    pub spent: Option<Vec<Spent>>,
     /// How often the neighbour list was rebuilt.
     pub rebuilds: u64,
     pub(super) candidates: Vec<(u32, u32)>,
@@ -122,6 +128,8 @@ impl<S: Space> Network<S> {
             alert,
             skin,
             torn_energy: 0.0,
+            breaks: Vec::new(),
+            spent: None,
             rebuilds: 0,
             candidates: Vec::new(),
             seen_at: Vec::new(),
@@ -140,6 +148,29 @@ impl<S: Space> Network<S> {
     pub fn open_gap(&self, contact: &Contact<S>) -> f64 {
         let bond = self.bond(contact).filter(|b| b.intact());
         contact.gap - bond.map_or(0.0, |b| b.gap)
+    }
+
+    /// Tells that the bond of a contact broke, with what it went through.
+    pub(crate) fn tell_break(&mut self, contact: &Contact<S>) {
+        let Some(bond) = self.bond(contact) else {
+            return;
+        };
+        self.breaks.push(Break {
+            key: contact.key,
+            bodies: contact.bodies,
+            law: contact.law,
+            place: contact.arms[0],
+            opening: [bond.opening_n, bond.opening_t.norm()],
+            area: bond.area,
+            life: bond.life,
+        });
+    }
+
+    /// Says where breaks are, which are told with the arms of their contacts.
+    pub(crate) fn locate_breaks(&mut self, bodies: &Bodies<S>) {
+        for b in &mut self.breaks {
+            b.place = b.place + bodies.position[b.bodies[0] as usize];
+        }
     }
 
     /// Bonds made so far.

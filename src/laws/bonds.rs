@@ -194,7 +194,11 @@ impl Passes {
                 n.dot(&s.impulse) - s.unilateral_n,
                 S::tangential(n, &s.impulse) - s.unilateral_t,
             );
-            works.push(en * un + et.dot(&ut));
+            let (opens, slides) = (en * un, et.dot(&ut));
+            bond.life.work[0] -= opens;
+            bond.life.work[1] -= slides;
+            bond.life.heat -= s.unilateral_t.dot(&ut);
+            works.push(opens + slides);
         }
         if !memory.rotates {
             return;
@@ -209,7 +213,11 @@ impl Passes {
                 continue;
             };
             memory.rotations[slot] += turn.spin * info.h;
-            *work += (turn.moment.moment - turn.moment.friction).dot(&turn.spin);
+            let turned = (turn.moment.moment - turn.moment.friction).dot(&turn.spin);
+            let life = &mut memory.bonds[slot].life;
+            life.work[2] -= turned;
+            life.heat -= turn.moment.friction.dot(&turn.spin);
+            *work += turned;
             *lost += turn.lost;
         }
     }
@@ -242,7 +250,7 @@ impl Passes {
                 (bond.energy * ratio, intact * share(bond.used))
             };
             // Without a say in it, what a law's energy does not account for shows in the residual.
-            totals.viscous += if held.turned[k] {
+            let viscous = if held.turned[k] {
                 -held.work[k] - (end - start)
             } else {
                 held.lost[k]
@@ -252,7 +260,15 @@ impl Passes {
             } else {
                 intact * share(held.damage[k])
             };
-            totals.fracture += (bond.energy - start) + (end - kept);
+            let fracture = (bond.energy - start) + (end - kept);
+            totals.viscous += viscous;
+            totals.fracture += fracture;
+            bond.life.heat += viscous;
+            bond.life.fracture += fracture;
+            if let Some(spent) = &mut network.spent {
+                spent[*at].viscous += viscous;
+                spent[*at].fracture += fracture;
+            }
             bond.energy = kept;
             bond.damage = held.damage[k];
             bond.used = bond.damage;
@@ -262,9 +278,11 @@ impl Passes {
                 contact.broken = true;
                 contact.pressed = 0.0;
                 network.broken_pairs.insert(contact.key.pair());
+                let contact = contact.clone();
+                network.tell_break(&contact);
                 if law.variables() == 0 {
-                    memory.release(slot as u32);
-                    contact.slot = Contact::<S>::NO_MEMORY;
+                    network.memory[index].release(slot as u32);
+                    network.contacts[*at].slot = Contact::<S>::NO_MEMORY;
                 }
             }
         }

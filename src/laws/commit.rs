@@ -4,7 +4,7 @@ use super::columns::StepInfo;
 use super::interface::{Interface, Loaded};
 use super::library::{Call, LawError};
 use super::pass::{Passes, Site, Totals, Turn};
-use crate::contact::Network;
+use crate::contact::{Network, Spent};
 use crate::geometry::space::{Space, VectorLike};
 
 impl Passes {
@@ -22,7 +22,11 @@ impl Passes {
         info: &StepInfo,
     ) -> Result<Totals, LawError> {
         let mut totals = Totals::default();
-        for (contact, site) in network.contacts.iter_mut().zip(sites) {
+        if let Some(spent) = &mut network.spent {
+            spent.clear();
+            spent.resize(network.contacts.len(), Spent::default());
+        }
+        for (k, (contact, site)) in network.contacts.iter_mut().zip(sites).enumerate() {
             contact.impulse = site.solution.impulse;
             contact.moment = S::Spin::null();
             let n = &contact.normal;
@@ -32,18 +36,33 @@ impl Passes {
                 0.0
             };
             let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
-            totals.friction -= site.solution.unilateral_t.dot(&ut);
+            let friction = -site.solution.unilateral_t.dot(&ut);
+            totals.friction += friction;
             let work = -site.solution.unilateral_n * un + site.corrected;
             totals.correction -= site.corrected;
-            if site.adheres && site.solution.unilateral_n < 0.0 {
+            let adheres = site.adheres && site.solution.unilateral_n < 0.0;
+            if adheres {
                 totals.adhesion += work;
             } else {
                 totals.impact += work;
             }
+            if let Some(spent) = &mut network.spent {
+                let (adhesion, impact) = if adheres { (work, 0.0) } else { (0.0, work) };
+                spent[k] = Spent {
+                    friction,
+                    impact,
+                    adhesion,
+                    ..Spent::default()
+                };
+            }
         }
         for turn in turns {
             network.contacts[turn.moment.contact as usize].moment = turn.moment.moment;
-            totals.friction -= turn.moment.friction.dot(&turn.spin);
+            let friction = -turn.moment.friction.dot(&turn.spin);
+            totals.friction += friction;
+            if let Some(spent) = &mut network.spent {
+                spent[turn.moment.contact as usize].friction += friction;
+            }
         }
         for (index, law) in laws.iter().enumerate() {
             let bonded = |n: &Network<S>, c: &crate::contact::Contact<S>| {

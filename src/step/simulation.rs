@@ -210,6 +210,7 @@ impl<S: Space> Simulation<S> {
             theta,
         };
         let mut start = Before::new(&self.bodies);
+        self.network.breaks.clear();
         self.obey();
         let clock = Instant::now();
         motion::advance(&mut self.bodies, (1.0 - theta) * h);
@@ -237,6 +238,7 @@ impl<S: Space> Simulation<S> {
             .passes
             .commit(&self.laws, &mut self.network, &sites, &turns, &info);
         report.totals = committed.map_err(|e| self.law_error(e))?;
+        self.network.locate_breaks(&self.bodies);
         report.timing.laws += clock.elapsed();
 
         self.book(&start, &report.totals);

@@ -200,17 +200,21 @@ fn frame<S: Space>(body: u32, offset: &S::Vector, bodies: &Bodies<S>) -> (S::Vec
 
 fn drop_contact<S: Space>(network: &mut Network<S>, k: usize) {
     let contact = &network.old[k];
-    if let Some(slot) = contact.memory() {
-        let memory = &mut network.memory[contact.law as usize];
-        let bond = &memory.bonds[slot];
-        if bond.intact() {
-            // A grain that left its surface's reach tears the bond.
-            network.torn_energy += bond.energy;
-            memory.broken += 1;
-            network.broken_pairs.insert(contact.key.pair());
-        }
-        memory.release(slot as u32);
+    let Some(slot) = contact.memory() else {
+        return;
+    };
+    let law = contact.law as usize;
+    let bond = &mut network.memory[law].bonds[slot];
+    if bond.intact() {
+        // A grain that left its surface's reach tears the bond.
+        bond.life.fracture += bond.energy;
+        network.torn_energy += bond.energy;
+        network.memory[law].broken += 1;
+        let contact = contact.clone();
+        network.broken_pairs.insert(contact.key.pair());
+        network.tell_break(&contact);
     }
+    network.memory[law].release(slot as u32);
 }
 
 fn held<S: Space>(network: &Network<S>, old: Option<usize>) -> bool {

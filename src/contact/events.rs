@@ -1,0 +1,70 @@
+//! What happens at contacts and is told once: bonds that broke, and where energy went.
+
+use super::network::Key;
+use crate::geometry::space::Space;
+
+/// A bond that broke.
+#[derive(Clone, Debug)]
+pub struct Break<S: Space> {
+    /// The name of its contact at that time.
+    pub key: Key,
+    /// Bodies: candidate, antagonist.
+    pub bodies: [u32; 2],
+    /// Index of the interface law.
+    pub law: u16,
+    /// Where its contact was (m): the candidate's centre and the arm from it, at q_m of the step.
+    pub place: S::Vector,
+    /// Normal opening at the end, and norm of the tangential one (m).
+    pub opening: [f64; 2],
+    /// Area (m^2; m in 2D).
+    pub area: f64,
+    /// What it went through.
+    pub life: Life,
+}
+
+/// What a bond went through since it was made (J; J/m in 2D): the work done on it is what it stores, what damage
+/// released and what its damping took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Life {
+    /// Work done on the bond by opening, by sliding, and by turning.
+    pub work: [f64; 3],
+    /// Released by damage.
+    pub fracture: f64,
+    /// Made heat at the contact while the bond held: its damping, and friction beside it.
+    pub heat: f64,
+}
+
+impl Life {
+    /// Share of sliding in the work of opening and sliding, 0 to 1: 0 is mode I, 1 mode II; what the bond gave
+    /// back does not count.
+    pub fn mode_mix(&self) -> f64 {
+        let [open, slide, _] = self.work.map(|w| w.max(0.0));
+        if open + slide > 0.0 {
+            slide / (open + slide)
+        } else {
+            0.0
+        }
+    }
+}
+
+/// What was dissipated at one contact in one step (J; J/m in 2D).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spent {
+    /// By friction.
+    pub friction: f64,
+    /// By impact.
+    pub impact: f64,
+    /// Against cohesion without opening.
+    pub adhesion: f64,
+    /// Released by damage.
+    pub fracture: f64,
+    /// By damping of the bond.
+    pub viscous: f64,
+}
+
+impl Spent {
+    /// All of it.
+    pub fn total(&self) -> f64 {
+        self.friction + self.impact + self.adhesion + self.fracture + self.viscous
+    }
+}

@@ -1,0 +1,81 @@
+//! Breaks of bonds, and what is spent at contacts, against the ledger's sums.
+
+use fretwork::contact::Spent;
+use fretwork::geometry::space::{Plane, Solid, VectorLike};
+use fretwork::laws::SearchPath;
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::load;
+use std::path::Path;
+
+/// Runs so many steps of a case: each step's spending by contact adds up to what the ledger books, and what
+/// breaks tell of themselves adds up to the fracture energy, with what intact bonds lost on the way.
+fn told<S: Dimensional>(case: &str, sets: &[&str], steps: usize) -> u64 {
+    let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
+    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
+    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    s.network.spent = Some(Vec::new());
+    let (mut fracture, mut breaks, mut most) = (0.0, 0, 0.0f64);
+    let slack = 10.0 * loaded.case.solver.tolerance;
+    for _ in 0..steps {
+        let totals = s.step().unwrap_or_else(|e| panic!("{e}")).totals;
+        let spent = s.network.spent.as_ref().unwrap();
+        assert_eq!(spent.len(), s.network.contacts.len());
+        let sum = |of: fn(&Spent) -> f64| spent.iter().map(of).sum::<f64>();
+        let torn: f64 = s.network.breaks.iter().map(|b| b.life.fracture).sum();
+        let pairs = [
+            (sum(|s| s.friction), totals.friction),
+            (sum(|s| s.impact), totals.impact),
+            (sum(|s| s.adhesion), totals.adhesion),
+            (sum(|s| s.viscous), totals.viscous),
+        ];
+        let scale = s.energy.scale.max(f64::MIN_POSITIVE);
+        for (by_contact, booked) in pairs {
+            assert!((by_contact - booked).abs() < 1e-13 * scale);
+        }
+        for b in &s.network.breaks {
+            let life = &b.life;
+            let work: f64 = life.work.iter().sum();
+            // Up to the solver's tolerance, friction takes energy.
+            most = most.max(life.fracture);
+            assert!(life.fracture > 0.0 && life.heat >= -slack * most, "{b:?}");
+            // All that was done on it was released or made heat, beside which friction makes more.
+            assert!(work <= life.fracture + life.heat + slack * most, "{b:?}");
+            assert!((0.0..=1.0).contains(&life.mode_mix()));
+            let near = b.bodies.iter().any(|i| {
+                let d = s.bodies.position[*i as usize] - b.place;
+                d.norm() < 3.0 * s.bodies.length[*i as usize].max(1e-12)
+            });
+            assert!(near, "{b:?}");
+        }
+        fracture += torn;
+        breaks += s.network.breaks.len() as u64;
+    }
+    assert_eq!(breaks, s.network.bonds_broken());
+    let intact: f64 = s
+        .network
+        .memory
+        .iter()
+        .flat_map(|m| &m.bonds)
+        .filter(|b| b.intact())
+        .map(|b| b.life.fracture)
+        .sum();
+    let booked = s.energy.fracture;
+    assert!(
+        (fracture + intact - booked).abs() < 1e-9 * booked,
+        "{fracture} + {intact} told, {booked} booked"
+    );
+    breaks
+}
+
+#[test]
+fn breaks_of_a_torn_plate_tell_all_its_fracture_energy() {
+    assert!(told::<Plane>("verification/voronoi_plate", &[], 800) > 10);
+    assert!(told::<Solid>("verification/voronoi_plate_3d", &[], 600) > 10);
+}
+
+#[test]
+fn breaks_under_fretting_tell_all_its_fracture_energy() {
+    assert!(told::<Plane>("wheel_rail_fretting", &[], 540) > 10);
+}

@@ -1,0 +1,3 @@
+//! The tribological circuit: what breaks is told with where its energy went.
+
+mod events;
