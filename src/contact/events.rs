@@ -30,11 +30,19 @@ pub struct Life {
     pub work: [f64; 3],
     /// Released by damage.
     pub fracture: f64,
-    /// Made heat at the contact while the bond held: its damping, and friction beside it.
-    pub heat: f64,
+    /// Taken by damping.
+    pub viscous: f64,
+    /// Dissipated by friction at the contact while the bond held. A sum of p . u_th, which a step on which the
+    /// velocity turns may lower.
+    pub friction: f64,
 }
 
 impl Life {
+    /// What became heat at the contact (J; J/m in 2D).
+    pub fn heat(&self) -> f64 {
+        self.viscous + self.friction
+    }
+
     /// Share of sliding in the work of opening and sliding, 0 to 1: 0 is mode I, 1 mode II; what the bond gave
     /// back does not count.
     pub fn mode_mix(&self) -> f64 {

@@ -197,7 +197,7 @@ impl Passes {
             let (opens, slides) = (en * un, et.dot(&ut));
             bond.life.work[0] -= opens;
             bond.life.work[1] -= slides;
-            bond.life.heat -= s.unilateral_t.dot(&ut);
+            bond.life.friction -= s.unilateral_t.dot(&ut);
             works.push(opens + slides);
         }
         if !memory.rotates {
@@ -216,7 +216,7 @@ impl Passes {
             let turned = (turn.moment.moment - turn.moment.friction).dot(&turn.spin);
             let life = &mut memory.bonds[slot].life;
             life.work[2] -= turned;
-            life.heat -= turn.moment.friction.dot(&turn.spin);
+            life.friction -= turn.moment.friction.dot(&turn.spin);
             *work += turned;
             *lost += turn.lost;
         }
@@ -263,7 +263,7 @@ impl Passes {
             let fracture = (bond.energy - start) + (end - kept);
             totals.viscous += viscous;
             totals.fracture += fracture;
-            bond.life.heat += viscous;
+            bond.life.viscous += viscous;
             bond.life.fracture += fracture;
             if let Some(spent) = &mut network.spent {
                 spent[*at].viscous += viscous;
