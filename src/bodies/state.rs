@@ -174,6 +174,14 @@ impl<S: Space> Bodies<S> {
         self.engage(place, 0.0);
     }
 
+    /// Takes a grain away for good: it stands still.
+    pub fn take_out(&mut self, body: usize) {
+        self.gone[body] = true;
+        (self.velocity[body], self.spin[body]) = (S::Vector::null(), S::Spin::null());
+        self.inverse_mass[body] = S::Vector::null();
+        self.inverse_inertia[body] = 0.0;
+    }
+
     /// Which bodies are grains: those that are not driven.
     pub fn grain_flags(&self) -> Vec<bool> {
         let mut grain = vec![true; self.len()];

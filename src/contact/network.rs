@@ -104,6 +104,8 @@ pub struct Network<S: Space> {
     pub torn_energy: f64,
     /// Bonds that broke in the last step, in its order.
     pub breaks: Vec<Break<S>>,
+    /// Bodies, candidate and antagonist, and interface law of the bonds that were made in the last step.
+    pub joins: Vec<([u32; 2], u16)>,
     /// What the last step dissipated at its contacts, in their order; kept where something asked for it.
     pub spent: Option<Vec<Spent>>,
     /// How often the neighbour list was rebuilt.
@@ -129,6 +131,7 @@ impl<S: Space> Network<S> {
             skin,
             torn_energy: 0.0,
             breaks: Vec::new(),
+            joins: Vec::new(),
             spent: None,
             rebuilds: 0,
             candidates: Vec::new(),

@@ -145,6 +145,9 @@ impl Passes {
                     }
                     _ => {}
                 }
+                if bonds {
+                    network.joins.push((contact.bodies, contact.law));
+                }
                 if bonds && contact.broken {
                     contact.broken = false;
                     network.broken_pairs.remove(&contact.key.pair());

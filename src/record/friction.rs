@@ -1,6 +1,8 @@
 //! A friction test: loops Q-delta, friction coefficient cycle by cycle, from forces and from heat.
 
+use super::fretting::Regime;
 use super::layer::Balance;
+use super::loops::Loop;
 use serde::Serialize;
 
 /// What one step of the test measured.
@@ -45,6 +47,18 @@ pub struct Cycle {
     pub damage_ratio: f64,
     /// A = E_d / (4 Q delta).
     pub energy_ratio: f64,
+    /// Half the stroke, delta* (m).
+    pub amplitude: f64,
+    /// Half the opening of the loop at Q = 0 (m).
+    pub sliding: f64,
+    /// Share of the stroke that is not sliding: 1 - sliding/amplitude.
+    pub stick_ratio: f64,
+    /// Mean of |Q|/P where the motion turns.
+    pub reversal_ratio: f64,
+    /// Partial or gross slip, by the energy ratio.
+    pub regime: Regime,
+    /// Volume worn off first bodies (m^3; m^3/m in 2D).
+    pub wear_volume: f64,
 }
 
 /// Follows the cycles of a test.
@@ -61,7 +75,20 @@ pub struct Cycles {
     position: f64,
     lowest: f64,
     highest: f64,
-    before: Option<(Balance, u64)>,
+    before: Option<State>,
+    shape: Loop,
+    place: f64,
+}
+
+/// What is cumulated over a run, at an end of a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct State {
+    /// Energies.
+    pub balance: Balance,
+    /// Bonds broken.
+    pub broken: u64,
+    /// Volume worn off first bodies (m^3; m^3/m in 2D).
+    pub worn: f64,
 }
 
 impl Cycles {
@@ -85,6 +112,8 @@ impl Cycles {
             lowest: 0.0,
             highest: 0.0,
             before: None,
+            shape: Loop::default(),
+            place: 0.0,
         }
     }
 
@@ -100,20 +129,18 @@ impl Cycles {
         }
     }
 
+    /// Whether the motion goes to and fro.
+    pub fn oscillates(&self) -> bool {
+        self.period.is_some()
+    }
+
     /// How many cycles the run has in all.
     pub fn total(&self) -> u32 {
         self.number(self.end)
     }
 
-    /// Adds a step: balances and broken bonds at its start and at its end, and the damage ratio.
-    pub fn add(
-        &mut self,
-        sample: &Sample,
-        h: f64,
-        before: (Balance, u64),
-        after: (Balance, u64),
-        damage: f64,
-    ) {
+    /// Adds a step: what was cumulated at its start and at its end, and the damage ratio.
+    pub fn add(&mut self, sample: &Sample, h: f64, before: State, after: State, damage: f64) {
         let number = self.number(sample.time);
         if number == 0 {
             return;
@@ -129,6 +156,7 @@ impl Cycles {
             (self.pressure_path, self.pressure_time, self.time) = (0.0, 0.0, 0.0);
             (self.position, self.lowest, self.highest) = (0.0, 0.0, 0.0);
             self.before = Some(before);
+            self.shape.next_cycle();
         }
         let (Some(cycle), Some(start)) = (self.list.last_mut(), self.before) else {
             return;
@@ -143,14 +171,27 @@ impl Cycles {
         cycle.work += sample.work;
         cycle.tangential_amplitude = cycle.tangential_amplitude.max(sample.q.abs());
         cycle.normal_force = self.pressure_time / self.time;
-        let heat = (after.0.taken - start.0.taken) - (after.0.other - start.0.other);
+        self.place += sample.slide;
+        self.shape.add(self.place, sample.q, sample.p);
+        let (now, then) = (&after.balance, &start.balance);
+        let heat = (now.taken - then.taken) - (now.other - then.other);
         let over = |x: f64, y: f64| if y > 0.0 { x / y } else { 0.0 };
         cycle.friction_coefficient = over(cycle.work, self.pressure_path);
         cycle.friction_from_dissipation = over(heat, self.pressure_path);
-        cycle.broken = after.1 - start.1;
+        cycle.broken = after.broken - start.broken;
+        cycle.wear_volume = after.worn - start.worn;
         cycle.damage_ratio = damage;
         let amplitude = 0.5 * (self.highest - self.lowest);
         cycle.energy_ratio = over(cycle.work, 4.0 * cycle.tangential_amplitude * amplitude);
+        cycle.amplitude = amplitude;
+        cycle.sliding = self.shape.aperture();
+        cycle.stick_ratio = if amplitude > 0.0 {
+            1.0 - cycle.sliding / amplitude
+        } else {
+            0.0
+        };
+        cycle.reversal_ratio = self.shape.reversal();
+        cycle.regime = Regime::of(cycle.energy_ratio);
         let end = self
             .period
             .map_or(self.end, |p| self.start + f64::from(number) * p);
@@ -193,7 +234,11 @@ mod tests {
                 slide: v * h,
                 work: measured * q * v * h,
             };
-            cycles.add(&sample, h, (before, 0), (balance, 0), 0.0);
+            let [before, after] = [before, balance].map(|balance| State {
+                balance,
+                ..State::default()
+            });
+            cycles.add(&sample, h, before, after, 0.0);
         }
         assert_eq!(cycles.list.len(), 2);
         cycles

@@ -7,7 +7,7 @@ use serde::Serialize;
 ///
 /// With theta = 1/2 the balance closes to rounding and to the solver's tolerance:
 /// kinetic + potential + elastic + fracture + friction + impact + adhesion + viscous + correction
-/// + scheme
+/// + scheme + carried
 /// - external work = initial energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Energy {
@@ -31,6 +31,8 @@ pub struct Energy {
     pub correction: f64,
     /// Dissipated by the scheme, (theta - 1/2) |v+ - v|_M^2; zero at theta = 1/2.
     pub scheme: f64,
+    /// Kinetic energy that bodies had when they were taken out of the scene.
+    pub carried: f64,
     /// Work of imposed forces and motions.
     pub external_work: f64,
     /// What does not add up.
@@ -72,7 +74,8 @@ impl Energy {
             + self.adhesion
             + self.viscous
             + self.correction
-            + self.scheme;
+            + self.scheme
+            + self.carried;
         let held = self.kinetic - self.initial_kinetic + self.potential + self.elastic;
         self.residual = held + sinks - self.external_work;
         let seen = [

@@ -30,6 +30,8 @@ pub enum Subject<'a> {
     Scene,
     /// The bonds, intact and broken.
     Bonds,
+    /// Colours of the balls and then of the pieces.
+    Painted(&'a [Paint]),
     /// A value of each ball, from 0 to `top`.
     Values {
         /// The values.
@@ -135,6 +137,7 @@ impl Camera {
         let (paints, scale) = match subject {
             Subject::Scene => (&self.paints[..], None),
             Subject::Bonds => (&[][..], None),
+            Subject::Painted(paints) => (paints, None),
             Subject::Values {
                 values: list,
                 label,
@@ -168,7 +171,7 @@ impl Camera {
                 },
                 [
                     outlines(simulation, self.window),
-                    pieces(simulation, self.window),
+                    pieces(simulation, self.window, paints),
                 ]
                 .concat(),
             )
@@ -217,10 +220,10 @@ pub fn piece_outline<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> Vec<Vec<S
     faces.into_iter().map(moved).collect()
 }
 
-fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
+fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Vec<Outline> {
     let period = s.shapes.periodic.period[0];
     let mut out = Vec::with_capacity(s.shapes.pieces.len());
-    for piece in &s.shapes.pieces {
+    for (k, piece) in s.shapes.pieces.iter().enumerate() {
         if s.bodies.gone[piece.body as usize] {
             continue;
         }
@@ -232,6 +235,7 @@ fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
                 points: corners.iter().map(|c| [c[0] - x + image, c[1]]).collect(),
                 label: String::new(),
                 shade,
+                paint: paint(paints, s.shapes.balls.len() + k),
             });
         }
     }
@@ -433,6 +437,7 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
                     points: around(&points, far),
                     label: String::new(),
                     shade: None,
+                    paint: Paint::Grey,
                 });
                 continue;
             }
@@ -463,6 +468,7 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
                 points: polygon,
                 label: name,
                 shade: None,
+                paint: Paint::Grey,
             });
         }
     }

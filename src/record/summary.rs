@@ -2,9 +2,12 @@
 
 use super::biaxial::Outcome;
 use super::choice::Choice;
+use super::fretting;
 use super::friction::Cycle;
 use super::ledger::Energy;
+use super::steady::Flow;
 use crate::step::control::Begun;
+use crate::wear::ledger::{Contents, Flows};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -84,6 +87,117 @@ pub struct Wear {
     pub volume_third_body: f64,
 }
 
+/// Mean flows over the second half of the account, with their intervals (kg/s; kg/(m s) in 2D).
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[allow(non_snake_case)]
+pub struct Rates {
+    /// Source.
+    pub Qs: Flow,
+    /// What bonds tied again.
+    pub Qa: Flow,
+    /// Ejected.
+    pub Qe: Flow,
+    /// Recirculated.
+    pub Qr: Flow,
+    /// Wear.
+    pub Qw: Flow,
+    /// Qs - Qa - Qw, block by block: within its interval of zero in steady sliding.
+    pub Qs_less_Qw: Flow,
+    /// Growth of the mass in the contact.
+    pub M: Flow,
+}
+
+/// A first body that grains can belong to.
+#[derive(Clone, Debug, Serialize)]
+pub struct Base {
+    /// Its name.
+    pub name: String,
+    /// Grains tied to it at the end.
+    pub grains: usize,
+}
+
+/// The tribological circuit; see [`crate::wear::ledger`].
+#[derive(Clone, Debug, Serialize)]
+pub struct CircuitSummary {
+    /// When the account began (s).
+    pub start: f64,
+    /// Window of the rates (s).
+    pub window: [f64; 2],
+    /// What there is at the end.
+    pub contents: Contents,
+    /// What passed since the start.
+    pub flows: Flows,
+    /// What does not add up.
+    pub residual: Contents,
+    /// Mean flows.
+    pub rates: Rates,
+    /// First bodies.
+    pub bases: Vec<Base>,
+    /// Pieces that came loose.
+    pub pieces: u64,
+    /// Grains of the largest.
+    pub largest_piece: usize,
+    /// Share of the run's wall time that the account took.
+    pub cost_share: f64,
+}
+
+impl CircuitSummary {
+    /// Lines for a terminal.
+    fn lines(&self) -> Vec<(&'static str, String)> {
+        let (c, f, r) = (&self.contents, &self.flows, &self.rates);
+        let tied: Vec<String> = self
+            .bases
+            .iter()
+            .map(|b| format!("{} to {}", b.grains, b.name))
+            .collect();
+        let flow = |q: &Flow| format!("{:.2e} +- {:.1e}", q.mean, q.half_width);
+        let steady = |q: &Flow| if q.steady { "no trend" } else { "TREND" };
+        let equal = if r.Qs_less_Qw.may_be_zero() {
+            "may be equal"
+        } else {
+            "differ"
+        };
+        vec![
+            (
+                "grains",
+                format!(
+                    "tied {}, {} in the contact, {} ejected, {} lost",
+                    tied.join(", "),
+                    c.contact.grains,
+                    c.ejected.grains,
+                    c.lost.grains
+                ),
+            ),
+            (
+                "passed",
+                format!(
+                    "{} came loose in {} pieces (largest {}), {} tied again, {} ejected, {} came back, {} lost",
+                    f.source.grains,
+                    self.pieces,
+                    self.largest_piece,
+                    f.attached.grains,
+                    f.ejected.grains,
+                    f.recirculated.grains,
+                    f.wear.grains
+                ),
+            ),
+            (
+                "flows, second half",
+                format!(
+                    "Qs {} ({}), Qw {} ({}), they {equal}; Qe {}, Qr {}, Qa {} kg/s",
+                    flow(&r.Qs),
+                    steady(&r.Qs),
+                    flow(&r.Qw),
+                    steady(&r.Qw),
+                    flow(&r.Qe),
+                    flow(&r.Qr),
+                    flow(&r.Qa)
+                ),
+            ),
+        ]
+    }
+}
+
 /// The whole run.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Summary {
@@ -115,6 +229,8 @@ pub struct Summary {
     pub friction_from_dissipation: Option<f64>,
     /// Cycle by cycle.
     pub cycles: Vec<Cycle>,
+    /// What the cycles of a fretting test say together; null where nothing moves to and fro.
+    pub fretting: Option<fretting::Outcome>,
     /// What a biaxial test found; null without one.
     pub biaxial: Option<Outcome>,
     /// Phases that began, with their times; empty without phases.
@@ -129,6 +245,8 @@ pub struct Summary {
     pub energy_residual_relative: f64,
     /// Wear.
     pub wear: Wear,
+    /// The tribological circuit; null without one.
+    pub circuit: Option<CircuitSummary>,
     /// The solver.
     pub solver: SolverSummary,
     /// Laws.
@@ -197,6 +315,20 @@ impl Summary {
                     c.friction_coefficient, c.work, c.normal_force, c.energy_ratio, c.broken
                 ),
             );
+        }
+        if let Some(f) = &self.fretting {
+            let slope = f.alpha.map_or(String::new(), |a| {
+                let width = a
+                    .half_width
+                    .map_or(String::new(), |w| format!(" +- {w:.1e}"));
+                format!(", {:.3e}{width} m3 worn a J", a.value)
+            });
+            let text = format!(
+                "{}, {:.4e} {joule} in all{slope}",
+                f.regime.name(),
+                f.energy
+            );
+            line("regime", text);
         }
         for (label, text) in self.biaxial.iter().flat_map(Outcome::lines) {
             line(label, text);
@@ -267,6 +399,9 @@ impl Summary {
                 flow(w.Qw)
             ),
         );
+        for (label, text) in self.circuit.iter().flat_map(CircuitSummary::lines) {
+            line(label, text);
+        }
         let s = &self.solver;
         line(
             "solver",

@@ -28,7 +28,61 @@ pub fn header(
             "local shear since the second phase began, or the start; not a number on first bodies";
         c("shear", "", doc)
     });
+    let joule = if dimension == 2 { "J/m" } else { "J" };
+    let area = if dimension == 2 { "m" } else { "m^2" };
+    let kg = if dimension == 2 { "kg/m" } else { "kg" };
+    let at = ["x", "y", "z"].map(|a| c(a, "m", "where it was"));
+    let bonds = loaded.case.interfaces.iter().any(|i| i.cohesion.is_some());
+    let broken = [
+        c("id", "", "number of the break, from 1"),
+        c("time", "s", "end of the step in which it broke"),
+        c("body_1", "", "identity of the candidate"),
+        c("body_2", "", "identity of the antagonist"),
+        c("interface", "", "index of the interface"),
+    ];
+    let broken = broken.into_iter().chain(at.clone()).chain([
+        c(
+            "mode_mix",
+            "",
+            "share of sliding in the work of opening and sliding: 0 mode I, 1 mode II",
+        ),
+        c("opening_normal", "m", "elongation at the end"),
+        c("opening_tangential", "m", "norm of the tangential opening"),
+        c("area", area, "area of the bond"),
+        c("work", joule, "work done on the bond since it was made"),
+        c("fracture", joule, "energy that damage released"),
+        c(
+            "heat",
+            joule,
+            "heat of its damping, and of friction at the contact while it held",
+        ),
+    ]);
+    let debris = [
+        c("id", "", "number of the piece, from 1"),
+        c("time", "s", "when the account found it loose"),
+        c("size", "", "grains in it"),
+        c("mass", kg, "its mass"),
+    ];
+    let debris = debris.into_iter().chain(at).chain([
+        c("first_body", "", "identity of the first body that lost it"),
+        c(
+            "mode_mix",
+            "",
+            "share of sliding in the work on the bonds that freed it",
+        ),
+        c(
+            "energy",
+            joule,
+            "energy that damage of these bonds released",
+        ),
+        c("bonds", "", "number of these bonds"),
+    ]);
     Header {
+        broken: if bonds { broken.collect() } else { Vec::new() },
+        debris: match loaded.case.circuit {
+            Some(_) => debris.collect(),
+            None => Vec::new(),
+        },
         case_name: loaded.case.name.clone(),
         case_text: loaded.source.text().to_owned(),
         materials: materials.to_vec(),

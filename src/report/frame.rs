@@ -20,6 +20,8 @@ pub struct Outline {
     pub label: String,
     /// Grey of a grain, as [`Disk::shade`]; none for a first body.
     pub shade: Option<f64>,
+    /// What the colour of a grain says.
+    pub paint: Paint,
 }
 
 /// A grain.
@@ -195,7 +197,7 @@ impl Frame<'_> {
         for body in self.bodies {
             let polygon = visible(&body.points, field, map);
             let (fill, edge, width) = match body.shade {
-                Some(shade) => (Paint::Grey.colour(shade), GRAIN_EDGE, 1.3 * u),
+                Some(shade) => (body.paint.colour(shade), GRAIN_EDGE, 1.3 * u),
                 None => (STEEL, STEEL_EDGE, 2.0 * u),
             };
             field.polygon(&polygon, fill);

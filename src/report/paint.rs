@@ -11,6 +11,12 @@ pub enum Paint {
     Grey,
     /// The layer it belongs to: four colours in turn, as dyed sands.
     Layer(i64),
+    /// Part of a first body, by its number: warm, undamaged.
+    Tied(usize),
+    /// Loose third body: blue.
+    Loose,
+    /// Ejected: light blue.
+    Out,
     /// A value, 0 light to 1 dark; grey where there is none.
     Value(f64),
 }
@@ -32,6 +38,10 @@ const SANDS: [Rgb; 4] = [
     [248, 240, 222],
     [62, 92, 122],
 ];
+/// First bodies: red, ochre.
+const TIED: [Rgb; 2] = [[200, 60, 48], [222, 164, 62]];
+const LOOSE: Rgb = [58, 104, 176];
+const OUT: Rgb = [168, 200, 226];
 const VALUES: [Rgb; 5] = [
     [240, 238, 230],
     [254, 204, 110],
@@ -47,6 +57,9 @@ impl Paint {
         match self {
             Self::Grey => mix(GREY[0], GREY[1], shade),
             Self::Layer(k) => dim(SANDS[k.rem_euclid(4) as usize]),
+            Self::Tied(k) => dim(TIED[k % TIED.len()]),
+            Self::Loose => dim(LOOSE),
+            Self::Out => dim(OUT),
             Self::Value(v) if v.is_nan() => mix(GREY[0], GREY[1], 0.6),
             Self::Value(v) => dim(value(v)),
         }

@@ -146,6 +146,7 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
     super::phases::gravity_drive(case.gravity_drive.as_ref(), dimension)?;
     super::phases::check(case)?;
     super::measures::check(case)?;
+    super::circuit::check(case)?;
     friction(case, dimension)
 }
 

@@ -109,7 +109,7 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
 }
 
 /// Columns and figures that a run has anyway.
-const RESERVED: [&str; 36] = [
+const RESERVED: [&str; 52] = [
     "step",
     "time",
     "cycle",
@@ -146,6 +146,22 @@ const RESERVED: [&str; 36] = [
     "biaxial",
     "bonds",
     "shear",
+    "circuit",
+    "tied_grains",
+    "M_grains",
+    "source_grains",
+    "attached_grains",
+    "ejected_grains",
+    "recirculated_grains",
+    "lost_grains",
+    "M",
+    "source",
+    "attached",
+    "ejected",
+    "recirculated",
+    "lost",
+    "ledger_grains",
+    "ledger_mass",
 ];
 
 fn one(case: &Case, spec: &MeasureSpec) -> Result<(), (&'static str, String)> {

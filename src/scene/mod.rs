@@ -3,6 +3,7 @@ pub mod biaxial;
 pub mod build;
 pub mod case;
 pub mod check;
+pub mod circuit;
 pub mod interfaces;
 pub mod material;
 pub mod measures;

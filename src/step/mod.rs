@@ -16,6 +16,7 @@ pub mod control;
 pub mod coupling;
 pub mod motion;
 pub mod projection;
+mod removal;
 pub mod simulation;
 
 pub use projection::Projected;

@@ -211,6 +211,7 @@ impl<S: Space> Simulation<S> {
         };
         let mut start = Before::new(&self.bodies);
         self.network.breaks.clear();
+        self.network.joins.clear();
         self.obey();
         let clock = Instant::now();
         motion::advance(&mut self.bodies, (1.0 - theta) * h);

@@ -4,10 +4,13 @@
 //! /            attributes: program, version, case, seed, dimension
 //! /case        the case as text, `--set` applied          /materials/NAME   their texts
 //! /plugins     kind, name, version, sha256, path          /statistics/NAME  one column each, with unit
+//! /events/broken/NAME  one value a bond that broke         /events/debris/NAME  one a piece that came loose
+//! /events/debris/grains  identities of their grains, piece after piece
 //! /views/grains, /views/contacts, /views/bodies           temporal VTKHDF PolyData
 //! /VTKHDF      the grains' view, for ParaView             contacts.vtkhdf, bodies.vtkhdf: links to the others
 //! ```
 
+mod events;
 pub mod state;
 mod store;
 mod view;
@@ -17,6 +20,7 @@ pub use view::{Cells, Part};
 
 use super::statistics::Column;
 use super::summary::PluginStamp;
+use events::Events;
 use std::path::Path;
 use store::{Growing, Store};
 use view::View;
@@ -42,6 +46,10 @@ pub struct Header {
     pub statistics: Vec<Column>,
     /// Fields of grains, contacts and bodies.
     pub fields: [Vec<Column>; 3],
+    /// Columns of the bonds that break; empty where nothing bonds.
+    pub broken: Vec<Column>,
+    /// Columns of debris; empty without a circuit.
+    pub debris: Vec<Column>,
 }
 
 /// Rows of statistics held back before they are written.
@@ -53,6 +61,9 @@ pub struct Results {
     store: Option<Store>,
     statistics: Vec<Growing>,
     held: Vec<Vec<f64>>,
+    broken: Events,
+    debris: Events,
+    debris_grains: Option<Growing>,
     views: Vec<View>,
 }
 
@@ -106,6 +117,16 @@ impl Results {
                 c.doc,
             )?);
         }
+        if !header.broken.is_empty() || !header.debris.is_empty() {
+            store.group("/events")?;
+        }
+        let broken = Events::declare(&mut store, "/events/broken", &header.broken)?;
+        let debris = Events::declare(&mut store, "/events/debris", &header.debris)?;
+        let doc = "identities of the grains of all pieces, one piece after another";
+        let debris_grains = match header.debris.is_empty() {
+            true => None,
+            false => Some(store.growing::<f64>("/events/debris/grains", 1, "", doc)?),
+        };
         store.group("/views")?;
         let bodies = if header.dimension == 2 {
             Cells::Lines
@@ -131,6 +152,9 @@ impl Results {
             store: Some(store),
             statistics,
             held: vec![Vec::new(); header.statistics.len()],
+            broken,
+            debris,
+            debris_grains,
             views,
         })
     }
@@ -149,6 +173,30 @@ impl Results {
         Ok(())
     }
 
+    /// Appends a bond that broke.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn append_break(&mut self, row: &[f64]) -> Result<(), ResultsError> {
+        self.broken.hold(row);
+        if self.broken.rows() >= HELD {
+            self.write_statistics()?;
+        }
+        Ok(())
+    }
+
+    /// Appends a piece of debris, and the identities of its grains.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn append_debris(&mut self, row: &[f64], grains: &[f64]) -> Result<(), ResultsError> {
+        self.debris.hold(row);
+        if let (Some(store), Some(list)) = (&mut self.store, &mut self.debris_grains) {
+            store.append(list, grains)?;
+        }
+        Ok(())
+    }
+
     fn write_statistics(&mut self) -> Result<(), ResultsError> {
         let Some(store) = &mut self.store else {
             return Ok(());
@@ -157,6 +205,8 @@ impl Results {
             store.append(column, values)?;
             values.clear();
         }
+        self.broken.write(store)?;
+        self.debris.write(store)?;
         store.flush()
     }
 

@@ -2,8 +2,8 @@
 
 use super::{Recorder, RunError, unwritable};
 use crate::record::biaxial::{self, Outcome};
-use crate::record::figures;
 use crate::record::summary::Wear;
+use crate::record::{figures, fretting};
 use crate::scene::build::Dimensional;
 
 impl<S: Dimensional> Recorder<'_, S> {
@@ -28,6 +28,7 @@ impl<S: Dimensional> Recorder<'_, S> {
             summary.friction_coefficient = cycles.last().map(|c| c.friction_coefficient);
             summary.friction_from_dissipation = cycles.last().map(|c| c.friction_from_dissipation);
             summary.cycles.clone_from(&cycles.list);
+            summary.fretting = fretting::Outcome::new(&cycles.list).filter(|_| cycles.oscillates());
         }
         let start = self.loaded.case.biaxial.as_ref().map_or(0.0, |t| t.start);
         if let Some(test) = &self.biaxial {
@@ -52,6 +53,14 @@ impl<S: Dimensional> Recorder<'_, S> {
             volume_first_bodies: self.worn.0,
             volume_third_body: self.worn.1,
         };
+        let wall = self.clock.elapsed();
+        summary.circuit = self.account.summary(s, &self.table, wall);
+        if let Some(circuit) = &summary.circuit {
+            let span = (s.time - circuit.start).max(f64::MIN_POSITIVE);
+            summary.wear.Qs = circuit.flows.source.mass / span;
+            summary.wear.Qe = Some(circuit.flows.ejected.mass / span);
+            summary.wear.Qw = Some(circuit.flows.wear.mass / span);
+        }
         summary.solver.coupling_iterations_mean = self.couplings as f64 / s.steps.max(1) as f64;
         summary.solver.why = summary.solver.choice.why(s.solver.method, s.steps);
         summary.solver.iterations_mean = self.iterations as f64 / s.steps.max(1) as f64;

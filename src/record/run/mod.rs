@@ -1,12 +1,14 @@
 //! Runs a scene to its end and records it.
 
+mod account;
 mod end;
 mod row;
 
+use self::account::Account;
 use super::biaxial::Biaxial;
 use super::fclib;
-use super::friction::{Cycles, Sample};
-use super::layer::{Balance, Layer};
+use super::friction::{Cycles, Sample, State as Cumulated};
+use super::layer::Layer;
 use super::measure::Measures;
 use super::picture::{Camera, Subject};
 use super::results::{Results, ResultsError};
@@ -37,6 +39,17 @@ pub enum RunError {
         path: PathBuf,
         /// Why.
         reason: String,
+    },
+    /// No bond ties a grain to a first body of the circuit.
+    #[error(
+        "at t = {time:.6e} s, when the circuit begins, no bond ties a grain to `{body}`: let bonds be made before \
+         (circuit.start), let them reach it (detection.alert, the places of grains), or leave it out of circuit.bases"
+    )]
+    NoBonds {
+        /// Name of the body.
+        body: String,
+        /// Time (s).
+        time: f64,
     },
     /// The results file.
     #[error(transparent)]
@@ -115,6 +128,7 @@ struct Recorder<'a, S: Space> {
     cycles: Option<(Cycles, usize)>,
     biaxial: Option<Biaxial>,
     measures: Measures<S>,
+    account: Account<S>,
     layer: Layer<S>,
     sample: Option<Sample>,
     slide: f64,
@@ -153,6 +167,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let biaxial = spec.and_then(|spec| Biaxial::new(spec, &simulation));
         let measures = Measures::new(&case.measures);
         let mut columns = row::columns(&simulation, cycles.is_some(), biaxial.is_some());
+        columns.extend(Account::<S>::columns(case));
         columns.extend(measures.columns());
         let table_path = options.out.join("statistics.csv");
         let table =
@@ -191,6 +206,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             cycles,
             biaxial,
             measures,
+            account: Account::new(case),
             layer: Layer::new(&simulation),
             sample: None,
             slide: 0.0,
@@ -213,7 +229,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         self.views()?;
         self.frame(0)?;
         for step in 1..=self.total {
-            let (before, phase) = (self.balance(), self.simulation.control.phase());
+            let (before, phase) = (self.cumulated(), self.simulation.control.phase());
             let recurs = self.simulation.control.recurs();
             let report = self.simulation.step()?;
             self.follow(&report, before);
@@ -224,11 +240,15 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             }
             let finished = self.simulation.control.finished();
             let last = step == self.total || finished;
+            self.account(last)?;
             if output.fclib > 0 && step % output.fclib == 0 {
                 self.dump(step, &report)?;
             }
             if step % output.every.max(1) == 0 || last {
                 let mut row = self.row(&report);
+                if self.loaded.case.circuit.is_some() {
+                    row.extend(self.account.row());
+                }
                 row.extend(self.measures.sample(&self.simulation));
                 self.table
                     .push(&row)
@@ -284,10 +304,14 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         Ok(())
     }
 
-    /// Energies of what lies between the driven bodies, and bonds broken so far.
-    fn balance(&self) -> (Balance, u64) {
+    /// What was cumulated so far.
+    fn cumulated(&self) -> Cumulated {
         let s = &self.simulation;
-        (self.layer.balance(s), s.network.bonds_broken())
+        Cumulated {
+            balance: self.layer.balance(s),
+            broken: s.network.bonds_broken(),
+            worn: self.worn.0,
+        }
     }
 
     fn damage_ratio(&self) -> f64 {
@@ -334,7 +358,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         if push < 0.0 { -1.0 } else { 1.0 }
     }
 
-    fn follow(&mut self, report: &StepReport, before: (Balance, u64)) {
+    fn follow(&mut self, report: &StepReport, before: Cumulated) {
         self.sample = self.sample();
         if let (Some((_, place)), Some(test)) = (&self.cycles, &self.loaded.case.friction) {
             self.layer.follow(&self.simulation, (*place, test.along));
@@ -342,7 +366,9 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         if let Some(test) = &mut self.biaxial {
             test.follow(&self.simulation);
         }
-        let after = self.balance();
+        self.worn.0 += report.totals.worn_first;
+        self.worn.1 += report.totals.worn_third;
+        let after = self.cumulated();
         let damage = self.damage_ratio();
         let s = &self.simulation;
         let h = s.scheme.h;
@@ -350,8 +376,6 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             self.slide += sample.slide;
             cycles.add(&sample, h, before, after, damage);
         }
-        self.worn.0 += report.totals.worn_first;
-        self.worn.1 += report.totals.worn_third;
         let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
         self.internal_flow += h * internal_flow(s, along) / self.loaded.case.inertia_scaling;
         let solver = &mut self.summary.solver;
@@ -417,6 +441,10 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         }
         if self.loaded.case.output.layers.is_some() && self.simulation.network.bonds_made() > 0 {
             subjects.push(("bonds", Subject::Bonds));
+        }
+        let paints = self.account.paints(&self.simulation);
+        if !paints.is_empty() {
+            subjects.push(("circuit", Subject::Painted(&paints)));
         }
         for (name, subject) in subjects {
             let path = self

@@ -6,6 +6,7 @@ mod shapes;
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
 pub use shapes::{Coordinates, ShapeSpec, Side};
 
+use super::circuit::CircuitSpec;
 use super::measures::MeasureSpec;
 use super::phases::PhaseSpec;
 use crate::bodies::Dof;
@@ -76,6 +77,9 @@ pub struct Case {
     /// What is measured as a biaxial test.
     #[serde(default)]
     pub biaxial: Option<BiaxialSpec>,
+    /// The account of grains between first bodies, contact and outside.
+    #[serde(default)]
+    pub circuit: Option<CircuitSpec>,
     /// Other quantities that are measured.
     #[serde(default)]
     pub measures: Vec<MeasureSpec>,

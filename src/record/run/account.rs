@@ -1,0 +1,261 @@
+//! The tribological circuit in a run: begun in time, brought up to date, written and summed up.
+
+use super::{Recorder, RunError};
+use crate::geometry::space::{Space, VectorLike};
+use crate::record::results::Results;
+use crate::record::statistics::{Column, Table};
+use crate::record::steady;
+use crate::record::summary::{Base, CircuitSummary, Rates};
+use crate::report::Paint;
+use crate::scene::build::Dimensional;
+use crate::scene::case::Case;
+use crate::scene::circuit;
+use crate::step::Simulation;
+use crate::wear::circuit::Circuit;
+use crate::wear::ledger::Place;
+use std::time::Duration;
+
+/// The account of a run.
+#[derive(Debug)]
+pub(super) struct Account<S: Space> {
+    start: f64,
+    every: u64,
+    /// None before it begins.
+    pub circuit: Option<Circuit<S>>,
+    /// Pieces that came loose, and grains in them.
+    pieces: (u64, u64),
+    largest: usize,
+    broken: u64,
+    debris: u64,
+}
+
+impl<S: Space> Account<S> {
+    pub fn new(case: &Case) -> Self {
+        let spec = case.circuit.as_ref();
+        Self {
+            start: spec.map_or(0.0, |c| c.start),
+            every: spec.map_or(1, |c| c.every),
+            circuit: None,
+            pieces: (0, 0),
+            largest: 0,
+            broken: 0,
+            debris: 0,
+        }
+    }
+
+    /// Columns of the statistics; none without a circuit.
+    pub fn columns(case: &Case) -> Vec<Column> {
+        if case.circuit.is_none() {
+            return Vec::new();
+        }
+        let kg = if case.dimension == 2 { "kg/m" } else { "kg" };
+        let c = Column::new;
+        vec![
+            c("tied_grains", "", "grains tied to first bodies"),
+            c("M_grains", "", "grains in the contact"),
+            c(
+                "source_grains",
+                "",
+                "grains that came loose, since the start",
+            ),
+            c("attached_grains", "", "grains that bonds tied again"),
+            c("ejected_grains", "", "grains that left the contact"),
+            c("recirculated_grains", "", "grains that came back"),
+            c("lost_grains", "", "grains that wore: out for good"),
+            c("M", kg, "mass in the contact"),
+            c("source", kg, "mass that came loose, since the start"),
+            c("attached", kg, "mass that bonds tied again"),
+            c("ejected", kg, "mass that left the contact"),
+            c("recirculated", kg, "mass that came back"),
+            c("lost", kg, "mass that wore: out for good"),
+            c("ledger_grains", "", "grains that do not add up; 0"),
+            c("ledger_mass", kg, "mass that does not add up; rounding"),
+        ]
+    }
+
+    /// Values of the columns.
+    pub fn row(&self) -> Vec<f64> {
+        let Some(circuit) = &self.circuit else {
+            return vec![0.0; 15];
+        };
+        let (c, f) = (&circuit.ledger.contents, &circuit.ledger.flows);
+        let r = circuit.ledger.residual();
+        let rest = [r.tied, r.contact, r.ejected, r.lost];
+        let flows = [f.source, f.attached, f.ejected, f.recirculated, f.wear];
+        let mut row = vec![c.tied.grains as f64, c.contact.grains as f64];
+        row.extend(flows.iter().map(|a| a.grains as f64));
+        row.push(c.contact.mass);
+        row.extend(flows.iter().map(|a| a.mass));
+        row.push(rest.iter().map(|a| a.grains.abs()).sum::<i64>() as f64);
+        row.push(rest.iter().map(|a| a.mass.abs()).sum());
+        row
+    }
+
+    /// Takes in the last step: its breaks as events, and the account where it is due.
+    pub fn follow(
+        &mut self,
+        case: &Case,
+        s: &mut Simulation<S>,
+        results: &mut Results,
+        last: bool,
+    ) -> Result<(), RunError> {
+        for b in &s.network.breaks {
+            let at = s.shapes.periodic.wrapped(b.place).padded();
+            let id = |k: usize| s.bodies.id[b.bodies[k] as usize] as f64;
+            self.broken += 1;
+            results.append_break(&[
+                self.broken as f64,
+                s.time,
+                id(0),
+                id(1),
+                f64::from(b.law),
+                at[0],
+                at[1],
+                at[2],
+                b.life.mode_mix(),
+                b.opening[0],
+                b.opening[1],
+                b.area,
+                b.life.work.iter().sum(),
+                b.life.fracture,
+                b.life.heat(),
+            ])?;
+        }
+        if case.circuit.is_none() || s.time < self.start - 0.5 * s.scheme.h {
+            return Ok(());
+        }
+        let Some(circuit) = &mut self.circuit else {
+            return self.begin(case, s);
+        };
+        circuit.note(s);
+        if s.steps % self.every != 0 && !last {
+            return Ok(());
+        }
+        circuit.update(s);
+        for d in &circuit.debris {
+            self.pieces.0 += 1;
+            self.pieces.1 += d.grains.len() as u64;
+            self.largest = self.largest.max(d.grains.len());
+            self.debris += 1;
+            let at = d.place.padded();
+            let row = [
+                self.debris as f64,
+                d.time,
+                d.grains.len() as f64,
+                d.mass,
+                at[0],
+                at[1],
+                at[2],
+                s.bodies.id[d.base as usize] as f64,
+                d.mode_mix,
+                d.energy,
+                d.bonds as f64,
+            ];
+            let grains: Vec<f64> = d.grains.iter().map(|g| *g as f64).collect();
+            results.append_debris(&row, &grains)?;
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self, case: &Case, s: &Simulation<S>) -> Result<(), RunError> {
+        let Some(spec) = circuit::install(case, s) else {
+            return Ok(());
+        };
+        let circuit = Circuit::new(spec, s);
+        for base in circuit.bases() {
+            if circuit.tied_to(*base) == 0 {
+                let driven = s.bodies.driven.iter().find(|d| d.body == *base);
+                return Err(RunError::NoBonds {
+                    body: driven.map_or(String::new(), |d| d.name.clone()),
+                    time: s.time,
+                });
+            }
+        }
+        self.circuit = Some(circuit);
+        Ok(())
+    }
+
+    /// The colours of balls and pieces by where they are; none before the account begins.
+    pub fn paints(&self, s: &Simulation<S>) -> Vec<Paint> {
+        let Some(circuit) = &self.circuit else {
+            return Vec::new();
+        };
+        let balls = s.shapes.balls.iter().map(|b| b.body);
+        let bodies = balls.chain(s.shapes.pieces.iter().map(|p| p.body));
+        let paint = |body: u32| match circuit.place(body as usize) {
+            Some(Place::Tied(base)) => {
+                Paint::Tied(circuit.bases().iter().position(|b| *b == base).unwrap_or(0))
+            }
+            Some(Place::Contact) => Paint::Loose,
+            Some(_) => Paint::Out,
+            None => Paint::Grey,
+        };
+        bodies.map(paint).collect()
+    }
+
+    /// What the summary says.
+    pub fn summary(
+        &self,
+        s: &Simulation<S>,
+        table: &Table,
+        wall: Duration,
+    ) -> Option<CircuitSummary> {
+        let circuit = self.circuit.as_ref()?;
+        let times = table.column("time");
+        let middle = 0.5 * (self.start + s.time);
+        let series = |name: &str| -> Vec<(f64, f64)> {
+            let values = table.column(name);
+            times
+                .iter()
+                .copied()
+                .zip(values)
+                .filter(|p| p.0 >= self.start)
+                .collect()
+        };
+        let flow = |points: &[(f64, f64)]| steady::flow(points, middle, s.time).unwrap_or_default();
+        let (source, lost) = (series("source"), series("lost"));
+        let attached = series("attached");
+        let net = source.iter().zip(&lost).zip(&attached);
+        let net: Vec<(f64, f64)> = net.map(|((q, w), a)| (q.0, q.1 - a.1 - w.1)).collect();
+        let name = |b: u32| {
+            s.bodies
+                .driven
+                .iter()
+                .find(|d| d.body == b)
+                .map(|d| d.name.clone())
+        };
+        let bases = circuit.bases().iter().map(|b| Base {
+            name: name(*b).unwrap_or_default(),
+            grains: circuit.tied_to(*b),
+        });
+        Some(CircuitSummary {
+            start: self.start,
+            window: [middle, s.time],
+            contents: circuit.ledger.contents,
+            flows: circuit.ledger.flows,
+            residual: circuit.ledger.residual(),
+            rates: Rates {
+                Qs: flow(&source),
+                Qa: flow(&attached),
+                Qe: flow(&series("ejected")),
+                Qr: flow(&series("recirculated")),
+                Qw: flow(&lost),
+                Qs_less_Qw: flow(&net),
+                M: flow(&series("M")),
+            },
+            bases: bases.collect(),
+            pieces: self.pieces.0,
+            largest_piece: self.largest,
+            cost_share: circuit.cost.as_secs_f64() / wall.as_secs_f64().max(1e-9),
+        })
+    }
+}
+
+impl<S: Dimensional> Recorder<'_, S> {
+    /// Brings the account up to date with the last step.
+    pub(super) fn account(&mut self, last: bool) -> Result<(), RunError> {
+        let case = &self.loaded.case;
+        self.account
+            .follow(case, &mut self.simulation, &mut self.results, last)
+    }
+}

@@ -1,0 +1,14 @@
+//! Bodies that are taken out of a running scene.
+
+use super::Simulation;
+use crate::geometry::space::Space;
+
+impl<S: Space> Simulation<S> {
+    /// Takes a grain out for good: it stands still, touches nothing, and its bonds tear. The kinetic energy that it
+    /// had is an entry of the energy ledger.
+    pub fn take_out(&mut self, body: usize) {
+        self.energy.carried += self.bodies.energy_of(body);
+        self.bodies.take_out(body);
+        self.network.forget_neighbours();
+    }
+}

@@ -1,0 +1,284 @@
+//! The tribological circuit of a run: ties, ejection zones, the mass ledger, and debris as it comes loose.
+
+use super::ledger::{Ledger, Place};
+use super::ties::Ties;
+use crate::bodies::Bodies;
+use crate::contact::Network;
+use crate::geometry::space::{Space, VectorLike};
+use crate::step::Simulation;
+use std::time::{Duration, Instant};
+
+/// What becomes of a grain in an ejection zone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fate {
+    /// It stays ejected until it leaves the zone, and may come back.
+    Stays,
+    /// It is lost when it has been there for so long (s).
+    LostAfter(f64),
+}
+
+/// A region outside the contact.
+#[derive(Clone, Debug)]
+pub struct Zone<S: Space> {
+    /// Its name.
+    pub name: String,
+    /// Lowest corner (m); minus infinity where it is open.
+    pub low: S::Vector,
+    /// Highest corner (m); infinity where it is open.
+    pub high: S::Vector,
+    /// The body that carries it; its corners are then in that body's frame, which may move but not turn.
+    pub carrier: Option<u32>,
+    /// What becomes of a grain in it.
+    pub fate: Fate,
+}
+
+impl<S: Space> Zone<S> {
+    fn holds(&self, bodies: &Bodies<S>, at: &S::Vector) -> bool {
+        let origin = self.carrier.map(|b| bodies.position[b as usize]);
+        let x = origin.map_or(*at, |o| *at - o);
+        (0..S::D).all(|k| self.low[k] <= x[k] && x[k] < self.high[k])
+    }
+}
+
+/// What a circuit is made of.
+#[derive(Clone, Debug)]
+pub struct Spec<S: Space> {
+    /// First bodies that grains can belong to: bodies to which bonds tie.
+    pub bases: Vec<u32>,
+    /// Interfaces whose bonds tie, by index.
+    pub interfaces: Vec<u16>,
+    /// Ejection zones; a grain is in the first that holds its centre.
+    pub zones: Vec<Zone<S>>,
+    /// Whether what is lost is taken out of the scene.
+    pub remove: bool,
+    /// Factor by which masses are larger than they are, see `inertia_scaling`.
+    pub scaling: f64,
+}
+
+/// Debris: grains that came loose together.
+#[derive(Clone, Debug)]
+pub struct Debris<S: Space> {
+    /// When it was noticed (s).
+    pub time: f64,
+    /// Identities of its grains.
+    pub grains: Vec<u64>,
+    /// Mass (kg; kg/m in 2D).
+    pub mass: f64,
+    /// Centre of mass (m).
+    pub place: S::Vector,
+    /// Index of the first body that lost it.
+    pub base: u32,
+    /// Share of sliding in the work done on the bonds whose breaking freed it; see
+    /// [`crate::contact::Life::mode_mix`].
+    pub mode_mix: f64,
+    /// Energy that damage of these bonds released (J; J/m in 2D).
+    pub energy: f64,
+    /// Their number.
+    pub bonds: usize,
+}
+
+/// A bond that broke since the last update.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    bodies: [u32; 2],
+    work: [f64; 2],
+    fracture: f64,
+}
+
+/// The circuit of a run.
+#[derive(Debug)]
+pub struct Circuit<S: Space> {
+    spec: Spec<S>,
+    /// The grains, by body.
+    grains: Vec<u32>,
+    /// Place of a body among the grains.
+    number: Vec<Option<u32>>,
+    ties: Ties,
+    /// The mass ledger.
+    pub ledger: Ledger,
+    /// Since when a grain has been in its zone (s).
+    since: Vec<f64>,
+    made: Vec<[u32; 2]>,
+    cuts: Vec<Cut>,
+    /// Grains and clusters that came loose in the last update.
+    pub debris: Vec<Debris<S>>,
+    /// Time spent on it.
+    pub cost: Duration,
+}
+
+impl<S: Space> Circuit<S> {
+    /// Begins with the bonds at hand.
+    pub fn new(spec: Spec<S>, s: &Simulation<S>) -> Self {
+        let grains: Vec<u32> = s.bodies.grains().map(|b| b as u32).collect();
+        let mut number = vec![None; s.bodies.len()];
+        for (k, b) in grains.iter().enumerate() {
+            number[*b as usize] = Some(k as u32);
+        }
+        let ties = Ties::new(
+            s.bodies.len(),
+            &spec.bases,
+            bonds(&s.network, &spec.interfaces),
+        );
+        let masses = grains
+            .iter()
+            .map(|b| s.bodies.mass[*b as usize] / spec.scaling);
+        let masses: Vec<f64> = masses.collect();
+        let mut circuit = Self {
+            ledger: Ledger::new(masses.clone(), vec![Place::Contact; grains.len()]),
+            since: vec![s.time; grains.len()],
+            number,
+            ties,
+            grains,
+            made: Vec::new(),
+            cuts: Vec::new(),
+            debris: Vec::new(),
+            cost: Duration::ZERO,
+            spec,
+        };
+        let places = circuit.places(s);
+        circuit.ledger = Ledger::new(masses, places);
+        circuit
+    }
+
+    /// The first bodies.
+    pub fn bases(&self) -> &[u32] {
+        &self.spec.bases
+    }
+
+    /// Where a body is, if it is a grain.
+    pub fn place(&self, body: usize) -> Option<Place> {
+        self.number[body].map(|k| self.ledger.places()[k as usize])
+    }
+
+    /// Grains tied to a first body.
+    pub fn tied_to(&self, base: u32) -> usize {
+        let tied = |b: &&u32| self.ties.base(**b) == Some(base);
+        self.grains.iter().filter(tied).count()
+    }
+
+    /// Takes in the bonds that the last step made and broke. To be called after every step.
+    pub fn note(&mut self, s: &Simulation<S>) {
+        let ties = |law: u16| self.spec.interfaces.contains(&law);
+        for (bodies, law) in &s.network.joins {
+            if ties(*law) {
+                self.made.push(*bodies);
+            }
+        }
+        for b in s.network.breaks.iter().filter(|b| ties(b.law)) {
+            self.cuts.push(Cut {
+                bodies: b.bodies,
+                work: [b.life.work[0], b.life.work[1]],
+                fracture: b.life.fracture,
+            });
+        }
+    }
+
+    /// Brings ties, zones and the ledger to the state at hand; takes out of the scene what is lost, where the case
+    /// wants that.
+    pub fn update(&mut self, s: &mut Simulation<S>) {
+        let clock = Instant::now();
+        let broken: Vec<[u32; 2]> = self.cuts.iter().map(|c| c.bodies).collect();
+        let change = if self.made.is_empty() && broken.is_empty() {
+            Default::default()
+        } else {
+            self.ties.change(&self.made, &broken)
+        };
+        self.debris.clear();
+        for (base, piece) in &change.loose {
+            let debris = self.debris_of(s, *base, piece);
+            self.debris.push(debris);
+        }
+        self.made.clear();
+        self.cuts.clear();
+        let before: Vec<Place> = self.ledger.places().to_vec();
+        let places = self.places(s);
+        self.ledger.book(&places);
+        if self.spec.remove {
+            for (k, (old, new)) in before.iter().zip(&places).enumerate() {
+                if *new == Place::Lost && *old != Place::Lost {
+                    s.take_out(self.grains[k] as usize);
+                }
+            }
+        }
+        self.cost += clock.elapsed();
+    }
+
+    /// Where each grain is at the state at hand.
+    fn places(&mut self, s: &Simulation<S>) -> Vec<Place> {
+        let mut places = Vec::with_capacity(self.grains.len());
+        for (k, body) in self.grains.iter().enumerate() {
+            let old = self.ledger.places()[k];
+            if old == Place::Lost {
+                places.push(old);
+                continue;
+            }
+            if let Some(base) = self.ties.base(*body) {
+                places.push(Place::Tied(base));
+                continue;
+            }
+            let at = s.shapes.periodic.wrapped(s.bodies.position[*body as usize]);
+            let zone = self.spec.zones.iter().position(|z| z.holds(&s.bodies, &at));
+            let Some(zone) = zone else {
+                places.push(Place::Contact);
+                continue;
+            };
+            let now = Place::Ejected(zone as u32);
+            if old != now {
+                self.since[k] = s.time;
+            }
+            let lost = match self.spec.zones[zone].fate {
+                Fate::Stays => false,
+                Fate::LostAfter(time) => s.time - self.since[k] >= time,
+            };
+            places.push(if lost { Place::Lost } else { now });
+        }
+        places
+    }
+
+    fn debris_of(&self, s: &Simulation<S>, base: u32, piece: &[u32]) -> Debris<S> {
+        let first = s.bodies.position[piece[0] as usize];
+        let (mut mass, mut moment) = (0.0, S::Vector::null());
+        for b in piece {
+            let (m, at) = (s.bodies.mass[*b as usize], s.bodies.position[*b as usize]);
+            mass += m;
+            moment = moment + s.shapes.periodic.shortest(at - first) * m;
+        }
+        // The bonds that tied the piece to what is not of it.
+        let of = |b: u32| piece.binary_search(&b).is_ok();
+        let cuts = self
+            .cuts
+            .iter()
+            .filter(|c| of(c.bodies[0]) != of(c.bodies[1]));
+        let (mut work, mut energy, mut bonds) = ([0.0; 2], 0.0, 0);
+        for cut in cuts {
+            energy += cut.fracture;
+            bonds += 1;
+            work = [
+                work[0] + cut.work[0].max(0.0),
+                work[1] + cut.work[1].max(0.0),
+            ];
+        }
+        let all = work[0] + work[1];
+        Debris {
+            time: s.time,
+            grains: piece.iter().map(|b| s.bodies.id[*b as usize]).collect(),
+            mass: mass / self.spec.scaling,
+            place: s.shapes.periodic.wrapped(first + moment * (1.0 / mass)),
+            base,
+            mode_mix: if all > 0.0 { work[1] / all } else { 0.0 },
+            energy,
+            bonds,
+        }
+    }
+}
+
+/// Bodies of the bonds that hold, of these interfaces.
+fn bonds<'a, S: Space>(
+    network: &'a Network<S>,
+    interfaces: &'a [u16],
+) -> impl Iterator<Item = [u32; 2]> + 'a {
+    let holds = move |c: &&crate::contact::Contact<S>| {
+        interfaces.contains(&c.law) && network.bond(c).is_some_and(|b| b.intact())
+    };
+    network.contacts.iter().filter(holds).map(|c| c.bodies)
+}
