@@ -1,0 +1,110 @@
+//! The shape of a fretting loop Q(delta): where it crosses Q = 0, and Q/P where the motion turns.
+
+/// Follows a loop, sample by sample.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Loop {
+    /// Displacement (m), Q and P (N), and the last motion that was not zero (m).
+    last: Option<[f64; 3]>,
+    motion: f64,
+    /// Lowest and highest displacement at Q = 0 in the cycle (m).
+    crossings: Option<[f64; 2]>,
+    /// Sum of |Q|/P where the motion turned, and how often.
+    reversals: (f64, u32),
+}
+
+impl Loop {
+    /// Begins the next cycle where the last one ended.
+    pub fn next_cycle(&mut self) {
+        self.crossings = None;
+        self.reversals = (0.0, 0);
+    }
+
+    /// Adds a sample: the displacement at its end (m), and Q and P over it (N; N/m in 2D).
+    pub fn add(&mut self, displacement: f64, q: f64, p: f64) {
+        if let Some([before, q0, p0]) = self.last {
+            let motion = displacement - before;
+            if q0 * q < 0.0 || (q == 0.0 && q0 != 0.0) {
+                let at = before + motion * q0 / (q0 - q);
+                let [low, high] = self.crossings.unwrap_or([at, at]);
+                self.crossings = Some([low.min(at), high.max(at)]);
+            }
+            if motion * self.motion < 0.0 && p0 > 0.0 {
+                self.reversals.0 += q0.abs() / p0;
+                self.reversals.1 += 1;
+            }
+            if motion != 0.0 {
+                self.motion = motion;
+            }
+        }
+        self.last = Some([displacement, q, p]);
+    }
+
+    /// Half the opening of the loop at Q = 0 (m): the sliding amplitude.
+    pub fn aperture(&self) -> f64 {
+        self.crossings.map_or(0.0, |[low, high]| 0.5 * (high - low))
+    }
+
+    /// Mean of |Q|/P where the motion turned.
+    pub fn reversal(&self) -> f64 {
+        self.reversals.0 / f64::from(self.reversals.1.max(1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The loop of a sphere on a flat in partial slip at Q* = share mu P, by Mindlin: on loading
+    /// delta = delta_0 (1 - (1 - Q/mu P)^(2/3)), and by Masing twice that over half the force from a reversal.
+    fn mindlin(share: f64, steps: u32) -> (Loop, f64, f64) {
+        let (p, mu, gross) = (100.0, 0.5, 2e-6);
+        let load = |q: f64| gross * (1.0 - (1.0 - q / (mu * p)).powf(2.0 / 3.0));
+        let most = share * mu * p;
+        let amplitude = load(most);
+        let mut l = Loop::default();
+        let force =
+            |k: u32| -most * (std::f64::consts::TAU * f64::from(k) / f64::from(steps)).cos();
+        let (mut work, mut last) = (0.0, (-amplitude, -most));
+        for cycle in 0..2 {
+            l.next_cycle();
+            (work, last) = (0.0, (-amplitude, -most));
+            for k in 1..=steps {
+                let q = force(k);
+                let d = if 2 * k <= steps {
+                    -amplitude + 2.0 * load(0.5 * (q + most))
+                } else {
+                    amplitude - 2.0 * load(0.5 * (most - q))
+                };
+                l.add(d, q, p);
+                work += 0.5 * (q + last.1) * (d - last.0);
+                last = (d, q);
+            }
+            let _ = cycle;
+        }
+        let ratio = work / (4.0 * most * amplitude);
+        (l, ratio, amplitude - 2.0 * load(0.5 * most))
+    }
+
+    #[test]
+    fn a_partial_slip_loop_has_mindlin_s_opening_and_energy() {
+        // A = E_d/(4 Q* delta*) of K. L. Johnson, Contact Mechanics (1985), 7.4.
+        for (share, ratio) in [(0.25, 0.0160), (0.5, 0.0381), (0.75, 0.0736), (0.9, 0.1136)] {
+            let (l, found, aperture) = mindlin(share, 4000);
+            assert!((found - ratio).abs() < 6e-5, "{found} for {ratio}");
+            assert!((l.aperture() / aperture - 1.0).abs() < 1e-4);
+            assert!((l.reversal() / (share * 0.5) - 1.0).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn a_rigid_slider_opens_its_loop_over_the_whole_stroke() {
+        let mut l = Loop::default();
+        let (a, n) = (1e-5, 1000);
+        for k in 0..=2 * n {
+            let phase = std::f64::consts::TAU * f64::from(k) / f64::from(n);
+            l.add(a * phase.sin(), 40.0 * phase.cos().signum(), 100.0);
+        }
+        assert!((l.aperture() / a - 1.0).abs() < 1e-4);
+        assert!((l.reversal() - 0.4).abs() < 1e-12);
+    }
+}
