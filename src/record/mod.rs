@@ -1,6 +1,7 @@
 //! What a run leaves behind: ledgers, statistics, pictures, the results file, the summary.
 pub mod biaxial;
 pub mod choice;
+pub mod circuit;
 pub mod coordination;
 pub mod fclib;
 pub mod figures;

@@ -368,10 +368,14 @@ impl Summary {
             line(name, format!("{value:.5e}"));
         }
         let e = &self.energy;
+        let carried = match e.carried {
+            0.0 => String::new(),
+            x => format!(", carried off by what was taken out {x:.4e}"),
+        };
         line(
             "dissipated",
             format!(
-                "friction {:.4e}, fracture {:.4e}, impact {:.4e}, viscous {:.4e}, position correction {:.4e} {joule}",
+                "friction {:.4e}, fracture {:.4e}, impact {:.4e}, viscous {:.4e}, position correction {:.4e}{carried} {joule}",
                 e.friction,
                 e.fracture,
                 e.impact,

@@ -4,6 +4,7 @@ use super::ledger::{Ledger, Place};
 use super::ties::Ties;
 use crate::bodies::Bodies;
 use crate::contact::Network;
+use crate::geometry::periodic::Periodic;
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
 use std::time::{Duration, Instant};
@@ -33,9 +34,13 @@ pub struct Zone<S: Space> {
 }
 
 impl<S: Space> Zone<S> {
-    fn holds(&self, bodies: &Bodies<S>, at: &S::Vector) -> bool {
-        let origin = self.carrier.map(|b| bodies.position[b as usize]);
-        let x = origin.map_or(*at, |o| *at - o);
+    /// Whether a place is in it; along a period the nearest image counts from a carrier, and the one in the cell
+    /// that begins at zero without.
+    fn holds(&self, bodies: &Bodies<S>, periodic: &Periodic, at: &S::Vector) -> bool {
+        let x = match self.carrier {
+            Some(b) => periodic.shortest(*at - bodies.position[b as usize]),
+            None => periodic.wrapped(*at),
+        };
         (0..S::D).all(|k| self.low[k] <= x[k] && x[k] < self.high[k])
     }
 }
@@ -216,8 +221,9 @@ impl<S: Space> Circuit<S> {
                 places.push(Place::Tied(base));
                 continue;
             }
-            let at = s.shapes.periodic.wrapped(s.bodies.position[*body as usize]);
-            let zone = self.spec.zones.iter().position(|z| z.holds(&s.bodies, &at));
+            let (at, periodic) = (&s.bodies.position[*body as usize], &s.shapes.periodic);
+            let mut zones = self.spec.zones.iter();
+            let zone = zones.position(|z| z.holds(&s.bodies, periodic, at));
             let Some(zone) = zone else {
                 places.push(Place::Contact);
                 continue;

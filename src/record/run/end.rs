@@ -3,7 +3,7 @@
 use super::{Recorder, RunError, unwritable};
 use crate::record::biaxial::{self, Outcome};
 use crate::record::summary::Wear;
-use crate::record::{figures, fretting};
+use crate::record::{circuit, figures, fretting};
 use crate::scene::build::Dimensional;
 
 impl<S: Dimensional> Recorder<'_, S> {
@@ -79,6 +79,10 @@ impl<S: Dimensional> Recorder<'_, S> {
                 self.cycles.as_ref().map(|c| &c.0),
                 S::D,
             )?;
+            if let Some(c) = &self.summary.circuit {
+                let title = &self.loaded.case.name;
+                circuit::draw(&self.out, title, &self.table, c.window, S::D)?;
+            }
             self.measures
                 .draw(&self.out, &self.loaded.case.name, &self.table)?;
             if self.biaxial.is_some() {

@@ -1,0 +1,47 @@
+//! The figure of the tribological circuit: what passed against time, and what is in the contact.
+
+use super::statistics::Table;
+use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels};
+use std::path::Path;
+
+/// Draws `circuit.png` from the columns of the statistics; `window` is the one of the mean flows (s).
+///
+/// # Errors
+/// The file cannot be written.
+pub fn draw(
+    dir: &Path,
+    title: &str,
+    table: &Table,
+    window: [f64; 2],
+    dimension: usize,
+) -> Result<(), ReportError> {
+    let unit = if dimension == 2 { "kg/m" } else { "kg" };
+    let time = table.column("time");
+    let series =
+        |name: &str| -> Vec<(f64, f64)> { time.iter().copied().zip(table.column(name)).collect() };
+    let chart = |heading: &str, y: &str| {
+        let mut chart = Chart::new(heading, Axis::new("time", "s"), Axis::new(y, unit));
+        chart.subtitle = Some(title.to_owned());
+        chart
+    };
+    let mut passed = chart("what passed since the start", "mass");
+    for (column, label) in [
+        ("source", "source, Qs"),
+        ("ejected", "ejected, Qe"),
+        ("recirculated", "came back, Qr"),
+        ("lost", "lost, Qw"),
+        ("attached", "tied again, Qa"),
+    ] {
+        let points = series(column);
+        if points.iter().any(|p| p.1 != 0.0) {
+            passed = passed.with(Series::new(label, points));
+        }
+    }
+    let inside = series("M");
+    let top = inside.iter().map(|p| p.1).fold(0.0, f64::max);
+    let from = vec![(window[0], 0.0), (window[0], 1.05 * top)];
+    let contact = chart("third body in the contact", "M")
+        .with(Series::new("M", inside))
+        .with(Series::new("means from here on", from).style(Style::Dashed));
+    draw_panels(&[passed, contact], 2, &dir.join("circuit.png"))
+}
