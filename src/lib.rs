@@ -15,3 +15,4 @@ pub mod report;
 pub mod scene;
 pub mod solve;
 pub mod step;
+pub mod wear;

@@ -1,6 +1,6 @@
 //! Contacts of the current step and what carries over from the last one.
 
-use super::events::{Break, Spent};
+use super::events::{Break, Loss, Spent};
 use super::memory::Memory;
 use crate::bodies::Bodies;
 use crate::geometry::space::{Space, VectorLike};
@@ -106,6 +106,8 @@ pub struct Network<S: Space> {
     pub breaks: Vec<Break<S>>,
     /// What the last step dissipated at its contacts, in their order; kept where something asked for it.
     pub spent: Option<Vec<Spent>>,
+    /// What the last step wore off surfaces; kept where something asked for it.
+    pub losses: Option<Vec<Loss>>,
     /// How often the neighbour list was rebuilt.
     pub rebuilds: u64,
     pub(super) candidates: Vec<(u32, u32)>,
@@ -130,6 +132,7 @@ impl<S: Space> Network<S> {
             torn_energy: 0.0,
             breaks: Vec::new(),
             spent: None,
+            losses: None,
             rebuilds: 0,
             candidates: Vec::new(),
             seen_at: Vec::new(),
