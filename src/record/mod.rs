@@ -11,6 +11,7 @@ pub mod measure;
 pub mod picture;
 pub mod results;
 pub mod run;
+pub mod scars;
 pub mod statistics;
 pub mod strain;
 pub mod stress;

@@ -4,6 +4,7 @@ use super::biaxial::Outcome;
 use super::choice::Choice;
 use super::friction::Cycle;
 use super::ledger::Energy;
+use super::scars::ScarSummary;
 use crate::step::control::Begun;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -129,6 +130,8 @@ pub struct Summary {
     pub energy_residual_relative: f64,
     /// Wear.
     pub wear: Wear,
+    /// Scars of the surfaces that follow their wear; empty without.
+    pub scars: Vec<ScarSummary>,
     /// The solver.
     pub solver: SolverSummary,
     /// Laws.
@@ -267,6 +270,10 @@ impl Summary {
                 flow(w.Qw)
             ),
         );
+        for scar in &self.scars {
+            let (label, text) = scar.line(volume);
+            line(&label, text);
+        }
         let s = &self.solver;
         line(
             "solver",

@@ -3,6 +3,7 @@
 use super::{Recorder, RunError, unwritable};
 use crate::record::biaxial::{self, Outcome};
 use crate::record::figures;
+use crate::record::scars;
 use crate::record::summary::Wear;
 use crate::scene::build::Dimensional;
 
@@ -37,6 +38,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         let phases = s.control.phases.iter().skip(summary.phases.len());
         summary.phases_missed = phases.map(|p| p.name.clone()).collect();
         summary.phases_missed.dedup();
+        summary.scars = scars::outcome(s);
         summary.measures = self.measures.outcome(&self.table);
         summary.energy = s.energy;
         summary.energy_residual_relative = s.energy.relative_residual();
@@ -61,6 +63,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         let text = serde_json::to_string_pretty(&self.summary).unwrap_or_default();
         let path = self.out.join("summary.json");
         std::fs::write(&path, text + "\n").map_err(|e| unwritable(&path, &e))?;
+        scars::write(&self.out, &self.simulation)?;
         self.results.finish(&self.out)?;
         if self.loaded.case.output.figures {
             figures::draw(
@@ -72,6 +75,7 @@ impl<S: Dimensional> Recorder<'_, S> {
             )?;
             self.measures
                 .draw(&self.out, &self.loaded.case.name, &self.table)?;
+            scars::draw(&self.out, &self.loaded.case.name, &self.simulation)?;
             if self.biaxial.is_some() {
                 let title = &self.loaded.case.name;
                 biaxial::draw(&self.out.join("biaxial.png"), title, &self.table, start)?;

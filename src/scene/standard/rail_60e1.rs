@@ -146,8 +146,8 @@ mod tests {
             let [y, _] = rail.apex(n);
             assert!(at(y).0.abs() < 1e-12 && at(y).1.abs() < 1e-12);
             assert!(at(y - 0.1).1 > 0.0 && at(y + 0.1).1 > 0.0);
-            // The gauge face, at negative y, leans over: it is deeper on the field side at the same distance.
-            assert!(at(-20.0).1 < rail.height(20.0));
+            // The top leans to the gauge side, at negative y, and falls towards it.
+            assert!(at(-20.0).1 > rail.height(20.0) && at(20.0).1 < rail.height(20.0));
         }
     }
 }

@@ -1,0 +1,261 @@
+//! Surfaces that wear: what the laws book is what is gone, and contacts follow.
+
+use fretwork::geometry::space::{Plane, Solid, Space, VectorLike};
+use fretwork::laws::SearchPath;
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::load;
+use fretwork::step::Simulation;
+use fretwork::wear::{Form, shape};
+use std::path::{Path, PathBuf};
+
+fn case(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.ron"))
+}
+
+fn scene<S: Dimensional>(name: &str, sets: &[&str]) -> Simulation<S> {
+    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
+    let loaded = load(&case(name), &sets).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    s.network.spent = Some(Vec::new());
+    s
+}
+
+/// The integral of height over the surface of a body: by trapezia, by prisms.
+fn under<S: Space>(s: &Simulation<S>) -> f64 {
+    let outline = s.shapes.surfaces[0].shape.outline();
+    if S::D == 2 {
+        let trapezium = |w: &[S::Vector]| 0.5 * (w[1][0] - w[0][0]) * (w[0][1] + w[1][1]);
+        return outline[0].windows(2).map(trapezium).sum();
+    }
+    let prism = |t: &Vec<S::Vector>| {
+        let (u, v) = (t[1] - t[0], t[2] - t[0]);
+        0.5 * (u[0] * v[1] - u[1] * v[0]) * (t[0][2] + t[1][2] + t[2][2]) / 3.0
+    };
+    outline.iter().map(prism).sum()
+}
+
+/// What the contacts of a step did: normal force, slip, work of friction and area, one by one.
+struct Rubbed {
+    force: f64,
+    slip: f64,
+    work: f64,
+    area: f64,
+}
+
+/// Runs and adds up what a law makes of each contact and step; compares with the scar, with the surface, and closes the
+/// ledger. The slip is the way that the slider itself went along the contact, it does not turn.
+fn worn<S: Dimensional>(
+    name: &str,
+    sets: &[&str],
+    law: impl Fn(f64, &Rubbed) -> f64,
+) -> Simulation<S> {
+    let mut s = scene::<S>(name, sets);
+    let slider = s.bodies.driven[1].body as usize;
+    let steps = (0.5 / s.scheme.h).round() as usize;
+    let before = under(&s);
+    let (mut expected, mut booked) = (0.0, 0.0);
+    for _ in 0..steps {
+        let from = s.bodies.position[slider];
+        booked += s.step().unwrap_or_else(|e| panic!("{e}")).totals.worn_first;
+        let way = s.bodies.position[slider] - from;
+        let spent = s.network.spent.as_ref().unwrap();
+        for (c, spent) in s.network.contacts.iter().zip(spent) {
+            let rubbed = Rubbed {
+                force: c.impulse.dot(&c.normal) / s.scheme.h,
+                slip: S::tangential(&c.normal, &way).norm(),
+                work: spent.friction,
+                area: s.laws[c.law as usize].area.area(S::D, c.radius),
+            };
+            expected += law(s.scheme.h, &rubbed);
+        }
+    }
+    let gone = before - under(&s);
+    let scar = &s.scars[0];
+    for (what, volume) in [("booked", booked), ("scar", scar.volume()), ("gone", gone)] {
+        assert!(
+            (volume / expected - 1.0).abs() < 1e-10,
+            "{name} {what}: {volume:e} of {expected:e}"
+        );
+    }
+    assert!(scar.deepest() > 1e-5, "{}", scar.deepest());
+    let residual = s.energy.relative_residual();
+    assert!(residual.abs() < 1e-9, "{name}: {residual:e}");
+    println!(
+        "{name} {sets:?}: V {expected:.6e}, gone {:.1e} off, residual {residual:.1e}",
+        gone / expected - 1.0
+    );
+    s
+}
+
+fn archard(k: f64) -> impl Fn(f64, &Rubbed) -> f64 {
+    move |_, r| k * r.force.max(0.0) * r.slip
+}
+
+#[test]
+fn archards_volume_is_gone_from_a_profile() {
+    let s = worn::<Plane>("verification/worn_slide", &[], archard(1e-8));
+    // Pressed by 2000 N/m over 0.35 m, were the profile flat: 7e-6 m^2; it is within some per cent.
+    assert!((s.scars[0].volume() / 7e-6 - 1.0).abs() < 0.05);
+}
+
+#[test]
+fn archards_volume_is_gone_from_a_height_field() {
+    worn::<Solid>("verification/worn_slide_3d", &[], archard(1e-9));
+}
+
+#[test]
+fn surfaces_that_follow_every_tenth_step_lose_the_same_volume() {
+    worn::<Plane>(
+        "verification/worn_slide",
+        &["bodies.rail.wears.every=10"],
+        archard(1e-8),
+    );
+}
+
+const ENERGY: &str = "interfaces.0.wear=\"dissipated-energy\"";
+
+#[test]
+fn volume_is_alpha_times_the_energy_of_the_ledger() {
+    let alpha = 1e-8;
+    let sets = [ENERGY, "interfaces.0.parameters.wear={\"alpha\": 1e-8}"];
+    let s = worn::<Plane>("verification/worn_slide", &sets, |_, r| {
+        alpha * r.work.max(0.0)
+    });
+    let ratio = s.scars[0].volume() / (alpha * s.energy.friction);
+    assert!((ratio - 1.0).abs() < 1e-10, "{ratio}");
+    let s = worn::<Solid>("verification/worn_slide_3d", &sets, |_, r| {
+        alpha * r.work.max(0.0)
+    });
+    let ratio = s.scars[0].volume() / (alpha * s.energy.friction);
+    assert!((ratio - 1.0).abs() < 1e-10, "{ratio}");
+}
+
+/// The regimes of the map of R8T on 900A (R. Lewis, R. S. Dwyer-Joyce, Proc. IMechE J 218 (2004) 467-478), mass per
+/// metre rolled and area against T gamma/A: 5.3 x to 10.4 N/mm^2, then 55, in ug/(m mm^2).
+#[test]
+fn t_gamma_wears_by_its_map() {
+    for (speed, severe) in [(1.0, false), (1e-5, true)] {
+        let map = |h: f64, r: &Rubbed| {
+            let swept = r.area * speed * h;
+            let x = if swept > 0.0 { r.work / swept } else { 0.0 };
+            assert!(x < 77.2e6);
+            let mass = if x < 10.4e6 { 5.3e-9 * x } else { 0.055 };
+            mass * swept / 7850.0
+        };
+        let speed = format!("interfaces.0.parameters.wear={{\"speed\": {speed:e}}}");
+        let t_gamma = "interfaces.0.wear=\"t-gamma\"";
+        // Heavy, so that a light law shows.
+        let load = if severe { "-8000.0" } else { "-2e8" };
+        let load = format!("bodies.block.dofs.y=Force(Constant({load}))");
+        let mut s = scene::<Plane>("verification/worn_slide", &[t_gamma, &speed, &load]);
+        let (before, mut expected) = (under(&s), 0.0);
+        for _ in 0..200 {
+            s.step().unwrap_or_else(|e| panic!("{e}"));
+            let spent = s.network.spent.as_ref().unwrap();
+            for (c, spent) in s.network.contacts.iter().zip(spent) {
+                let area = s.laws[0].area.area(2, c.radius);
+                let rubbed = Rubbed {
+                    force: 0.0,
+                    slip: 0.0,
+                    work: spent.friction,
+                    area,
+                };
+                expected += map(s.scheme.h, &rubbed);
+            }
+        }
+        assert!((s.scars[0].volume() / expected - 1.0).abs() < 1e-10);
+        // What is gone is small beside the profile's own area.
+        assert!((before - under(&s) - expected).abs() < 1e-10 * expected + 1e-18);
+    }
+}
+
+/// A flat block that goes back and forth, pressed, sinks by V over what it covers, its length and the stroke.
+#[test]
+fn a_block_sinks_into_what_it_covers() {
+    let (width, amplitude, spacing) = (0.02, 0.002, 2e-4);
+    let points: Vec<String> = (-150..=150)
+        .map(|k| format!("({:e}, 0.0)", spacing * f64::from(k)))
+        .collect();
+    let points = format!("bodies.rail.shapes.0.points=[{}]", points.join(","));
+    let half = 0.5 * width;
+    let shape = format!(
+        "bodies.block.shapes=[Polygon(points: [(-{half}, -{half}), ({half}, -{half}), ({half}, {half}), (-{half}, {half})])]"
+    );
+    let at = format!("bodies.block.position=[0.0, {half}]");
+    let moved = "bodies.block.dofs.x=Displacement(Sine(amplitude: 0.002, frequency: 10.0))";
+    let load = "bodies.block.dofs.y=Force(Constant(-1e5))";
+    let law = "interfaces.0.parameters.wear.k=3e-11";
+    let sets = [
+        &points,
+        &shape,
+        &at,
+        moved,
+        load,
+        law,
+        "detection.skin=0.004",
+        "detection.alert=2e-4",
+    ];
+    let mut s = scene::<Plane>("verification/worn_slide", &sets);
+    for _ in 0..1000 {
+        s.step().unwrap_or_else(|e| panic!("{e}"));
+    }
+    let b = s.bodies.driven[1].body as usize;
+    let (sunk, volume) = (half - s.bodies.position[b][1], s.scars[0].volume());
+    let expected = volume / (width + 2.0 * amplitude);
+    println!(
+        "sunk {sunk:.6e} m, V/length {expected:.6e} m, ledger {:.1e}",
+        s.energy.relative_residual()
+    );
+    // Ends of the stroke are covered for a moment only: a segment more or less at each.
+    assert!((sunk / expected - 1.0).abs() < 0.05, "{sunk} {expected}");
+    assert!(s.energy.relative_residual().abs() < 1e-9);
+    // What the load gave went to friction, and to the sinking.
+    let o = shape::outline(&s.scars[0].along());
+    assert_eq!(o.form, Form::U);
+    assert!((o.to - o.from - width - 2.0 * amplitude).abs() < 4.0 * spacing);
+}
+
+/// The scar under a cylinder that frets is what a circle sweeps: flat over the stroke 2 a, then the circle, sunk so far
+/// that its area is V: 2 a d + R^2 (phi - sin phi cos phi), cos phi = 1 - d/R.
+#[test]
+fn the_scar_of_a_cylinder_is_swept_by_its_circle() {
+    let (radius, amplitude) = (0.05f64, 2e-4);
+    let mut s = scene::<Plane>("fretting_scar", &[]);
+    for _ in 0..10_000 {
+        s.step().unwrap_or_else(|e| panic!("{e}"));
+    }
+    let volume = s.scars[0].volume();
+    let swept = |d: f64| {
+        let phi = (1.0 - d / radius).acos();
+        2.0 * amplitude * d + radius * radius * (phi - phi.sin() * phi.cos())
+    };
+    let (mut low, mut high) = (0.0, 1e-3);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if swept(middle) < volume {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let sunk = radius - s.bodies.position[s.bodies.driven[1].body as usize][1];
+    println!(
+        "volume {volume:.4e}, circle sunk {low:.4e}, cylinder sunk {sunk:.4e}, deepest {:.4e}",
+        s.scars[0].deepest()
+    );
+    assert!((sunk / low - 1.0).abs() < 0.03, "{sunk} {low}");
+    // Place by place, up to a few per cent of the depth.
+    let mut off = 0.0f64;
+    for (v, depth) in s.scars[0].vertices() {
+        let beyond = (v.at[0].abs() - amplitude).max(0.0);
+        let circle = (radius * radius - beyond * beyond).sqrt() - radius + low;
+        off = off.max((depth - circle.max(0.0)).abs());
+    }
+    println!("form off by {:.3} of the depth", off / low);
+    assert!(off < 0.1 * low, "{off} of {low}");
+    let o = shape::outline(&s.scars[0].along());
+    assert_eq!(o.form, Form::U);
+    let kns = 3e-11 * 1e5 * 200.0 * amplitude;
+    assert!((volume / kns - 1.0).abs() < 0.01, "{volume} {kns}");
+}
