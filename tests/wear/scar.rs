@@ -78,7 +78,7 @@ fn worn<S: Dimensional>(
             "{name} {what}: {volume:e} of {expected:e}"
         );
     }
-    assert!(scar.deepest() > 1e-5, "{}", scar.deepest());
+    assert!(scar.deepest() > 1e-6, "{}", scar.deepest());
     let residual = s.energy.relative_residual();
     assert!(residual.abs() < 1e-9, "{name}: {residual:e}");
     println!(
@@ -132,41 +132,32 @@ fn volume_is_alpha_times_the_energy_of_the_ledger() {
 }
 
 /// The regimes of the map of R8T on 900A (R. Lewis, R. S. Dwyer-Joyce, Proc. IMechE J 218 (2004) 467-478), mass per
-/// metre rolled and area against T gamma/A: 5.3 x to 10.4 N/mm^2, then 55, in ug/(m mm^2).
+/// metre rolled and area against T gamma/A: 5.3 x to 10.4 N/mm^2, 55 to 77.2, then 61.9 more for each N/mm^2, in
+/// ug/(m mm^2).
 #[test]
 fn t_gamma_wears_by_its_map() {
-    for (speed, severe) in [(1.0, false), (1e-5, true)] {
+    for (speed, density, load, severe) in [(1.0, 785.0, -2e6, false), (1e-5, 7.85e-3, -150.0, true)]
+    {
+        let in_severe = std::cell::Cell::new(0);
         let map = |h: f64, r: &Rubbed| {
             let swept = r.area * speed * h;
-            let x = if swept > 0.0 { r.work / swept } else { 0.0 };
-            assert!(x < 77.2e6);
-            let mass = if x < 10.4e6 { 5.3e-9 * x } else { 0.055 };
-            mass * swept / 7850.0
+            let x = r.work.max(0.0) / swept;
+            let mass = if x < 10.4e6 {
+                5.3e-9 * x
+            } else {
+                in_severe.set(in_severe.get() + 1);
+                0.055 + 61.9e-9 * (x - 77.2e6).max(0.0)
+            };
+            mass * swept / density
         };
-        let speed = format!("interfaces.0.parameters.wear={{\"speed\": {speed:e}}}");
-        let t_gamma = "interfaces.0.wear=\"t-gamma\"";
-        // Heavy, so that a light law shows.
-        let load = if severe { "-8000.0" } else { "-2e8" };
-        let load = format!("bodies.block.dofs.y=Force(Constant({load}))");
-        let mut s = scene::<Plane>("verification/worn_slide", &[t_gamma, &speed, &load]);
-        let (before, mut expected) = (under(&s), 0.0);
-        for _ in 0..200 {
-            s.step().unwrap_or_else(|e| panic!("{e}"));
-            let spent = s.network.spent.as_ref().unwrap();
-            for (c, spent) in s.network.contacts.iter().zip(spent) {
-                let area = s.laws[0].area.area(2, c.radius);
-                let rubbed = Rubbed {
-                    force: 0.0,
-                    slip: 0.0,
-                    work: spent.friction,
-                    area,
-                };
-                expected += map(s.scheme.h, &rubbed);
-            }
-        }
-        assert!((s.scars[0].volume() / expected - 1.0).abs() < 1e-10);
-        // What is gone is small beside the profile's own area.
-        assert!((before - under(&s) - expected).abs() < 1e-10 * expected + 1e-18);
+        let law = format!(
+            "interfaces.0.parameters.wear={{\"speed\": {speed:e}, \"density\": {density:e}}}"
+        );
+        let load = format!("bodies.block.dofs.y=Force(Constant({load:e}))");
+        let sets = ["interfaces.0.wear=\"t-gamma\"", &law, &load];
+        worn::<Plane>("verification/worn_slide", &sets, map);
+        // The severe case is in that regime where one contact takes the load, four steps of five at least.
+        assert_eq!(in_severe.get() > 400, severe, "{}", in_severe.get());
     }
 }
 
@@ -197,7 +188,7 @@ fn a_block_sinks_into_what_it_covers() {
         "detection.alert=2e-4",
     ];
     let mut s = scene::<Plane>("verification/worn_slide", &sets);
-    for _ in 0..1000 {
+    for _ in 0..10_000 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }
     let b = s.bodies.driven[1].body as usize;
@@ -216,46 +207,58 @@ fn a_block_sinks_into_what_it_covers() {
     assert!((o.to - o.from - width - 2.0 * amplitude).abs() < 4.0 * spacing);
 }
 
-/// The scar under a cylinder that frets is what a circle sweeps: flat over the stroke 2 a, then the circle, sunk so far
-/// that its area is V: 2 a d + R^2 (phi - sin phi cos phi), cos phi = 1 - d/R.
+/// The scar of a cylinder of radius R that goes a to each side under Archard's law, half as wide as b > a: the contact
+/// goes from edge to edge with the stroke, x = u b/a, so that all of the scar deepens alike; there its slope is the
+/// cylinder's, (x - u)/R. So it is a parabola of the curvature (1 - a/b)/R, of depth b (b - a)/(2 R) and of area
+/// 2 b^2 (b - a)/(3 R): the cylinder's own form where a is small beside b.
 #[test]
-fn the_scar_of_a_cylinder_is_swept_by_its_circle() {
-    let (radius, amplitude) = (0.05f64, 2e-4);
+fn the_scar_of_a_cylinder_tends_to_its_form() {
+    let (radius, a) = (0.05f64, 2e-4);
     let mut s = scene::<Plane>("fretting_scar", &[]);
-    for _ in 0..10_000 {
-        s.step().unwrap_or_else(|e| panic!("{e}"));
-    }
-    let volume = s.scars[0].volume();
-    let swept = |d: f64| {
-        let phi = (1.0 - d / radius).acos();
-        2.0 * amplitude * d + radius * radius * (phi - phi.sin() * phi.cos())
-    };
-    let (mut low, mut high) = (0.0, 1e-3);
-    for _ in 0..100 {
-        let middle = 0.5 * (low + high);
-        if swept(middle) < volume {
-            low = middle;
-        } else {
-            high = middle;
+    let cylinder = s.bodies.driven[1].body as usize;
+    let mut curvatures = Vec::new();
+    for cycle in 1..=50 {
+        let mut high = f64::NEG_INFINITY;
+        for _ in 0..200 {
+            s.step().unwrap_or_else(|e| panic!("{e}"));
+            high = high.max(s.bodies.position[cylinder][1]);
         }
+        let volume = s.scars[0].volume();
+        let (mut low, mut up) = (a, 1e-2);
+        for _ in 0..100 {
+            let b = 0.5 * (low + up);
+            if 2.0 * b * b * (b - a) / (3.0 * radius) < volume {
+                low = b;
+            } else {
+                up = b;
+            }
+        }
+        let (b, depth) = (low, low * (low - a) / (2.0 * radius));
+        if cycle % 10 != 0 {
+            continue;
+        }
+        let mut off = 0.0f64;
+        for (v, d) in s.scars[0].vertices() {
+            let parabola = depth * (1.0 - (v.at[0] / b).powi(2));
+            off = off.max((d - parabola.max(0.0)).abs());
+        }
+        let sunk = radius - s.bodies.position[cylinder][1];
+        let rides = high - s.bodies.position[cylinder][1];
+        println!(
+            "{cycle} cycles: b {b:.3e}, depth {depth:.4e}, sunk {sunk:.4e}, form off by {:.3} of it, rides up {rides:.2e} of {:.2e}",
+            off / depth,
+            a * (b - a) / (2.0 * radius)
+        );
+        assert!((sunk / depth - 1.0).abs() < 0.03, "{sunk} {depth}");
+        assert!(off < 0.1 * depth, "{off} of {depth}");
+        curvatures.push(1.0 - a / b);
     }
-    let sunk = radius - s.bodies.position[s.bodies.driven[1].body as usize][1];
-    println!(
-        "volume {volume:.4e}, circle sunk {low:.4e}, cylinder sunk {sunk:.4e}, deepest {:.4e}",
-        s.scars[0].deepest()
-    );
-    assert!((sunk / low - 1.0).abs() < 0.03, "{sunk} {low}");
-    // Place by place, up to a few per cent of the depth.
-    let mut off = 0.0f64;
-    for (v, depth) in s.scars[0].vertices() {
-        let beyond = (v.at[0].abs() - amplitude).max(0.0);
-        let circle = (radius * radius - beyond * beyond).sqrt() - radius + low;
-        off = off.max((depth - circle.max(0.0)).abs());
-    }
-    println!("form off by {:.3} of the depth", off / low);
-    assert!(off < 0.1 * low, "{off} of {low}");
+    assert!(curvatures.windows(2).all(|w| w[0] < w[1] && w[1] < 1.0));
     let o = shape::outline(&s.scars[0].along());
     assert_eq!(o.form, Form::U);
-    let kns = 3e-11 * 1e5 * 200.0 * amplitude;
+    // k N s, the slip being that of the cylinder but for its rise.
+    let kns = 3e-11 * 1e5 * 200.0 * a;
+    let volume = s.scars[0].volume();
     assert!((volume / kns - 1.0).abs() < 0.01, "{volume} {kns}");
+    assert!(s.energy.relative_residual().abs() < 1e-9);
 }
