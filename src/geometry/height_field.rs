@@ -226,15 +226,15 @@ impl Recede<Solid> for HeightField {
         }
     }
 
-    fn recede(&mut self, depth: &[f64]) -> f64 {
+    fn recede(&mut self, depth: &[f64], named: &[usize]) -> f64 {
         if self.first.is_empty() {
             self.first.clone_from(&self.heights);
         }
         let mut step = 0.0f64;
-        for ((z, first), depth) in self.heights.iter_mut().zip(&self.first).zip(depth) {
-            let next = first - depth;
-            step = step.max((*z - next).abs());
-            *z = next;
+        for k in named.iter().copied() {
+            let next = self.first[k] - depth[k];
+            step = step.max((self.heights[k] - next).abs());
+            self.heights[k] = next;
             self.lowest = self.lowest.min(next);
         }
         step
@@ -329,7 +329,8 @@ mod tests {
                 }
                 put += 1e-3;
             }
-            field.recede(&depth);
+            let all: Vec<usize> = (0..depth.len()).collect();
+            field.recede(&depth, &all);
             let gone = before - volume(&field);
             assert!((gone / put - 1.0).abs() < 1e-12, "{gone} {put}");
         }

@@ -325,22 +325,26 @@ impl Recede<Plane> for Polyline {
         [(k, 1.0 - s), (next, s), (k, 0.0)]
     }
 
-    fn recede(&mut self, depth: &[f64]) -> f64 {
+    fn recede(&mut self, depth: &[f64], named: &[usize]) -> f64 {
         let (n, down) = (self.segments(), self.direction());
-        let ends = self.points[n] - self.points[0];
+        let wide = (self.points[n].x - self.points[0].x).abs();
         let worn = self.worn.get_or_insert_with(|| Worn {
             first: self.points.iter().map(|p| p.y).collect(),
             // No box allows for wear yet.
             moved: f64::INFINITY,
-            margin: MARGIN * ends.x.abs() / n as f64,
+            margin: MARGIN * wide / n as f64,
         });
+        // The end of a period is the image of its start.
+        let image = named
+            .iter()
+            .filter(|k| **k == 0 && self.period.is_some())
+            .map(|_| (n, 0));
         let mut step = 0.0f64;
-        for (k, (point, first)) in self.points.iter_mut().zip(&worn.first).enumerate() {
-            // The end of a period is the image of its start.
-            let depth = depth.get(k).or(depth.first()).copied().unwrap_or(0.0);
-            let next = first - down * depth;
-            step = step.max((point.y - next).abs());
-            point.y = next;
+        for (k, of) in named.iter().map(|k| (*k, *k)).chain(image) {
+            let next = worn.first[k] - down * depth[of];
+            let height = &mut self.points[k].y;
+            step = step.max((*height - next).abs());
+            *height = next;
         }
         worn.moved += step;
         if worn.moved > worn.margin {

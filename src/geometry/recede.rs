@@ -31,8 +31,8 @@ pub trait Recede<S: Space> {
     }
     /// The vertices about a point of the surface, by the linear functions of its segment or triangle.
     fn shares(&self, foot: &S::Vector) -> Shares;
-    /// Puts each vertex at a depth (m) below where it stood at first. The largest step that one took (m).
-    fn recede(&mut self, depth: &[f64]) -> f64;
+    /// Puts the vertices named at their depths (m) below where they stood at first. The largest step that one took (m).
+    fn recede(&mut self, depth: &[f64], named: &[usize]) -> f64;
     /// 1 where the solid is below and heights fall, -1 where it is above and they rise.
     fn sign(&self) -> f64;
 }

@@ -24,8 +24,8 @@ pub struct Scar<S: Space> {
     /// Volume put so far (m^3; m^3/m in 2D).
     volume: f64,
     deepest: usize,
-    /// The surface does not show all of the depth yet.
-    pending: bool,
+    /// Vertices whose depth the surface does not show yet.
+    pending: Vec<usize>,
     /// How far the surface may have moved since the neighbour list was told (m).
     moved: f64,
 }
@@ -66,7 +66,7 @@ impl<S: Space> Scar<S> {
             vertices,
             volume: 0.0,
             deepest: 0,
-            pending: false,
+            pending: Vec::new(),
             moved: 0.0,
         })
     }
@@ -86,13 +86,16 @@ impl<S: Space> Scar<S> {
             return Ok(());
         };
         for (vertex, part) in shape.shares(foot) {
+            if part == 0.0 {
+                continue;
+            }
             self.depth[vertex] += volume * part / self.vertices[vertex].tributary;
+            self.pending.push(vertex);
             if self.depth[vertex] > self.depth[self.deepest] {
                 self.deepest = vertex;
             }
         }
         self.volume += volume;
-        self.pending = true;
         if self.deepest() < self.thickness {
             return Ok(());
         }
@@ -108,12 +111,15 @@ impl<S: Space> Scar<S> {
     /// Lets the surface follow its depth. Whether what it moved since the last time this said yes is more than a
     /// bound (m).
     pub fn show(&mut self, shapes: &mut Shapes<S>, bound: f64) -> bool {
-        if !std::mem::take(&mut self.pending) {
+        if self.pending.is_empty() {
             return false;
         }
+        self.pending.sort_unstable();
+        self.pending.dedup();
         if let Some(shape) = shapes.surfaces[self.surface].shape.receding_mut() {
-            self.moved += shape.recede(&self.depth);
+            self.moved += shape.recede(&self.depth, &self.pending);
         }
+        self.pending.clear();
         let far = self.moved > bound;
         if far {
             self.moved = 0.0;

@@ -262,3 +262,24 @@ fn the_scar_of_a_cylinder_tends_to_its_form() {
     assert!((volume / kns - 1.0).abs() < 0.01, "{volume} {kns}");
     assert!(s.energy.relative_residual().abs() < 1e-9);
 }
+
+/// A punch drawn 2 mm above its face, 4 mm wide: friction turns it onto its leading edge, and the scar is deeper at both
+/// sides than in the middle. Held against turning it stays flat, and sinks by V over width and stroke.
+#[test]
+fn a_punch_that_rocks_wears_a_w_and_one_that_is_held_a_u() {
+    let form = |sets: &[&str]| {
+        let mut s = scene::<Plane>("punch_scar", sets);
+        for _ in 0..4000 {
+            s.step().unwrap_or_else(|e| panic!("{e}"));
+        }
+        (shape::outline(&s.scars[0].along()), s.scars[0].volume())
+    };
+    let (rocks, _) = form(&["time.step=5e-5"]);
+    println!("{rocks:?}");
+    assert_eq!(rocks.form, Form::W);
+    assert!(rocks.sides.iter().all(|side| rocks.middle < 0.75 * side));
+    let (held, volume) = form(&["time.step=5e-5", "bodies.punch.dofs.rz=Fixed"]);
+    println!("{held:?}");
+    assert_eq!(held.form, Form::U);
+    assert!((held.middle / (volume / 4.4e-3) - 1.0).abs() < 0.05);
+}
