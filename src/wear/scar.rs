@@ -96,6 +96,11 @@ impl<S: Space> Scar<S> {
             }
         }
         self.volume += volume;
+        // A long interval names vertices again and again.
+        if self.pending.len() > 4 * self.vertices.len() {
+            self.pending.sort_unstable();
+            self.pending.dedup();
+        }
         if self.deepest() < self.thickness {
             return Ok(());
         }
