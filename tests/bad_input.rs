@@ -19,6 +19,8 @@ mod stages;
 mod text;
 #[path = "bad_input/trial.rs"]
 mod trial;
+#[path = "bad_input/wear.rs"]
+mod wear;
 
 use trial::{PLANE, SOLID, Trial};
 

@@ -59,6 +59,7 @@ fn a_frictionless_scene_of_disks_has_neither_friction_nor_rotation_nor_memory() 
         "damage",
         "healing",
         "wear",
+        "surfaces that recede",
         "history variables",
         "periodic",
         "position correction",

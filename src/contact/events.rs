@@ -76,3 +76,12 @@ impl Spent {
         self.friction + self.impact + self.adhesion + self.fracture + self.viscous
     }
 }
+
+/// What a wear law took off at one contact in one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loss {
+    /// Place of the contact in [`super::Network::contacts`].
+    pub contact: u32,
+    /// Volume (m^3; m^3/m in 2D).
+    pub volume: f64,
+}

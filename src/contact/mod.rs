@@ -4,6 +4,6 @@ pub mod events;
 pub mod memory;
 pub mod network;
 
-pub use events::{Break, Life, Spent};
+pub use events::{Break, Life, Loss, Spent};
 pub use memory::{Bond, Memory};
 pub use network::{Contact, Key, Network};

@@ -1,6 +1,6 @@
 //! Contacts of the current step and what carries over from the last one.
 
-use super::events::{Break, Spent};
+use super::events::{Break, Loss, Spent};
 use super::memory::Memory;
 use crate::bodies::Bodies;
 use crate::geometry::space::{Space, VectorLike};
@@ -108,6 +108,8 @@ pub struct Network<S: Space> {
     pub joins: Vec<([u32; 2], u16)>,
     /// What the last step dissipated at its contacts, in their order; kept where something asked for it.
     pub spent: Option<Vec<Spent>>,
+    /// What the last step wore off surfaces; kept where something asked for it.
+    pub losses: Option<Vec<Loss>>,
     /// How often the neighbour list was rebuilt.
     pub rebuilds: u64,
     pub(super) candidates: Vec<(u32, u32)>,
@@ -133,6 +135,7 @@ impl<S: Space> Network<S> {
             breaks: Vec::new(),
             joins: Vec::new(),
             spent: None,
+            losses: None,
             rebuilds: 0,
             candidates: Vec::new(),
             seen_at: Vec::new(),
@@ -172,7 +175,7 @@ impl<S: Space> Network<S> {
     /// Says where breaks are, which are told with the arms of their contacts.
     pub(crate) fn locate_breaks(&mut self, bodies: &Bodies<S>) {
         for b in &mut self.breaks {
-            b.place = b.place + bodies.position[b.bodies[0] as usize];
+            b.place += bodies.position[b.bodies[0] as usize];
         }
     }
 

@@ -1,6 +1,7 @@
 //! A rough plane in space: heights over a regular grid, solid below.
 
 use super::facets::{self, Facet};
+use super::recede::{Recede, Shares, Vertex};
 use super::shape::{Surface, Touch};
 use super::space::Solid;
 use nalgebra::Vector3;
@@ -16,6 +17,8 @@ pub struct HeightField {
     periodic: [bool; 2],
     lowest: f64,
     highest: f64,
+    /// Heights before any wear; empty where there was none.
+    first: Vec<f64>,
 }
 
 /// Why heights are no surface.
@@ -68,6 +71,7 @@ impl HeightField {
             periodic,
             lowest,
             highest,
+            first: Vec::new(),
         })
     }
 
@@ -154,6 +158,14 @@ impl Surface<Solid> for HeightField {
         true
     }
 
+    fn receding(&self) -> Option<&dyn Recede<Solid>> {
+        Some(self)
+    }
+
+    fn receding_mut(&mut self) -> Option<&mut dyn Recede<Solid>> {
+        Some(self)
+    }
+
     fn outline(&self) -> Vec<Vec<Vector3<f64>>> {
         let mut out = Vec::new();
         for i in 0..self.cells(0) {
@@ -164,6 +176,72 @@ impl Surface<Solid> for HeightField {
             }
         }
         out
+    }
+}
+
+impl Recede<Solid> for HeightField {
+    fn vertices(&self) -> Vec<Vertex<Vector3<f64>>> {
+        let third = self.spacing[0] * self.spacing[1] / 6.0;
+        let mut tributary = vec![0.0; self.heights.len()];
+        for i in 0..self.cells(0) {
+            for j in 0..self.cells(1) {
+                for (i, j) in triangles(i, j).into_iter().flatten() {
+                    tributary[self.vertex(i, j)] += third;
+                }
+            }
+        }
+        let first = if self.first.is_empty() {
+            &self.heights
+        } else {
+            &self.first
+        };
+        let vertex = |(k, tributary): (usize, f64)| {
+            let mut at = self.point((k % self.nx) as i64, (k / self.nx) as i64);
+            at.z = first[k];
+            Vertex { at, tributary }
+        };
+        tributary.into_iter().enumerate().map(vertex).collect()
+    }
+
+    fn shares(&self, foot: &Vector3<f64>) -> Shares {
+        // The cell, and the place in it.
+        let place = |axis: usize| {
+            let x = foot[axis] / self.spacing[axis];
+            let cell = x.floor() as i64;
+            let cell = if self.periodic[axis] {
+                cell
+            } else {
+                cell.clamp(0, self.cells(axis) - 1)
+            };
+            (cell, (x - cell as f64).clamp(0.0, 1.0))
+        };
+        let ((i, u), (j, v)) = (place(0), place(1));
+        let ([lower, upper], at) = (triangles(i, j), |(i, j)| self.vertex(i, j));
+        if u >= v {
+            let [a, b, c] = lower.map(at);
+            [(a, 1.0 - u), (b, u - v), (c, v)]
+        } else {
+            let [a, b, c] = upper.map(at);
+            [(a, 1.0 - v), (b, u), (c, v - u)]
+        }
+    }
+
+    fn recede(&mut self, depth: &[f64], named: &[usize]) -> f64 {
+        if self.first.is_empty() {
+            self.first.clone_from(&self.heights);
+        }
+        let mut step = 0.0f64;
+        for k in named.iter().copied() {
+            let next = self.first[k] - depth[k];
+            step = step.max((self.heights[k] - next).abs());
+            self.heights[k] = next;
+            self.lowest = self.lowest.min(next);
+        }
+        step
+    }
+
+    fn sign(&self) -> f64 {
+        1.0
     }
 }
 
@@ -219,5 +297,42 @@ mod tests {
         assert!(HeightField::new(1, 4, [1.0, 1.0], vec![0.0; 4], [false; 2]).is_err());
         assert!(HeightField::new(2, 2, [1.0, 1.0], vec![0.0; 3], [false; 2]).is_err());
         assert!(HeightField::new(2, 2, [0.0, 1.0], vec![0.0; 4], [false; 2]).is_err());
+    }
+
+    /// The volume under the triangles, each a prism under a plane.
+    fn volume(field: &HeightField) -> f64 {
+        let prism = |t: &Vec<Vector3<f64>>| {
+            let area = 0.5 * ((t[1] - t[0]).cross(&(t[2] - t[0]))).z;
+            area * (t[0].z + t[1].z + t[2].z) / 3.0
+        };
+        field.outline().iter().map(prism).sum()
+    }
+
+    #[test]
+    fn what_is_put_at_points_is_the_volume_that_is_gone() {
+        for periodic in [[false, false], [true, true], [true, false]] {
+            let z = (0..20).map(|k| 0.1 * f64::from(k * k % 7)).collect();
+            let mut field = HeightField::new(5, 4, [0.3, 0.7], z, periodic).unwrap();
+            let (before, vertices) = (volume(&field), field.vertices());
+            let mut depth = vec![0.0; vertices.len()];
+            let mut put = 0.0;
+            for k in 0..50 {
+                let t = f64::from(k);
+                let foot = Vector3::new(
+                    1.2 * (0.5 + 0.5 * t.sin()),
+                    2.1 * (0.5 + 0.5 * (1.7 * t).cos()),
+                    0.0,
+                );
+                for (vertex, part) in field.shares(&foot) {
+                    assert!((0.0..=1.0).contains(&part));
+                    depth[vertex] += 1e-3 * part / vertices[vertex].tributary;
+                }
+                put += 1e-3;
+            }
+            let all: Vec<usize> = (0..depth.len()).collect();
+            field.recede(&depth, &all);
+            let gone = before - volume(&field);
+            assert!((gone / put - 1.0).abs() < 1e-12, "{gone} {put}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Shapes, distances and the search for neighbours.
 pub mod algebra;
 pub mod convex;
+pub mod crossing;
 pub mod drum;
 pub mod facets;
 pub mod grid;
@@ -8,5 +9,6 @@ pub mod height_field;
 pub mod mesh;
 pub mod periodic;
 pub mod polyline;
+pub mod recede;
 pub mod shape;
 pub mod space;

@@ -1,12 +1,18 @@
 //! The profile of a first body in the plane: a chain of segments, solid on its right-hand side.
 
+use super::recede::{Recede, Shares, Vertex};
 use super::shape::{Corner, Surface, Touch};
 use super::space::Plane;
 use nalgebra::Vector2;
-use rstar::primitives::{GeomWithData, Line};
+use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
-type Segment = GeomWithData<Line<[f64; 2]>, u32>;
+/// A box that holds a segment, the segment's number and by how much it is shifted along x (m).
+type Segment = GeomWithData<Rectangle<[f64; 2]>, (u32, f64)>;
+
+/// By how much the boxes of segments that wear are larger than these, in parts of a segment's mean length: so often
+/// they are made anew.
+const MARGIN: f64 = 0.25;
 
 /// An open chain of segments. Travelling along it, the solid is on the right, the open side on the
 /// left. With a period the chain repeats along x and its last point is the first one's image.
@@ -15,6 +21,16 @@ pub struct Polyline {
     points: Vec<Vector2<f64>>,
     period: Option<f64>,
     tree: RTree<Segment>,
+    /// What a profile that wears remembers; none where it does not.
+    worn: Option<Worn>,
+}
+
+/// Heights before any wear, and how far vertices have moved since the boxes were made, of what these allow (m).
+#[derive(Debug)]
+struct Worn {
+    first: Vec<f64>,
+    moved: f64,
+    margin: f64,
 }
 
 /// Why a chain of points is no profile.
@@ -35,6 +51,12 @@ pub enum ProfileError {
     /// Not a number.
     #[error("point {0} of the profile is not finite")]
     NotFinite(usize),
+    /// Two of its segments meet.
+    #[error(
+        "the profile crosses itself at ({2:.6e}, {3:.6e}) m: the segment after point {0} meets the one after \
+         point {1}; order the points along the profile, or leave some out"
+    )]
+    Crosses(usize, usize, f64, f64),
 }
 
 impl Polyline {
@@ -65,24 +87,50 @@ impl Polyline {
                 ));
             }
         }
-        let images: &[f64] = if period.is_some() {
+        if let Some((one, other, at)) = super::crossing::first(&points) {
+            return Err(ProfileError::Crosses(one, other, at.x, at.y));
+        }
+        let mut out = Self {
+            points,
+            period,
+            tree: RTree::new(),
+            worn: None,
+        };
+        out.index(0.0);
+        Ok(out)
+    }
+
+    /// Makes the boxes of the segments, larger than these by a margin (m).
+    fn index(&mut self, margin: f64) {
+        let images: &[f64] = if self.period.is_some() {
             &[-1.0, 0.0, 1.0]
         } else {
             &[0.0]
         };
-        let mut segments = Vec::new();
+        let mut segments = Vec::with_capacity(images.len() * self.segments());
         for image in images {
-            let shift = image * period.unwrap_or(0.0);
-            for (k, w) in points.windows(2).enumerate() {
-                let line = Line::new([w[0].x + shift, w[0].y], [w[1].x + shift, w[1].y]);
-                segments.push(Segment::new(line, k as u32));
+            let shift = image * self.period.unwrap_or(0.0);
+            for k in 0..self.segments() {
+                let [a, b] = self.segment(k, shift);
+                let (low, high) = (a.inf(&b), a.sup(&b));
+                let corners = ([low.x, low.y - margin], [high.x, high.y + margin]);
+                let place = Rectangle::from_corners(corners.0, corners.1);
+                segments.push(Segment::new(place, (k as u32, shift)));
             }
         }
-        Ok(Self {
-            points,
-            period,
-            tree: RTree::bulk_load(segments),
-        })
+        self.tree = RTree::bulk_load(segments);
+    }
+
+    /// The ends of a segment, shifted along x (m).
+    fn segment(&self, k: usize, shift: f64) -> [Vector2<f64>; 2] {
+        let image = |p: Vector2<f64>| Vector2::new(p.x + shift, p.y);
+        [image(self.points[k]), image(self.points[k + 1])]
+    }
+
+    /// 1 where the chain goes to the right, so that the solid is below it, -1 where it goes to the left.
+    fn direction(&self) -> f64 {
+        let last = self.points[self.points.len() - 1];
+        if last.x > self.points[0].x { 1.0 } else { -1.0 }
     }
 
     fn segments(&self) -> usize {
@@ -126,11 +174,8 @@ impl Surface<Plane> for Polyline {
         let start = out.len();
         let window = AABB::from_corners([c.x - reach, c.y - reach], [c.x + reach, c.y + reach]);
         for segment in self.tree.locate_in_envelope_intersecting(window) {
-            let (a, b) = (
-                Vector2::from(segment.geom().from),
-                Vector2::from(segment.geom().to),
-            );
-            let k = segment.data;
+            let (k, image) = segment.data;
+            let [a, b] = self.segment(k as usize, image);
             let along = b - a;
             let s = (c - a).dot(&along) / along.norm_squared();
             if (0.0..=1.0).contains(&s) {
@@ -193,11 +238,8 @@ impl Surface<Plane> for Polyline {
         let window = AABB::from_corners([low.x - shift, low.y], [high.x - shift, high.y]);
         let first = out.len();
         for segment in self.tree.locate_in_envelope_intersecting(window) {
-            let (a, b) = (
-                Vector2::from(segment.geom().from),
-                Vector2::from(segment.geom().to),
-            );
-            let k = segment.data as usize;
+            let (k, image) = (segment.data.0 as usize, segment.data.1);
+            let [a, b] = self.segment(k, image);
             let next = if k + 1 < self.segments() {
                 k + 1
             } else if self.period.is_some() {
@@ -212,7 +254,7 @@ impl Surface<Plane> for Polyline {
             let inside = (0..2).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis]);
             // Solid on the right: a corner that points out turns to the right.
             if inside && normals[0].perp(&normals[1]) < -1e-9 {
-                let feature = 2 * segment.data + 1;
+                let feature = 2 * k as u32 + 1;
                 out.push(Corner {
                     at,
                     normals,
@@ -225,6 +267,96 @@ impl Surface<Plane> for Polyline {
 
     fn outline(&self) -> Vec<Vec<Vector2<f64>>> {
         vec![self.points.clone()]
+    }
+
+    fn receding(&self) -> Option<&dyn Recede<Plane>> {
+        Some(self)
+    }
+
+    fn receding_mut(&mut self) -> Option<&mut dyn Recede<Plane>> {
+        Some(self)
+    }
+}
+
+impl Recede<Plane> for Polyline {
+    fn vertices(&self) -> Vec<Vertex<Vector2<f64>>> {
+        let n = self.segments();
+        let wide = |k: usize| (self.points[k + 1].x - self.points[k].x).abs();
+        let count = if self.period.is_some() { n } else { n + 1 };
+        let vertex = |k: usize| {
+            let before = match (k, self.period) {
+                (0, Some(_)) => wide(n - 1),
+                (0, None) => 0.0,
+                _ => wide(k - 1),
+            };
+            let after = if k < n { wide(k) } else { 0.0 };
+            let mut at = self.points[k];
+            if let Some(worn) = &self.worn {
+                at.y = worn.first[k];
+            }
+            let tributary = 0.5 * (before + after);
+            Vertex { at, tributary }
+        };
+        (0..count).map(vertex).collect()
+    }
+
+    fn end(&self) -> Option<Vector2<f64>> {
+        self.period.map(|_| {
+            let last = self.segments();
+            let height = self.worn.as_ref().map(|w| w.first[last]);
+            let at = self.points[last];
+            Vector2::new(at.x, height.unwrap_or(at.y))
+        })
+    }
+
+    fn shares(&self, foot: &Vector2<f64>) -> Shares {
+        let (foot, _) = self.wrapped(foot);
+        let (n, to) = (self.segments(), self.direction());
+        let passed = self.points.partition_point(|p| to * p.x <= to * foot.x);
+        let k = passed.clamp(1, n) - 1;
+        let (a, b) = (self.points[k].x, self.points[k + 1].x);
+        let s = if a == b { 0.0 } else { (foot.x - a) / (b - a) };
+        let s = s.clamp(0.0, 1.0);
+        let next = if k + 1 == n && self.period.is_some() {
+            0
+        } else {
+            k + 1
+        };
+        [(k, 1.0 - s), (next, s), (k, 0.0)]
+    }
+
+    fn recede(&mut self, depth: &[f64], named: &[usize]) -> f64 {
+        let (n, down) = (self.segments(), self.direction());
+        let wide = (self.points[n].x - self.points[0].x).abs();
+        let worn = self.worn.get_or_insert_with(|| Worn {
+            first: self.points.iter().map(|p| p.y).collect(),
+            // No box allows for wear yet.
+            moved: f64::INFINITY,
+            margin: MARGIN * wide / n as f64,
+        });
+        // The end of a period is the image of its start.
+        let image = named
+            .iter()
+            .filter(|k| **k == 0 && self.period.is_some())
+            .map(|_| (n, 0));
+        let mut step = 0.0f64;
+        for (k, of) in named.iter().map(|k| (*k, *k)).chain(image) {
+            let next = worn.first[k] - down * depth[of];
+            let height = &mut self.points[k].y;
+            step = step.max((*height - next).abs());
+            *height = next;
+        }
+        worn.moved += step;
+        if worn.moved > worn.margin {
+            worn.moved = 0.0;
+            let margin = worn.margin;
+            self.index(margin);
+        }
+        step
+    }
+
+    fn sign(&self) -> f64 {
+        self.direction()
     }
 }
 

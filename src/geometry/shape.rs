@@ -3,6 +3,7 @@
 use super::convex::Piece;
 use super::facets::Facet;
 use super::periodic::Periodic;
+use super::recede::Recede;
 use super::space::{Space, VectorLike};
 use std::fmt::Debug;
 
@@ -64,6 +65,14 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     }
     /// The outward normal, if the surface is a plane.
     fn flat(&self) -> Option<S::Vector> {
+        None
+    }
+    /// The surface as one that wears; none where it cannot.
+    fn receding(&self) -> Option<&dyn Recede<S>> {
+        None
+    }
+    /// The same, to wear it.
+    fn receding_mut(&mut self) -> Option<&mut dyn Recede<S>> {
         None
     }
     /// Whether turning about the body's origin with this spin, in the body's axes, leaves the surface where it is.

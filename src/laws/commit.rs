@@ -4,7 +4,7 @@ use super::columns::StepInfo;
 use super::interface::{Interface, Loaded};
 use super::library::{Call, LawError};
 use super::pass::{Passes, Site, Totals, Turn};
-use crate::contact::{Network, Spent};
+use crate::contact::{Loss, Network, Spent};
 use crate::geometry::space::{Space, VectorLike};
 
 impl Passes {
@@ -25,6 +25,9 @@ impl Passes {
         if let Some(spent) = &mut network.spent {
             spent.clear();
             spent.resize(network.contacts.len(), Spent::default());
+        }
+        if let Some(losses) = &mut network.losses {
+            losses.clear();
         }
         for (k, (contact, site)) in network.contacts.iter_mut().zip(sites).enumerate() {
             contact.impulse = site.solution.impulse;
@@ -149,6 +152,10 @@ impl Passes {
             let volume = self.columns.out.volume[k];
             if network.contacts[*at].key.surface().is_some() {
                 totals.worn_first += volume;
+                if let (Some(losses), true) = (&mut network.losses, volume > 0.0) {
+                    let contact = *at as u32;
+                    losses.push(Loss { contact, volume });
+                }
             } else {
                 totals.worn_third += volume;
             }

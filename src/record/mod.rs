@@ -14,6 +14,7 @@ pub mod measure;
 pub mod picture;
 pub mod results;
 pub mod run;
+pub mod scars;
 pub mod statistics;
 pub mod steady;
 pub mod strain;

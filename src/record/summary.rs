@@ -6,6 +6,7 @@ use super::fretting;
 use super::friction::Cycle;
 use super::ledger::Energy;
 use super::steady::Flow;
+use super::scars::ScarSummary;
 use crate::step::control::Begun;
 use crate::wear::ledger::{Contents, Flows};
 use serde::Serialize;
@@ -247,6 +248,8 @@ pub struct Summary {
     pub wear: Wear,
     /// The tribological circuit; null without one.
     pub circuit: Option<CircuitSummary>,
+    /// Scars of the surfaces that follow their wear; empty without.
+    pub scars: Vec<ScarSummary>,
     /// The solver.
     pub solver: SolverSummary,
     /// Laws.
@@ -405,6 +408,10 @@ impl Summary {
         );
         for (label, text) in self.circuit.iter().flat_map(CircuitSummary::lines) {
             line(label, text);
+        }
+        for scar in &self.scars {
+            let (label, text) = scar.line(volume);
+            line(&label, text);
         }
         let s = &self.solver;
         line(

@@ -11,9 +11,11 @@ pub mod mesh_file;
 pub mod methods;
 pub mod phases;
 pub mod profile;
+pub mod profile_file;
 pub mod sample;
 pub mod scene_file;
 pub mod source;
+pub mod standard;
 
 pub use build::{Built, Loaded, Scene, load};
 pub use source::InputError;

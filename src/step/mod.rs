@@ -14,10 +14,13 @@
 //! ```
 pub mod control;
 pub mod coupling;
+mod error;
 pub mod motion;
 pub mod projection;
+mod recession;
 mod removal;
 pub mod simulation;
 
+pub use error::StepError;
 pub use projection::Projected;
-pub use simulation::{Scheme, Simulation, StepError, StepReport};
+pub use simulation::{Scheme, Simulation, StepReport};

@@ -1,5 +1,6 @@
 //! The stepper: one step, as the data flows.
 
+use super::StepError;
 use super::coupling::{Coupling, CouplingReport, Progress};
 use super::motion::{self, Before};
 use super::projection::Projected;
@@ -14,6 +15,7 @@ use crate::laws::{Interface, LawError, Site, Totals, Turn, Velocities};
 use crate::record::ledger::Energy;
 use crate::solve::local::solver::Method;
 use crate::solve::{self, ContactForm, MomentForm, Problem};
+use crate::wear::{Scar, WornThrough};
 use std::time::{Duration, Instant};
 
 /// The time scheme.
@@ -23,43 +25,6 @@ pub struct Scheme {
     pub h: f64,
     /// Theta in \[1/2, 1\]: 1/2 conserves energy, 1 damps.
     pub theta: f64,
-}
-
-/// Why a step could not be done.
-#[derive(Debug, thiserror::Error)]
-pub enum StepError {
-    /// A law refused.
-    #[error("step {step} at t = {time:.6e} s: {source}")]
-    Law {
-        /// Number of the step.
-        step: u64,
-        /// Time at its start (s).
-        time: f64,
-        /// What the law said.
-        source: LawError,
-    },
-    /// The method does not serve what the laws ask for.
-    #[error("step {step}: solver.method {method}: {reason}")]
-    Method {
-        /// Number of the step.
-        step: u64,
-        /// The method.
-        method: &'static str,
-        /// Why, and what to take instead.
-        reason: &'static str,
-    },
-    /// A velocity is not finite.
-    #[error(
-        "step {step} at t = {time:.6e} s: the velocity of body {body} is not finite; use a smaller step or softer parameters"
-    )]
-    NotFinite {
-        /// Number of the step.
-        step: u64,
-        /// Time at its start (s).
-        time: f64,
-        /// Identity of the body.
-        body: u64,
-    },
 }
 
 /// Where the time of a step went.
@@ -132,6 +97,10 @@ pub struct Simulation<S: Space> {
     pub energy: Energy,
     /// Contact impulses and moments on the driven bodies in the last step, in their order.
     pub received: Vec<(S::Vector, S::Spin)>,
+    /// Surfaces that wear; none where nothing follows its wear.
+    pub scars: Vec<Scar<S>>,
+    /// The first surface that was worn as deep as it is thick.
+    pub worn_through: Option<WornThrough>,
     /// What acts from outside and changes in time.
     pub control: super::control::Control<S>,
     habit: solve::Habit,
@@ -187,6 +156,8 @@ impl<S: Space> Simulation<S> {
                 ..Energy::default()
             },
             received,
+            scars: Vec::new(),
+            worn_through: None,
             control: Default::default(),
             habit: solve::Habit::default(),
             passes: Passes::default(),
@@ -199,8 +170,10 @@ impl<S: Space> Simulation<S> {
     /// One step of h.
     ///
     /// # Errors
-    /// A law's error, or velocities that are not finite; the state is then that of the failed step.
+    /// A law's error, or velocities that are not finite; the state is then that of the failed step. Or a surface that
+    /// the step before wore through; the state is then that of its end.
     pub fn step(&mut self) -> Result<StepReport, StepError> {
+        self.whole()?;
         let mut report = StepReport::default();
         let Scheme { h, theta } = self.scheme;
         let info = StepInfo {
@@ -239,6 +212,7 @@ impl<S: Space> Simulation<S> {
             .passes
             .commit(&self.laws, &mut self.network, &sites, &turns, &info);
         report.totals = committed.map_err(|e| self.law_error(e))?;
+        self.put_losses();
         self.network.locate_breaks(&self.bodies);
         report.timing.laws += clock.elapsed();
 
@@ -251,6 +225,7 @@ impl<S: Space> Simulation<S> {
         self.time += h;
         self.steps += 1;
         self.end_phase();
+        self.recede();
         Ok(report)
     }
 

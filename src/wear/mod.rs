@@ -1,4 +1,9 @@
-//! Wear and the tribological circuit: what first bodies lose, and where it goes.
+//! Wear and the tribological circuit: what first bodies lose, the scars it leaves, and where it goes.
 pub mod circuit;
 pub mod ledger;
+pub mod scar;
+pub mod shape;
 pub mod ties;
+
+pub use scar::{Scar, WornThrough};
+pub use shape::Form;

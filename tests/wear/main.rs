@@ -2,3 +2,5 @@
 
 mod circuit;
 mod events;
+mod scar;
+mod scar_files;

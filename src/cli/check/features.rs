@@ -114,6 +114,13 @@ impl Features {
                 by.map(|l| l.plugin.name.clone())
             }),
         );
+        let scars = s.scars.iter().map(|c| {
+            let vertices = c.vertices().count();
+            format!("{}, {vertices} vertices, {:e} m thick", c.name, c.thickness)
+        });
+        let scars: Vec<String> = scars.collect();
+        let recede = (!scars.is_empty()).then(|| scars.join("; "));
+        self.say("surfaces that recede", recede);
         self.say(
             "healing",
             laws(&|law| law.healing.map(|time| format!("after {time:e} s"))),

@@ -3,7 +3,7 @@
 use super::{Recorder, RunError, unwritable};
 use crate::record::biaxial::{self, Outcome};
 use crate::record::summary::Wear;
-use crate::record::{circuit, figures, fretting};
+use crate::record::{circuit, figures, fretting, scars};
 use crate::scene::build::Dimensional;
 
 impl<S: Dimensional> Recorder<'_, S> {
@@ -38,6 +38,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         let phases = s.control.phases.iter().skip(summary.phases.len());
         summary.phases_missed = phases.map(|p| p.name.clone()).collect();
         summary.phases_missed.dedup();
+        summary.scars = scars::outcome(s);
         summary.measures = self.measures.outcome(&self.table);
         summary.energy = s.energy;
         summary.energy_residual_relative = s.energy.relative_residual();
@@ -70,6 +71,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         let text = serde_json::to_string_pretty(&self.summary).unwrap_or_default();
         let path = self.out.join("summary.json");
         std::fs::write(&path, text + "\n").map_err(|e| unwritable(&path, &e))?;
+        scars::write(&self.out, &self.simulation)?;
         self.results.finish(&self.out)?;
         if self.loaded.case.output.figures {
             figures::draw(
@@ -85,6 +87,7 @@ impl<S: Dimensional> Recorder<'_, S> {
             }
             self.measures
                 .draw(&self.out, &self.loaded.case.name, &self.table)?;
+            scars::draw(&self.out, &self.loaded.case.name, &self.simulation)?;
             if self.biaxial.is_some() {
                 let title = &self.loaded.case.name;
                 biaxial::draw(&self.out.join("biaxial.png"), title, &self.table, start)?;

@@ -1,12 +1,12 @@
 //! Runs a scene to its end and records it.
 
 mod account;
+mod dump;
 mod end;
 mod row;
 
 use self::account::Account;
 use super::biaxial::Biaxial;
-use super::fclib;
 use super::friction::{Cycles, Sample, State as Cumulated};
 use super::layer::Layer;
 use super::measure::Measures;
@@ -238,11 +238,15 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
                 self.measures.begin(&self.simulation);
                 self.strain = self.strain.take().map(|_| Strain::new(&self.simulation));
             }
-            let finished = self.simulation.control.finished();
+            let whole = self.simulation.whole();
+            let finished = self.simulation.control.finished() || whole.is_err();
             let last = step == self.total || finished;
             self.account(last)?;
             if output.fclib > 0 && step % output.fclib == 0 {
                 self.dump(step, &report)?;
+            }
+            if last {
+                self.simulation.show_wear();
             }
             if step % output.every.max(1) == 0 || last {
                 let mut row = self.row(&report);
@@ -263,44 +267,11 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
                 self.frame(step)?;
             }
             progress(&self.progress(step, &report));
+            whole?;
             if finished {
                 break;
             }
         }
-        Ok(())
-    }
-
-    /// Writes the step's problem in the form of the field's collection.
-    fn dump(&mut self, step: u64, report: &StepReport) -> Result<(), RunError> {
-        let problem = self.simulation.local_problem();
-        let Some(mut problem) = problem.filter(|p| p.check().is_ok()) else {
-            self.summary.solver.fclib_skipped += 1;
-            return Ok(());
-        };
-        // The field's error adds impulses to velocities: of like size neither hides the other.
-        let scale = problem.normalise();
-        let folder = self.out.join("fclib");
-        let path = folder.join(format!("step-{step:08}.hdf5"));
-        std::fs::create_dir_all(&folder).map_err(|e| unwritable(&folder, &e))?;
-        let (case, s) = (&self.loaded.case, &self.simulation);
-        let title = format!("{}, step {step}", case.name);
-        let per = if S::D == 2 { " per m of depth" } else { "" };
-        let description = format!(
-            "u: velocities of the candidate of a contact relative to its antagonist, (n, t) or (n, t1, t2), n \
-             towards the candidate (m/s); u_n holds the step's shift too (an open gap over h, what is given \
-             back of a penetration, restitution). r: impulses of the step times {scale:e}, so that the mean \
-             normal diagonal of W is 1; r/{scale:e} is in N s{per}. Step {:e} s, theta {}, time {:e} s; solved \
-             in the run by {} to an error of {:.1e}, {}.",
-            s.scheme.h,
-            s.scheme.theta,
-            s.time,
-            report.solver.used.name(),
-            report.solver.error,
-            case.solver.norm.formula(),
-        );
-        fclib::write_local(&path, &problem, &title, &description)
-            .map_err(|e| unwritable(&path, &e))?;
-        self.summary.solver.fclib_written += 1;
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 use super::Recorder;
 use crate::geometry::space::Space;
 use crate::record::biaxial::Biaxial;
+use crate::record::scars;
 use crate::record::statistics::Column;
 use crate::scene::build::Dimensional;
 use crate::step::{Simulation, StepReport};
@@ -53,6 +54,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         if let Some(test) = &self.biaxial {
             row.extend(test.state(s).row());
         }
+        row.extend(scars::row(s));
         if !s.control.phases.is_empty() {
             row.push(s.control.phase() as f64);
         }
@@ -119,6 +121,7 @@ pub(super) fn columns<S: Space>(s: &Simulation<S>, friction: bool, biaxial: bool
     if biaxial {
         out.extend(Biaxial::columns());
     }
+    out.extend(scars::columns(s));
     if !s.control.phases.is_empty() {
         out.push(c("phase", "", "number of the phase, from 1"));
     }

@@ -50,8 +50,9 @@ impl<S: Dimensional> Builder<'_, S> {
             body,
             dofs,
         });
+        let first = self.shapes.surfaces.len();
         self.carry(union, body, material, &centre);
-        Ok(())
+        self.wears(here, spec, first)
     }
 
     /// Whether a rotation of the body is imposed at some time.

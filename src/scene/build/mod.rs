@@ -9,6 +9,7 @@ mod polyhedra;
 mod samples;
 mod surface;
 mod union;
+mod wear;
 
 pub use surface::Dimensional;
 
@@ -25,6 +26,7 @@ use crate::geometry::space::{Plane, Solid, Space, VectorLike};
 use crate::laws::{Interface, SearchPath};
 use crate::solve;
 use crate::step::{Scheme, Simulation};
+use crate::wear::Scar;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -112,6 +114,7 @@ impl Loaded {
             files: BTreeMap::new(),
             origins: Vec::new(),
             samples: Vec::new(),
+            scars: Vec::new(),
             bodies: Bodies::default(),
             shapes: Shapes {
                 balls: Vec::new(),
@@ -128,6 +131,7 @@ impl Loaded {
         };
         builder.grains()?;
         builder.first_bodies()?;
+        builder.refuse_idle_wear()?;
         let names = builder
             .bodies
             .driven
@@ -198,6 +202,8 @@ struct Builder<'a, S: Space> {
     origins: Vec<Origin>,
     /// See [`Built::samples`].
     samples: Vec<String>,
+    /// Surfaces that wear.
+    scars: Vec<Scar<S>>,
 }
 
 /// The place of a body in the case.
@@ -296,6 +302,9 @@ impl<S: Dimensional> Builder<'_, S> {
             return Err(self.source.locate(Fault::new("solver.method", reason)));
         }
         simulation.gravity = gravity;
+        for scar in self.scars {
+            simulation.follow_wear(scar);
+        }
         super::phases::install(case, &mut simulation).map_err(|f| source.locate(f))?;
         simulation.correction = case.solver.correction;
         simulation.projection = case.solver.projection;

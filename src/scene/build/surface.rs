@@ -4,15 +4,16 @@ use super::Builder;
 use crate::geometry::convex::Part;
 use crate::geometry::convex::polygon::Polygon;
 use crate::geometry::convex::polyhedron::Polyhedron;
+use crate::geometry::crossing;
 use crate::geometry::drum::Drum;
 use crate::geometry::height_field::HeightField;
 use crate::geometry::mesh::Mesh;
-use crate::geometry::polyline::Polyline;
+use crate::geometry::polyline::{Polyline, ProfileError};
 use crate::geometry::shape::{HalfSpace, Surface};
 use crate::geometry::space::{Plane, Solid, Space, VectorLike};
 use crate::scene::case::{ShapeSpec, Side};
-use crate::scene::profile;
 use crate::scene::source::InputError;
+use crate::scene::{profile, profile_file, standard};
 use nalgebra::Vector2;
 
 /// Shapes that exist in one dimension only.
@@ -65,8 +66,16 @@ impl Dimensional for Plane {
             .into_iter()
             .map(|(x, y)| Vector2::new(x, y))
             .collect();
-        if points.windows(2).any(|w| w[1].x < w[0].x) {
-            return Err("the points of a profile must go from left to right".into());
+        if let Some((a, b, at)) = crossing::first(&points) {
+            return Err(ProfileError::Crosses(a, b, at.x, at.y).to_string());
+        }
+        if let Some(k) = points.windows(2).position(|w| w[1].x < w[0].x) {
+            return Err(format!(
+                "the points of a profile must go from left to right, and point {} at x = {:e} m is left of the one before, at {:e} m",
+                k + 1,
+                points[k + 1].x,
+                points[k].x
+            ));
         }
         if side == Side::Above {
             points.reverse();
@@ -166,17 +175,35 @@ impl<S: Dimensional> Builder<'_, S> {
                 }
                 Ok((null, Box::new(Drum::new(radius, *axis))))
             }
-            ShapeSpec::Profile { points, side } => {
-                // A chain that spans the period repeats.
-                let spans = |p: f64| {
-                    points.len() > 1
-                        && ((points[points.len() - 1].0 - points[0].0) / p - 1.0).abs() < 1e-9
+            ShapeSpec::Profile { points, file, side } => {
+                let points = match (points.is_empty(), file) {
+                    (true, Some(file)) => profile_file::read(&self.folder.join(file))?,
+                    (false, None) | (true, None) => points.clone(),
+                    (false, Some(_)) => {
+                        let message = "a profile is given by `points` or by a `file`, not by both";
+                        return Err(self.fail(format!("{here}.file"), message));
+                    }
                 };
-                let period = period.filter(|p| spans(*p));
-                Ok((
-                    null,
-                    S::profile(points.clone(), *side, period).map_err(bad)?,
-                ))
+                Ok((null, self.chain(here, points, *side)?))
+            }
+            ShapeSpec::StandardProfile {
+                name,
+                spacing,
+                from,
+                to,
+                inclination,
+                side,
+            } => {
+                let cut = standard::Cut {
+                    spacing: *spacing,
+                    from: *from,
+                    to: *to,
+                    inclination: *inclination,
+                };
+                let points = standard::points(*name, &cut)
+                    .map_err(|(field, why)| self.fail(format!("{here}.{field}"), why))?;
+                let side = side.unwrap_or(standard::side(*name));
+                Ok((null, self.chain(here, points, side)?))
             }
             ShapeSpec::RoughProfile {
                 points,
@@ -263,5 +290,19 @@ impl<S: Dimensional> Builder<'_, S> {
             | ShapeSpec::Box { .. }
             | ShapeSpec::Capsule { .. } => Err(bad("this shape is not a surface".into())),
         }
+    }
+
+    /// A profile by its points; one that spans the period repeats.
+    fn chain(
+        &self,
+        here: &str,
+        points: Vec<(f64, f64)>,
+        side: Side,
+    ) -> Result<Box<dyn Surface<S>>, InputError> {
+        let spans = |p: &f64| {
+            points.len() > 1 && ((points[points.len() - 1].0 - points[0].0) / p - 1.0).abs() < 1e-9
+        };
+        let period = self.shapes.periodic.period[0].filter(spans);
+        S::profile(points, side, period).map_err(|why| self.fail(here, why))
     }
 }

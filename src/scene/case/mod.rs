@@ -2,9 +2,11 @@
 
 mod grains;
 mod shapes;
+mod wear;
 
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
-pub use shapes::{Coordinates, ShapeSpec, Side};
+pub use shapes::{Coordinates, ShapeSpec, Side, StandardName};
+pub use wear::WearSpec;
 
 use super::circuit::CircuitSpec;
 use super::measures::MeasureSpec;
@@ -243,6 +245,9 @@ pub struct BodySpec {
     /// When the body is taken away (s); never by default.
     #[serde(default)]
     pub vanishes: Option<f64>,
+    /// Whether and how far its profiles and height fields follow their wear; not by default.
+    #[serde(default)]
+    pub wears: Option<WearSpec>,
     /// Degrees of freedom; fixed where not given.
     #[serde(default)]
     pub dofs: DofSpec,

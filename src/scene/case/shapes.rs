@@ -11,6 +11,15 @@ pub enum Side {
     Above,
 }
 
+/// A profile of a standard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum StandardName {
+    /// Wheel, EN 13715: S1002, flange 28 mm high and 32.5 mm thick.
+    S1002,
+    /// Rail head, EN 13674-1: 60E1, formerly UIC 60.
+    Rail60E1,
+}
+
 /// A part of a first body.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -26,9 +35,33 @@ pub enum ShapeSpec {
     /// A profile by its points, left to right (2D).
     Profile {
         /// Points (m).
+        #[serde(default)]
         points: Vec<(f64, f64)>,
+        /// A table of them with the columns `x` and `z`, in place of `points`: a path relative to the case.
+        #[serde(default)]
+        file: Option<String>,
         /// Where the solid is.
         side: Side,
+    },
+    /// The profile of a standard (2D), see [`crate::scene::standard`].
+    StandardProfile {
+        /// Which.
+        name: StandardName,
+        /// Longest segment (m).
+        #[serde(default = "half_millimetre")]
+        spacing: f64,
+        /// Where it begins and ends along the standard's own lateral axis (m); all of it by default.
+        #[serde(default)]
+        from: Option<f64>,
+        /// Its other end (m).
+        #[serde(default)]
+        to: Option<f64>,
+        /// n of an inclination 1:n (rail); upright by default.
+        #[serde(default)]
+        inclination: Option<f64>,
+        /// Where the solid is; of a wheel above, of a rail below by default.
+        #[serde(default)]
+        side: Option<Side>,
     },
     /// A self-affine rough profile over the period of x (2D): random phases, spectrum |q|^(-1-2H).
     RoughProfile {
@@ -139,6 +172,10 @@ pub enum ShapeSpec {
         #[serde(default)]
         rms: Option<f64>,
     },
+}
+
+fn half_millimetre() -> f64 {
+    5e-4
 }
 
 fn one() -> f64 {

@@ -23,7 +23,21 @@ impl Table {
     pub fn read(path: &Path, required: &[&str], optional: &[&str]) -> Result<Self, InputError> {
         let text = read_text(path)?;
         let name = path.display().to_string();
-        Self::parse(name, text, required, optional)
+        Self::parse(name, text, required, optional, false)
+    }
+
+    /// The same for columns of lengths, which may have their unit behind the name, `z [mm]`; values are in metres.
+    ///
+    /// # Errors
+    /// As [`Table::read`], or a unit that is no length.
+    pub fn read_lengths(
+        path: &Path,
+        required: &[&str],
+        optional: &[&str],
+    ) -> Result<Self, InputError> {
+        let text = read_text(path)?;
+        let name = path.display().to_string();
+        Self::parse(name, text, required, optional, true)
     }
 
     fn parse(
@@ -31,7 +45,9 @@ impl Table {
         mut text: String,
         required: &[&str],
         optional: &[&str],
+        lengths: bool,
     ) -> Result<Self, InputError> {
+        let mut metres: Vec<f64> = Vec::new();
         if text.starts_with('\u{feff}') {
             text.drain(..'\u{feff}'.len_utf8());
         }
@@ -56,7 +72,18 @@ impl Table {
                 break;
             }
             if table.header.is_empty() {
-                let header: Vec<String> = record.iter().map(str::to_owned).collect();
+                let mut header: Vec<String> = record.iter().map(str::to_owned).collect();
+                if lengths {
+                    for name in &mut header {
+                        let (short, metre) = length(name).map_err(|m| {
+                            fail(m).expected(
+                                "`m`, `mm`, `um` or `nm` in brackets, or no unit for metres",
+                            )
+                        })?;
+                        *name = short;
+                        metres.push(metre);
+                    }
+                }
                 check_header(&header, required, optional).map_err(|(message, near)| {
                     let columns = [required, optional].concat().join(", ");
                     fail(message)
@@ -76,7 +103,10 @@ impl Table {
             let mut row = Vec::with_capacity(record.len());
             for (word, column) in record.iter().zip(&table.header) {
                 match word.parse().ok().filter(|x: &f64| x.is_finite()) {
-                    Some(x) => row.push(x),
+                    Some(x) => {
+                        let metre = metres.get(row.len()).copied().unwrap_or(1.0);
+                        row.push(x * metre);
+                    }
                     None => {
                         return Err(
                             fail(format!("the value `{word}` of `{column}` is no number"))
@@ -122,6 +152,21 @@ impl Table {
     }
 }
 
+/// A name without its unit, and the unit in metres.
+fn length(name: &str) -> Result<(String, f64), String> {
+    let Some((short, unit)) = name.split_once('[') else {
+        return Ok((name.to_owned(), 1.0));
+    };
+    let metre = match unit.trim_end_matches(']').trim() {
+        "m" => 1.0,
+        "mm" => 1e-3,
+        "um" | "\u{b5}m" | "\u{3bc}m" => 1e-6,
+        "nm" => 1e-9,
+        other => return Err(format!("`{other}` is no unit of length")),
+    };
+    Ok((short.trim().to_owned(), metre))
+}
+
 fn check_header(
     header: &[String],
     required: &[&str],
@@ -165,7 +210,29 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<Table, InputError> {
-        Table::parse("t.csv".into(), text.into(), &["x", "radius"], &["spin"])
+        Table::parse(
+            "t.csv".into(),
+            text.into(),
+            &["x", "radius"],
+            &["spin"],
+            false,
+        )
+    }
+
+    #[test]
+    fn lengths_may_have_a_unit() {
+        let read = |text: &str| Table::parse("t.csv".into(), text.into(), &["x", "z"], &[], true);
+        let table = read("x [mm], z\n2,3\n").unwrap_or_else(|e| panic!("{e}"));
+        let (x, z) = (table.column("x"), table.column("z"));
+        assert_eq!((table.value(0, x), table.value(0, z)), (2e-3, 3.0));
+        let error = read("x [kg],z\n1,2\n")
+            .err()
+            .unwrap_or_else(|| panic!("passed"));
+        assert!(
+            error.message().contains("`kg` is no unit of length"),
+            "{error}"
+        );
+        assert_eq!(error.position(), Some((1, 1)));
     }
 
     #[test]

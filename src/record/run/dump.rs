@@ -1,0 +1,42 @@
+//! Steps as problems of the field's collection.
+
+use super::{Recorder, RunError, unwritable};
+use crate::record::fclib;
+use crate::scene::build::Dimensional;
+use crate::step::StepReport;
+
+impl<S: Dimensional> Recorder<'_, S> {
+    /// Writes the step's problem in the form of the field's collection.
+    pub(super) fn dump(&mut self, step: u64, report: &StepReport) -> Result<(), RunError> {
+        let problem = self.simulation.local_problem();
+        let Some(mut problem) = problem.filter(|p| p.check().is_ok()) else {
+            self.summary.solver.fclib_skipped += 1;
+            return Ok(());
+        };
+        // The field's error adds impulses to velocities: of like size neither hides the other.
+        let scale = problem.normalise();
+        let folder = self.out.join("fclib");
+        let path = folder.join(format!("step-{step:08}.hdf5"));
+        std::fs::create_dir_all(&folder).map_err(|e| unwritable(&folder, &e))?;
+        let (case, s) = (&self.loaded.case, &self.simulation);
+        let title = format!("{}, step {step}", case.name);
+        let per = if S::D == 2 { " per m of depth" } else { "" };
+        let description = format!(
+            "u: velocities of the candidate of a contact relative to its antagonist, (n, t) or (n, t1, t2), n \
+             towards the candidate (m/s); u_n holds the step's shift too (an open gap over h, what is given \
+             back of a penetration, restitution). r: impulses of the step times {scale:e}, so that the mean \
+             normal diagonal of W is 1; r/{scale:e} is in N s{per}. Step {:e} s, theta {}, time {:e} s; solved \
+             in the run by {} to an error of {:.1e}, {}.",
+            s.scheme.h,
+            s.scheme.theta,
+            s.time,
+            report.solver.used.name(),
+            report.solver.error,
+            case.solver.norm.formula(),
+        );
+        fclib::write_local(&path, &problem, &title, &description)
+            .map_err(|e| unwritable(&path, &e))?;
+        self.summary.solver.fclib_written += 1;
+        Ok(())
+    }
+}

@@ -1,0 +1,51 @@
+//! Why a step could not be done.
+
+use crate::laws::LawError;
+use crate::wear::WornThrough;
+
+/// Why a step could not be done.
+#[derive(Debug, thiserror::Error)]
+pub enum StepError {
+    /// A law refused.
+    #[error("step {step} at t = {time:.6e} s: {source}")]
+    Law {
+        /// Number of the step.
+        step: u64,
+        /// Time at its start (s).
+        time: f64,
+        /// What the law said.
+        source: LawError,
+    },
+    /// The method does not serve what the laws ask for.
+    #[error("step {step}: solver.method {method}: {reason}")]
+    Method {
+        /// Number of the step.
+        step: u64,
+        /// The method.
+        method: &'static str,
+        /// Why, and what to take instead.
+        reason: &'static str,
+    },
+    /// A surface has worn as deep as it is thick.
+    #[error("step {step} at t = {time:.6e} s: {source}")]
+    WornThrough {
+        /// Number of the step that did it.
+        step: u64,
+        /// Time at its end (s).
+        time: f64,
+        /// Which and where.
+        source: WornThrough,
+    },
+    /// A velocity is not finite.
+    #[error(
+        "step {step} at t = {time:.6e} s: the velocity of body {body} is not finite; use a smaller step or softer parameters"
+    )]
+    NotFinite {
+        /// Number of the step.
+        step: u64,
+        /// Time at its start (s).
+        time: f64,
+        /// Identity of the body.
+        body: u64,
+    },
+}

@@ -1,0 +1,147 @@
+//! The form of a scar: U or W.
+//!
+//! The scar reaches from the first to the last place that is deeper than a twentieth of its largest depth; in twenty
+//! slices of equal width its middle is the mean depth of the two central slices, its sides the deepest slice of
+//! each half. It is a W where the middle is below 0.9 of both sides, else a U. Means over slices keep the
+//! dents of single contacts out of it.
+
+use serde::Serialize;
+
+/// Depth, in parts of the largest, from which on a place belongs to the scar.
+const EDGE: f64 = 0.05;
+/// Slices of the scar.
+const SLICES: usize = 20;
+/// A middle below this part of both sides makes a W.
+const SHALLOW: f64 = 0.9;
+
+/// The form of a scar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Form {
+    /// Nothing was worn, or at a place or two only.
+    None,
+    /// Deepest in the middle, or as deep as anywhere.
+    U,
+    /// Deeper on both sides than in the middle.
+    W,
+}
+
+/// Extent and form of a scar.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Outline {
+    /// Its form.
+    pub form: Form,
+    /// Where it begins and ends (m); not a number where there is none.
+    pub from: f64,
+    /// Its other end (m).
+    pub to: f64,
+    /// Depth of the middle (m).
+    pub middle: f64,
+    /// Depth of the deepest slice on the left and on the right (m).
+    pub sides: [f64; 2],
+}
+
+/// Extent and form of depths (m) at places (m) from left to right; each row a place, what it stands for and its depth.
+pub fn outline(rows: &[[f64; 3]]) -> Outline {
+    let none = Outline {
+        form: Form::None,
+        from: f64::NAN,
+        to: f64::NAN,
+        middle: 0.0,
+        sides: [0.0; 2],
+    };
+    let most = rows.iter().map(|r| r[2]).fold(0.0, f64::max);
+    let deep = |r: &[f64; 3]| most > 0.0 && r[2] > EDGE * most;
+    let (Some(first), Some(last)) = (rows.iter().position(deep), rows.iter().rposition(deep))
+    else {
+        return none;
+    };
+    let (from, to) = (rows[first][0], rows[last][0]);
+    if last < first + 2 {
+        return none;
+    }
+    let slice = (to - from) / SLICES as f64;
+    let depths: Vec<f64> = (0..SLICES)
+        .map(|k| {
+            let left = from + k as f64 * slice;
+            integral(rows, left, left + slice) / slice
+        })
+        .collect();
+    let half = SLICES / 2;
+    let most = |of: &[f64]| of.iter().copied().fold(0.0, f64::max);
+    let middle = 0.5 * (depths[half - 1] + depths[half]);
+    let sides = [most(&depths[..half]), most(&depths[half..])];
+    let form = if sides.iter().all(|s| middle < SHALLOW * s) {
+        Form::W
+    } else {
+        Form::U
+    };
+    Outline {
+        form,
+        from,
+        to,
+        middle,
+        sides,
+    }
+}
+
+/// Integral of the depth, linear between places, from one place to another.
+fn integral(rows: &[[f64; 3]], from: f64, to: f64) -> f64 {
+    let piece = |w: &[[f64; 3]]| {
+        let ([a, _, p], [b, _, q]) = (w[0], w[1]);
+        let (low, high) = (from.max(a), to.min(b));
+        if high <= low {
+            return 0.0;
+        }
+        let middle = (0.5 * (low + high) - a) / (b - a);
+        (high - low) * (p + middle * (q - p))
+    };
+    rows.windows(2).map(piece).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(depth: impl Fn(f64) -> f64) -> Outline {
+        let row = |k: i32| {
+            let x = 0.01 * f64::from(k);
+            [x, 0.01, depth(x)]
+        };
+        outline(&(-200..=200).map(row).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn a_circle_a_plateau_and_a_slope_are_u_and_two_lobes_are_w() {
+        assert_eq!(of(|_| 0.0).form, Form::None);
+        assert_eq!(of(|x| (1.0 - x * x).max(0.0)).form, Form::U);
+        assert_eq!(of(|x| if x.abs() < 1.0 { 1.0 } else { 0.0 }).form, Form::U);
+        assert_eq!(
+            of(|x| if x.abs() < 1.0 { 1.5 + x } else { 0.0 }).form,
+            Form::U
+        );
+        // cos^2 with a shallow middle: 1 at x = 0.5, 0.5 at x = 0.
+        let w = of(|x| {
+            if x.abs() < 1.0 {
+                0.5 + 0.5 * (std::f64::consts::PI * x).sin().powi(2)
+            } else {
+                0.0
+            }
+        });
+        assert_eq!(w.form, Form::W);
+        assert!((w.from + 0.99).abs() < 1e-12 && (w.to - 0.99).abs() < 1e-12);
+        assert!((w.middle - 0.5).abs() < 0.02 && w.sides.iter().all(|s| (s - 1.0).abs() < 0.02));
+    }
+
+    #[test]
+    fn a_dent_of_one_contact_makes_no_w() {
+        let form = of(|x| {
+            let dent = if (x.abs() - 0.5).abs() < 0.005 {
+                0.4
+            } else {
+                0.0
+            };
+            if x.abs() < 1.0 { 1.0 + dent } else { 0.0 }
+        });
+        assert_eq!(form.form, Form::U);
+    }
+}
