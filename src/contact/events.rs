@@ -18,6 +18,9 @@ pub struct Break<S: Space> {
     pub opening: [f64; 2],
     /// Area (m^2; m in 2D).
     pub area: f64,
+    /// What it still stored where it was torn because its contact left all reach, 0 where damage broke it
+    /// (J; J/m in 2D).
+    pub torn: f64,
     /// What it went through.
     pub life: Life,
 }

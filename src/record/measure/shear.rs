@@ -145,7 +145,7 @@ impl<S: Space> Measure<S> for Shear {
 }
 
 /// Volume of a ball (m^3; m^2 in 2D) below a plane at a height `d` above its centre (m).
-fn below(dimension: usize, r: f64, d: f64) -> f64 {
+pub(super) fn below(dimension: usize, r: f64, d: f64) -> f64 {
     let d = d.clamp(-r, r);
     if dimension == 2 {
         r * r * (PI - (d / r).acos()) + d * (r * r - d * d).sqrt()

@@ -209,7 +209,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
 
     fn go(&mut self, progress: &mut dyn FnMut(&Progress)) -> Result<(), RunError> {
         let output = &self.loaded.case.output;
-        self.measures.begin(&self.simulation);
+        self.measures.begin(&mut self.simulation);
         self.views()?;
         self.frame(0)?;
         for step in 1..=self.total {
@@ -217,9 +217,10 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             let recurs = self.simulation.control.recurs();
             let report = self.simulation.step()?;
             self.follow(&report, before);
+            self.measures.follow(&self.simulation);
             if phase == 1 && self.simulation.control.phase() == 2 {
                 self.camera.dye(&self.simulation);
-                self.measures.begin(&self.simulation);
+                self.measures.begin(&mut self.simulation);
                 self.strain = self.strain.take().map(|_| Strain::new(&self.simulation));
             }
             let finished = self.simulation.control.finished();
