@@ -63,10 +63,12 @@ pub struct Spent {
     pub fracture: f64,
     /// By damping of the bond.
     pub viscous: f64,
+    /// Given by taking an overlap out, negative: see `solver.correction`.
+    pub correction: f64,
 }
 
 impl Spent {
-    /// All of it.
+    /// All that was dissipated.
     pub fn total(&self) -> f64 {
         self.friction + self.impact + self.adhesion + self.fracture + self.viscous
     }

@@ -52,6 +52,7 @@ impl Passes {
                     friction,
                     impact,
                     adhesion,
+                    correction: -site.corrected,
                     ..Spent::default()
                 };
             }

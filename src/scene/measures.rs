@@ -99,6 +99,9 @@ pub struct ThirdBodySpec {
     /// Number of slices of time whose profiles are told apart.
     #[serde(default = "four")]
     pub slices: usize,
+    /// Looks at every so many rows of the statistics; the rows between hold no numbers.
+    #[serde(default = "each")]
+    pub every: usize,
     /// Where the layer ends.
     #[serde(default)]
     pub extent: Extent,
@@ -115,6 +118,10 @@ pub enum Extent {
     Faces,
     /// Between the heights with 1 % of the grains' mass below and above them.
     Grains,
+}
+
+fn each() -> usize {
+    1
 }
 
 fn twenty() -> usize {
@@ -165,10 +172,7 @@ fn known(case: &Case, layer: &ThirdBodySpec) -> Result<(), Fault> {
     for (k, name) in [&layer.between.0, &layer.between.1].into_iter().enumerate() {
         if !names().any(|n| n == name) {
             let all: Vec<&str> = names().collect();
-            let fault = Fault::new(
-                format!("between.{k}"),
-                format!("there is no body `{name}`"),
-            );
+            let fault = Fault::new(format!("between.{k}"), format!("there is no body `{name}`"));
             return Err(fault
                 .expected(format!("one of {}", all.join(", ")))
                 .nearest(nearest(name, names())));
@@ -341,6 +345,12 @@ fn third_body(case: &Case, layer: &ThirdBodySpec) -> Result<(), (&'static str, S
     if !(1..=20).contains(&layer.slices) {
         let message = format!("needs 1 to 20 slices of time, got {}", layer.slices);
         return Err(("slices", message));
+    }
+    if layer.every == 0 {
+        return Err((
+            "every",
+            "looks at every row (1), every second (2), ...; got 0".into(),
+        ));
     }
     if !layer.start.is_finite() {
         return Err(("start", format!("must be finite, got {}", layer.start)));

@@ -5,7 +5,8 @@ use std::ops::AddAssign;
 /// Stresses of a cell: across, along, shear, lateral (3D).
 pub(super) const STRESSES: usize = 4;
 /// Mechanisms of dissipation.
-pub(super) const MECHANISMS: [&str; 4] = ["friction", "impact", "fracture", "viscous"];
+pub(super) const MECHANISMS: [&str; 5] =
+    ["friction", "impact", "fracture", "viscous", "correction"];
 
 /// Sums over the grains, contacts and steps of a bin.
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,7 +37,7 @@ pub(super) struct Cell {
     pub bonds: f64,
     /// Their bonds that broke.
     pub broken: f64,
-    /// Sums f l (N m; N): see [`STRESSES`].
+    /// Sums f l (N m; N): see [`STRESSES`]. Over a time the shear counts with the sign of the sliding.
     pub moment: [f64; STRESSES],
     /// Dissipated, by mechanism (J; J/m).
     pub energy: [f64; MECHANISMS.len()],
@@ -57,7 +58,7 @@ impl AddAssign<&Cell> for Cell {
         self.contacts += o.contacts;
         self.bonds += o.bonds;
         self.broken += o.broken;
-        let add = |a: &mut [f64; 4], b: &[f64; 4]| a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
+        let add = |a: &mut [f64], b: &[f64]| a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
         add(&mut self.moment, &o.moment);
         add(&mut self.energy, &o.energy);
     }
@@ -121,12 +122,17 @@ impl Block {
         self.samples += next.samples;
         self.thickness += next.thickness;
         self.cluster += next.cluster;
-        self.cells.iter_mut().zip(&next.cells).for_each(|(a, b)| *a += b);
+        self.cells
+            .iter_mut()
+            .zip(&next.cells)
+            .for_each(|(a, b)| *a += b);
     }
 
     /// The bins between the faces.
     pub fn bins(&self) -> &[Cell] {
-        self.cells.get(1..self.cells.len().max(2) - 1).unwrap_or_default()
+        self.cells
+            .get(1..self.cells.len().max(2) - 1)
+            .unwrap_or_default()
     }
 
     /// Mean thickness (m).
@@ -141,7 +147,10 @@ impl Block {
 
     /// (depth over thickness, velocity over the second body's), where there is mass and sliding.
     pub fn profile(&self) -> Vec<(f64, f64)> {
-        let full = self.bins().iter().filter(|c| c.mass > 0.0 && c.square > 0.0);
+        let full = self
+            .bins()
+            .iter()
+            .filter(|c| c.mass > 0.0 && c.square > 0.0);
         full.map(|c| (c.depth(), c.carried())).collect()
     }
 }

@@ -124,7 +124,11 @@ mod tests {
             for ends in [[3, 7], [7, 8]] {
                 let branch = Vector3::new(0.8, -0.6, 0.0);
                 let force = 0.1;
-                pairs.push(Pair { ends, branch, force });
+                pairs.push(Pair {
+                    ends,
+                    branch,
+                    force,
+                });
             }
             let found = chains(&loads, flat, &pairs);
             assert_eq!((found.count, found.grains), (1, 7));

@@ -51,9 +51,10 @@ pub(super) struct Clusters {
 /// Finds the clusters of the free grains.
 pub(super) fn clusters<S: Space>(s: &Simulation<S>, grain: &[bool]) -> Clusters {
     let n = &s.network;
-    let tied = n.contacts.iter().filter(|c| {
-        c.memory().is_some() && n.bond(c).is_some_and(crate::contact::Bond::intact)
-    });
+    let tied = n
+        .contacts
+        .iter()
+        .filter(|c| c.memory().is_some() && n.bond(c).is_some_and(crate::contact::Bond::intact));
     count(&s.bodies.mass, grain, tied.map(|c| c.bodies))
 }
 
@@ -97,7 +98,10 @@ mod tests {
         assert_eq!((c.count, c.largest), (2, 3));
         // {1, 2, 3} of 4 kg, {4} of 1, {5, 6} of 2, {7} of 3.
         assert!((c.mean - (4.0 * 3.0 + 1.0 + 2.0 * 2.0 + 3.0) / 10.0).abs() < 1e-15);
-        assert_eq!(c.sizes, [(1, (2, 4.0)), (2, (1, 2.0)), (3, (1, 4.0))].into());
+        assert_eq!(
+            c.sizes,
+            [(1, (2, 4.0)), (2, (1, 2.0)), (3, (1, 4.0))].into()
+        );
         let none = count(&mass, &grain, std::iter::empty());
         assert_eq!((none.count, none.largest, none.mean), (0, 1, 1.0));
     }

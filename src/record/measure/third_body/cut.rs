@@ -31,7 +31,10 @@ pub(super) fn share<S: Space>(
             let place = |c: &S::Vector| [c[along], depth + gap.side * c[gap.across]];
             let corners: Vec<[f64; 2]> = corners.iter().map(place).collect();
             let low = corners.iter().map(|c| c[1]).fold(f64::INFINITY, f64::min);
-            let high = corners.iter().map(|c| c[1]).fold(f64::NEG_INFINITY, f64::max);
+            let high = corners
+                .iter()
+                .map(|c| c[1])
+                .fold(f64::NEG_INFINITY, f64::max);
             let whole = area_below(&corners, f64::INFINITY);
             gap.share(low, high, |d| area_below(&corners, d) / whole, take);
         }
@@ -68,8 +71,17 @@ mod tests {
     #[test]
     fn a_square_on_its_corner_is_cut_by_triangles() {
         let square = [[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]];
-        for (height, area) in [(-1.5, 0.0), (-0.5, 0.25), (0.0, 1.0), (0.5, 1.75), (2.0, 2.0)] {
-            assert!((area_below(&square, height) - area).abs() < 1e-15, "{height}");
+        for (height, area) in [
+            (-1.5, 0.0),
+            (-0.5, 0.25),
+            (0.0, 1.0),
+            (0.5, 1.75),
+            (2.0, 2.0),
+        ] {
+            assert!(
+                (area_below(&square, height) - area).abs() < 1e-15,
+                "{height}"
+            );
         }
     }
 }

@@ -24,6 +24,9 @@ pub(super) struct Figure<'a> {
     pub dimension: usize,
 }
 
+/// Size of a panel in pixels.
+const PANEL: (u32, u32) = (1100, 760);
+
 /// From early to late.
 const TIMES: [(u8, u8, u8); 4] = [(250, 176, 80), (226, 92, 70), (160, 30, 100), (50, 16, 96)];
 
@@ -42,24 +45,30 @@ fn moment(t: f64) -> String {
 
 impl Figure<'_> {
     fn chart(&self, heading: &str, name: &str, unit: &str) -> Chart {
-        let upwards = format!("depth over thickness, {} to {}", self.between.0, self.between.1);
+        let upwards = format!(
+            "depth over thickness, {} to {}",
+            self.between.0, self.between.1
+        );
         let mut chart = Chart::new(heading, Axis::new(name, unit), Axis::new(upwards, ""));
         chart.subtitle = Some(self.title.to_owned());
         chart.y_range = Some((0.0, 1.0));
+        chart.size_px = PANEL;
         chart
     }
 
     fn points(block: &Block, value: impl Fn(&Cell) -> f64) -> Vec<(f64, f64)> {
         let n = block.bins().len() as f64;
         let bins = block.bins().iter().enumerate();
-        bins.map(|(k, c)| (value(c), (k as f64 + 0.5) / n)).collect()
+        bins.map(|(k, c)| (value(c), (k as f64 + 0.5) / n))
+            .collect()
     }
 
     /// One quantity, a line for each slice of time.
     fn in_time(&self, mut chart: Chart, value: impl Fn(&Cell) -> f64 + Copy) -> Chart {
         for (k, block) in self.slices.iter().enumerate() {
             let label = format!("{} to {} s", moment(block.time[0]), moment(block.time[1]));
-            let mut series = Series::new(label, Self::points(block, value)).style(Style::LineMarkers);
+            let mut series =
+                Series::new(label, Self::points(block, value)).style(Style::LineMarkers);
             series.colour = Some(shade(k, self.slices.len()));
             chart = chart.with(series);
         }
@@ -92,20 +101,36 @@ impl Figure<'_> {
     }
 
     fn stress(&self) -> Chart {
-        let names = ["normal, across", "normal, along", "shear", "normal, lateral"];
+        let names = [
+            "normal, across",
+            "normal, along",
+            "shear",
+            "normal, lateral",
+        ];
         let shown = if self.dimension == 3 { 4 } else { 3 };
         let lines = names.iter().enumerate().take(shown);
         let lines = lines.map(|(k, name)| (*name, Self::points(self.whole, |c| c.stress()[k])));
-        let chart = self.chart("stress (compression positive), mean over time", "stress", "Pa");
+        let chart = self.chart(
+            "stress (compression positive), mean over time",
+            "stress",
+            "Pa",
+        );
         self.beside(chart, lines)
     }
 
     fn power(&self) -> Chart {
         let all = MECHANISMS.iter().enumerate();
         let lines = all.map(|(k, name)| {
-            (*name, Self::points(self.whole, |c| powers(c, self.whole)[k]))
+            (
+                *name,
+                Self::points(self.whole, |c| powers(c, self.whole)[k]),
+            )
         });
-        let chart = self.chart("dissipated power by volume, mean over time", "power", "W/m^3");
+        let chart = self.chart(
+            "dissipated power by volume, mean over time",
+            "power",
+            "W/m^3",
+        );
         let lines = lines.filter(|(_, points)| points.iter().any(|p| p.0 != 0.0));
         self.beside(chart, lines)
     }

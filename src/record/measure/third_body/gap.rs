@@ -132,8 +132,7 @@ impl Faces {
 
     /// The layer now, with surfaces or grains as at the last look.
     pub fn gap<S: Space>(&self, s: &Simulation<S>) -> Gap {
-        let at =
-            |k: usize| s.bodies.position[self.body(s, k)][self.gap.across] + self.offsets[k];
+        let at = |k: usize| s.bodies.position[self.body(s, k)][self.gap.across] + self.offsets[k];
         let ends = match self.grains {
             Some([low, high]) if self.gap.side > 0.0 => [low, high],
             Some([low, high]) => [high, low],
@@ -230,7 +229,10 @@ fn projection<V: VectorLike>(points: &[V], across: usize) -> (f64, f64) {
         return (if across == 0 { -along } else { along }, mean);
     }
     let next = points.iter().cycle().skip(1);
-    let cross = points.iter().zip(next).map(|(a, b)| a[i] * b[j] - b[i] * a[j]);
+    let cross = points
+        .iter()
+        .zip(next)
+        .map(|(a, b)| a[i] * b[j] - b[i] * a[j]);
     (0.5 * cross.sum::<f64>(), mean)
 }
 
@@ -292,7 +294,10 @@ mod tests {
         let mut one = Vec::new();
         gap.share(0.6, 0.9, line(0.6, 0.9), |k, share| one.push((k, share)));
         assert_eq!(one, [(2, 1.0)]);
-        assert_eq!((gap.cell(-1.0), gap.cell(9.0), gap.bin(-1.0), gap.bin(9.0)), (0, 5, 1, 4));
+        assert_eq!(
+            (gap.cell(-1.0), gap.cell(9.0), gap.bin(-1.0), gap.bin(9.0)),
+            (0, 5, 1, 4)
+        );
     }
 
     #[test]

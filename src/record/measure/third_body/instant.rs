@@ -35,6 +35,8 @@ pub(super) struct Instant {
     pub cells: Vec<Cell>,
     /// Velocity of the second body's face relative to the first's, along the sliding (m/s).
     pub sliding: f64,
+    /// Contacts that carry force, mean over the bodies that are grains.
+    pub coordination: f64,
     /// Clusters.
     pub clusters: Clusters,
     /// Chains.
@@ -82,7 +84,11 @@ impl Instant {
             let velocity = s.bodies.velocity[b] - floor;
             let depth = gap.depth(&grain.at) / gap.thickness;
             let mean = &mut means[cell];
-            *mean = (mean.0 + mass, mean.1 + mass * depth, mean.2 + velocity * mass);
+            *mean = (
+                mean.0 + mass,
+                mean.1 + mass * depth,
+                mean.2 + velocity * mass,
+            );
             let (v, slide) = (velocity[along], slide[along]);
             let spin = &s.bodies.spin[b];
             let c = &mut cells[cell];
@@ -100,7 +106,10 @@ impl Instant {
         }
         temperature(s, &gap, &floor, all, &shares, &means, &mut cells);
         stress(s, &gap, along, &mut cells);
+        let free = || flags.iter().zip(&degree).filter(|(free, _)| **free);
+        let contacts: f64 = free().map(|(_, d)| f64::from(*d)).sum();
         Self {
+            coordination: contacts / free().count().max(1) as f64,
             sliding: slide[along],
             clusters: clusters(s, &flags),
             chains: chain_numbers(s, &gap, along, &flags),
@@ -129,8 +138,7 @@ fn temperature<S: Space>(
     cells: &mut [Cell],
 ) {
     let full = means[1..=gap.bins].iter().filter(|m| m.0 > 0.0);
-    let points: Vec<(f64, S::Vector)> =
-        full.map(|m| (m.1 / m.0, m.2 * (1.0 / m.0))).collect();
+    let points: Vec<(f64, S::Vector)> = full.map(|m| (m.1 / m.0, m.2 * (1.0 / m.0))).collect();
     for Share { grain, cell, share } in shares {
         let (grain, cell) = (&all[*grain as usize], *cell as usize);
         if !(1..=gap.bins).contains(&cell) {
@@ -153,7 +161,9 @@ fn mean_at<V: VectorLike>(points: &[(f64, V)], place: f64) -> V {
     if b.0 <= a.0 {
         return a.1;
     }
-    a.1 + (b.1 - a.1) * ((place - a.0) / (b.0 - a.0))
+    // Thin bins at a wall may hold the same grains, their means nearly the same place: no far reach from there.
+    let ratio = ((place - a.0) / (b.0 - a.0)).clamp(-1.0, 2.0);
+    a.1 + (b.1 - a.1) * ratio
 }
 
 /// Bonds that hold, of each body.
@@ -233,7 +243,10 @@ fn loads<S: Space>(s: &Simulation<S>, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec
     }
     let mut loads = vec![Matrix3::zeros(); s.bodies.len()];
     each_moment(s, |body, force, branch| {
-        let (f, l) = (Vector3::from(force.padded()), Vector3::from(branch.padded()));
+        let (f, l) = (
+            Vector3::from(force.padded()),
+            Vector3::from(branch.padded()),
+        );
         let moment = f * l.transpose();
         loads[body] += (moment + moment.transpose()) * (0.5 / volume[body]);
     });

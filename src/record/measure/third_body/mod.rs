@@ -14,7 +14,6 @@ mod tables;
 
 use super::{Measure, grains, mean, since};
 use crate::geometry::space::Space;
-use crate::record::coordination::coordination;
 use crate::record::statistics::{Column, Table};
 use crate::report::ReportError;
 use crate::scene::measures::ThirdBodySpec;
@@ -25,7 +24,6 @@ use gap::Faces;
 use instant::Instant;
 use regime::{Flow, Regime, flow};
 use spent::{Dissipation, Place};
-use std::marker::PhantomData;
 use std::path::Path;
 
 /// See [`crate::scene::measures::MeasureSpec::ThirdBody`].
@@ -33,7 +31,7 @@ use std::path::Path;
 pub struct ThirdBody<S: Space> {
     spec: ThirdBodySpec,
     faces: Option<Faces>,
-    spent: Dissipation,
+    spent: Dissipation<S>,
     /// Bonds of each body that broke.
     lost: Vec<f64>,
     history: History,
@@ -42,7 +40,8 @@ pub struct ThirdBody<S: Space> {
     seen: f64,
     /// Fastest sliding so far (m/s).
     fastest: f64,
-    space: PhantomData<S>,
+    /// Rows so far.
+    rows: usize,
 }
 
 /// Sliding below this share of the fastest so far is a turning point: no regime is told there.
@@ -140,7 +139,7 @@ impl<S: Space> ThirdBody<S> {
             history: History::new(),
             clusters: Clusters::default(),
             fastest: 0.0,
-            space: PhantomData,
+            rows: 0,
         }
     }
 
@@ -155,7 +154,7 @@ impl<S: Space> ThirdBody<S> {
         (flow(&whole.profile()), cluster)
     }
 
-    fn row(&mut self, s: &Simulation<S>, now: &Instant) -> Vec<f64> {
+    fn row(&mut self, now: &Instant) -> Vec<f64> {
         let whole = now.whole();
         let block = Block {
             cells: now.cells.clone(),
@@ -171,7 +170,7 @@ impl<S: Space> ThirdBody<S> {
         let mut row = vec![
             now.gap.thickness,
             whole.solid(),
-            coordination(s).mean,
+            now.coordination,
             whole.heat / whole.mass,
         ];
         row.extend_from_slice(&stress[..if S::D == 3 { 4 } else { 3 }]);
@@ -204,6 +203,9 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
             faces.look(s, self.spec.extent, &grains(s));
         }
         self.spent = Dissipation::new(self.spec.bins, s.bodies.grain_flags());
+        if let Some(faces) = self.faces.as_ref().filter(|_| self.spec.start <= s.time) {
+            self.spent.begin(s, faces, self.spec.along);
+        }
         self.lost = vec![0.0; s.bodies.len()];
         self.seen = self.seen.max(s.time);
     }
@@ -216,9 +218,12 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
         for body in s.network.breaks.iter().flat_map(|b| b.bodies) {
             self.lost[body as usize] += 1.0;
         }
-        if let Some(faces) = self.faces.as_ref().filter(|_| s.time > self.spec.start) {
-            let gap = faces.gap(s);
-            self.spent.follow(s, faces, &gap, self.spec.along);
+        let Some(faces) = &self.faces else { return };
+        if self.spent.counts() {
+            self.spent.follow(s, faces, &faces.gap(s), self.spec.along);
+        } else if s.time >= self.spec.start - 1e-6 * s.scheme.h {
+            self.spent.begin(s, faces, self.spec.along);
+            self.seen = s.time;
         }
     }
 
@@ -228,14 +233,19 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
     }
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let all = grains(s);
-        let Some(faces) = &mut self.faces else {
+        self.rows += 1;
+        let looks = (self.rows - 1).is_multiple_of(self.spec.every);
+        let Some(faces) = self.faces.as_mut().filter(|_| looks) else {
             return vec![f64::NAN; columns(S::D).count()];
         };
+        let all = grains(s);
         faces.look(s, self.spec.extent, &all);
         let mut now = Instant::new(s, faces, &all, self.spec.along, &self.lost);
-        let row = self.row(s, &now);
-        if s.time > self.spec.start {
+        let row = self.row(&now);
+        if self.spent.counts() && s.time > self.seen {
+            // What resists a sliding to and fro keeps its sign.
+            let sign = now.sliding.signum();
+            now.cells.iter_mut().for_each(|c| c.moment[2] *= sign);
             for (cell, energy) in now.cells[1..].iter_mut().zip(self.spent.take()) {
                 cell.energy = energy;
             }
@@ -255,7 +265,10 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
     fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
         let mut out: Vec<(String, f64)> = Vec::new();
         let means = columns(S::D).filter(|c| {
-            !(c.0 == "sliding" || c.0.starts_with("slip") || c.0 == "interior_shear" || c.0 == "regime")
+            !(c.0 == "sliding"
+                || c.0.starts_with("slip")
+                || c.0 == "interior_shear"
+                || c.0 == "regime")
         });
         for (part, ..) in means {
             let column = self.column(part);
@@ -280,9 +293,11 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
             out.push((self.column(&format!("dissipated_{mechanism}")), sum));
         }
         let load = self.spent.load;
-        if load > 0.0 {
-            out.push((self.column("mu_forces"), self.spent.work / load));
-            out.push((self.column("mu_dissipated"), total / load));
+        if let Some(mu) = self.spent.friction() {
+            out.push((self.column("mu_from_forces"), self.spent.work / load));
+            out.push((self.column("mu_from_dissipation"), mu));
+            // Kept by the grains and their bonds, or given by the bodies otherwise than by sliding.
+            out.push((self.column("mu_kept"), mu - total / load));
         }
         for (place, energies) in Place::ALL.iter().zip(&self.spent.places) {
             let sum: f64 = energies.iter().sum();
@@ -311,7 +326,7 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
         let (whole, slices) = (self.history.whole(), self.history.slices(self.spec.slices));
         tables::profiles(&dir.join(format!("{name}.csv")), &whole, &slices, S::D)?;
         let path = dir.join(format!("{name}_energy.csv"));
-        tables::energies(&path, &self.spent, &whole, &self.spec.between, S::D)?;
+        tables::energies(&path, &self.spent, &self.spec.between)?;
         let path = dir.join(format!("{name}_clusters.csv"));
         tables::clusters(&path, &self.clusters, S::D)?;
         let column = |part: &str| since(table, &self.column(part), f64::NEG_INFINITY);

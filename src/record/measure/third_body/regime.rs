@@ -122,7 +122,9 @@ impl Regime {
         let why = match self {
             Self::None => "none",
             Self::Couette => "Couette (interior above 50 %, R^2 above 0.9)",
-            Self::Agglomerated => "agglomerated (neither plug nor Couette, mean cluster above 10 grains)",
+            Self::Agglomerated => {
+                "agglomerated (neither plug nor Couette, mean cluster above 10 grains)"
+            }
             Self::Plug => "plug with wall slip (interior below 20 %)",
             Self::Mixed => "mixed (neither plug nor Couette, mean cluster of 10 grains or less)",
         };

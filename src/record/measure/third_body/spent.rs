@@ -7,6 +7,7 @@ use super::cells::MECHANISMS;
 use super::gap::{Faces, Gap};
 use crate::contact::Spent;
 use crate::geometry::space::Space;
+use crate::record::layer::{Balance, Layer};
 use crate::step::Simulation;
 
 /// Energies by mechanism (J; J/m in 2D).
@@ -63,9 +64,11 @@ impl Place {
 
 /// The energies since the measure began to count.
 #[derive(Clone, Debug)]
-pub(super) struct Dissipation {
+pub(super) struct Dissipation<S: Space> {
     /// By bin, since the last sample.
     pub pending: Vec<Energies>,
+    /// By bin, all of it.
+    pub bins: Vec<Energies>,
     /// By place, in the order of [`Place::ALL`].
     pub places: [Energies; Place::ALL.len()],
     /// Work of the sliding on the layer, the integral of Q V (J).
@@ -73,25 +76,50 @@ pub(super) struct Dissipation {
     /// The integral of P |V| (J).
     pub load: f64,
     /// Sliding velocity at the end of the last step.
-    before: Option<f64>,
+    before: f64,
+    /// What is dissipated and kept, and all work of the driven bodies; their balance when the count began, and now.
+    ledger: Option<(Layer<S>, Balance, Balance)>,
     grain: Vec<bool>,
 }
 
-impl Dissipation {
+impl<S: Space> Dissipation<S> {
     /// Nothing yet.
     pub fn new(bins: usize, grain: Vec<bool>) -> Self {
         Self {
             pending: vec![Energies::default(); bins],
+            bins: vec![Energies::default(); bins],
             places: Default::default(),
             work: 0.0,
             load: 0.0,
-            before: None,
+            before: 0.0,
+            ledger: None,
             grain,
         }
     }
 
+    /// Counts from the state at hand on.
+    pub fn begin(&mut self, s: &Simulation<S>, faces: &Faces, along: usize) {
+        let layer = Layer::new(s);
+        let balance = layer.balance(s);
+        self.before = faces.sliding(s).1[along];
+        self.ledger = Some((layer, balance, balance));
+    }
+
+    /// Whether it counts.
+    pub fn counts(&self) -> bool {
+        self.ledger.is_some()
+    }
+
+    /// Friction coefficient from the ledger: what was dissipated and kept, less the work of the driven bodies other
+    /// than that of the sliding, over the integral of P |V|.
+    pub fn friction(&self) -> Option<f64> {
+        let (_, start, end) = self.ledger.as_ref()?;
+        let other = end.other - start.other - self.work;
+        (self.load > 0.0).then(|| (end.taken - start.taken - other) / self.load)
+    }
+
     /// Takes in the last step.
-    pub fn follow<S: Space>(&mut self, s: &Simulation<S>, faces: &Faces, gap: &Gap, along: usize) {
+    pub fn follow(&mut self, s: &Simulation<S>, faces: &Faces, gap: &Gap, along: usize) {
         let ends = [0, 1].map(|k| faces.body(s, k) as u32);
         let n = &s.network;
         let spent = n.spent.iter().flatten();
@@ -105,19 +133,25 @@ impl Dissipation {
                 spent.impact + spent.adhesion,
                 spent.fracture,
                 spent.viscous,
+                spent.correction,
             ];
             self.add(contact.bodies, ends, gap.bin(gap.depth(&at)), energies);
         }
         for torn in n.breaks.iter().filter(|b| b.torn != 0.0) {
             let bin = gap.bin(gap.depth(&torn.place));
-            self.add(torn.bodies, ends, bin, [0.0, 0.0, torn.torn, 0.0]);
+            self.add(torn.bodies, ends, bin, [0.0, 0.0, torn.torn, 0.0, 0.0]);
         }
         let (theta, now) = (s.scheme.theta, faces.sliding(s).1[along]);
-        let sliding = self.before.unwrap_or(now) * (1.0 - theta) + now * theta;
-        self.before = Some(now);
+        let sliding = self.before * (1.0 - theta) + now * theta;
+        self.before = now;
         if let Some((impulse, _)) = s.received.get(faces.places[1]) {
             self.work -= impulse[along] * sliding;
             self.load += gap.side * impulse[gap.across] * sliding.abs();
+        }
+        if let Some((layer, _, end)) = &mut self.ledger {
+            // No body's work is kept apart here.
+            layer.follow(s, (usize::MAX, 0));
+            *end = layer.balance(s);
         }
     }
 
@@ -126,6 +160,7 @@ impl Dissipation {
         for (k, energy) in energies.into_iter().enumerate() {
             self.places[place][k] += energy;
             self.pending[bin - 1][k] += energy;
+            self.bins[bin - 1][k] += energy;
         }
     }
 

@@ -3,11 +3,12 @@
 use super::cells::{Block, Cell, MECHANISMS};
 use super::clusters::Clusters;
 use super::spent::{Dissipation, Place};
+use crate::geometry::space::Space;
 use crate::report::ReportError;
 use std::path::Path;
 
 /// Columns of the profiles, in the order of [`row`].
-const PROFILE: [&str; 20] = [
+const PROFILE: [&str; 22] = [
     "slice",
     "from [s]",
     "to [s]",
@@ -28,6 +29,8 @@ const PROFILE: [&str; 20] = [
     "friction [W/m^3]",
     "impact [W/m^3]",
     "fracture [W/m^3]",
+    "viscous [W/m^3]",
+    "correction [W/m^3]",
 ];
 
 /// Powers of a cell by volume and mechanism (W/m^3), of a block of so many samples.
@@ -74,8 +77,9 @@ pub(super) fn profiles(
 ) -> Result<(), ReportError> {
     // Across, along and their shear are all of a stress in the plane.
     let lateral = |k: &usize| dimension == 3 || *k != 15;
-    let names: Vec<&str> = PROFILE.into_iter().chain(["viscous [W/m^3]"]).collect();
-    let header = (0..names.len()).filter(lateral).map(|k| names[k].to_owned());
+    let header = (0..PROFILE.len())
+        .filter(lateral)
+        .map(|k| PROFILE[k].to_owned());
     let mut lines = vec![header.collect::<Vec<_>>()];
     for (slice, block) in std::iter::once(whole).chain(slices).enumerate() {
         for (k, cell) in block.bins().iter().enumerate() {
@@ -91,16 +95,19 @@ pub(super) fn profiles(
 ///
 /// # Errors
 /// The file cannot be written.
-pub(super) fn energies(
+pub(super) fn energies<S: Space>(
     path: &Path,
-    spent: &Dissipation,
-    whole: &Block,
+    spent: &Dissipation<S>,
     between: &(String, String),
-    dimension: usize,
 ) -> Result<(), ReportError> {
-    let unit = if dimension == 2 { "J/m" } else { "J" };
+    let unit = if S::D == 2 { "J/m" } else { "J" };
     let mut header = vec!["place".to_owned()];
-    header.extend(MECHANISMS.iter().chain(&["total"]).map(|m| format!("{m} [{unit}]")));
+    header.extend(
+        MECHANISMS
+            .iter()
+            .chain(&["total"])
+            .map(|m| format!("{m} [{unit}]")),
+    );
     header.push("share".to_owned());
     let mut lines = vec![header];
     let total = spent.total();
@@ -108,14 +115,19 @@ pub(super) fn energies(
         let sum: f64 = energies.iter().sum();
         let share = if total == 0.0 { 0.0 } else { sum / total };
         let mut line = vec![name];
-        line.extend(energies.iter().chain(&[sum, share]).map(|e| format!("{e:e}")));
+        line.extend(
+            energies
+                .iter()
+                .chain(&[sum, share])
+                .map(|e| format!("{e:e}")),
+        );
         lines.push(line);
     };
     for (place, energies) in Place::ALL.iter().zip(&spent.places) {
         add(place.name(between), energies);
     }
-    for (k, cell) in whole.bins().iter().enumerate() {
-        add(format!("bin_{}", k + 1), &cell.energy);
+    for (k, energies) in spent.bins.iter().enumerate() {
+        add(format!("bin_{}", k + 1), energies);
     }
     write(path, &lines)
 }
@@ -136,7 +148,11 @@ pub(super) fn clusters(
         format!("mass [{unit}]"),
     ]];
     for (size, (count, mass)) in &clusters.sizes {
-        lines.push(vec![size.to_string(), count.to_string(), format!("{mass:e}")]);
+        lines.push(vec![
+            size.to_string(),
+            count.to_string(),
+            format!("{mass:e}"),
+        ]);
     }
     write(path, &lines)
 }
