@@ -99,7 +99,7 @@ pub struct ThirdBodySpec {
     /// Number of slices of time whose profiles are told apart.
     #[serde(default = "four")]
     pub slices: usize,
-    /// Looks at every so many rows of the statistics; the rows between hold no numbers.
+    /// Looks at every so many rows of the statistics; the rows between repeat the last look.
     #[serde(default = "each")]
     pub every: usize,
     /// Where the layer ends.

@@ -37,6 +37,10 @@ pub trait Measure<S: Space>: Debug {
     fn verdict(&self, _: &Table) -> Vec<(String, String)> {
         Vec::new()
     }
+    /// Force chains as sorted pairs of bodies, the lower first, where it finds them.
+    fn chains(&self, _: &Simulation<S>) -> Option<Vec<[u32; 2]>> {
+        None
+    }
     /// Writes its files and figures.
     ///
     /// # Errors
@@ -151,6 +155,11 @@ impl<S: Space> Measures<S> {
     /// What stands in the summary in words.
     pub fn verdict(&self, table: &Table) -> BTreeMap<String, String> {
         self.list.iter().flat_map(|m| m.verdict(table)).collect()
+    }
+
+    /// Force chains of the first measure that finds them.
+    pub fn chains(&self, s: &Simulation<S>) -> Option<Vec<[u32; 2]>> {
+        self.list.iter().find_map(|m| m.chains(s))
     }
 
     /// Writes files and figures.

@@ -148,7 +148,9 @@ impl<S: Space> Measure<S> for Shear {
 pub(super) fn below(dimension: usize, r: f64, d: f64) -> f64 {
     let d = d.clamp(-r, r);
     if dimension == 2 {
-        r * r * (PI - (d / r).acos()) + d * (r * r - d * d).sqrt()
+        // Half the chord; near the poles the two terms cancel to rounding only in this form.
+        let half = ((r - d) * (r + d)).sqrt();
+        r * r * half.atan2(-d) + d * half
     } else {
         PI * (2.0 / 3.0 * r * r * r + r * r * d - d * d * d / 3.0)
     }

@@ -419,6 +419,10 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         if self.loaded.case.output.layers.is_some() && self.simulation.network.bonds_made() > 0 {
             subjects.push(("bonds", Subject::Bonds));
         }
+        let chains = self.measures.chains(&self.simulation).filter(|_| S::D == 2);
+        if let Some(pairs) = &chains {
+            subjects.push(("chains", Subject::Chains(pairs)));
+        }
         for (name, subject) in subjects {
             let path = self
                 .out

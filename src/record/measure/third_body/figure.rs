@@ -20,6 +20,10 @@ pub(super) struct Figure<'a> {
     pub thickness: Vec<(f64, f64)>,
     /// (time, mean cluster by mass), (time, largest), where bonds tie grains.
     pub clusters: [Vec<(f64, f64)>; 2],
+    /// (time, share of the grains), (time, share of the force) of force chains.
+    pub chains: [Vec<(f64, f64)>; 2],
+    /// (time, shear of the interior over the sliding).
+    pub shear: Vec<(f64, f64)>,
     /// 2 or 3.
     pub dimension: usize,
 }
@@ -138,6 +142,7 @@ impl Figure<'_> {
     fn history(&self, heading: &str, name: &str, unit: &str) -> Chart {
         let mut chart = Chart::new(heading, Axis::new("time", "s"), Axis::new(name, unit));
         chart.subtitle = Some(self.title.to_owned());
+        chart.size_px = PANEL;
         chart
     }
 
@@ -170,12 +175,25 @@ impl Figure<'_> {
             self.history("thickness", "thickness", "m")
                 .with(Series::new(String::new(), self.thickness.clone())),
         );
-        if tied {
-            let mut chart = self.history("clusters", "grains of a cluster", "");
-            for (label, points) in ["mean by mass", "largest"].iter().zip(&self.clusters) {
-                chart = chart.with(Series::new(*label, points.clone()));
+        let lines = |mut chart: Chart, labels: [&str; 2], points: &[Vec<(f64, f64)>; 2]| {
+            for (label, points) in labels.into_iter().zip(points) {
+                chart = chart.with(Series::new(label, points.clone()));
             }
-            charts.push(chart);
+            chart
+        };
+        if tied {
+            let chart = self.history("clusters", "grains of a cluster", "");
+            charts.push(lines(chart, ["mean by mass", "largest"], &self.clusters));
+        } else {
+            let chart = self.history("force chains", "share in force chains", "");
+            charts.push(lines(
+                chart,
+                ["of the grains", "of the force"],
+                &self.chains,
+            ));
+            let name = "shear of the interior over the sliding";
+            let chart = self.history("interior, 10 % to 90 %", name, "");
+            charts.push(chart.with(Series::new(String::new(), self.shear.clone())));
         }
         draw_panels(&charts, 3, path)
     }

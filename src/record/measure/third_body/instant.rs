@@ -201,6 +201,15 @@ fn stress<S: Space>(s: &Simulation<S>, gap: &Gap, along: usize, cells: &mut [Cel
     });
 }
 
+/// The links of force chains, as sorted pairs of bodies.
+pub(super) fn links<S: Space>(s: &Simulation<S>) -> Vec<[u32; 2]> {
+    let (loads, pairs) = loads(s, &s.bodies.grain_flags());
+    let found = chains(&loads, S::D == 2, &pairs);
+    // Pairs are sorted.
+    let ends = found.links.iter().map(|k| pairs[*k].ends);
+    ends.map(|e| e.map(|b| b as u32)).collect()
+}
+
 fn chain_numbers<S: Space>(
     s: &Simulation<S>,
     gap: &Gap,

@@ -40,8 +40,9 @@ pub struct ThirdBody<S: Space> {
     seen: f64,
     /// Fastest sliding so far (m/s).
     fastest: f64,
-    /// Rows so far.
+    /// Rows so far, and what stands in them until the next look.
     rows: usize,
+    row: Vec<f64>,
 }
 
 /// Sliding below this share of the fastest so far is a turning point: no regime is told there.
@@ -140,6 +141,7 @@ impl<S: Space> ThirdBody<S> {
             clusters: Clusters::default(),
             fastest: 0.0,
             rows: 0,
+            row: vec![f64::NAN; columns(S::D).count()],
         }
     }
 
@@ -236,12 +238,12 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
         self.rows += 1;
         let looks = (self.rows - 1).is_multiple_of(self.spec.every);
         let Some(faces) = self.faces.as_mut().filter(|_| looks) else {
-            return vec![f64::NAN; columns(S::D).count()];
+            return self.row.clone();
         };
         let all = grains(s);
         faces.look(s, self.spec.extent, &all);
         let mut now = Instant::new(s, faces, &all, self.spec.along, &self.lost);
-        let row = self.row(&now);
+        self.row = self.row(&now);
         if self.spent.counts() && s.time > self.seen {
             // What resists a sliding to and fro keeps its sign.
             let sign = now.sliding.signum();
@@ -259,7 +261,7 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
             self.seen = s.time;
         }
         self.clusters = now.clusters;
-        row
+        self.row.clone()
     }
 
     fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
@@ -321,6 +323,10 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
         vec![(self.column("regime"), said)]
     }
 
+    fn chains(&self, s: &Simulation<S>) -> Option<Vec<[u32; 2]>> {
+        Some(instant::links(s))
+    }
+
     fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError> {
         let name = &self.spec.name;
         let (whole, slices) = (self.history.whole(), self.history.slices(self.spec.slices));
@@ -337,6 +343,8 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
             between: &self.spec.between,
             thickness: column("thickness"),
             clusters: [column("cluster_mean"), column("cluster_largest")],
+            chains: [column("chains"), column("chain_force")],
+            shear: column("interior_shear"),
             dimension: S::D,
         }
         .draw(&dir.join(format!("{name}.png")))
