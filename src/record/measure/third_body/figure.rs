@@ -135,7 +135,11 @@ impl Figure<'_> {
             "power",
             "W/m^3",
         );
-        let lines = lines.filter(|(_, points)| points.iter().any(|p| p.0 != 0.0));
+        let peak = |points: &[(f64, f64)]| points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
+        let lines: Vec<(&str, Vec<(f64, f64)>)> = lines.collect();
+        let top = lines.iter().map(|l| peak(&l.1)).fold(0.0, f64::max);
+        // What would lie on the axis is left to the table.
+        let lines = lines.into_iter().filter(|l| peak(&l.1) > 5e-3 * top);
         self.beside(chart, lines)
     }
 

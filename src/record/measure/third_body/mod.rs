@@ -149,6 +149,11 @@ impl<S: Space> ThirdBody<S> {
         format!("{}_{part}", self.spec.name)
     }
 
+    /// Whether the next step ends after the start: it is the first that counts, as in a friction test.
+    fn due(&self, s: &Simulation<S>) -> bool {
+        s.time + s.scheme.h > self.spec.start
+    }
+
     /// The flow over all of the time, and the mean size of the clusters by mass.
     fn flow(&self) -> (Option<Flow>, f64) {
         let whole = self.history.whole();
@@ -205,7 +210,7 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
             faces.look(s, self.spec.extent, &grains(s));
         }
         self.spent = Dissipation::new(self.spec.bins, s.bodies.grain_flags());
-        if let Some(faces) = self.faces.as_ref().filter(|_| self.spec.start <= s.time) {
+        if let Some(faces) = self.faces.as_ref().filter(|_| self.due(s)) {
             self.spent.begin(s, faces, self.spec.along);
         }
         self.lost = vec![0.0; s.bodies.len()];
@@ -223,7 +228,7 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
         let Some(faces) = &self.faces else { return };
         if self.spent.counts() {
             self.spent.follow(s, faces, &faces.gap(s), self.spec.along);
-        } else if s.time >= self.spec.start - 1e-6 * s.scheme.h {
+        } else if self.due(s) {
             self.spent.begin(s, faces, self.spec.along);
             self.seen = s.time;
         }
