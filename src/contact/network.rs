@@ -170,7 +170,7 @@ impl<S: Space> Network<S> {
     /// Says where breaks are, which are told with the arms of their contacts.
     pub(crate) fn locate_breaks(&mut self, bodies: &Bodies<S>) {
         for b in &mut self.breaks {
-            b.place = b.place + bodies.position[b.bodies[0] as usize];
+            b.place += bodies.position[b.bodies[0] as usize];
         }
     }
 

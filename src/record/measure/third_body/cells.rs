@@ -181,7 +181,7 @@ impl History {
             return;
         }
         if self.blocks.len() == Self::MOST {
-            let pairs = self.blocks.chunks(2).map(|p| whole(p));
+            let pairs = self.blocks.chunks(2).map(whole);
             self.blocks = pairs.collect();
             self.each *= 2;
         }
