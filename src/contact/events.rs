@@ -18,6 +18,9 @@ pub struct Break<S: Space> {
     pub opening: [f64; 2],
     /// Area (m^2; m in 2D).
     pub area: f64,
+    /// What it still stored where it was torn because its contact left all reach, 0 where damage broke it
+    /// (J; J/m in 2D).
+    pub torn: f64,
     /// What it went through.
     pub life: Life,
 }
@@ -68,10 +71,12 @@ pub struct Spent {
     pub fracture: f64,
     /// By damping of the bond.
     pub viscous: f64,
+    /// Given by taking an overlap out, negative: see `solver.correction`.
+    pub correction: f64,
 }
 
 impl Spent {
-    /// All of it.
+    /// All that was dissipated.
     pub fn total(&self) -> f64 {
         self.friction + self.impact + self.adhesion + self.fracture + self.viscous
     }

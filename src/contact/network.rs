@@ -168,6 +168,7 @@ impl<S: Space> Network<S> {
             place: contact.arms[0],
             opening: [bond.opening_n, bond.opening_t.norm()],
             area: bond.area,
+            torn: 0.0,
             life: bond.life,
         });
     }

@@ -55,6 +55,7 @@ impl Passes {
                     friction,
                     impact,
                     adhesion,
+                    correction: -site.corrected,
                     ..Spent::default()
                 };
             }

@@ -21,13 +21,26 @@ pub struct Coordination {
 
 /// Counts the contacts of the last step.
 pub fn coordination<S: Space>(s: &Simulation<S>) -> Coordination {
-    let free = s.bodies.grain_flags();
+    count_pairs(&s.bodies.grain_flags(), &bearing(s))
+}
+
+/// Number of contacts of each body that carry force in the last step, as they count in a coordination.
+pub fn degrees<S: Space>(s: &Simulation<S>) -> Vec<u32> {
+    let mut degree = vec![0; s.bodies.len()];
+    for body in bearing(s).into_iter().flatten() {
+        degree[body as usize] += 1;
+    }
+    degree
+}
+
+/// Bodies of the contacts that carry force.
+fn bearing<S: Space>(s: &Simulation<S>) -> Vec<[u32; 2]> {
     let force = |c: &crate::contact::Contact<S>| c.normal.dot(&c.impulse);
     let carrying = s.network.contacts.iter().filter(|c| force(c) > 0.0);
     let (sum, count) = carrying.fold((0.0, 0), |(f, n), c| (f + force(c), n + 1));
     let least = FAINT * sum / f64::from(count.max(1));
     let pairs = s.network.contacts.iter().filter(|c| force(c) > least);
-    count_pairs(&free, &pairs.map(|c| c.bodies).collect::<Vec<_>>())
+    pairs.map(|c| c.bodies).collect()
 }
 
 fn count_pairs(free: &[bool], pairs: &[[u32; 2]]) -> Coordination {

@@ -1,6 +1,9 @@
 //! The state of a simulation as pictures and as points, lines and outlines for files.
 
-use crate::contact::{Contact, Key};
+mod links;
+
+pub use links::{ends, state};
+
 use crate::geometry::convex::{Core, Piece};
 use crate::geometry::shape::Ball;
 use crate::geometry::space::{Space, VectorLike};
@@ -9,6 +12,7 @@ use crate::report::{
 };
 use crate::scene::case::OutputSpec;
 use crate::step::Simulation;
+use links::{forces, links};
 use std::path::Path;
 
 /// What a frame shows of the scene.
@@ -32,6 +36,8 @@ pub enum Subject<'a> {
     Bonds,
     /// Colours of the balls and then of the pieces.
     Painted(&'a [Paint]),
+    /// The contacts that carry force, those of force chains apart: sorted pairs of bodies, the lower first.
+    Chains(&'a [[u32; 2]]),
     /// A value of each ball, from 0 to `top`.
     Values {
         /// The values.
@@ -136,7 +142,7 @@ impl Camera {
         let values: Vec<Paint>;
         let (paints, scale) = match subject {
             Subject::Scene => (&self.paints[..], None),
-            Subject::Bonds => (&[][..], None),
+            Subject::Bonds | Subject::Chains(_) => (&[][..], None),
             Subject::Painted(paints) => (paints, None),
             Subject::Values {
                 values: list,
@@ -164,6 +170,8 @@ impl Camera {
                     let bonds = links(simulation, self.window).into_iter();
                     let bonds = bonds.filter(|l| l.state != LinkState::Plain);
                     bonds.map(|l| Link { width: 0.3, ..l }).collect()
+                } else if let Subject::Chains(pairs) = subject {
+                    forces(simulation, self.window, pairs)
                 } else if linked {
                     links(simulation, self.window)
                 } else {
@@ -319,87 +327,6 @@ fn solids<S: Space>(s: &Simulation<S>, paints: &[Paint]) -> Vec<Solid> {
         out.push(Solid::Faces(report::faces(&faces, 0.9, &view())));
     }
     out.extend(report::project(&list, &pieces, &view()));
-    out
-}
-
-/// The state of a contact in pictures and files.
-pub fn state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> LinkState {
-    match s.network.bond(contact) {
-        Some(bond) if bond.intact() => LinkState::Intact {
-            damage: bond.damage,
-        },
-        _ if contact.broken => LinkState::Broken,
-        _ => LinkState::Plain,
-    }
-}
-
-/// The two ends of a contact: the candidate's centre, and the antagonist's centre or the foot on a
-/// surface.
-pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
-    let key = &contact.key;
-    let (Some(candidate), 0) = (key.ball(), key.antagonist & Key::PIECE) else {
-        return ends_of_piece(s, contact);
-    };
-    let ball = &s.shapes.balls[candidate];
-    let a = crate::contact::detect::centre(ball, &s.bodies);
-    let length = match key.surface() {
-        Some(_) => ball.radius + contact.gap,
-        None => {
-            let other = &s.shapes.balls[key.antagonist as usize];
-            ball.radius + other.radius + contact.gap
-        }
-    };
-    (a, a - contact.normal * length)
-}
-
-/// The same where a piece is in it: by way of the contact point, which is the end at a first body.
-fn ends_of_piece<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
-    let centre = s.bodies.position[contact.bodies[0] as usize];
-    let at = centre + contact.arms[0];
-    let foot = at - contact.normal * contact.gap;
-    let [first, other] = contact.bodies.map(|b| is_first(s, b));
-    let a = if first { at } else { centre };
-    let b = if other || contact.key.surface().is_some() {
-        foot
-    } else {
-        foot - contact.arms[1]
-    };
-    (a, b)
-}
-
-fn links<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Link> {
-    let period = s.shapes.periodic.period[0];
-    let loaded: Vec<f64> = s
-        .network
-        .contacts
-        .iter()
-        .map(|c| c.impulse.norm())
-        .filter(|p| *p > 0.0)
-        .collect();
-    let mean = loaded.iter().sum::<f64>() / loaded.len().max(1) as f64;
-    let mut out = Vec::new();
-    for contact in &s.network.contacts {
-        let state = state(s, contact);
-        let force = contact.impulse.norm();
-        // A plain candidate pair that carries nothing is no interaction.
-        if state == LinkState::Plain && force == 0.0 {
-            continue;
-        }
-        let (a, b) = ends(s, contact);
-        let width = if mean > 0.0 {
-            (force / mean).clamp(0.3, 3.0)
-        } else {
-            0.5
-        };
-        for x in images(a[0], (b - a).norm(), window, period) {
-            out.push(Link {
-                a: [x, a[1]],
-                b: [b[0] - a[0] + x, b[1]],
-                state,
-                width,
-            });
-        }
-    }
     out
 }
 

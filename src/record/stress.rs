@@ -9,9 +9,24 @@ use crate::step::Simulation;
 /// f is the mean force of the last step, l goes from a grain's centre to the contact: to the wall's face, or
 /// to the middle of the gap to another grain. At rest the stress is what the walls feel.
 pub fn love_weber<S: Space>(s: &Simulation<S>, volume: f64) -> [[f64; 3]; 3] {
-    let free = s.bodies.grain_flags();
     let mut moment = [[0.0; 3]; 3];
-    let factor = 1.0 / (s.scheme.h * volume);
+    each_moment(s, |_, force, branch| {
+        for (a, row) in moment.iter_mut().enumerate().take(S::D) {
+            for (b, value) in row.iter_mut().enumerate().take(S::D) {
+                *value += force[a] * branch[b] / volume;
+            }
+        }
+    });
+    moment
+}
+
+/// Gives, for each free grain at each of its contacts, its body, the mean force of the last step (N; N/m in 2D) and
+/// the branch (m), the signs such that the product is positive in compression.
+pub fn each_moment<S: Space>(
+    s: &Simulation<S>,
+    mut take: impl FnMut(usize, &S::Vector, &S::Vector),
+) {
+    let free = s.bodies.grain_flags();
     for contact in &s.network.contacts {
         let members = contact.bodies.map(|b| free[b as usize]);
         let share = if members == [true, true] { 0.5 } else { 1.0 };
@@ -20,14 +35,10 @@ pub fn love_weber<S: Space>(s: &Simulation<S>, volume: f64) -> [[f64; 3]; 3] {
                 continue;
             }
             let arm = contact.arms[side] + contact.normal * (sign * share * contact.gap);
-            for (a, row) in moment.iter_mut().enumerate().take(S::D) {
-                for (b, value) in row.iter_mut().enumerate().take(S::D) {
-                    *value += sign * factor * contact.impulse[a] * arm[b];
-                }
-            }
+            let force = contact.impulse * (sign / s.scheme.h);
+            take(contact.bodies[side] as usize, &force, &arm);
         }
     }
-    moment
 }
 
 /// Mean pressure and sine of the mobilised friction angle, (s1 - s2)/(s1 + s2) with the principal stresses

@@ -240,6 +240,8 @@ pub struct Summary {
     pub phases_missed: Vec<String>,
     /// What the case's measures found, by name (SI).
     pub measures: std::collections::BTreeMap<String, f64>,
+    /// What they found in words, by name.
+    pub findings: std::collections::BTreeMap<String, String>,
     /// Energy ledger (J; J/m).
     pub energy: Energy,
     /// Residual over the largest energy seen.
@@ -369,6 +371,9 @@ impl Summary {
         }
         for (name, value) in &self.measures {
             line(name, format!("{value:.5e}"));
+        }
+        for (name, text) in &self.findings {
+            line(name, text.clone());
         }
         let e = &self.energy;
         let carried = match e.carried {

@@ -219,7 +219,7 @@ fn contacts<S: Space>(s: &Simulation<S>) -> Part {
         let (state, damage) = match picture::state(s, contact) {
             LinkState::Intact { damage } => (1.0, damage),
             LinkState::Broken => (2.0, 1.0),
-            LinkState::Plain => (0.0, 1.0),
+            LinkState::Plain | LinkState::Chain => (0.0, 1.0),
         };
         let n = &contact.normal;
         let force = contact.impulse * (1.0 / s.scheme.h);

@@ -51,6 +51,8 @@ pub enum LinkState {
     Broken,
     /// Contact that was never bonded, in thin grey.
     Plain,
+    /// Contact of a force chain, in purple.
+    Chain,
 }
 
 /// An interaction between two grains, or a grain and a body.
@@ -108,6 +110,7 @@ pub struct Frame<'a> {
 pub(super) const SOUND: Rgb = [150, 0, 12];
 pub(super) const DAMAGED: Rgb = [255, 112, 20];
 pub(super) const BROKEN: Rgb = [20, 92, 224];
+pub(super) const CHAIN: Rgb = [112, 16, 120];
 pub(super) const PLAIN: Rgb = [128, 133, 140];
 const STEEL: Rgb = [142, 150, 160];
 const STEEL_EDGE: Rgb = [70, 77, 86];
@@ -273,7 +276,7 @@ impl Frame<'_> {
     fn draw_links(&self, field: &mut Canvas, map: &Map, u: f32) {
         const LEVELS: usize = 8;
         let unit = self.line_unit(field, map, u);
-        let mut paths: [_; LEVELS + 2] = std::array::from_fn(|_| PathBuilder::new());
+        let mut paths: [_; LEVELS + 3] = std::array::from_fn(|_| PathBuilder::new());
         let (right, bottom) = (field.pixmap.width() as f32, field.pixmap.height() as f32);
         for link in self.links {
             let (a, b) = (map.point(link.a), map.point(link.b));
@@ -289,6 +292,7 @@ impl Frame<'_> {
                     let level = (damage.clamp(0.0, 1.0) * (LEVELS - 1) as f64).round();
                     (2 + level as usize, width)
                 }
+                LinkState::Chain => (LEVELS + 2, width),
             };
             push_bar(&mut paths[rank], a, b, width);
         }
@@ -296,6 +300,7 @@ impl Frame<'_> {
             let colour = match rank {
                 0 => PLAIN,
                 1 => BROKEN,
+                rank if rank == LEVELS + 2 => CHAIN,
                 _ => mix(SOUND, DAMAGED, (rank - 2) as f64 / (LEVELS - 1) as f64),
             };
             if let Some(path) = path.finish() {

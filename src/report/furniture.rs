@@ -4,7 +4,7 @@ use tiny_skia::PathBuilder;
 
 use super::canvas::{Canvas, INK, WHITE, mix};
 use super::font::{Anchor, TextStyle, text_width};
-use super::frame::{BROKEN, DAMAGED, Link, LinkState, PLAIN, SOUND};
+use super::frame::{BROKEN, CHAIN, DAMAGED, Link, LinkState, PLAIN, SOUND};
 
 /// Names the colours of the links that are present, from a point on the
 /// middle of the line.
@@ -29,6 +29,12 @@ pub(super) fn legend(page: &mut Canvas, links: &[Link], [left, middle]: [f32; 2]
             has(|s| *s == LinkState::Broken),
             "broken bond",
             [BROKEN; 2],
+            7.0,
+        ),
+        (
+            has(|s| *s == LinkState::Chain),
+            "force chain",
+            [CHAIN; 2],
             7.0,
         ),
         (has(|s| *s == LinkState::Plain), "contact", [PLAIN; 2], 3.0),

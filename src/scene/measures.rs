@@ -1,7 +1,7 @@
 //! Quantities that a case asks to be measured, beside those of friction and biaxial tests.
 
 use super::case::Case;
-use super::source::Fault;
+use super::source::{Fault, nearest};
 use serde::Deserialize;
 
 /// A quantity, or a few that belong together. "Up" is the last axis: y in 2D, z in 3D.
@@ -76,6 +76,60 @@ pub enum MeasureSpec {
         #[serde(default)]
         start: f64,
     },
+    /// Profiles across the third body between two first bodies, its clusters, force chains, flow regime, and where
+    /// energy is dissipated.
+    ThirdBody(ThirdBodySpec),
+}
+
+/// See [`MeasureSpec::ThirdBody`].
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ThirdBodySpec {
+    /// Prefix of the columns and files.
+    pub name: String,
+    /// The two first bodies: profiles run from the first to the second.
+    pub between: (String, String),
+    /// Axis of the sliding.
+    pub along: usize,
+    /// Axis across the layer.
+    pub across: usize,
+    /// Number of bins across the thickness.
+    #[serde(default = "twenty")]
+    pub bins: usize,
+    /// Number of slices of time whose profiles are told apart.
+    #[serde(default = "four")]
+    pub slices: usize,
+    /// Looks at every so many rows of the statistics; the rows between repeat the last look.
+    #[serde(default = "each")]
+    pub every: usize,
+    /// Where the layer ends.
+    #[serde(default)]
+    pub extent: Extent,
+    /// From when on means are formed and energies counted (s).
+    #[serde(default)]
+    pub start: f64,
+}
+
+/// Where a third body ends.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+pub enum Extent {
+    /// At the mean heights of the faces of the first bodies.
+    #[default]
+    Faces,
+    /// Between the heights with 1 % of the grains' mass below and above them.
+    Grains,
+}
+
+fn each() -> usize {
+    1
+}
+
+fn twenty() -> usize {
+    20
+}
+
+fn four() -> usize {
+    4
 }
 
 impl MeasureSpec {
@@ -86,7 +140,8 @@ impl MeasureSpec {
             | Self::Slope { name, .. }
             | Self::Profile { name, .. }
             | Self::Band { name, .. }
-            | Self::Shear { name, .. } => name,
+            | Self::Shear { name, .. }
+            | Self::ThirdBody(ThirdBodySpec { name, .. }) => name,
         }
     }
 }
@@ -104,6 +159,24 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
             one(case, spec)
         };
         said.map_err(|(field, message)| Fault::new(format!("measures.{k}.{field}"), message))?;
+        if let MeasureSpec::ThirdBody(layer) = spec {
+            known(case, layer).map_err(|f| f.under(&format!("measures.{k}")))?;
+        }
+    }
+    Ok(())
+}
+
+/// Refuses first bodies that are not there.
+fn known(case: &Case, layer: &ThirdBodySpec) -> Result<(), Fault> {
+    let names = || case.bodies.iter().map(|b| b.name.as_str());
+    for (k, name) in [&layer.between.0, &layer.between.1].into_iter().enumerate() {
+        if !names().any(|n| n == name) {
+            let all: Vec<&str> = names().collect();
+            let fault = Fault::new(format!("between.{k}"), format!("there is no body `{name}`"));
+            return Err(fault
+                .expected(format!("one of {}", all.join(", ")))
+                .nearest(nearest(name, names())));
+        }
     }
     Ok(())
 }
@@ -242,6 +315,7 @@ fn one(case: &Case, spec: &MeasureSpec) -> Result<(), (&'static str, String)> {
                 Err(("above", format!("a shear must be positive, got {above}")))
             }
         }
+        MeasureSpec::ThirdBody(layer) => third_body(case, layer),
         MeasureSpec::Shear { low, high, .. } => {
             rises("high", *low, *high)?;
             if case.periodic.x.is_none() || (dimension == 3 && case.periodic.y.is_none()) {
@@ -251,4 +325,51 @@ fn one(case: &Case, spec: &MeasureSpec) -> Result<(), (&'static str, String)> {
             Ok(())
         }
     }
+}
+
+fn third_body(case: &Case, layer: &ThirdBodySpec) -> Result<(), (&'static str, String)> {
+    let dimension = case.dimension as usize;
+    for (field, axis) in [("along", layer.along), ("across", layer.across)] {
+        if axis >= dimension {
+            let message = format!("axis {axis} does not exist; use a number below {dimension}");
+            return Err((field, message));
+        }
+    }
+    if layer.along == layer.across {
+        let message = format!(
+            "the layer slides along axis {0} and is sliced across axis {0}: take two different axes",
+            layer.along
+        );
+        return Err(("across", message));
+    }
+    let periodic = [case.periodic.x, case.periodic.y, case.periodic.z];
+    if periodic[layer.across].is_some() {
+        let message = "no layer lies between two bodies across a period; take the axis from one body to the other";
+        return Err(("across", message.into()));
+    }
+    if layer.between.0 == layer.between.1 {
+        let message = format!(
+            "a third body lies between two first bodies, not between `{0}` and `{0}`",
+            layer.between.0
+        );
+        return Err(("between", message));
+    }
+    if !(1..=10_000).contains(&layer.bins) {
+        let message = format!("needs 1 to 10000 bins, got {}", layer.bins);
+        return Err(("bins", message));
+    }
+    if !(1..=20).contains(&layer.slices) {
+        let message = format!("needs 1 to 20 slices of time, got {}", layer.slices);
+        return Err(("slices", message));
+    }
+    if layer.every == 0 {
+        return Err((
+            "every",
+            "looks at every row (1), every second (2), ...; got 0".into(),
+        ));
+    }
+    if !layer.start.is_finite() {
+        return Err(("start", format!("must be finite, got {}", layer.start)));
+    }
+    Ok(())
 }

@@ -207,12 +207,16 @@ fn drop_contact<S: Space>(network: &mut Network<S>, k: usize) {
     let bond = &mut network.memory[law].bonds[slot];
     if bond.intact() {
         // A grain that left its surface's reach tears the bond.
-        bond.life.fracture += bond.energy;
-        network.torn_energy += bond.energy;
+        let torn = bond.energy;
+        bond.life.fracture += torn;
+        network.torn_energy += torn;
         network.memory[law].broken += 1;
         let contact = contact.clone();
         network.broken_pairs.insert(contact.key.pair());
         network.tell_break(&contact);
+        if let Some(told) = network.breaks.last_mut() {
+            told.torn = torn;
+        }
     }
     network.memory[law].release(slot as u32);
 }

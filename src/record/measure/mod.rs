@@ -5,6 +5,7 @@ mod mass;
 mod profile;
 mod shear;
 mod slope;
+mod third_body;
 
 use super::statistics::{Column, Table};
 use crate::geometry::convex::{Core, Piece};
@@ -20,12 +21,26 @@ use std::path::Path;
 pub trait Measure<S: Space>: Debug {
     /// The state at hand is the one from which deformations count.
     fn begin(&mut self, _: &Simulation<S>) {}
+    /// Whether it is told of every step, and of what each contact dissipated in it.
+    fn follows(&self) -> bool {
+        false
+    }
+    /// Takes in the last step, where [`Measure::follows`].
+    fn follow(&mut self, _: &Simulation<S>) {}
     /// Its columns in the statistics.
     fn columns(&self) -> Vec<Column>;
     /// Values of its columns at the end of a step; it may keep what it needs for the end.
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64>;
     /// What it says in the summary, by name.
     fn outcome(&self, table: &Table) -> Vec<(String, f64)>;
+    /// What it says in the summary in words, by name.
+    fn verdict(&self, _: &Table) -> Vec<(String, String)> {
+        Vec::new()
+    }
+    /// Force chains as sorted pairs of bodies, the lower first, where it finds them.
+    fn chains(&self, _: &Simulation<S>) -> Option<Vec<[u32; 2]>> {
+        None
+    }
     /// Writes its files and figures.
     ///
     /// # Errors
@@ -89,6 +104,7 @@ impl<S: Space> Measures<S> {
                     above,
                     strain: None,
                 }),
+                MeasureSpec::ThirdBody(spec) => Box::new(third_body::ThirdBody::<S>::new(spec)),
                 MeasureSpec::Shear {
                     name,
                     low,
@@ -108,8 +124,17 @@ impl<S: Space> Measures<S> {
     }
 
     /// The state at hand is the one from which deformations count.
-    pub fn begin(&mut self, s: &Simulation<S>) {
+    pub fn begin(&mut self, s: &mut Simulation<S>) {
+        if self.list.iter().any(|m| m.follows()) {
+            s.network.spent.get_or_insert_default();
+        }
         self.list.iter_mut().for_each(|m| m.begin(s));
+    }
+
+    /// Takes in the last step.
+    pub fn follow(&mut self, s: &Simulation<S>) {
+        let list = self.list.iter_mut().filter(|m| m.follows());
+        list.for_each(|m| m.follow(s));
     }
 
     /// Columns of all, in the order of the case.
@@ -125,6 +150,16 @@ impl<S: Space> Measures<S> {
     /// What stands in the summary.
     pub fn outcome(&self, table: &Table) -> BTreeMap<String, f64> {
         self.list.iter().flat_map(|m| m.outcome(table)).collect()
+    }
+
+    /// What stands in the summary in words.
+    pub fn verdict(&self, table: &Table) -> BTreeMap<String, String> {
+        self.list.iter().flat_map(|m| m.verdict(table)).collect()
+    }
+
+    /// Force chains of the first measure that finds them.
+    pub fn chains(&self, s: &Simulation<S>) -> Option<Vec<[u32; 2]>> {
+        self.list.iter().find_map(|m| m.chains(s))
     }
 
     /// Writes files and figures.

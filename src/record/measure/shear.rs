@@ -145,10 +145,12 @@ impl<S: Space> Measure<S> for Shear {
 }
 
 /// Volume of a ball (m^3; m^2 in 2D) below a plane at a height `d` above its centre (m).
-fn below(dimension: usize, r: f64, d: f64) -> f64 {
+pub(super) fn below(dimension: usize, r: f64, d: f64) -> f64 {
     let d = d.clamp(-r, r);
     if dimension == 2 {
-        r * r * (PI - (d / r).acos()) + d * (r * r - d * d).sqrt()
+        // Half the chord; near the poles the two terms cancel to rounding only in this form.
+        let half = ((r - d) * (r + d)).sqrt();
+        r * r * half.atan2(-d) + d * half
     } else {
         PI * (2.0 / 3.0 * r * r * r + r * r * d - d * d * d / 3.0)
     }

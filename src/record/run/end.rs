@@ -40,6 +40,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         summary.phases_missed.dedup();
         summary.scars = scars::outcome(s);
         summary.measures = self.measures.outcome(&self.table);
+        summary.findings = self.measures.verdict(&self.table);
         summary.energy = s.energy;
         summary.energy_residual_relative = s.energy.relative_residual();
         let time = s.time.max(f64::MIN_POSITIVE);

@@ -225,7 +225,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
 
     fn go(&mut self, progress: &mut dyn FnMut(&Progress)) -> Result<(), RunError> {
         let output = &self.loaded.case.output;
-        self.measures.begin(&self.simulation);
+        self.measures.begin(&mut self.simulation);
         self.views()?;
         self.frame(0)?;
         for step in 1..=self.total {
@@ -233,9 +233,10 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             let recurs = self.simulation.control.recurs();
             let report = self.simulation.step()?;
             self.follow(&report, before);
+            self.measures.follow(&self.simulation);
             if phase == 1 && self.simulation.control.phase() == 2 {
                 self.camera.dye(&self.simulation);
-                self.measures.begin(&self.simulation);
+                self.measures.begin(&mut self.simulation);
                 self.strain = self.strain.take().map(|_| Strain::new(&self.simulation));
             }
             let whole = self.simulation.whole();
@@ -416,6 +417,10 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let paints = self.account.paints(&self.simulation);
         if !paints.is_empty() {
             subjects.push(("circuit", Subject::Painted(&paints)));
+        }
+        let chains = self.measures.chains(&self.simulation).filter(|_| S::D == 2);
+        if let Some(pairs) = &chains {
+            subjects.push(("chains", Subject::Chains(pairs)));
         }
         for (name, subject) in subjects {
             let path = self

@@ -1,0 +1,240 @@
+//! Sums over what lies in a bin, and their history: blocks of time, few enough to be kept.
+
+use std::ops::AddAssign;
+
+/// Stresses of a cell: across, along, shear, lateral (3D).
+pub(super) const STRESSES: usize = 4;
+/// Mechanisms of dissipation.
+pub(super) const MECHANISMS: [&str; 5] =
+    ["friction", "impact", "fracture", "viscous", "correction"];
+
+/// Sums over the grains, contacts and steps of a bin.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cell {
+    /// Volume of the bin (m^3; m^2 in 2D).
+    pub space: f64,
+    /// Volume of grains in it.
+    pub volume: f64,
+    /// Their mass (kg; kg/m).
+    pub mass: f64,
+    /// Mass times depth over the thickness.
+    pub height: f64,
+    /// Mass times v, the velocity along the sliding relative to the first body.
+    pub momentum: f64,
+    /// Mass times v V, with V the velocity of the second body.
+    pub drive: f64,
+    /// Mass times V^2.
+    pub square: f64,
+    /// Mass times spin; its norm in 3D.
+    pub spin: f64,
+    /// Mass times the granular temperature.
+    pub heat: f64,
+    /// Grains, by their shares in the bin.
+    pub grains: f64,
+    /// Their contacts that carry force.
+    pub contacts: f64,
+    /// Their bonds that hold.
+    pub bonds: f64,
+    /// Their bonds that broke.
+    pub broken: f64,
+    /// Sums f l (N m; N): see [`STRESSES`]. Over a time the shear counts with the sign of the sliding.
+    pub moment: [f64; STRESSES],
+    /// Dissipated, by mechanism (J; J/m).
+    pub energy: [f64; MECHANISMS.len()],
+}
+
+impl AddAssign<&Cell> for Cell {
+    fn add_assign(&mut self, o: &Cell) {
+        self.space += o.space;
+        self.volume += o.volume;
+        self.mass += o.mass;
+        self.height += o.height;
+        self.momentum += o.momentum;
+        self.drive += o.drive;
+        self.square += o.square;
+        self.spin += o.spin;
+        self.heat += o.heat;
+        self.grains += o.grains;
+        self.contacts += o.contacts;
+        self.bonds += o.bonds;
+        self.broken += o.broken;
+        let add = |a: &mut [f64], b: &[f64]| a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
+        add(&mut self.moment, &o.moment);
+        add(&mut self.energy, &o.energy);
+    }
+}
+
+impl Cell {
+    /// Share of the volume that grains fill.
+    pub fn solid(&self) -> f64 {
+        self.volume / self.space
+    }
+
+    /// Mean depth of the mass over the thickness.
+    pub fn depth(&self) -> f64 {
+        self.height / self.mass
+    }
+
+    /// Mean velocity relative to the first body (m/s).
+    pub fn velocity(&self) -> f64 {
+        self.momentum / self.mass
+    }
+
+    /// The same over the second body's, weighted by its square: <v V>/<V^2> serves a sliding that goes to and fro.
+    pub fn carried(&self) -> f64 {
+        self.drive / self.square
+    }
+
+    /// Mean stress (Pa).
+    pub fn stress(&self) -> [f64; STRESSES] {
+        self.moment.map(|m| m / self.space)
+    }
+
+    /// Bonds that broke over those made, of the grains in it.
+    pub fn damage(&self) -> f64 {
+        self.broken / (self.broken + self.bonds)
+    }
+}
+
+/// Sums over a time.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Block {
+    /// From when to when (s).
+    pub time: [f64; 2],
+    /// Number of samples.
+    pub samples: u64,
+    /// Sum of thicknesses (m).
+    pub thickness: f64,
+    /// Sum of mean cluster sizes.
+    pub cluster: f64,
+    /// The cells: bins, with one before the first and one after the last for what lies beyond the faces.
+    pub cells: Vec<Cell>,
+}
+
+impl Block {
+    /// Takes in what follows.
+    pub fn join(&mut self, next: &Block) {
+        if self.samples == 0 {
+            self.clone_from(next);
+            return;
+        }
+        self.time[1] = next.time[1];
+        self.samples += next.samples;
+        self.thickness += next.thickness;
+        self.cluster += next.cluster;
+        self.cells
+            .iter_mut()
+            .zip(&next.cells)
+            .for_each(|(a, b)| *a += b);
+    }
+
+    /// The bins between the faces.
+    pub fn bins(&self) -> &[Cell] {
+        self.cells
+            .get(1..self.cells.len().max(2) - 1)
+            .unwrap_or_default()
+    }
+
+    /// Mean thickness (m).
+    pub fn mean_thickness(&self) -> f64 {
+        self.thickness / self.samples.max(1) as f64
+    }
+
+    /// How long it is (s).
+    pub fn duration(&self) -> f64 {
+        self.time[1] - self.time[0]
+    }
+
+    /// (depth over thickness, velocity over the second body's), where there is mass and sliding.
+    pub fn profile(&self) -> Vec<(f64, f64)> {
+        let full = self
+            .bins()
+            .iter()
+            .filter(|c| c.mass > 0.0 && c.square > 0.0);
+        full.map(|c| (c.depth(), c.carried())).collect()
+    }
+}
+
+/// Blocks of equal numbers of samples; two become one when they are too many.
+#[derive(Clone, Debug)]
+pub(super) struct History {
+    /// The blocks so far.
+    pub blocks: Vec<Block>,
+    each: u64,
+}
+
+impl History {
+    /// Most blocks.
+    const MOST: usize = 128;
+
+    pub fn new() -> Self {
+        Self {
+            blocks: Vec::new(),
+            each: 1,
+        }
+    }
+
+    /// Takes in a sample.
+    pub fn add(&mut self, sample: Block) {
+        if let Some(last) = self.blocks.last_mut().filter(|b| b.samples < self.each) {
+            last.join(&sample);
+            return;
+        }
+        if self.blocks.len() == Self::MOST {
+            let pairs = self.blocks.chunks(2).map(whole);
+            self.blocks = pairs.collect();
+            self.each *= 2;
+        }
+        self.blocks.push(sample);
+    }
+
+    /// All of it in one.
+    pub fn whole(&self) -> Block {
+        whole(&self.blocks)
+    }
+
+    /// In so many slices of about equal length.
+    pub fn slices(&self, count: usize) -> Vec<Block> {
+        let n = self.blocks.len();
+        let ends = (0..count).map(|k| (n * k / count, n * (k + 1) / count));
+        let parts = ends.filter(|(a, b)| a < b);
+        parts.map(|(a, b)| whole(&self.blocks[a..b])).collect()
+    }
+}
+
+fn whole(blocks: &[Block]) -> Block {
+    let mut all = Block::default();
+    blocks.iter().for_each(|b| all.join(b));
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_history_keeps_its_sums_in_few_blocks() {
+        let mut history = History::new();
+        for k in 0..1000 {
+            let cell = Cell {
+                mass: 1.0,
+                height: f64::from(k),
+                ..Cell::default()
+            };
+            history.add(Block {
+                time: [f64::from(k), f64::from(k + 1)],
+                samples: 1,
+                cells: vec![cell; 3],
+                ..Block::default()
+            });
+        }
+        assert!(history.blocks.len() <= History::MOST && history.blocks.len() > History::MOST / 3);
+        let all = history.whole();
+        assert_eq!((all.samples, all.time), (1000, [0.0, 1000.0]));
+        assert_eq!((all.bins()[0].mass, all.bins()[0].depth()), (1000.0, 499.5));
+        let slices = history.slices(4);
+        assert_eq!(slices.len(), 4);
+        assert!(slices.windows(2).all(|w| w[0].time[1] == w[1].time[0]));
+        assert!(slices.iter().all(|s| (s.samples as i64 - 250).abs() < 20));
+    }
+}

@@ -1,0 +1,469 @@
+//! The third body against closed forms: affine and rigid fields, cut disks and balls, a column under gravity, stress,
+//! and energies by place against the ledger.
+
+use fretwork::geometry::space::{Plane, Solid, Space};
+use fretwork::laws::SearchPath;
+use fretwork::record::measure::Measures;
+use fretwork::record::statistics::Table;
+use fretwork::record::stress::love_weber;
+use fretwork::record::{RunOptions, Summary, run};
+use fretwork::scene::build::{Built, Dimensional};
+use fretwork::scene::{Loaded, load};
+use fretwork::step::Simulation;
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+fn own(name: &str) -> PathBuf {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let number = COUNT.fetch_add(1, Ordering::Relaxed);
+    let name = format!("fretwork-third-body-{}-{number}{name}", std::process::id());
+    std::env::temp_dir().join(name)
+}
+
+fn case(dimension: usize, lines: &str) -> String {
+    format!(
+        r#"(
+    name: "third body",
+    dimension: {dimension},
+    time: (step: 1e-4, end: 1.0),
+    solver: (tolerance: 1e-12, max_iterations: 200000),
+    materials: {{"glass": "glass_bead"}},
+    interfaces: [(name: "all", between: ("glass", "glass"), contact: "coulomb", parameters: (contact: {{"mu": 0.5}}))],
+    {lines}
+)"#
+    )
+}
+
+fn opened(text: &str) -> Result<Loaded, String> {
+    let path = own(".ron");
+    std::fs::write(&path, text).unwrap_or_else(|e| panic!("{e}"));
+    let loaded = load(&path, &[]).map_err(|e| e.to_string());
+    let _ = std::fs::remove_file(path);
+    loaded
+}
+
+/// A floor at the origin, a lid at a height, and disks or balls between; cells of one metre along x (and y).
+fn between<S: Space>(height: f64, grains: &[([f64; 3], f64)], bins: usize) -> String {
+    let list: Vec<String> = grains
+        .iter()
+        .map(|(at, r)| format!("(at: {:?}, radius: {r})", &at[..S::D]))
+        .collect();
+    let (up, down, at, period) = if S::D == 2 {
+        ("[0, 1]", "[0, -1]", format!("[0, {height}]"), "x: 1.0")
+    } else {
+        (
+            "[0, 0, 1]",
+            "[0, 0, -1]",
+            format!("[0, 0, {height}]"),
+            "x: 1.0, y: 1.0",
+        )
+    };
+    let text = format!(
+        r#"periodic: ({period}),
+        bodies: [
+            (name: "rail", material: "glass", shapes: [HalfSpace(normal: {up})]),
+            (name: "wheel", material: "glass", shapes: [HalfSpace(normal: {down})], position: {at}),
+        ],
+        grains: [List(material: "glass", grains: [{}])],
+        measures: [ThirdBody(name: "layer", between: ("rail", "wheel"), along: 0, across: {}, bins: {bins}, slices: 1)],"#,
+        list.join(", "),
+        S::D - 1
+    );
+    case(S::D, &text)
+}
+
+/// What a measure says of one state.
+struct Seen<S: Space> {
+    row: BTreeMap<String, f64>,
+    profile: BTreeMap<String, Vec<f64>>,
+    regime: String,
+    simulation: Simulation<S>,
+}
+
+/// Changes a scene, looks at it once a second later, and reads what is written.
+fn seen<S: Dimensional>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> Seen<S> {
+    let loaded = opened(text).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut measures = Measures::<S>::new(&loaded.case.measures);
+    measures.begin(&mut s);
+    change(&mut s);
+    s.time += 1.0;
+    let values = measures.sample(&s);
+    let columns = measures.columns();
+    let out = own("");
+    std::fs::create_dir_all(&out).unwrap_or_else(|e| panic!("{e}"));
+    let names: Vec<String> = columns.iter().map(|c| c.name.clone()).collect();
+    let row = names.into_iter().zip(values).collect();
+    let table = Table::create(&out.join("t.csv"), columns).unwrap_or_else(|e| panic!("{e}"));
+    let drawn = measures.draw(&out, "test", &table);
+    drawn.unwrap_or_else(|e| panic!("{e}"));
+    // Slice 0 is all of the time.
+    let mut profile = read(&out.join("layer.csv"));
+    let first: Vec<bool> = profile["slice"].iter().map(|s| *s == 0.0).collect();
+    for column in profile.values_mut() {
+        let mut kept = first.iter();
+        column.retain(|_| *kept.next().unwrap_or(&false));
+    }
+    let regime = measures.verdict(&table)["layer_regime"].clone();
+    let _ = std::fs::remove_dir_all(out);
+    Seen {
+        row,
+        profile,
+        regime,
+        simulation: s,
+    }
+}
+
+/// Columns of a file by name, units left off; text is not a number.
+fn read(path: &Path) -> BTreeMap<String, Vec<f64>> {
+    let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{e}"));
+    let mut lines = text.lines();
+    let header = lines.next().unwrap_or_default().split(',');
+    let names: Vec<String> = header
+        .map(|n| n.split(" [").next().unwrap_or_default().to_owned())
+        .collect();
+    let mut out: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for line in lines {
+        for (name, value) in names.iter().zip(line.split(',')) {
+            let value = value.parse().unwrap_or(f64::NAN);
+            out.entry(name.clone()).or_default().push(value);
+        }
+    }
+    out
+}
+
+fn close(obtained: f64, expected: f64, tolerance: f64) {
+    assert!(
+        (obtained - expected).abs() <= tolerance,
+        "{obtained} in place of {expected} within {tolerance}"
+    );
+}
+
+/// Ten by twenty disks on a square lattice, a metre wide and two high.
+fn lattice() -> Vec<([f64; 3], f64)> {
+    let at = |i: usize, j: usize| [0.05 + 0.1 * i as f64, 0.05 + 0.1 * j as f64, 0.0];
+    let rows = (0..20).flat_map(|j| (0..10).map(move |i| (i, j)));
+    rows.map(|(i, j)| (at(i, j), 0.05)).collect()
+}
+
+fn body<S: Space>(s: &Simulation<S>, name: &str) -> usize {
+    let found = s.bodies.driven.iter().find(|d| d.name == name);
+    found.map_or_else(|| panic!("no body {name}"), |d| d.body as usize)
+}
+
+/// Gives grains and wheel velocities along x that depend on the height.
+fn sheared(s: &mut Simulation<Plane>, v: impl Fn(f64) -> f64) {
+    let wheel = body(s, "wheel");
+    for b in s.bodies.grains().collect::<Vec<_>>() {
+        s.bodies.velocity[b].x = v(s.bodies.position[b].y);
+    }
+    s.bodies.velocity[wheel].x = v(2.0);
+}
+
+/// An affine field: the profile is straight and through both walls, the granular temperature null, whether bins
+/// follow the rows or not; the lattice fills pi/4 of every bin that holds whole rows.
+#[test]
+fn an_affine_field_is_couette_without_temperature() {
+    for bins in [10, 20, 7, 33] {
+        let text = between::<Plane>(2.0, &lattice(), bins);
+        let seen = seen::<Plane>(&text, |s| sheared(s, |y| 0.3 * y));
+        let p = &seen.profile;
+        for (w, y) in p["velocity_over_sliding"]
+            .iter()
+            .zip(&p["mass_depth_over_thickness"])
+        {
+            close(*w, *y, 1e-12);
+        }
+        // Against V^2 = 0.36.
+        assert!(p["temperature"].iter().all(|t| t.abs() < 1e-26), "{bins}");
+        close(seen.row["layer_temperature"], 0.0, 1e-26);
+        close(seen.row["layer_thickness"], 2.0, 1e-15);
+        close(seen.row["layer_solid_fraction"], PI / 4.0, 1e-12);
+        close(seen.row["layer_sliding"], 0.6, 1e-15);
+        assert_eq!(seen.row["layer_regime"], 1.0);
+        assert!(seen.regime.starts_with("Couette"), "{}", seen.regime);
+        if 20 % bins == 0 {
+            assert!(
+                p["solid_fraction"]
+                    .iter()
+                    .all(|f| (f - PI / 4.0).abs() < 1e-12)
+            );
+        }
+    }
+}
+
+/// The same with the first body above the second: depths run down from it.
+#[test]
+fn a_layer_may_be_looked_at_from_above() {
+    let text = between::<Plane>(2.0, &lattice(), 10).replace(
+        "between: (\"rail\", \"wheel\")",
+        "between: (\"wheel\", \"rail\")",
+    );
+    let seen = seen::<Plane>(&text, |s| sheared(s, |y| 0.3 * y));
+    let p = &seen.profile;
+    for (k, w) in p["velocity_over_sliding"].iter().enumerate() {
+        close(*w, 0.05 + 0.1 * k as f64, 1e-12);
+    }
+    close(seen.row["layer_sliding"], -0.6, 1e-15);
+}
+
+/// A layer that moves as one at 0.3 of the wheel: no temperature, slip of 0.3 and 0.7.
+#[test]
+fn a_rigid_layer_is_a_plug() {
+    let text = between::<Plane>(2.0, &lattice(), 20);
+    let seen = seen::<Plane>(&text, |s| sheared(s, |y| if y < 2.0 { 0.3 } else { 1.0 }));
+    close(seen.row["layer_slip_first"], 0.3, 1e-12);
+    close(seen.row["layer_slip_second"], 0.7, 1e-12);
+    close(seen.row["layer_temperature"], 0.0, 1e-26);
+    assert_eq!(seen.row["layer_regime"], 3.0);
+    assert!(seen.regime.starts_with("plug"), "{}", seen.regime);
+}
+
+/// Velocities +u and -u in turn in each row: <v> is null and T = u^2/2 in the plane.
+#[test]
+fn a_temperature_is_the_mean_square_by_the_dimension() {
+    let text = between::<Plane>(2.0, &lattice(), 10);
+    let seen = seen::<Plane>(&text, |s| {
+        for (k, b) in s
+            .bodies
+            .grains()
+            .collect::<Vec<_>>()
+            .into_iter()
+            .enumerate()
+        {
+            s.bodies.velocity[b].y = if k % 2 == 0 { 0.2 } else { -0.2 };
+        }
+    });
+    assert!(
+        seen.profile["temperature"]
+            .iter()
+            .all(|t| (t - 0.02).abs() < 1e-15)
+    );
+    assert_eq!(seen.row["layer_regime"], 0.0);
+}
+
+/// A grain of unit radius in the middle of three bins of a metre: the outer ones hold a segment of height 1/2.
+#[test]
+fn a_grain_is_cut_exactly() {
+    let segment = PI / 3.0 - 3f64.sqrt() / 4.0;
+    let wide = |text: String| text.replace("x: 1.0", "x: 8.0").replace("y: 1.0", "y: 8.0");
+    let flat = between::<Plane>(3.0, &[([2.0, 1.5, 0.0], 1.0)], 3);
+    let flat = seen::<Plane>(&wide(flat), |_| {}).profile;
+    for (f, area) in flat["solid_fraction"]
+        .iter()
+        .zip([segment, PI - 2.0 * segment, segment])
+    {
+        close(*f, area / 8.0, 1e-15);
+    }
+    // A cap of height h = 1/2: pi h^2 (3 - h)/3.
+    let cap = PI * 0.25 * 2.5 / 3.0;
+    let solid = between::<Solid>(3.0, &[([2.0, 2.0, 1.5], 1.0)], 3);
+    let solid = seen::<Solid>(&wide(solid), |_| {}).profile;
+    let whole = 4.0 / 3.0 * PI;
+    for (f, volume) in solid["solid_fraction"]
+        .iter()
+        .zip([cap, whole - 2.0 * cap, cap])
+    {
+        close(*f, volume / 64.0, 1e-15);
+    }
+}
+
+/// A column of eight disks: between a centre and the contact above it the stress is the weight of what is above.
+#[test]
+fn a_column_carries_the_weight_above() {
+    let disks: Vec<_> = (0..8)
+        .map(|k| ([0.5, 0.05 + 0.1 * f64::from(k), 0.0], 0.05))
+        .collect();
+    let text = between::<Plane>(0.8 + 1e-9, &disks, 16)
+        .replace("periodic", "gravity: [0, -9.81], periodic");
+    let seen = seen::<Plane>(&text, |s| {
+        s.step().unwrap_or_else(|e| panic!("{e}"));
+    });
+    let s = &seen.simulation;
+    let grain = s.bodies.grains().next().unwrap_or_default();
+    let weight = 9.81 * s.bodies.mass[grain];
+    for (k, p) in seen.profile["stress_across"].iter().enumerate() {
+        // Lower half of disk j: its own weight too.
+        let above = (8 - k.div_ceil(2)) as f64;
+        close(*p, above * weight, 1e-6 * weight);
+    }
+    assert!(
+        seen.profile["stress_shear"]
+            .iter()
+            .all(|t| t.abs() < 1e-6 * weight)
+    );
+    // Heavier below than the mean: the lower half of the column is a chain, upright.
+    close(seen.row["layer_chain_angle"], 0.0, 1e-6);
+    close(seen.row["layer_chains"], 0.5, 1e-12);
+    close(seen.row["layer_chain_length"], 4.0, 1e-12);
+    assert_eq!(seen.row["layer_coordination"], 15.0 / 8.0);
+}
+
+/// The bins' stresses add up to that of the whole layer, in the plane and in space.
+#[test]
+fn stresses_of_the_bins_add_up() {
+    fn added<S: Dimensional>(grains: &[([f64; 3], f64)]) {
+        let side = S::D - 1;
+        let text = between::<S>(0.55, grains, 9).replace(
+            "periodic:",
+            if S::D == 2 {
+                "gravity: [3.0, -9.81], periodic:"
+            } else {
+                "gravity: [3.0, 1.0, -9.81], periodic:"
+            },
+        );
+        let text = text.replace("tolerance: 1e-12", "tolerance: 1e-6");
+        let seen = seen::<S>(&text, |s| {
+            for _ in 0..400 {
+                s.step().unwrap_or_else(|e| panic!("{e}"));
+            }
+        });
+        let total = love_weber(&seen.simulation, 0.55);
+        let scale = total[side][side];
+        assert!(scale > 0.0);
+        let expected = [
+            ("across", total[side][side]),
+            ("along", total[0][0]),
+            ("shear", -total[0][side]),
+        ];
+        for (name, value) in expected {
+            close(
+                seen.row[&format!("layer_stress_{name}")],
+                value,
+                1e-12 * scale,
+            );
+            let mean = &seen.profile[&format!("stress_{name}")];
+            let mean = mean.iter().sum::<f64>() / mean.len() as f64;
+            // Nothing slides: the sign of a sliding of 0 is +.
+            close(mean, value, 1e-12 * scale);
+        }
+        if S::D == 3 {
+            close(seen.row["layer_stress_lateral"], total[1][1], 1e-12 * scale);
+        }
+    }
+    let shift = |k: usize| 0.013 * ((k * 7) % 5) as f64;
+    let disks: Vec<_> = (0..40)
+        .map(|k| {
+            (
+                [
+                    0.12 * (k % 8) as f64 + 0.01 * (k / 8) as f64,
+                    0.05 + 0.102 * (k / 8) as f64,
+                    0.0,
+                ],
+                0.05,
+            )
+        })
+        .collect();
+    added::<Plane>(&disks);
+    let balls: Vec<_> = (0..27)
+        .map(|k| {
+            let at = [
+                0.33 * (k % 3) as f64 + shift(k),
+                0.33 * (k / 3 % 3) as f64,
+                0.08 + 0.161 * (k / 9) as f64,
+            ];
+            (at, 0.08)
+        })
+        .collect();
+    added::<Solid>(&balls);
+}
+
+fn fretting(sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
+    let path = format!(
+        "{}/cases/wheel_rail_fretting.ron",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
+    let loaded = load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{e}"));
+    let built: Built<Plane> = loaded
+        .build_in(&SearchPath::new(&[]))
+        .unwrap_or_else(|e| panic!("{e}"));
+    let out = own("");
+    let options = RunOptions {
+        out: out.clone(),
+        threads: 1,
+    };
+    let summary = run(&loaded, built, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
+    look(&out);
+    let _ = std::fs::remove_dir_all(out);
+    summary
+}
+
+/// Energies by place and by bin add up to the ledger's, mechanism by mechanism; the friction coefficient of the
+/// sliding's work is that of what was dissipated and kept.
+#[test]
+fn energies_by_place_are_those_of_the_ledger() {
+    let sets = [
+        "time.end=0.06",
+        "output.frames=0",
+        "output.views=0",
+        "output.every=7",
+        "measures=[ThirdBody(name: \"layer\", between: (\"rail\", \"wheel\"), along: 0, across: 1, every: 3)]",
+    ];
+    let mut table = BTreeMap::new();
+    let summary = fretting(&sets, |out| table = read(&out.join("layer_energy.csv")));
+    let (e, m) = (&summary.energy, &summary.measures);
+    assert!(summary.broken > 0 && e.friction > 0.0);
+    let booked = [
+        ("friction", e.friction),
+        ("impact", e.impact + e.adhesion),
+        ("fracture", e.fracture),
+        ("viscous", e.viscous),
+        ("correction", e.correction),
+    ];
+    for (name, value) in booked {
+        close(
+            m[&format!("layer_dissipated_{name}")],
+            value,
+            1e-12 * e.scale,
+        );
+        // Five places, then the bins.
+        let column = &table[name];
+        close(column[..5].iter().sum(), value, 1e-12 * e.scale);
+        close(column[5..].iter().sum(), value, 1e-12 * e.scale);
+    }
+    let places = ["grain_grain", "rail_grain", "wheel_grain"];
+    close(
+        places.iter().map(|p| m[&format!("layer_share_{p}")]).sum(),
+        1.0,
+        1e-12,
+    );
+    let forces = m["layer_mu_from_forces"];
+    close(m["layer_mu_from_dissipation"], forces, 1e-9 * forces.abs());
+    let mus: f64 = places.iter().map(|p| m[&format!("layer_mu_{p}")]).sum();
+    close(mus + m["layer_mu_kept"], forces, 1e-9 * forces.abs());
+    assert!(summary.findings.contains_key("layer_regime"));
+}
+
+#[test]
+fn wrong_layers_are_refused() {
+    let good = between::<Plane>(2.0, &[([0.5, 0.5, 0.0], 0.1)], 20);
+    assert!(opened(&good).is_ok());
+    for (old, new, said) in [
+        (
+            "between: (\"rail\", \"wheel\")",
+            "between: (\"rial\", \"wheel\")",
+            "there is no body `rial`",
+        ),
+        (
+            "between: (\"rail\", \"wheel\")",
+            "between: (\"rail\", \"rail\")",
+            "not between `rail` and `rail`",
+        ),
+        ("across: 1", "across: 0", "take two different axes"),
+        ("across: 1", "across: 2", "axis 2 does not exist"),
+        ("bins: 20", "bins: 0", "needs 1 to 10000 bins, got 0"),
+        ("slices: 1", "slices: 0", "needs 1 to 20 slices"),
+        ("slices: 1", "every: 0", "every second"),
+        ("x: 1.0", "x: 1.0, y: 2.0", "across a period"),
+    ] {
+        assert_eq!(good.matches(old).count(), 1, "{old}");
+        match opened(&good.replace(old, new)) {
+            Err(e) => assert!(e.contains(said), "{e}"),
+            Ok(_) => panic!("accepted: {new}"),
+        }
+    }
+}
