@@ -9,7 +9,7 @@ mod border;
 mod rig;
 mod surface;
 
-use crate::laws::{Kind, LawError, Plugin, SearchPath};
+use crate::laws::{Kind, LawError, Loaded, Plugin, SearchPath};
 use rig::Rig;
 use serde::Serialize;
 
@@ -93,19 +93,24 @@ impl Certificate {
     }
 }
 
-/// Tests a law with these parameters; partners are taken from the search path.
+/// Tests a law with these parameters; partners are taken from the search path, with their defaults. A damage law meets
+/// `cohesion` where that is given: what it promises depends on the bond's stiffness.
 ///
 /// # Errors
 /// A partner is missing, or the parameters do not suit the law. What the law itself does wrong is a line.
 pub fn certify(
     plugin: &Plugin,
     parameters: &[f64],
+    cohesion: Option<&Loaded>,
     path: &SearchPath,
 ) -> Result<Certificate, LawError> {
     plugin.validate(parameters)?;
     let mut lines = Vec::new();
     let kind = plugin.kind;
-    for (k, mut rig) in Rig::all(plugin, parameters, path)?.into_iter().enumerate() {
+    for (k, mut rig) in Rig::all(plugin, parameters, cohesion, path)?
+        .into_iter()
+        .enumerate()
+    {
         let scale = match rig.find_scale() {
             Ok(()) => Ok(()),
             Err(e) => Err(Line::failed("runs on the bench", &e)),

@@ -39,10 +39,12 @@ fn by_default(path: &SearchPath, kind: Kind, name: &str) -> Result<Loaded, LawEr
 }
 
 impl Rig {
-    /// The law in its slot; a damage law once with a linear bond (m = 1), once with MAC's (m = 2).
+    /// The law in its slot; a damage law with this cohesion, or once with a linear bond (m = 1), once with MAC's
+    /// (m = 2).
     pub fn all(
         plugin: &Plugin,
         parameters: &[f64],
+        cohesion: Option<&Loaded>,
         path: &SearchPath,
     ) -> Result<Vec<Self>, LawError> {
         let own = || Plugin::open(&plugin.path).map(|p| loaded(p, parameters.to_vec()));
@@ -59,33 +61,44 @@ impl Rig {
         let mut laws = Vec::new();
         match plugin.kind {
             Kind::Contact => laws.push((
-                "",
+                String::new(),
                 Interface {
                     contact: own()?,
                     ..plain
                 },
             )),
             Kind::Cohesion => laws.push((
-                "",
+                String::new(),
                 Interface {
                     cohesion: Some(own()?),
                     ..plain
                 },
             )),
             Kind::Damage => {
-                for partner in ["elastic-bond", "mac"] {
-                    let cohesion = Some(by_default(path, Kind::Cohesion, partner)?);
+                let partners = match cohesion {
+                    Some(own) => vec![loaded(
+                        Plugin::open(&own.plugin.path)?,
+                        own.parameters.clone(),
+                    )],
+                    None => ["elastic-bond", "mac"]
+                        .map(|name| by_default(path, Kind::Cohesion, name))
+                        .into_iter()
+                        .collect::<Result<_, _>>()?,
+                };
+                for partner in partners {
+                    let name = partner.plugin.name.clone();
+                    let cohesion = Some(partner);
                     let damage = Some(own()?);
                     let law = Interface {
                         cohesion,
                         damage,
                         ..plain.clone()
                     };
-                    laws.push((partner, law));
+                    laws.push((name, law));
                 }
             }
             Kind::Wear => laws.push((
-                "",
+                String::new(),
                 Interface {
                     contact: by_default(path, Kind::Contact, "coulomb")?,
                     wear: Some(own()?),

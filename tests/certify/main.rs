@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 fn certificate(plugin: &Plugin) -> Certificate {
     let defaults: Vec<f64> = plugin.parameters.iter().map(|p| p.default).collect();
-    certify(plugin, &defaults, &SearchPath::new(&[])).unwrap_or_else(|e| panic!("{e}"))
+    certify(plugin, &defaults, None, &SearchPath::new(&[])).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn broken(certificate: &Certificate) -> Vec<&str> {

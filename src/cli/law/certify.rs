@@ -85,7 +85,7 @@ fn one(
     used: &mut [bool],
     path: &SearchPath,
 ) -> Result<Certificate, Failure> {
-    Ok(test(law, &values(law, sets, used)?, path)?)
+    Ok(test(law, &values(law, sets, used)?, None, path)?)
 }
 
 fn table(c: &Certificate) -> String {

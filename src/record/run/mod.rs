@@ -4,6 +4,7 @@ mod account;
 mod dump;
 mod end;
 mod row;
+mod stamps;
 
 use self::account::Account;
 use super::biaxial::Biaxial;
@@ -14,12 +15,10 @@ use super::picture::{Camera, Subject};
 use super::results::{Results, ResultsError};
 use super::statistics::Table;
 use super::strain::Strain;
-use super::summary::{PluginStamp, SolverSummary, Summary};
+use super::summary::{SolverSummary, Summary};
 use super::views;
 use crate::bodies::TimeFunction;
-use crate::certify::certify;
 use crate::geometry::space::Space;
-use crate::laws::{Interface, SearchPath};
 use crate::report::ReportError;
 use crate::scene::build::{Built, Dimensional, Loaded};
 use crate::step::{Simulation, StepError, StepReport};
@@ -172,7 +171,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let table_path = options.out.join("statistics.csv");
         let table =
             Table::create(&table_path, columns.clone()).map_err(|e| unwritable(&table_path, &e))?;
-        let plugins = stamps(&simulation.laws);
+        let plugins = stamps::stamps(&simulation.laws);
         let summary = Summary {
             case: case.name.clone(),
             dimension: S::D,
@@ -478,34 +477,6 @@ fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
         .map(|b| s.bodies.mass[b] * s.bodies.velocity[b][along].abs())
         .sum::<f64>()
         / length
-}
-
-/// The laws of a run, each once, and whether they keep their promises with its parameters.
-fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
-    // The partners on the bench are shipped laws.
-    let path = SearchPath::new(&[]);
-    let mut seen: Vec<(&str, &[f64])> = Vec::new();
-    let mut stamps: Vec<PluginStamp> = Vec::new();
-    for law in laws.iter().flat_map(Interface::loaded) {
-        let p = &law.plugin;
-        if seen.contains(&(&p.sha256, &law.parameters)) {
-            continue;
-        }
-        seen.push((&p.sha256, &law.parameters));
-        let certified = certify(p, &law.parameters, &path).is_ok_and(|c| c.certified());
-        match stamps.iter_mut().find(|s| s.sha256 == p.sha256) {
-            Some(stamp) => stamp.certified &= certified,
-            None => stamps.push(PluginStamp {
-                kind: p.kind.to_string(),
-                name: p.name.clone(),
-                version: p.version.clone(),
-                sha256: p.sha256.clone(),
-                path: p.path.display().to_string(),
-                certified,
-            }),
-        }
-    }
-    stamps
 }
 
 /// Density of the first bodies, for wear as a mass.
