@@ -1,6 +1,8 @@
 //! Wrong input, one mistake at a time: the program ends with exit code 2 and says where the mistake
 //! stands, what was expected, and which valid name is nearest. It never panics.
 
+#[path = "bad_input/circuit.rs"]
+mod circuit;
 #[path = "bad_input/command_line.rs"]
 mod command_line;
 #[path = "bad_input/geometry.rs"]

@@ -41,6 +41,17 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
             "the run would take more than 1e12 steps; use a larger step or an earlier end",
         ));
     }
+    if case.time.step > case.time.end {
+        let message = format!(
+            "a step of {} s is longer than the run of {} s",
+            case.time.step, case.time.end
+        );
+        return Err(Fault::new("time.step", message));
+    }
+    if case.output.every == 0 {
+        let message = "must be at least 1: steps between two rows of the statistics";
+        return Err(Fault::new("output.every", message));
+    }
     positive("inertia_scaling", case.inertia_scaling)?;
     if let Coupling::Implicit {
         tolerance,

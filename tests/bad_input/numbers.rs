@@ -115,3 +115,31 @@ fn a_bound_for_overlaps_that_is_none() {
         );
     }
 }
+
+#[test]
+fn a_step_longer_than_the_run() {
+    refused(
+        &with(PLANE, "step: 1e-3", "step: ‸1e3"),
+        &["is longer than the run"],
+    );
+}
+
+#[test]
+fn an_alert_distance_that_makes_all_contacts() {
+    refused(
+        &with(
+            PLANE,
+            "    grains: [",
+            "    detection: (alert: ‸1e30),\n    grains: [",
+        ),
+        &["more than ten times the largest radius"],
+    );
+}
+
+#[test]
+fn statistics_that_are_never_written() {
+    refused(
+        &with(PLANE, "output: (frames: 0", "output: (every: ‸0, frames: 0"),
+        &["steps between two rows"],
+    );
+}

@@ -248,7 +248,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             if last {
                 self.simulation.show_wear();
             }
-            if step % output.every.max(1) == 0 || last {
+            if step % output.every == 0 || last {
                 let mut row = self.row(&report);
                 if self.loaded.case.circuit.is_some() {
                     row.extend(self.account.row());

@@ -291,6 +291,14 @@ impl<S: Dimensional> Builder<'_, S> {
         let smallest = if smallest.is_finite() { smallest } else { 1.0 };
         let alert = case.detection.alert.unwrap_or(0.05 * smallest);
         let skin = case.detection.skin.unwrap_or(0.3 * smallest);
+        let largest = self.radii().fold(0.0, f64::max);
+        if largest > 0.0 && alert > 10.0 * largest {
+            let message = format!(
+                "an alert distance of {alert} m is more than ten times the largest radius ({largest} m): all would be \
+                 contacts; the default is 0.05 of the smallest"
+            );
+            return Err(self.fail("detection.alert", message));
+        }
         let gravity = self.vector("gravity", &case.gravity)?;
         self.refuse_small_period(alert + skin)?;
         let (source, mut simulation) = (
