@@ -182,9 +182,9 @@ impl<S: Space> Bodies<S> {
         self.inverse_inertia[body] = 0.0;
     }
 
-    /// Which bodies are grains: those that are not driven.
+    /// Which bodies are grains: those that are not driven, and are still there.
     pub fn grain_flags(&self) -> Vec<bool> {
-        let mut grain = vec![true; self.len()];
+        let mut grain: Vec<bool> = self.gone.iter().map(|g| !g).collect();
         for driven in &self.driven {
             grain[driven.body as usize] = false;
         }

@@ -21,6 +21,8 @@ pub struct Break<S: Space> {
     /// What it still stored where it was torn because its contact left all reach, 0 where damage broke it
     /// (J; J/m in 2D).
     pub torn: f64,
+    /// Whether damage broke it; else its contact left all reach, or a body was taken out.
+    pub damaged: bool,
     /// What it went through.
     pub life: Life,
 }
@@ -41,11 +43,6 @@ pub struct Life {
 }
 
 impl Life {
-    /// What became heat at the contact (J; J/m in 2D).
-    pub fn heat(&self) -> f64 {
-        self.viscous + self.friction
-    }
-
     /// Share of sliding in the work of opening and sliding, 0 to 1: 0 is mode I, 1 mode II; what the bond gave
     /// back does not count.
     pub fn mode_mix(&self) -> f64 {

@@ -169,6 +169,7 @@ impl<S: Space> Network<S> {
             opening: [bond.opening_n, bond.opening_t.norm()],
             area: bond.area,
             torn: 0.0,
+            damaged: bond.damage >= 1.0,
             life: bond.life,
         });
     }

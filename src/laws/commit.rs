@@ -145,6 +145,16 @@ impl Passes {
             let ut = S::tangential(&contact.normal, &site.average);
             self.columns.slip.push(info.h * ut.norm());
             let work = -site.solution.unilateral_t.dot(&ut);
+            // Where the velocity turns within a step, friction gives work back: later steps owe it to the law.
+            let pair = contact.key.pair();
+            let owed = match self.debts.is_empty() {
+                true => 0.0,
+                false => self.debts.remove(&pair).unwrap_or(0.0),
+            };
+            let work = work + owed;
+            if work < 0.0 {
+                self.debts.insert(pair, work);
+            }
             self.columns.friction_work.push(work.max(0.0));
         }
         self.columns.size_outputs();

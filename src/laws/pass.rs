@@ -12,6 +12,7 @@ use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
 use crate::solve::{MomentForm, MomentSolution};
+use std::collections::HashMap;
 
 /// What one contact did over the step.
 #[derive(Clone, Copy, Debug)]
@@ -81,6 +82,8 @@ pub struct Passes {
     pub(super) held: Held,
     /// Interface, slot and damage of the bonds of a coupling's last trial.
     pub(super) trials: Vec<(usize, usize, f64)>,
+    /// Work that friction of a pair gave back and wear laws have not seen (J, negative).
+    pub(super) debts: HashMap<(u32, u32), f64>,
     /// Interfaces whose bonds have been made.
     bonded: Vec<bool>,
 }

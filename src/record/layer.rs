@@ -75,7 +75,7 @@ impl<S: Space> Layer<S> {
                 0.5 * (s.bodies.mass[b] * v.dot(v) + w.dot(&s.bodies.angular_momentum(b, w)))
             })
             .sum();
-        let kept = e.kinetic - kinetic + e.potential + e.elastic;
+        let kept = e.kinetic - kinetic + e.potential + e.elastic + e.carried;
         Balance {
             // What a projection gave against loads passed no contact.
             taken: e.dissipated() + e.scheme + kept + s.lifted - self.apart,

@@ -33,12 +33,17 @@ impl Flow {
 }
 
 /// The flow of what a cumulated quantity grew by, from a time on. `points` are (time, cumulated), times rising; none
-/// where they do not span the window.
+/// where a block holds fewer than two of them: what lies between points is not known.
 pub fn flow(points: &[(f64, f64)], start: f64, end: f64) -> Option<Flow> {
     if !(start < end) || points.len() < 2 {
         return None;
     }
     let width = (end - start) / BLOCKS as f64;
+    let block = |k: usize| start + k as f64 * width..start + (k + 1) as f64 * width;
+    let few = |k: &usize| points.iter().filter(|p| block(*k).contains(&p.0)).count() < 2;
+    if (0..BLOCKS).any(|k| few(&k)) {
+        return None;
+    }
     let edges: Option<Vec<f64>> = (0..=BLOCKS)
         .map(|k| at(points, start + k as f64 * width))
         .collect();
@@ -142,5 +147,6 @@ mod tests {
         let flow = flow(&points, 1.23, 5.6).unwrap();
         assert!((flow.mean - 3.0).abs() < 1e-12 && flow.half_width < 1e-12);
         assert!(super::flow(&points, 5.0, 5.0).is_none());
+        assert!(super::flow(&points[..20], 1.23, 5.6).is_none());
     }
 }

@@ -88,24 +88,25 @@ pub struct Wear {
     pub volume_third_body: f64,
 }
 
-/// Mean flows over the second half of the account, with their intervals (kg/s; kg/(m s) in 2D).
+/// Mean flows over the second half of the account, with their intervals (kg/s; kg/(m s) in 2D); null where it was brought up
+/// to date too seldom.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 #[allow(non_snake_case)]
 pub struct Rates {
     /// Source.
-    pub Qs: Flow,
+    pub Qs: Option<Flow>,
     /// What bonds tied again.
-    pub Qa: Flow,
+    pub Qa: Option<Flow>,
     /// Ejected.
-    pub Qe: Flow,
+    pub Qe: Option<Flow>,
     /// Recirculated.
-    pub Qr: Flow,
+    pub Qr: Option<Flow>,
     /// Wear.
-    pub Qw: Flow,
+    pub Qw: Option<Flow>,
     /// Qs - Qa - Qw, block by block: within its interval of zero in steady sliding.
-    pub Qs_less_Qw: Flow,
+    pub Qs_less_Qw: Option<Flow>,
     /// Growth of the mass in the contact.
-    pub M: Flow,
+    pub M: Option<Flow>,
 }
 
 /// A first body that grains can belong to.
@@ -151,12 +152,26 @@ impl CircuitSummary {
             .iter()
             .map(|b| format!("{} to {}", b.grains, b.name))
             .collect();
-        let flow = |q: &Flow| format!("{:.2e} +- {:.1e}", q.mean, q.half_width);
-        let steady = |q: &Flow| if q.steady { "no trend" } else { "TREND" };
-        let equal = if r.Qs_less_Qw.may_be_zero() {
-            "may be equal"
-        } else {
-            "differ"
+        let flow = |q: &Option<Flow>| {
+            q.map_or("not known".to_owned(), |q| {
+                format!("{:.2e} +- {:.1e}", q.mean, q.half_width)
+            })
+        };
+        let steady = |q: &Option<Flow>| match q {
+            Some(q) if q.steady => "no trend",
+            Some(_) => "TREND",
+            None => "too few updates",
+        };
+        let equal = match (&r.Qs, &r.Qw, &r.Qs_less_Qw) {
+            (Some(s), Some(w), Some(d)) if d.may_be_zero() => {
+                if d.half_width < s.mean.max(w.mean) {
+                    "equal within the interval"
+                } else {
+                    "no verdict: the interval of their difference is wider than they are"
+                }
+            }
+            (Some(_), Some(_), Some(_)) => "they differ",
+            _ => "no verdict",
         };
         vec![
             (
@@ -185,7 +200,7 @@ impl CircuitSummary {
             (
                 "flows, second half",
                 format!(
-                    "Qs {} ({}), Qw {} ({}), they {equal}; Qe {}, Qr {}, Qa {} kg/s",
+                    "Qs {} ({}), Qw {} ({}), {equal}; Qe {}, Qr {}, Qa {} kg/s",
                     flow(&r.Qs),
                     steady(&r.Qs),
                     flow(&r.Qw),

@@ -51,10 +51,16 @@ pub fn header(
         c("area", area, "area of the bond"),
         c("work", joule, "work done on the bond since it was made"),
         c("fracture", joule, "energy that damage released"),
+        c("viscous", joule, "heat of its damping"),
         c(
-            "heat",
+            "friction",
             joule,
-            "heat of its damping, and of friction at the contact while it held",
+            "heat of friction at the contact while it held",
+        ),
+        c(
+            "cause",
+            "",
+            "0 damage, 1 its contact left all reach or a body was taken out",
         ),
     ]);
     let debris = [

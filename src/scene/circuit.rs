@@ -26,9 +26,6 @@ pub struct CircuitSpec {
     /// Where grains are outside the contact.
     #[serde(default)]
     pub zones: Vec<ZoneSpec>,
-    /// Whether grains that are lost are taken out of the scene.
-    #[serde(default)]
-    pub remove_lost: bool,
 }
 
 fn ten() -> u64 {
@@ -48,7 +45,8 @@ pub struct ZoneSpec {
     /// The body with which it moves; its corners are then relative to that body's position.
     #[serde(default)]
     pub carried_by: Option<String>,
-    /// A grain that stays for so long (s) is lost, 0 for at once; without it grains stay ejected and may come back.
+    /// A grain that stays for so long (s) is lost and taken out of the scene, 0 for at once; without it grains stay
+    /// ejected and may come back.
     #[serde(default)]
     pub lost_after: Option<f64>,
 }
@@ -106,10 +104,6 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
     }
     if circuit.every == 0 {
         return Err(Fault::new("circuit.every", "must be at least 1"));
-    }
-    if circuit.remove_lost && circuit.zones.iter().all(|z| z.lost_after.is_none()) {
-        let message = "nothing is ever lost: no zone has `lost_after`";
-        return Err(Fault::new("circuit.remove_lost", message));
     }
     for (k, zone) in circuit.zones.iter().enumerate() {
         self::zone(case, zone).map_err(|f| f.under(&format!("circuit.zones.{k}")))?;
@@ -175,7 +169,15 @@ fn zone(case: &Case, zone: &ZoneSpec) -> Result<(), Fault> {
             return Err(Fault::new(field, message).expected("numbers, -inf or inf"));
         }
     }
+    let periods = [case.periodic.x, case.periodic.y, case.periodic.z];
     for (a, (low, high)) in zone.low.iter().zip(&zone.high).enumerate() {
+        let width = high - low;
+        if let Some(period) = periods[a].filter(|p| width.is_finite() && width > *p) {
+            let message = format!(
+                "a zone of {width} m along axis {a} is wider than the period of {period} m"
+            );
+            return Err(Fault::new("high", message));
+        }
         if low >= high {
             let message = format!("must be above {low} along axis {a}, got {high}");
             return Err(Fault::new("high", message));
@@ -216,7 +218,6 @@ pub fn install<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Spec<S>> {
         bases: circuit.bases.iter().filter_map(index).collect(),
         interfaces: ties.into_iter().filter(opens).map(|i| i as u16).collect(),
         zones: zones.collect(),
-        remove: circuit.remove_lost,
         scaling: case.inertia_scaling,
     })
 }

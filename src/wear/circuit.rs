@@ -7,6 +7,7 @@ use crate::contact::Network;
 use crate::geometry::periodic::Periodic;
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
+use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 /// What becomes of a grain in an ejection zone.
@@ -14,7 +15,7 @@ use std::time::{Duration, Instant};
 pub enum Fate {
     /// It stays ejected until it leaves the zone, and may come back.
     Stays,
-    /// It is lost when it has been there for so long (s).
+    /// It is lost, and taken out of the scene, when it has been there for so long (s).
     LostAfter(f64),
 }
 
@@ -34,14 +35,18 @@ pub struct Zone<S: Space> {
 }
 
 impl<S: Space> Zone<S> {
-    /// Whether a place is in it; along a period the nearest image counts from a carrier, and the one in the cell
-    /// that begins at zero without.
+    /// Whether a place, or one of its images along a period, is in it.
     fn holds(&self, bodies: &Bodies<S>, periodic: &Periodic, at: &S::Vector) -> bool {
-        let x = match self.carrier {
-            Some(b) => periodic.shortest(*at - bodies.position[b as usize]),
-            None => periodic.wrapped(*at),
-        };
-        (0..S::D).all(|k| self.low[k] <= x[k] && x[k] < self.high[k])
+        let origin = self.carrier.map(|b| bodies.position[b as usize]);
+        let x = origin.map_or(*at, |o| *at - o);
+        (0..S::D).all(|k| match periodic.period[k] {
+            // The first image above the low side; what is open along a period is all of it.
+            Some(period) if self.low[k].is_finite() && self.high[k].is_finite() => {
+                (x[k] - self.low[k]).rem_euclid(period) < self.high[k] - self.low[k]
+            }
+            Some(_) => true,
+            None => self.low[k] <= x[k] && x[k] < self.high[k],
+        })
     }
 }
 
@@ -54,8 +59,6 @@ pub struct Spec<S: Space> {
     pub interfaces: Vec<u16>,
     /// Ejection zones; a grain is in the first that holds its centre.
     pub zones: Vec<Zone<S>>,
-    /// Whether what is lost is taken out of the scene.
-    pub remove: bool,
     /// Factor by which masses are larger than they are, see `inertia_scaling`.
     pub scaling: f64,
 }
@@ -105,6 +108,8 @@ pub struct Circuit<S: Space> {
     since: Vec<f64>,
     made: Vec<[u32; 2]>,
     cuts: Vec<Cut>,
+    /// Bonds that each body lost since it was tied, by body.
+    past: BTreeMap<u32, Vec<Cut>>,
     /// Grains and clusters that came loose in the last update.
     pub debris: Vec<Debris<S>>,
     /// Time spent on it.
@@ -136,11 +141,16 @@ impl<S: Space> Circuit<S> {
             grains,
             made: Vec::new(),
             cuts: Vec::new(),
+            past: BTreeMap::new(),
             debris: Vec::new(),
             cost: Duration::ZERO,
             spec,
         };
-        let places = circuit.places(s);
+        let mut places = circuit.places(s);
+        for place in places.iter_mut().filter(|p| **p == Place::Lost) {
+            // The first update takes it out.
+            *place = Place::Ejected(0);
+        }
         circuit.ledger = Ledger::new(masses, places);
         circuit
     }
@@ -163,6 +173,7 @@ impl<S: Space> Circuit<S> {
 
     /// Takes in the bonds that the last step made and broke. To be called after every step.
     pub fn note(&mut self, s: &Simulation<S>) {
+        let clock = Instant::now();
         let ties = |law: u16| self.spec.interfaces.contains(&law);
         for (bodies, law) in &s.network.joins {
             if ties(*law) {
@@ -170,16 +181,24 @@ impl<S: Space> Circuit<S> {
             }
         }
         for b in s.network.breaks.iter().filter(|b| ties(b.law)) {
-            self.cuts.push(Cut {
+            let cut = Cut {
                 bodies: b.bodies,
                 work: [b.life.work[0], b.life.work[1]],
                 fracture: b.life.fracture,
-            });
+            };
+            self.cuts.push(cut);
+            for body in b
+                .bodies
+                .iter()
+                .filter(|b| self.number[**b as usize].is_some())
+            {
+                self.past.entry(*body).or_default().push(cut);
+            }
         }
+        self.cost += clock.elapsed();
     }
 
-    /// Brings ties, zones and the ledger to the state at hand; takes out of the scene what is lost, where the case
-    /// wants that.
+    /// Brings ties, zones and the ledger to the state at hand, and takes out of the scene what is lost.
     pub fn update(&mut self, s: &mut Simulation<S>) {
         let clock = Instant::now();
         let broken: Vec<[u32; 2]> = self.cuts.iter().map(|c| c.bodies).collect();
@@ -193,16 +212,19 @@ impl<S: Space> Circuit<S> {
             let debris = self.debris_of(s, *base, piece);
             self.debris.push(debris);
         }
+        // A grain's account of broken bonds ends where it comes loose, and begins anew where it is tied again.
+        let loose = change.loose.iter().flat_map(|(_, piece)| piece);
+        for body in loose.chain(change.tied.iter().map(|(body, _)| body)) {
+            self.past.remove(body);
+        }
         self.made.clear();
         self.cuts.clear();
         let before: Vec<Place> = self.ledger.places().to_vec();
         let places = self.places(s);
         self.ledger.book(&places);
-        if self.spec.remove {
-            for (k, (old, new)) in before.iter().zip(&places).enumerate() {
-                if *new == Place::Lost && *old != Place::Lost {
-                    s.take_out(self.grains[k] as usize);
-                }
+        for (k, (old, new)) in before.iter().zip(&places).enumerate() {
+            if *new == Place::Lost && *old != Place::Lost {
+                s.take_out(self.grains[k] as usize);
             }
         }
         self.cost += clock.elapsed();

@@ -68,11 +68,7 @@ fn zones_that_overlap_or_are_none() {
 }
 
 #[test]
-fn nothing_that_is_lost() {
-    refused(
-        &circuit(r#"bases: ["floor"], remove_lost: ‸true"#),
-        &["nothing is ever lost"],
-    );
+fn an_account_that_never_begins() {
     refused(
         &circuit(r#"bases: ["floor"], start: ‸9.0"#),
         &["must begin within the run"],

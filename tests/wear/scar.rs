@@ -283,3 +283,23 @@ fn a_punch_that_rocks_wears_a_w_and_one_that_is_held_a_u() {
     assert_eq!(held.form, Form::U);
     assert!((held.middle / (volume / 4.4e-3) - 1.0).abs() < 0.05);
 }
+
+/// Where the motion turns within a step, friction gives work back: later steps owe it to the law, and the volume
+/// stays that of the ledger's energy.
+#[test]
+fn volume_is_alpha_times_the_energy_where_the_motion_turns() {
+    let file = format!("{}/cases/fretting_scar.ron", env!("CARGO_MANIFEST_DIR"));
+    let sets = [ENERGY, "interfaces.0.parameters.wear={\"alpha\": 5e-11}"].map(str::to_owned);
+    let loaded = fretwork::scene::load(std::path::Path::new(&file), &sets).unwrap();
+    let path = fretwork::laws::SearchPath::new(&[]);
+    let mut s = loaded.build_in::<Plane>(&path).unwrap().simulation;
+    let (mut volume, mut given) = (0.0, 0);
+    while s.time < 0.1 {
+        let totals = s.step().unwrap().totals;
+        volume += totals.worn_first;
+        given += u32::from(totals.friction < 0.0);
+    }
+    assert!(given > 5, "the motion turned {given} times");
+    let ratio = volume / (5e-11 * s.energy.friction);
+    assert!((ratio - 1.0).abs() < 1e-10, "{ratio}");
+}

@@ -3,7 +3,7 @@
 use super::{Recorder, RunError};
 use crate::geometry::space::{Space, VectorLike};
 use crate::record::results::Results;
-use crate::record::statistics::{Column, Table};
+use crate::record::statistics::Column;
 use crate::record::steady;
 use crate::record::summary::{Base, CircuitSummary, Rates};
 use crate::report::Paint;
@@ -12,7 +12,7 @@ use crate::scene::case::Case;
 use crate::scene::circuit;
 use crate::step::Simulation;
 use crate::wear::circuit::Circuit;
-use crate::wear::ledger::Place;
+use crate::wear::ledger::{Flows, Place};
 use std::time::Duration;
 
 /// The account of a run.
@@ -27,6 +27,8 @@ pub(super) struct Account<S: Space> {
     largest: usize,
     broken: u64,
     debris: u64,
+    /// Time, and what passed by then, at each update.
+    series: Vec<(f64, Flows, f64)>,
 }
 
 impl<S: Space> Account<S> {
@@ -40,6 +42,7 @@ impl<S: Space> Account<S> {
             largest: 0,
             broken: 0,
             debris: 0,
+            series: Vec::new(),
         }
     }
 
@@ -118,7 +121,9 @@ impl<S: Space> Account<S> {
                 b.area,
                 b.life.work.iter().sum(),
                 b.life.fracture,
-                b.life.heat(),
+                b.life.viscous,
+                b.life.friction,
+                f64::from(u8::from(!b.damaged)),
             ])?;
         }
         if case.circuit.is_none() || s.time < self.start - 0.5 * s.scheme.h {
@@ -128,10 +133,15 @@ impl<S: Space> Account<S> {
             return self.begin(case, s);
         };
         circuit.note(s);
-        if s.steps % self.every != 0 && !last {
+        // A row of the statistics shows the state at its step.
+        let row = case.output.every > 1 && s.steps % case.output.every == 0;
+        if s.steps % self.every != 0 && !row && !last {
             return Ok(());
         }
         circuit.update(s);
+        let ledger = &circuit.ledger;
+        self.series
+            .push((s.time, ledger.flows, ledger.contents.contact.mass));
         for d in &circuit.debris {
             self.pieces.0 += 1;
             self.pieces.1 += d.grains.len() as u64;
@@ -194,29 +204,18 @@ impl<S: Space> Account<S> {
     }
 
     /// What the summary says.
-    pub fn summary(
-        &self,
-        s: &Simulation<S>,
-        table: &Table,
-        wall: Duration,
-    ) -> Option<CircuitSummary> {
+    pub fn summary(&self, s: &Simulation<S>, wall: Duration) -> Option<CircuitSummary> {
         let circuit = self.circuit.as_ref()?;
-        let times = table.column("time");
-        let middle = 0.5 * (self.start + s.time);
-        let series = |name: &str| -> Vec<(f64, f64)> {
-            let values = table.column(name);
-            times
+        let end = self.series.last().map_or(self.start, |p| p.0);
+        let middle = 0.5 * (self.start + end);
+        let flow = |of: &dyn Fn(&Flows, f64) -> f64| {
+            let points: Vec<(f64, f64)> = self
+                .series
                 .iter()
-                .copied()
-                .zip(values)
-                .filter(|p| p.0 >= self.start)
-                .collect()
+                .map(|(t, f, m)| (*t, of(f, *m)))
+                .collect();
+            steady::flow(&points, middle, end)
         };
-        let flow = |points: &[(f64, f64)]| steady::flow(points, middle, s.time).unwrap_or_default();
-        let (source, lost) = (series("source"), series("lost"));
-        let attached = series("attached");
-        let net = source.iter().zip(&lost).zip(&attached);
-        let net: Vec<(f64, f64)> = net.map(|((q, w), a)| (q.0, q.1 - a.1 - w.1)).collect();
         let name = |b: u32| {
             s.bodies
                 .driven
@@ -230,18 +229,18 @@ impl<S: Space> Account<S> {
         });
         Some(CircuitSummary {
             start: self.start,
-            window: [middle, s.time],
+            window: [middle, end],
             contents: circuit.ledger.contents,
             flows: circuit.ledger.flows,
             residual: circuit.ledger.residual(),
             rates: Rates {
-                Qs: flow(&source),
-                Qa: flow(&attached),
-                Qe: flow(&series("ejected")),
-                Qr: flow(&series("recirculated")),
-                Qw: flow(&lost),
-                Qs_less_Qw: flow(&net),
-                M: flow(&series("M")),
+                Qs: flow(&|f, _| f.source.mass),
+                Qa: flow(&|f, _| f.attached.mass),
+                Qe: flow(&|f, _| f.ejected.mass),
+                Qr: flow(&|f, _| f.recirculated.mass),
+                Qw: flow(&|f, _| f.wear.mass),
+                Qs_less_Qw: flow(&|f, _| f.source.mass - f.attached.mass - f.wear.mass),
+                M: flow(&|_, m| m),
             },
             bases: bases.collect(),
             pieces: self.pieces.0,

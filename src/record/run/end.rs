@@ -56,7 +56,7 @@ impl<S: Dimensional> Recorder<'_, S> {
             volume_third_body: self.worn.1,
         };
         let wall = self.clock.elapsed();
-        summary.circuit = self.account.summary(s, &self.table, wall);
+        summary.circuit = self.account.summary(s, wall);
         if let Some(circuit) = &summary.circuit {
             let span = (s.time - circuit.start).max(f64::MIN_POSITIVE);
             summary.wear.Qs = circuit.flows.source.mass / span;

@@ -32,10 +32,15 @@ impl<S: Dimensional> Builder<'_, S> {
             };
             let carried = &self.shapes.surfaces[surface];
             let scar = Scar::new(name, surface, carried, wears.thickness, wears.every);
-            let upright = |s: &Scar<S>| s.vertices().position(|(v, _)| v.tributary <= 0.0);
-            if let Some(k) = scar.as_ref().and_then(upright) {
+            let outline = carried.shape.outline();
+            let upright = |w: &[S::Vector]| S::D == 2 && w[0][0] == w[1][0];
+            let at = outline
+                .iter()
+                .find_map(|line| line.windows(2).position(upright));
+            if let (Some(k), Some(_)) = (at, &scar) {
                 let message = format!(
-                    "the profile stands upright on both sides of point {k}, which then cannot recede; tilt it, or leave the point out"
+                    "the profile stands upright between points {k} and {}, where it cannot recede; tilt it, or leave `wears` out",
+                    k + 1
                 );
                 return Err(self.fail(here, message));
             }
