@@ -85,7 +85,7 @@ pub struct Debris<S: Space> {
     pub bonds: usize,
 }
 
-/// A bond that broke since the last update.
+/// A bond that broke.
 #[derive(Clone, Copy, Debug)]
 struct Cut {
     bodies: [u32; 2],
@@ -107,7 +107,8 @@ pub struct Circuit<S: Space> {
     /// Since when a grain has been in its zone (s).
     since: Vec<f64>,
     made: Vec<[u32; 2]>,
-    cuts: Vec<Cut>,
+    /// Bonds that broke since the last update.
+    cuts: Vec<[u32; 2]>,
     /// Bonds that each body lost since it was tied, by body.
     past: BTreeMap<u32, Vec<Cut>>,
     /// Grains and clusters that came loose in the last update.
@@ -186,7 +187,7 @@ impl<S: Space> Circuit<S> {
                 work: [b.life.work[0], b.life.work[1]],
                 fracture: b.life.fracture,
             };
-            self.cuts.push(cut);
+            self.cuts.push(b.bodies);
             for body in b
                 .bodies
                 .iter()
@@ -201,11 +202,10 @@ impl<S: Space> Circuit<S> {
     /// Brings ties, zones and the ledger to the state at hand, and takes out of the scene what is lost.
     pub fn update(&mut self, s: &mut Simulation<S>) {
         let clock = Instant::now();
-        let broken: Vec<[u32; 2]> = self.cuts.iter().map(|c| c.bodies).collect();
-        let change = if self.made.is_empty() && broken.is_empty() {
+        let change = if self.made.is_empty() && self.cuts.is_empty() {
             Default::default()
         } else {
-            self.ties.change(&self.made, &broken)
+            self.ties.change(&self.made, &self.cuts)
         };
         self.debris.clear();
         for (base, piece) in &change.loose {
@@ -271,12 +271,10 @@ impl<S: Space> Circuit<S> {
             mass += m;
             moment = moment + s.shapes.periodic.shortest(at - first) * m;
         }
-        // The bonds that tied the piece to what is not of it.
+        // The bonds that joined the piece to what is not of it, whenever they broke since its grains were tied.
         let of = |b: u32| piece.binary_search(&b).is_ok();
-        let cuts = self
-            .cuts
-            .iter()
-            .filter(|c| of(c.bodies[0]) != of(c.bodies[1]));
+        let past = piece.iter().filter_map(|b| self.past.get(b)).flatten();
+        let cuts = past.filter(|c| of(c.bodies[0]) != of(c.bodies[1]));
         let (mut work, mut energy, mut bonds) = ([0.0; 2], 0.0, 0);
         for cut in cuts {
             energy += cut.fracture;

@@ -63,3 +63,40 @@ fn a_zone_that_comes_and_goes_ejects_and_gives_back() {
     assert_eq!([f.ejected, f.recirculated].map(|a| a.grains), [2; 2]);
     assert_eq!([f.source, f.attached, f.wear].map(|a| a.grains), [0; 3]);
 }
+
+/// Two roots of different strength on a bar of two grains: the first breaks alone, the second frees the bar; its debris
+/// cost both.
+#[test]
+fn debris_remembers_the_bonds_that_broke_before_the_last() {
+    use fretwork::scene::circuit;
+    use fretwork::wear::circuit::Circuit;
+    let file = format!(
+        "{}/cases/verification/falling_debris.ron",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    // A heavy grain beside a light one: its root breaks first.
+    let sets = [
+        "grains.0=List(material: \"grain\", grains: [(at: [0.0, -0.1], radius: 0.1), (at: [0.2, -0.1], radius: 0.1), (at: [0.2, -0.3], radius: 0.1)])",
+        "interfaces.1.parameters.cohesion={\"k_n\": 1e8, \"k_t\": 1e6}",
+    ]
+    .map(str::to_owned);
+    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<Plane>(&SearchPath::new(&[]));
+    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    s.step().unwrap();
+    let mut account = Circuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);
+    let (mut when, mut cost) = (Vec::new(), 0.0);
+    while account.debris.is_empty() && s.time < 0.8 {
+        s.step().unwrap();
+        account.note(&s);
+        for b in &s.network.breaks {
+            when.push(s.time);
+            cost += b.life.fracture;
+        }
+        account.update(&mut s);
+    }
+    let debris = &account.debris[0];
+    assert_eq!((debris.grains.len(), debris.bonds, when.len()), (3, 2, 2));
+    assert!(when[1] > when[0] + 1e-3, "{when:?}");
+    assert!((debris.energy / cost - 1.0).abs() < 1e-12);
+}
