@@ -56,7 +56,7 @@ pub struct Slope {
 pub struct Outcome {
     /// Running regime over all complete cycles.
     pub regime: Regime,
-    /// Energy dissipated in all complete cycles, the sum of E_d (J; J/m in 2D).
+    /// Energy dissipated in all complete cycles, the sum of E_d (J; J/m in 2D), also of those jumped over.
     pub energy: f64,
     /// Volume worn off first bodies in them (m^3; m^3/m).
     pub wear_volume: f64,
@@ -74,7 +74,7 @@ impl Outcome {
         let (mut energy, mut volume) = (0.0, 0.0);
         let mut points = vec![(0.0, 0.0)];
         for c in &complete {
-            energy += c.work;
+            energy += c.work * (1.0 + f64::from(c.jumped));
             volume += c.wear_volume;
             points.push((energy, volume));
         }

@@ -147,7 +147,8 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
     super::phases::check(case)?;
     super::measures::check(case)?;
     super::circuit::check(case)?;
-    friction(case, dimension)
+    friction(case, dimension)?;
+    super::jump::check(case)
 }
 
 fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), Fault> {

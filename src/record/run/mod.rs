@@ -3,9 +3,13 @@
 mod account;
 mod dump;
 mod end;
+mod jumps;
 mod row;
+mod stamps;
 
 use self::account::Account;
+use self::jumps::Jumps;
+use self::stamps::{density_of, stamps};
 use super::biaxial::Biaxial;
 use super::friction::{Cycles, Sample, State as Cumulated};
 use super::layer::Layer;
@@ -14,12 +18,10 @@ use super::picture::{Camera, Subject};
 use super::results::{Results, ResultsError};
 use super::statistics::Table;
 use super::strain::Strain;
-use super::summary::{PluginStamp, SolverSummary, Summary};
+use super::summary::{SolverSummary, Summary};
 use super::views;
 use crate::bodies::TimeFunction;
-use crate::certify::certify;
 use crate::geometry::space::Space;
-use crate::laws::{Interface, SearchPath};
 use crate::report::ReportError;
 use crate::scene::build::{Built, Dimensional, Loaded};
 use crate::step::{Simulation, StepError, StepReport};
@@ -129,6 +131,8 @@ struct Recorder<'a, S: Space> {
     biaxial: Option<Biaxial>,
     measures: Measures<S>,
     account: Account<S>,
+    /// Jumps over cycles, where the case has them.
+    jumps: Option<Jumps>,
     layer: Layer<S>,
     sample: Option<Sample>,
     slide: f64,
@@ -166,7 +170,11 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let spec = case.biaxial.as_ref();
         let biaxial = spec.and_then(|spec| Biaxial::new(spec, &simulation));
         let measures = Measures::new(&case.measures);
+        let jumps = cycles
+            .as_ref()
+            .and_then(|(cycles, _)| Jumps::begin(case, cycles, &mut simulation));
         let mut columns = row::columns(&simulation, cycles.is_some(), biaxial.is_some());
+        columns.extend(jumps.is_some().then(Jumps::column));
         columns.extend(Account::<S>::columns(case));
         columns.extend(measures.columns());
         let table_path = options.out.join("statistics.csv");
@@ -207,6 +215,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             biaxial,
             measures,
             account: Account::new(case),
+            jumps,
             layer: Layer::new(&simulation),
             sample: None,
             slide: 0.0,
@@ -240,7 +249,8 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
                 self.strain = self.strain.take().map(|_| Strain::new(&self.simulation));
             }
             let whole = self.simulation.whole();
-            let finished = self.simulation.control.finished() || whole.is_err();
+            let reached = self.jump();
+            let finished = self.simulation.control.finished() || whole.is_err() || reached;
             let last = step == self.total || finished;
             self.account(last)?;
             if output.fclib > 0 && step % output.fclib == 0 {
@@ -251,6 +261,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             }
             if step % output.every.max(1) == 0 || last {
                 let mut row = self.row(&report);
+                row.extend(self.cycles_represented());
                 if self.loaded.case.circuit.is_some() {
                     row.extend(self.account.row());
                 }
@@ -478,41 +489,4 @@ fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
         .map(|b| s.bodies.mass[b] * s.bodies.velocity[b][along].abs())
         .sum::<f64>()
         / length
-}
-
-/// The laws of a run, each once, and whether they keep their promises with its parameters.
-fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
-    // The partners on the bench are shipped laws.
-    let path = SearchPath::new(&[]);
-    let mut seen: Vec<(&str, &[f64])> = Vec::new();
-    let mut stamps: Vec<PluginStamp> = Vec::new();
-    for law in laws.iter().flat_map(Interface::loaded) {
-        let p = &law.plugin;
-        if seen.contains(&(&p.sha256, &law.parameters)) {
-            continue;
-        }
-        seen.push((&p.sha256, &law.parameters));
-        let certified = certify(p, &law.parameters, &path).is_ok_and(|c| c.certified());
-        match stamps.iter_mut().find(|s| s.sha256 == p.sha256) {
-            Some(stamp) => stamp.certified &= certified,
-            None => stamps.push(PluginStamp {
-                kind: p.kind.to_string(),
-                name: p.name.clone(),
-                version: p.version.clone(),
-                sha256: p.sha256.clone(),
-                path: p.path.display().to_string(),
-                certified,
-            }),
-        }
-    }
-    stamps
-}
-
-/// Density of the first bodies, for wear as a mass.
-fn density_of(loaded: &Loaded, any: bool) -> f64 {
-    let material = loaded.case.bodies.first().map(|b| b.material.as_str());
-    match (any, material) {
-        (true, Some(name)) => loaded.density(name).unwrap_or(0.0),
-        _ => 0.0,
-    }
 }
