@@ -11,8 +11,8 @@ pub struct Jump {
     pub after: u32,
     /// Cycles that its one computed cycle stood for.
     pub cycles: u32,
-    /// By how much it is off, in parts of what it added; the worst of the scars and of the damage. See
-    /// [`crate::wear::jump`].
+    /// By how much it is off: the worst of volumes and damage, in parts of what it added, and of what it may have
+    /// misplaced, in parts of the scar. See [`crate::wear::jump`].
     pub error: f64,
 }
 
@@ -40,7 +40,8 @@ pub struct JumpSummary {
     pub asked_cycles: Option<u32>,
     /// Error of a jump that was aimed at.
     pub tolerance: f64,
-    /// What all jumps were off by, in parts of all wear, or all growth of damage: the worse.
+    /// What all jumps were off by and the last one may have misplaced, in parts of all wear, or of all growth of damage:
+    /// the worst.
     pub error_estimate: f64,
     /// Volume worn off first bodies, in all cycles (m^3; m^3/m in 2D).
     pub wear_volume: f64,
@@ -65,11 +66,16 @@ impl JumpSummary {
             ),
         )];
         let far = |j: &&Jump| j.error > 2.0 * self.tolerance;
-        if let Some(worst) = self.jumps.iter().filter(far).max_by(|a, b| a.error.total_cmp(&b.error)) {
+        if let Some(worst) = self
+            .jumps
+            .iter()
+            .filter(far)
+            .max_by(|a, b| a.error.total_cmp(&b.error))
+        {
             let count = self.jumps.iter().filter(far).count();
             let text = format!(
-                "{count} jumps are off by more than twice jump.tolerance, the one of {} cycles after cycle {} by {:.1} % \
-                 of what it added; make jump.at_most smaller, or jump.after larger",
+                "{count} jumps are off by more than twice jump.tolerance, the one of {} cycles after cycle {} by {:.1} %; \
+                 make jump.at_most smaller, or jump.after larger",
                 worst.cycles,
                 worst.after,
                 100.0 * worst.error
@@ -91,7 +97,12 @@ impl JumpSummary {
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn draw(dir: &Path, title: &str, jump: &JumpSummary, dimension: usize) -> Result<(), ReportError> {
+pub fn draw(
+    dir: &Path,
+    title: &str,
+    jump: &JumpSummary,
+    dimension: usize,
+) -> Result<(), ReportError> {
     let unit = if dimension == 2 { "m^3/m" } else { "m^3" };
     let mut charts = Vec::new();
     type Value = fn(&Point) -> f64;
@@ -113,7 +124,10 @@ pub fn draw(dir: &Path, title: &str, jump: &JumpSummary, dimension: usize) -> Re
         charts.push(
             chart
                 .with(Series::new("jumped", all).style(Style::Dashed))
-                .with(Series::new("computed one by one", alone.map(at).collect()).style(Style::Markers)),
+                .with(
+                    Series::new("computed one by one", alone.map(at).collect())
+                        .style(Style::Markers),
+                ),
         );
     }
     if charts.is_empty() {

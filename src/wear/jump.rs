@@ -6,9 +6,14 @@
 //! It is not the extrapolation z + N dz of a field of depths: between rigid bodies what stands proud is all that
 //! touches, so an extrapolated field has the next cycle wear just what the extrapolation missed, and never widens.
 //!
-//! With a the increment of the jump, r the increment of the cycle before it and r' the mean one of the cycles after it,
-//! which are computed one by one, what the jump should have added is N (r + r')/2 by the trapezium rule, and it is off
-//! by e = sum |a - N (r + r')/2| / sum a.
+//! What adds up from cycle to cycle (the volume of a scar, the damage of a bond) is checked by the cycles beside the jump,
+//! which are computed one by one. With a the increment of the jump, r that of the cycle before it and r' the mean one of
+//! the cycles after it, the trapezium rule gives N (r + r')/2, and the jump is off by |a - N (r + r')/2|.
+//!
+//! The form of a scar does not add up: what a jump misplaces is worn off where it stands proud. Between rigid bodies a
+//! single cycle says nothing about it, since it touches at some of the places only; a jump is long enough to. So
+//! jumps check each other: with a and b the volumes that the last one and this one wore off place by place, A and B
+//! their sums, at most sum |b - a B/A| is misplaced. What the scar truly grew by between is counted with it.
 
 /// What cycles change, or what they changed it by: one list for each quantity, of values that add up.
 pub type Amounts = Vec<Vec<f64>>;
@@ -22,32 +27,23 @@ pub fn growth(now: &Amounts, before: &Amounts) -> Amounts {
     now.iter().zip(before).map(list).collect()
 }
 
-/// By how much a jump of `n` is off, quantity by quantity, in the unit of the quantity: against the trapezium of the
-/// increments of a cycle before and after it. Values are compared in groups: `group` gives that of a value.
-pub fn error(
-    n: f64,
-    jumped: &Amounts,
-    rates: [&Amounts; 2],
-    group: impl Fn(usize, usize) -> usize,
-) -> Vec<f64> {
-    let at = |a: &Amounts, q: usize, k: usize| a[q].get(k).copied().unwrap_or(0.0);
-    let quantity = |(q, list): (usize, &Vec<f64>)| {
-        let mut off: Vec<f64> = Vec::new();
-        for (k, x) in list.iter().enumerate() {
-            let expected = 0.5 * n * (at(rates[0], q, k) + at(rates[1], q, k));
-            let g = group(q, k);
-            if off.len() <= g {
-                off.resize(g + 1, 0.0);
-            }
-            off[g] += x - expected;
-        }
-        off.iter().map(|x| x.abs()).sum()
-    };
-    jumped.iter().enumerate().map(quantity).collect()
+/// By how much a jump of `n` cycles that added `jumped` is off, against the trapezium of the increments of the cycles
+/// before and after it.
+pub fn error(n: f64, jumped: f64, rates: [f64; 2]) -> f64 {
+    (jumped - 0.5 * n * (rates[0] + rates[1])).abs()
 }
 
-/// The length of the next jump after one of `n` that was off by `error`, in parts of what it added: the error of a
-/// jump grows with the square of its length.
+/// The volume that `now` may have misplaced, beside what was worn off the same places `before`.
+pub fn misplaced(now: &[f64], before: &[f64]) -> f64 {
+    let (all, then): (f64, f64) = (now.iter().sum(), before.iter().sum());
+    if then <= 0.0 {
+        return all;
+    }
+    let pairs = now.iter().zip(before);
+    pairs.map(|(x, y)| (x - y * all / then).abs()).sum()
+}
+
+/// The length of the next jump after one of `n` with an error, relative as the tolerance is.
 pub fn next_length(n: f64, error: f64, tolerance: f64) -> f64 {
     let factor = if error > 0.0 {
         (tolerance / error).sqrt()
@@ -55,4 +51,52 @@ pub fn next_length(n: f64, error: f64, tolerance: f64) -> f64 {
         2.0
     };
     n * factor.clamp(0.3, 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Increments of a cycle that grow by the same amount each: the trapezium is exact.
+    #[test]
+    fn growth_of_second_order_is_jumped_exactly() {
+        let rate = |i: u32| 3.0 + 0.25 * f64::from(i);
+        for n in [1, 7, 50] {
+            let added: f64 = (1..=n).map(rate).sum();
+            assert!(error(f64::from(n), added, [rate(0), rate(n + 1)]) < 1e-9);
+        }
+    }
+
+    /// sum i^2 = n (n + 1) (2 n + 1)/6 beside n (n + 1)^2/2: off by n (n + 1) (n + 2)/6.
+    #[test]
+    fn growth_of_third_order_is_off_by_its_remainder() {
+        let rate = |i: u32| f64::from(i * i);
+        for n in [1, 7, 50] {
+            let added: f64 = (1..=n).map(rate).sum();
+            let expected = f64::from(n * (n + 1) * (n + 2)) / 6.0;
+            let off = error(f64::from(n), added, [rate(0), rate(n + 1)]);
+            assert!((off / expected - 1.0).abs() < 1e-12, "{off} {expected}");
+        }
+    }
+
+    #[test]
+    fn the_same_form_is_not_misplaced_whatever_its_volume() {
+        let before = [1.0, 2.0, 3.0];
+        assert!(misplaced(&[10.0, 20.0, 30.0], &before) < 1e-12);
+        // All of it elsewhere: taken from one place, put at another.
+        assert!((misplaced(&[0.0, 5.0], &[1.0, 0.0]) - 10.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_falls_or_is_new_did_not_grow() {
+        let grown = growth(&vec![vec![1.0, 0.5, 0.3]], &vec![vec![0.25, 0.75]]);
+        assert_eq!(grown, [[0.75, 0.0, 0.0]]);
+    }
+
+    #[test]
+    fn lengths_follow_the_error() {
+        assert_eq!(next_length(10.0, 0.04, 0.01), 5.0);
+        assert_eq!(next_length(10.0, 0.0, 0.01), 20.0);
+        assert_eq!(next_length(10.0, 1e3, 0.01), 3.0);
+    }
 }

@@ -9,11 +9,7 @@ use crate::scene::build::Dimensional;
 use crate::scene::case::Case;
 use crate::scene::jump::JumpSpec;
 use crate::step::Simulation;
-use crate::wear::jump::{Amounts, error, growth, next_length};
-use crate::wear::shape;
-
-/// Slices of a scar in which what a jump wears is compared: volumes, not the dents of single contacts.
-const SLICES: usize = 10;
+use crate::wear::jump::{Amounts, error, growth, misplaced, next_length};
 
 /// A jump that waits for its control.
 #[derive(Debug)]
@@ -47,6 +43,10 @@ pub(super) struct Jumps {
     pending: Option<Pending>,
     /// Sum of what jumps were off by, quantity by quantity.
     off: Vec<f64>,
+    /// What the last jump may have misplaced on each scar.
+    form: Vec<f64>,
+    /// What the last jump that was checked added.
+    last: Option<Amounts>,
     summary: JumpSummary,
 }
 
@@ -65,6 +65,8 @@ impl Jumps {
             length: f64::from(spec.after),
             pending: None,
             off: vec![0.0; first.len()],
+            form: vec![0.0; first.len()],
+            last: None,
             summary: JumpSummary {
                 asked_cycles: spec.cycles,
                 tolerance: spec.tolerance,
@@ -151,30 +153,29 @@ impl Jumps {
     /// Compares a jump with the cycles beside it, and learns the length of the next.
     fn judge<S: Space>(&mut self, s: &Simulation<S>, pending: &Pending) {
         let n = f64::from(pending.cycles);
-        let slices: Vec<Vec<usize>> = s
-            .scars
-            .iter()
-            .map(|scar| {
-                let rows = scar.along();
-                let o = shape::outline(&rows);
-                let slice = |x: f64| {
-                    let share = (x - o.from) / (o.to - o.from).max(f64::MIN_POSITIVE);
-                    ((share * SLICES as f64).max(0.0) as usize).min(SLICES - 1)
-                };
-                rows.iter().map(|r| slice(r[0])).collect()
-            })
-            .collect();
-        let group = |q: usize, k: usize| slices.get(q).map_or(k, |of| of[k]);
-        let off = error(n, &pending.added, [&pending.before, &self.rate], group);
-        let sum = |a: &Amounts, q: usize| a[q].iter().sum::<f64>();
+        let grown = growth(&amounts(s), &self.first);
         let mut worst = 0.0f64;
-        for (q, off) in off.iter().enumerate() {
-            let added = sum(&pending.added, q);
-            if added > 0.0 {
-                worst = worst.max(off / added);
+        for (q, added) in pending.added.iter().enumerate() {
+            let rates = [&pending.before[q], &self.rate[q]];
+            let sum = |list: &[f64]| list.iter().sum::<f64>();
+            let (all, total) = (sum(added), sum(&grown[q]));
+            if all <= 0.0 {
+                continue;
             }
+            let off = if q < s.scars.len() {
+                let form = misplaced(added, self.last.as_ref().map_or(rates[0], |l| &l[q]));
+                self.form[q] = form;
+                worst = worst.max(form / total);
+                error(n, all, rates.map(|r| sum(r)))
+            } else {
+                let at = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(0.0);
+                let bond = |(k, x): (usize, &f64)| error(n, *x, rates.map(|r| at(r, k)));
+                added.iter().enumerate().map(bond).sum()
+            };
             self.off[q] += off;
+            worst = worst.max(off / all);
         }
+        self.last = Some(pending.added.clone());
         self.summary.jumps.push(Jump {
             after: self.represented - self.spec.control - pending.cycles,
             cycles: pending.cycles,
@@ -186,7 +187,9 @@ impl Jumps {
     /// Cycles that the next cycle stands for: by the error, by the growth of damage, by what is left of the run.
     fn next(&mut self) -> u32 {
         // A jump that is too long by its error is shortened to none, and tried again from two on.
-        self.length = self.length.clamp(2.0, f64::from(self.spec.at_most).max(1.0));
+        self.length = self
+            .length
+            .clamp(2.0, f64::from(self.spec.at_most).max(1.0));
         let damage = self.rate.last().into_iter().flatten();
         let fastest = damage.fold(0.0, |m: f64, x| m.max(*x));
         let by_damage = if fastest > 0.0 {
@@ -205,14 +208,15 @@ impl Jumps {
     /// What the summary says at the end of the run.
     pub fn outcome<S: Space>(&self, s: &Simulation<S>, worn: f64) -> JumpSummary {
         let grown = growth(&amounts(s), &self.first);
-        let share = |(off, grown): (&f64, &Vec<f64>)| {
+        let share = |((off, form), grown): ((&f64, &f64), &Vec<f64>)| {
             let all: f64 = grown.iter().sum();
-            if all > 0.0 { off / all } else { 0.0 }
+            if all > 0.0 { (off + form) / all } else { 0.0 }
         };
+        let off = self.off.iter().zip(&self.form);
         JumpSummary {
             computed_cycles: self.computed,
             represented_cycles: self.represented,
-            error_estimate: self.off.iter().zip(&grown).map(share).fold(0.0, f64::max),
+            error_estimate: off.zip(&grown).map(share).fold(0.0, f64::max),
             wear_volume: worn,
             ..self.summary.clone()
         }
