@@ -11,8 +11,8 @@ pub struct Jump {
     pub after: u32,
     /// Cycles that its one computed cycle stood for.
     pub cycles: u32,
-    /// By how much it is off: the worst of volumes and damage, in parts of what it added, and of what it may have
-    /// misplaced, in parts of the scar. See [`crate::wear::jump`].
+    /// By how much it is off: the worst of volumes and damage, in parts of what it added, and of what is misplaced
+    /// after it, in parts of the scar at the end of the run. See [`crate::wear::jump`].
     pub error: f64,
 }
 
@@ -40,7 +40,7 @@ pub struct JumpSummary {
     pub asked_cycles: Option<u32>,
     /// Error of a jump that was aimed at.
     pub tolerance: f64,
-    /// What all jumps were off by and the last one may have misplaced, in parts of all wear, or of all growth of damage:
+    /// What all jumps were off by and the most that was misplaced after one, in parts of all wear, or of all growth of damage:
     /// the worst.
     pub error_estimate: f64,
     /// Volume worn off first bodies, in all cycles (m^3; m^3/m in 2D).

@@ -13,8 +13,8 @@ pub struct JumpSpec {
     pub after: u32,
     /// Cycles that one computed cycle stands for, at most.
     pub at_most: u32,
-    /// Error of a jump that the length of the next one aims at: of what it adds, in parts of it, and of what it may have
-    /// misplaced, in parts of the scar.
+    /// Error of a jump that the length of the next one aims at: of what it adds, in parts of it, and of what it
+    /// misplaces, in parts of the scar after `cycles`; of the scar at hand without `cycles`.
     pub tolerance: f64,
     /// Cycles computed one by one after each jump, against which it is checked.
     pub control: u32,

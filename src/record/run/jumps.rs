@@ -43,7 +43,7 @@ pub(super) struct Jumps {
     pending: Option<Pending>,
     /// Sum of what jumps were off by, quantity by quantity.
     off: Vec<f64>,
-    /// What the last jump may have misplaced on each scar.
+    /// The most that was misplaced on each scar after a jump.
     form: Vec<f64>,
     /// What the last jump that was checked added.
     last: Option<Amounts>,
@@ -154,6 +154,11 @@ impl Jumps {
     fn judge<S: Space>(&mut self, s: &Simulation<S>, pending: &Pending) {
         let n = f64::from(pending.cycles);
         let grown = growth(&amounts(s), &self.first);
+        // What is misplaced now is a smaller part of the scar that the run ends with.
+        let to_come = self
+            .spec
+            .cycles
+            .map_or(1.0, |n| f64::from(n) / f64::from(self.represented));
         let mut worst = 0.0f64;
         for (q, added) in pending.added.iter().enumerate() {
             let rates = [&pending.before[q], &self.rate[q]];
@@ -164,8 +169,8 @@ impl Jumps {
             }
             let off = if q < s.scars.len() {
                 let form = misplaced(added, self.last.as_ref().map_or(rates[0], |l| &l[q]));
-                self.form[q] = form;
-                worst = worst.max(form / total);
+                self.form[q] = self.form[q].max(form);
+                worst = worst.max(form / (total * to_come));
                 error(n, all, rates.map(|r| sum(r)))
             } else {
                 let at = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(0.0);
