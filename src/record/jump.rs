@@ -40,7 +40,7 @@ pub struct JumpSummary {
     pub asked_cycles: Option<u32>,
     /// Error of a jump that was aimed at.
     pub tolerance: f64,
-    /// What all jumps were off by and the most that was misplaced after one, in parts of all wear, or of all growth of damage:
+    /// What all jumps were off by and what is misplaced at the end, in parts of all wear, or of all growth of damage:
     /// the worst.
     pub error_estimate: f64,
     /// Volume worn off first bodies, in all cycles (m^3; m^3/m in 2D).

@@ -13,9 +13,11 @@
 //! The form of a scar does not add up: what a jump misplaces is worn off where it stands proud. Between rigid bodies a
 //! single cycle says nothing about it, since it touches at some of the places only; a jump is long enough to. So
 //! jumps check each other: with a and b the volumes that the last one and this one wore off place by place, A and B
-//! their sums, e_0, e_1, e_2 what was misplaced before, between and after them, b - a B/A is about e_2 - 2 e_1 + e_0. Of
-//! errors that do not know of each other that is sqrt(1 + 4 + 1) times one of them, which so is
-//! sum |b - a B/A|/sqrt(6). What the scar truly changed in form is counted with it.
+//! their sums, e_0, e_1, e_2 what was misplaced before, between and after them, b - a B/A is about
+//! e_2 - (1 + B/A) e_1 + e_0 B/A. Of errors that do not know of each other that is sqrt(1 + (1 + B/A)^2 + (B/A)^2) times
+//! one of them, sqrt(6) for jumps of one length. What the scar truly changed in form is counted with it.
+//! What stands proud is worn off by what follows: S misplaced, as a sum of differences, leaves at most
+//! S exp(-W/(2 S)) after a volume W, which is an assumption, held against whole runs in `docs/wear.md`.
 
 /// What cycles change, or what they changed it by: one list for each quantity, of values that add up.
 pub type Amounts = Vec<Vec<f64>>;
@@ -44,7 +46,17 @@ pub fn misplaced(now: &[f64], before: &[f64]) -> f64 {
     }
     let pairs = now.iter().zip(before);
     let differ: f64 = pairs.map(|(x, y)| (x - y * all / then).abs()).sum();
-    differ / 6f64.sqrt()
+    let ratio = all / then;
+    differ / (1.0 + (1.0 + ratio).powi(2) + ratio * ratio).sqrt()
+}
+
+/// What is left of a misplaced volume when another was worn off after it.
+pub fn left(misplaced: f64, worn: f64) -> f64 {
+    if misplaced > 0.0 {
+        misplaced * (-0.5 * worn / misplaced).exp()
+    } else {
+        0.0
+    }
 }
 
 /// The length of the next jump after one of `n` with an error, relative as the tolerance is.

@@ -9,7 +9,10 @@ use crate::scene::build::Dimensional;
 use crate::scene::case::Case;
 use crate::scene::jump::JumpSpec;
 use crate::step::Simulation;
-use crate::wear::jump::{Amounts, error, growth, misplaced, next_length};
+use crate::wear::jump::{Amounts, error, growth, left, misplaced, next_length};
+
+/// The part of what is left of a run that a jump may take.
+const TAPER: f64 = 1.0 / 3.0;
 
 /// A jump that waits for its control.
 #[derive(Debug)]
@@ -43,7 +46,7 @@ pub(super) struct Jumps {
     pending: Option<Pending>,
     /// Sum of what jumps were off by, quantity by quantity.
     off: Vec<f64>,
-    /// The most that was misplaced on each scar after a jump.
+    /// What is misplaced on each scar.
     form: Vec<f64>,
     /// What the last jump that was checked added.
     last: Option<Amounts>,
@@ -169,7 +172,7 @@ impl Jumps {
             }
             let off = if q < s.scars.len() {
                 let form = misplaced(added, self.last.as_ref().map_or(rates[0], |l| &l[q]));
-                self.form[q] = self.form[q].max(form);
+                self.form[q] = form.max(left(self.form[q], all));
                 worst = worst.max(form / (total * to_come));
                 error(n, all, rates.map(|r| sum(r)))
             } else {
@@ -204,8 +207,9 @@ impl Jumps {
         };
         let mut most = self.length.min(by_damage);
         if let Some(cycles) = self.spec.cycles {
-            let left = cycles.saturating_sub(self.represented);
-            most = most.min(f64::from(left.saturating_sub(self.spec.control)));
+            // The last jumps are ever shorter: each takes back what the one before it misplaced.
+            let still = cycles.saturating_sub(self.represented + self.spec.control);
+            most = most.min(f64::from(still) * TAPER);
         }
         (most.floor() as u32).max(1)
     }
