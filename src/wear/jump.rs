@@ -7,8 +7,9 @@
 //! touches, so an extrapolated field has the next cycle wear just what the extrapolation missed, and never widens.
 //!
 //! What adds up from cycle to cycle (the volume of a scar, the damage of a bond) is checked by the cycles beside the jump,
-//! which are computed one by one. With a the increment of the jump, r that of the cycle before it and r' the mean one of
-//! the cycles after it, the trapezium rule gives N (r + r')/2, and the jump is off by |a - N (r + r')/2|.
+//! which are computed one by one: through the increments of the cycles before the last jump, before this one and after
+//! it goes a parabola, which is summed over the cycles of the jump. The jump is off by the difference. The trapezium of
+//! the two increments beside it would miss what a growth that bends hides.
 //!
 //! The form of a scar does not add up: what a jump misplaces is worn off where it stands proud. Between rigid bodies a
 //! single cycle says nothing about it, since it touches at some of the places only; a jump is long enough to. So
@@ -22,19 +23,30 @@
 /// What cycles change, or what they changed it by: one list for each quantity, of values that add up.
 pub type Amounts = Vec<Vec<f64>>;
 
-/// now - before, value by value; what fell, or was not there before, did not grow.
+/// now - before, value by value; what was not there before grew from zero, what fell did not grow.
 pub fn growth(now: &Amounts, before: &Amounts) -> Amounts {
     let list = |(now, before): (&Vec<f64>, &Vec<f64>)| {
-        let of = |(k, x): (usize, &f64)| before.get(k).map_or(0.0, |b| (x - b).max(0.0));
+        let of = |(k, x): (usize, &f64)| (x - before.get(k).copied().unwrap_or(0.0)).max(0.0);
         now.iter().enumerate().map(of).collect()
     };
     now.iter().zip(before).map(list).collect()
 }
 
-/// By how much a jump of `n` cycles that added `jumped` is off, against the trapezium of the increments of the cycles
-/// before and after it.
-pub fn error(n: f64, jumped: f64, rates: [f64; 2]) -> f64 {
-    (jumped - 0.5 * n * (rates[0] + rates[1])).abs()
+/// The parts that increments at three cycles have in the sum over the cycles 1 to n of the parabola through them.
+pub fn parts(n: u32, at: [f64; 3]) -> [f64; 3] {
+    let part = |k: usize| {
+        let [i, j] = [(k + 1) % 3, (k + 2) % 3];
+        let below = (at[k] - at[i]) * (at[k] - at[j]);
+        let value = |c: u32| (f64::from(c) - at[i]) * (f64::from(c) - at[j]) / below;
+        (1..=n).map(value).sum()
+    };
+    [part(0), part(1), part(2)]
+}
+
+/// By how much a jump that added `jumped` is off, against increments with their [`parts`].
+pub fn error(jumped: f64, rates: [f64; 3], parts: &[f64; 3]) -> f64 {
+    let expected: f64 = rates.iter().zip(parts).map(|(r, p)| r * p).sum();
+    (jumped - expected).abs()
 }
 
 /// What is misplaced after a jump, as the sum of differences of volume place by place, from the volumes that it and the
@@ -73,25 +85,29 @@ pub fn next_length(n: f64, error: f64, tolerance: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Increments of a cycle that grow by the same amount each: the trapezium is exact.
+    /// Increments that are a parabola of the cycle, growth of the third order: nothing is off.
     #[test]
-    fn growth_of_second_order_is_jumped_exactly() {
-        let rate = |i: u32| 3.0 + 0.25 * f64::from(i);
+    fn growth_of_third_order_is_summed_exactly() {
+        let rate = |c: f64| 3.0 + 0.25 * c + 0.01 * c * c;
         for n in [1, 7, 50] {
-            let added: f64 = (1..=n).map(rate).sum();
-            assert!(error(f64::from(n), added, [rate(0), rate(n + 1)]) < 1e-9);
+            let at = [-9.0, 0.0, f64::from(n) + 1.0];
+            let added: f64 = (1..=n).map(|c| rate(f64::from(c))).sum();
+            assert!(error(added, at.map(rate), &parts(n, at)) < 1e-9 * added);
         }
     }
 
-    /// sum i^2 = n (n + 1) (2 n + 1)/6 beside n (n + 1)^2/2: off by n (n + 1) (n + 2)/6.
+    /// Of increments c^3 with c = 0, 1 and n + 1 the parabola is (n + 2) c^2 - (n + 1) c, and the sum of powers
+    /// gives what is left.
     #[test]
-    fn growth_of_third_order_is_off_by_its_remainder() {
-        let rate = |i: u32| f64::from(i * i);
-        for n in [1, 7, 50] {
-            let added: f64 = (1..=n).map(rate).sum();
-            let expected = f64::from(n * (n + 1) * (n + 2)) / 6.0;
-            let off = error(f64::from(n), added, [rate(0), rate(n + 1)]);
-            assert!((off / expected - 1.0).abs() < 1e-12, "{off} {expected}");
+    fn growth_of_fourth_order_is_off_by_its_remainder() {
+        for n in [3u32, 7, 50] {
+            let m = f64::from(n);
+            let at = [0.0, 1.0, m + 1.0];
+            let squares = m * (m + 1.0) * (2.0 * m + 1.0) / 6.0;
+            let added = (0.5 * m * (m + 1.0)).powi(2);
+            let parabola = (m + 2.0) * squares - (m + 1.0) * 0.5 * m * (m + 1.0);
+            let off = error(added, at.map(|c| c.powi(3)), &parts(n, at));
+            assert!((off / (added - parabola).abs() - 1.0).abs() < 1e-9, "{off}");
         }
     }
 
@@ -127,9 +143,9 @@ mod tests {
     }
 
     #[test]
-    fn what_falls_or_is_new_did_not_grow() {
+    fn what_falls_did_not_grow_and_what_is_new_did() {
         let grown = growth(&vec![vec![1.0, 0.5, 0.3]], &vec![vec![0.25, 0.75]]);
-        assert_eq!(grown, [[0.75, 0.0, 0.0]]);
+        assert_eq!(grown, [[0.75, 0.0, 0.3]]);
     }
 
     #[test]

@@ -49,7 +49,7 @@ fn a_scar_by_jumps_is_the_scar_of_all_cycles() {
     let (jumped, profile) = ran("fretting_wear_jump", "scar", &[]);
     let (full, expected) = ran("fretting_wear_jump", "scar-full", &["jump=None"]);
     let jump = jumped.jump.as_ref().unwrap();
-    assert_eq!(jump.represented_cycles, 400);
+    assert_eq!(jump.represented_cycles, 1000);
     assert!(
         20 * jumped.steps <= full.steps,
         "{} of {}",
@@ -95,7 +95,7 @@ fn the_damage_of_a_bond_by_jumps_is_that_of_all_cycles() {
     let (jumped, _) = ran("verification/bond_fatigue", "bond", &[]);
     let (full, _) = ran("verification/bond_fatigue", "bond-full", &["jump=None"]);
     let jump = jumped.jump.as_ref().unwrap();
-    assert_eq!(jump.represented_cycles, 400);
+    assert_eq!(jump.represented_cycles, 1000);
     assert!(
         20 * jumped.steps <= full.steps,
         "{} of {}",
@@ -122,7 +122,7 @@ fn the_damage_of_a_bond_by_jumps_is_that_of_all_cycles() {
 /// A bond that breaks does so about the cycle at which it breaks without jumps, and its energy is booked.
 #[test]
 fn a_bond_that_breaks_in_a_jump_closes_the_ledger() {
-    let soft = "interfaces.0.parameters.damage.length=0.15";
+    let soft = "interfaces.0.parameters.damage.length=0.4";
     let (jumped, _) = ran("verification/bond_fatigue", "breaks", &[soft]);
     assert_eq!(jumped.broken, 1);
     assert!(

@@ -9,7 +9,7 @@ use crate::scene::build::Dimensional;
 use crate::scene::case::Case;
 use crate::scene::jump::JumpSpec;
 use crate::step::Simulation;
-use crate::wear::jump::{Amounts, error, growth, left, misplaced, next_length};
+use crate::wear::jump::{Amounts, error, growth, left, misplaced, next_length, parts};
 
 /// The part of what is left of a run that a jump may take.
 const TAPER: f64 = 1.0 / 3.0;
@@ -44,6 +44,10 @@ pub(super) struct Jumps {
     /// Length of the next jump, before it is rounded and bound.
     length: f64,
     pending: Option<Pending>,
+    /// Growth over a cycle before the last jump, and how many cycles before the next one that was.
+    earlier: Option<(Amounts, f64)>,
+    /// How many cycles before the next jump the growth `rate` is of; 0 for the cycle just before it.
+    centre: f64,
     /// Sum of what jumps were off by, quantity by quantity.
     off: Vec<f64>,
     /// What is misplaced on each scar.
@@ -67,6 +71,8 @@ impl Jumps {
             rate: Vec::new(),
             length: f64::from(spec.after),
             pending: None,
+            earlier: None,
+            centre: 0.0,
             off: vec![0.0; first.len()],
             form: vec![0.0; first.len()],
             last: None,
@@ -146,7 +152,13 @@ impl Jumps {
                 self.rate = pending.control.iter().map(scaled).collect();
                 self.judge(s, &pending);
             }
-            None => self.rate = grown,
+            None => {
+                self.rate = grown;
+                self.centre = 0.0;
+                if let Some((_, back)) = &mut self.earlier {
+                    *back += 1.0;
+                }
+            }
         }
         if self.computed >= self.spec.after {
             self.stands_for = self.next();
@@ -156,6 +168,20 @@ impl Jumps {
     /// Compares a jump with the cycles beside it, and learns the length of the next.
     fn judge<S: Space>(&mut self, s: &Simulation<S>, pending: &Pending) {
         let n = f64::from(pending.cycles);
+        // Cycles count from the one before the jump; the mean of those after it stands for their middle.
+        let control = f64::from(pending.computed);
+        let middle = 0.5 * (control - 1.0);
+        let after = n + 1.0 + middle;
+        // Before the first jump the two cycles are the same, and a straight line goes through the others.
+        let (earlier, parts) = match self.earlier.take() {
+            Some((rate, back)) => (rate, parts(pending.cycles, [-back, -self.centre, after])),
+            None => {
+                let share = 0.5 * n * (n + 1.0) / after;
+                (pending.before.clone(), [0.0, n - share, share])
+            }
+        };
+        self.earlier = Some((pending.before.clone(), after + middle + self.centre));
+        self.centre = middle;
         let grown = growth(&amounts(s), &self.first);
         // What is misplaced now is a smaller part of the scar that the run ends with.
         let to_come = self
@@ -164,20 +190,20 @@ impl Jumps {
             .map_or(1.0, |n| f64::from(n) / f64::from(self.represented));
         let mut worst = 0.0f64;
         for (q, added) in pending.added.iter().enumerate() {
-            let rates = [&pending.before[q], &self.rate[q]];
+            let rates = [&earlier[q], &pending.before[q], &self.rate[q]];
             let sum = |list: &[f64]| list.iter().sum::<f64>();
             let (all, total) = (sum(added), sum(&grown[q]));
             if all <= 0.0 {
                 continue;
             }
             let off = if q < s.scars.len() {
-                let form = misplaced(added, self.last.as_ref().map_or(rates[0], |l| &l[q]));
+                let form = misplaced(added, self.last.as_ref().map_or(rates[1], |l| &l[q]));
                 self.form[q] = form.max(left(self.form[q], all));
                 worst = worst.max(form / (total * to_come));
-                error(n, all, rates.map(|r| sum(r)))
+                error(all, rates.map(|r| sum(r)), &parts)
             } else {
                 let at = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(0.0);
-                let bond = |(k, x): (usize, &f64)| error(n, *x, rates.map(|r| at(r, k)));
+                let bond = |(k, x): (usize, &f64)| error(*x, rates.map(|r| at(r, k)), &parts);
                 added.iter().enumerate().map(bond).sum()
             };
             self.off[q] += off;
@@ -232,12 +258,14 @@ impl Jumps {
     }
 }
 
-/// What cycles change: volumes worn at the places of each scar, and last the damage of all bonds.
+/// What cycles change: volumes worn at the places of each scar, and last the damage of the bonds that hold.
 fn amounts<S: Space>(s: &Simulation<S>) -> Amounts {
     let volumes = |rows: Vec<[f64; 3]>| rows.iter().map(|r| r[1] * r[2]).collect();
     let mut all: Amounts = s.scars.iter().map(|scar| volumes(scar.along())).collect();
     let bonds = s.network.memory.iter().flat_map(|m| &m.bonds);
-    all.push(bonds.map(|b| b.damage).collect());
+    // What broke, or is no bond, has none to grow.
+    let held = |d: f64| if d < 1.0 { d } else { 0.0 };
+    all.push(bonds.map(|b| held(b.damage)).collect());
     all
 }
 
