@@ -9,7 +9,8 @@
 //! What adds up from cycle to cycle (the volume of a scar, the damage of a bond) is checked by the cycles beside the jump,
 //! which are computed one by one: through the increments of the cycles before the last jump, before this one and after
 //! it goes a parabola, which is summed over the cycles of the jump. The jump is off by the difference. The trapezium of
-//! the two increments beside it would miss what a growth that bends hides.
+//! the two increments beside it would miss what a growth that bends hides. Of z' = f(z) an error of z grows as f(z)
+//! does; so that of earlier jumps is multiplied by r'/r where increments grow.
 //!
 //! The form of a scar does not add up: what a jump misplaces is worn off where it stands proud. Between rigid bodies a
 //! single cycle says nothing about it, since it touches at some of the places only; a jump is long enough to. So
@@ -47,6 +48,16 @@ pub fn parts(n: u32, at: [f64; 3]) -> [f64; 3] {
 pub fn error(jumped: f64, rates: [f64; 3], parts: &[f64; 3]) -> f64 {
     let expected: f64 = rates.iter().zip(parts).map(|(r, p)| r * p).sum();
     (jumped - expected).abs()
+}
+
+/// By how much an error grows while the increment of a cycle goes from one value to another: of z' = f(z) the error of
+/// z grows as f does. Increments that fall are not counted on.
+pub fn carried(from: f64, to: f64) -> f64 {
+    if from > 0.0 {
+        (to / from).max(1.0)
+    } else {
+        1.0
+    }
 }
 
 /// What is misplaced after a jump, as the sum of differences of volume place by place, from the volumes that it and the
@@ -140,6 +151,16 @@ mod tests {
         // Half, but for the form of the distribution: a sum of three is nearer to a Gaussian, whose mean |e| is smaller
         // beside its deviation, sqrt(2/pi) against sqrt(3)/2.
         assert!((found / 0.5 - 0.93).abs() < 0.05, "{found}");
+    }
+
+    /// z' = z^2 from z = 1 reaches 1/(1 - t); an error d at the start ends as d/(1 - t)^2.
+    #[test]
+    fn errors_are_carried_as_the_equation_carries_them() {
+        let z = |from: f64, t: f64| 1.0 / (1.0 / from - t);
+        let (d, t) = (1e-7, 0.6);
+        let grown = (z(1.0 + d, t) - z(1.0, t)) / d;
+        assert!((carried(1.0, z(1.0, t).powi(2)) / grown - 1.0).abs() < 1e-5);
+        assert_eq!(carried(2.0, 1.0), 1.0);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::scene::build::Dimensional;
 use crate::scene::case::Case;
 use crate::scene::jump::JumpSpec;
 use crate::step::Simulation;
-use crate::wear::jump::{Amounts, error, growth, left, misplaced, next_length, parts};
+use crate::wear::jump::{Amounts, carried, error, growth, left, misplaced, next_length, parts};
 
 /// The part of what is left of a run that a jump may take.
 const TAPER: f64 = 1.0 / 3.0;
@@ -206,7 +206,7 @@ impl Jumps {
                 let bond = |(k, x): (usize, &f64)| error(*x, rates.map(|r| at(r, k)), &parts);
                 added.iter().enumerate().map(bond).sum()
             };
-            self.off[q] += off;
+            self.off[q] = off + self.off[q] * carried(sum(rates[1]), sum(rates[2]));
             worst = worst.max(off / all);
         }
         self.last = Some(pending.added.clone());
