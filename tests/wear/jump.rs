@@ -79,13 +79,13 @@ fn a_scar_by_jumps_is_the_scar_of_all_cycles() {
     // V against E_d is of all cycles: k/mu, as Archard's volume is k P times the path, and E_d mu P times it.
     let [a, b] = [&jumped, &full].map(|s| s.fretting.as_ref().unwrap());
     assert!(
-        (a.energy / b.energy - 1.0).abs() < 0.01,
+        (a.energy / b.energy - 1.0).abs() < BOUND,
         "{} {}",
         a.energy,
         b.energy
     );
     let alpha = a.alpha.unwrap().value;
-    assert!((alpha / (1.5e-12 / 0.6) - 1.0).abs() < 0.01, "{alpha}");
+    assert!((alpha / (1.5e-12 / 0.6) - 1.0).abs() < 0.02, "{alpha}");
     assert!((jumped.wear.Qs / full.wear.Qs - 1.0).abs() < BOUND);
 }
 
