@@ -40,7 +40,7 @@ fn refused(case: &str, sets: &[&str]) -> String {
     }
 }
 
-/// The bound of the comparison that the field makes: C. Cruzado et al. keep a hundred cycles within 4 %.
+/// The bound of the comparison that the field makes: Cruzado et al. (2012) keep a hundred cycles within 4 %.
 const BOUND: f64 = 0.04;
 
 /// Wear of the cylinder on a flat: volume, largest depth and profile of the run that computes every cycle.
@@ -130,6 +130,15 @@ fn a_bond_that_breaks_in_a_jump_closes_the_ledger() {
         "{}",
         jumped.energy_residual_relative
     );
+}
+
+#[test]
+fn at_most_one_cycle_is_no_jump() {
+    let sets = ["jump.at_most=1", "jump.cycles=12"];
+    let (summary, _) = ran("verification/bond_fatigue", "none", &sets);
+    let jump = summary.jump.unwrap();
+    assert_eq!((jump.computed_cycles, jump.represented_cycles), (12, 12));
+    assert!(jump.jumps.is_empty());
 }
 
 #[test]

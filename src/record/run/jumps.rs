@@ -220,10 +220,8 @@ impl Jumps {
 
     /// Cycles that the next cycle stands for: by the error, by the growth of damage, by what is left of the run.
     fn next(&mut self) -> u32 {
-        // A jump that is too long by its error is shortened to none, and tried again from two on.
-        self.length = self
-            .length
-            .clamp(2.0, f64::from(self.spec.at_most).max(1.0));
+        // Two at least, so that lengths can grow again; `at_most` may be one.
+        self.length = self.length.max(2.0).min(f64::from(self.spec.at_most));
         let damage = self.rate.last().into_iter().flatten();
         let fastest = damage.fold(0.0, |m: f64, x| m.max(*x));
         let by_damage = if fastest > 0.0 {
