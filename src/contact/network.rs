@@ -110,6 +110,9 @@ pub struct Network<S: Space> {
     pub spent: Option<Vec<Spent>>,
     /// What the last step wore off surfaces; kept where something asked for it.
     pub losses: Option<Vec<Loss>>,
+    /// Times over that a step wears and damages: the cycles that the cycle at hand stands for, see
+    /// [`crate::wear::jump`]; 1 without jumps.
+    pub stands_for: f64,
     /// How often the neighbour list was rebuilt.
     pub rebuilds: u64,
     pub(super) candidates: Vec<(u32, u32)>,
@@ -136,6 +139,7 @@ impl<S: Space> Network<S> {
             joins: Vec::new(),
             spent: None,
             losses: None,
+            stands_for: 1.0,
             rebuilds: 0,
             candidates: Vec::new(),
             seen_at: Vec::new(),

@@ -53,8 +53,12 @@ impl Passes {
         self.gather_after(law, network, sites, info);
         self.grow(law, info, &mut held)?;
         for (at, damage) in self.members.iter().zip(&mut held.damage) {
-            let used = network.bond(&network.contacts[*at]).map_or(0.0, |b| b.used);
+            let bond = network.bond(&network.contacts[*at]);
+            let (before, used) = bond.map_or((0.0, 0.0), |b| (b.damage, b.used));
             *damage = damage.max(used);
+            if network.stands_for != 1.0 {
+                *damage = (before + network.stands_for * (*damage - before)).min(1.0);
+            }
         }
         self.keep_state(index, network);
         self.settle(index, law, network, &held, totals);

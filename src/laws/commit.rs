@@ -160,7 +160,7 @@ impl Passes {
         self.columns.size_outputs();
         self.run(wear, info, 0.0, Call::Commit)?;
         for (k, at) in self.members.iter().enumerate() {
-            let volume = self.columns.out.volume[k];
+            let volume = network.stands_for * self.columns.out.volume[k];
             if network.contacts[*at].key.surface().is_some() {
                 totals.worn_first += volume;
                 if let (Some(losses), true) = (&mut network.losses, volume > 0.0) {

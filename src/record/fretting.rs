@@ -56,7 +56,7 @@ pub struct Slope {
 pub struct Outcome {
     /// Running regime over all complete cycles.
     pub regime: Regime,
-    /// Energy dissipated in all complete cycles, the sum of E_d (J; J/m in 2D).
+    /// Energy dissipated in all complete cycles, the sum of E_d (J; J/m in 2D), also of those jumped over.
     pub energy: f64,
     /// Volume worn off first bodies in them (m^3; m^3/m).
     pub wear_volume: f64,
@@ -72,7 +72,8 @@ impl Outcome {
         let first = complete.first()?;
         let kind = Regime::of(first.energy_ratio);
         let same = complete.iter().all(|c| Regime::of(c.energy_ratio) == kind);
-        let points: Vec<(f64, f64)> = complete.iter().map(|c| (c.work, c.wear_volume)).collect();
+        let represented = |c: &&Cycle| (c.work * (1.0 + f64::from(c.jumped)), c.wear_volume);
+        let points: Vec<(f64, f64)> = complete.iter().map(represented).collect();
         let energy = points.iter().map(|p| p.0).sum();
         let volume = points.iter().map(|p| p.1).sum();
         Some(Self {

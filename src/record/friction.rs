@@ -59,6 +59,9 @@ pub struct Cycle {
     pub regime: Regime,
     /// Volume worn off first bodies (m^3; m^3/m in 2D).
     pub wear_volume: f64,
+    /// Cycles that it stands for beside itself, see [`crate::wear::jump`]: wear and damage are of all, the rest is of
+    /// one.
+    pub jumped: u32,
 }
 
 /// Follows the cycles of a test.
@@ -127,6 +130,19 @@ impl Cycles {
             Some(period) => ((time - self.start) / period - 1e-9).floor().max(0.0) as u32 + 1,
             None => 1,
         }
+    }
+
+    /// Share of its cycle that is done at a time; 1 at its end.
+    pub fn share(&self, time: f64) -> f64 {
+        let before = f64::from(self.number(time).saturating_sub(1));
+        let cycles = |period: f64| (time - self.start) / period - before;
+        let share = self.period.map_or(0.0, cycles).max(0.0);
+        if share > 1.0 - 1e-6 { 1.0 } else { share }
+    }
+
+    /// Length of a cycle (s); none without cycles.
+    pub fn period(&self) -> Option<f64> {
+        self.period
     }
 
     /// Whether the motion goes to and fro.

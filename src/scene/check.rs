@@ -157,8 +157,9 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
     super::phases::gravity_drive(case.gravity_drive.as_ref(), dimension)?;
     super::phases::check(case)?;
     super::measures::check(case)?;
-    super::circuit::check(case)?;
-    friction(case, dimension)
+    friction(case, dimension)?;
+    super::jump::check(case)?;
+    super::circuit::check(case)
 }
 
 fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), Fault> {

@@ -5,6 +5,7 @@ pub mod case;
 pub mod check;
 pub mod circuit;
 pub mod interfaces;
+pub mod jump;
 pub mod material;
 pub mod measures;
 pub mod mesh_file;

@@ -2,5 +2,6 @@
 
 mod circuit;
 mod events;
+mod jump;
 mod scar;
 mod scar_files;

@@ -3,7 +3,7 @@
 use super::{Recorder, RunError, unwritable};
 use crate::record::biaxial::{self, Outcome};
 use crate::record::summary::Wear;
-use crate::record::{circuit, figures, fretting, scars};
+use crate::record::{circuit, figures, fretting, jump, scars};
 use crate::scene::build::Dimensional;
 
 impl<S: Dimensional> Recorder<'_, S> {
@@ -43,13 +43,18 @@ impl<S: Dimensional> Recorder<'_, S> {
         summary.findings = self.measures.verdict(&self.table);
         summary.energy = s.energy;
         summary.energy_residual_relative = s.energy.relative_residual();
-        let time = s.time.max(f64::MIN_POSITIVE);
+        summary.jump = self.jumps.as_ref().map(|j| j.outcome(s, self.worn.0));
+        // Wear goes on over the cycles that were jumped over.
+        let cycles = self.jumps.as_ref().map_or(0, |j| j.jumped());
+        let period = self.cycles.as_ref().and_then(|(c, _)| c.period());
+        let over = f64::from(cycles) * period.unwrap_or(0.0);
+        let time = (s.time + over).max(f64::MIN_POSITIVE);
         // Nothing leaves a contact that is periodic along the sliding.
         let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
         let closed = s.shapes.periodic.period[along].map(|_| 0.0);
         summary.wear = Wear {
             Qs: self.worn.0 * self.density / time,
-            Qi: self.internal_flow / time,
+            Qi: self.internal_flow / s.time.max(f64::MIN_POSITIVE),
             Qe: closed,
             Qw: closed,
             volume_first_bodies: self.worn.0,
@@ -85,6 +90,9 @@ impl<S: Dimensional> Recorder<'_, S> {
             if let Some(c) = &self.summary.circuit {
                 let title = &self.loaded.case.name;
                 circuit::draw(&self.out, title, &self.table, c.window, S::D)?;
+            }
+            if let Some(j) = &self.summary.jump {
+                jump::draw(&self.out, &self.loaded.case.name, j, S::D)?;
             }
             self.measures
                 .draw(&self.out, &self.loaded.case.name, &self.table)?;

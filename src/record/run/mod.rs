@@ -3,10 +3,13 @@
 mod account;
 mod dump;
 mod end;
+mod jumps;
 mod row;
 mod stamps;
 
 use self::account::Account;
+use self::jumps::Jumps;
+use self::stamps::{density_of, stamps};
 use super::biaxial::Biaxial;
 use super::friction::{Cycles, Sample, State as Cumulated};
 use super::layer::Layer;
@@ -128,6 +131,8 @@ struct Recorder<'a, S: Space> {
     biaxial: Option<Biaxial>,
     measures: Measures<S>,
     account: Account<S>,
+    /// Jumps over cycles, where the case has them.
+    jumps: Option<Jumps>,
     layer: Layer<S>,
     sample: Option<Sample>,
     slide: f64,
@@ -165,13 +170,17 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let spec = case.biaxial.as_ref();
         let biaxial = spec.and_then(|spec| Biaxial::new(spec, &simulation));
         let measures = Measures::new(&case.measures);
+        let jumps = cycles
+            .as_ref()
+            .and_then(|(cycles, _)| Jumps::begin(case, cycles, &mut simulation));
         let mut columns = row::columns(&simulation, cycles.is_some(), biaxial.is_some());
+        columns.extend(jumps.is_some().then(Jumps::column));
         columns.extend(Account::<S>::columns(case));
         columns.extend(measures.columns());
         let table_path = options.out.join("statistics.csv");
         let table =
             Table::create(&table_path, columns.clone()).map_err(|e| unwritable(&table_path, &e))?;
-        let plugins = stamps::stamps(&simulation.laws);
+        let plugins = stamps(&simulation.laws);
         let summary = Summary {
             case: case.name.clone(),
             dimension: S::D,
@@ -206,6 +215,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             biaxial,
             measures,
             account: Account::new(case),
+            jumps,
             layer: Layer::new(&simulation),
             sample: None,
             slide: 0.0,
@@ -239,7 +249,8 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
                 self.strain = self.strain.take().map(|_| Strain::new(&self.simulation));
             }
             let whole = self.simulation.whole();
-            let finished = self.simulation.control.finished() || whole.is_err();
+            let reached = self.jump();
+            let finished = self.simulation.control.finished() || whole.is_err() || reached;
             let last = step == self.total || finished;
             self.account(last)?;
             if output.fclib > 0 && step % output.fclib == 0 {
@@ -250,6 +261,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             }
             if step % output.every == 0 || last {
                 let mut row = self.row(&report);
+                row.extend(self.cycles_represented());
                 if self.loaded.case.circuit.is_some() {
                     row.extend(self.account.row());
                 }
@@ -477,13 +489,4 @@ fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
         .map(|b| s.bodies.mass[b] * s.bodies.velocity[b][along].abs())
         .sum::<f64>()
         / length
-}
-
-/// Density of the first bodies, for wear as a mass.
-fn density_of(loaded: &Loaded, any: bool) -> f64 {
-    let material = loaded.case.bodies.first().map(|b| b.material.as_str());
-    match (any, material) {
-        (true, Some(name)) => loaded.density(name).unwrap_or(0.0),
-        _ => 0.0,
-    }
 }

@@ -1,8 +1,9 @@
-//! The laws of a run as the results tell of them.
+//! What a run is stamped with: its laws, and the density of its first bodies.
 
 use crate::certify::certify;
 use crate::laws::{Interface, Kind, SearchPath};
 use crate::record::summary::PluginStamp;
+use crate::scene::build::Loaded;
 
 /// The laws of a run, each once, and whether they keep their promises with its parameters: a damage law with the
 /// cohesion that it stands beside, the others with plain shipped partners.
@@ -43,4 +44,13 @@ pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
         }
     }
     stamps
+}
+
+/// Density of the first bodies, for wear as a mass.
+pub(super) fn density_of(loaded: &Loaded, any: bool) -> f64 {
+    let material = loaded.case.bodies.first().map(|b| b.material.as_str());
+    match (any, material) {
+        (true, Some(name)) => loaded.density(name).unwrap_or(0.0),
+        _ => 0.0,
+    }
 }

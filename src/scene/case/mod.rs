@@ -9,6 +9,7 @@ pub use shapes::{Coordinates, ShapeSpec, Side, StandardName};
 pub use wear::WearSpec;
 
 use super::circuit::CircuitSpec;
+use super::jump::JumpSpec;
 use super::measures::MeasureSpec;
 use super::phases::PhaseSpec;
 use crate::bodies::Dof;
@@ -82,6 +83,9 @@ pub struct Case {
     /// The account of grains between first bodies, contact and outside.
     #[serde(default)]
     pub circuit: Option<CircuitSpec>,
+    /// Jumps over the cycles of the friction test; none by default.
+    #[serde(default)]
+    pub jump: Option<JumpSpec>,
     /// Other quantities that are measured.
     #[serde(default)]
     pub measures: Vec<MeasureSpec>,

@@ -1,0 +1,137 @@
+//! What a run says of its jumps over cycles, and their figure.
+
+use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels};
+use serde::Serialize;
+use std::path::Path;
+
+/// A jump that was checked.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Jump {
+    /// Cycles before it, those jumped over included.
+    pub after: u32,
+    /// Cycles that its one computed cycle stood for.
+    pub cycles: u32,
+    /// By how much it is off: the worst of volumes and damage, in parts of what it added, and of what is misplaced
+    /// after it, in parts of the scar at the end of the run. See [`crate::wear::jump`].
+    pub error: f64,
+}
+
+/// The state at the end of a computed cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Point {
+    /// Cycles, those jumped over included.
+    pub cycles: u32,
+    /// Cycles that the last one stood for.
+    pub stands_for: u32,
+    /// Volume worn off first bodies (m^3; m^3/m in 2D).
+    pub wear_volume: f64,
+    /// Mean damage of the bonds.
+    pub mean_damage: f64,
+}
+
+/// The jumps of a run.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct JumpSummary {
+    /// Cycles that were computed to their end, those that stand for many included.
+    pub computed_cycles: u32,
+    /// Cycles that they stand for.
+    pub represented_cycles: u32,
+    /// Cycles that were asked for.
+    pub asked_cycles: Option<u32>,
+    /// Error of a jump that was aimed at.
+    pub tolerance: f64,
+    /// What all jumps were off by and what is misplaced at the end, in parts of all wear, or of all growth of damage:
+    /// the worst.
+    pub error_estimate: f64,
+    /// Volume worn off first bodies, in all cycles (m^3; m^3/m in 2D).
+    pub wear_volume: f64,
+    /// Jumps that were checked.
+    pub jumps: Vec<Jump>,
+    /// Computed cycles.
+    pub points: Vec<Point>,
+}
+
+impl JumpSummary {
+    /// Lines for a terminal.
+    pub fn lines(&self) -> Vec<(&'static str, String)> {
+        let longest = self.jumps.iter().map(|j| j.cycles).max().unwrap_or(0);
+        let mut lines = vec![(
+            "cycle jump",
+            format!(
+                "{} cycles by {} computed ones, {} jumps of at most {longest}; off by some {:.1} %",
+                self.represented_cycles,
+                self.computed_cycles,
+                self.jumps.len(),
+                100.0 * self.error_estimate
+            ),
+        )];
+        let far = |j: &&Jump| j.error > 2.0 * self.tolerance;
+        if let Some(worst) = self
+            .jumps
+            .iter()
+            .filter(far)
+            .max_by(|a, b| a.error.total_cmp(&b.error))
+        {
+            let count = self.jumps.iter().filter(far).count();
+            let text = format!(
+                "{count} jumps are off by more than twice jump.tolerance, the one of {} cycles after cycle {} by {:.1} %; \
+                 make jump.at_most smaller, or jump.after larger",
+                worst.cycles,
+                worst.after,
+                100.0 * worst.error
+            );
+            lines.push(("JUMPS TOO LONG", text));
+        }
+        if let Some(asked) = self.asked_cycles.filter(|n| *n > self.represented_cycles) {
+            let text = format!(
+                "the run ended at cycle {} of {asked}; let it run longer (time.end)",
+                self.represented_cycles
+            );
+            lines.push(("NOT REACHED", text));
+        }
+        lines
+    }
+}
+
+/// Draws `jump.png`: wear volume and mean damage against cycles, computed and jumped.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn draw(
+    dir: &Path,
+    title: &str,
+    jump: &JumpSummary,
+    dimension: usize,
+) -> Result<(), ReportError> {
+    let unit = if dimension == 2 { "m^3/m" } else { "m^3" };
+    let mut charts = Vec::new();
+    type Value = fn(&Point) -> f64;
+    let volume: Value = |p| p.wear_volume;
+    let damage: Value = |p| p.mean_damage;
+    for (what, unit, value) in [("wear volume", unit, volume), ("mean damage", "", damage)] {
+        let at = |p: &Point| (f64::from(p.cycles), value(p));
+        if jump.points.iter().all(|p| value(p) == 0.0) {
+            continue;
+        }
+        let all = jump.points.iter().map(at).collect();
+        let alone = jump.points.iter().filter(|p| p.stands_for == 1);
+        let mut chart = Chart::new(
+            format!("{what} against cycles"),
+            Axis::new("cycles", ""),
+            Axis::new(what, unit),
+        );
+        chart.subtitle = Some(title.to_owned());
+        charts.push(
+            chart
+                .with(Series::new("jumped", all).style(Style::Dashed))
+                .with(
+                    Series::new("computed one by one", alone.map(at).collect())
+                        .style(Style::Markers),
+                ),
+        );
+    }
+    if charts.is_empty() {
+        return Ok(());
+    }
+    draw_panels(&charts, charts.len(), &dir.join("jump.png"))
+}

@@ -1,0 +1,170 @@
+//! Jumps over cycles, against runs that compute every cycle.
+
+use fretwork::geometry::space::Plane;
+use fretwork::laws::SearchPath;
+use fretwork::record::{RunOptions, Summary, run};
+use fretwork::scene::load;
+use std::path::{Path, PathBuf};
+
+/// Runs a case into a folder of its own; its summary, and the depths of the scar of `flat` if there is one (m).
+fn ran(case: &str, name: &str, sets: &[&str]) -> (Summary, Vec<f64>) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{case}.ron"));
+    let mut all = vec![
+        "output.figures=false".to_owned(),
+        "output.frames=0".to_owned(),
+    ];
+    all.extend(sets.iter().map(|s| (*s).to_owned()));
+    let loaded = load(&path, &all).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<Plane>(&SearchPath::new(&[]));
+    let built = built.unwrap_or_else(|e| panic!("{e}"));
+    let out: PathBuf =
+        std::env::temp_dir().join(format!("fretwork-jump-{name}-{}", std::process::id()));
+    let options = RunOptions {
+        out: out.clone(),
+        threads: 1,
+    };
+    let summary = run(&loaded, built, &options, &mut |_| ()).unwrap_or_else(|e| panic!("{e}"));
+    let text = std::fs::read_to_string(out.join("scar_flat.csv")).unwrap_or_default();
+    let depth = |line: &str| line.rsplit(',').next().and_then(|x| x.parse().ok());
+    let depths = text.lines().skip(1).filter_map(depth).collect();
+    let _ = std::fs::remove_dir_all(&out);
+    (summary, depths)
+}
+
+fn refused(case: &str, sets: &[&str]) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{case}.ron"));
+    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
+    match load(&path, &sets) {
+        Ok(_) => panic!("{sets:?} was taken"),
+        Err(e) => e.to_string(),
+    }
+}
+
+/// The bound of the comparison that the field makes: Cruzado et al. (2012) keep a hundred cycles within 4 %.
+const BOUND: f64 = 0.04;
+
+/// Wear of the cylinder on a flat: volume, largest depth and profile of the run that computes every cycle.
+#[test]
+fn a_scar_by_jumps_is_the_scar_of_all_cycles() {
+    let (jumped, profile) = ran("fretting_wear_jump", "scar", &[]);
+    let (full, expected) = ran("fretting_wear_jump", "scar-full", &["jump=None"]);
+    let jump = jumped.jump.as_ref().unwrap();
+    assert_eq!(jump.represented_cycles, 1000);
+    assert!(
+        20 * jumped.steps <= full.steps,
+        "{} of {}",
+        jumped.steps,
+        full.steps
+    );
+    assert!(full.jump.is_none());
+    let volume = jump.wear_volume / full.wear.volume_first_bodies - 1.0;
+    let most = |d: &[f64]| d.iter().copied().fold(0.0, f64::max);
+    let deepest = most(&profile) / most(&expected) - 1.0;
+    let differ = profile.iter().zip(&expected).map(|(a, b)| (a - b).abs());
+    let form = differ.clone().sum::<f64>() / expected.iter().sum::<f64>();
+    let farthest = differ.fold(0.0, f64::max) / most(&expected);
+    let truly = volume.abs() + form;
+    println!(
+        "{} steps for {}: volume {volume:.1e}, deepest {deepest:.1e}, profile {form:.1e}, farthest {farthest:.1e}; estimated {:.1e}",
+        jumped.steps, full.steps, jump.error_estimate
+    );
+    assert!(volume.abs() < BOUND && deepest.abs() < BOUND && form < BOUND);
+    assert!(
+        jump.error_estimate > 0.25 * truly,
+        "{} {truly}",
+        jump.error_estimate
+    );
+    assert!(jump.error_estimate < 10.0 * truly.max(0.01));
+    assert!(jumped.energy_residual_relative < 1e-12);
+    // V against E_d is of all cycles: k/mu, as Archard's volume is k P times the path, and E_d mu P times it.
+    let [a, b] = [&jumped, &full].map(|s| s.fretting.as_ref().unwrap());
+    assert!(
+        (a.energy / b.energy - 1.0).abs() < BOUND,
+        "{} {}",
+        a.energy,
+        b.energy
+    );
+    let alpha = a.alpha.unwrap().value;
+    assert!((alpha / (1.5e-12 / 0.6) - 1.0).abs() < 0.02, "{alpha}");
+    assert!((jumped.wear.Qs / full.wear.Qs - 1.0).abs() < BOUND);
+}
+
+/// Damage of a bond under cycles of force, which grows ever faster as the bond weakens.
+#[test]
+fn the_damage_of_a_bond_by_jumps_is_that_of_all_cycles() {
+    let (jumped, _) = ran("verification/bond_fatigue", "bond", &[]);
+    let (full, _) = ran("verification/bond_fatigue", "bond-full", &["jump=None"]);
+    let jump = jumped.jump.as_ref().unwrap();
+    assert_eq!(jump.represented_cycles, 1000);
+    assert!(
+        20 * jumped.steps <= full.steps,
+        "{} of {}",
+        jumped.steps,
+        full.steps
+    );
+    let error = jumped.mean_damage / full.mean_damage - 1.0;
+    println!(
+        "{} steps for {}: D {:.5} for {:.5}, {error:.1e}; estimated {:.1e}; {:?}",
+        jumped.steps,
+        full.steps,
+        jumped.mean_damage,
+        full.mean_damage,
+        jump.error_estimate,
+        jump.jumps
+    );
+    // Far from linear: the first cycle's rate would give less than three quarters of it.
+    assert!(full.mean_damage > 0.2 && full.mean_damage < 0.9);
+    assert!(error.abs() < BOUND);
+    assert!(jump.error_estimate > 0.25 * error.abs() && jump.error_estimate < BOUND);
+    assert!(jumped.energy_residual_relative < 1e-12);
+}
+
+/// A bond that breaks does so about the cycle at which it breaks without jumps, and its energy is booked.
+#[test]
+fn a_bond_that_breaks_in_a_jump_closes_the_ledger() {
+    let soft = "interfaces.0.parameters.damage.length=0.4";
+    let (jumped, _) = ran("verification/bond_fatigue", "breaks", &[soft]);
+    assert_eq!(jumped.broken, 1);
+    assert!(
+        jumped.energy_residual_relative < 1e-12,
+        "{}",
+        jumped.energy_residual_relative
+    );
+}
+
+#[test]
+fn at_most_one_cycle_is_no_jump() {
+    let sets = ["jump.at_most=1", "jump.cycles=12"];
+    let (summary, _) = ran("verification/bond_fatigue", "none", &sets);
+    let jump = summary.jump.unwrap();
+    assert_eq!((jump.computed_cycles, jump.represented_cycles), (12, 12));
+    assert!(jump.jumps.is_empty());
+}
+
+#[test]
+fn jumps_that_mean_nothing_are_refused() {
+    let scar = |sets: &[&str]| refused("fretting_wear_jump", sets);
+    for (sets, says) in [
+        (&["friction=None"][..], "without `friction` there are none"),
+        (
+            &["bodies.cylinder.dofs.x=Velocity(Constant(1.0))"],
+            "has no period",
+        ),
+        (
+            &["bodies.flat.wears=None"],
+            "no body `wears` and no interface has a damage law",
+        ),
+        (&["jump.at_most=0"], "must be at least 1"),
+        (&["jump.control=0"], "must be at least 1"),
+        (&["jump.after=0"], "checked against the cycle before it"),
+        (&["jump.cycles=0"], "must be at least 1"),
+        (&["jump.tolerance=0.0"], "must be positive, got 0"),
+        (&["jump.growth=-1.0"], "must be positive, got -1"),
+        (&["time.step=3e-3"], "let time.step divide the cycle"),
+        (&["circuit=(bases: [\"flat\"])"], "leave one of the two out"),
+    ] {
+        let said = scar(sets);
+        assert!(said.contains(says), "{sets:?}: {said}");
+        assert!(said.contains("fretting_wear_jump.ron:"), "{said}");
+    }
+}
