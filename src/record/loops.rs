@@ -64,10 +64,11 @@ mod tests {
         let mut l = Loop::default();
         let force =
             |k: u32| -most * (std::f64::consts::TAU * f64::from(k) / f64::from(steps)).cos();
-        let (mut work, mut last) = (0.0, (-amplitude, -most));
-        for cycle in 0..2 {
+        let mut work = 0.0;
+        for _ in 0..2 {
             l.next_cycle();
-            (work, last) = (0.0, (-amplitude, -most));
+            work = 0.0;
+            let mut last = (-amplitude, -most);
             for k in 1..=steps {
                 let q = force(k);
                 let d = if 2 * k <= steps {
@@ -79,7 +80,6 @@ mod tests {
                 work += 0.5 * (q + last.1) * (d - last.0);
                 last = (d, q);
             }
-            let _ = cycle;
         }
         let ratio = work / (4.0 * most * amplitude);
         (l, ratio, amplitude - 2.0 * load(0.5 * most))

@@ -35,7 +35,7 @@ impl Flow {
 /// The flow of what a cumulated quantity grew by, from a time on. `points` are (time, cumulated), times rising; none
 /// where a block holds fewer than two of them: what lies between points is not known.
 pub fn flow(points: &[(f64, f64)], start: f64, end: f64) -> Option<Flow> {
-    if !(start < end) || points.len() < 2 {
+    if start >= end || points.len() < 2 {
         return None;
     }
     let width = (end - start) / BLOCKS as f64;

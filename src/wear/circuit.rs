@@ -269,7 +269,7 @@ impl<S: Space> Circuit<S> {
         for b in piece {
             let (m, at) = (s.bodies.mass[*b as usize], s.bodies.position[*b as usize]);
             mass += m;
-            moment = moment + s.shapes.periodic.shortest(at - first) * m;
+            moment += s.shapes.periodic.shortest(at - first) * m;
         }
         // The bonds that joined the piece to what is not of it, whenever they broke since its grains were tied.
         let of = |b: u32| piece.binary_search(&b).is_ok();

@@ -134,8 +134,8 @@ impl<S: Space> Account<S> {
         };
         circuit.note(s);
         // A row of the statistics shows the state at its step.
-        let row = case.output.every > 1 && s.steps % case.output.every == 0;
-        if s.steps % self.every != 0 && !row && !last {
+        let row = case.output.every > 1 && s.steps.is_multiple_of(case.output.every);
+        if !s.steps.is_multiple_of(self.every) && !row && !last {
             return Ok(());
         }
         circuit.update(s);
