@@ -171,6 +171,16 @@ impl Features {
     }
 
     fn output(&mut self, case: &Case, dimension: usize) {
+        self.say(
+            "circuit of grains",
+            case.circuit.as_ref().map(|c| {
+                let (bases, zones) = (c.bases.join(", "), c.zones.len());
+                format!(
+                    "tied to {bases}, {zones} ejection zones, from {:e} s",
+                    c.start
+                )
+            }),
+        );
         let o = &case.output;
         self.say("statistics", Some(format!("every {} steps", o.every)));
         self.say(

@@ -30,6 +30,13 @@ impl<S: Dimensional> Builder<'_, S> {
                 0 => spec.name.clone(),
                 k => format!("{}_{}", spec.name, k + 1),
             };
+            let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+            if !name.chars().all(plain) || self.scars.iter().any(|s| s.name == name) {
+                let message = format!(
+                    "the name `{name}` of a body that wears names columns and files: it must be of its own, of letters, digits, `-` and `_`"
+                );
+                return Err(self.fail(here, message));
+            }
             let carried = &self.shapes.surfaces[surface];
             let scar = Scar::new(name, surface, carried, wears.thickness, wears.every);
             let outline = carried.shape.outline();
