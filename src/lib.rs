@@ -15,4 +15,5 @@ pub mod report;
 pub mod scene;
 pub mod solve;
 pub mod step;
+pub mod trade;
 pub mod wear;

@@ -21,6 +21,8 @@ mod stages;
 mod text;
 #[path = "bad_input/trial.rs"]
 mod trial;
+#[path = "bad_input/trust.rs"]
+mod trust;
 #[path = "bad_input/wear.rs"]
 mod wear;
 

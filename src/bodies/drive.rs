@@ -112,6 +112,25 @@ impl TimeFunction {
         }
     }
 
+    /// The derivative at the end of a step of `h`: at corners the mean slope over half a step before and after, so
+    /// that the steps' motions add up to the function's however steep it is.
+    pub fn rate_in_steps(&self, t: f64, h: f64) -> f64 {
+        let (before, after) = (t - 0.5 * h, t + 0.5 * h);
+        let corner = match self {
+            Self::Ramp { start, end, .. } => {
+                [start, end].iter().any(|c| before < **c && **c < after)
+            }
+            Self::Table(points) => points.iter().any(|p| before < p.0 && p.0 < after),
+            Self::Sine { start, .. } => before < *start && *start < after,
+            Self::Constant(_) => false,
+        };
+        if corner {
+            (self.value(after) - self.value(before)) / h
+        } else {
+            self.rate(t)
+        }
+    }
+
     /// The period of the motion, for a sine (s).
     pub fn period(&self) -> Option<f64> {
         match self {
@@ -251,6 +270,15 @@ impl Dof {
         }
     }
 
+    /// The velocity imposed at the end of a step of `h`, if one is.
+    pub fn imposed_in_steps(&self, t: f64, h: f64) -> Option<f64> {
+        match self {
+            Self::Displacement(f) => Some(f.rate_in_steps(t, h)),
+            Self::Stages(_) => self.at(t).imposed_in_steps(t, h),
+            other => other.imposed_velocity(t),
+        }
+    }
+
     /// The force imposed at a time.
     pub fn force(&self, t: f64) -> f64 {
         match self {
@@ -281,7 +309,7 @@ impl Dof {
 }
 
 /// A first body whose degrees of freedom are driven: translations first, then rotations.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Driven {
     /// Name in the case.
     pub name: String,
@@ -321,6 +349,50 @@ mod tests {
             }
             assert!(f.fault().is_none());
         }
+    }
+
+    /// The trapezoid of the steps' velocities is the way between the middles of steps, over any corner.
+    #[test]
+    fn steps_add_up_to_a_jump() {
+        let jump = TimeFunction::Table(vec![(0.0, 1.0), (0.52, 1.0), (0.5200001, 4.0)]);
+        let ramp = TimeFunction::Ramp {
+            from: 1.0,
+            to: 4.0,
+            start: 0.52,
+            end: 0.521,
+        };
+        for f in [jump, ramp] {
+            let way = way_in_steps(&f, 0.1, 10);
+            assert!((way - 3.0).abs() < 1e-12, "{way}");
+        }
+    }
+
+    /// A turn by a table and the circle of sines that goes with it begin together, wherever in a step.
+    #[test]
+    fn an_oscillation_begins_like_a_table() {
+        let h = 1e-3;
+        for start in [0.2, 0.2003, 0.2005, 0.2007] {
+            let sine = TimeFunction::Sine {
+                amplitude: 1.0,
+                frequency: 1.0 / TAU,
+                phase: 0.0,
+                offset: 0.0,
+                start,
+            };
+            let table = TimeFunction::Table(vec![(start, 0.0), (start + 1.0, 1.0)]);
+            for steps in 199..220 {
+                let [a, b] = [&sine, &table].map(|f| way_in_steps(f, h, steps));
+                // sin x = x - x^3/6.
+                assert!((a - b).abs() < 2e-6, "{a} {b} after {steps} of {start}");
+            }
+        }
+    }
+
+    fn way_in_steps(f: &TimeFunction, h: f64, steps: u32) -> f64 {
+        let rates: Vec<f64> = (0..=steps)
+            .map(|k| f.rate_in_steps(h * f64::from(k), h))
+            .collect();
+        rates.windows(2).map(|v| 0.5 * h * (v[0] + v[1])).sum()
     }
 
     #[test]

@@ -4,16 +4,17 @@ use super::drive::Dof;
 use super::state::Bodies;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::Space;
+use serde::{Deserialize, Serialize};
 
 /// A flat wall square to an axis: its body and where its face stands in its frame (m).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Face {
     body: usize,
     offset: f64,
 }
 
 /// A drive that needs the area between walls.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Servo {
     /// Place among the driven bodies.
     place: usize,

@@ -3,9 +3,11 @@
 use super::drive::{Dof, Driven};
 use super::tensor::{self, Tensor};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use serde::{Deserialize, Serialize};
 
 /// All bodies of a scene, in columns; grains and first bodies alike. In 2D masses are per metre.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Bodies<S: Space> {
     /// Stable identities.
     pub id: Vec<u64>,

@@ -1,9 +1,11 @@
 //! Inertia that differs by axis: bodies that are no balls, in space.
 
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use serde::{Deserialize, Serialize};
 
 /// Moments of inertia of a body in its own axes (kg m^2), and their inverse.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Tensor<S: Space> {
     own: S::Tensor,
     inverse: S::Tensor,

@@ -40,7 +40,7 @@ pub fn law(command: &LawCommand) -> Result<(), Failure> {
             let path = plugins.search()?;
             let mut out = String::new();
             for (kind, name, file) in path.available() {
-                match Plugin::open(&file) {
+                match path.open(&file) {
                     Ok(p) => {
                         let _ = writeln!(out, "{kind:<9} {name:<22} {}", p.doc);
                     }
@@ -99,7 +99,7 @@ fn named(path: &SearchPath, name: &str) -> Result<Vec<Plugin>, Failure> {
             "there is no law named `{name}` on the search path{proposal}"
         )));
     }
-    let opened = found.into_iter().map(|(_, _, file)| Plugin::open(file));
+    let opened = found.into_iter().map(|(_, _, file)| path.open(file));
     Ok(opened.collect::<Result<_, _>>()?)
 }
 

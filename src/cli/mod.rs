@@ -1,4 +1,4 @@
-//! The command line: `run`, `check`, `law`, `solve`.
+//! The command line: `run`, `check`, `law`, `solve`, `trade`.
 //!
 //! Exit 0: done. 1: the run failed; what was computed is on disk. 2: the input is wrong.
 
@@ -7,7 +7,9 @@ mod law;
 mod progress;
 mod run;
 mod solve;
+mod trade;
 
+use crate::laws::watch::watch;
 use crate::laws::{LawError, SearchPath};
 use crate::record::RunError;
 use crate::scene::InputError;
@@ -15,6 +17,7 @@ use clap::{Args, Parser, Subcommand};
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 /// Tribology of dry contacts: third-body flow by non-smooth contact dynamics, with interface laws
 /// loaded at run time.
@@ -42,6 +45,11 @@ enum Command {
         after_help = "Exit code: 0 solved, 1 not solved within the limits, 2 wrong input.\n\nExample:\n  fretwork solve tests/fclib/gfc3d_OneContact.hdf5 --tolerance 1e-10 --out solution.hdf5"
     )]
     Solve(solve::SolveArgs),
+    /// What accuracy costs: vary step, tolerance, solver and more, and compare with the finest over seeds
+    #[command(
+        after_help = "Exit code: 0 done, also where the budget ended it early (it says so), 1 no reference could be run, 2 wrong input.\n\nExample:\n  fretwork trade cases/wheel_rail_fretting.ron --output friction_coefficient=5% --knob step --knob tolerance --budget 30m\n\ndocs/trade.md says how errors are judged and what the search does not explore."
+    )]
+    Trade(trade::TradeArgs),
 }
 
 /// The case and what is changed in it.
@@ -56,15 +64,37 @@ struct CaseArgs {
     plugins: PluginArgs,
 }
 
+/// How long a call of a law may take (s), unless the user says otherwise.
+const LAW_TIMEOUT: f64 = 60.0;
+
 /// Where plugins are looked for.
 #[derive(Args, Debug)]
 struct PluginArgs {
     /// Another folder with plugins; FRETWORK_PLUGIN_PATH holds further ones
     #[arg(long = "plugin-path", value_name = "DIR")]
     plugin_path: Vec<PathBuf>,
+    /// Open plugins even where anybody may write
+    #[arg(long)]
+    trust_plugins: bool,
+    /// Give up when a law has not come back from a call for so long; 0 for never
+    #[arg(long, value_name = "SECONDS", default_value_t = LAW_TIMEOUT)]
+    law_timeout: f64,
 }
 
 impl PluginArgs {
+    /// The same words for another call of the program.
+    fn words(&self) -> Vec<String> {
+        let mut words = Vec::new();
+        for folder in &self.plugin_path {
+            words.extend(["--plugin-path".to_owned(), folder.display().to_string()]);
+        }
+        words.extend(self.trust_plugins.then(|| "--trust-plugins".to_owned()));
+        if self.law_timeout != LAW_TIMEOUT {
+            words.extend(["--law-timeout".to_owned(), self.law_timeout.to_string()]);
+        }
+        words
+    }
+
     fn search(&self) -> Result<SearchPath, Failure> {
         if let Some(missing) = self.plugin_path.iter().find(|p| !p.is_dir()) {
             return Err(Failure::Usage(format!(
@@ -72,7 +102,32 @@ impl PluginArgs {
                 missing.display()
             )));
         }
-        Ok(SearchPath::new(&self.plugin_path))
+        let limit = Duration::try_from_secs_f64(self.law_timeout).map_err(|e| {
+            Failure::Usage(format!(
+                "--law-timeout {}: {e}; give a time in seconds, 0 for none",
+                self.law_timeout
+            ))
+        })?;
+        if !limit.is_zero() && limit < Duration::from_millis(100) {
+            return Err(Failure::Usage(format!(
+                "--law-timeout {}: a call may take as long; give at least 0.1 s, or 0 for none",
+                self.law_timeout
+            )));
+        }
+        if !limit.is_zero() {
+            watch(limit, |who| {
+                eprintln!(
+                    "error: {who}; the program ends here; what was recorded up to the last flush is on disk (a longer wait: --law-timeout)"
+                );
+                std::process::exit(1);
+            });
+        }
+        let path = SearchPath::new(&self.plugin_path);
+        Ok(if self.trust_plugins {
+            path.trusting()
+        } else {
+            path
+        })
     }
 }
 
@@ -112,6 +167,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::check(&args),
         Command::Law(command) => law::law(&command),
         Command::Solve(args) => solve::solve(&args),
+        Command::Trade(args) => trade::trade(&args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -129,7 +185,8 @@ pub fn main() -> ExitCode {
         }
         Err(Failure::Run(e)) => {
             eprintln!("error: {e}");
-            ExitCode::from(1)
+            let input = matches!(&e, RunError::Resume(e) if e.is_input());
+            ExitCode::from(if input { 2 } else { 1 })
         }
     }
 }

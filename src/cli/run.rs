@@ -2,8 +2,10 @@
 
 use super::progress::Display;
 use super::{CaseArgs, Failure, say};
+use crate::record::checkpoint::Found;
 use crate::record::{self, RunOptions, Summary};
-use crate::scene::{Loaded, Scene, load};
+use crate::scene::build::Dimensional;
+use crate::scene::{Built, Loaded, Scene, load};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -17,6 +19,9 @@ pub struct RunArgs {
     /// Threads; the results have the same bits for any number
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
+    /// Go on from the last checkpoint of the same run in the folder; the results are those of a run that was not stopped
+    #[arg(long)]
+    resume: bool,
     /// No progress; the summary is printed as JSON
     #[arg(long)]
     json: bool,
@@ -36,7 +41,13 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     if !args.json {
         say(&format!("{}: {}", loaded.path.display(), loaded.case.name));
     }
-    let summary = pool.install(|| go(&loaded, scene, &options, args.json))?;
+    let done = pool.install(|| match scene {
+        Scene::Plane(built) => go(&loaded, *built, &options, args),
+        Scene::Solid(built) => go(&loaded, *built, &options, args),
+    })?;
+    let Some(summary) = done else {
+        return Ok(());
+    };
     if args.json {
         say(&serde_json::to_string_pretty(&summary).unwrap_or_default());
     } else {
@@ -50,20 +61,47 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-fn go(
+/// Runs, or goes on; none where there is nothing left to do.
+fn go<S: Dimensional>(
     loaded: &Loaded,
-    scene: Scene,
+    built: Built<S>,
     options: &RunOptions,
-    quiet: bool,
-) -> Result<Summary, Failure> {
-    let mut display = Display::new(quiet);
+    args: &RunArgs,
+) -> Result<Option<Summary>, Failure> {
+    let tell = |text: String| {
+        if !args.json {
+            say(&text);
+        }
+    };
+    let out = options.out.display();
+    let mut stop = None;
+    if args.resume {
+        match record::stopped(loaded, &built, options)? {
+            Found::Nothing => tell(format!("nothing to resume in {out}: begins at the start")),
+            Found::State(state) => {
+                tell(format!("resumes the run in {out}"));
+                stop = Some(state);
+            }
+            Found::Finished => {
+                let path = options.out.join("summary.json");
+                match std::fs::read_to_string(&path).ok().filter(|_| args.json) {
+                    Some(summary) => say(summary.trim_end()),
+                    None => say(&format!(
+                        "the run in {out} is finished: nothing to do; to run it anew leave --resume out"
+                    )),
+                }
+                return Ok(None);
+            }
+        }
+    }
+    let mut display = Display::new(args.json);
     let mut step = |p: &record::Progress| display.step(p);
-    let summary = match scene {
-        Scene::Plane(built) => record::run(loaded, *built, options, &mut step),
-        Scene::Solid(built) => record::run(loaded, *built, options, &mut step),
+    let summary = match stop {
+        Some(stop) => record::go_on(loaded, built, options, stop, &mut step),
+        None => record::run(loaded, built, options, &mut step),
     };
     display.finish();
-    Ok(summary?)
+    Ok(Some(summary?))
 }
 
 fn folder(args: &RunArgs) -> PathBuf {

@@ -2,6 +2,7 @@
 
 use super::network::Key;
 use crate::geometry::space::Space;
+use serde::{Deserialize, Serialize};
 
 /// A bond that broke.
 #[derive(Clone, Debug)]
@@ -29,7 +30,7 @@ pub struct Break<S: Space> {
 
 /// What a bond went through since it was made (J; J/m in 2D): the work done on it is what it stores, what damage
 /// released and what its damping took.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Life {
     /// Work done on the bond by opening, by sliding, and by turning.
     pub work: [f64; 3],

@@ -2,15 +2,18 @@
 
 use super::events::Life;
 use crate::geometry::space::{Space, VectorLike};
+use serde::{Deserialize, Serialize};
 
 /// A bond: a contact with an opening and a damage.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Bond<S: Space> {
     /// Normal elongation (m), integrated with u_th so that its work is exact at theta = 1/2.
     pub opening_n: f64,
     /// Tangential opening (m).
     pub opening_t: S::Tangent,
-    /// Gap at which the bond was made (m): the bond fills it, so it carries compression there.
+    /// Gap that the bond fills, so that it is rigid in compression there (m): that at which it was made where its law
+    /// acts in tension only, zero where springs push too.
     pub gap: f64,
     /// Damage D in \[0, 1\]; 1 is broken.
     pub damage: f64,
@@ -56,7 +59,8 @@ pub struct Openings<S: Space> {
 }
 
 /// The bonds of one interface law and the internal variables of its plugins.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Memory<S: Space> {
     /// Slots; a freed slot is used again.
     pub bonds: Vec<Bond<S>>,

@@ -1,15 +1,17 @@
 //! Contacts of the current step and what carries over from the last one.
 
 use super::events::{Break, Loss, Spent};
+use super::haste::Haste;
 use super::memory::Memory;
 use crate::bodies::Bodies;
 use crate::geometry::space::{Space, VectorLike};
+use serde::{Deserialize, Serialize, Serializer};
 use std::collections::HashSet;
 
 /// The name of a contact, stable in time: candidate (a ball, or a convex piece with [`Key::PIECE`] set),
 /// antagonist (the same, or a surface with [`Key::SURFACE`] set) and the face, edge or vertex that is
 /// touched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Key {
     /// Index of the candidate.
     pub candidate: u32,
@@ -43,7 +45,8 @@ impl Key {
 }
 
 /// A candidate pair within the alert distance, or held by a bond.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Contact<S: Space> {
     /// Its name.
     pub key: Key,
@@ -87,14 +90,17 @@ impl<S: Space> Contact<S> {
     }
 }
 
-/// All contacts, sorted by key, and the neighbour list they come from.
-#[derive(Debug)]
+/// All contacts, sorted by key, and the neighbour list they come from. What tells of the last step alone is not kept in
+/// checkpoints.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Network<S: Space> {
     /// Contacts of this step, sorted by key.
     pub contacts: Vec<Contact<S>>,
     /// Bonds and internal variables, one memory for each interface law.
     pub memory: Vec<Memory<S>>,
     /// Pairs whose bond broke: they stay broken when they part and meet again.
+    #[serde(serialize_with = "in_order")]
     pub broken_pairs: HashSet<(u32, u32)>,
     /// Distance within which a pair is a contact (m).
     pub alert: f64,
@@ -103,21 +109,35 @@ pub struct Network<S: Space> {
     /// Energy of bonds torn because their contact left all reach (J); the ledger takes it.
     pub torn_energy: f64,
     /// Bonds that broke in the last step, in its order.
+    #[serde(skip)]
     pub breaks: Vec<Break<S>>,
     /// Bodies, candidate and antagonist, and interface law of the bonds that were made in the last step.
+    #[serde(skip)]
     pub joins: Vec<([u32; 2], u16)>,
     /// What the last step dissipated at its contacts, in their order; kept where something asked for it.
+    #[serde(skip)]
     pub spent: Option<Vec<Spent>>,
     /// What the last step wore off surfaces; kept where something asked for it.
+    #[serde(skip)]
     pub losses: Option<Vec<Loss>>,
     /// Times over that a step wears and damages: the cycles that the cycle at hand stands for, see
     /// [`crate::wear::jump`]; 1 without jumps.
     pub stands_for: f64,
+    /// What was too fast to be seen in time.
+    pub haste: Haste,
     /// How often the neighbour list was rebuilt.
     pub rebuilds: u64,
     pub(super) candidates: Vec<(u32, u32)>,
     pub(super) seen_at: Vec<S::Vector>,
+    #[serde(skip)]
     pub(super) old: Vec<Contact<S>>,
+}
+
+/// The same pairs are the same bytes.
+fn in_order<T: Serializer>(pairs: &HashSet<(u32, u32)>, to: T) -> Result<T::Ok, T::Error> {
+    let mut pairs: Vec<_> = pairs.iter().collect();
+    pairs.sort_unstable();
+    pairs.serialize(to)
 }
 
 impl<S: Space> Network<S> {
@@ -140,6 +160,7 @@ impl<S: Space> Network<S> {
             spent: None,
             losses: None,
             stands_for: 1.0,
+            haste: Haste::default(),
             rebuilds: 0,
             candidates: Vec::new(),
             seen_at: Vec::new(),

@@ -1,6 +1,7 @@
 //! Arithmetic of vectors and small square matrices, of one to three components.
 
 use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
+use serde::{Serialize, de::DeserializeOwned};
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
@@ -31,6 +32,8 @@ pub trait VectorLike:
     + Mul<f64, Output = Self>
     + Index<usize, Output = f64>
     + IndexMut<usize>
+    + Serialize
+    + DeserializeOwned
     + 'static
 {
     /// Number of components.

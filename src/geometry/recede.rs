@@ -7,9 +7,10 @@
 //! length shorter by the same factor: wear normal to the flank and wear along the axis remove the same.
 
 use super::space::Space;
+use serde::{Deserialize, Serialize};
 
 /// A vertex that can recede.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Vertex<V> {
     /// Where it stood at first, in the surface's frame (m).
     pub at: V,

@@ -5,6 +5,7 @@
 
 pub use super::algebra::{MatrixLike, VectorLike, greatest, least};
 use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
+use serde::{Serialize, de::DeserializeOwned};
 use std::fmt::Debug;
 
 /// A dimension of space.
@@ -16,14 +17,14 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     /// Angular velocities and moments: one component in 2D, three in 3D.
     type Spin: VectorLike;
     /// Moments of inertia: one number in 2D.
-    type Tensor: MatrixLike<V = Self::Spin>;
+    type Tensor: MatrixLike<V = Self::Spin> + Serialize + DeserializeOwned;
     /// Contact blocks of the Delassus operator.
     type Matrix: MatrixLike<V = Self::Vector>;
     /// Tangential part of a contact vector: one number along t1 in 2D; in 3D a vector normal to n, so
     /// that no tangent frame is needed.
     type Tangent: VectorLike;
     /// Orientation of a body: an angle in 2D, a unit quaternion in 3D.
-    type Rotation: Copy + Debug + Send + Sync + PartialEq + 'static;
+    type Rotation: Copy + Debug + Send + Sync + PartialEq + Serialize + DeserializeOwned + 'static;
     /// Cores of convex pieces.
     type Core: super::convex::Core<Self>;
 

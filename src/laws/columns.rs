@@ -62,6 +62,30 @@ pub struct Columns {
     pub state_next: Vec<Vec<f64>>,
     /// Outputs.
     pub out: Outputs,
+    /// Whether the last batch was written behind the end of a column.
+    pub overrun: bool,
+}
+
+/// Values behind the end of each column that a plugin writes, to see whether it went too far.
+const FENCE: usize = 8;
+/// What stands there: a NaN that no law computes.
+const POST: u64 = 0x7ff4_f37e_0b5e_55ed;
+
+/// Puts up the fence behind a column.
+fn fence(column: &mut Vec<f64>) {
+    column.reserve(FENCE);
+    for place in &mut column.spare_capacity_mut()[..FENCE] {
+        place.write(f64::from_bits(POST));
+    }
+}
+
+/// Whether the fence of a column is broken.
+fn trodden(column: &mut Vec<f64>) -> bool {
+    let posts = column.spare_capacity_mut()[..FENCE].iter();
+    // SAFETY: `fence` wrote them, and nothing has moved the column since.
+    posts
+        .into_iter()
+        .any(|p| unsafe { p.assume_init_read() }.to_bits() != POST)
 }
 
 /// Columns written by plugins, named as in the ABI.
@@ -89,6 +113,30 @@ pub struct Outputs {
 }
 
 impl Outputs {
+    /// All columns.
+    fn all(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+        let single = [
+            &mut self.friction,
+            &mut self.restitution_n,
+            &mut self.restitution_t,
+            &mut self.tension_strength,
+            &mut self.shear_cohesion,
+            &mut self.rolling,
+            &mut self.spinning,
+            &mut self.stiffness_n,
+            &mut self.stiffness_t,
+            &mut self.damping_n,
+            &mut self.damping_t,
+            &mut self.energy,
+            &mut self.damage,
+            &mut self.volume,
+            &mut self.stiffness_twist,
+            &mut self.stiffness_bend,
+        ];
+        let triples = [&mut self.traction, &mut self.moment];
+        single.into_iter().chain(triples.into_iter().flatten())
+    }
+
     /// The first contact for which a call of this kind gave a value that is not finite.
     pub fn not_finite(&self, kind: Kind, call: Call) -> Option<usize> {
         let [n, t1, t2] = &self.traction;
@@ -200,28 +248,7 @@ impl Columns {
     /// Sizes the outputs to `n` zeros.
     pub fn size_outputs(&mut self) {
         let (n, out) = (self.n, &mut self.out);
-        for column in [
-            &mut out.friction,
-            &mut out.restitution_n,
-            &mut out.restitution_t,
-            &mut out.tension_strength,
-            &mut out.shear_cohesion,
-            &mut out.rolling,
-            &mut out.spinning,
-            &mut out.stiffness_n,
-            &mut out.stiffness_t,
-            &mut out.damping_n,
-            &mut out.damping_t,
-            &mut out.energy,
-            &mut out.damage,
-            &mut out.volume,
-            &mut out.stiffness_twist,
-            &mut out.stiffness_bend,
-        ] {
-            column.clear();
-            column.resize(n, 0.0);
-        }
-        for column in out.traction.iter_mut().chain(&mut out.moment) {
+        for column in out.all() {
             column.clear();
             column.resize(n, 0.0);
         }
@@ -236,6 +263,9 @@ impl Columns {
         call: impl FnOnce(&FwBatch) -> R,
     ) -> R {
         let n = self.n;
+        let (first, count) = (loaded.first_variable, loaded.variables());
+        let states = self.state_next.iter_mut().skip(first).take(count);
+        self.out.all().chain(states).for_each(fence);
         let column = |v: &Vec<f64>| if v.len() == n { v.as_ptr() } else { null() };
         let mut output = |v: &mut Vec<f64>| {
             if v.len() == n {
@@ -244,7 +274,6 @@ impl Columns {
                 null_mut()
             }
         };
-        let (first, count) = (loaded.first_variable, loaded.variables());
         let state: Vec<*const f64> = self
             .state
             .iter()
@@ -347,6 +376,10 @@ impl Columns {
             out_stiffness_twist: output(&mut out.stiffness_twist),
             out_stiffness_bend: output(&mut out.stiffness_bend),
         };
-        call(&batch)
+        let answer = call(&batch);
+        let states = self.state_next.iter_mut().skip(first).take(count);
+        let written = self.out.all().chain(states);
+        self.overrun = written.fold(false, |broken, column| broken | trodden(column));
+        answer
     }
 }

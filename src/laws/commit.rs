@@ -128,6 +128,15 @@ impl Passes {
         }
     }
 
+    /// Lets pairs that parted keep what they owe only while they are fewer than the contacts.
+    fn forget_debts<S: Space>(&mut self, network: &Network<S>) {
+        let contacts = &network.contacts;
+        if self.debts.len() > 2 * contacts.len() {
+            let near = |pair: &(u32, u32)| contacts.binary_search_by_key(pair, |c| c.key.pair());
+            self.debts.retain(|pair, _| near(pair).is_ok());
+        }
+    }
+
     #[allow(clippy::too_many_arguments)]
     fn commit_wear<S: Space>(
         &mut self,
@@ -140,6 +149,7 @@ impl Passes {
         totals: &mut Totals,
     ) -> Result<(), LawError> {
         self.gather_after(law, network, sites, info);
+        self.forget_debts(network);
         for at in &self.members {
             let (contact, site) = (&network.contacts[*at], &sites[*at]);
             let ut = S::tangential(&contact.normal, &site.average);

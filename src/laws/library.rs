@@ -1,5 +1,6 @@
 //! A plugin: a shared library opened at run time, checked, and called.
 
+use super::watch;
 use fretwork_abi as abi;
 use sha2::{Digest, Sha256};
 use std::ffi::{CStr, c_char};
@@ -62,6 +63,16 @@ pub enum LawError {
         /// What is wrong and what to do.
         reason: String,
     },
+    /// The library is not the one that was asked for.
+    #[error("the plugin {} has the SHA-256 {sha256}, not {pin} as pinned; get the library that the case was made with, or pin this one if you trust it", path.display())]
+    Pinned {
+        /// The library.
+        path: PathBuf,
+        /// What it must have.
+        pin: String,
+        /// What it has.
+        sha256: String,
+    },
     /// No such law on the search path.
     #[error("there is no {kind} law named `{name}` on the search path (available: {available}); {}", advice(name, nearest.as_deref()))]
     Unknown {
@@ -104,6 +115,19 @@ pub enum LawError {
         /// What the law said.
         reason: String,
     },
+    /// A function of the law wrote behind the end of a column.
+    #[error(
+        "the {kind} law `{name}` wrote behind the end of a column in {call:?}: a batch has n values a column, and memory that is not \
+         the law's may be spoiled; mend the law before it is used again"
+    )]
+    Overrun {
+        /// Kind.
+        kind: Kind,
+        /// Name.
+        name: String,
+        /// The call.
+        call: Call,
+    },
     /// A function of the law said it was done and gave a value that is not finite.
     #[error("the {kind} law `{name}` gave a value that is not finite in {call:?}{}; check its parameters and the law", contact.map_or(String::new(), |c| format!(" at contact {c} of its batch")))]
     NotFinite {
@@ -121,7 +145,7 @@ pub enum LawError {
 impl LawError {
     /// Whether the law went wrong without saying so.
     pub fn is_silent(&self) -> bool {
-        matches!(self, Self::NotFinite { .. })
+        matches!(self, Self::NotFinite { .. } | Self::Overrun { .. })
     }
 }
 
@@ -195,7 +219,8 @@ pub struct Plugin {
     pub path: PathBuf,
     /// SHA-256 of the library, in hexadecimal.
     pub sha256: String,
-    table: abi::FwPlugin,
+    pub(super) table: abi::FwPlugin,
+    pub(super) label: watch::Label,
 }
 
 // SAFETY: the table is read only, and the ABI requires that every function may be called from any
@@ -204,24 +229,38 @@ unsafe impl Send for Plugin {}
 // SAFETY: as above.
 unsafe impl Sync for Plugin {}
 
-/// Longest message a plugin can leave (bytes).
-const MESSAGE: usize = 512;
-
 impl Plugin {
     /// Opens a library and checks all that can be checked before its first call.
     ///
     /// # Errors
     /// A sentence with the file and what is wrong with it.
     pub fn open(path: &Path) -> Result<Self, LawError> {
+        Self::open_pinned(path, None)
+    }
+
+    /// The same, where the library must have a SHA-256 (in hexadecimal): none of another one is run.
+    ///
+    /// # Errors
+    /// As above; and [`LawError::Pinned`].
+    pub fn open_pinned(path: &Path, pin: Option<&str>) -> Result<Self, LawError> {
         let refuse = |reason: String| LawError::Unusable {
             path: path.to_owned(),
             reason,
         };
         let bytes = std::fs::read(path).map_err(|e| refuse(format!("it cannot be read ({e})")))?;
-        let sha256 = Sha256::digest(&bytes)
+        let sha256: String = Sha256::digest(&bytes)
             .iter()
             .map(|b| format!("{b:02x}"))
             .collect();
+        if let Some(pin) = pin.filter(|p| !p.eq_ignore_ascii_case(&sha256)) {
+            return Err(LawError::Pinned {
+                path: path.to_owned(),
+                pin: pin.to_owned(),
+                sha256,
+            });
+        }
+        let loading = watch::label(format!("the plugin {}", path.display()));
+        let loading = watch::enter(loading, 5);
         // SAFETY: opening runs the library's initialisers: the user put it on the search path.
         let library = unsafe { open_local(path) }.map_err(|e| {
             refuse(format!(
@@ -240,6 +279,7 @@ impl Plugin {
                 })?;
             entry()
         };
+        drop(loading);
         // Never unloaded: threads may hold its code or its thread-local data.
         std::mem::forget(library);
         if table.is_null() || !table.is_aligned() {
@@ -276,6 +316,7 @@ impl Plugin {
                 .map_err(&refuse)?,
             path: path.to_owned(),
             sha256,
+            label: watch::label(format!("the {kind} law `{name}`")),
             name,
             table,
         };
@@ -334,121 +375,6 @@ impl Plugin {
     /// Whether the law sets the internal variables of new contacts itself.
     pub fn initialises(&self) -> bool {
         self.table.initialise.is_some()
-    }
-
-    /// The fracture energy (J/m^2) that the law declares for a pull at an angle from the normal (rad).
-    pub fn fracture_energy(&self, values: &[f64], angle: f64) -> Option<f64> {
-        if values.len() != self.parameters.len() {
-            return None;
-        }
-        // SAFETY: the ABI's signature, and one value a parameter.
-        let energy = self
-            .table
-            .fracture_energy
-            .map(|f| unsafe { f(values.as_ptr(), angle) });
-        energy.filter(|e| e.is_finite())
-    }
-
-    /// Checks values of the parameters against the schema and the law's own judgement.
-    ///
-    /// # Errors
-    /// A sentence naming the parameter.
-    pub fn validate(&self, values: &[f64]) -> Result<(), LawError> {
-        let refuse = |reason: String| LawError::Parameters {
-            kind: self.kind,
-            name: self.name.clone(),
-            reason,
-        };
-        if values.len() != self.parameters.len() {
-            return Err(refuse(format!(
-                "it takes {} values, got {}",
-                self.parameters.len(),
-                values.len()
-            )));
-        }
-        for (field, value) in self.parameters.iter().zip(values) {
-            if !value.is_finite() || !(field.minimum..=field.maximum).contains(value) {
-                return Err(refuse(format!(
-                    "`{}` must lie in [{}, {}] {}, got {value}",
-                    field.name, field.minimum, field.maximum, field.unit
-                )));
-            }
-        }
-        let Some(validate) = self.table.validate else {
-            return Ok(());
-        };
-        let mut buffer = [0 as c_char; MESSAGE];
-        let mut message = message_over(&mut buffer);
-        // SAFETY: the ABI's signature; the buffers outlive the call.
-        let status = unsafe { validate(values.as_ptr(), &mut message) };
-        if status == abi::STATUS_OK {
-            Ok(())
-        } else {
-            Err(refuse(said(&buffer, status)))
-        }
-    }
-
-    /// Runs one of the law's functions; nothing happens where the law has none.
-    ///
-    /// # Errors
-    /// What the law said, with the index of the contact in the batch.
-    ///
-    /// # Safety
-    /// The columns of the batch that the law uses hold `batch.n` values and outlive the call.
-    pub unsafe fn call(&self, call: Call, batch: &abi::FwBatch) -> Result<(), LawError> {
-        let function = match call {
-            Call::Initialise => self.table.initialise,
-            Call::Prepare => self.table.prepare,
-            Call::Commit => self.table.commit,
-            Call::Energy => self.table.energy,
-        };
-        let Some(function) = function else {
-            return Ok(());
-        };
-        let mut buffer = [0 as c_char; MESSAGE];
-        let mut message = message_over(&mut buffer);
-        // SAFETY: by the contract of this function.
-        let status = unsafe { function(batch, &mut message) };
-        if status == abi::STATUS_OK {
-            return Ok(());
-        }
-        Err(LawError::Failed {
-            kind: self.kind,
-            name: self.name.clone(),
-            call,
-            contact: usize::try_from(message.contact).ok(),
-            reason: said(&buffer, status),
-        })
-    }
-}
-
-fn message_over(buffer: &mut [c_char; MESSAGE]) -> abi::FwMessage {
-    abi::FwMessage {
-        size: size_of::<abi::FwMessage>(),
-        text: buffer.as_mut_ptr(),
-        capacity: MESSAGE,
-        contact: -1,
-    }
-}
-
-/// The message, or what the status means.
-fn said(buffer: &[c_char; MESSAGE], status: i32) -> String {
-    let bytes: Vec<u8> = buffer
-        .iter()
-        .take(MESSAGE - 1)
-        .map(|c| *c as u8)
-        .take_while(|b| *b != 0)
-        .collect();
-    let text = String::from_utf8_lossy(&bytes).trim().to_owned();
-    if !text.is_empty() {
-        return text;
-    }
-    match status {
-        abi::STATUS_ERROR => "it reported an error without a message".into(),
-        abi::STATUS_BAD_PARAMETER => "it refused a parameter without a message".into(),
-        abi::STATUS_REDUCE_STEP => "it asks for a smaller time step".into(),
-        abi::STATUS_PANIC => "it panicked".into(),
-        other => format!("it returned the unknown status {other}"),
     }
 }
 

@@ -12,6 +12,7 @@ use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
 use crate::solve::{MomentForm, MomentSolution};
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
 /// What one contact did over the step.
@@ -88,6 +89,14 @@ pub struct Passes {
     bonded: Vec<bool>,
 }
 
+/// What the passes carry from step to step.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Carried {
+    /// Pairs and what friction gave back there, in the order of the pairs; see [`Passes`].
+    debts: Vec<((u32, u32), f64)>,
+    bonded: Vec<bool>,
+}
+
 /// Friction and restitution of one contact.
 #[derive(Clone, Copy, Default)]
 struct Friction {
@@ -101,6 +110,22 @@ struct Friction {
 }
 
 impl Passes {
+    /// What they carry from step to step.
+    pub fn carried(&self) -> Carried {
+        let mut debts: Vec<_> = self.debts.iter().map(|(k, v)| (*k, *v)).collect();
+        debts.sort_unstable_by_key(|d| d.0);
+        Carried {
+            debts,
+            bonded: self.bonded.clone(),
+        }
+    }
+
+    /// Goes on from what others carried.
+    pub fn carry_on(&mut self, from: Carried) {
+        self.debts = from.debts.into_iter().collect();
+        self.bonded = from.bonded;
+    }
+
     /// Gives contacts the memory their laws need, and makes the bonds whose time has come: those of the
     /// case's rule, and those of contacts that were pressed long enough.
     ///
@@ -134,16 +159,23 @@ impl Passes {
                     .healing
                     .is_some_and(|time| contact.pressed > 0.0 && contact.pressed >= time);
                 let bonds = !intact && !contact.sharp && (due || healed);
+                // A bond that only pulls fills its gap; one that pushes too yields until the gap is closed. An overlap is
+                // filled by both: the bond is at rest where it is made.
+                let filled = if law.tension_only() {
+                    contact.gap
+                } else {
+                    contact.gap.min(0.0)
+                };
                 match contact.memory() {
                     Some(slot) if bonds => {
-                        memory.bond(slot, contact.gap, area);
+                        memory.bond(slot, filled, area);
                         // A new bond has no history; the contact's own goes on.
                         for v in law.variables_of_bonds() {
                             memory.variables[v][slot] = initial[v];
                         }
                     }
                     None if bonds || remembers => {
-                        contact.slot = memory.allocate(bonds, contact.gap, area, &initial);
+                        contact.slot = memory.allocate(bonds, filled, area, &initial);
                         self.members.push(k);
                     }
                     _ => {}
@@ -313,11 +345,21 @@ impl Passes {
         call: Call,
     ) -> Result<(), LawError> {
         let plugin = &loaded.plugin;
-        self.columns
+        let called = self
+            .columns
             // SAFETY: columns of the batch have `n` values or are null, and live in `self`.
             .with_batch(loaded, info, degradation, |batch| unsafe {
                 plugin.call(call, batch)
-            })?;
+            });
+        if self.columns.overrun {
+            let name = plugin.name.clone();
+            return Err(LawError::Overrun {
+                kind: plugin.kind,
+                name,
+                call,
+            });
+        }
+        called?;
         let state = match call {
             Call::Commit | Call::Initialise => self.columns.state_not_finite(),
             _ => None,

@@ -1,6 +1,7 @@
 //! Where plugins are found: by kind and name, on a search path. A case cannot name a file.
 
 use super::library::{Kind, LawError, Plugin};
+use super::trust;
 use std::path::{Path, PathBuf};
 
 /// Environment variable with further folders.
@@ -10,6 +11,9 @@ pub const VARIABLE: &str = "FRETWORK_PLUGIN_PATH";
 #[derive(Clone, Debug)]
 pub struct SearchPath {
     folders: Vec<PathBuf>,
+    /// How many of them are the program's own.
+    shipped: usize,
+    trusting: bool,
 }
 
 /// Whether a law's name is made of a-z, 0-9, `-` and `_` and begins with a letter or digit.
@@ -31,11 +35,25 @@ impl SearchPath {
     /// The shipped folders beside the program, then `extra`, then the environment variable's.
     pub fn new(extra: &[PathBuf]) -> Self {
         let mut folders = shipped();
+        let shipped = folders.len();
         folders.extend_from_slice(extra);
         if let Some(value) = std::env::var_os(VARIABLE) {
             folders.extend(std::env::split_paths(&value).filter(|p| !p.as_os_str().is_empty()));
         }
-        Self { folders }
+        Self {
+            folders,
+            shipped,
+            trusting: false,
+        }
+    }
+
+    /// The same path; libraries are opened even where anybody may write.
+    #[must_use]
+    pub fn trusting(self) -> Self {
+        Self {
+            trusting: true,
+            ..self
+        }
     }
 
     /// The folders, in order.
@@ -48,18 +66,25 @@ impl SearchPath {
     /// # Errors
     /// No such law (with the nearest name), or a library that cannot be used.
     pub fn find(&self, kind: Kind, name: &str) -> Result<Plugin, LawError> {
-        let path = name_is_valid(name)
-            .then(|| {
-                self.folders
-                    .iter()
-                    .map(|f| f.join(file_name(kind, name)))
-                    .find(|p| p.is_file())
-            })
-            .flatten();
-        let Some(path) = path else {
+        self.find_pinned(kind, name, None)
+    }
+
+    /// The same, where the library must have a SHA-256 (in hexadecimal).
+    ///
+    /// # Errors
+    /// As above; and another SHA-256, before anything of the library is run.
+    pub fn find_pinned(
+        &self,
+        kind: Kind,
+        name: &str,
+        pin: Option<&str>,
+    ) -> Result<Plugin, LawError> {
+        let files = self.folders.iter().map(|f| f.join(file_name(kind, name)));
+        let mut files = files.filter(|p| p.is_file());
+        let Some(path) = files.next().filter(|_| name_is_valid(name)) else {
             return Err(self.unknown(kind, name));
         };
-        let plugin = Plugin::open(&path)?;
+        let plugin = self.open_pinned(&path, pin)?;
         if plugin.kind != kind || plugin.name != name {
             let reason = format!(
                 "its file name promises the {kind} law `{name}` but it holds the {} law `{}`; rename the file",
@@ -68,6 +93,29 @@ impl SearchPath {
             return Err(LawError::Unusable { path, reason });
         }
         Ok(plugin)
+    }
+
+    /// Opens a library, unless anybody may write to it or to its folder.
+    ///
+    /// # Errors
+    /// Why it is not opened, or cannot be used.
+    pub fn open(&self, path: &Path) -> Result<Plugin, LawError> {
+        self.open_pinned(path, None)
+    }
+
+    fn open_pinned(&self, path: &Path, pin: Option<&str>) -> Result<Plugin, LawError> {
+        // Who may write beside the program may change the program.
+        let own = path
+            .parent()
+            .is_some_and(|p| self.folders[..self.shipped].iter().any(|f| f == p));
+        let doubt = (!own && !self.trusting)
+            .then(|| trust::doubt(path))
+            .flatten();
+        if let Some(reason) = doubt {
+            let path = path.to_owned();
+            return Err(LawError::Unusable { path, reason });
+        }
+        Plugin::open_pinned(path, pin)
     }
 
     /// All laws on the path by their file names (with `_` as `-`), unopened, sorted.
@@ -79,6 +127,7 @@ impl SearchPath {
             };
             for path in entries.flatten().map(|e| e.path()) {
                 if let Some((kind, name)) = parse(&path)
+                    && path.is_file()
                     && !out.iter().any(|(k, n, _)| *k == kind && *n == name)
                 {
                     out.push((kind, name, path));
@@ -140,8 +189,14 @@ fn shipped() -> Vec<PathBuf> {
         return Vec::new();
     };
     let mut out = vec![here.clone(), here.join("deps")];
-    if let Some(above) = here.parent() {
+    // Cargo's examples and tests stand beside or in the folder of the libraries.
+    let of_cargo = here
+        .file_name()
+        .is_some_and(|n| n == "deps" || n == "examples");
+    if let Some(above) = here.parent().filter(|_| of_cargo) {
         out.push(above.join("deps"));
+    }
+    if let Some(above) = here.parent().filter(|_| here.ends_with("bin")) {
         out.push(above.join("lib").join("fretwork"));
     }
     out

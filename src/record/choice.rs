@@ -2,10 +2,10 @@
 
 use crate::solve::local::solver::Method;
 use crate::solve::{Chosen, Report};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Counts over the steps of a run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Choice {
     /// Steps in which Newton was tried.
     pub newton_tried: u64,

@@ -1,7 +1,7 @@
 //! What the cycles of a fretting test say together: its regime, and wear against the energy that was dissipated.
 
 use super::friction::Cycle;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// A_t: from this energy ratio E_d/(4 Q delta) on, the whole contact slides. The value of an elastic sphere on a
@@ -10,7 +10,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 pub const TRANSITION: f64 = 0.2;
 
 /// How a contact slides.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Regime {
     /// Part of it sticks in every cycle.

@@ -3,7 +3,7 @@
 use super::fretting::Regime;
 use super::layer::Balance;
 use super::loops::Loop;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What one step of the test measured.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,7 +21,7 @@ pub struct Sample {
 }
 
 /// One cycle, or the part of the run that counts.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Cycle {
     /// Number, from 1.
     pub cycle: u32,
@@ -65,7 +65,7 @@ pub struct Cycle {
 }
 
 /// Follows the cycles of a test.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Cycles {
     start: f64,
     period: Option<f64>,
@@ -84,7 +84,7 @@ pub struct Cycles {
 }
 
 /// What is cumulated over a run, at an end of a step.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct State {
     /// Energies.
     pub balance: Balance,

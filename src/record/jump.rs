@@ -1,11 +1,11 @@
 //! What a run says of its jumps over cycles, and their figure.
 
 use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// A jump that was checked.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Jump {
     /// Cycles before it, those jumped over included.
     pub after: u32,
@@ -17,7 +17,7 @@ pub struct Jump {
 }
 
 /// The state at the end of a computed cycle.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Cycles, those jumped over included.
     pub cycles: u32,
@@ -30,7 +30,7 @@ pub struct Point {
 }
 
 /// The jumps of a run.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct JumpSummary {
     /// Cycles that were computed to their end, those that stand for many included.
     pub computed_cycles: u32,

@@ -6,9 +6,10 @@
 
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
+use serde::{Deserialize, Serialize};
 
 /// Energies since the start (J; J/m in 2D).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Balance {
     /// Dissipated in all contacts, and kept (kinetic, potential, elastic) by what is not driven.
     pub taken: f64,
@@ -17,7 +18,8 @@ pub struct Balance {
 }
 
 /// Follows the balance.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Layer<S: Space> {
     velocity: Vec<(S::Vector, S::Spin)>,
     /// Potential energy and dissipation by the scheme of the driven bodies, which the ledger holds too.

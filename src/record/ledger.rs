@@ -1,7 +1,7 @@
 //! The energy ledger: what was put in, what is stored, what was dissipated, and what does not add up.
 
 use crate::laws::Totals;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Energies since the start (J; per metre of depth in 2D).
 ///
@@ -9,7 +9,7 @@ use serde::Serialize;
 /// kinetic + potential + elastic + fracture + friction + impact + adhesion + viscous + correction
 /// + scheme + carried
 /// - external work = initial energy.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
     /// Kinetic energy now.
     pub kinetic: f64,

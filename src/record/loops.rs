@@ -1,7 +1,9 @@
 //! The shape of a fretting loop Q(delta): where it crosses Q = 0, and Q/P where the motion turns.
 
+use serde::{Deserialize, Serialize};
+
 /// Follows a loop, sample by sample.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Loop {
     /// Displacement (m), Q and P (N), and the last motion that was not zero (m).
     last: Option<[f64; 3]>,

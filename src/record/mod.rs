@@ -1,7 +1,9 @@
 //! What a run leaves behind: ledgers, statistics, pictures, the results file, the summary.
 pub mod biaxial;
+pub mod checkpoint;
 pub mod choice;
 pub mod circuit;
+pub mod code;
 pub mod coordination;
 pub mod fclib;
 pub mod figures;
@@ -24,5 +26,5 @@ pub mod stress;
 pub mod summary;
 pub mod views;
 
-pub use run::{Progress, RunError, RunOptions, run};
+pub use run::{Progress, RunError, RunOptions, go_on, run, stopped};
 pub use summary::Summary;

@@ -79,6 +79,16 @@ impl Camera {
         self.paints = all.map(paint).collect();
     }
 
+    /// The paint of each ball, where there are layers.
+    pub fn paints(&self) -> &[Paint] {
+        &self.paints
+    }
+
+    /// Takes paints that were given before.
+    pub fn paint(&mut self, paints: Vec<Paint>) {
+        self.paints = paints;
+    }
+
     /// Looks at the scene as it stands now, unless the case names a window.
     pub fn follow<S: Space>(&mut self, simulation: &Simulation<S>) {
         if !self.fixed {

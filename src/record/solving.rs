@@ -1,10 +1,10 @@
 //! What a run says of its solver.
 
 use super::choice::Choice;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What the solver did.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SolverSummary {
     /// Mean sweeps a step.
     pub iterations_mean: f64,

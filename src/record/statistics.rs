@@ -33,7 +33,8 @@ pub struct Table {
     pub columns: Vec<Column>,
     /// Values, row after row.
     pub rows: Vec<f64>,
-    writer: csv::Writer<BufWriter<File>>,
+    /// None before the file is there.
+    writer: Option<csv::Writer<BufWriter<File>>>,
 }
 
 impl Table {
@@ -42,16 +43,44 @@ impl Table {
     /// # Errors
     /// The file cannot be written.
     pub fn create(path: &Path, columns: Vec<Column>) -> Result<Self, csv::Error> {
+        let mut table = Self::new(columns);
+        table.open(path)?;
+        Ok(table)
+    }
+
+    /// An empty table without a file.
+    pub fn new(columns: Vec<Column>) -> Self {
+        Self {
+            columns,
+            rows: Vec::new(),
+            writer: None,
+        }
+    }
+
+    /// Opens the file and writes its header: `name [unit]`.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn open(&mut self, path: &Path) -> Result<(), csv::Error> {
         let mut writer = csv::Writer::from_writer(BufWriter::new(File::create(path)?));
-        writer.write_record(columns.iter().map(|c| match c.unit {
+        writer.write_record(self.columns.iter().map(|c| match c.unit {
             "" => c.name.clone(),
             unit => format!("{} [{unit}]", c.name),
         }))?;
-        Ok(Self {
-            columns,
-            rows: Vec::new(),
-            writer,
-        })
+        self.writer = Some(writer);
+        Ok(())
+    }
+
+    /// Appends rows that another run wrote, given by their columns.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn extend(&mut self, columns: &[Vec<f64>]) -> Result<(), csv::Error> {
+        for k in 0..columns.first().map_or(0, Vec::len) {
+            let row: Vec<f64> = columns.iter().map(|c| c[k]).collect();
+            self.push(&row)?;
+        }
+        Ok(())
     }
 
     /// Appends a row, one value a column.
@@ -61,8 +90,10 @@ impl Table {
     pub fn push(&mut self, row: &[f64]) -> Result<(), csv::Error> {
         debug_assert_eq!(row.len(), self.columns.len());
         self.rows.extend_from_slice(row);
-        self.writer
-            .write_record(row.iter().map(|x| format!("{x:e}")))
+        match &mut self.writer {
+            Some(writer) => writer.write_record(row.iter().map(|x| format!("{x:e}"))),
+            None => Ok(()),
+        }
     }
 
     /// Writes what is held back.
@@ -70,7 +101,7 @@ impl Table {
     /// # Errors
     /// The file cannot be written.
     pub fn flush(&mut self) -> Result<(), csv::Error> {
-        Ok(self.writer.flush()?)
+        Ok(self.writer.as_mut().map_or(Ok(()), csv::Writer::flush)?)
     }
 
     /// The values of a column; empty if there is none of that name.

@@ -10,9 +10,10 @@ use crate::geometry::grid::pairs;
 use crate::geometry::space::Space;
 use crate::step::Simulation;
 use nalgebra::{DMatrix, Matrix3};
+use serde::{Deserialize, Serialize};
 
 /// A neighbour: its place among the grains' balls, and the vector to it at the moment that counts (m).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Neighbour<V> {
     ball: u32,
     vector: V,
@@ -21,7 +22,8 @@ struct Neighbour<V> {
 }
 
 /// The neighbours of each ball at a moment.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Strain<S: Space> {
     around: Vec<Vec<Neighbour<S::Vector>>>,
 }

@@ -8,6 +8,7 @@ use super::ledger::Energy;
 use super::scars::ScarSummary;
 pub use super::solving::SolverSummary;
 use super::steady::Flow;
+use crate::contact::Haste;
 use crate::step::control::Begun;
 use crate::wear::ledger::{Contents, Flows};
 use serde::Serialize;
@@ -34,11 +35,12 @@ pub struct PluginStamp {
 #[derive(Clone, Debug, Default, Serialize)]
 #[allow(non_snake_case)]
 pub struct Wear {
-    /// Source: mass worn off first bodies by the wear law.
+    /// Source: mass worn off first bodies by the wear law, and with a circuit the grains that came loose from them.
     pub Qs: f64,
     /// Internal: mass of the third body that crosses a section, mean of |m v_x|/L.
     pub Qi: f64,
-    /// Ejected: zero in a contact that is periodic along the sliding; not measured (null) in an open one.
+    /// Ejected: with a circuit what reached its zones; without one zero in a contact that is periodic along the sliding, and
+    /// not measured (null) in an open one.
     pub Qe: Option<f64>,
     /// Lost: ejected and not recirculated; as `Qe`.
     pub Qw: Option<f64>,
@@ -187,6 +189,8 @@ pub struct Summary {
     pub time: f64,
     /// Time it took (s).
     pub wall_seconds: f64,
+    /// Processor time of it, of all threads (s): what other programs on the machine do not change much.
+    pub cpu_seconds: f64,
     /// Bodies.
     pub bodies: usize,
     /// Contacts at the end.
@@ -229,6 +233,8 @@ pub struct Summary {
     pub jump: Option<JumpSummary>,
     /// Scars of the surfaces that follow their wear; empty without.
     pub scars: Vec<ScarSummary>,
+    /// What was too fast for the step.
+    pub haste: Haste,
     /// The solver.
     pub solver: SolverSummary,
     /// Laws.
@@ -436,11 +442,15 @@ impl Summary {
                 format!("{} steps written in fclib/{skipped}", s.fclib_written),
             );
         }
+        if let Some(text) = self.haste.warning() {
+            line("TOO FAST", text);
+        }
         if s.unconverged_steps > 0 {
             line(
                 "NOT CONVERGED",
                 format!(
-                    "{} steps, the first is step {}; raise solver.max_iterations or take a smaller step",
+                    "{} steps, the first is step {}; raise solver.max_iterations, take a smaller step, or try solver.method \
+                     Interior or Newton",
                     s.unconverged_steps, s.first_unconverged
                 ),
             );

@@ -2,9 +2,10 @@
 
 use super::canvas::{Canvas, INK, Rgb, mix};
 use super::font::{Anchor, TextStyle, text_width};
+use serde::{Deserialize, Serialize};
 
 /// What the colour of a grain says.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Paint {
     /// Nothing: grey, from light to dark by its shade.
     #[default]

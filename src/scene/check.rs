@@ -1,7 +1,7 @@
 //! What a case must satisfy before it runs.
 
 use super::build::Origin;
-use super::case::{BodySpec, Case};
+use super::case::{BodySpec, Case, Checkpoint};
 use super::source::Fault;
 use crate::bodies::Dof;
 use crate::contact::detect::detect;
@@ -51,6 +51,17 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
     if case.output.every == 0 {
         let message = "must be at least 1: steps between two rows of the statistics";
         return Err(Fault::new("output.every", message));
+    }
+    match case.output.checkpoint {
+        Checkpoint::Steps(0) => {
+            let message = "must be at least 1: steps between two checkpoints; use Never for none";
+            return Err(Fault::new("output.checkpoint", message));
+        }
+        Checkpoint::Seconds(s) if !(s.is_finite() && s >= 0.0) => {
+            let message = format!("seconds between two checkpoints must not be negative, got {s}");
+            return Err(Fault::new("output.checkpoint", message));
+        }
+        _ => {}
     }
     positive("inertia_scaling", case.inertia_scaling)?;
     if let Coupling::Implicit {

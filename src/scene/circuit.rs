@@ -178,6 +178,16 @@ fn zone(case: &Case, zone: &ZoneSpec) -> Result<(), Fault> {
             );
             return Err(Fault::new("high", message));
         }
+        if periods[a].is_some() && low.is_finite() != high.is_finite() {
+            let message = format!(
+                "along axis {a}, which is periodic, what lies beyond one side is everything, got {low} to {high}; give \
+                 both sides, or leave both open"
+            );
+            return Err(Fault::new(
+                if low.is_finite() { "high" } else { "low" },
+                message,
+            ));
+        }
         if low >= high {
             let message = format!("must be above {low} along axis {a}, got {high}");
             return Err(Fault::new("high", message));

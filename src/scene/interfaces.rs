@@ -35,6 +35,7 @@ pub fn build(
         table: LawTable::new(materials.len()),
         files: Vec::new(),
     };
+    pins(case).map_err(|f| source.locate(f))?;
     for (k, spec) in case.interfaces.iter().enumerate() {
         let here = format!("interfaces.{k}");
         let at = |f: Fault| source.locate(f.under(&here));
@@ -78,6 +79,37 @@ pub fn build(
         out.interfaces.push(interface);
     }
     Ok(out)
+}
+
+/// Refuses pins that are none, or of laws that the case does not use.
+fn pins(case: &Case) -> Result<(), Fault> {
+    let mut used = Vec::new();
+    for i in &case.interfaces {
+        used.push(format!("contact/{}", i.contact));
+        for (kind, name) in [
+            ("cohesion", &i.cohesion),
+            ("damage", &i.damage),
+            ("wear", &i.wear),
+        ] {
+            used.extend(name.iter().map(|n| format!("{kind}/{n}")));
+        }
+    }
+    for (law, pin) in &case.pins {
+        let path = format!("pins.{law}");
+        if !used.contains(law) {
+            let message = format!("no interface uses the law `{law}` that is pinned");
+            return Err(Fault::new(path, message)
+                .expected(format!("one of {}", used.join(", ")))
+                .nearest(nearest(law, used.iter().map(String::as_str))));
+        }
+        if pin.len() != 64 || !pin.chars().all(|c| c.is_ascii_hexdigit()) {
+            let message = format!("a pin is a SHA-256 of 64 hexadecimal digits, got `{pin}`");
+            return Err(
+                Fault::new(path, message).expected("what `fretwork law show` prints as sha256")
+            );
+        }
+    }
+    Ok(())
 }
 
 fn read_parameters(
@@ -187,12 +219,15 @@ fn load(
     path: &SearchPath,
 ) -> Result<Loaded, Wrong> {
     let slot = kind.word();
-    let plugin = path.find(kind, name).map_err(|e| match &e {
+    let key = format!("{kind}/{name}");
+    let pin = case.pins.get(&key).map(String::as_str);
+    let plugin = path.find_pinned(kind, name, pin).map_err(|e| match &e {
         LawError::Unknown {
             available, nearest, ..
         } => Fault::new(slot, format!("there is no {kind} law named `{name}`"))
             .expected(format!("one of {available}"))
             .nearest(nearest.as_deref()),
+        LawError::Pinned { .. } => Fault::new(format!("pins.{key}"), e.to_string()),
         other => Fault::new(slot, other.to_string()),
     })?;
     for (flag, only, dimension) in [(FLAG_2D_ONLY, "two", 2), (FLAG_3D_ONLY, "three", 3)] {

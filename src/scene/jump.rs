@@ -3,10 +3,10 @@
 use super::case::Case;
 use super::source::Fault;
 use crate::bodies::TimeFunction;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// Jumps over the cycles of a friction test: some computed cycles stand for many, see [`crate::wear::jump`].
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct JumpSpec {
     /// Cycles that are computed one by one before the first jump.

@@ -2,7 +2,7 @@
 
 use super::case::Case;
 use super::source::{Fault, nearest};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A quantity, or a few that belong together. "Up" is the last axis: y in 2D, z in 3D.
 #[derive(Clone, Debug, Deserialize)]
@@ -82,7 +82,7 @@ pub enum MeasureSpec {
 }
 
 /// See [`MeasureSpec::ThirdBody`].
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ThirdBodySpec {
     /// Prefix of the columns and files.
@@ -111,7 +111,7 @@ pub struct ThirdBodySpec {
 }
 
 /// Where a third body ends.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Extent {
     /// At the mean heights of the faces of the first bodies.
     #[default]

@@ -14,9 +14,10 @@ use super::nlgs::{self, Options, Report};
 use super::row::MomentForm;
 use super::standard::{self, Standard};
 use crate::geometry::space::Space;
+use serde::{Deserialize, Serialize};
 
 /// What the last steps taught.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Habit {
     /// Sweeps before Newton over what their costs say.
     patience: f64,

@@ -19,8 +19,10 @@ pub mod motion;
 pub mod projection;
 mod recession;
 mod removal;
+mod saved;
 pub mod simulation;
 
 pub use error::StepError;
 pub use projection::Projected;
+pub use saved::Saved;
 pub use simulation::{Scheme, Simulation, StepReport};

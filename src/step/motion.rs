@@ -49,7 +49,7 @@ pub fn free_velocities<S: Space>(
         let mut moment = S::Spin::null();
         for (k, dof) in driven.dofs.iter().enumerate() {
             let dof = dof.over(time, h);
-            let imposed = dof.imposed_velocity(time + h);
+            let imposed = dof.imposed_in_steps(time + h, h);
             let force = dof.force(time + theta * h);
             if k < S::D {
                 match imposed {

@@ -103,8 +103,8 @@ pub struct Simulation<S: Space> {
     pub worn_through: Option<WornThrough>,
     /// What acts from outside and changes in time.
     pub control: super::control::Control<S>,
-    habit: solve::Habit,
-    passes: Passes,
+    pub(super) habit: solve::Habit,
+    pub(super) passes: Passes,
     pub(super) problem: Problem<S>,
     forms: Vec<ContactForm<S>>,
     moments: Vec<MomentForm<S>>,

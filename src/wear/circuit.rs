@@ -7,11 +7,12 @@ use crate::contact::Network;
 use crate::geometry::periodic::Periodic;
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 /// What becomes of a grain in an ejection zone.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Fate {
     /// It stays ejected until it leaves the zone, and may come back.
     Stays,
@@ -20,7 +21,8 @@ pub enum Fate {
 }
 
 /// A region outside the contact.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Zone<S: Space> {
     /// Its name.
     pub name: String,
@@ -51,7 +53,8 @@ impl<S: Space> Zone<S> {
 }
 
 /// What a circuit is made of.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Spec<S: Space> {
     /// First bodies that grains can belong to: bodies to which bonds tie.
     pub bases: Vec<u32>,
@@ -86,7 +89,7 @@ pub struct Debris<S: Space> {
 }
 
 /// A bond that broke.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Cut {
     bodies: [u32; 2],
     work: [f64; 2],
@@ -94,7 +97,8 @@ struct Cut {
 }
 
 /// The circuit of a run.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Circuit<S: Space> {
     spec: Spec<S>,
     /// The grains, by body.
@@ -112,6 +116,7 @@ pub struct Circuit<S: Space> {
     /// Bonds that each body lost since it was tied, by body.
     past: BTreeMap<u32, Vec<Cut>>,
     /// Grains and clusters that came loose in the last update.
+    #[serde(skip)]
     pub debris: Vec<Debris<S>>,
     /// Time spent on it.
     pub cost: Duration,
@@ -125,11 +130,9 @@ impl<S: Space> Circuit<S> {
         for (k, b) in grains.iter().enumerate() {
             number[*b as usize] = Some(k as u32);
         }
-        let ties = Ties::new(
-            s.bodies.len(),
-            &spec.bases,
-            bonds(&s.network, &spec.interfaces),
-        );
+        let between = |b: &[u32; 2]| b.iter().all(|b| counts(*b, &number, &spec));
+        let bonds = bonds(&s.network, &spec.interfaces).filter(between);
+        let ties = Ties::new(s.bodies.len(), &spec.bases, bonds);
         let masses = grains
             .iter()
             .map(|b| s.bodies.mass[*b as usize] / spec.scaling);
@@ -175,13 +178,16 @@ impl<S: Space> Circuit<S> {
     /// Takes in the bonds that the last step made and broke. To be called after every step.
     pub fn note(&mut self, s: &Simulation<S>) {
         let clock = Instant::now();
-        let ties = |law: u16| self.spec.interfaces.contains(&law);
+        let (number, spec) = (&self.number, &self.spec);
+        let ties = |bodies: &[u32; 2], law: u16| {
+            spec.interfaces.contains(&law) && bodies.iter().all(|b| counts(*b, number, spec))
+        };
         for (bodies, law) in &s.network.joins {
-            if ties(*law) {
+            if ties(bodies, *law) {
                 self.made.push(*bodies);
             }
         }
-        for b in s.network.breaks.iter().filter(|b| ties(b.law)) {
+        for b in s.network.breaks.iter().filter(|b| ties(&b.bodies, b.law)) {
             let cut = Cut {
                 bodies: b.bodies,
                 work: [b.life.work[0], b.life.work[1]],
@@ -296,6 +302,12 @@ impl<S: Space> Circuit<S> {
             bonds,
         }
     }
+}
+
+/// Whether a body's bonds tie: a grain's and a base's. Another first body is no debris, and nothing belongs to a base
+/// through it.
+fn counts<S: Space>(body: u32, number: &[Option<u32>], spec: &Spec<S>) -> bool {
+    number[body as usize].is_some() || spec.bases.contains(&body)
 }
 
 /// Bodies of the bonds that hold, of these interfaces.

@@ -10,10 +10,10 @@
 //! Flows are counted where grains change place, contents where they are: the two are compared each time, in whole
 //! grains, and in mass up to rounding.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Where a grain is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Place {
     /// A path of bonds ties it to the first body of this number.
     Tied(u32),
@@ -26,7 +26,7 @@ pub enum Place {
 }
 
 /// Grains and their mass.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Amount {
     /// Number of grains.
     pub grains: i64,
@@ -43,7 +43,7 @@ impl Amount {
 }
 
 /// What there is at each place.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Contents {
     /// Tied to first bodies.
     pub tied: Amount,
@@ -76,7 +76,7 @@ impl Contents {
 }
 
 /// What passed since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flows {
     /// From first bodies to the contact, source.
     pub source: Amount,
@@ -91,7 +91,7 @@ pub struct Flows {
 }
 
 /// The ledger.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Ledger {
     masses: Vec<f64>,
     places: Vec<Place>,

@@ -7,9 +7,11 @@
 use crate::geometry::recede::Vertex;
 use crate::geometry::shape::{Carried, Shapes};
 use crate::geometry::space::Space;
+use serde::{Deserialize, Serialize};
 
 /// A surface that wears, and by how much it did.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Scar<S: Space> {
     /// Name: of the body, with a number where several of its surfaces wear.
     pub name: String,
@@ -21,6 +23,8 @@ pub struct Scar<S: Space> {
     pub every: u64,
     vertices: Vec<Vertex<S::Vector>>,
     depth: Vec<f64>,
+    /// Depth that the surface shows, vertex by vertex (m).
+    shown: Vec<f64>,
     /// Volume put so far (m^3; m^3/m in 2D).
     volume: f64,
     deepest: usize,
@@ -31,7 +35,7 @@ pub struct Scar<S: Space> {
 }
 
 /// A surface that was worn as deep as it is thick.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, Serialize, Deserialize)]
 #[error(
     "`{name}` is worn through at {at:?} m: {depth:.4e} m deep of a thickness of {thickness:.4e} m; give it more \
      `wears.thickness`, less load or slip, or end the run before"
@@ -63,6 +67,7 @@ impl<S: Space> Scar<S> {
             thickness,
             every,
             depth: vec![0.0; vertices.len()],
+            shown: vec![0.0; vertices.len()],
             vertices,
             volume: 0.0,
             deepest: 0,
@@ -121,6 +126,9 @@ impl<S: Space> Scar<S> {
         }
         self.pending.sort_unstable();
         self.pending.dedup();
+        for vertex in &self.pending {
+            self.shown[*vertex] = self.depth[*vertex];
+        }
         if let Some(shape) = shapes.surfaces[self.surface].shape.receding_mut() {
             self.moved += shape.recede(&self.depth, &self.pending);
         }
@@ -130,6 +138,15 @@ impl<S: Space> Scar<S> {
             self.moved = 0.0;
         }
         far
+    }
+
+    /// Lets a surface that is whole show what this scar had it show: what was worn since waits still.
+    pub fn show_again(&self, shapes: &mut Shapes<S>) {
+        let all: Vec<usize> = (0..self.shown.len()).collect();
+        let carried = shapes.surfaces.get_mut(self.surface);
+        if let Some(shape) = carried.and_then(|c| c.shape.receding_mut()) {
+            shape.recede(&self.shown, &all);
+        }
     }
 
     /// Volume worn so far (m^3; m^3/m in 2D).

@@ -4,13 +4,14 @@
 //! forest cuts off a branch, which looks for another bond to what is tied: only the branch is walked. What finds
 //! none is loose, in pieces that hang together.
 
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// No body.
 const NONE: u32 = u32::MAX;
 
 /// The forest.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Ties {
     /// Bodies at the other end of each body's bonds, once for each bond.
     bonds: Vec<Vec<u32>>,

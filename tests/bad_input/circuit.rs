@@ -68,6 +68,15 @@ fn zones_that_overlap_or_are_none() {
 }
 
 #[test]
+fn a_zone_beyond_one_side_of_a_period() {
+    let open = r#"bases: ["floor"], zones: [(name: "far", low: [0.01, -inf], high: ‸[inf, inf])]"#;
+    refused(
+        &circuit(open),
+        &["along axis 0, which is periodic", "give both sides"],
+    );
+}
+
+#[test]
 fn an_account_that_never_begins() {
     refused(
         &circuit(r#"bases: ["floor"], start: ‸9.0"#),

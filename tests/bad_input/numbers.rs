@@ -137,6 +137,24 @@ fn an_alert_distance_that_makes_all_contacts() {
 }
 
 #[test]
+fn checkpoints_that_come_at_no_time() {
+    for (rule, said) in [
+        (
+            "Steps(0)",
+            "steps between two checkpoints; use Never for none",
+        ),
+        (
+            "Seconds(-1.0)",
+            "seconds between two checkpoints must not be negative",
+        ),
+        ("Hourly", "unknown variant `Hourly`"),
+    ] {
+        let to = format!("output: (checkpoint: ‸{rule}, frames: 0");
+        refused(&with(PLANE, "output: (frames: 0", &to), &[said]);
+    }
+}
+
+#[test]
 fn statistics_that_are_never_written() {
     refused(
         &with(PLANE, "output: (frames: 0", "output: (every: ‸0, frames: 0"),

@@ -68,6 +68,13 @@ const LAW: &str = r#"
 #include "fretwork.h"
 static int32_t prepare(const fw_batch *b, fw_message *m) {
     (void)m;
+#ifdef LOOPS
+    static int calls;
+    for (volatile int on = ++calls > 20000; on;) {}
+#endif
+#ifdef SPILLS
+    b->out_friction[b->n] = 1.0;
+#endif
     for (size_t k = 0; k < b->n; k++) b->out_friction[k] = b->parameters[0];
     return FW_OK;
 }
@@ -133,6 +140,11 @@ impl Trial {
 
     /// Compiles a contact law of this name and these flags into the trial's folder.
     pub fn compile_law(&self, name: &str, flags: &str) {
+        self.compile_bad_law(name, flags, "GOOD");
+    }
+
+    /// The same with a fault: it `LOOPS` for ever in prepare, or `SPILLS` behind a column.
+    pub fn compile_bad_law(&self, name: &str, flags: &str, fault: &str) {
         use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
         let source = self.write("law.c", LAW);
         let file = name.replace('-', "_");
@@ -141,6 +153,7 @@ impl Trial {
             .args(["-std=c99", "-Wall", "-Werror", "-shared", "-fPIC", "-I"])
             .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/plugins/abi/include"))
             .args([format!("-DNAME=\"{name}\""), format!("-DFLAGS={flags}")])
+            .arg(format!("-D{fault}"))
             .arg("-o")
             .args([&library, &source])
             .status()

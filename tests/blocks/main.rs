@@ -1,6 +1,7 @@
 //! Blocks that fit each other, and bonds over the faces between them, in the plane and in space: sizes and areas of
 //! samples, the law's closed form over a face, the ledger of a plate that tears.
 
+mod face;
 mod plane;
 mod plate;
 mod space;
@@ -28,4 +29,14 @@ fn step<S: Dimensional>(s: &mut Simulation<S>) {
         "step {}: {:?}",
         s.steps, report.solver
     );
+}
+
+/// The place of a driven body among them.
+fn driven<S: Dimensional>(s: &Simulation<S>, name: &str) -> usize {
+    let mut all = s.bodies.driven.iter();
+    all.position(|d| d.name == name).unwrap()
+}
+
+fn close(a: f64, b: f64, tolerance: f64) -> bool {
+    (a / b - 1.0).abs() < tolerance
 }

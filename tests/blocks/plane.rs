@@ -1,5 +1,6 @@
 //! Polygons: sizes and areas of samples, the law's closed form over a face.
 
+use super::face::opens_by_its_law;
 use super::{scene, step};
 use fretwork::contact::Key;
 use fretwork::geometry::convex::Core;
@@ -95,41 +96,5 @@ fn neighbours_are_bonded_over_their_sides_and_nothing_else_is() {
 
 #[test]
 fn a_face_opens_by_its_law_over_its_whole_length() {
-    let (strength, energy, stiffness, face) = (3e5, 0.5, 1e12, 0.5);
-    let (first, last) = (strength / stiffness, 2.0 * energy / strength);
-    let mut s = scene::<Plane>("verification/bonded_face", &[]);
-    let (mut peak, mut work, mut begun, mut open) = (0.0f64, 0.0, None, 0.0);
-    let grip = s
-        .bodies
-        .driven
-        .iter()
-        .position(|d| d.name == "grip")
-        .unwrap();
-    while s.network.bonds_broken() < 2 {
-        step(&mut s);
-        assert!(open < 2.0 * last);
-        let pull = -s.received[grip].0.y / s.scheme.h;
-        let before = open;
-        // From rest, over the first step the grip moves half.
-        open += 0.01 * s.scheme.h * if s.steps == 1 { 0.5 } else { 1.0 };
-        work += pull * (open - before);
-        peak = peak.max(pull);
-        let bonds = &s.network.memory[0].bonds;
-        if begun.is_none() && bonds.iter().any(|b| b.damage > 0.0) {
-            begun = Some((pull, open));
-        }
-        // Both points alike: the face does not turn.
-        assert!((bonds[0].opening_n - bonds[1].opening_n).abs() < 1e-9 * last);
-    }
-    let (force, at) = begun.unwrap();
-    println!("peak {peak:e}, damage from {force:e} at {at:e}, work {work:e}, open to {open:e}");
-    assert_eq!(s.network.bonds_made(), 2);
-    let bonds = &s.network.memory[0].bonds;
-    assert!((bonds[0].area + bonds[1].area - face).abs() < 1e-15);
-    let close = |a: f64, b: f64, tolerance: f64| (a / b - 1.0).abs() < tolerance;
-    assert!(close(peak, strength * face, 1e-3));
-    assert!(close(force, strength * face, 1e-3) && close(at, first, 1e-3));
-    assert!(close(open, last, 1e-3) && close(work, energy * face, 1e-3));
-    assert!(close(s.energy.fracture, energy * face, 1e-3));
-    assert!(s.energy.relative_residual() < 1e-12);
+    opens_by_its_law::<Plane>("verification/bonded_face", 2, 0.5, 2e-15);
 }

@@ -1,6 +1,7 @@
 //! Polyhedra: sizes and areas of samples, the law's closed form over a face that is pulled, bent and twisted.
 
-use super::{scene, step};
+use super::face::opens_by_its_law;
+use super::{close, driven, scene, step};
 use fretwork::contact::Key;
 use fretwork::geometry::convex::Core;
 use fretwork::geometry::space::Solid;
@@ -12,12 +13,6 @@ use nalgebra::Vector3;
 use std::collections::HashMap;
 
 type V = Vector3<f64>;
-
-/// The place of a driven body among them.
-fn driven(s: &Simulation<Solid>, name: &str) -> usize {
-    let mut all = s.bodies.driven.iter();
-    all.position(|d| d.name == name).unwrap()
-}
 
 /// Faces of a piece where it stands (m).
 fn faces(s: &Simulation<Solid>, piece: usize) -> Vec<Vec<V>> {
@@ -49,10 +44,6 @@ fn common(a: &[Vec<V>], b: &[Vec<V>]) -> f64 {
         }
     }
     sum
-}
-
-fn close(a: f64, b: f64, tolerance: f64) -> bool {
-    (a / b - 1.0).abs() < tolerance
 }
 
 const WALL: [&str; 5] = [
@@ -104,39 +95,7 @@ fn a_wall_stands_below_its_angle_of_friction_and_slides_above() {
 
 #[test]
 fn a_face_opens_by_its_law_over_its_whole_area() {
-    let (strength, energy, stiffness, face) = (3e5, 0.5, 1e12, 0.2);
-    let (first, last) = (strength / stiffness, 2.0 * energy / strength);
-    let mut s = scene::<Solid>("verification/bonded_face_3d", &[]);
-    let (mut peak, mut work, mut begun, mut open) = (0.0f64, 0.0, None, 0.0);
-    let grip = driven(&s, "grip");
-    while s.network.bonds_broken() < 4 {
-        step(&mut s);
-        assert!(open < 2.0 * last);
-        let pull = -s.received[grip].0.z / s.scheme.h;
-        let before = open;
-        // From rest, over the first step the grip moves half.
-        open += 0.01 * s.scheme.h * if s.steps == 1 { 0.5 } else { 1.0 };
-        work += pull * (open - before);
-        peak = peak.max(pull);
-        let bonds = &s.network.memory[0].bonds;
-        if begun.is_none() && bonds.iter().any(|b| b.damage > 0.0) {
-            begun = Some((pull, open));
-        }
-        // All points alike: the face does not turn.
-        for b in bonds {
-            assert!((b.opening_n - bonds[0].opening_n).abs() < 1e-9 * last);
-        }
-    }
-    let (force, at) = begun.unwrap();
-    println!("peak {peak:e}, damage from {force:e} at {at:e}, work {work:e}, open to {open:e}");
-    assert_eq!(s.network.bonds_made(), 4);
-    let bonded: f64 = s.network.memory[0].bonds.iter().map(|b| b.area).sum();
-    assert!(close(bonded, face, 1e-13), "{bonded}");
-    assert!(close(peak, strength * face, 1e-3));
-    assert!(close(force, strength * face, 1e-3) && close(at, first, 1e-3));
-    assert!(close(open, last, 1e-3) && close(work, energy * face, 1e-3));
-    assert!(close(s.energy.fracture, energy * face, 1e-3));
-    assert!(s.energy.relative_residual() < 1e-12);
+    opens_by_its_law::<Solid>("verification/bonded_face_3d", 4, 0.2, 1e-13);
 }
 
 /// Pulled by u, bent by two small angles and twisted: at the four corners (±a, ±b) of the face stand springs of a

@@ -2,6 +2,7 @@
 
 use fretwork::geometry::space::Plane;
 use fretwork::laws::SearchPath;
+use fretwork::record::jump::JumpSummary;
 use fretwork::record::{RunOptions, Summary, run};
 use fretwork::scene::load;
 use std::path::{Path, PathBuf};
@@ -43,19 +44,21 @@ fn refused(case: &str, sets: &[&str]) -> String {
 /// The bound of the comparison that the field makes: Cruzado et al. (2012) keep a hundred cycles within 4 %.
 const BOUND: f64 = 0.04;
 
+/// The jump of a run that stands for 1000 cycles with a twentieth of the steps of the full one.
+fn twenty_times_fewer<'a>(jumped: &'a Summary, full: &Summary) -> &'a JumpSummary {
+    let jump = jumped.jump.as_ref().unwrap();
+    assert_eq!(jump.represented_cycles, 1000);
+    let steps = (jumped.steps, full.steps);
+    assert!(20 * steps.0 <= steps.1, "{steps:?}");
+    jump
+}
+
 /// Wear of the cylinder on a flat: volume, largest depth and profile of the run that computes every cycle.
 #[test]
 fn a_scar_by_jumps_is_the_scar_of_all_cycles() {
     let (jumped, profile) = ran("fretting_wear_jump", "scar", &[]);
     let (full, expected) = ran("fretting_wear_jump", "scar-full", &["jump=None"]);
-    let jump = jumped.jump.as_ref().unwrap();
-    assert_eq!(jump.represented_cycles, 1000);
-    assert!(
-        20 * jumped.steps <= full.steps,
-        "{} of {}",
-        jumped.steps,
-        full.steps
-    );
+    let jump = twenty_times_fewer(&jumped, &full);
     assert!(full.jump.is_none());
     let volume = jump.wear_volume / full.wear.volume_first_bodies - 1.0;
     let most = |d: &[f64]| d.iter().copied().fold(0.0, f64::max);
@@ -94,14 +97,7 @@ fn a_scar_by_jumps_is_the_scar_of_all_cycles() {
 fn the_damage_of_a_bond_by_jumps_is_that_of_all_cycles() {
     let (jumped, _) = ran("verification/bond_fatigue", "bond", &[]);
     let (full, _) = ran("verification/bond_fatigue", "bond-full", &["jump=None"]);
-    let jump = jumped.jump.as_ref().unwrap();
-    assert_eq!(jump.represented_cycles, 1000);
-    assert!(
-        20 * jumped.steps <= full.steps,
-        "{} of {}",
-        jumped.steps,
-        full.steps
-    );
+    let jump = twenty_times_fewer(&jumped, &full);
     let error = jumped.mean_damage / full.mean_damage - 1.0;
     println!(
         "{} steps for {}: D {:.5} for {:.5}, {error:.1e}; estimated {:.1e}; {:?}",

@@ -5,3 +5,4 @@ mod events;
 mod jump;
 mod scar;
 mod scar_files;
+mod solids;

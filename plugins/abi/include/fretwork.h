@@ -69,7 +69,8 @@ extern "C" {
 #define FW_FLAG_3D_ONLY (UINT64_C(1) << 1)
 /* Flag (cohesion): the normal stiffness pulls only; compression is the contact's. Below zero opening the
  * law goes on along its line (a negative traction), which places the zero for the host; the host drops
- * the push. */
+ * the push. Such a bond fills the gap over which it was made. One without the flag pushes too, and yields
+ * until the gap closes. */
 #define FW_FLAG_TENSION_ONLY (UINT64_C(1) << 2)
 /* Flag (cohesion): the law has an opening and a stored energy, so a damage law can follow it. */
 #define FW_FLAG_OPENING (UINT64_C(1) << 3)

@@ -48,6 +48,7 @@ pub const FLAG_2D_ONLY: u64 = 1;
 pub const FLAG_3D_ONLY: u64 = 1 << 1;
 /// Flag (cohesion): the normal stiffness pulls only; compression is the contact's. Below zero opening the law
 /// goes on along its line (a negative traction), which places the zero for the host; the host drops the push.
+/// Such a bond fills the gap over which it was made. One without the flag pushes too, and yields until the gap closes.
 pub const FLAG_TENSION_ONLY: u64 = 1 << 2;
 /// Flag (cohesion): the law has an opening and a stored energy, so a damage law can follow it.
 pub const FLAG_OPENING: u64 = 1 << 3;

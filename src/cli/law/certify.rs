@@ -34,7 +34,7 @@ pub struct CertifyArgs {
 pub fn certify(args: &CertifyArgs) -> Result<(), Failure> {
     let path = args.plugins.search()?;
     let laws = match &args.law {
-        Some(law) if Path::new(law).is_file() => vec![Plugin::open(Path::new(law))?],
+        Some(law) if Path::new(law).is_file() => vec![path.open(Path::new(law))?],
         Some(law) if law.contains(['/', '\\']) && !law.split('/').next().is_some_and(is_kind) => {
             return Err(Failure::Usage(format!("{law}: there is no such file")));
         }
@@ -43,7 +43,7 @@ pub fn certify(args: &CertifyArgs) -> Result<(), Failure> {
             let all = path
                 .available()
                 .into_iter()
-                .map(|(_, _, file)| Plugin::open(&file));
+                .map(|(_, _, file)| path.open(&file));
             all.collect::<Result<_, _>>()?
         }
     };

@@ -63,6 +63,7 @@ pub fn detect<S: Space>(
     time: f64,
     h: f64,
 ) {
+    network.haste.watch(bodies, network.alert, time, h);
     // The pieces' centres follow those of the balls.
     let mut centres: Vec<S::Vector> = shapes.balls.iter().map(|b| centre(b, bodies)).collect();
     centres.extend(

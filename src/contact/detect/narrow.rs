@@ -152,7 +152,7 @@ impl<'a, S: Space> Narrow<'a, S> {
         let old = self.old_of(network, (a, b));
         let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
         let local = S::unrotate(&rotation, &(self.centres[a as usize] - origin));
-        let margin = reach(network, old.clone());
+        let margin = self.reach(network, old.clone());
         let mut touches = std::mem::take(&mut self.touches);
         touches.clear();
         surface
@@ -219,6 +219,23 @@ impl<'a, S: Space> Narrow<'a, S> {
         self.touches = touches;
     }
 
+    /// How far the contacts of a pair are looked for (m): a bond reaches as far as it is stretched, again as far
+    /// within a step, and as far as its bodies moved in it.
+    pub(super) fn reach(&self, network: &Network<S>, old: std::ops::Range<usize>) -> f64 {
+        let stretch = |k: usize| {
+            let old = &network.old[k];
+            let bond = network.bond(old).filter(|b| b.intact())?;
+            let moved = [0, 1].map(|side| {
+                let b = old.bodies[side] as usize;
+                let (v, w) = (&self.bodies.velocity[b], &self.bodies.spin[b]);
+                self.h * (v.norm() + w.norm() * old.arms[side].norm())
+            });
+            let open = old.gap.max(0.0) + bond.opening_t.norm();
+            Some(network.skin + 2.0 * open + moved[0] + moved[1])
+        };
+        network.alert + old.filter_map(stretch).fold(0.0, f64::max)
+    }
+
     /// Takes a contact in, with what an old one of the same name remembers.
     pub(super) fn admit(
         &self,
@@ -248,19 +265,14 @@ impl<'a, S: Space> Narrow<'a, S> {
                     }
                 }
             }
-            None => found.broken = network.broken_pairs.contains(&found.key.pair()),
+            None => {
+                found.broken = network.broken_pairs.contains(&found.key.pair());
+                // What overlaps from the start is the sample's.
+                if self.time > 0.0 {
+                    network.haste.meet(found.gap, found.radius);
+                }
+            }
         }
         network.contacts.push(found);
     }
-}
-
-/// How far the contacts of a pair are looked for (m): a bond reaches as far as it is stretched, and again as
-/// far within a step.
-pub(super) fn reach<S: Space>(network: &Network<S>, old: std::ops::Range<usize>) -> f64 {
-    let stretch = |k: usize| {
-        let old = &network.old[k];
-        let bond = network.bond(old).filter(|b| b.intact())?;
-        Some(network.skin + 2.0 * (old.gap.max(0.0) + bond.opening_t.norm()))
-    };
-    network.alert + old.filter_map(stretch).fold(0.0, f64::max)
 }

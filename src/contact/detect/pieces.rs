@@ -1,6 +1,6 @@
 //! Contacts of convex pieces: with balls, with each other and with surfaces, several points a pair.
 
-use super::narrow::{Narrow, reach};
+use super::narrow::Narrow;
 use super::{drop_contact, frame, held};
 use crate::contact::network::{Contact, Key, Network};
 use crate::geometry::convex::{Core, Gauge, Meeting};
@@ -22,7 +22,7 @@ impl<S: Space> Narrow<'_, S> {
     pub(super) fn pieces(&mut self, network: &mut Network<S>, a: u32, b: u32) {
         let old = self.old_of(network, (a, b));
         let gauge = Gauge {
-            reach: reach(network, old.clone()),
+            reach: self.reach(network, old.clone()),
             slack: SLACK * network.alert,
             held: old.clone().any(|k| held(network, Some(k))),
         };

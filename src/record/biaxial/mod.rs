@@ -119,6 +119,16 @@ impl Biaxial {
         }
     }
 
+    /// Lengths from which strains count (m).
+    pub fn reference(&self) -> [f64; 2] {
+        self.reference
+    }
+
+    /// Has strains count from other lengths (m).
+    pub fn refer_to(&mut self, reference: [f64; 2]) {
+        self.reference = reference;
+    }
+
     /// Volume of the grains (m^3; m^2 in 2D).
     pub fn solid(&self) -> f64 {
         self.solid

@@ -6,6 +6,7 @@
 
 use super::{Measure, grains, line};
 use crate::geometry::space::Space;
+use crate::record::code::{self, CodeError};
 use crate::record::statistics::{Column, Table};
 use crate::record::strain::Strain;
 use crate::report::{Axis, Chart, ReportError, Series, draw_panels};
@@ -122,6 +123,15 @@ impl<S: Space> Measure<S> for Band<S> {
             .into_iter()
             .filter_map(last)
             .collect()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        code::encode(&self.strain)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        self.strain = code::decode(from)?;
+        Ok(())
     }
 
     fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError> {

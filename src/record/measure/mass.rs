@@ -2,6 +2,7 @@
 
 use super::{Measure, grains, line, since};
 use crate::geometry::space::Space;
+use crate::record::code::CodeError;
 use crate::record::statistics::{Column, Table};
 use crate::report::{Axis, Chart, ReportError, Series};
 use crate::step::Simulation;
@@ -38,6 +39,14 @@ impl<S: Space> Measure<S> for Mass {
         rate.map(|r| (format!("{}_rate", self.name), r))
             .into_iter()
             .collect()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        Ok(Vec::new())
+    }
+
+    fn restore(&mut self, _: &[u8]) -> Result<(), CodeError> {
+        Ok(())
     }
 
     fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError> {

@@ -7,6 +7,7 @@ mod shear;
 mod slope;
 mod third_body;
 
+use super::code::CodeError;
 use super::statistics::{Column, Table};
 use crate::geometry::convex::{Core, Piece};
 use crate::geometry::space::{Space, VectorLike};
@@ -41,6 +42,16 @@ pub trait Measure<S: Space>: Debug {
     fn chains(&self, _: &Simulation<S>) -> Option<Vec<[u32; 2]>> {
         None
     }
+    /// What it carries from step to step, as bytes for a checkpoint; none where it carries nothing.
+    ///
+    /// # Errors
+    /// It cannot be put into bytes.
+    fn save(&self) -> Result<Vec<u8>, CodeError>;
+    /// Goes on from what [`Measure::save`] gave.
+    ///
+    /// # Errors
+    /// The bytes are of something else.
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError>;
     /// Writes its files and figures.
     ///
     /// # Errors
@@ -135,6 +146,26 @@ impl<S: Space> Measures<S> {
     pub fn follow(&mut self, s: &Simulation<S>) {
         let list = self.list.iter_mut().filter(|m| m.follows());
         list.for_each(|m| m.follow(s));
+    }
+
+    /// What each carries, see [`Measure::save`].
+    ///
+    /// # Errors
+    /// One cannot be put into bytes.
+    pub fn save(&self) -> Result<Vec<Vec<u8>>, CodeError> {
+        self.list.iter().map(|m| m.save()).collect()
+    }
+
+    /// Goes on from what [`Measures::save`] gave.
+    ///
+    /// # Errors
+    /// The bytes are of other measures.
+    pub fn restore(&mut self, from: &[Vec<u8>]) -> Result<(), CodeError> {
+        if from.len() != self.list.len() {
+            return Err(CodeError::other("measures"));
+        }
+        let mut pairs = self.list.iter_mut().zip(from);
+        pairs.try_for_each(|(measure, bytes)| measure.restore(bytes))
     }
 
     /// Columns of all, in the order of the case.

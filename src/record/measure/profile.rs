@@ -4,9 +4,11 @@
 
 use super::{Measure, grains};
 use crate::geometry::space::{Space, VectorLike};
+use crate::record::code::{self, CodeError};
 use crate::record::statistics::{Column, Table};
 use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels};
 use crate::step::Simulation;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// See [`crate::scene::measures::MeasureSpec::Profile`].
@@ -22,7 +24,8 @@ pub struct Profile<S: Space> {
     slices: Vec<Slice<S>>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 struct Slice<S: Space> {
     mass: f64,
     volume: f64,
@@ -137,6 +140,15 @@ impl<S: Space> Measure<S> for Profile<S> {
 
     fn outcome(&self, _: &Table) -> Vec<(String, f64)> {
         Vec::new()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        code::encode(&(self.samples, &self.slices))
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        (self.samples, self.slices) = code::decode(from)?;
+        Ok(())
     }
 
     fn draw(&self, dir: &Path, title: &str, _: &Table) -> Result<(), ReportError> {

@@ -7,6 +7,7 @@
 
 use super::{Measure, grains, line, mean, since};
 use crate::geometry::space::Space;
+use crate::record::code::CodeError;
 use crate::record::statistics::{Column, Table};
 use crate::report::{Axis, Chart, ReportError, Series, draw_panels};
 use crate::step::Simulation;
@@ -124,6 +125,14 @@ impl<S: Space> Measure<S> for Shear {
             .into_iter()
             .filter_map(|(part, value)| Some((self.column(part), value?)));
         named.collect()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        Ok(Vec::new())
+    }
+
+    fn restore(&mut self, _: &[u8]) -> Result<(), CodeError> {
+        Ok(())
     }
 
     fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError> {

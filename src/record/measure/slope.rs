@@ -2,6 +2,7 @@
 
 use super::{Measure, grains, line, mean, since};
 use crate::geometry::space::{Space, VectorLike};
+use crate::record::code::CodeError;
 use crate::record::statistics::{Column, Table};
 use crate::report::{Axis, Chart, ReportError, Series};
 use crate::step::Simulation;
@@ -65,6 +66,14 @@ impl<S: Space> Measure<S> for Slope {
     fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
         let mean = mean(&since(table, &self.name, self.start));
         mean.map(|m| (self.name.clone(), m)).into_iter().collect()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        Ok(Vec::new())
+    }
+
+    fn restore(&mut self, _: &[u8]) -> Result<(), CodeError> {
+        Ok(())
     }
 
     fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError> {

@@ -45,8 +45,8 @@ impl Events {
 
     /// Writes what is held back.
     pub fn write(&mut self, store: &mut Store) -> Result<(), ResultsError> {
-        for (column, values) in self.columns.iter_mut().zip(&mut self.held) {
-            store.append(column, values)?;
+        for (column, values) in self.columns.iter().zip(&mut self.held) {
+            store.append(*column, values)?;
             values.clear();
         }
         Ok(())

@@ -7,14 +7,17 @@
 //! /events/broken/NAME  one value a bond that broke         /events/debris/NAME  one a piece that came loose
 //! /events/debris/grains  identities of their grains, piece after piece
 //! /views/grains, /views/contacts, /views/bodies           temporal VTKHDF PolyData
+//! /checkpoints/even, /checkpoints/odd                    what `--resume` goes on from, see [`crate::record::checkpoint`]
 //! /VTKHDF      the grains' view, for ParaView             contacts.vtkhdf, bodies.vtkhdf: links to the others
 //! ```
 
 mod events;
+mod kept;
 pub mod state;
 mod store;
 mod view;
 
+pub use kept::Kept;
 pub use store::ResultsError;
 pub use view::{Cells, Part};
 
@@ -22,7 +25,7 @@ use super::statistics::Column;
 use super::summary::PluginStamp;
 use events::Events;
 use std::path::Path;
-use store::{Growing, Store};
+use store::{Growing, Slot, Store};
 use view::View;
 
 /// What is known before the first step.
@@ -55,6 +58,9 @@ pub struct Header {
 /// Rows of statistics held back before they are written.
 const HELD: usize = 64;
 
+/// The checkpoints, written in turn.
+const CHECKPOINTS: [&str; 2] = ["/checkpoints/even", "/checkpoints/odd"];
+
 /// The results file of a run.
 #[derive(Debug)]
 pub struct Results {
@@ -64,11 +70,13 @@ pub struct Results {
     broken: Events,
     debris: Events,
     debris_grains: Option<Growing>,
+    held_grains: Vec<f64>,
     views: Vec<View>,
+    checkpoints: Vec<Slot>,
 }
 
 impl Results {
-    /// Creates the file and writes what is known.
+    /// Creates the file and writes what is known. It has another name until [`Results::publish`].
     ///
     /// # Errors
     /// The file cannot be written.
@@ -147,6 +155,10 @@ impl Results {
             )?);
         }
         store.link("/VTKHDF", "/views/grains")?;
+        store.group("/checkpoints")?;
+        let doc = "a checkpoint of the run; see docs/checkpoints.md";
+        let checkpoints = CHECKPOINTS.map(|path| store.slot(path, doc));
+        let checkpoints = checkpoints.into_iter().collect::<Result<_, _>>()?;
         store.start()?;
         Ok(Self {
             store: Some(store),
@@ -155,8 +167,47 @@ impl Results {
             broken,
             debris,
             debris_grains,
+            held_grains: Vec::new(),
             views,
+            checkpoints,
         })
+    }
+
+    /// Gives the file its name, with what was written so far: one that stood there is replaced.
+    ///
+    /// # Errors
+    /// The file cannot be written or renamed.
+    pub fn publish(&mut self, path: &Path) -> Result<(), ResultsError> {
+        let Some(store) = &mut self.store else {
+            return Ok(());
+        };
+        store.flush()?;
+        store.rename(path)
+    }
+
+    /// Rows of each growing dataset and the CRC-32 of their bytes, with those that are held back: these are written first.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn rows(&mut self) -> Result<Vec<(u64, u32)>, ResultsError> {
+        self.write_held()?;
+        let store = self.store.iter();
+        Ok(store
+            .flat_map(|s| s.grown().iter().map(|g| (g.rows, g.sum)))
+            .collect())
+    }
+
+    /// Writes a checkpoint, over the last but one; it is safe when this returns.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn checkpoint(&mut self, number: u64, bytes: &[u8]) -> Result<(), ResultsError> {
+        let slot = &mut self.checkpoints[(number % 2) as usize];
+        let Some(store) = &mut self.store else {
+            return Ok(());
+        };
+        // The rows that it counts must be there before it is: without its first word it is none.
+        store.write(slot, bytes, 8)
     }
 
     /// Appends a row of statistics.
@@ -191,23 +242,30 @@ impl Results {
     /// The file cannot be written.
     pub fn append_debris(&mut self, row: &[f64], grains: &[f64]) -> Result<(), ResultsError> {
         self.debris.hold(row);
-        if let (Some(store), Some(list)) = (&mut self.store, &mut self.debris_grains) {
-            store.append(list, grains)?;
-        }
+        self.held_grains.extend_from_slice(grains);
         Ok(())
     }
 
     fn write_statistics(&mut self) -> Result<(), ResultsError> {
+        self.write_held()?;
+        self.store.as_mut().map_or(Ok(()), Store::flush)
+    }
+
+    fn write_held(&mut self) -> Result<(), ResultsError> {
         let Some(store) = &mut self.store else {
             return Ok(());
         };
-        for (column, values) in self.statistics.iter_mut().zip(&mut self.held) {
-            store.append(column, values)?;
+        for (column, values) in self.statistics.iter().zip(&mut self.held) {
+            store.append(*column, values)?;
             values.clear();
         }
         self.broken.write(store)?;
-        self.debris.write(store)?;
-        store.flush()
+        // Identities first: a piece that can be read has all its grains.
+        if let Some(list) = &self.debris_grains {
+            store.append(*list, &self.held_grains)?;
+            self.held_grains.clear();
+        }
+        self.debris.write(store)
     }
 
     /// Appends a state: grains, contacts, bodies.

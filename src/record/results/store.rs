@@ -1,30 +1,75 @@
-//! The only file of this folder, with `state.rs`, that knows the HDF5 crate: growing datasets through its SWMR writer, whose files can
+//! The only file of this folder, with `state.rs` and `kept.rs`, that knows the HDF5 crate: growing datasets through its SWMR writer, whose files can
 //! be read up to the last flush after a crash.
 
 use hdf5::swmr::SwmrFileWriter;
 use hdf5::{DatatypeMessage, FileLocking, H5File, H5Type};
 use std::path::{Path, PathBuf};
 
-/// Why results cannot be written.
+/// Why results cannot be written, or those of a run that was stopped not be read.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write {}: {reason}; choose another folder with --out or make room on the disk", path.display())]
-pub struct ResultsError {
-    path: PathBuf,
-    reason: String,
+pub enum ResultsError {
+    /// They cannot be written.
+    #[error("cannot write {}: {reason}; choose another folder with --out or make room on the disk", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// They cannot be read.
+    #[error("cannot read {}: {reason}; to begin anew leave --resume out", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+}
+
+impl ResultsError {
+    pub(super) fn unreadable(path: &Path, reason: String) -> Self {
+        Self::Read {
+            path: path.to_owned(),
+            reason,
+        }
+    }
 }
 
 /// A dataset that grows along its first axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Growing {
+    /// Its place in [`Store::grown`].
+    place: usize,
+}
+
+/// What is known of a growing dataset.
+#[derive(Clone, Debug)]
+pub struct Grown {
+    /// Its path.
+    pub path: String,
     index: usize,
-    rows: u64,
-    width: u64,
+    /// Rows so far.
+    pub rows: u64,
+    /// CRC-32 of their bytes.
+    pub sum: u32,
+    /// Numbers a row.
+    pub width: u64,
+    /// Whether they are whole numbers.
+    pub whole: bool,
+}
+
+/// Bytes that are written over again and again.
+#[derive(Clone, Copy, Debug)]
+pub struct Slot {
+    index: usize,
+    size: u64,
 }
 
 /// An HDF5 file being written.
 pub struct Store {
     writer: SwmrFileWriter,
     path: PathBuf,
+    grown: Vec<Grown>,
 }
 
 impl std::fmt::Debug for Store {
@@ -45,7 +90,24 @@ impl Store {
         Ok(Self {
             writer: named(path, writer)?,
             path: path.to_owned(),
+            grown: Vec::new(),
         })
+    }
+
+    /// Gives the file another name; one that stands there is replaced. Either the one or the other is there at any
+    /// moment.
+    ///
+    /// # Errors
+    /// The file cannot be renamed.
+    pub fn rename(&mut self, path: &Path) -> Result<(), ResultsError> {
+        named(path, std::fs::rename(&self.path, path))?;
+        path.clone_into(&mut self.path);
+        // The name is safe when its folder is; not every system can say so of a folder.
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+        if let Ok(folder) = std::fs::File::open(folder.unwrap_or(Path::new("."))) {
+            let _ = folder.sync_all();
+        }
+        Ok(())
     }
 
     fn named<T, E: std::fmt::Display>(&self, result: Result<T, E>) -> Result<T, ResultsError> {
@@ -149,7 +211,7 @@ impl Store {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn growing<T: H5Type>(
+    pub fn growing<T: H5Type + Number>(
         &mut self,
         path: &str,
         width: u64,
@@ -186,11 +248,83 @@ impl Store {
             }
         }
         self.place(group, index)?;
-        Ok(Growing {
+        self.grown.push(Grown {
+            path: path.to_owned(),
             index,
             rows: 0,
+            sum: 0,
             width,
+            whole: T::WHOLE,
+        });
+        Ok(Growing {
+            place: self.grown.len() - 1,
         })
+    }
+
+    /// Bytes that can be written over, with a line of explanation.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn slot(&mut self, path: &str, doc: &str) -> Result<Slot, ResultsError> {
+        const CHUNK: u64 = 1 << 15;
+        let (group, _) = split(path);
+        let made = self.writer.create_grid_dataset_with_max(
+            path.trim_start_matches('/'),
+            u8::hdf5_type(),
+            &[0],
+            &[None],
+            &[CHUNK],
+            None,
+        );
+        let index = self.named(made)?;
+        let set = self.writer.set_dataset_attr_string(index, "doc", doc);
+        self.named(set)?;
+        self.place(group, index)?;
+        Ok(Slot { index, size: 0 })
+    }
+
+    /// Writes over a slot, its first `seal` bytes last: when these are there, the rest is on the disk, and so is all
+    /// that was appended before. A slot never shrinks: what is longer than the bytes is left from before.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(
+        &mut self,
+        slot: &mut Slot,
+        bytes: &[u8],
+        seal: usize,
+    ) -> Result<(), ResultsError> {
+        let length = bytes.len() as u64;
+        if length > slot.size {
+            let grown = self.writer.set_extent(slot.index, &[length]);
+            self.named(grown)?;
+            slot.size = length;
+        }
+        let (head, body) = bytes.split_at(seal);
+        let mut open = vec![0; seal];
+        open.extend_from_slice(body);
+        self.write_at(slot, &open)?;
+        self.flush()?;
+        self.write_at(slot, head)?;
+        // A flush would go through all datasets again.
+        let synced = std::fs::File::open(&self.path).and_then(|f| f.sync_data());
+        self.named(synced)
+    }
+
+    fn write_at(&mut self, slot: &Slot, bytes: &[u8]) -> Result<(), ResultsError> {
+        let length = bytes.len() as u64;
+        let written = self.writer.write_slice(slot.index, &[0], &[length], bytes);
+        self.named(written)
+    }
+
+    /// The growing datasets, in the order of their declarations.
+    pub fn grown(&self) -> &[Grown] {
+        &self.grown
+    }
+
+    /// Rows of a dataset so far.
+    pub fn rows(&self, dataset: Growing) -> u64 {
+        self.grown[dataset.place].rows
     }
 
     /// Everything is declared: readers may follow from here on.
@@ -208,14 +342,23 @@ impl Store {
     /// The file cannot be written.
     pub fn append<T: Number>(
         &mut self,
-        dataset: &mut Growing,
+        dataset: Growing,
         values: &[T],
     ) -> Result<(), ResultsError> {
-        let rows = values.len() as u64 / dataset.width;
+        let bytes: Vec<u8> = values.iter().flat_map(|v| v.bytes()).collect();
+        self.append_bytes(dataset.place, &bytes)
+    }
+
+    /// Appends rows, given as the bytes of their numbers, to the dataset at a place of [`Store::grown`].
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn append_bytes(&mut self, place: usize, bytes: &[u8]) -> Result<(), ResultsError> {
+        let dataset = self.grown[place].clone();
+        let rows = bytes.len() as u64 / (8 * dataset.width);
         if rows == 0 {
             return Ok(());
         }
-        let bytes: Vec<u8> = values.iter().flat_map(|v| v.bytes()).collect();
         let (start, end) = (dataset.rows, dataset.rows + rows);
         let plain = dataset.width == 1;
         let dims = |r: u64| {
@@ -230,9 +373,12 @@ impl Store {
         self.named(grown)?;
         let written = self
             .writer
-            .write_slice(dataset.index, &starts, &dims(rows), &bytes);
+            .write_slice(dataset.index, &starts, &dims(rows), bytes);
         self.named(written)?;
-        dataset.rows = end;
+        let mut sum = crc32fast::Hasher::new_with_initial(dataset.sum);
+        sum.update(bytes);
+        self.grown[place].sum = sum.finalize();
+        self.grown[place].rows = end;
         Ok(())
     }
 
@@ -251,30 +397,31 @@ impl Store {
     /// The file cannot be written.
     pub fn close(self) -> Result<(), ResultsError> {
         let path = self.path;
-        named(&path, self.writer.close())
-    }
-}
-
-impl Growing {
-    /// Rows so far.
-    pub fn rows(&self) -> u64 {
-        self.rows
+        named(&path, self.writer.close())?;
+        let synced = std::fs::File::open(&path).and_then(|f| f.sync_data());
+        named(&path, synced)
     }
 }
 
 /// Numbers that are written.
 pub trait Number: Copy {
+    /// Whether they are whole.
+    const WHOLE: bool;
     /// Little-endian bytes.
     fn bytes(self) -> [u8; 8];
 }
 
 impl Number for f64 {
+    const WHOLE: bool = false;
+
     fn bytes(self) -> [u8; 8] {
         self.to_le_bytes()
     }
 }
 
 impl Number for i64 {
+    const WHOLE: bool = true;
+
     fn bytes(self) -> [u8; 8] {
         self.to_le_bytes()
     }
@@ -294,7 +441,7 @@ pub fn companion(path: &Path, file: &str, target: &str) -> Result<(), ResultsErr
 }
 
 fn named<T, E: std::fmt::Display>(path: &Path, result: Result<T, E>) -> Result<T, ResultsError> {
-    result.map_err(|e| ResultsError {
+    result.map_err(|e| ResultsError::Write {
         path: path.to_owned(),
         reason: e.to_string(),
     })

@@ -153,19 +153,21 @@ impl View {
     ) -> Result<(), ResultsError> {
         // Where this part begins: before anything of it is appended.
         let first_cells: Vec<i64> = (0..4)
-            .map(|k| self.offsets[k].rows() as i64 - self.count)
+            .map(|k| store.rows(self.offsets[k]) as i64 - self.count)
             .collect();
-        let first_ids: Vec<i64> = (0..4).map(|k| self.connectivity[k].rows() as i64).collect();
-        let first_point = self.points.rows() as i64;
-        for (column, offsets) in self.data.iter_mut().zip(&mut self.data_offsets) {
-            let first = column.rows() as i64;
-            store.append(offsets, &[first])?;
+        let first_ids: Vec<i64> = (0..4)
+            .map(|k| store.rows(self.connectivity[k]) as i64)
+            .collect();
+        let first_point = store.rows(self.points) as i64;
+        for (column, offsets) in self.data.iter().zip(&self.data_offsets) {
+            let first = store.rows(*column) as i64;
+            store.append(*offsets, &[first])?;
         }
-        for (column, values) in self.data.iter_mut().zip(&part.data) {
-            store.append(column, values)?;
+        for (column, values) in self.data.iter().zip(&part.data) {
+            store.append(*column, values)?;
         }
-        store.append(&mut self.points, &part.points)?;
-        store.append(&mut self.number_of_points, &[part.points.len() as i64 / 3])?;
+        store.append(self.points, &part.points)?;
+        store.append(self.number_of_points, &[part.points.len() as i64 / 3])?;
         for kind in 0..4 {
             let mine = kind == self.cells.kind();
             let (mut ids, mut offsets) = (Vec::new(), vec![0i64]);
@@ -175,20 +177,25 @@ impl View {
                     offsets.push(ids.len() as i64);
                 }
             }
-            store.append(&mut self.numbers[kind][0], &[offsets.len() as i64 - 1])?;
-            store.append(&mut self.numbers[kind][1], &[ids.len() as i64])?;
-            store.append(&mut self.offsets[kind], &offsets)?;
-            store.append(&mut self.connectivity[kind], &ids)?;
+            store.append(self.numbers[kind][0], &[offsets.len() as i64 - 1])?;
+            store.append(self.numbers[kind][1], &[ids.len() as i64])?;
+            store.append(self.offsets[kind], &offsets)?;
+            store.append(self.connectivity[kind], &ids)?;
         }
-        let [parts, number, points] = &mut self.steps;
+        let [parts, number, points] = self.steps;
         store.append(parts, &[self.count])?;
         store.append(number, &[1i64])?;
         store.append(points, &[first_point])?;
-        store.append(&mut self.cell_offsets, &first_cells)?;
-        store.append(&mut self.connectivity_offsets, &first_ids)?;
-        store.append(&mut self.values, &[time])?;
+        store.append(self.cell_offsets, &first_cells)?;
+        store.append(self.connectivity_offsets, &first_ids)?;
+        store.append(self.values, &[time])?;
         self.count += 1;
         Ok(())
+    }
+
+    /// Takes up the states that the file has.
+    pub fn resume(&mut self, store: &Store) {
+        self.count = store.rows(self.values) as i64;
     }
 
     /// Writes the number of states, which readers of a finished file trust.

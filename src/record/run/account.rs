@@ -12,11 +12,13 @@ use crate::scene::case::Case;
 use crate::scene::circuit;
 use crate::step::Simulation;
 use crate::wear::circuit::Circuit;
-use crate::wear::ledger::{Flows, Place};
+use crate::wear::ledger::{Flows, Ledger, Place};
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// The account of a run.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub(super) struct Account<S: Space> {
     start: f64,
     every: u64,
@@ -78,11 +80,9 @@ impl<S: Space> Account<S> {
 
     /// Values of the columns.
     pub fn row(&self) -> Vec<f64> {
-        let Some(circuit) = &self.circuit else {
-            return vec![0.0; 15];
-        };
-        let (c, f) = (&circuit.ledger.contents, &circuit.ledger.flows);
-        let r = circuit.ledger.residual();
+        let none = Ledger::default();
+        let ledger = self.circuit.as_ref().map_or(&none, |c| &c.ledger);
+        let (c, f, r) = (&ledger.contents, &ledger.flows, ledger.residual());
         let rest = [r.tied, r.contact, r.ejected, r.lost];
         let flows = [f.source, f.attached, f.ejected, f.recirculated, f.wear];
         let mut row = vec![c.tied.grains as f64, c.contact.grains as f64];

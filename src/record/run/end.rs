@@ -2,9 +2,11 @@
 
 use super::{Recorder, RunError, unwritable};
 use crate::record::biaxial::{self, Outcome};
+use crate::record::checkpoint::LAST;
 use crate::record::summary::Wear;
 use crate::record::{circuit, figures, fretting, jump, scars};
 use crate::scene::build::Dimensional;
+use std::path::Path;
 
 impl<S: Dimensional> Recorder<'_, S> {
     /// Writes what a run leaves behind, whatever it reached.
@@ -13,7 +15,9 @@ impl<S: Dimensional> Recorder<'_, S> {
         let summary = &mut self.summary;
         summary.steps = s.steps;
         summary.time = s.time;
-        summary.wall_seconds = self.clock.elapsed().as_secs_f64();
+        let wall = self.spent.0 + self.clock.elapsed();
+        summary.wall_seconds = wall.as_secs_f64();
+        summary.cpu_seconds = (self.spent.1 + self.processor.elapsed()).as_secs_f64();
         summary.bodies = s.bodies.len();
         summary.contacts = n.contacts.len();
         summary.bonds = n.bonds_made();
@@ -41,6 +45,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         summary.scars = scars::outcome(s);
         summary.measures = self.measures.outcome(&self.table);
         summary.findings = self.measures.verdict(&self.table);
+        summary.haste = n.haste;
         summary.energy = s.energy;
         summary.energy_residual_relative = s.energy.relative_residual();
         summary.jump = self.jumps.as_ref().map(|j| j.outcome(s, self.worn.0));
@@ -60,25 +65,37 @@ impl<S: Dimensional> Recorder<'_, S> {
             volume_first_bodies: self.worn.0,
             volume_third_body: self.worn.1,
         };
-        let wall = self.clock.elapsed();
         summary.circuit = self.account.summary(s, wall);
         if let Some(circuit) = &summary.circuit {
             let span = (s.time - circuit.start).max(f64::MIN_POSITIVE);
-            summary.wear.Qs = circuit.flows.source.mass / span;
+            summary.wear.Qs += circuit.flows.source.mass / span;
             summary.wear.Qe = Some(circuit.flows.ejected.mass / span);
             summary.wear.Qw = Some(circuit.flows.wear.mass / span);
         }
         summary.solver.coupling_iterations_mean = self.couplings as f64 / s.steps.max(1) as f64;
         summary.solver.why = summary.solver.choice.why(s.solver.method, s.steps);
         summary.solver.iterations_mean = self.iterations as f64 / s.steps.max(1) as f64;
-        self.table
-            .flush()
-            .map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
+        let files = self.files();
+        if let (Err(e), None) = (&files, &self.summary.stopped) {
+            self.summary.stopped = Some(e.to_string());
+        }
         let text = serde_json::to_string_pretty(&self.summary).unwrap_or_default();
-        let path = self.out.join("summary.json");
-        std::fs::write(&path, text + "\n").map_err(|e| unwritable(&path, &e))?;
-        scars::write(&self.out, &self.simulation)?;
-        self.results.finish(&self.out)?;
+        whole(&self.out.join(LAST), &(text + "\n"))?;
+        files
+    }
+
+    /// Writes all other files, each whatever became of the one before it.
+    fn files(&mut self) -> Result<(), RunError> {
+        let table = self.table.flush();
+        let table = table.map_err(|e| unwritable(&self.out.join("statistics.csv"), &e));
+        let scars = scars::write(&self.out, &self.simulation).map_err(RunError::from);
+        let results = self.results.finish(&self.out).map_err(RunError::from);
+        table.and(results).and(scars).and(self.draw())
+    }
+
+    /// Draws the figures.
+    fn draw(&self) -> Result<(), RunError> {
+        let start = self.loaded.case.biaxial.as_ref().map_or(0.0, |t| t.start);
         if self.loaded.case.output.figures {
             figures::draw(
                 &self.out,
@@ -104,4 +121,11 @@ impl<S: Dimensional> Recorder<'_, S> {
         }
         Ok(())
     }
+}
+
+/// Writes a file that is whole whenever it is there.
+fn whole(path: &Path, text: &str) -> Result<(), RunError> {
+    let part = path.with_extension("part");
+    std::fs::write(&part, text).map_err(|e| unwritable(&part, &e))?;
+    std::fs::rename(&part, path).map_err(|e| unwritable(path, &e))
 }

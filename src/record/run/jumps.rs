@@ -10,12 +10,13 @@ use crate::scene::case::Case;
 use crate::scene::jump::JumpSpec;
 use crate::step::Simulation;
 use crate::wear::jump::{Amounts, carried, error, growth, left, misplaced, next_length, parts};
+use serde::{Deserialize, Serialize};
 
 /// The part of what is left of a run that a jump may take.
 const TAPER: f64 = 1.0 / 3.0;
 
 /// A jump that waits for its control.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Pending {
     cycles: u32,
     before: Amounts,
@@ -26,7 +27,7 @@ struct Pending {
 }
 
 /// The jumps of a run.
-#[derive(Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Jumps {
     spec: JumpSpec,
     /// Number of the cycle at hand among those computed, 0 before the first.

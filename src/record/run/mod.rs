@@ -3,63 +3,37 @@
 mod account;
 mod dump;
 mod end;
+mod error;
+mod frame;
 mod jumps;
+mod keep;
 mod row;
 mod stamps;
 
+pub use self::error::RunError;
+
 use self::account::Account;
+use self::error::unwritable;
 use self::jumps::Jumps;
 use self::stamps::{density_of, stamps};
 use super::biaxial::Biaxial;
+use super::checkpoint::{Found, Identity, Keeper, Kind, Stop, find};
 use super::friction::{Cycles, Sample, State as Cumulated};
 use super::layer::Layer;
 use super::measure::Measures;
-use super::picture::{Camera, Subject};
-use super::results::{Results, ResultsError};
+use super::picture::Camera;
+use super::results::Results;
 use super::statistics::Table;
 use super::strain::Strain;
 use super::summary::{SolverSummary, Summary};
 use super::views;
 use crate::bodies::TimeFunction;
 use crate::geometry::space::Space;
-use crate::report::ReportError;
 use crate::scene::build::{Built, Dimensional, Loaded};
-use crate::step::{Simulation, StepError, StepReport};
-use std::path::{Path, PathBuf};
-use std::time::Instant;
-
-/// Why a run failed. What was computed is on disk.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    /// The step.
-    #[error(transparent)]
-    Step(#[from] StepError),
-    /// A file or folder.
-    #[error("cannot write {}: {reason}; choose another folder with --out or make room", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        reason: String,
-    },
-    /// No bond ties a grain to a first body of the circuit.
-    #[error(
-        "at t = {time:.6e} s, when the circuit begins, no bond ties a grain to `{body}`: let bonds be made before \
-         (circuit.start), let them reach it (detection.alert, the places of grains), or leave it out of circuit.bases"
-    )]
-    NoBonds {
-        /// Name of the body.
-        body: String,
-        /// Time (s).
-        time: f64,
-    },
-    /// The results file.
-    #[error(transparent)]
-    Results(#[from] ResultsError),
-    /// A picture.
-    #[error(transparent)]
-    Picture(#[from] ReportError),
-}
+use crate::step::{Simulation, StepReport};
+use cpu_time::ProcessTime;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 /// What a run tells of itself as it goes.
 #[derive(Clone, Copy, Debug)]
@@ -99,9 +73,40 @@ pub fn run<S: Dimensional>(
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
-    let frames = options.out.join("frames");
-    std::fs::create_dir_all(&frames).map_err(|e| unwritable(&frames, &e))?;
-    let mut recorder = Recorder::new(loaded, built, options)?;
+    through(Recorder::new(loaded, built, options, None)?, progress)
+}
+
+/// What the folder of the results holds of this case, to go on from.
+///
+/// # Errors
+/// What is there cannot be read, is damaged, or of another version or case.
+pub fn stopped<S: Space>(
+    loaded: &Loaded,
+    built: &Built<S>,
+    options: &RunOptions,
+) -> Result<Found, RunError> {
+    Ok(find(&options.out, &Identity::of(loaded, built)?)?)
+}
+
+/// Goes on to the end from where a run of the same case was [`stopped`]: the bits are those of a run that was not.
+/// `progress` is called after every step.
+///
+/// # Errors
+/// As [`run`], or a state that the case cannot take up.
+pub fn go_on<S: Dimensional>(
+    loaded: &Loaded,
+    built: Built<S>,
+    options: &RunOptions,
+    stop: Stop,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Summary, RunError> {
+    through(Recorder::new(loaded, built, options, Some(stop))?, progress)
+}
+
+fn through<S: Dimensional>(
+    mut recorder: Recorder<'_, S>,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Summary, RunError> {
     let outcome = recorder.go(progress);
     if let Err(e) = &outcome {
         recorder.summary.stopped = Some(e.to_string());
@@ -109,13 +114,6 @@ pub fn run<S: Dimensional>(
     let finished = recorder.finish();
     outcome.and(finished)?;
     Ok(recorder.summary)
-}
-
-fn unwritable(path: &Path, e: &dyn std::fmt::Display) -> RunError {
-    RunError::Write {
-        path: path.to_owned(),
-        reason: e.to_string(),
-    }
 }
 
 struct Recorder<'a, S: Space> {
@@ -141,14 +139,32 @@ struct Recorder<'a, S: Space> {
     iterations: u64,
     couplings: u64,
     total: u64,
+    keeper: Keeper,
+    /// Time that the run took before it was stopped, of the clock and of processors; and since when it runs now.
+    spent: (Duration, Duration),
     clock: Instant,
+    processor: ProcessTime,
     density: f64,
     summary: Summary,
 }
 
 impl<'a, S: Dimensional> Recorder<'a, S> {
-    fn new(loaded: &'a Loaded, built: Built<S>, options: &RunOptions) -> Result<Self, RunError> {
+    /// From the start, or from where a run was stopped.
+    fn new(
+        loaded: &'a Loaded,
+        built: Built<S>,
+        options: &RunOptions,
+        stop: Option<Stop>,
+    ) -> Result<Self, RunError> {
+        let frames = options.out.join("frames");
+        std::fs::create_dir_all(&frames).map_err(|e| unwritable(&frames, &e))?;
         let case = &loaded.case;
+        let number = stop.as_ref().map_or(0, |s| s.number + 1);
+        let keeper = Keeper::new(
+            case.output.checkpoint,
+            &Identity::of(loaded, &built)?,
+            number,
+        )?;
         let mut simulation = built.simulation;
         simulation.solver.parallel = options.threads > 1;
         let cycles = case.friction.as_ref().and_then(|test| {
@@ -177,9 +193,6 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         columns.extend(jumps.is_some().then(Jumps::column));
         columns.extend(Account::<S>::columns(case));
         columns.extend(measures.columns());
-        let table_path = options.out.join("statistics.csv");
-        let table =
-            Table::create(&table_path, columns.clone()).map_err(|e| unwritable(&table_path, &e))?;
         let plugins = stamps(&simulation.laws);
         let summary = Summary {
             case: case.name.clone(),
@@ -197,7 +210,10 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             ..Summary::default()
         };
         let header = views::header(loaded, &built.materials, &summary, &columns, S::D);
-        let results = Results::create(&options.out.join("results.h5"), &header)?;
+        // The file of results comes first: it alone says what the folder holds.
+        let part = options.out.join("results.h5.part");
+        let results = Results::create(&part, &header)?;
+        let table = Table::new(columns);
         let total = (case.time.end / case.time.step - 1e-6).ceil().max(1.0) as u64;
         let first = simulation
             .shapes
@@ -205,7 +221,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             .first()
             .map(|s| s.body)
             .or(simulation.bodies.driven.first().map(|d| d.body));
-        Ok(Self {
+        let mut recorder = Self {
             camera: Camera::new(&simulation, &case.output),
             strain: case.output.shear.map(|_| Strain::new(&simulation)),
             out: options.out.clone(),
@@ -224,20 +240,37 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             iterations: 0,
             couplings: 0,
             total,
+            keeper,
+            spent: (Duration::ZERO, Duration::ZERO),
             clock: Instant::now(),
+            processor: ProcessTime::now(),
             density: density_of(loaded, first.is_some()),
             summary,
             simulation,
             loaded,
-        })
+        };
+        recorder.measures.begin(&mut recorder.simulation);
+        let begun = match stop {
+            Some(stop) => recorder.take_up(stop),
+            None => recorder.publish(Kind::Begun, Vec::new()),
+        };
+        match begun {
+            Ok(()) => Ok(recorder),
+            Err(e) => {
+                // What the folder held before is still there.
+                let _ = std::fs::remove_file(&part);
+                Err(e)
+            }
+        }
     }
 
     fn go(&mut self, progress: &mut dyn FnMut(&Progress)) -> Result<(), RunError> {
         let output = &self.loaded.case.output;
-        self.measures.begin(&mut self.simulation);
-        self.views()?;
-        self.frame(0)?;
-        for step in 1..=self.total {
+        if self.simulation.steps == 0 {
+            self.views()?;
+            self.frame(0)?;
+        }
+        for step in self.simulation.steps + 1..=self.total {
             let (before, phase) = (self.cumulated(), self.simulation.control.phase());
             let recurs = self.simulation.control.recurs();
             let report = self.simulation.step()?;
@@ -280,8 +313,11 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             }
             progress(&self.progress(step, &report));
             whole?;
-            if finished {
+            if last {
                 break;
+            }
+            if self.keeper.due(step) {
+                self.keep()?;
             }
         }
         Ok(())
@@ -389,60 +425,6 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             .as_ref()
             .map(|strain| strain.shear(&self.simulation));
         Ok(views::append(&mut self.results, &self.simulation, shear)?)
-    }
-
-    fn frame(&mut self, step: u64) -> Result<(), RunError> {
-        if self.loaded.case.output.frames == 0 {
-            return Ok(());
-        }
-        let mut caption = vec![format!("t = {:.4e} s", self.simulation.time)];
-        if let Some(phase) = self.simulation.control.begun().last() {
-            caption.push(phase.name.clone());
-        }
-        if let Some((cycles, _)) = &self.cycles {
-            caption.push(format!(
-                "cycle {} of {}",
-                cycles.number(self.simulation.time),
-                cycles.total()
-            ));
-            if let Some(c) = cycles.list.last() {
-                caption.push(format!("friction {:.3}", c.friction_coefficient));
-            }
-        }
-        if self.simulation.network.bonds_made() > 0 {
-            caption.push(format!("damage ratio {:.3}", self.damage_ratio()));
-        }
-        self.camera.follow(&self.simulation);
-        let shear = self
-            .strain
-            .as_ref()
-            .map(|strain| strain.shear(&self.simulation));
-        let mut subjects = vec![("frame", Subject::Scene)];
-        if let (Some(values), Some(top)) = (&shear, self.loaded.case.output.shear) {
-            let label = "local shear";
-            subjects.push(("shear", Subject::Values { values, label, top }));
-        }
-        if self.loaded.case.output.layers.is_some() && self.simulation.network.bonds_made() > 0 {
-            subjects.push(("bonds", Subject::Bonds));
-        }
-        let paints = self.account.paints(&self.simulation);
-        if !paints.is_empty() {
-            subjects.push(("circuit", Subject::Painted(&paints)));
-        }
-        let chains = self.measures.chains(&self.simulation).filter(|_| S::D == 2);
-        if let Some(pairs) = &chains {
-            subjects.push(("chains", Subject::Chains(pairs)));
-        }
-        for (name, subject) in subjects {
-            let path = self
-                .out
-                .join("frames")
-                .join(format!("{name}_{step:08}.png"));
-            let title = &self.loaded.case.name;
-            self.camera
-                .draw(&self.simulation, subject, title, caption.clone(), &path)?;
-        }
-        Ok(())
     }
 
     fn progress(&self, step: u64, report: &StepReport) -> Progress {

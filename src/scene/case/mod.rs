@@ -68,6 +68,9 @@ pub struct Case {
     pub materials: BTreeMap<String, String>,
     /// Interface laws between materials.
     pub interfaces: Vec<InterfaceSpec>,
+    /// SHA-256 that libraries of laws must have, in hexadecimal, by `kind/name`; a law without one may be any.
+    #[serde(default)]
+    pub pins: BTreeMap<String, String>,
     /// First bodies.
     #[serde(default)]
     pub bodies: Vec<BodySpec>,
@@ -348,6 +351,19 @@ pub struct OutputSpec {
     pub shear: Option<f64>,
     /// Steps between two that are written as FCLIB problems, `fclib/step-N.hdf5`; 0 for none.
     pub fclib: u64,
+    /// When checkpoints are written, from which `--resume` goes on.
+    pub checkpoint: Checkpoint,
+}
+
+/// When checkpoints are written.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+pub enum Checkpoint {
+    /// Every so many seconds of wall time; less often where they would take more than a twentieth of the time.
+    Seconds(f64),
+    /// Every so many steps.
+    Steps(u64),
+    /// Never.
+    Never,
 }
 
 impl Default for OutputSpec {
@@ -362,6 +378,7 @@ impl Default for OutputSpec {
             layers: None,
             shear: None,
             fclib: 0,
+            checkpoint: Checkpoint::Seconds(30.0),
         }
     }
 }

@@ -4,6 +4,7 @@
 //! of the text, since the position ron reports often stands beside the cause.
 
 mod diagnostic;
+mod difference;
 mod explain;
 mod nearest;
 pub mod numbers;
@@ -24,6 +25,7 @@ use ron::extensions::Extensions;
 use serde::de::DeserializeOwned;
 
 pub use diagnostic::InputError;
+pub use difference::{Difference, first_difference};
 pub use nearest::nearest;
 pub use tree::{Entry, Fault as TextFault, Group, Kind, MAX_DEPTH, Node, Shape, Tree};
 

@@ -12,9 +12,11 @@ use super::Simulation;
 use crate::bodies::pressure::Servo;
 use crate::geometry::space::{Space, VectorLike};
 use phases::Clock;
+use serde::{Deserialize, Serialize};
 
 /// The programme of a run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Control<S: Space> {
     /// Gravity before any drive of it (m/s^2).
     pub gravity: S::Vector,
@@ -24,7 +26,8 @@ pub struct Control<S: Space> {
     pub servos: Vec<Servo>,
     /// Bodies that vanish, by their place among the driven ones, and when (s).
     pub gates: Vec<(usize, f64)>,
-    /// Phases, one after another.
+    /// Phases, one after another; the case says them.
+    #[serde(skip)]
     pub phases: Vec<Phase<S>>,
     clock: Clock,
 }

@@ -3,7 +3,7 @@
 use super::GravityDrive;
 use crate::bodies::Dof;
 use crate::geometry::space::Space;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// When a phase ends.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -62,7 +62,7 @@ pub struct Phase<S: Space> {
 }
 
 /// A phase that began.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Begun {
     /// Name.
     pub name: String,
@@ -73,7 +73,19 @@ pub struct Begun {
     /// When it ended (s); null while it lasts.
     pub end: Option<f64>,
     /// Why it ended.
-    pub ended_by: Option<&'static str>,
+    #[serde(deserialize_with = "known")]
+    pub ended_by: Option<Ending>,
+}
+
+/// Why a phase ended, in a word.
+pub type Ending = &'static str;
+
+const ENDS: [Ending; 5] = ["time", "duration", "steps", "rest", "at_most"];
+
+fn known<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Ending>, D::Error> {
+    let said = Option::<String>::deserialize(from)?;
+    let known = |said: String| ENDS.into_iter().find(|end| *end == said);
+    Ok(said.and_then(known))
 }
 
 /// Where the run stands after a step.
@@ -92,7 +104,7 @@ pub(super) struct Motion {
 }
 
 /// Where the programme stands.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Clock {
     pub begun: Vec<Begun>,
     /// Since when the grains have been at rest (s).

@@ -1,5 +1,6 @@
 //! Sums over what lies in a bin, and their history: blocks of time, few enough to be kept.
 
+use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
 /// Stresses of a cell: across, along, shear, lateral (3D).
@@ -9,7 +10,7 @@ pub(super) const MECHANISMS: [&str; 5] =
     ["friction", "impact", "fracture", "viscous", "correction"];
 
 /// Sums over the grains, contacts and steps of a bin.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Cell {
     /// Volume of the bin (m^3; m^2 in 2D).
     pub space: f64,
@@ -97,7 +98,7 @@ impl Cell {
 }
 
 /// Sums over a time.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Block {
     /// From when to when (s).
     pub time: [f64; 2],
@@ -156,7 +157,7 @@ impl Block {
 }
 
 /// Blocks of equal numbers of samples; two become one when they are too many.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct History {
     /// The blocks so far.
     pub blocks: Vec<Block>,

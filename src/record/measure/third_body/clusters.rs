@@ -2,6 +2,7 @@
 
 use crate::geometry::space::Space;
 use crate::step::Simulation;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Sets that grow together.
@@ -36,7 +37,7 @@ impl Sets {
 }
 
 /// The clusters at an instant.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Clusters {
     /// Number of sets of two grains or more.
     pub count: usize,

@@ -9,10 +9,11 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::record::measure::Grain;
 use crate::scene::measures::Extent;
 use crate::step::Simulation;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// The layer at an instant. Depths run from the first body's face to the second's.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Gap {
     /// Axis across it.
     pub across: usize,
@@ -76,7 +77,7 @@ impl Gap {
 }
 
 /// Finds the gap, step by step.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Faces {
     /// Places of the two first bodies among the driven ones.
     pub places: [usize; 2],

@@ -14,6 +14,7 @@ mod tables;
 
 use super::{Measure, grains, mean, since};
 use crate::geometry::space::Space;
+use crate::record::code::{self, CodeError};
 use crate::record::statistics::{Column, Table};
 use crate::report::ReportError;
 use crate::scene::measures::ThirdBodySpec;
@@ -23,11 +24,13 @@ use clusters::Clusters;
 use gap::Faces;
 use instant::Instant;
 use regime::{Flow, Regime, flow};
+use serde::{Deserialize, Serialize};
 use spent::{Dissipation, Place};
 use std::path::Path;
 
 /// See [`crate::scene::measures::MeasureSpec::ThirdBody`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct ThirdBody<S: Space> {
     spec: ThirdBodySpec,
     faces: Option<Faces>,
@@ -330,6 +333,15 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
 
     fn chains(&self, s: &Simulation<S>) -> Option<Vec<[u32; 2]>> {
         Some(instant::links(s))
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        code::encode(self)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        *self = code::decode(from)?;
+        Ok(())
     }
 
     fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError> {

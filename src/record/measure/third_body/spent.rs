@@ -9,6 +9,7 @@ use crate::contact::Spent;
 use crate::geometry::space::Space;
 use crate::record::layer::{Balance, Layer};
 use crate::step::Simulation;
+use serde::{Deserialize, Serialize};
 
 /// Energies by mechanism (J; J/m in 2D).
 pub(super) type Energies = [f64; MECHANISMS.len()];
@@ -63,7 +64,8 @@ impl Place {
 }
 
 /// The energies since the measure began to count.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub(super) struct Dissipation<S: Space> {
     /// By bin, since the last sample.
     pub pending: Vec<Energies>,

@@ -1,0 +1,424 @@
+//! `fretwork trade`: accuracy against cost.
+
+use super::{CaseArgs, Failure, say};
+use crate::geometry::space::Space;
+use crate::scene::build::Built;
+use crate::scene::methods::{Demands, Service};
+use crate::scene::{Loaded, Scene, load};
+use crate::solve::local::solver::Method;
+use crate::trade::child::{Ended, Launcher, Limits, Status, summary};
+use crate::trade::knobs::{knobs, openings};
+use crate::trade::output::Output;
+use crate::trade::study::{Event, Ledger, Study};
+use crate::trade::{TradeError, figure, files, forecast::Forecast, table, verdict::verdicts};
+use clap::Args;
+use std::collections::BTreeSet;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+#[derive(Args, Debug)]
+pub struct TradeArgs {
+    #[command(flatten)]
+    case: CaseArgs,
+    /// An output and the error wanted of it: a name of summary.json (wear.Qs) or statistics.COLUMN (mean of the last half;
+    /// :max, :min, :last), =1% or =0.003 in its unit; by default friction, damage ratio and wear at 1 %
+    #[arg(long = "output", value_name = "NAME=ERROR")]
+    outputs: Vec<String>,
+    /// What an output is in truth, where a closed form says so; errors are then against it
+    #[arg(long = "exact", value_name = "NAME=VALUE")]
+    exact: Vec<String>,
+    /// Vary this: step, tolerance, solver, test_every, coupling, correction, grains; by default all but grains
+    #[arg(long = "knob", value_name = "NAME")]
+    knobs: Vec<String>,
+    /// Vary any value of the case; the first value is the reference's
+    #[arg(long = "vary", value_name = "KEY.PATH=A,B,C")]
+    vary: Vec<String>,
+    /// Seeds a setting, from the case's own upwards; one where nothing in the case is random
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    seeds: u16,
+    /// Time for everything: 90s, 10m, 2h
+    #[arg(long, value_name = "TIME", default_value = "10m", value_parser = duration)]
+    budget: Duration,
+    /// Runs side by side; they disturb each other's timing, so that 1 times best
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: u16,
+    /// Folder of the results, where a study also goes on that was interrupted; results/trade/<case> by default
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Share of steps that may miss the tolerance in a run that counts
+    #[arg(long, value_name = "SHARE", default_value_t = 1e-2)]
+    unconverged: f64,
+    /// Energy residual, over the largest energy, of a run that counts
+    #[arg(long, value_name = "SHARE", default_value_t = 1e-2)]
+    residual: f64,
+    /// No progress; the study is printed as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// `90s`, `10m`, `1h30m`; a bare number is seconds.
+fn duration(text: &str) -> Result<Duration, String> {
+    let wrong = || format!("`{text}` is no time; expected such as 90s, 10m, 1h30m");
+    let (mut total, mut digits) = (0.0, String::new());
+    for c in text.trim().chars() {
+        let unit = match c {
+            's' => 1.0,
+            'm' => 60.0,
+            'h' => 3600.0,
+            _ => {
+                digits.push(c);
+                continue;
+            }
+        };
+        total += unit * digits.parse::<f64>().map_err(|_| wrong())?;
+        digits.clear();
+    }
+    if !digits.is_empty() {
+        total += digits.parse::<f64>().map_err(|_| wrong())?;
+    }
+    let most = 365.0 * 86400.0;
+    if total > 0.0 && total <= most {
+        Ok(Duration::from_secs_f64(total))
+    } else {
+        Err(wrong())
+    }
+}
+
+impl From<TradeError> for Failure {
+    fn from(e: TradeError) -> Self {
+        match e {
+            TradeError::Input(e) => Self::Input(e),
+            TradeError::Usage(text) => Self::Usage(text),
+            other => Self::Failed(other.to_string()),
+        }
+    }
+}
+
+pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
+    let started = Instant::now();
+    let search = args.case.plugins.search()?;
+    let loaded = load(&args.case.case, &args.case.sets)?;
+    let first = Facts::of(&loaded, &loaded.build(&search)?);
+    let other_seed = format!("seed={}", loaded.case.seed.wrapping_add(1));
+    let sets = [args.case.sets.as_slice(), &[other_seed]].concat();
+    let other = load(&args.case.case, &sets)?;
+    // A sample that only some seeds can make is a random one.
+    let random = match other.build(&search) {
+        Ok(scene) => Facts::of(&other, &scene).drawn != first.drawn,
+        Err(_) => true,
+    };
+    let knobs = knobs(&loaded, &first.methods, &args.knobs, &args.vary)?;
+    let varied = |set: &&String| args.vary.iter().any(|v| same_key(set, v));
+    for set in knobs
+        .iter()
+        .flat_map(|k| &k.levels)
+        .flat_map(|l| &l.sets)
+        .filter(varied)
+    {
+        let sets = [args.case.sets.clone(), openings(&loaded), vec![set.clone()]].concat();
+        load(&args.case.case, &sets)?.build(&search)?;
+    }
+    if knobs.is_empty() {
+        return Err(Failure::Usage(
+            "nothing to vary; name a --knob or --vary".into(),
+        ));
+    }
+    let out = args.out.clone().unwrap_or_else(|| {
+        let name = args.case.case.file_stem().unwrap_or_default();
+        Path::new("results").join("trade").join(name)
+    });
+    let limits = Limits {
+        unconverged: args.unconverged,
+        residual: args.residual,
+    };
+    let _lock = crate::trade::lock::take(&out)?;
+    let plugins = args.case.plugins.words();
+    let launcher = Launcher::new(&loaded, &first.materials, plugins, &out, limits)?;
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        // Without it an interruption ends the program at once; what ran stays on disk all the same.
+        let _ = signal_hook::flag::register(signal, Arc::clone(&stop));
+    }
+    let outputs = outputs(args, &loaded, &launcher, &stop)?;
+    let count = if random { u64::from(args.seeds) } else { 1 };
+    let mut study = Study {
+        launcher: Arc::new(launcher),
+        knobs,
+        outputs,
+        seeds: (0..count)
+            .map(|k| loaded.case.seed.wrapping_add(k))
+            .collect(),
+        random,
+        steps: (loaded.case.time.end / loaded.case.time.step).ceil(),
+        jobs: args.jobs.into(),
+        budget: args.budget,
+        done: Ledger::new(),
+        forecast: Forecast {
+            own: 1.0,
+            power: 0.0,
+            measured: false,
+        },
+        reused: 0,
+        fresh: 0,
+        left_out: BTreeSet::new(),
+        notes: Vec::new(),
+        started,
+    };
+    if !random {
+        study.notes.push("Nothing in the case is drawn from its seed: one run a setting, and errors without intervals.".into());
+    } else if count == 1 {
+        study.notes.push("One seed tells no scatter: no error has an interval, and nothing can be claimed. Give --seeds 3 or more.".into());
+    }
+    study
+        .notes
+        .push("Precision is not varied: Fretwork computes and stores in f64 only.".into());
+    if study.jobs > 1 {
+        study.notes.push(format!("{} runs went side by side, which disturbs their timing; visits (contacts times iterations) do not depend on it.", study.jobs));
+    }
+    study.prepare(&stop)?;
+    if !args.json {
+        say(&format!("{}: {}", loaded.path.display(), loaded.case.name));
+        say(&table::forecast(&study));
+    }
+    let expected = study.work(&[study.first(), study.star()].concat());
+    let quiet = args.json
+        || !(std::io::stderr().is_terminal() || std::env::var_os("FRETWORK_QUIET").is_none());
+    let watch = |event: &Event<'_>| {
+        if quiet {
+            return;
+        }
+        match event {
+            Event::Begins(name, seed, expected) => {
+                eprintln!(
+                    "[{}] {name}, seed {seed}: {} expected",
+                    table::seconds(started.elapsed().as_secs_f64()),
+                    table::seconds(*expected)
+                );
+            }
+            Event::Ended(name, seed, run) => {
+                let how = match &run.status {
+                    Status::Done => "done",
+                    Status::Failed(_) => "FAILED",
+                    Status::Slow(_) => "slower than the reference",
+                };
+                eprintln!(
+                    "[{}] {name}, seed {seed}: {how} in {}",
+                    table::seconds(started.elapsed().as_secs_f64()),
+                    table::seconds(run.seconds)
+                );
+            }
+        }
+    };
+    study.go(&stop, &watch)?;
+    tell(
+        args,
+        &study,
+        &loaded,
+        &out,
+        expected,
+        stop.load(Ordering::Relaxed),
+    )
+}
+
+/// Writes the files and prints the report.
+fn tell(
+    args: &TradeArgs,
+    study: &Study,
+    loaded: &Loaded,
+    out: &Path,
+    expected: f64,
+    interrupted: bool,
+) -> Result<(), Failure> {
+    let found = study.compare();
+    let verdicts = verdicts(&found, &study.outputs, study.random);
+    let dropped = study.dropped();
+    let complete = study.left_out.is_empty() && dropped.is_empty() && !interrupted;
+    let json = files::json(study, &found, &verdicts, complete);
+    let path = out.join("trade.json");
+    let text = serde_json::to_string_pretty(&json).unwrap_or_default();
+    std::fs::write(&path, text.clone() + "\n")
+        .map_err(|e| Failure::Failed(format!("cannot write {}: {e}", path.display())))?;
+    files::csv(study, &found, &out.join("trade.csv"))?;
+    let picture = out.join("trade.png");
+    let drawn =
+        figure::draw(study, &found, &loaded.case.name, &picture).map_err(TradeError::from)?;
+    if !drawn {
+        // One of an earlier study would be taken for this one's.
+        let _ = std::fs::remove_file(&picture);
+    }
+    if args.json {
+        say(&text);
+        return Ok(());
+    }
+    say("");
+    say(table::text(study, &found, &verdicts).trim_end());
+    say(&format!(
+        "{} runs in {}, {} kept from before; the forecast for the reference and one knob at a time was {}",
+        study.fresh,
+        table::seconds(study.started.elapsed().as_secs_f64()),
+        study.reused,
+        table::seconds(expected)
+    ));
+    if !complete {
+        let names: Vec<String> = study
+            .left_out
+            .iter()
+            .map(|s| s.name(&study.knobs))
+            .collect();
+        let why = if interrupted {
+            "interrupted"
+        } else {
+            "the budget is spent"
+        };
+        let mut what = if names.is_empty() {
+            String::new()
+        } else {
+            format!(" Not run, or not over all seeds: {}.", names.join("; "))
+        };
+        if !dropped.is_empty() {
+            what.push_str(&format!(
+                " Finer than this budget allows the reference: {}; a larger --budget takes them up.",
+                dropped.join("; ")
+            ));
+        }
+        say(&format!(
+            "INCOMPLETE, {why}.{what} The same command goes on from here."
+        ));
+    }
+    let last = if drawn {
+        format!("{}/trade.png", out.display())
+    } else {
+        "no picture: no setting has an error that is known".into()
+    };
+    say(&format!(
+        "{0}/trade.csv, {0}/trade.json, {last}",
+        out.display()
+    ));
+    Ok(())
+}
+
+/// The outputs asked for, checked against a run of two steps where the case allows one so short.
+fn outputs(
+    args: &TradeArgs,
+    loaded: &Loaded,
+    launcher: &Launcher,
+    stop: &AtomicBool,
+) -> Result<Vec<Output>, Failure> {
+    let mut outputs = if args.outputs.is_empty() {
+        Output::usual(&loaded.case)
+    } else {
+        let all: Result<Vec<Output>, TradeError> =
+            args.outputs.iter().map(|t| Output::parse(t)).collect();
+        all?
+    };
+    if outputs.is_empty() {
+        return Err(Failure::Usage(
+            "the case has no friction test, damage or wear to compare; name an output, such as --output energy.kinetic=1%".into(),
+        ));
+    }
+    for (k, output) in outputs.iter().enumerate() {
+        if outputs[..k].iter().any(|o| o.name == output.name) {
+            return Err(Failure::Usage(format!(
+                "--output {} is given twice; name it once, with the error wanted",
+                output.name
+            )));
+        }
+    }
+    for text in &args.exact {
+        let wrong = |why: &str| {
+            Failure::Usage(format!(
+                "--exact {text}: {why}; expected NAME=VALUE of one of the outputs"
+            ))
+        };
+        let (name, value) = text
+            .split_once('=')
+            .ok_or_else(|| wrong("there is no `=`"))?;
+        let value: f64 = value
+            .trim()
+            .parse()
+            .ok()
+            .filter(|v: &f64| v.is_finite())
+            .ok_or_else(|| wrong("the value is no number"))?;
+        let found = outputs.iter_mut().find(|o| o.name == name.trim());
+        found
+            .ok_or_else(|| wrong("no --output has this name"))?
+            .exact = Some(value);
+    }
+    let short = vec![format!("time.end={:e}", 2.0 * loaded.case.time.step)];
+    let seed = loaded.case.seed;
+    let begun = launcher.kept(&short, seed).is_some();
+    let soon = Instant::now() + Duration::from_secs(60).min(args.budget);
+    if begun
+        || matches!(
+            launcher.run(&short, seed, soon, None, stop)?,
+            Ended::Finished(_)
+        )
+    {
+        let place = launcher.place(&short, seed);
+        let summary = summary(&place);
+        if summary.is_object() {
+            for output in &outputs {
+                output.check(&summary, &place)?;
+            }
+        }
+    }
+    Ok(outputs)
+}
+
+/// Whether a `--set` and a `--vary` name the same key.
+fn same_key(set: &str, vary: &str) -> bool {
+    let key = |t: &str| t.split('=').next().map(|k| k.trim().to_owned());
+    key(set) == key(vary)
+}
+
+/// What a study asks of a scene.
+struct Facts {
+    methods: Vec<Method>,
+    materials: Vec<(String, String)>,
+    /// What a seed may change: places and shapes, as a hash.
+    drawn: u64,
+}
+
+impl Facts {
+    fn of(loaded: &Loaded, scene: &Scene) -> Self {
+        match scene {
+            Scene::Plane(built) => Self::from(loaded, built),
+            Scene::Solid(built) => Self::from(loaded, built),
+        }
+    }
+
+    fn from<S: Space>(loaded: &Loaded, built: &Built<S>) -> Self {
+        let s = &built.simulation;
+        let demands = Demands::of(s);
+        let serves =
+            |m: &Method| *m == loaded.case.solver.method || demands.service(*m) == Service::Serves;
+        let mut hash = Hasher(0xcbf2_9ce4_8422_2325);
+        let _ = std::fmt::Write::write_fmt(
+            &mut hash,
+            format_args!(
+                "{:?}{:?}{:?}",
+                s.shapes, s.bodies.position, s.bodies.velocity
+            ),
+        );
+        Self {
+            methods: Method::ALL.iter().copied().filter(serves).collect(),
+            materials: built.materials.clone(),
+            drawn: hash.0,
+        }
+    }
+}
+
+/// FNV-1a over what is written to it, so that a scene need not be held as text.
+struct Hasher(u64);
+
+impl std::fmt::Write for Hasher {
+    fn write_str(&mut self, text: &str) -> std::fmt::Result {
+        for byte in text.bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,130 @@
+//! Calls of a plugin's functions over the border.
+
+use super::library::{Call, LawError, Plugin};
+use super::watch;
+use fretwork_abi as abi;
+use std::ffi::c_char;
+
+/// Longest message a plugin can leave (bytes).
+const MESSAGE: usize = 512;
+
+impl Plugin {
+    /// The fracture energy (J/m^2) that the law declares for a pull at an angle from the normal (rad).
+    pub fn fracture_energy(&self, values: &[f64], angle: f64) -> Option<f64> {
+        if values.len() != self.parameters.len() {
+            return None;
+        }
+        // SAFETY: the ABI's signature, and one value a parameter.
+        let energy = self
+            .table
+            .fracture_energy
+            .map(|f| unsafe { f(values.as_ptr(), angle) });
+        energy.filter(|e| e.is_finite())
+    }
+
+    /// Checks values of the parameters against the schema and the law's own judgement.
+    ///
+    /// # Errors
+    /// A sentence naming the parameter.
+    pub fn validate(&self, values: &[f64]) -> Result<(), LawError> {
+        let refuse = |reason: String| LawError::Parameters {
+            kind: self.kind,
+            name: self.name.clone(),
+            reason,
+        };
+        if values.len() != self.parameters.len() {
+            return Err(refuse(format!(
+                "it takes {} values, got {}",
+                self.parameters.len(),
+                values.len()
+            )));
+        }
+        for (field, value) in self.parameters.iter().zip(values) {
+            if !value.is_finite() || !(field.minimum..=field.maximum).contains(value) {
+                return Err(refuse(format!(
+                    "`{}` must lie in [{}, {}] {}, got {value}",
+                    field.name, field.minimum, field.maximum, field.unit
+                )));
+            }
+        }
+        let Some(validate) = self.table.validate else {
+            return Ok(());
+        };
+        let mut buffer = [0 as c_char; MESSAGE];
+        let mut message = message_over(&mut buffer);
+        let inside = watch::enter(self.label, 4);
+        // SAFETY: the ABI's signature; the buffers outlive the call.
+        let status = unsafe { validate(values.as_ptr(), &mut message) };
+        drop(inside);
+        if status == abi::STATUS_OK {
+            Ok(())
+        } else {
+            Err(refuse(said(&buffer, status)))
+        }
+    }
+
+    /// Runs one of the law's functions; nothing happens where the law has none.
+    ///
+    /// # Errors
+    /// What the law said, with the index of the contact in the batch.
+    ///
+    /// # Safety
+    /// The columns of the batch that the law uses hold `batch.n` values and outlive the call.
+    pub unsafe fn call(&self, call: Call, batch: &abi::FwBatch) -> Result<(), LawError> {
+        let function = match call {
+            Call::Initialise => self.table.initialise,
+            Call::Prepare => self.table.prepare,
+            Call::Commit => self.table.commit,
+            Call::Energy => self.table.energy,
+        };
+        let Some(function) = function else {
+            return Ok(());
+        };
+        let mut buffer = [0 as c_char; MESSAGE];
+        let mut message = message_over(&mut buffer);
+        let inside = watch::enter(self.label, call as usize);
+        // SAFETY: by the contract of this function.
+        let status = unsafe { function(batch, &mut message) };
+        drop(inside);
+        if status == abi::STATUS_OK {
+            return Ok(());
+        }
+        Err(LawError::Failed {
+            kind: self.kind,
+            name: self.name.clone(),
+            call,
+            contact: usize::try_from(message.contact).ok(),
+            reason: said(&buffer, status),
+        })
+    }
+}
+
+fn message_over(buffer: &mut [c_char; MESSAGE]) -> abi::FwMessage {
+    abi::FwMessage {
+        size: size_of::<abi::FwMessage>(),
+        text: buffer.as_mut_ptr(),
+        capacity: MESSAGE,
+        contact: -1,
+    }
+}
+
+/// The message, or what the status means.
+fn said(buffer: &[c_char; MESSAGE], status: i32) -> String {
+    let bytes: Vec<u8> = buffer
+        .iter()
+        .take(MESSAGE - 1)
+        .map(|c| *c as u8)
+        .take_while(|b| *b != 0)
+        .collect();
+    let text = String::from_utf8_lossy(&bytes).trim().to_owned();
+    if !text.is_empty() {
+        return text;
+    }
+    match status {
+        abi::STATUS_ERROR => "it reported an error without a message".into(),
+        abi::STATUS_BAD_PARAMETER => "it refused a parameter without a message".into(),
+        abi::STATUS_REDUCE_STEP => "it asks for a smaller time step".into(),
+        abi::STATUS_PANIC => "it panicked".into(),
+        other => format!("it returned the unknown status {other}"),
+    }
+}

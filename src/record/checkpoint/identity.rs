@@ -1,0 +1,113 @@
+//! What a run is of: the same case, materials, laws and files give the same bits, others do not.
+
+use crate::geometry::space::Space;
+use crate::record::code::{CodeError, encode};
+use crate::scene::source::{Source, first_difference};
+use crate::scene::{Built, Loaded};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+
+/// What a run is of.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Identity {
+    /// 2 or 3.
+    dimension: u32,
+    /// The case as text, `--set` applied.
+    case: String,
+    /// Material files: name and text.
+    materials: Vec<(String, String)>,
+    /// Libraries of laws: kind with name, and SHA-256.
+    plugins: Vec<(String, String)>,
+    /// SHA-256 of the scene as it was built: what files that the case names (profiles, meshes, samples) made of it.
+    scene: String,
+}
+
+impl Identity {
+    /// Of a case and the scene that it builds, before its first step.
+    ///
+    /// # Errors
+    /// The scene cannot be put into bytes.
+    pub fn of<S: Space>(loaded: &Loaded, built: &Built<S>) -> Result<Self, CodeError> {
+        let s = &built.simulation;
+        let mut plugins: Vec<(String, String)> = Vec::new();
+        for law in s.laws.iter().flat_map(|l| l.loaded()) {
+            let p = &law.plugin;
+            let stamp = (format!("{} law `{}`", p.kind, p.name), p.sha256.clone());
+            if !plugins.contains(&stamp) {
+                plugins.push(stamp);
+            }
+        }
+        let mut hash = Hashed(Sha256::new());
+        hash.0.update(encode(&s.save())?);
+        // Never fails: nothing is written anywhere.
+        let _ = write!(hash, "{:?}", s.shapes);
+        Ok(Self {
+            dimension: loaded.case.dimension,
+            case: loaded.source.text().to_owned(),
+            materials: built.materials.clone(),
+            plugins,
+            scene: hash.0.finalize().iter().fold(String::new(), |mut s, b| {
+                let _ = write!(s, "{b:02x}");
+                s
+            }),
+        })
+    }
+
+    /// What differs in another one, in words; none where nothing that counts does.
+    pub fn differs(&self, now: &Self) -> Option<String> {
+        if self.case != now.case {
+            let [a, b] = [&self.case, &now.case].map(|t| Source::from_text("case", t.clone()));
+            if let Some(d) = first_difference(&a, &b) {
+                let said = |text: Option<String>| text.unwrap_or("nothing".to_owned());
+                return Some(format!(
+                    "`{}` was {} there and is {} now",
+                    d.path,
+                    said(d.one),
+                    said(d.other)
+                ));
+            }
+        }
+        let find = |list: &[(String, String)], name: &str| -> Option<String> {
+            list.iter().find(|l| l.0 == name).map(|l| l.1.clone())
+        };
+        for (name, text) in &now.materials {
+            match find(&self.materials, name) {
+                None => return Some(format!("it does not use the material `{name}`")),
+                Some(old) if old != *text => {
+                    return Some(format!("the material file `{name}` has changed since"));
+                }
+                Some(_) => {}
+            }
+        }
+        for (name, sha) in &now.plugins {
+            match find(&self.plugins, name) {
+                None => return Some(format!("it does not use the {name}")),
+                Some(old) if old != *sha => {
+                    let [old, new] = [&old, sha].map(|s| s.get(..12).unwrap_or(s).to_owned());
+                    return Some(format!(
+                        "the library of the {name} is another one (SHA-256 {old}... there, {new}... now)"
+                    ));
+                }
+                Some(_) => {}
+            }
+        }
+        if (self.materials.len(), self.plugins.len()) != (now.materials.len(), now.plugins.len()) {
+            return Some("it uses other materials or laws".to_owned());
+        }
+        (self.scene != now.scene || self.dimension != now.dimension).then(|| {
+            "the case builds another scene: a file that it names (profile, mesh, sample, scene) has changed since"
+                .to_owned()
+        })
+    }
+}
+
+/// Hashes text as it is written.
+struct Hashed(Sha256);
+
+impl Write for Hashed {
+    fn write_str(&mut self, text: &str) -> std::fmt::Result {
+        self.0.update(text.as_bytes());
+        Ok(())
+    }
+}

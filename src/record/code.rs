@@ -1,0 +1,61 @@
+//! State as bytes, and back: numbers keep their bits, infinities and what is not a number included.
+//!
+//! The form is postcard's: fields in their order without names, so that a state can only be read by the version of the
+//! program that wrote it. What frames it says which that was.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// Why a state cannot be put into bytes or read from them.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct CodeError(String);
+
+impl CodeError {
+    /// The bytes are of something else.
+    pub fn other(what: &str) -> Self {
+        Self(format!("it holds other {what} than the case has"))
+    }
+}
+
+/// The bytes of a state.
+///
+/// # Errors
+/// A type that has no such form.
+pub fn encode<T: Serialize + ?Sized>(state: &T) -> Result<Vec<u8>, CodeError> {
+    postcard::to_stdvec(state).map_err(|e| CodeError(e.to_string()))
+}
+
+/// The state of bytes, all of which it must take.
+///
+/// # Errors
+/// Bytes of something else.
+pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, CodeError> {
+    let (state, rest) = postcard::take_from_bytes(bytes).map_err(|e| CodeError(e.to_string()))?;
+    if rest.is_empty() {
+        return Ok(state);
+    }
+    Err(CodeError(format!("{} bytes too many", rest.len())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_their_bits() {
+        let odd = f64::from_bits(0x7ff8_0000_dead_beef);
+        let numbers = [0.1, -0.0, f64::MIN_POSITIVE / 3.0, f64::INFINITY, odd];
+        let back: [f64; 5] = decode(&encode(&numbers).unwrap()).unwrap();
+        assert_eq!(back.map(f64::to_bits), numbers.map(f64::to_bits));
+    }
+
+    #[test]
+    fn what_is_cut_or_too_long_is_refused() {
+        let bytes = encode(&vec![1.0f64, 2.0]).unwrap();
+        assert!(decode::<Vec<f64>>(&bytes[..bytes.len() - 1]).is_err());
+        assert!(decode::<Vec<f64>>(&[&bytes[..], &[0]].concat()).is_err());
+        // A length is a claim: nothing is allocated by it.
+        assert!(decode::<Vec<f64>>(&[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x7f]).is_err());
+    }
+}

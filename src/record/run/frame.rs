@@ -1,0 +1,62 @@
+//! The pictures of a moment.
+
+use super::{Recorder, RunError};
+use crate::record::picture::Subject;
+use crate::scene::build::Dimensional;
+
+impl<S: Dimensional> Recorder<'_, S> {
+    /// Draws the frames of a step.
+    pub(super) fn frame(&mut self, step: u64) -> Result<(), RunError> {
+        if self.loaded.case.output.frames == 0 {
+            return Ok(());
+        }
+        let mut caption = vec![format!("t = {:.4e} s", self.simulation.time)];
+        if let Some(phase) = self.simulation.control.begun().last() {
+            caption.push(phase.name.clone());
+        }
+        if let Some((cycles, _)) = &self.cycles {
+            caption.push(format!(
+                "cycle {} of {}",
+                cycles.number(self.simulation.time),
+                cycles.total()
+            ));
+            if let Some(c) = cycles.list.last() {
+                caption.push(format!("friction {:.3}", c.friction_coefficient));
+            }
+        }
+        if self.simulation.network.bonds_made() > 0 {
+            caption.push(format!("damage ratio {:.3}", self.damage_ratio()));
+        }
+        self.camera.follow(&self.simulation);
+        let shear = self
+            .strain
+            .as_ref()
+            .map(|strain| strain.shear(&self.simulation));
+        let mut subjects = vec![("frame", Subject::Scene)];
+        if let (Some(values), Some(top)) = (&shear, self.loaded.case.output.shear) {
+            let label = "local shear";
+            subjects.push(("shear", Subject::Values { values, label, top }));
+        }
+        if self.loaded.case.output.layers.is_some() && self.simulation.network.bonds_made() > 0 {
+            subjects.push(("bonds", Subject::Bonds));
+        }
+        let paints = self.account.paints(&self.simulation);
+        if !paints.is_empty() {
+            subjects.push(("circuit", Subject::Painted(&paints)));
+        }
+        let chains = self.measures.chains(&self.simulation).filter(|_| S::D == 2);
+        if let Some(pairs) = &chains {
+            subjects.push(("chains", Subject::Chains(pairs)));
+        }
+        for (name, subject) in subjects {
+            let path = self
+                .out
+                .join("frames")
+                .join(format!("{name}_{step:08}.png"));
+            let title = &self.loaded.case.name;
+            self.camera
+                .draw(&self.simulation, subject, title, caption.clone(), &path)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,145 @@
+//! Where two texts say different things: comments, blanks and how numbers are written do not count.
+
+use super::Source;
+use super::tree::{Group, Kind, Node, Shape, join_path};
+
+/// A place where two texts differ.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// The dotted path.
+    pub path: String,
+    /// What the one says there, if anything.
+    pub one: Option<String>,
+    /// What the other does.
+    pub other: Option<String>,
+}
+
+/// The first place where two texts differ.
+pub fn first_difference(one: &Source, other: &Source) -> Option<Difference> {
+    let mut path = Vec::new();
+    let nodes = [&one.tree().root, &other.tree().root].map(Option::as_ref);
+    compare([one.text(), other.text()], nodes, &mut path)
+}
+
+fn compare(
+    texts: [&str; 2],
+    nodes: [Option<&Node>; 2],
+    path: &mut Vec<String>,
+) -> Option<Difference> {
+    let differ = |path: &[String]| {
+        let said = |k: usize| nodes[k].map(|n| short(&texts[k][n.span.clone()]));
+        Some(Difference {
+            path: join_path(path),
+            one: said(0),
+            other: said(1),
+        })
+    };
+    let [Some(a), Some(b)] = nodes else {
+        return match nodes {
+            [None, None] => None,
+            _ => differ(path),
+        };
+    };
+    let (Some(one), Some(other)) = (a.group(), b.group()) else {
+        return if alike(texts, [a, b]) {
+            None
+        } else {
+            differ(path)
+        };
+    };
+    let name = |text: &str, g: &Group| g.name.clone().map(|r| text[r].to_owned());
+    if one.shape != other.shape || name(texts[0], one) != name(texts[1], other) {
+        return differ(path);
+    }
+    let keys = |text: &str, g: &Group| -> Vec<String> {
+        let key = |(k, e): (usize, &super::Entry)| match &e.key {
+            Some(range) if matches!(g.shape, Shape::Struct | Shape::Map) => {
+                text[range.clone()].trim_matches('"').to_owned()
+            }
+            _ => k.to_string(),
+        };
+        g.entries.iter().enumerate().map(key).collect()
+    };
+    let (here, there) = (keys(texts[0], one), keys(texts[1], other));
+    let new = there.iter().filter(|k| !here.contains(k));
+    for key in here.iter().chain(new) {
+        let value = |keys: &[String], g: &'_ Group| {
+            keys.iter()
+                .position(|k| k == key)
+                .map(|at| g.entries[at].value.clone())
+        };
+        let (a, b) = (value(&here, one), value(&there, other));
+        path.push(key.clone());
+        let found = compare(texts, [a.as_ref(), b.as_ref()], path);
+        path.pop();
+        if found.is_some() {
+            return found;
+        }
+    }
+    None
+}
+
+/// Whether two values that hold no others are the same.
+fn alike(texts: [&str; 2], nodes: [&Node; 2]) -> bool {
+    let [a, b] = [0, 1].map(|k| &texts[k][nodes[k].span.clone()]);
+    let number = |text: &str| text.replace('_', "").parse::<f64>().ok();
+    match (&nodes[0].kind, &nodes[1].kind) {
+        (Kind::Number, Kind::Number) => {
+            let same = number(a).zip(number(b));
+            a == b || same.is_some_and(|(x, y)| x.to_bits() == y.to_bits())
+        }
+        _ => a == b,
+    }
+}
+
+/// A value in a few words.
+fn short(text: &str) -> String {
+    const MOST: usize = 48;
+    let line: String = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    if line.chars().count() <= MOST {
+        return line;
+    }
+    line.chars().take(MOST).chain("...".chars()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn between(one: &str, other: &str) -> Option<(String, Option<String>, Option<String>)> {
+        let [a, b] = [one, other].map(|t| Source::from_text("a.ron", t));
+        first_difference(&a, &b).map(|d| (d.path, d.one, d.other))
+    }
+
+    #[test]
+    fn blanks_comments_and_how_a_number_is_written_do_not_count() {
+        let one = "(time: (end: 0.001, step: 1e-6), list: [1, 2], word: Auto)";
+        let other =
+            "(\n // the end\n time: (end: 1e-3, step: 0.000001),\n list: [1, 2,],\n word: Auto,\n)";
+        assert_eq!(between(one, other), None);
+    }
+
+    #[test]
+    fn the_first_difference_is_told_with_its_path() {
+        let some = |path: &str, a: Option<&str>, b: Option<&str>| {
+            Some((path.to_owned(), a.map(str::to_owned), b.map(str::to_owned)))
+        };
+        let one = "(time: (end: 1.0), bodies: [(name: \"a\"), (name: \"b\")])";
+        assert_eq!(
+            between(one, &one.replace("1.0", "2.0")),
+            some("time.end", Some("1.0"), Some("2.0"))
+        );
+        assert_eq!(
+            between(one, &one.replace("\"b\"", "\"c\"")),
+            some("bodies.1.name", Some("\"b\""), Some("\"c\""))
+        );
+        assert_eq!(
+            between(one, &one.replace("(time:", "(seed: 3, time:")),
+            some("seed", None, Some("3"))
+        );
+        assert_eq!(
+            between(one, &one.replace(", (name: \"b\")", "")),
+            some("bodies.1", Some("(name: \"b\")"), None)
+        );
+    }
+}

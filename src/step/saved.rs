@@ -1,0 +1,116 @@
+//! What a simulation carries from step to step: all that a checkpoint keeps of it.
+//!
+//! The rest (shapes, laws, options) follows from the case and is built again. What a step makes for itself and throws
+//! away (forms, columns, the solver's problem and its colours) is not kept: it depends on nothing but this.
+
+use super::Simulation;
+use super::control::Control;
+use crate::bodies::Bodies;
+use crate::contact::Network;
+use crate::geometry::space::Space;
+use crate::laws::pass::Carried;
+use crate::record::ledger::Energy;
+use crate::solve::Habit;
+use crate::wear::{Scar, WornThrough};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+/// The state of a simulation between two steps.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct Saved<'a, S: Space> {
+    bodies: Cow<'a, Bodies<S>>,
+    network: Cow<'a, Network<S>>,
+    gravity: S::Vector,
+    tolerance: f64,
+    /// Parameters of the contact law of each interface, which phases change.
+    contact_parameters: Vec<Vec<f64>>,
+    time: f64,
+    steps: u64,
+    lifted: f64,
+    energy: Energy,
+    received: Vec<(S::Vector, S::Spin)>,
+    scars: Cow<'a, [Scar<S>]>,
+    worn_through: Option<WornThrough>,
+    control: Control<S>,
+    habit: Habit,
+    carried: Carried,
+}
+
+impl<S: Space> Saved<'_, S> {
+    /// Steps done.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Whether it is of a scene with these numbers of bodies, interfaces and scars.
+    fn fits(&self, s: &Simulation<S>) -> bool {
+        let parameters = self.contact_parameters.iter().map(Vec::len);
+        self.bodies.len() == s.bodies.len()
+            && self.bodies.driven.len() == s.bodies.driven.len()
+            && self.received.len() == s.received.len()
+            && self.scars.len() == s.scars.len()
+            && self.network.memory.len() == s.network.memory.len()
+            && parameters.eq(s.laws.iter().map(|l| l.contact.parameters.len()))
+    }
+}
+
+impl<S: Space> Simulation<S> {
+    /// Its state, to be kept.
+    pub fn save(&self) -> Saved<'_, S> {
+        let parameters = self.laws.iter().map(|l| l.contact.parameters.clone());
+        Saved {
+            bodies: Cow::Borrowed(&self.bodies),
+            network: Cow::Borrowed(&self.network),
+            gravity: self.gravity,
+            tolerance: self.solver.tolerance,
+            contact_parameters: parameters.collect(),
+            time: self.time,
+            steps: self.steps,
+            lifted: self.lifted,
+            energy: self.energy,
+            received: self.received.clone(),
+            scars: Cow::Borrowed(&self.scars),
+            worn_through: self.worn_through.clone(),
+            control: self.control.clone(),
+            habit: self.habit,
+            carried: self.passes.carried(),
+        }
+    }
+
+    /// Puts a simulation that was built from the same case, and has not stepped, into a state that was kept. The next
+    /// step gives the bits that it would have given there. Whether the state was of such a case; nothing has changed
+    /// where it was not.
+    #[must_use]
+    pub fn restore(&mut self, saved: Saved<'_, S>) -> bool {
+        if !saved.fits(self) {
+            return false;
+        }
+        self.bodies = saved.bodies.into_owned();
+        let kept = std::mem::replace(&mut self.network, saved.network.into_owned());
+        // What is told of each step is told again where something asked for it.
+        self.network.spent = kept.spent;
+        self.network.losses = kept.losses;
+        self.gravity = saved.gravity;
+        self.solver.tolerance = saved.tolerance;
+        for (law, values) in self.laws.iter_mut().zip(saved.contact_parameters) {
+            law.contact.parameters = values;
+        }
+        (self.time, self.steps) = (saved.time, saved.steps);
+        self.lifted = saved.lifted;
+        self.energy = saved.energy;
+        self.received = saved.received;
+        self.scars = saved.scars.into_owned();
+        for scar in &self.scars {
+            scar.show_again(&mut self.shapes);
+        }
+        self.worn_through = saved.worn_through;
+        let phases = std::mem::take(&mut self.control.phases);
+        self.control = saved.control;
+        self.control.phases = phases;
+        self.habit = saved.habit;
+        self.passes.carry_on(saved.carried);
+        self.measure_areas();
+        true
+    }
+}

@@ -1,0 +1,408 @@
+//! Runs of a case in processes of their own, and what they leave: kept by a key, so that none is done twice.
+
+use super::TradeError;
+use super::knobs::openings;
+use super::output::column;
+use crate::scene::Loaded;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// What a run came to.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Status {
+    /// Done, and fit to compare.
+    Done,
+    /// It failed, was refused, or is not to be trusted: why.
+    Failed(String),
+    /// It was ended after so many seconds, slower than the reference.
+    Slow(f64),
+}
+
+/// What `run.json` keeps of a run that ended by itself: numbers only, judged anew whenever they are read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Kept {
+    sets: Vec<String>,
+    seed: u64,
+    /// Exit code.
+    exit: i32,
+    /// First line of what it said on stderr.
+    said: String,
+    steps: Option<f64>,
+    unconverged: f64,
+    uncoupled: f64,
+    /// None where the energy is not finite.
+    residual: Option<f64>,
+    seconds: f64,
+    wall: f64,
+    visits: f64,
+}
+
+impl Kept {
+    /// Whether another try may end otherwise: it was refused (files may have changed), could not write, or left nothing.
+    fn passing(&self) -> bool {
+        match self.exit {
+            0 => self.steps.is_none(),
+            1 => self.said.contains("cannot write") || self.said.contains("No space left"),
+            _ => true,
+        }
+    }
+}
+
+/// A run that ended by itself, or for good.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finished {
+    /// What it came to.
+    pub status: Status,
+    /// Whether the failure, if it is one, is of this time only: it is not kept, and the run is tried again by the next study.
+    pub passing: bool,
+    /// The `--set` arguments it ran with.
+    pub sets: Vec<String>,
+    /// Its seed.
+    pub seed: u64,
+    /// Seconds of stepping, of the processor.
+    pub seconds: f64,
+    /// Seconds that the whole run took, by the clock.
+    pub wall: f64,
+    /// Contacts times iterations, summed over the steps: a cost that does not depend on the machine.
+    pub visits: f64,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ended {
+    /// For good.
+    Finished(Finished),
+    /// Its time was out, or the study was interrupted; nothing is kept.
+    Interrupted,
+}
+
+/// When a run is not to be trusted.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Share of steps that may miss the tolerance.
+    pub unconverged: f64,
+    /// Energy residual over the largest energy.
+    pub residual: f64,
+}
+
+/// Starts runs of one case.
+#[derive(Debug)]
+pub struct Launcher {
+    /// The program.
+    pub program: PathBuf,
+    /// The case.
+    pub case: PathBuf,
+    /// `--set` of the user.
+    pub sets: Vec<String>,
+    /// Words about plugins that each run is given.
+    pub plugins: Vec<String>,
+    /// Where runs are kept.
+    pub folder: PathBuf,
+    /// When they are not to be trusted.
+    pub limits: Limits,
+    fingerprint: String,
+}
+
+impl Launcher {
+    /// For a case with the materials it reads, `(name, text)`.
+    ///
+    /// # Errors
+    /// The program cannot find itself, or the folder cannot be made.
+    pub fn new(
+        loaded: &Loaded,
+        materials: &[(String, String)],
+        plugins: Vec<String>,
+        out: &Path,
+        limits: Limits,
+    ) -> Result<Self, TradeError> {
+        let unknown = |e: &dyn std::fmt::Display| {
+            TradeError::Usage(format!("the program does not find its own file: {e}"))
+        };
+        let program = std::env::current_exe().map_err(|e| unknown(&e))?;
+        let mut hash = Sha256::new();
+        hash.update(std::fs::read(&program).map_err(|e| unknown(&e))?);
+        hash.update(loaded.source.text());
+        for (name, text) in materials {
+            hash.update(name);
+            hash.update(text);
+        }
+        for word in &plugins {
+            hash.update(word);
+        }
+        let folder = out.join("runs");
+        std::fs::create_dir_all(&folder).map_err(|e| TradeError::write(&folder, &e))?;
+        Ok(Self {
+            program,
+            case: loaded.path.clone(),
+            sets: [loaded.source.sets(), &openings(loaded)].concat(),
+            plugins,
+            folder,
+            limits,
+            fingerprint: hex(&hash.finalize()),
+        })
+    }
+
+    /// What tells this case, with this program, from others.
+    pub fn fingerprint(&self) -> &str {
+        &self.fingerprint
+    }
+
+    /// The folder of a run.
+    pub fn place(&self, sets: &[String], seed: u64) -> PathBuf {
+        let mut hash = Sha256::new();
+        hash.update(&self.fingerprint);
+        for set in sets {
+            hash.update(set);
+            hash.update([0]);
+        }
+        hash.update(seed.to_le_bytes());
+        self.folder.join(&hex(&hash.finalize())[..16])
+    }
+
+    /// What an earlier run left, judged by the limits of today.
+    pub fn kept(&self, sets: &[String], seed: u64) -> Option<Finished> {
+        let text = std::fs::read_to_string(self.place(sets, seed).join("run.json")).ok()?;
+        let kept: Kept = serde_json::from_str(&text).ok()?;
+        (!kept.passing()).then(|| self.judged(kept))
+    }
+
+    /// Runs to its end, to `deadline`, or for `bound` at most.
+    ///
+    /// # Errors
+    /// The process cannot be started, or the folder not be written.
+    pub fn run(
+        &self,
+        sets: &[String],
+        seed: u64,
+        deadline: Instant,
+        bound: Option<Duration>,
+        stop: &AtomicBool,
+    ) -> Result<Ended, TradeError> {
+        let place = self.place(sets, seed);
+        let fail = |e: &dyn std::fmt::Display| TradeError::write(&place, e);
+        if place.exists() {
+            std::fs::remove_dir_all(&place).map_err(|e| fail(&e))?;
+        }
+        std::fs::create_dir_all(&place).map_err(|e| fail(&e))?;
+        let errors = std::fs::File::create(place.join("stderr.txt")).map_err(|e| fail(&e))?;
+        let started = Instant::now();
+        let mut child = self
+            .command(sets, seed, &place)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(errors)
+            .spawn()
+            .map_err(|e| fail(&e))?;
+        let code = loop {
+            if let Some(code) = child.try_wait().map_err(|e| fail(&e))? {
+                break Some(code);
+            }
+            let slow = bound.is_some_and(|b| started.elapsed() > b);
+            if slow || Instant::now() > deadline || stop.load(Ordering::Relaxed) {
+                // It may have ended by itself meanwhile.
+                let _ = child.kill();
+                let _ = child.wait();
+                if !slow || stop.load(Ordering::Relaxed) {
+                    return Ok(Ended::Interrupted);
+                }
+                break None;
+            }
+            // Short runs are waited for closely, long ones seldom.
+            let nap = started.elapsed() / 50;
+            std::thread::sleep(nap.clamp(Duration::from_millis(2), Duration::from_millis(100)));
+        };
+        if stop.load(Ordering::Relaxed) && code.is_none_or(|c| c.code().is_none()) {
+            return Ok(Ended::Interrupted);
+        }
+        let elapsed = started.elapsed().as_secs_f64();
+        let kept = kept(&place, sets, seed, code.and_then(|c| c.code()), elapsed);
+        let finished = match code.map(|c| c.code()) {
+            Some(Some(_)) => {
+                if !kept.passing() {
+                    let text = serde_json::to_string_pretty(&kept).unwrap_or_default();
+                    let (draft, path) = (place.join("run.json.part"), place.join("run.json"));
+                    std::fs::write(&draft, text)
+                        .and_then(|()| std::fs::rename(&draft, &path))
+                        .map_err(|e| fail(&e))?;
+                }
+                self.judged(kept)
+            }
+            ended => {
+                let mut run = self.judged(kept);
+                run.passing = true;
+                run.status = match ended {
+                    None => Status::Slow(elapsed),
+                    _ => Status::Failed("ended by a signal from outside".into()),
+                };
+                run
+            }
+        };
+        // The numbers stay; states and pictures of every setting would fill the disk.
+        for file in ["results.h5", "contacts.vtkhdf", "bodies.vtkhdf"] {
+            let _ = std::fs::remove_file(place.join(file));
+        }
+        let _ = std::fs::remove_dir_all(place.join("frames"));
+        Ok(Ended::Finished(finished))
+    }
+
+    fn command(&self, sets: &[String], seed: u64, place: &Path) -> Command {
+        let mut command = Command::new(&self.program);
+        command.arg("run").arg(&self.case).arg("--json");
+        command.arg("--out").arg(place).args(["--threads", "1"]);
+        let quiet = [
+            "output.frames=0",
+            "output.views=0",
+            "output.figures=false",
+            "output.checkpoint=Never",
+        ];
+        let seed = format!("seed={seed}");
+        let all = self.sets.iter().chain(sets).map(String::as_str);
+        for set in all.chain(quiet).chain([seed.as_str()]) {
+            command.args(["--set", set]);
+        }
+        command.args(&self.plugins);
+        command
+    }
+
+    fn judged(&self, kept: Kept) -> Finished {
+        let passing = kept.passing();
+        let status = match kept.exit {
+            0 => self.doubt(&kept).map_or(Status::Done, Status::Failed),
+            code => {
+                let what = if code == 2 { "refused" } else { "failed" };
+                Status::Failed(format!("{what}: {}", kept.said))
+            }
+        };
+        Finished {
+            status,
+            passing,
+            sets: kept.sets,
+            seed: kept.seed,
+            seconds: kept.seconds,
+            wall: kept.wall,
+            visits: kept.visits,
+        }
+    }
+
+    /// Why a run that ended well is not to be trusted.
+    fn doubt(&self, kept: &Kept) -> Option<String> {
+        let Some(steps) = kept.steps else {
+            return Some("it left no summary".into());
+        };
+        let most = self.limits.unconverged * steps.max(1.0);
+        if kept.unconverged > most {
+            let missed = kept.unconverged;
+            return Some(format!("{missed} of {steps} steps did not converge"));
+        }
+        if kept.uncoupled > most {
+            return Some(format!(
+                "{} of {steps} steps left damage and opening apart",
+                kept.uncoupled
+            ));
+        }
+        match kept.residual {
+            Some(r) if r.abs() <= self.limits.residual => None,
+            Some(r) => Some(format!(
+                "its energy residual is {:.1} % of the largest energy",
+                100.0 * r.abs()
+            )),
+            None => Some("its energy is not finite".into()),
+        }
+    }
+}
+
+/// What a run left in its folder; `exit` none where it did not end by itself.
+fn kept(place: &Path, sets: &[String], seed: u64, exit: Option<i32>, elapsed: f64) -> Kept {
+    let summary = summary(place);
+    let number = |key: &str| summary.pointer(key).and_then(Value::as_f64);
+    let said = std::fs::read_to_string(place.join("stderr.txt")).unwrap_or_default();
+    let first = said.lines().next().unwrap_or("it did not say why");
+    Kept {
+        sets: sets.to_vec(),
+        seed,
+        exit: exit.unwrap_or(-1),
+        said: first.trim_start_matches("error: ").to_owned(),
+        steps: number("/steps"),
+        unconverged: number("/solver/unconverged_steps").unwrap_or(0.0),
+        uncoupled: number("/solver/uncoupled_steps").unwrap_or(0.0),
+        residual: number("/energy_residual_relative"),
+        seconds: number("/cpu_seconds").unwrap_or(elapsed),
+        wall: elapsed,
+        visits: visits(place, number("/steps").unwrap_or(0.0)),
+    }
+}
+
+/// The summary of a run; null where there is none.
+pub fn summary(place: &Path) -> Value {
+    std::fs::read_to_string(place.join("summary.json"))
+        .ok()
+        .and_then(|text| serde_json::from_str(&text).ok())
+        .unwrap_or(Value::Null)
+}
+
+/// Contacts times iterations over all steps, from the rows there are.
+fn visits(place: &Path, steps: f64) -> f64 {
+    let path = place.join("statistics.csv");
+    let both = column(&path, "contacts").zip(column(&path, "iterations"));
+    both.map_or(0.0, |(c, i)| {
+        let sum: f64 = c.iter().zip(&i).map(|(c, i)| c * i).sum();
+        steps * sum / c.len() as f64
+    })
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The same run counts or not as the limits of the day say; what may end otherwise next time is not kept.
+    #[test]
+    fn a_kept_run_is_judged_by_todays_limits() {
+        let run = |exit, said: &str| Kept {
+            sets: Vec::new(),
+            seed: 1,
+            exit,
+            said: said.into(),
+            steps: Some(100.0),
+            unconverged: 3.0,
+            uncoupled: 0.0,
+            residual: Some(1e-4),
+            seconds: 1.0,
+            wall: 1.0,
+            visits: 1.0,
+        };
+        let folder = std::env::temp_dir().join(format!("fretwork-kept-{}", std::process::id()));
+        let mut launcher = Launcher {
+            program: PathBuf::new(),
+            case: PathBuf::new(),
+            sets: Vec::new(),
+            plugins: Vec::new(),
+            folder: folder.clone(),
+            limits: Limits {
+                unconverged: 0.01,
+                residual: 0.01,
+            },
+            fingerprint: String::new(),
+        };
+        let place = launcher.place(&[], 1);
+        std::fs::create_dir_all(&place).unwrap();
+        let text = serde_json::to_string(&run(0, "")).unwrap();
+        std::fs::write(place.join("run.json"), text).unwrap();
+        let strict = launcher.kept(&[], 1).unwrap().status;
+        launcher.limits.unconverged = 0.05;
+        let lenient = launcher.kept(&[], 1).unwrap().status;
+        std::fs::remove_dir_all(&folder).unwrap();
+        assert!(matches!(strict, Status::Failed(why) if why.contains("3 of 100 steps")));
+        assert_eq!(lenient, Status::Done);
+        assert!(run(1, "cannot write x: full").passing() && run(2, "no such mesh").passing());
+        assert!(!run(1, "a body left the domain").passing() && !run(0, "").passing());
+    }
+}

@@ -1,0 +1,131 @@
+//! What a setting will cost, before it runs: from short probes, corrected by the runs that end.
+
+use super::child::{Ended, Finished, Launcher, Status};
+use super::knobs::{Knob, Sense};
+use super::output::column;
+use super::setting::Setting;
+use super::{TradeError, study::Ledger};
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// Cost = own (h0/h) (tol0/tol)^power.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Forecast {
+    /// Seconds of the case's own setting.
+    pub own: f64,
+    /// How the cost goes with the inverse of the tolerance.
+    pub power: f64,
+    /// Whether every probe measured a row of statistics or a whole run; else it is a guess, and not kept.
+    pub measured: bool,
+}
+
+impl Forecast {
+    /// Runs the case's own setting and the finest for a short while each. A run that ends within it
+    /// is put into `done`.
+    ///
+    /// # Errors
+    /// A run cannot be started.
+    pub fn probe(
+        launcher: &Launcher,
+        knobs: &[Knob],
+        steps: f64,
+        seed: u64,
+        each: Duration,
+        done: &mut Ledger,
+        stop: &AtomicBool,
+    ) -> Result<Self, TradeError> {
+        let mut measured = true;
+        let mut seconds = |setting: &Setting| -> Result<f64, TradeError> {
+            let sets = setting.sets(knobs);
+            if let Some(run) = launcher.kept(&sets, seed) {
+                return Ok(run.wall);
+            }
+            let all = steps / shrink(setting, knobs, Sense::Step);
+            let table = launcher.place(&sets, seed).join("statistics.csv");
+            let mut guess = f64::INFINITY;
+            // Rows are written some at a time: where none is there yet, nothing is known, and more time is given once.
+            for longer in [1, 3] {
+                let started = Instant::now();
+                let ended = launcher.run(&sets, seed, started + longer * each, None, stop)?;
+                let ended_at = std::time::SystemTime::now();
+                if let Ended::Finished(run) = ended {
+                    let wall = run.wall;
+                    done.insert((setting.clone(), seed), run);
+                    return Ok(wall);
+                }
+                // Steps are taken from when their table is made; what comes before is paid once.
+                let begun = std::fs::metadata(&table).and_then(|m| m.created()).ok();
+                let stepping = begun.and_then(|t| ended_at.duration_since(t).ok());
+                let stepping = stepping.unwrap_or_else(|| started.elapsed()).as_secs_f64();
+                let last = column(&table, "step").and_then(|r| r.last().copied());
+                guess = stepping * all / last.unwrap_or(1.0).max(1.0);
+                if last.is_some() {
+                    return Ok(guess);
+                }
+            }
+            measured = false;
+            Ok(guess)
+        };
+        let (own, finest) = (Setting::own(knobs), Setting::reference(knobs));
+        let base = seconds(&own)?;
+        let fine = shrink(&finest, knobs, Sense::Tolerance);
+        let power = if fine < 1.0 && own != finest {
+            let ratio = seconds(&finest)? / base * shrink(&finest, knobs, Sense::Step);
+            (ratio.ln() / (1.0 / fine).ln()).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        Ok(Self {
+            own: base,
+            power,
+            measured,
+        })
+    }
+
+    /// Seconds of a run: as its other seeds took, or by the law above, times how far that law was off so far.
+    pub fn seconds(&self, setting: &Setting, knobs: &[Knob], done: &Ledger) -> f64 {
+        let ended = |r: &&Finished| r.status == Status::Done;
+        let same: Vec<f64> = done
+            .iter()
+            .filter(|((s, _), r)| s == setting && ended(r))
+            .map(|(_, r)| r.wall)
+            .collect();
+        if !same.is_empty() {
+            return same.iter().sum::<f64>() / same.len() as f64;
+        }
+        // The nearest kin: the case's own where it ran, else all that ran.
+        let own = Setting::own(knobs);
+        let ratios = |only: bool| -> Vec<f64> {
+            done.iter()
+                .filter(|((s, _), r)| ended(r) && (!only || *s == own))
+                .map(|((s, _), r)| (r.wall / self.law(s, knobs)).ln())
+                .collect()
+        };
+        let known = [ratios(true), ratios(false)]
+            .into_iter()
+            .find(|r| !r.is_empty());
+        let off = known.map_or(0.0, |r| r.iter().sum::<f64>() / r.len() as f64);
+        self.law(setting, knobs) * off.exp()
+    }
+
+    /// Seconds by the probes alone.
+    pub fn law(&self, setting: &Setting, knobs: &[Knob]) -> f64 {
+        let step = shrink(setting, knobs, Sense::Step);
+        let tolerance = shrink(setting, knobs, Sense::Tolerance);
+        self.own.max(1e-3) / step * tolerance.powf(-self.power)
+    }
+}
+
+/// How much smaller than the case's own a step or tolerance is: the ratio, 1 where it is not varied.
+fn shrink(setting: &Setting, knobs: &[Knob], sense: Sense) -> f64 {
+    let of = |(k, level): (&Knob, &usize)| {
+        let number = |l: usize| k.levels.get(l).and_then(|l| l.number);
+        Some(number(*level)? / number(k.own)?)
+    };
+    let mut all = knobs
+        .iter()
+        .zip(&setting.0)
+        .filter(|(k, _)| k.sense == sense);
+    all.find_map(of).unwrap_or(1.0)
+}

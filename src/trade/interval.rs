@@ -1,0 +1,156 @@
+//! Means over seeds with their Student intervals.
+
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Share of the intervals that hold the true mean, where values are independent and normal.
+pub const CONFIDENCE: f64 = 0.95;
+
+/// The mean of some values.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Mean {
+    /// Values.
+    pub count: usize,
+    /// Their mean.
+    pub mean: f64,
+    /// Their standard deviation; none of one value.
+    pub scatter: Option<f64>,
+    /// Half the width of the interval of the mean; none where one value of a random quantity is all there is.
+    pub half_width: Option<f64>,
+}
+
+impl Mean {
+    /// Of values that differ by chance from seed to seed; none of no value.
+    pub fn of(values: &[f64]) -> Option<Self> {
+        let count = values.len();
+        let n = count as f64;
+        if count == 0 {
+            return None;
+        }
+        let mean = values.iter().sum::<f64>() / n;
+        let scatter = (count > 1).then(|| {
+            let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+            (squares / (n - 1.0)).sqrt()
+        });
+        let half_width = scatter.and_then(|s| Some(quantile(count)? * s / n.sqrt()));
+        Some(Self {
+            count,
+            mean,
+            scatter,
+            half_width,
+        })
+    }
+
+    /// Of a quantity without chance in it: one value says all.
+    pub fn certain(value: f64) -> Self {
+        Self {
+            count: 1,
+            mean: value,
+            scatter: None,
+            half_width: Some(0.0),
+        }
+    }
+
+    /// The largest magnitude within the interval; infinite where the interval is not known.
+    pub fn at_most(&self) -> f64 {
+        self.mean.abs() + self.half_width.unwrap_or(f64::INFINITY)
+    }
+
+    /// Whether zero lies within the interval.
+    pub fn may_be_zero(&self) -> bool {
+        self.half_width.is_none_or(|h| self.mean.abs() <= h)
+    }
+
+    /// The same in other units.
+    pub fn scaled(self, factor: f64) -> Self {
+        let size = factor.abs();
+        Self {
+            mean: self.mean * factor,
+            scatter: self.scatter.map(|s| s * size),
+            half_width: self.half_width.map(|h| h * size),
+            ..self
+        }
+    }
+}
+
+/// Student's t for the mean of so many values; none below two.
+fn quantile(count: usize) -> Option<f64> {
+    if count < 2 {
+        return None;
+    }
+    let t = StudentsT::new(0.0, 1.0, (count - 1) as f64).ok()?;
+    Some(t.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
+}
+
+/// How many seeds would bring the half width below `wanted`, judged by the scatter so far: the fewest n with
+/// t(n) s / sqrt(n) <= wanted.
+pub fn seeds_for(scatter: f64, wanted: f64) -> Option<usize> {
+    let enough = |n: usize| quantile(n).is_some_and(|t| t * scatter / (n as f64).sqrt() <= wanted);
+    if wanted.is_nan() || wanted <= 0.0 {
+        return None;
+    }
+    (2..200)
+        .chain((200..100_000).step_by(100))
+        .find(|n| enough(*n))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+
+    /// A normal variate by Box and Muller.
+    fn normal(rng: &mut rand_pcg::Pcg64) -> f64 {
+        let (a, b): (f64, f64) = (rng.random(), rng.random());
+        (-2.0 * (1.0 - a).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
+    }
+
+    /// The interval holds the true mean in 95 of 100 trials: over 20,000 the share has a standard error of 0.15 %.
+    #[test]
+    fn intervals_hold_the_true_mean_as_often_as_they_say() {
+        for count in [2, 3, 8] {
+            let mut rng = rand_pcg::Pcg64::seed_from_u64(count as u64);
+            let trials = 20_000;
+            let held = (0..trials)
+                .filter(|_| {
+                    let values: Vec<f64> =
+                        (0..count).map(|_| 3.0 + 0.4 * normal(&mut rng)).collect();
+                    let mean = Mean::of(&values).unwrap();
+                    (mean.mean - 3.0).abs() <= mean.half_width.unwrap()
+                })
+                .count();
+            let share = held as f64 / f64::from(trials);
+            assert!((share - CONFIDENCE).abs() < 0.006, "{count}: {share}");
+        }
+    }
+
+    /// Student's t of 95 % (any table): 12.706 for one degree of freedom, 4.303 for two.
+    #[test]
+    fn follows_students_table() {
+        assert!((quantile(2).unwrap() - 12.706).abs() < 1e-3);
+        assert!((quantile(3).unwrap() - 4.303).abs() < 1e-3);
+        assert_eq!(quantile(1), None);
+        let mean = Mean::of(&[1.0, 2.0, 3.0]).unwrap();
+        assert!((mean.half_width.unwrap() - 4.303 / 3f64.sqrt()).abs() < 1e-3);
+        assert!(!mean.may_be_zero() || mean.half_width.unwrap() >= 2.0);
+    }
+
+    #[test]
+    fn one_value_says_nothing_of_chance() {
+        let one = Mean::of(&[0.2]).unwrap();
+        assert!(one.half_width.is_none() && one.may_be_zero());
+        assert_eq!(one.at_most(), f64::INFINITY);
+        assert_eq!(Mean::certain(0.2).at_most(), 0.2);
+        assert!(!Mean::certain(0.2).may_be_zero());
+        assert!(Mean::of(&[]).is_none());
+    }
+
+    #[test]
+    fn more_seeds_where_the_scatter_is_large() {
+        // 1.96 s / sqrt(n) <= w for many: n near (1.96 * 10)^2 = 384
+        let many = seeds_for(1.0, 0.1).unwrap();
+        assert!((380..=500).contains(&many), "{many}");
+        assert_eq!(seeds_for(0.01, 1.0), Some(2));
+        assert_eq!(seeds_for(1.0, 0.0), None);
+    }
+}

@@ -1,0 +1,407 @@
+//! What a study varies: the knobs of a case and their levels.
+//!
+//! A preset makes its levels from the case's own value; `--vary key=a,b,c` gives them. The reference has the finest level
+//! that the budget allows of the knobs that have one (step, tolerance), the first level of a `--vary`, and the case's own
+//! value of the rest: no solver is finer than another at one tolerance, and a correction is a choice, not a resolution.
+
+use super::TradeError;
+use crate::scene::case::{Case, GrainSpec};
+use crate::scene::source::nearest;
+use crate::scene::{Loaded, load};
+use crate::solve::local::solver::Method;
+use crate::step::coupling::Coupling;
+
+/// A value of a knob.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    /// As people read it.
+    pub label: String,
+    /// The `--set` arguments that give it.
+    pub sets: Vec<String>,
+    /// The number it is, where it is one.
+    pub number: Option<f64>,
+}
+
+/// How a knob moves the cost and the error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sense {
+    /// The step: smaller is finer, and cost goes as its inverse.
+    Step,
+    /// The tolerance: smaller is finer.
+    Tolerance,
+    /// Levels without an order.
+    Choice,
+    /// From `--vary`: the first level is the reference's.
+    Listed,
+}
+
+/// Something that is varied. Levels of a step or tolerance stand from the finest to the coarsest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Knob {
+    /// Its name.
+    pub name: String,
+    /// How it acts.
+    pub sense: Sense,
+    /// Its levels, at least one.
+    pub levels: Vec<Level>,
+    /// Which of them is the case's.
+    pub own: usize,
+    /// Which of them the reference has.
+    pub reference: usize,
+}
+
+/// Names of the presets, with what they are.
+pub const PRESETS: &[(&str, &str)] = &[
+    ("step", "time.step times 1/4 to 4"),
+    ("tolerance", "solver.tolerance over two decades each way"),
+    ("solver", "the methods that serve the case"),
+    ("test_every", "sweeps between convergence tests"),
+    ("coupling", "damage coupling, explicit or implicit"),
+    ("correction", "position correction, 0 to 0.2"),
+    ("grains", "half the grains of the first lattice or deposit"),
+];
+
+/// What `--knob` takes when it is not given; the number of grains changes the question, not only the answer.
+fn wanted_by_default(name: &str) -> bool {
+    name != "grains"
+}
+
+/// The knobs asked for by name, or the usual ones of the case, and those of `--vary`.
+///
+/// # Errors
+/// A name that is none, a preset that the case has no use for, a key or value that the case refuses.
+pub fn knobs(
+    loaded: &Loaded,
+    methods: &[Method],
+    names: &[String],
+    vary: &[String],
+) -> Result<Vec<Knob>, TradeError> {
+    let mut knobs = Vec::new();
+    for name in names {
+        if name == "precision" {
+            let text = "--knob precision: Fretwork computes and stores in f64 only, there is no f32 storage to compare with";
+            return Err(TradeError::Usage(text.into()));
+        }
+        if !PRESETS.iter().any(|p| p.0 == name) {
+            return Err(unknown(name));
+        }
+        match preset(loaded, methods, name) {
+            Ok(knob) => knobs.push(knob),
+            Err(why) => return Err(TradeError::Usage(format!("--knob {name}: {why}"))),
+        }
+    }
+    if names.is_empty() && vary.is_empty() {
+        let usual = PRESETS.iter().filter(|p| wanted_by_default(p.0));
+        knobs.extend(usual.filter_map(|p| preset(loaded, methods, p.0).ok()));
+    }
+    for argument in vary {
+        knobs.push(listed(loaded, argument)?);
+    }
+    for (k, knob) in knobs.iter().enumerate() {
+        if knobs[..k].iter().any(|other| other.name == knob.name) {
+            let text = format!("`{}` is varied twice; name it once", knob.name);
+            return Err(TradeError::Usage(text));
+        }
+    }
+    Ok(knobs)
+}
+
+fn unknown(name: &str) -> TradeError {
+    let close = nearest(name, PRESETS.iter().map(|p| p.0));
+    let help = close.map_or(String::new(), |c| format!("; did you mean `{c}`?"));
+    let names: Vec<&str> = PRESETS.iter().map(|p| p.0).collect();
+    TradeError::Usage(format!(
+        "--knob {name}: there is no such knob{help} There are {}; `--vary key.path=a,b,c` varies any value of the case",
+        names.join(", ")
+    ))
+}
+
+/// A number as RON reads it and people do.
+fn digits(x: f64) -> String {
+    // Powers of two of a round number end in rounding noise, which 12 digits cut off.
+    let rounded: f64 = format!("{x:.11e}").parse().unwrap_or(x);
+    if rounded != 0.0 && !(1e-2..1e4).contains(&rounded.abs()) {
+        format!("{rounded:e}")
+    } else {
+        format!("{rounded}")
+    }
+}
+
+fn number(key: &str, x: f64) -> Level {
+    let label = digits(x);
+    Level {
+        sets: vec![format!("{key}={label}")],
+        label,
+        number: Some(x),
+    }
+}
+
+/// The levels of a preset, or why the case has none.
+fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<Knob, String> {
+    let case = &loaded.case;
+    let knob = |sense, levels: Vec<Level>, own: usize, reference: usize| {
+        Ok(Knob {
+            name: name.to_owned(),
+            sense,
+            levels,
+            own,
+            reference,
+        })
+    };
+    match name {
+        "step" => {
+            let factors = [0.25, 0.5, 1.0, 2.0, 4.0];
+            Ok(steps(case, factors.map(|f| f * case.time.step).into()))
+        }
+        "tolerance" => {
+            let own = case.solver.tolerance;
+            let all = [-2, -1, 0, 1, 2].map(|k| own * 10f64.powi(k));
+            // Sweeps cannot reach what rounding hides; a tolerance of 0.1 hardly solves.
+            let useful = |t: &f64| (1e-13..=0.1).contains(t);
+            Ok(tolerances(case, all.into_iter().filter(useful).collect()))
+        }
+        "solver" => {
+            let own = methods.iter().position(|m| *m == case.solver.method);
+            if methods.len() < 2 {
+                return Err("only one method serves this case".into());
+            }
+            let level = |m: &Method| Level {
+                label: m.name().to_owned(),
+                sets: vec![format!("solver.method={m:?}")],
+                number: None,
+            };
+            let own = own.unwrap_or(0);
+            knob(Sense::Choice, methods.iter().map(level).collect(), own, own)
+        }
+        "test_every" => {
+            let own = case.solver.test_every.max(1);
+            let mut all = vec![(own / 4).max(1), own, own.saturating_mul(4)];
+            all.dedup();
+            let place = all.iter().position(|n| *n == own).unwrap_or(0);
+            let level = |n: &u32| number("solver.test_every", f64::from(*n));
+            knob(Sense::Choice, all.iter().map(level).collect(), place, place)
+        }
+        "coupling" => {
+            if !case.interfaces.iter().any(|i| i.damage.is_some()) {
+                return Err("the case has no damage law, whose coupling could be varied".into());
+            }
+            let own = usize::from(case.coupling != Coupling::Explicit);
+            let level = |label: &str, set: &str| Level {
+                label: label.into(),
+                sets: vec![set.into()],
+                number: None,
+            };
+            let levels = vec![
+                level("explicit", "coupling=Explicit"),
+                level(
+                    "implicit",
+                    "coupling=Implicit(tolerance: 1e-6, max_iterations: 50)",
+                ),
+            ];
+            knob(Sense::Choice, levels, own, own)
+        }
+        "correction" => {
+            let own = case.solver.correction;
+            let mut all = vec![0.0, 0.05, 0.2, own];
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            let place = all.iter().position(|c| *c == own).unwrap_or(0);
+            let level = |c: &f64| number("solver.correction", *c);
+            knob(Sense::Choice, all.iter().map(level).collect(), place, place)
+        }
+        _ => {
+            let (k, count) = counted(case).ok_or(
+                "no lattice or deposit says how many grains there are; vary the size of the sample with --vary",
+            )?;
+            let key = format!("grains.{k}.count");
+            let levels = vec![
+                number(&key, count as f64),
+                number(&key, count.div_ceil(2) as f64),
+            ];
+            knob(Sense::Choice, levels, 0, 0)
+        }
+    }
+}
+
+/// Positive numbers and the case's own among them, from the finest up, each with what makes a level of it.
+fn ordered(
+    name: &str,
+    sense: Sense,
+    own: f64,
+    mut values: Vec<f64>,
+    level: impl Fn(f64) -> Level,
+) -> Knob {
+    let same = |a: f64, b: f64| (a - b).abs() <= 1e-11 * b.abs();
+    values.retain(|v| !same(*v, own));
+    values.push(own);
+    values.sort_by(f64::total_cmp);
+    values.dedup_by(|a, b| same(*a, *b));
+    Knob {
+        name: name.to_owned(),
+        sense,
+        own: values.iter().position(|v| *v == own).unwrap_or(0),
+        reference: 0,
+        levels: values.into_iter().map(level).collect(),
+    }
+}
+
+fn steps(case: &Case, values: Vec<f64>) -> Knob {
+    let every = case.output.every as f64 * case.time.step;
+    ordered("step", Sense::Step, case.time.step, values, |h| {
+        let mut level = number("time.step", h);
+        // As many rows of statistics a second as the case has.
+        let rows = (every / h).round().max(1.0);
+        if rows != case.output.every as f64 {
+            level.sets.push(format!("output.every={rows}"));
+        }
+        level
+    })
+}
+
+fn tolerances(case: &Case, values: Vec<f64>) -> Knob {
+    let own = case.solver.tolerance;
+    ordered("tolerance", Sense::Tolerance, own, values, |t| {
+        let mut level = number("solver.tolerance", t);
+        if t < own {
+            // First-order methods need as many more sweeps at worst.
+            let most = f64::from(case.solver.max_iterations) * own / t;
+            let most = most.min(f64::from(u32::MAX)).round();
+            level.sets.push(format!("solver.max_iterations={most}"));
+        }
+        level
+    })
+}
+
+/// The first grains with a count of their own, and it.
+fn counted(case: &Case) -> Option<(usize, usize)> {
+    let count = |g: &GrainSpec| match g {
+        GrainSpec::Lattice { count, .. } => Some(*count),
+        GrainSpec::Deposit(spec) => Some(spec.count),
+        _ => None,
+    };
+    let mut all = case.grains.iter().enumerate();
+    all.find_map(|(k, g)| Some((k, count(g)?)))
+}
+
+/// `--set`s that write the structs which the case leaves out: a `--set` puts a field only into what is written.
+pub fn openings(loaded: &Loaded) -> Vec<String> {
+    let missing = |group: &&str| loaded.source.position_of(group).is_none();
+    let groups = ["solver", "output"].into_iter().filter(missing);
+    groups.map(|group| format!("{group}=()")).collect()
+}
+
+/// `key.path=a,b,c`: commas within brackets or quotes belong to a value.
+fn listed(loaded: &Loaded, argument: &str) -> Result<Knob, TradeError> {
+    let form = || {
+        TradeError::Usage(format!(
+            "--vary {argument}: expected key.path=a,b,c with two values or more, the finest first"
+        ))
+    };
+    let (key, values) = argument.split_once('=').ok_or_else(form)?;
+    const RECORDED: [&str; 5] = ["frames", "views", "figures", "every", "checkpoint"];
+    let recorded = |k: &str| {
+        k.strip_prefix("output.")
+            .is_some_and(|f| RECORDED.contains(&f))
+    };
+    if key.trim() == "seed" || recorded(key.trim()) {
+        return Err(TradeError::Usage(format!(
+            "--vary {}: a study sets this itself, or it changes what is written and not what is computed; for more seeds give --seeds",
+            key.trim()
+        )));
+    }
+    let values = split(values);
+    if key.trim().is_empty() || values.len() < 2 || values.iter().any(String::is_empty) {
+        return Err(form());
+    }
+    let level = |value: &String| Level {
+        label: value.clone(),
+        sets: vec![format!("{}={value}", key.trim())],
+        number: value.parse().ok(),
+    };
+    let mut levels: Vec<Level> = values.iter().map(level).collect();
+    let before = [loaded.source.sets(), &openings(loaded)].concat();
+    // The text of the case before and after: a value that leaves it as it is, is its own.
+    let mut own = None;
+    for (k, level) in levels.iter().enumerate() {
+        let sets: Vec<String> = before.iter().chain(&level.sets).cloned().collect();
+        let changed = load(&loaded.path, &sets)?;
+        if format!("{:?}", changed.case) == format!("{:?}", loaded.case) {
+            own = Some(k);
+        }
+    }
+    // The two numbers that have an order by themselves.
+    let numbers: Vec<f64> = levels.iter().filter_map(|l| l.number).collect();
+    let positive = numbers.len() == levels.len() && numbers.iter().all(|x| *x > 0.0);
+    match key.trim() {
+        "time.step" if positive => return Ok(steps(&loaded.case, numbers)),
+        "solver.tolerance" if positive => return Ok(tolerances(&loaded.case, numbers)),
+        _ => {}
+    }
+    let own = own.unwrap_or_else(|| {
+        levels.push(Level {
+            label: "as in the case".into(),
+            sets: Vec::new(),
+            number: None,
+        });
+        levels.len() - 1
+    });
+    Ok(Knob {
+        name: key.trim().to_owned(),
+        sense: Sense::Listed,
+        levels,
+        own,
+        reference: 0,
+    })
+}
+
+fn split(text: &str) -> Vec<String> {
+    let (mut parts, mut depth, mut quoted) = (vec![String::new()], 0i32, false);
+    for c in text.chars() {
+        quoted ^= c == '"';
+        match c {
+            '(' | '[' | '{' if !quoted => depth += 1,
+            ')' | ']' | '}' if !quoted => depth -= 1,
+            ',' if !quoted && depth == 0 => {
+                parts.push(String::new());
+                continue;
+            }
+            _ => {}
+        }
+        if let Some(last) = parts.last_mut() {
+            last.push(c);
+        }
+    }
+    parts.iter().map(|p| p.trim().to_owned()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commas_in_brackets_belong_to_a_value() {
+        assert_eq!(
+            split("Explicit, Implicit(tolerance: 1e-6, max_iterations: 9)"),
+            ["Explicit", "Implicit(tolerance: 1e-6, max_iterations: 9)"]
+        );
+        assert_eq!(split("\"a,b\",[1,2],3"), ["\"a,b\"", "[1,2]", "3"]);
+        assert_eq!(split(""), [""]);
+    }
+
+    #[test]
+    fn numbers_read_well_and_back() {
+        for x in [
+            2e-8 / 4.0,
+            1e-4 * 2.0,
+            0.05,
+            20.0,
+            0.0,
+            1e-4 * 10f64.powi(2),
+        ] {
+            let text = digits(x);
+            assert!(text.len() < 9, "{text}");
+            let back: f64 = text.parse().unwrap();
+            assert!((back - x).abs() <= 1e-11 * x.abs());
+        }
+    }
+}

@@ -1,0 +1,336 @@
+//! The numbers that a study compares: from `summary.json` or a column of `statistics.csv`.
+
+use super::TradeError;
+use crate::scene::case::Case;
+use crate::scene::source::nearest;
+use serde_json::Value;
+use std::path::Path;
+
+/// How an error counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wanted {
+    /// A share of the reference's value.
+    Relative(f64),
+    /// In the unit of the output.
+    Absolute(f64),
+}
+
+/// Where a number stands.
+#[derive(Clone, Debug, PartialEq)]
+enum Place {
+    /// In `summary.json`, by its path.
+    Summary(Vec<String>),
+    /// A column of the statistics, and what of it.
+    Column(String, Take),
+}
+
+/// What of a column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Take {
+    /// The mean over the last half of the rows.
+    Mean,
+    /// The largest.
+    Max,
+    /// The smallest.
+    Min,
+    /// The last.
+    Last,
+}
+
+/// An output and the error wanted of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// As it was asked for.
+    pub name: String,
+    /// The error wanted.
+    pub wanted: Wanted,
+    /// What the output is in truth, where a closed form says so; else the reference takes its place.
+    pub exact: Option<f64>,
+    place: Place,
+}
+
+impl Output {
+    /// Reads `name=1%`, `name=0.003` (in its unit) or `name` (1 %).
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn parse(text: &str) -> Result<Self, TradeError> {
+        let wrong = |why: &str| {
+            TradeError::Usage(format!(
+                "--output {text}: {why}; expected NAME=1% or NAME=0.003, such as friction_coefficient=1%"
+            ))
+        };
+        let (name, wanted) = text.split_once('=').unwrap_or((text, "1%"));
+        let wanted = wanted.trim();
+        let (digits, share) = match wanted.strip_suffix('%') {
+            Some(digits) => (digits, true),
+            None => (wanted, false),
+        };
+        let value: f64 = digits
+            .trim()
+            .parse()
+            .map_err(|_| wrong(&format!("`{}` is no error to ask for", wanted.trim())))?;
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(wrong("the wanted error must be above zero"));
+        }
+        let name = name.trim();
+        if name.is_empty() {
+            return Err(wrong("there is no name"));
+        }
+        // An energy balance is exact where it closes; what is left is the error itself.
+        let (exact, share) = match name {
+            "energy_residual_relative" => (Some(0.0), false),
+            "energy.residual" if share => {
+                return Err(wrong(
+                    "its true value is zero, of which there is no share; give joules, or ask for energy_residual_relative",
+                ));
+            }
+            "energy.residual" => (Some(0.0), false),
+            _ => (None, share),
+        };
+        let value = if wanted.ends_with('%') {
+            value / 100.0
+        } else {
+            value
+        };
+        let place = match name.strip_prefix("statistics.") {
+            Some(column) => {
+                let (column, take) = match column.rsplit_once(':') {
+                    None => (column, Take::Mean),
+                    Some((c, "mean")) => (c, Take::Mean),
+                    Some((c, "max")) => (c, Take::Max),
+                    Some((c, "min")) => (c, Take::Min),
+                    Some((c, "last")) => (c, Take::Last),
+                    Some((_, other)) => {
+                        let why = format!("`:{other}` is none of :mean, :max, :min, :last");
+                        return Err(wrong(&why));
+                    }
+                };
+                Place::Column(column.to_owned(), take)
+            }
+            None => Place::Summary(name.split('.').map(str::to_owned).collect()),
+        };
+        Ok(Self {
+            name: name.to_owned(),
+            wanted: if share {
+                Wanted::Relative(value)
+            } else {
+                Wanted::Absolute(value)
+            },
+            exact,
+            place,
+        })
+    }
+
+    /// What a case is asked for when nothing is named: friction where it has a friction test, the damage ratio where it has
+    /// a damage law, the source flow where it has a wear law; at 1 % each.
+    pub fn usual(case: &Case) -> Vec<Self> {
+        let law =
+            |has: fn(&crate::scene::case::InterfaceSpec) -> bool| case.interfaces.iter().any(has);
+        let names = [
+            ("friction_coefficient", case.friction.is_some()),
+            ("damage_ratio", law(|i| i.damage.is_some())),
+            ("wear.Qs", law(|i| i.wear.is_some())),
+        ];
+        let there = names.iter().filter(|n| n.1);
+        there.filter_map(|n| Self::parse(n.0).ok()).collect()
+    }
+
+    /// Its value in the folder of a run; none where the run has none (null).
+    pub fn read(&self, summary: &Value, folder: &Path) -> Option<f64> {
+        match &self.place {
+            Place::Summary(path) => {
+                let step = |v: &Value, part: &String| match v {
+                    Value::Array(list) => list.get(part.parse::<usize>().ok()?).cloned(),
+                    _ => v.get(part).cloned(),
+                };
+                let found = path.iter().try_fold(summary.clone(), |v, p| step(&v, p))?;
+                found.as_f64().filter(|x| x.is_finite())
+            }
+            Place::Column(name, take) => {
+                let values = column(&folder.join("statistics.csv"), name)?;
+                let found = match take {
+                    Take::Last => values.last().copied(),
+                    Take::Max => values.iter().copied().reduce(f64::max),
+                    Take::Min => values.iter().copied().reduce(f64::min),
+                    Take::Mean => {
+                        let half = &values[values.len() / 2..];
+                        Some(half.iter().sum::<f64>() / half.len() as f64)
+                    }
+                };
+                found.filter(|x| x.is_finite())
+            }
+        }
+    }
+
+    /// Whether a run has an output of this name, be it null there.
+    ///
+    /// # Errors
+    /// A sentence with the nearest name.
+    pub fn check(&self, summary: &Value, folder: &Path) -> Result<(), TradeError> {
+        let refuse = |names: &[String], prefix: &str, wanted: &str| {
+            let close = nearest(wanted, names.iter().map(String::as_str))
+                .or_else(|| {
+                    // The last part alone, for a name whose parents were left out.
+                    let last = |n: &&String| n.rsplit('.').next() == wanted.rsplit('.').next();
+                    names.iter().find(last).map(String::as_str)
+                })
+                .map_or(String::new(), |c| format!(" did you mean `{prefix}{c}`?"));
+            let shown: Vec<&str> = names.iter().map(String::as_str).collect();
+            TradeError::Usage(format!(
+                "--output {}: a run of this case has no such output;{close} {}{}",
+                self.name,
+                if shown.is_empty() {
+                    "it has none of this kind".to_owned()
+                } else {
+                    format!("there are {}", shown.join(", "))
+                },
+                if prefix.is_empty() {
+                    ", and statistics.COLUMN of statistics.csv (:mean of the last half, :max, :min, :last)"
+                } else {
+                    ""
+                }
+            ))
+        };
+        match &self.place {
+            Place::Summary(path) => {
+                let mut at = summary;
+                for part in path {
+                    at = match at {
+                        // What a short run leaves empty, a whole one may fill.
+                        Value::Null | Value::Array(_) => return Ok(()),
+                        _ => match at.get(part) {
+                            Some(next) => next,
+                            None => {
+                                let mut names = Vec::new();
+                                flatten(summary, "", &mut names);
+                                return Err(refuse(&names, "", &self.name));
+                            }
+                        },
+                    };
+                }
+                match at {
+                    Value::Number(_) | Value::Null => Ok(()),
+                    _ => Err(TradeError::Usage(format!(
+                        "--output {}: it is no number; name what is in it, as {}.NAME",
+                        self.name, self.name
+                    ))),
+                }
+            }
+            Place::Column(name, _) => {
+                let names = header(&folder.join("statistics.csv"));
+                if names.iter().any(|n| n == name) {
+                    Ok(())
+                } else {
+                    Err(refuse(&names, "statistics.", name))
+                }
+            }
+        }
+    }
+}
+
+/// Paths of the numbers in a summary.
+fn flatten(value: &Value, path: &str, out: &mut Vec<String>) {
+    // Nobody compares these.
+    if [
+        "solver",
+        "bodies",
+        "biaxial",
+        "circuit",
+        "fretting",
+        "jump",
+        "stopped",
+        "cpu_seconds",
+        "plugins",
+        "version",
+        "seed",
+        "threads",
+        "steps",
+        "time",
+        "wall_seconds",
+        "dimension",
+    ]
+    .contains(&path)
+    {
+        return;
+    }
+    match value {
+        Value::Object(map) => {
+            for (key, inner) in map {
+                let path = if path.is_empty() {
+                    key.clone()
+                } else {
+                    format!("{path}.{key}")
+                };
+                flatten(inner, &path, out);
+            }
+        }
+        Value::Number(_) | Value::Null => out.push(path.to_owned()),
+        _ => {}
+    }
+}
+
+/// Names of the columns, without their units.
+fn header(path: &Path) -> Vec<String> {
+    let Ok(mut reader) = csv::Reader::from_path(path) else {
+        return Vec::new();
+    };
+    let bare = |h: &str| h.split(" [").next().unwrap_or(h).to_owned();
+    reader
+        .headers()
+        .map(|h| h.iter().map(bare).collect())
+        .unwrap_or_default()
+}
+
+/// The values of a column; whole rows only, so that a table that is being written can be read.
+pub(super) fn column(path: &Path, name: &str) -> Option<Vec<f64>> {
+    let place = header(path).iter().position(|n| n == name)?;
+    let mut reader = csv::ReaderBuilder::new().from_path(path).ok()?;
+    let rows = reader.records().map_while(Result::ok);
+    let values: Vec<f64> = rows.map_while(|r| r.get(place)?.parse().ok()).collect();
+    (!values.is_empty()).then_some(values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_what_is_asked_for() {
+        let one = Output::parse("friction_coefficient=2%").unwrap();
+        assert_eq!(one.wanted, Wanted::Relative(0.02));
+        assert_eq!(
+            Output::parse("wear.Qs").unwrap().wanted,
+            Wanted::Relative(0.01)
+        );
+        let absolute = Output::parse("energy_residual_relative=1e-3").unwrap();
+        assert_eq!(absolute.wanted, Wanted::Absolute(1e-3));
+        for wrong in ["a=", "a=b%", "a=-1%", "=1%", "a=0", "statistics.q:mid=1%"] {
+            let said = Output::parse(wrong).unwrap_err().to_string();
+            assert!(said.contains(wrong), "{said}");
+        }
+    }
+
+    #[test]
+    fn finds_numbers_in_a_summary_and_names_the_nearest() {
+        let summary: Value = serde_json::from_str(
+            r#"{"friction_coefficient": 0.3, "wear": {"Qs": 2.0, "Qe": null}, "cycles": [{"work": 4.0}]}"#,
+        )
+        .unwrap();
+        let none = Path::new("/nowhere");
+        let read = |name: &str| Output::parse(name).unwrap().read(&summary, none);
+        assert_eq!(read("wear.Qs"), Some(2.0));
+        assert_eq!(read("cycles.0.work"), Some(4.0));
+        assert_eq!(read("wear.Qe"), None);
+        let check = |name: &str| Output::parse(name).unwrap().check(&summary, none);
+        assert!(check("wear.Qe").is_ok() && check("cycles.3.work").is_ok());
+        let said = check("frction_coefficient").unwrap_err().to_string();
+        assert!(
+            said.contains("did you mean `friction_coefficient`?"),
+            "{said}"
+        );
+        let said = check("Qs").unwrap_err().to_string();
+        assert!(said.contains("did you mean `wear.Qs`?"), "{said}");
+        assert!(check("wear").is_err());
+    }
+}

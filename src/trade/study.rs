@@ -1,0 +1,516 @@
+//! The study: which settings run, in which order, within the budget.
+//!
+//! First the reference, the case's own setting, and the neighbours of the reference from which its own error is judged.
+//! Then one knob at a time, from the case's own value outward, where a user would look. Then combinations of what was
+//! cheaper alone, those first that the single knobs promise to be within the wanted error. Interactions of knobs that are not
+//! among the combinations run are not seen.
+
+use super::TradeError;
+use super::child::{Ended, Finished, Launcher, Status};
+use super::compare::{Compared, Comparison, neighbour};
+use super::forecast::Forecast;
+use super::frontier::frontier;
+use super::knobs::{Knob, Sense};
+use super::output::{Output, Wanted};
+use super::setting::Setting;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+/// Runs by setting and seed.
+pub type Ledger = BTreeMap<(Setting, u64), Finished>;
+
+/// Most combinations that are tried.
+const COMBINATIONS: usize = 8;
+
+/// A run that is not the reference's is ended when it took this many times as long: it cannot be worth it. The clock counts,
+/// and other programs may hold it up.
+const PATIENCE: f64 = 3.0;
+
+/// What a study is made of.
+#[derive(Debug)]
+pub struct Study {
+    /// Starts runs.
+    pub launcher: Arc<Launcher>,
+    /// Varied.
+    pub knobs: Vec<Knob>,
+    /// Compared.
+    pub outputs: Vec<Output>,
+    /// Seeds, at least one.
+    pub seeds: Vec<u64>,
+    /// Whether they change the scene.
+    pub random: bool,
+    /// Steps of the case as it is.
+    pub steps: f64,
+    /// Runs at the same time.
+    pub jobs: usize,
+    /// Seconds that all may take.
+    pub budget: Duration,
+    /// The runs that ended.
+    pub done: Ledger,
+    /// What costs are expected.
+    pub forecast: Forecast,
+    /// Runs that an earlier study in the same folder left.
+    pub reused: usize,
+    /// Runs done now.
+    pub fresh: usize,
+    /// Settings left out for want of time.
+    pub left_out: BTreeSet<Setting>,
+    /// What is to be told beside the numbers.
+    pub notes: Vec<String>,
+    /// When it began.
+    pub started: Instant,
+}
+
+/// What a later study in the same folder goes on from.
+#[derive(Debug, Serialize, Deserialize)]
+struct Plan {
+    fingerprint: String,
+    knobs: String,
+    reference: Vec<usize>,
+    forecast: Forecast,
+}
+
+/// A run that is about to begin or has ended, for who watches.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// It begins, with the seconds expected.
+    Begins(&'a str, u64, f64),
+    /// It ended.
+    Ended(&'a str, u64, &'a Finished),
+}
+
+impl Study {
+    fn plan_file(&self) -> std::path::PathBuf {
+        let folder = self.launcher.folder.parent();
+        folder.unwrap_or(&self.launcher.folder).join("plan.json")
+    }
+
+    fn plan(&self) -> Plan {
+        let levels: Vec<Knob> = self
+            .knobs
+            .iter()
+            .map(|k| Knob {
+                reference: 0,
+                ..k.clone()
+            })
+            .collect();
+        Plan {
+            fingerprint: self.launcher.fingerprint().to_owned(),
+            // More time, or more jobs, may allow a finer reference.
+            knobs: format!(
+                "{levels:?} {} {} {}",
+                self.seeds.len(),
+                self.budget.as_secs_f64(),
+                self.jobs
+            ),
+            reference: self.knobs.iter().map(|k| k.reference).collect(),
+            forecast: self.forecast,
+        }
+    }
+
+    /// Probes, and chooses the finest reference whose share of the work fits: with its neighbours, at most 60 % of the
+    /// budget. A plan that an earlier study left for the same question and budget is taken up as it is.
+    ///
+    /// # Errors
+    /// A run cannot be started, the plan not be written.
+    pub fn prepare(&mut self, stop: &AtomicBool) -> Result<(), TradeError> {
+        let path = self.plan_file();
+        let text = std::fs::read_to_string(&path).unwrap_or_default();
+        if let Ok(plan) = serde_json::from_str::<Plan>(&text) {
+            let now = self.plan();
+            let fits = plan
+                .reference
+                .iter()
+                .zip(&self.knobs)
+                .all(|(r, k)| *r < k.levels.len());
+            if fits && plan.fingerprint == now.fingerprint && plan.knobs == now.knobs {
+                for (knob, reference) in self.knobs.iter_mut().zip(&plan.reference) {
+                    knob.reference = *reference;
+                }
+                self.forecast = plan.forecast;
+                return Ok(());
+            }
+        }
+        let each = self.budget.mul_f64(0.03);
+        let each = each.clamp(Duration::from_millis(300), Duration::from_secs(20));
+        let first = self.seeds[0];
+        self.forecast = Forecast::probe(
+            &self.launcher,
+            &self.knobs,
+            self.steps,
+            first,
+            each,
+            &mut self.done,
+            stop,
+        )?;
+        self.fresh = self.done.len();
+        // Coarser by turns, tolerance before step.
+        while self.reference_work() > 0.6 * self.budget.as_secs_f64() {
+            let coarser = |k: &Knob| k.reference < k.own;
+            let mut finest: Vec<usize> = (0..self.knobs.len())
+                .filter(|&k| self.ordered(k) && coarser(&self.knobs[k]))
+                .collect();
+            finest.sort_by_key(|&k| (self.knobs[k].reference, self.knobs[k].sense == Sense::Step));
+            let Some(&k) = finest.first() else { break };
+            self.knobs[k].reference += 1;
+        }
+        self.keep_plan(stop)
+    }
+
+    /// Levels finer than the reference's for which the budget, or a run that failed, left no room.
+    pub fn dropped(&self) -> Vec<String> {
+        let ran = |k: usize, l: usize| self.done.keys().any(|(s, _)| s.0[k] == l);
+        let mut all = Vec::new();
+        for (k, knob) in self.knobs.iter().enumerate() {
+            if self.ordered(k) {
+                let finer = (0..knob.reference).filter(|&l| !ran(k, l));
+                all.extend(finer.map(|l| format!("{} {}", knob.name, knob.levels[l].label)));
+            }
+        }
+        all
+    }
+
+    /// Writes the plan; not where it rests on a guess, or on probes that were cut short.
+    fn keep_plan(&self, stop: &AtomicBool) -> Result<(), TradeError> {
+        if !self.forecast.measured || stop.load(Ordering::Relaxed) {
+            return Ok(());
+        }
+        let path = self.plan_file();
+        let text = serde_json::to_string_pretty(&self.plan()).unwrap_or_default();
+        std::fs::write(&path, text).map_err(|e| TradeError::write(&path, &e))
+    }
+
+    fn ordered(&self, k: usize) -> bool {
+        matches!(self.knobs[k].sense, Sense::Step | Sense::Tolerance)
+    }
+
+    /// Seconds of the reference, its neighbours and the case's own over the seeds.
+    fn reference_work(&self) -> f64 {
+        self.work(&self.first())
+    }
+
+    /// Seconds that settings are expected to take over all seeds, with the jobs side by side.
+    pub fn work(&self, settings: &[Setting]) -> f64 {
+        let one = |s: &Setting| self.forecast.seconds(s, &self.knobs, &self.done);
+        settings.iter().map(one).sum::<f64>() * self.seeds.len() as f64 / self.jobs as f64
+    }
+
+    /// The reference, the case's own and the neighbours of the reference.
+    pub fn first(&self) -> Vec<Setting> {
+        let reference = Setting::reference(&self.knobs);
+        let mut all = vec![reference.clone(), Setting::own(&self.knobs)];
+        for (k, knob) in self.knobs.iter().enumerate() {
+            all.extend(neighbour(knob).map(|next| reference.with(k, next)));
+        }
+        unique(all)
+    }
+
+    /// One knob at a time from the case's own, near ones first; nothing finer than the reference.
+    pub fn star(&self) -> Vec<Setting> {
+        let own = Setting::own(&self.knobs);
+        let mut all = Vec::new();
+        for far in 1..=self.knobs.iter().map(|k| k.levels.len()).max().unwrap_or(0) {
+            for (k, knob) in self.knobs.iter().enumerate() {
+                let levels = [knob.own.checked_add(far), knob.own.checked_sub(far)];
+                for level in levels.into_iter().flatten() {
+                    let finer = self.ordered(k) && level < knob.reference;
+                    if level < knob.levels.len() && !finer {
+                        all.push(own.with(k, level));
+                    }
+                }
+            }
+        }
+        let first = self.first();
+        unique(all)
+            .into_iter()
+            .filter(|s| !first.contains(s))
+            .collect()
+    }
+
+    /// Does the study. Ends early, without an error, when the budget is spent or `stop` is set.
+    ///
+    /// # Errors
+    /// A run cannot be started, or no reference can be had.
+    pub fn go(
+        &mut self,
+        stop: &AtomicBool,
+        watch: &(dyn Fn(&Event<'_>) + Sync),
+    ) -> Result<(), TradeError> {
+        loop {
+            let reference = Setting::reference(&self.knobs);
+            // What was too slow beside a finer reference may be the reference itself.
+            self.done
+                .retain(|(s, _), r| *s != reference || !matches!(r.status, Status::Slow(_)));
+            self.batch(std::slice::from_ref(&reference), stop, watch)?;
+            let mut runs = self.done.iter().filter(|((s, _), _)| *s == reference);
+            let why = runs.find_map(|(_, r)| match &r.status {
+                Status::Failed(why) => Some((why.clone(), r.passing)),
+                _ => None,
+            });
+            let Some((why, passing)) = why else { break };
+            let name = reference.name(&self.knobs);
+            if passing {
+                return Err(TradeError::Reference(format!(
+                    "the reference ({name}) has no result: {why}; the same command tries it again"
+                )));
+            }
+            let coarser = (0..self.knobs.len())
+                .filter(|&k| self.ordered(k) && self.knobs[k].reference < self.knobs[k].own)
+                .max_by_key(|&k| (self.knobs[k].sense == Sense::Tolerance, k));
+            let Some(k) = coarser else {
+                return Err(TradeError::Reference(format!(
+                    "the reference ({name}) failed, so that there is nothing to compare with: {why}"
+                )));
+            };
+            self.notes
+                .push(format!("{name} could not be the reference: {why}"));
+            self.knobs[k].reference += 1;
+            self.keep_plan(stop)?;
+        }
+        let first = self.first();
+        self.batch(&first, stop, watch)?;
+        let star = self.star();
+        self.batch(&star, stop, watch)?;
+        if !stop.load(Ordering::Relaxed) {
+            let combinations = self.combinations();
+            self.batch(&combinations, stop, watch)?;
+        }
+        Ok(())
+    }
+
+    /// Settings against the reference, from what there is.
+    pub fn compare(&self) -> Comparison {
+        self.compared().compare()
+    }
+
+    fn compared(&self) -> Compared<'_> {
+        Compared {
+            knobs: &self.knobs,
+            outputs: &self.outputs,
+            random: self.random,
+            seeds: &self.seeds,
+            done: &self.done,
+            launcher: &self.launcher,
+        }
+    }
+
+    /// Seconds left of the budget.
+    fn left(&self) -> f64 {
+        (self.budget.as_secs_f64() - self.started.elapsed().as_secs_f64()).max(0.0)
+    }
+
+    /// Runs what of these settings has not run, as far as the time goes.
+    fn batch(
+        &mut self,
+        settings: &[Setting],
+        stop: &AtomicBool,
+        watch: &(dyn Fn(&Event<'_>) + Sync),
+    ) -> Result<(), TradeError> {
+        let reference = Setting::reference(&self.knobs);
+        let mut queue = VecDeque::new();
+        for setting in settings {
+            let sets = setting.sets(&self.knobs);
+            for &seed in &self.seeds {
+                if self.done.contains_key(&(setting.clone(), seed)) {
+                    continue;
+                }
+                match self.launcher.kept(&sets, seed) {
+                    Some(run) => {
+                        self.reused += 1;
+                        self.done.insert((setting.clone(), seed), run);
+                    }
+                    None => queue.push_back((setting.clone(), seed)),
+                }
+            }
+        }
+        let deadline = self.started + self.budget;
+        let shared = Mutex::new((&mut *self, queue));
+        let failure: Mutex<Option<TradeError>> = Mutex::new(None);
+        let jobs = shared.lock().map_or(1, |s| s.0.jobs);
+        std::thread::scope(|scope| {
+            for _ in 0..jobs {
+                scope.spawn(|| {
+                    while let Some(job) = take(&shared, &reference, stop) {
+                        let Job {
+                            setting,
+                            seed,
+                            sets,
+                            name,
+                            expected,
+                            bound,
+                            launcher,
+                        } = job;
+                        watch(&Event::Begins(&name, seed, expected));
+                        let ended = launcher.run(&sets, seed, deadline, bound, stop);
+                        let Ok(mut guard) = shared.lock() else { return };
+                        match ended {
+                            Ok(Ended::Finished(run)) => {
+                                watch(&Event::Ended(&name, seed, &run));
+                                guard.0.fresh += 1;
+                                guard.0.done.insert((setting, seed), run);
+                            }
+                            Ok(Ended::Interrupted) => {
+                                guard.0.left_out.insert(setting);
+                            }
+                            Err(e) => {
+                                guard.1.clear();
+                                if let Ok(mut failure) = failure.lock() {
+                                    *failure = Some(e);
+                                }
+                            }
+                        }
+                    }
+                });
+            }
+        });
+        match failure.into_inner() {
+            Ok(Some(e)) => Err(e),
+            _ => Ok(()),
+        }
+    }
+
+    /// Settings that change several knobs, put together from levels that were cheaper alone.
+    fn combinations(&self) -> Vec<Setting> {
+        let found = self.compare();
+        let own = Setting::own(&self.knobs);
+        let Some(base) = found
+            .rows
+            .iter()
+            .find(|r| r.setting == own && r.failed.is_none())
+        else {
+            return Vec::new();
+        };
+        // Signed errors in parts of what is wanted, and the intervals.
+        let scaled = |row: &super::compare::Row| -> Option<Vec<(f64, f64)>> {
+            let each = row.errors.iter().zip(&self.outputs).map(|(e, o)| {
+                let (Wanted::Relative(w) | Wanted::Absolute(w)) = o.wanted;
+                let e = e.as_ref()?;
+                Some((e.error.mean / w, e.error.half_width? / w))
+            });
+            each.collect()
+        };
+        let Some(start) = scaled(base) else {
+            return Vec::new();
+        };
+        type Move = (usize, f64, Vec<f64>);
+        let mut moves: Vec<Vec<Move>> = Vec::new();
+        for k in 0..self.knobs.len() {
+            let mut here: Vec<Move> = vec![(own.0[k], 1.0, vec![0.0; start.len()])];
+            for row in &found.rows {
+                let alone = row.setting.changed(&self.knobs) == [k] && row.failed.is_none();
+                let cheaper = row.seconds < 0.95 * base.seconds;
+                if let (true, Some(errors)) = (alone && cheaper, scaled(row)) {
+                    let moved = errors.iter().zip(&start).map(|(e, s)| e.0 - s.0);
+                    here.push((
+                        row.setting.0[k],
+                        row.seconds / base.seconds,
+                        moved.collect(),
+                    ));
+                }
+            }
+            // The cheapest few of a knob.
+            here[1..].sort_by(|a, b| a.1.total_cmp(&b.1));
+            here.truncate(4);
+            moves.push(here);
+        }
+        let mut all: Vec<(Setting, f64, Vec<f64>)> =
+            vec![(own.clone(), base.seconds, vec![0.0; start.len()])];
+        for (k, levels) in moves.iter().enumerate() {
+            all = all
+                .iter()
+                .flat_map(|(s, cost, moved)| {
+                    levels.iter().map(move |(level, ratio, more)| {
+                        let sum = moved.iter().zip(more).map(|(a, b)| a + b).collect();
+                        (s.with(k, *level), cost * ratio, sum)
+                    })
+                })
+                .collect();
+            all.truncate(20_000);
+        }
+        let mut points: Vec<(Setting, f64, f64)> = all
+            .into_iter()
+            .filter(|(s, ..)| s.changed(&self.knobs).len() > 1)
+            .map(|(s, cost, moved)| {
+                let worst = moved
+                    .iter()
+                    .zip(&start)
+                    .map(|(m, (e, h))| (e + m).abs() + h);
+                (s, cost, worst.fold(0.0, f64::max))
+            })
+            .collect();
+        let plane: Vec<(f64, f64)> = points.iter().map(|p| (p.1, p.2)).collect();
+        let on = frontier(&plane);
+        let mut kept = on.into_iter();
+        points.retain(|_| kept.next().unwrap_or(false));
+        // Those promised to be within the wanted error, the cheapest first; then the nearest to it.
+        points.sort_by(|a, b| {
+            let key = |p: &(Setting, f64, f64)| if p.2 <= 1.0 { (0, p.1) } else { (1, p.2) };
+            let (x, y) = (key(a), key(b));
+            x.0.cmp(&y.0).then(x.1.total_cmp(&y.1))
+        });
+        points.into_iter().map(|p| p.0).take(COMBINATIONS).collect()
+    }
+}
+
+/// A run to do.
+struct Job {
+    setting: Setting,
+    seed: u64,
+    sets: Vec<String>,
+    name: String,
+    expected: f64,
+    bound: Option<Duration>,
+    launcher: Arc<Launcher>,
+}
+
+type Shared<'a> = Mutex<(&'a mut Study, VecDeque<(Setting, u64)>)>;
+
+/// The next run that fits into the time that is left, by the forecast; a setting is begun only if all its seeds fit. The
+/// reference is begun in any case: without it nothing can be said.
+fn take(shared: &Shared<'_>, reference: &Setting, stop: &AtomicBool) -> Option<Job> {
+    let mut guard = shared.lock().ok()?;
+    let (study, queue) = &mut *guard;
+    loop {
+        let (setting, seed) = queue.pop_front()?;
+        let left = study.left();
+        let failed = |r: &Finished| r.status != Status::Done;
+        let known = |s: &Setting| study.done.range((s.clone(), 0)..=(s.clone(), u64::MAX));
+        // One seed that failed condemns a setting; the others need not run.
+        if known(&setting).any(|(_, r)| failed(r)) {
+            continue;
+        }
+        let expected = study.forecast.seconds(&setting, &study.knobs, &study.done);
+        let begun = known(&setting).next().is_some();
+        let seeds = 1 + queue.iter().filter(|(s, _)| *s == setting).count();
+        let rounds = seeds.div_ceil(study.jobs) as f64;
+        let fits = begun || setting == *reference || 0.9 * expected * rounds <= left;
+        if left <= 0.0 || stop.load(Ordering::Relaxed) || !fits {
+            study.left_out.insert(setting);
+            continue;
+        }
+        let slowest = known(reference).map(|(_, r)| r.wall).fold(0.0, f64::max);
+        let bound = (setting != *reference && slowest > 0.0)
+            .then(|| Duration::from_secs_f64(PATIENCE * slowest + 5.0));
+        return Some(Job {
+            sets: setting.sets(&study.knobs),
+            name: setting.name(&study.knobs),
+            launcher: Arc::clone(&study.launcher),
+            setting,
+            seed,
+            expected,
+            bound,
+        });
+    }
+}
+
+/// The same without repetitions, in order.
+fn unique(settings: Vec<Setting>) -> Vec<Setting> {
+    let mut seen = BTreeSet::new();
+    settings
+        .into_iter()
+        .filter(|s| seen.insert(s.clone()))
+        .collect()
+}

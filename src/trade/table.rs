@@ -1,0 +1,220 @@
+//! The report on a terminal.
+
+use super::compare::{Comparison, Row, Told, share};
+use super::output::Wanted;
+use super::setting::Setting;
+use super::study::Study;
+use super::verdict::{Verdict, amount, three};
+use std::fmt::Write as _;
+
+/// Seconds as people say them.
+pub fn seconds(s: f64) -> String {
+    match s {
+        s if s < 0.0995 => format!("{:.0} ms", 1e3 * s),
+        s if s < 99.5 => format!("{s:.1} s"),
+        s if s < 599.5 => format!("{s:.0} s"),
+        s if s < 5940.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+/// What is about to happen, before it does.
+pub fn forecast(study: &Study) -> String {
+    let (first, star) = (study.first(), study.star());
+    let seeds = study.seeds.len();
+    let all: Vec<Setting> = first.iter().chain(&star).cloned().collect();
+    let count = |n: usize| {
+        format!(
+            "{n} settings x {seeds} seed{}",
+            if seeds == 1 { "" } else { "s" }
+        )
+    };
+    let names: Vec<String> = study
+        .knobs
+        .iter()
+        .map(|k| {
+            let levels: Vec<&str> = k.levels.iter().map(|l| l.label.as_str()).collect();
+            format!(
+                "  {:<14} {}  (case {}, reference {})",
+                k.name,
+                levels.join(" "),
+                k.levels[k.own].label,
+                k.levels[k.reference].label
+            )
+        })
+        .collect();
+    format!(
+        "varied\n{}\nforecast, from short probes: the case's own setting {} a run, the reference {}; the reference and what judges it {} ({}), \
+         one knob at a time {} more ({}), combinations as time is left; budget {}",
+        names.join("\n"),
+        seconds(
+            study
+                .forecast
+                .law(&Setting::own(&study.knobs), &study.knobs)
+        ),
+        seconds(
+            study
+                .forecast
+                .law(&Setting::reference(&study.knobs), &study.knobs)
+        ),
+        seconds(study.work(&first)),
+        count(first.len()),
+        seconds(study.work(&all) - study.work(&first)),
+        count(star.len()),
+        seconds(study.budget.as_secs_f64()),
+    )
+}
+
+/// The table of the settings and the verdicts.
+pub fn text(study: &Study, found: &Comparison, verdicts: &[Verdict]) -> String {
+    let mut out = String::new();
+    let reference = Setting::reference(&study.knobs);
+    let label = |row: &Row| {
+        let mark = if row.setting == reference {
+            " (reference)"
+        } else {
+            ""
+        };
+        format!("{}{mark}", row.name)
+    };
+    let widths = found.rows.iter().map(|r| label(r).len());
+    let width = widths.max().unwrap_or(8).clamp(16, 70);
+    let _ = write!(
+        out,
+        "{:<width$}  {:>9}  {:>8}  {:>9}",
+        "setting", "cpu s", "faster", "visits"
+    );
+    for o in &study.outputs {
+        let unit = match o.wanted {
+            Wanted::Relative(_) => " (%)",
+            Wanted::Absolute(_) => "",
+        };
+        let _ = write!(out, "  {:>24}", format!("{}{unit}", o.name));
+    }
+    out.push('\n');
+    for row in &found.rows {
+        let faster = row.faster.as_ref().map_or("-".into(), |f| three(f.0));
+        let name = label(row);
+        let _ = write!(
+            out,
+            "{name:<width$}  {:>9.3}  {faster:>8}  {:>9.2e}",
+            row.seconds, row.visits
+        );
+        if let Some(why) = &row.failed {
+            let _ = writeln!(out, "  NOT USED: {why}");
+            continue;
+        }
+        for (e, o) in row.errors.iter().zip(&study.outputs) {
+            let cell = match e {
+                Some(e) if row.setting == reference && o.exact.is_none() => {
+                    let mark = if e.on_frontier { " *" } else { "  " };
+                    let own = if e.bound.is_finite() {
+                        amount(e.bound, o).replace(" %", "")
+                    } else {
+                        "?".into()
+                    };
+                    format!("own <= {own}{mark}")
+                }
+                Some(e) => {
+                    let told = Told(&e.error, o.wanted).to_string().replace(" %", "");
+                    format!("{told}{}", if e.on_frontier { " *" } else { "  " })
+                }
+                None => "no value  ".into(),
+            };
+            let _ = write!(out, "  {cell:>24}");
+        }
+        if row.seeds < study.seeds.len() {
+            let _ = write!(out, "  {} of {} seeds", row.seeds, study.seeds.len());
+        }
+        out.push('\n');
+    }
+    let _ = writeln!(
+        out,
+        "* on the frontier: no other setting is cheaper with a smaller error at most"
+    );
+    out.push('\n');
+    for (own, o) in found.own.iter().zip(&study.outputs) {
+        let Some(own) = own else {
+            let _ = writeln!(out, "{}: no value in the reference", o.name);
+            continue;
+        };
+        let scatter = own.value.scatter.map_or(String::new(), |s| {
+            let part = if own.value.mean == 0.0 {
+                format!("{s:.1e}")
+            } else {
+                format!("{} %", share(s / own.value.mean.abs()))
+            };
+            format!(", scatter among {} seeds {part}", own.value.count)
+        });
+        let truth = o
+            .exact
+            .map_or(String::new(), |x| format!(", true value {x}"));
+        let _ = writeln!(
+            out,
+            "{}: {:.6} in the reference{scatter}{truth}",
+            o.name,
+            Shown(own.value.mean)
+        );
+        if o.exact.is_none() {
+            let known = if own.at_most.is_finite() {
+                amount(own.at_most, o)
+            } else {
+                "an unknown amount".into()
+            };
+            let _ = writeln!(
+                out,
+                "  the reference may itself be off by {known}: {}",
+                own.why
+            );
+        }
+    }
+    out.push('\n');
+    for v in verdicts {
+        let _ = writeln!(out, "{}: {}", v.wanted, v.text);
+        if let Some(row) = v.row {
+            let sets = found.rows[row].setting.sets(&study.knobs);
+            let sets: Vec<String> = study
+                .launcher
+                .sets
+                .iter()
+                .chain(&sets)
+                .map(|s| format!(" --set {}", quoted(s)))
+                .collect();
+            let words = study.launcher.plugins.iter();
+            let plugins: String = words.map(|w| format!(" {}", quoted(w))).collect();
+            let _ = writeln!(
+                out,
+                "  fretwork run {}{}{plugins} --threads 1",
+                quoted(&study.launcher.case.display().to_string()),
+                sets.join("")
+            );
+        }
+    }
+    for note in &study.notes {
+        let _ = writeln!(out, "{note}");
+    }
+    out
+}
+
+/// A number with the digits it deserves.
+struct Shown(f64);
+
+impl std::fmt::Display for Shown {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.0 != 0.0 && !(1e-3..1e5).contains(&self.0.abs()) {
+            write!(f, "{:.4e}", self.0)
+        } else {
+            write!(f, "{:.5}", self.0)
+        }
+    }
+}
+
+/// As a shell takes it.
+fn quoted(set: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "=._-+/:,@%".contains(c);
+    if set.is_empty() || !set.chars().all(plain) {
+        format!("'{}'", set.replace('\'', "'\\''"))
+    } else {
+        set.to_owned()
+    }
+}

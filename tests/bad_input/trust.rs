@@ -1,0 +1,126 @@
+//! Libraries that others may have put there, that are not those of the case, and that do not keep to their columns.
+
+use crate::trial::{PLANE, Trial, refusal, with};
+use std::path::PathBuf;
+use std::process::Output;
+
+/// A trial whose case uses the law `own` in its folder.
+fn own(fault: &str) -> (Trial, PathBuf) {
+    let trial = Trial::new();
+    trial.compile_bad_law("own", "0", fault);
+    let case = with(PLANE, r#"contact: "coulomb""#, r#"contact: "own""#);
+    let case = with(&case, r#"parameters_from: "laws","#, "");
+    // The grains touch the floor.
+    let case = trial.write("case.ron", case.replace("0.011]", "0.01]"));
+    (trial, case)
+}
+
+fn run(trial: &Trial, more: &[&str]) -> Output {
+    let folder = trial.path("");
+    let mut words = vec!["run", "case.ron", "--plugin-path", folder.to_str().unwrap()];
+    words.extend_from_slice(more);
+    trial.call(&words)
+}
+
+fn says(output: &Output, code: i32, words: &[&str]) {
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{said}");
+    for word in words {
+        assert!(said.contains(word), "`{word}` in: {said}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_or_library_that_anybody_may_write_to() {
+    use std::os::unix::fs::PermissionsExt;
+    let (trial, _) = own("GOOD");
+    let mode = |path: &PathBuf, mode| {
+        std::fs::set_permissions(path, std::fs::Permissions::from_mode(mode)).unwrap();
+    };
+    let folder = trial.path("");
+    let files = std::fs::read_dir(&folder).unwrap().flatten();
+    let library = files
+        .map(|f| f.path())
+        .find(|p| p.to_string_lossy().contains("contact_own"))
+        .unwrap();
+    mode(&folder, 0o777);
+    refusal(
+        &run(&trial, &[]),
+        &["anybody may write to", "mode 0777", "--trust-plugins"],
+    );
+    assert!(run(&trial, &["--trust-plugins"]).status.success());
+    for law in [
+        vec!["show", "own"],
+        vec!["certify", "own"],
+        vec!["drive", "own"],
+    ] {
+        let mut words = vec!["law"];
+        words.extend(law);
+        words.extend(["--plugin-path", "."]);
+        refusal(&trial.call(&words), &["anybody may write to"]);
+    }
+    let listed = trial.call(&["law", "list", "--plugin-path", "."]);
+    let listed = String::from_utf8_lossy(&listed.stdout).into_owned();
+    assert!(
+        listed.contains("unusable") && listed.contains("anybody may write to"),
+        "{listed}"
+    );
+    mode(&folder, 0o755);
+    mode(&library, 0o666);
+    refusal(&run(&trial, &[]), &["anybody may write to", "contact_own"]);
+    mode(&library, 0o644);
+    assert!(run(&trial, &[]).status.success());
+}
+
+#[test]
+fn a_library_that_is_not_the_pinned_one() {
+    let (trial, case) = own("GOOD");
+    let shown = trial.call(&["law", "show", "own", "--plugin-path", "."]);
+    let shown = String::from_utf8_lossy(&shown.stdout).into_owned();
+    let sum = shown
+        .lines()
+        .find_map(|l| l.trim().strip_prefix("sha256"))
+        .map(str::trim)
+        .unwrap();
+    let text = std::fs::read_to_string(&case).unwrap();
+    let pinned = |law: &str, pin: &str| {
+        let pins = format!("    pins: {{\"{law}\": \"{pin}\"}},\n    friction: (");
+        trial.write("case.ron", with(&text, "    friction: (", &pins));
+    };
+    pinned("contact/own", sum);
+    assert!(run(&trial, &[]).status.success());
+    let other = "0".repeat(64);
+    pinned("contact/own", &other);
+    refusal(&run(&trial, &[]), &["case.ron:", sum, &other, "as pinned"]);
+    pinned("contact/own", "0a1b");
+    refusal(&run(&trial, &[]), &["64 hexadecimal digits", "law show"]);
+    pinned("contact/owl", sum);
+    refusal(
+        &run(&trial, &[]),
+        &["no interface uses the law `contact/owl`", "contact/own"],
+    );
+}
+
+#[test]
+fn a_law_that_writes_behind_its_columns() {
+    let (trial, _) = own("SPILLS");
+    says(
+        &run(&trial, &[]),
+        1,
+        &["the contact law `own` wrote behind the end of a column in Prepare"],
+    );
+}
+
+#[test]
+fn a_law_that_does_not_come_back() {
+    let (trial, _) = own("LOOPS");
+    let more = ["--law-timeout", "0.5", "--set", "time.end=40.0"];
+    let output = run(&trial, &more);
+    says(
+        &output,
+        1,
+        &["the contact law `own` has not come back from prepare"],
+    );
+    assert!(trial.path("results/case/results.h5").exists());
+}

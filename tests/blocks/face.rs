@@ -1,0 +1,42 @@
+//! A bonded face that is pulled open, against its law's closed form: the same in the plane and in space.
+
+use crate::{close, driven, scene, step};
+use fretwork::scene::build::Dimensional;
+
+/// Pulls the face of a case open until its bonds, so many, are broken: peak, begin of the damage, end and work of a law
+/// with strength 0.3 MPa and 0.5 J/m^2 over the whole face (m^2; m in 2D), whose bonds add up to it within a part.
+pub fn opens_by_its_law<S: Dimensional>(case: &str, bonds: u64, face: f64, part: f64) {
+    let (strength, energy, stiffness) = (3e5, 0.5, 1e12);
+    let (first, last) = (strength / stiffness, 2.0 * energy / strength);
+    let mut s = scene::<S>(case, &[]);
+    let (mut peak, mut work, mut begun, mut open) = (0.0f64, 0.0, None, 0.0);
+    let grip = driven(&s, "grip");
+    while s.network.bonds_broken() < bonds {
+        step(&mut s);
+        assert!(open < 2.0 * last);
+        let pull = -s.received[grip].0[S::D - 1] / s.scheme.h;
+        let before = open;
+        // From rest, over the first step the grip moves half.
+        open += 0.01 * s.scheme.h * if s.steps == 1 { 0.5 } else { 1.0 };
+        work += pull * (open - before);
+        peak = peak.max(pull);
+        let list = &s.network.memory[0].bonds;
+        if begun.is_none() && list.iter().any(|b| b.damage > 0.0) {
+            begun = Some((pull, open));
+        }
+        // All points alike: the face does not turn.
+        for b in list {
+            assert!((b.opening_n - list[0].opening_n).abs() < 1e-9 * last);
+        }
+    }
+    let (force, at) = begun.unwrap();
+    println!("peak {peak:e}, damage from {force:e} at {at:e}, work {work:e}, open to {open:e}");
+    assert_eq!(s.network.bonds_made(), bonds);
+    let bonded: f64 = s.network.memory[0].bonds.iter().map(|b| b.area).sum();
+    assert!(close(bonded, face, part), "{bonded}");
+    assert!(close(peak, strength * face, 1e-3));
+    assert!(close(force, strength * face, 1e-3) && close(at, first, 1e-3));
+    assert!(close(open, last, 1e-3) && close(work, energy * face, 1e-3));
+    assert!(close(s.energy.fracture, energy * face, 1e-3));
+    assert!(s.energy.relative_residual() < 1e-12);
+}

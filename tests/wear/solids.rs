@@ -1,0 +1,91 @@
+//! Debris of polygons and polyhedra, whose faces are tied at several points: a plate that tears off its grip.
+
+use fretwork::geometry::space::{Plane, Solid};
+use fretwork::laws::SearchPath;
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::{circuit, load};
+use fretwork::step::Simulation;
+use fretwork::wear::circuit::Circuit;
+use std::collections::HashSet;
+use std::path::Path;
+
+#[test]
+fn a_plate_of_polygons_comes_loose() {
+    comes_loose::<Plane>("voronoi_plate", 800);
+}
+
+#[test]
+fn a_plate_of_polyhedra_comes_loose() {
+    comes_loose::<Solid>("voronoi_plate_3d", 1500);
+}
+
+/// The bodies that unbroken bonds tie to one, by a walk over all of them.
+fn walk<S: Dimensional>(s: &Simulation<S>, from: u32) -> Vec<bool> {
+    let grains: HashSet<u32> = s.bodies.grains().map(|b| b as u32).collect();
+    let mut tied = vec![false; s.bodies.len()];
+    tied[from as usize] = true;
+    let contacts = s.network.contacts.iter();
+    let bonds: Vec<[u32; 2]> = contacts
+        .filter(|c| s.network.bond(c).is_some_and(|b| b.intact()))
+        .map(|c| c.bodies)
+        // Nothing belongs to one grip through the other.
+        .filter(|b| b.iter().all(|b| *b == from || grains.contains(b)))
+        .collect();
+    loop {
+        let before = tied.clone();
+        for [a, b] in bonds.iter().map(|b| b.map(|k| k as usize)) {
+            let both = tied[a] || tied[b];
+            (tied[a], tied[b]) = (both, both);
+        }
+        if tied == before {
+            return tied;
+        }
+    }
+}
+
+fn comes_loose<S: Dimensional>(case: &str, steps: u64) {
+    let file = format!(
+        "{}/cases/verification/{case}.ron",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let set = r#"circuit=(bases: ["left"], every: 1)"#.to_owned();
+    let loaded = load(Path::new(&file), &[set]).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    s.step().unwrap();
+    let mut account = Circuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);
+    let base = account.bases()[0];
+    let whole = account.tied_to(base);
+    let (mut pieces, mut grains, mut mass) = (0, 0, 0.0);
+    while s.steps < steps {
+        s.step().unwrap();
+        account.note(&s);
+        account.update(&mut s);
+        let r = account.ledger.residual();
+        for a in [r.tied, r.contact, r.ejected, r.lost] {
+            assert!(a.grains == 0 && a.mass.abs() < 1e-12);
+        }
+        for d in &account.debris {
+            (pieces, grains) = (pieces + 1, grains + d.grains.len());
+            mass += d.mass;
+            assert!(d.bonds > 0 && d.energy > 0.0 && (0.0..=1.0).contains(&d.mode_mix));
+        }
+        // Faces hold while one of their points does.
+        let tied = walk(&s, base);
+        let free: Vec<usize> = s.bodies.grains().collect();
+        let places = free.iter().map(|b| (account.place(*b), tied[*b]));
+        for (place, tied) in places {
+            let here = matches!(place, Some(fretwork::wear::ledger::Place::Tied(_)));
+            assert_eq!(here, tied);
+        }
+    }
+    let f = account.ledger.flows;
+    println!(
+        "{} bonds broke, {pieces} pieces of {grains} grains out of {whole}",
+        s.network.bonds_broken()
+    );
+    assert!(grains > 1 && grains < whole);
+    assert_eq!(f.source.grains, grains as i64);
+    assert_eq!(account.tied_to(base), whole - grains);
+    assert!((f.source.mass / mass - 1.0).abs() < 1e-12);
+}
