@@ -1,7 +1,7 @@
 //! Regimes of a sheared layer of bonded grains, by the strength of the bonds and the pressure.
 //!
 //! `cargo run --release --example regime_map` runs `cases/regime_map.ron` for six strengths and three pressures, two at a
-//! time, prints the table of `docs/third_body.md` and draws `docs/figures/regime_map.png`: friction and mean cluster against
+//! time, prints the table of `docs/circuit.md` and draws `docs/figures/regime_map.png`: friction and mean cluster against
 //! strength over pressure. What walls and bonds do depends on that ratio; pressure alone changes the inertial number.
 
 use fretwork::geometry::space::Plane;

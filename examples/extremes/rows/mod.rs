@@ -1,0 +1,34 @@
+//! The rows of the table, by what is extreme in them.
+
+mod bonds;
+mod geometry;
+mod inertia;
+mod little;
+mod motion;
+mod packed;
+mod time;
+
+use crate::bench::Group;
+
+/// All groups, in the order of the table.
+pub const ALL: &[Group] = &[
+    inertia::MASS,
+    inertia::SIZE,
+    inertia::COLUMN,
+    packed::FRICTION,
+    bonds::STIFFNESS,
+    bonds::TORN,
+    time::STEP,
+    time::JUMP,
+    time::MANY,
+    packed::WEDGE,
+    packed::ROD,
+    packed::WALL,
+    packed::FACES,
+    motion::SPEED,
+    little::WEIGHTLESS,
+    little::FEW,
+    geometry::COINCIDENT,
+    geometry::LENGTH,
+    packed::TOLERANCE,
+];
