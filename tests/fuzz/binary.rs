@@ -1,0 +1,143 @@
+//! HDF5 files: contact problems of FCLIB, results of a run; and the bytes of a state, as a checkpoint has them.
+
+use crate::campaign::Campaign;
+use crate::cases::files;
+use crate::mutate;
+use fretwork::geometry::space::Plane;
+use fretwork::laws::SearchPath;
+use fretwork::record::checkpoint::Frame;
+use fretwork::record::code::{decode, encode};
+use fretwork::record::fclib;
+use fretwork::record::results::{Kept, state};
+use fretwork::scene::{Loaded, load};
+use fretwork::step::Saved;
+use rand::RngExt;
+use rand_pcg::Pcg64;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const CASE: &str = r#"(
+    name: "a small run",
+    dimension: 2,
+    time: (step: 1e-4, end: 2e-3),
+    gravity: [0.0, -9.81],
+    materials: {"grain": "verification_grain"},
+    interfaces: [(name: "grains", between: ("grain", "grain"), contact: "coulomb")],
+    bodies: [(name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 1.0])])],
+    grains: [List(material: "grain", grains: [
+        (at: [0.0, 0.0100], radius: 0.01), (at: [0.021, 0.01], radius: 0.01), (at: [0.04, 0.03], radius: 0.01),
+    ])],
+    output: (frames: 0, views: 3, figures: false, checkpoint: Steps(5)),
+)"#;
+
+fn small(folder: &Path) -> PathBuf {
+    std::fs::create_dir_all(folder.join("materials")).unwrap();
+    let material = Path::new(env!("CARGO_MANIFEST_DIR")).join("materials/verification_grain.ron");
+    std::fs::copy(material, folder.join("materials/verification_grain.ron")).unwrap();
+    let case = folder.join("small.ron");
+    std::fs::write(&case, CASE).unwrap();
+    case
+}
+
+fn damaged(name: &'static str, seeds: Vec<Vec<u8>>) -> impl FnMut(&mut Pcg64) -> (String, Vec<u8>) {
+    move |rng| {
+        let seed = &seeds[rng.random_range(0..seeds.len())];
+        let other = &seeds[rng.random_range(0..seeds.len())];
+        (name.to_owned(), mutate::bytes(seed, other, rng))
+    }
+}
+
+#[test]
+fn damaged_contact_problems() {
+    let campaign = Campaign {
+        kind: "contact problems",
+        count: 1000,
+        scene: 0,
+        taken: true,
+    };
+    let folder = campaign.folder();
+    let seeds: Vec<Vec<u8>> = files("tests/fclib", &["hdf5"])
+        .iter()
+        .map(|p| std::fs::read(p).unwrap())
+        .collect();
+    campaign.run(&folder, damaged("problem.hdf5", seeds), |path| {
+        let solution = fclib::read_solution(path).is_ok();
+        match fclib::read(path) {
+            Ok(_) => solution,
+            Err(error) => {
+                assert!(!error.to_string().is_empty());
+                false
+            }
+        }
+    });
+}
+
+#[test]
+fn damaged_results() {
+    let campaign = Campaign {
+        kind: "results",
+        count: 1000,
+        scene: 0,
+        taken: true,
+    };
+    let folder = campaign.folder();
+    let case = small(&folder);
+    let done = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+        .args(["run", case.to_str().unwrap(), "--out"])
+        .arg(folder.join("out"))
+        .env_remove("FRETWORK_PLUGIN_PATH")
+        .output()
+        .unwrap();
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    let whole = std::fs::read(folder.join("out/results.h5")).unwrap();
+    campaign.run(&folder, damaged("results.h5", vec![whole]), |path| {
+        let last = state::read(path, None, 2);
+        let first = state::read(path, Some(0), 2);
+        let other = state::read(path, Some(usize::MAX), 3);
+        assert!(other.is_err());
+        let Ok(kept) = Kept::open(path) else {
+            return last.is_ok() && first.is_ok();
+        };
+        for slot in kept.checkpoints().unwrap_or_default() {
+            drop(Frame::read(&slot));
+        }
+        let names = ["time".to_owned(), "kinetic".to_owned()];
+        for rows in [1, 5, 1 << 30, usize::MAX] {
+            drop(kept.statistics(&names, rows));
+        }
+        last.is_ok() && first.is_ok()
+    });
+}
+
+fn loaded(case: &Path) -> Loaded {
+    load(case, &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The bytes behind a checkpoint's checksum: decoded, and put back into a scene of the same case.
+#[test]
+fn damaged_states() {
+    let campaign = Campaign {
+        kind: "states",
+        count: 1000,
+        scene: 0,
+        taken: true,
+    };
+    let folder = campaign.folder();
+    let case = small(&folder);
+    let laws = SearchPath::new(&[]);
+    let mut built = loaded(&case).build_in::<Plane>(&laws).unwrap();
+    (0..5).for_each(|_| built.simulation.step().map(drop).unwrap());
+    let whole = encode(&built.simulation.save()).unwrap();
+    campaign.run(&folder, damaged("state", vec![whole]), move |path| {
+        let bytes = std::fs::read(path).unwrap();
+        let Ok(saved) = decode::<Saved<'_, Plane>>(&bytes) else {
+            return false;
+        };
+        let mut again = loaded(&case).build_in::<Plane>(&laws).unwrap();
+        again.simulation.restore(saved)
+    });
+}

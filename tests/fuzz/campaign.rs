@@ -1,0 +1,163 @@
+//! A campaign: damaged inputs of one kind, each read on a thread of its own, under a clock and a count of bytes.
+
+use crate::memory::peak;
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// What one input may take (s): a hang is what takes longer.
+const SECONDS: u64 = 10;
+/// What a reader may hold beyond a multiple of its file (bytes).
+const BASE: usize = 64 << 20;
+/// Bytes a reader may hold for each byte of its file.
+const EACH: usize = 1000;
+
+/// Inputs of one kind.
+pub struct Campaign {
+    /// Name, also that of its folder.
+    pub kind: &'static str,
+    /// How many inputs, unless `FRETWORK_FUZZ` says otherwise.
+    pub count: u64,
+    /// What is allowed beyond the bound of readers (bytes): what a scene may be made of.
+    pub scene: usize,
+    /// Whether inputs that are taken must occur: without them nothing behind the parser is tried.
+    pub taken: bool,
+}
+
+type Read = Arc<dyn Fn(&Path) -> bool + Send + Sync>;
+type Answer = (Result<bool, String>, usize, Duration);
+
+fn variable(name: &str) -> Option<u64> {
+    let text = std::env::var(name).ok()?;
+    Some(
+        text.parse()
+            .unwrap_or_else(|_| panic!("{name} must be a whole number")),
+    )
+}
+
+/// One campaign at a time: they share the count of bytes.
+fn alone() -> MutexGuard<'static, ()> {
+    static ONE: Mutex<()> = Mutex::new(());
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A thread that reads the files it is told.
+fn worker(read: Read) -> (Sender<PathBuf>, Receiver<Answer>) {
+    let (to, files) = channel::<PathBuf>();
+    let (answers, from) = channel();
+    let work = move || {
+        for file in files {
+            let start = Instant::now();
+            let (result, bytes) = peak(|| catch_unwind(AssertUnwindSafe(|| read(&file))));
+            let result = result.map_err(|fault| {
+                let text = fault.downcast_ref::<String>().cloned();
+                text.or_else(|| fault.downcast_ref::<&str>().map(|t| (*t).to_owned()))
+                    .unwrap_or_default()
+            });
+            if answers.send((result, bytes, start.elapsed())).is_err() {
+                return;
+            }
+        }
+    };
+    // The stack of a main thread.
+    let builder = std::thread::Builder::new().stack_size(8 << 20);
+    builder.spawn(work).unwrap();
+    (to, from)
+}
+
+impl Campaign {
+    /// A folder for its inputs, emptied.
+    pub fn folder(&self) -> PathBuf {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
+            .join("fuzz")
+            .join(self.kind);
+        std::fs::remove_dir_all(&folder).ok();
+        std::fs::create_dir_all(&folder).unwrap();
+        folder
+    }
+
+    /// Runs it: `make` gives the name and the bytes of an input, `read` says whether it was taken.
+    ///
+    /// An input that fails is kept beside the folder's others as `NUMBER-name`, and `last-name` is the one that was read when the
+    /// process was ended from outside.
+    pub fn run(
+        &self,
+        folder: &Path,
+        mut make: impl FnMut(&mut Pcg64) -> (String, Vec<u8>),
+        read: impl Fn(&Path) -> bool + Send + Sync + 'static,
+    ) {
+        let _alone = alone();
+        let count = variable("FRETWORK_FUZZ").unwrap_or(self.count);
+        let seed = variable("FRETWORK_FUZZ_SEED").unwrap_or(2026);
+        let from = variable("FRETWORK_FUZZ_FROM").unwrap_or(0);
+        let read: Read = Arc::new(read);
+        let (mut to, mut answers) = worker(Arc::clone(&read));
+        let (mut taken, mut most, mut longest) = (0u64, (0, 0), (Duration::ZERO, 0));
+        let mut faults: Vec<String> = Vec::new();
+        let start = Instant::now();
+        for k in from..from + count {
+            // Each input from its own number, so that one can be made again alone.
+            let mut rng = Pcg64::seed_from_u64(seed.wrapping_mul(1_000_003).wrapping_add(k));
+            let (name, bytes) = make(&mut rng);
+            let file = folder.join(format!("last-{name}"));
+            std::fs::write(&file, &bytes).unwrap();
+            to.send(file.clone()).unwrap();
+            let bound = self.scene + BASE + EACH * bytes.len();
+            let fault = match answers.recv_timeout(Duration::from_secs(SECONDS)) {
+                Ok((result, held, time)) => {
+                    most = most.max((held, k));
+                    longest = longest.max((time, k));
+                    match result {
+                        Err(why) => Some(format!("panicked: {why}")),
+                        Ok(_) if held > bound => Some(format!(
+                            "held {} MiB of {} allowed",
+                            held >> 20,
+                            bound >> 20
+                        )),
+                        Ok(good) => {
+                            taken += u64::from(good);
+                            None
+                        }
+                    }
+                }
+                Err(_) => {
+                    (to, answers) = worker(Arc::clone(&read));
+                    Some(format!("no answer within {SECONDS} s"))
+                }
+            };
+            if let Some(fault) = fault {
+                let kept = folder.join(format!("{k}-{name}"));
+                std::fs::write(&kept, &bytes).unwrap();
+                let line = format!(
+                    "{} {k} (seed {seed}): {fault}: {}",
+                    self.kind,
+                    kept.display()
+                );
+                eprintln!("{line}");
+                faults.push(line);
+            }
+            std::fs::remove_file(&file).ok();
+            if faults.len() == 20 {
+                break;
+            }
+        }
+        println!(
+            "{}: {count} inputs from {from} of seed {seed} in {:.1} s: {taken} taken, {} failed; most held {:.1} MiB ({}), longest {:.2} s ({})",
+            self.kind,
+            start.elapsed().as_secs_f64(),
+            faults.len(),
+            most.0 as f64 / f64::from(1 << 20),
+            most.1,
+            longest.0.as_secs_f64(),
+            longest.1,
+        );
+        assert!(faults.is_empty(), "{}", faults.join("\n"));
+        if self.taken && count >= self.count {
+            assert!(taken > 0, "none of {count} was taken");
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Cases that are killed, and resumed with one thread and with two: all files are those of a run that was not stopped.
+
+use super::common::{Folder, Job, same};
+
+fn resumes(name: &str, job: Job<'_>, states: u64) {
+    let whole = Folder::new(&format!("{name}-whole"));
+    job.done(&whole.0, &[]);
+    for threads in ["1", "2"] {
+        let stopped = Folder::new(&format!("{name}-{threads}"));
+        job.killed_after(&stopped.0, states);
+        let told = job.done(&stopped.0, &["--resume", "--threads", threads]);
+        assert!(told.contains("resumes the run"), "{told}");
+        same(&whole.0, &stopped.0);
+        let again = job.done(&stopped.0, &["--resume"]);
+        assert!(again.contains("is finished"), "{again}");
+    }
+}
+
+/// Bonds of two kinds with damage and wear, a friction test, profiles of the third body.
+#[test]
+fn fretting_with_damage_in_the_plane() {
+    let sets = [
+        "time.end=0.056",
+        "output.checkpoint=Steps(70)",
+        "output.frames=3",
+        "output.figures=false",
+    ];
+    let job = Job {
+        case: "wheel_rail_fretting",
+        sets: &sets,
+    };
+    resumes("fretting", job, 7);
+}
+
+/// A height field, wear, overlaps that are taken out; steps written as problems.
+#[test]
+fn shear_in_space() {
+    let sets = [
+        "time.end=0.012",
+        "output.checkpoint=Steps(20)",
+        "output.frames=2",
+        "output.fclib=30",
+    ];
+    let job = Job {
+        case: "shear_cell_3d",
+        sets: &sets,
+    };
+    resumes("space", job, 3);
+}
+
+/// Phases of which one ends by rest, colours and strains that begin with the second one, means of profiles.
+#[test]
+fn phases_and_measures() {
+    let sets = [
+        "grains.0.count=120",
+        "time.end=0.8",
+        "phases.0.until=AtRest(share: 1e-3, held: 0.03, at_most: 0.3)",
+        "measures.0.start=0.4",
+        "measures.1.start=0.4",
+        "output.layers=Some(0.01)",
+        "output.shear=Some(1.0)",
+        "output.checkpoint=Steps(100)",
+        "output.frames=4",
+    ];
+    let job = Job {
+        case: "rotating_drum_2d",
+        sets: &sets,
+    };
+    // Before and after the second phase began.
+    resumes("phases-1", job, 3);
+    resumes("phases-2", job, 11);
+}
+
+/// The circuit of a third body: bonds that break, debris, grains that are ejected, lost and taken out.
+#[test]
+fn the_circuit() {
+    let sets = [
+        "time.end=0.07",
+        "output.checkpoint=Steps(150)",
+        "output.frames=2",
+        "output.fclib=30",
+    ];
+    let job = Job {
+        case: "third_body_steady",
+        sets: &sets,
+    };
+    resumes("circuit", job, 9);
+}
+
+/// A profile that wears, and jumps over cycles.
+#[test]
+fn scars_and_jumps() {
+    let sets = ["output.checkpoint=Steps(300)", "output.frames=2"];
+    let job = Job {
+        case: "fretting_wear_jump",
+        sets: &sets,
+    };
+    resumes("jumps", job, 5);
+    let sets = ["time.end=0.2", "output.checkpoint=Steps(300)"];
+    let job = Job {
+        case: "punch_scar",
+        sets: &sets,
+    };
+    resumes("scar", job, 4);
+}
+
+/// Walls that follow an area, stages, a band of shear: what a biaxial test measures from.
+#[test]
+fn a_biaxial_test() {
+    let sets = [
+        "grains.0.count=200",
+        "grains.0.radius=(9e-3, 18e-3)",
+        "time.end=0.5",
+        "output.checkpoint=Steps(200)",
+        "output.frames=1",
+    ];
+    let job = Job {
+        case: "biaxial",
+        sets: &sets,
+    };
+    resumes("biaxial", job, 3);
+}

@@ -1,0 +1,196 @@
+//! Runs through the program: to their end, or killed; and whether two folders hold the same.
+
+use fretwork::record::checkpoint::{Frame, Kind};
+use fretwork::record::results::Kept;
+use hdf5::H5File;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// A folder of its own, empty and removed in the end.
+pub struct Folder(pub PathBuf);
+
+impl Folder {
+    pub fn new(name: &str) -> Self {
+        let dir = format!("fretwork-resume-{}-{name}", std::process::id());
+        let dir = std::env::temp_dir().join(dir);
+        std::fs::remove_dir_all(&dir).ok();
+        Self(dir)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        std::fs::remove_dir_all(&self.0).ok();
+    }
+}
+
+/// A case of the repository with what is changed in it.
+#[derive(Clone, Copy)]
+pub struct Job<'a> {
+    pub case: &'a str,
+    pub sets: &'a [&'a str],
+}
+
+impl Job<'_> {
+    pub fn command(&self, out: &Path, extra: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_fretwork"));
+        command
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .args(["run", &format!("cases/{}.ron", self.case), "--out"])
+            .arg(out)
+            .args(self.sets.iter().flat_map(|s| ["--set", s]))
+            .args(extra)
+            .stdin(Stdio::null());
+        command
+    }
+
+    /// To its end.
+    pub fn run(&self, out: &Path, extra: &[&str]) -> Output {
+        self.command(out, extra).output().unwrap()
+    }
+
+    /// To its end, which must be a good one; what it said.
+    pub fn done(&self, out: &Path, extra: &[&str]) -> String {
+        said(&self.run(out, extra), 0)
+    }
+
+    /// In the background, to be killed.
+    pub fn start(&self, out: &Path, extra: &[&str]) -> Child {
+        let mut command = self.command(out, extra);
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        command.spawn().unwrap()
+    }
+
+    /// Killed as soon as so many states were kept.
+    pub fn killed_after(&self, out: &Path, states: u64) {
+        // On a busy machine a run may end before it is seen.
+        for _ in 0..5 {
+            if self.try_kill(out, states) {
+                return;
+            }
+            std::fs::remove_dir_all(out).unwrap();
+        }
+        panic!("{} always ended before it was killed", self.case);
+    }
+
+    fn try_kill(&self, out: &Path, states: u64) -> bool {
+        let mut child = self.start(out, &[]);
+        let begun = Instant::now();
+        loop {
+            // A file that is being written may be read in the middle of a change: it is looked at again.
+            let last = last_frame(out);
+            if last.is_some_and(|f| f.kind == Kind::State && f.number >= states) {
+                break;
+            }
+            if let Some(status) = child.try_wait().unwrap() {
+                assert!(status.success(), "{status}");
+                return false;
+            }
+            assert!(begun.elapsed() < Duration::from_secs(300), "no checkpoint");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        child.kill().unwrap();
+        let status = child.wait().unwrap();
+        !status.success() && !out.join("summary.json").exists()
+    }
+}
+
+/// The last whole frame of a folder.
+pub fn last_frame(out: &Path) -> Option<Frame> {
+    let kept = Kept::open(&out.join("results.h5")).ok()?;
+    let slots = kept.checkpoints().ok()?;
+    let frames = slots.iter().filter_map(|bytes| Frame::read(bytes));
+    frames.max_by_key(|f| f.number)
+}
+
+/// What a command said, which must have ended with this code and without a panic.
+pub fn said(output: &Output, code: i32) -> String {
+    let text = [&output.stdout[..], &output.stderr[..]].concat();
+    let text = String::from_utf8_lossy(&text).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{text}");
+    assert!(!text.contains("panicked"), "{text}");
+    text
+}
+
+/// All files below a folder, by their paths in it.
+fn files(folder: &Path) -> Vec<String> {
+    let mut out = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let entry = entry.unwrap();
+        let name = entry.file_name().into_string().unwrap();
+        if entry.path().is_dir() {
+            out.extend(
+                files(&entry.path())
+                    .into_iter()
+                    .map(|f| format!("{name}/{f}")),
+            );
+        } else {
+            out.push(name);
+        }
+    }
+    out.sort();
+    out
+}
+
+/// The datasets of a results file, those of checkpoints apart: shape and bytes, or texts.
+fn datasets(path: &Path) -> BTreeMap<String, (Vec<usize>, Vec<u8>)> {
+    let file = H5File::open(path).unwrap();
+    let mut out = BTreeMap::new();
+    for name in file.dataset_names() {
+        if name.starts_with("checkpoints/") {
+            continue;
+        }
+        let set = file.dataset(&name).unwrap();
+        let bytes = match set.read_raw::<f64>() {
+            Ok(values) => values
+                .iter()
+                .flat_map(|x| x.to_bits().to_le_bytes())
+                .collect(),
+            Err(_) => match set.read_raw::<i64>() {
+                Ok(values) => values.iter().flat_map(|x| x.to_le_bytes()).collect(),
+                Err(_) => set.read_strings().unwrap().join("\0").into_bytes(),
+            },
+        };
+        out.insert(name, (set.shape(), bytes));
+    }
+    out
+}
+
+/// A summary without what the clock and the machine say.
+fn summary(folder: &Path) -> Value {
+    let text = std::fs::read_to_string(folder.join("summary.json")).unwrap();
+    let mut value: Value = serde_json::from_str(&text).unwrap();
+    value["wall_seconds"] = Value::Null;
+    value["cpu_seconds"] = Value::Null;
+    value["threads"] = Value::Null;
+    if value["circuit"].is_object() {
+        value["circuit"]["cost_share"] = Value::Null;
+    }
+    value
+}
+
+/// Two folders must hold the same, bit by bit, but for what the clock says and the checkpoints.
+pub fn same(one: &Path, other: &Path) {
+    assert_eq!(files(one), files(other));
+    let (a, b) = (
+        datasets(&one.join("results.h5")),
+        datasets(&other.join("results.h5")),
+    );
+    assert!(a.len() > 20);
+    assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());
+    for (name, values) in &a {
+        assert_eq!(values.0, b[name].0, "shape of {name}");
+        assert!(values.1 == b[name].1, "{name} differs");
+    }
+    assert_eq!(summary(one), summary(other));
+    for name in files(one) {
+        if ["results.h5", "summary.json"].contains(&name.as_str()) {
+            continue;
+        }
+        let [a, b] = [one, other].map(|f| std::fs::read(f.join(&name)).unwrap());
+        assert!(a == b, "{name} differs");
+    }
+}

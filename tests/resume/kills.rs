@@ -1,0 +1,68 @@
+//! SIGKILL at random moments: what is left opens, the run resumes, and ends in the same bits.
+//!
+//! A few in the suite; a hundred by
+//! `FRETWORK_KILLS=100 cargo test --release --test resume kills -- --nocapture`.
+
+use super::common::{Folder, Job, last_frame, same};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use std::time::{Duration, Instant};
+
+#[test]
+fn kills_at_random_moments_lose_nothing() {
+    let kills: u32 = std::env::var("FRETWORK_KILLS")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(8);
+    // Checkpoints and flushes as often as can be, so that many kills meet one.
+    let sets = [
+        "time.end=0.012",
+        "output.checkpoint=Steps(3)",
+        "output.views=60",
+        "output.frames=2",
+        "output.figures=false",
+    ];
+    let job = Job {
+        case: "shear_cell_3d",
+        sets: &sets,
+    };
+    let whole = Folder::new("kills-whole");
+    let begun = Instant::now();
+    job.done(&whole.0, &[]);
+    let length = begun.elapsed();
+    let mut rng = Pcg64::seed_from_u64(20);
+    let (mut killed, mut ended, mut with_file) = (0, 0, 0);
+    let folder = Folder::new("kills");
+    while killed < kills {
+        // Short ones too: a kill may meet the making of the file, or its replacement by the resumed one.
+        let share: f64 = rng.random_range(0.0f64..1.0);
+        let wait = length.mul_f64(share * share);
+        let mut child = job.start(&folder.0, &["--resume"]);
+        std::thread::sleep(wait.min(Duration::from_secs(60)));
+        let before = child.try_wait().unwrap();
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if let Some(status) = before {
+            assert!(status.success(), "{status}");
+            same(&whole.0, &folder.0);
+            std::fs::remove_dir_all(&folder.0).unwrap();
+            ended += 1;
+            continue;
+        }
+        killed += 1;
+        if killed % 10 == 0 {
+            println!("{killed} kills");
+        }
+        if folder.0.join("results.h5").exists() {
+            with_file += 1;
+            let frame = last_frame(&folder.0);
+            assert!(frame.is_some(), "after kill {killed}: no whole checkpoint");
+        }
+    }
+    job.done(&folder.0, &["--resume"]);
+    same(&whole.0, &folder.0);
+    println!(
+        "{killed} kills, {with_file} of them left a file; {ended} runs came to their end between them"
+    );
+    assert!(with_file > 0);
+}

@@ -1,0 +1,74 @@
+//! Every shipped law in turn: its internal variables, bonds and the wear it is owed go on with the same bits.
+
+use super::common::Folder;
+use super::state::goes_on;
+use fretwork::laws::{Kind, SearchPath};
+use fretwork::scene::{Scene, load};
+
+/// A row of balls drawn to and fro over another one, with loose ones on it; x is along the rows.
+fn case(dimension: usize, laws: &str) -> String {
+    let up = |x: f64, y: f64| match dimension {
+        2 => format!("[{x:.2}, {y:.2}]"),
+        _ => format!("[{x:.2}, 0.0, {y:.2}]"),
+    };
+    let balls = (0..5).map(|k| format!("({}, 1.0)", up(2.0 * f64::from(k), 0.0)));
+    let row = balls.collect::<Vec<_>>().join(", ");
+    let (axis, low, high) = match dimension {
+        2 => ("y", "[0.0, 3.5]", "[8.0, 8.0]"),
+        _ => ("z", "[0.0, -1.0, 3.5]", "[8.0, 1.0, 8.0]"),
+    };
+    format!(
+        r#"(
+    name: "a row over a row", dimension: {dimension}, seed: 3, time: (step: 2e-5, end: 1.0), gravity: {},
+    materials: {{"grain": "verification_grain"}},
+    solver: (tolerance: 1e-8, norm: Velocity),
+    detection: (alert: 2e-2, skin: 0.1),
+    interfaces: [(name: "grain", between: ("grain", "grain"), {laws})],
+    bodies: [
+        (name: "below", material: "grain", shapes: [Balls([{row}])]),
+        (
+            name: "above", material: "grain", position: {}, mass: 1e4, inertia: 1e4, shapes: [Balls([{row}])],
+            dofs: (x: Velocity(Sine(amplitude: 1.0, frequency: 400.0)), {axis}: Force(Constant(-1e5))),
+        ),
+    ],
+    grains: [Lattice(material: "grain", count: 12, radius: (0.4, 0.6), low: {low}, high: {high})],
+)"#,
+        up(0.0, -9.81),
+        up(0.4, 1.96),
+    )
+}
+
+/// Goes on with a law in a dimension; whether the law is of it.
+fn goes_on_with(kind: Kind, name: &str, dimension: usize) -> bool {
+    let bond = "contact: \"coulomb\", cohesion: \"elastic-bond\"";
+    let laws = match kind {
+        Kind::Contact => format!("contact: \"{name}\""),
+        Kind::Cohesion => format!("contact: \"coulomb\", cohesion: \"{name}\""),
+        Kind::Damage => format!("{bond}, damage: \"{name}\""),
+        Kind::Wear => format!("{bond}, damage: \"linear-softening\", wear: \"{name}\""),
+    };
+    let folder = Folder::new(&format!("law-{kind}-{name}-{dimension}"));
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let file = folder.0.join("case.ron");
+    std::fs::write(&file, case(dimension, &laws)).unwrap();
+    let loaded = load(&file, &[]).unwrap_or_else(|e| panic!("{kind} {name}: {e}"));
+    let built = || loaded.build(&SearchPath::new(&[]));
+    match [built(), built()] {
+        [Ok(Scene::Plane(a)), Ok(Scene::Plane(b))] => goes_on([*a, *b], 70, 70),
+        [Ok(Scene::Solid(a)), Ok(Scene::Solid(b))] => goes_on([*a, *b], 70, 70),
+        [Err(e), _] if e.to_string().contains("dimensions only") => return false,
+        [Err(e), _] => panic!("{kind} {name}: {e}"),
+        _ => panic!("{kind} {name}: built once in two ways"),
+    }
+    true
+}
+
+#[test]
+fn every_law_goes_on_with_the_same_bits() {
+    let laws = SearchPath::new(&[]).available();
+    assert!(laws.len() >= 36, "{} laws", laws.len());
+    for (kind, name, _) in laws {
+        let served = [2, 3].map(|d| goes_on_with(kind, &name, d));
+        assert!(served.contains(&true), "{kind} {name} serves no dimension");
+    }
+}

@@ -1,0 +1,8 @@
+//! Checkpoints: what is kept of a run, and that a run which was stopped ends in the bits of one that was not.
+
+mod cases;
+mod common;
+mod faults;
+mod kills;
+mod laws;
+mod state;

@@ -1,0 +1,148 @@
+//! The same input gives the same bits: every shipped case, twice and on two threads. Contacts in another order are another
+//! path of the solver: in a hyperstatic set of contacts it ends in other forces, whose sums are compared instead.
+
+use fretwork::contact::Key;
+use fretwork::geometry::space::VectorLike;
+use fretwork::laws::SearchPath;
+use fretwork::scene::build::{Dimensional, Scene};
+use fretwork::scene::{Loaded, load};
+use fretwork::step::Simulation;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+fn cases() -> Vec<PathBuf> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/cases");
+    let files = std::fs::read_dir(folder).unwrap().flatten();
+    let mut cases: Vec<PathBuf> = files
+        .map(|f| f.path())
+        .filter(|p| p.extension().is_some_and(|e| e == "ron"))
+        .collect();
+    cases.sort();
+    cases
+}
+
+fn built(loaded: &Loaded) -> Scene {
+    let built = loaded.build(&SearchPath::new(&[]));
+    built.unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// All bits of bodies and contacts, and how many steps led there: for so long (s), or so many.
+fn stepped<S: Dimensional>(s: &mut Simulation<S>, steps: Result<u64, Duration>) -> (Vec<u64>, u64) {
+    let clock = Instant::now();
+    let goes_on = |done: u64| match steps {
+        Ok(n) => done < n,
+        Err(time) => done < 3 || (done < 400 && clock.elapsed() < time),
+    };
+    while goes_on(s.steps) {
+        s.step().unwrap_or_else(|e| panic!("{e}"));
+    }
+    let mut bits = Vec::new();
+    let mut push = |v: &S::Vector| bits.extend((0..S::D).map(|k| v[k].to_bits()));
+    s.bodies.position.iter().for_each(&mut push);
+    s.bodies.velocity.iter().for_each(&mut push);
+    for c in &s.network.contacts {
+        push(&c.impulse);
+    }
+    for memory in &s.network.memory {
+        bits.extend(memory.bonds.iter().map(|b| b.damage.to_bits()));
+        bits.extend(memory.variables.iter().flatten().map(|x| x.to_bits()));
+    }
+    bits.push(s.energy.residual.to_bits());
+    (bits, s.steps)
+}
+
+fn bits(loaded: &Loaded, threads: usize, steps: Result<u64, Duration>) -> (Vec<u64>, u64) {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
+    pool.install(|| match built(loaded) {
+        Scene::Plane(mut b) => {
+            b.simulation.solver.parallel = threads > 1;
+            stepped(&mut b.simulation, steps)
+        }
+        Scene::Solid(mut b) => {
+            b.simulation.solver.parallel = threads > 1;
+            stepped(&mut b.simulation, steps)
+        }
+    })
+}
+
+#[test]
+fn every_shipped_case_twice_and_on_two_threads() {
+    for path in cases() {
+        let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let (first, steps) = bits(&loaded, 1, Err(Duration::from_millis(700)));
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        println!("{name}: {steps} steps, {} numbers", first.len());
+        assert!(first.len() > 4);
+        let again = bits(&loaded, 1, Ok(steps)).0;
+        assert!(first == again, "{name}: another run, other bits");
+        let two = bits(&loaded, 2, Ok(steps)).0;
+        assert!(first == two, "{name}: two threads, other bits");
+    }
+}
+
+/// What the contacts do together.
+struct Sums {
+    /// Sum of normal impulses over contacts and steps (N s).
+    pressed: f64,
+    /// What friction and impacts took (J).
+    lost: f64,
+    contacts: usize,
+    broken: u64,
+}
+
+/// The state after some steps with the grains' balls in their order, or the other way round: names, order and
+/// sides of contacts follow.
+fn sums<S: Dimensional>(s: &mut Simulation<S>, turned: bool, steps: u64) -> Sums {
+    if turned {
+        let grain: Vec<bool> = s.bodies.grain_flags();
+        let of_grains = |b: &usize| grain[s.shapes.balls[*b].body as usize];
+        let places: Vec<usize> = (0..s.shapes.balls.len()).filter(of_grains).collect();
+        let balls: Vec<_> = places.iter().map(|p| s.shapes.balls[*p].clone()).collect();
+        for (place, ball) in places.iter().zip(balls.into_iter().rev()) {
+            s.shapes.balls[*place] = ball;
+        }
+    }
+    let mut pressed = 0.0;
+    while s.steps < steps {
+        s.step().unwrap_or_else(|e| panic!("{e}"));
+        let contacts = s.network.contacts.iter();
+        pressed += contacts.map(|c| c.impulse.dot(&c.normal)).sum::<f64>();
+    }
+    let names: Vec<Key> = s.network.contacts.iter().map(|c| c.key).collect();
+    assert!(names.is_sorted());
+    Sums {
+        pressed,
+        lost: s.energy.friction + s.energy.impact,
+        contacts: s.network.contacts.len(),
+        broken: s.network.bonds_broken(),
+    }
+}
+
+#[test]
+fn contacts_in_another_order_give_the_same_sums() {
+    for (case, steps) in [
+        ("biaxial", 600),
+        ("plane_shear", 600),
+        ("wheel_rail_fretting", 300),
+        ("shear_cell_3d", 300),
+        ("collapse", 600),
+    ] {
+        let path = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
+        let loaded = load(path.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"));
+        let [a, b] = [false, true].map(|turned| match built(&loaded) {
+            Scene::Plane(mut built) => sums(&mut built.simulation, turned, steps),
+            Scene::Solid(mut built) => sums(&mut built.simulation, turned, steps),
+        });
+        let far = |x: f64, y: f64| (x - y).abs() / x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
+        let (pressed, lost) = (far(a.pressed, b.pressed), far(a.lost, b.lost));
+        println!(
+            "{case}, {steps} steps: normal impulses {pressed:.1e} apart, lost energy {lost:.1e}, contacts {} and {}, broken \
+             bonds {} and {}",
+            a.contacts, b.contacts, a.broken, b.broken
+        );
+        assert!(pressed < 0.05 && lost < 0.05, "{case}");
+    }
+}
