@@ -101,3 +101,26 @@ fn the_row_of_a_contact_is_as_small_as_its_numbers() {
         "{disks}"
     );
 }
+
+/// What changes during a run and what is measured: of `silo` the gate, of `plane_shear` the servo and the drive of a phase.
+#[test]
+fn the_programme_and_the_measures_are_listed() {
+    let (silo, off, _) = check("silo", &[]);
+    assert_eq!(on(&silo, "phases"), "fill, lower, drain");
+    assert_eq!(on(&silo, "gates"), "gate with phase drain");
+    assert_eq!(on(&silo, "measures"), "held (Mass)");
+    assert!(off.iter().any(|f| f == "servo pressure"));
+    let (shear, off, _) = check("plane_shear", &[]);
+    assert_eq!(on(&shear, "servo pressure"), "top y");
+    assert_eq!(on(&shear, "imposed motion"), "top x");
+    assert!(off.iter().any(|f| f == "gates") && off.iter().any(|f| f == "imposed force"));
+}
+
+/// A box of disks has no servo, no phases and no measures.
+#[test]
+fn what_does_not_change_is_off() {
+    let (_, off, _) = check("benchmarks/disks_box_5000", &[]);
+    for name in ["phases", "servo pressure", "gates", "measures"] {
+        assert!(off.iter().any(|f| f == name), "{name} is not off");
+    }
+}

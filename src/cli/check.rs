@@ -46,19 +46,24 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
             case.time.step, case.time.theta
         ),
     );
-    let radii: Vec<f64> = s.shapes.balls.iter().map(|b| b.radius).collect();
-    let (low, high) = radii
-        .iter()
-        .fold((f64::INFINITY, 0.0f64), |(l, h), r| (l.min(*r), h.max(*r)));
-    if !radii.is_empty() {
+    let range = |radii: &mut dyn Iterator<Item = f64>| {
+        let start = (0, f64::INFINITY, 0.0f64);
+        radii.fold(start, |(n, l, h), r| (n + 1, l.min(r), h.max(r)))
+    };
+    let (balls, low, high) = range(&mut s.shapes.balls.iter().map(|b| b.radius));
+    if balls > 0 {
         line(
             "balls",
-            format!("{}, radius {low:.3e} to {high:.3e} m", radii.len()),
+            format!("{balls}, radius {low:.3e} to {high:.3e} m"),
         );
     }
-    if !s.shapes.pieces.is_empty() {
-        line("convex pieces", s.shapes.pieces.len().to_string());
+    let (pieces, least, most) = range(&mut s.shapes.pieces.iter().map(|p| p.size));
+    if pieces > 0 {
+        let text =
+            format!("{pieces}, {least:.3e} to {most:.3e} m, radius of the ball of the same volume");
+        line("convex pieces", text);
     }
+    let high = high.max(most);
     let names: Vec<&str> = s.bodies.driven.iter().map(|d| d.name.as_str()).collect();
     line(
         "first bodies",
@@ -243,17 +248,17 @@ fn groups<S: Space>(
         return;
     }
     line("pressure", format!("{pressure:.3e} Pa"));
-    let grains = s
-        .shapes
-        .balls
-        .iter()
-        .filter(|b| !s.bodies.driven.iter().any(|d| d.body == b.body));
-    let (volume, mass) = grains.fold((0.0, 0.0), |(v, m), b| {
-        (
-            v + S::ball_volume(b.radius),
-            m + s.bodies.mass[b.body as usize],
-        )
-    });
+    let flags = s.bodies.grain_flags();
+    // Of a piece the ball of its volume.
+    let balls = s.shapes.balls.iter().map(|b| (b.body, b.radius));
+    let pieces = s.shapes.pieces.iter().map(|p| (p.body, p.size));
+    let volume: f64 = balls
+        .chain(pieces)
+        .filter(|(body, _)| flags[*body as usize])
+        .map(|(_, radius)| S::ball_volume(radius))
+        .sum();
+    let masses = s.bodies.mass.iter().zip(&flags);
+    let mass: f64 = masses.filter(|(_, grain)| **grain).map(|(m, _)| m).sum();
     if volume > 0.0 {
         let density = mass / volume;
         let thickness = volume / 0.8 / area;

@@ -144,6 +144,30 @@ impl MeasureSpec {
             | Self::ThirdBody(ThirdBodySpec { name, .. }) => name,
         }
     }
+
+    /// What it measures, as a case writes it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Mass { .. } => "Mass",
+            Self::Slope { .. } => "Slope",
+            Self::Profile { .. } => "Profile",
+            Self::Band { .. } => "Band",
+            Self::Shear { .. } => "Shear",
+            Self::ThirdBody(_) => "ThirdBody",
+        }
+    }
+
+    /// From when on it forms means (s); a band does from the start of the run.
+    pub fn start(&self) -> f64 {
+        match self {
+            Self::Mass { start, .. }
+            | Self::Slope { start, .. }
+            | Self::Profile { start, .. }
+            | Self::Shear { start, .. }
+            | Self::ThirdBody(ThirdBodySpec { start, .. }) => *start,
+            Self::Band { .. } => 0.0,
+        }
+    }
 }
 
 /// Refuses measures that mean nothing.
@@ -250,6 +274,9 @@ fn one(case: &Case, spec: &MeasureSpec) -> Result<(), (&'static str, String)> {
             spec.name()
         );
         return Err(("name", message));
+    }
+    if !spec.start().is_finite() {
+        return Err(("start", format!("must be finite, got {}", spec.start())));
     }
     let axis = |axis: usize| {
         if axis < dimension {
@@ -367,9 +394,6 @@ fn third_body(case: &Case, layer: &ThirdBodySpec) -> Result<(), (&'static str, S
             "every",
             "looks at every row (1), every second (2), ...; got 0".into(),
         ));
-    }
-    if !layer.start.is_finite() {
-        return Err(("start", format!("must be finite, got {}", layer.start)));
     }
     Ok(())
 }

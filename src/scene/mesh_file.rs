@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, ErrorKind};
 use std::path::Path;
 
 type V = Vector3<f64>;
@@ -20,7 +20,12 @@ pub fn read(path: &Path) -> Result<(Vec<V>, Vec<[u32; 3]>), String> {
         Some("stl") => {
             let file = File::open(path).map_err(|e| format!("cannot open {shown}: {e}"))?;
             let mesh = stl_io::read_stl(&mut BufReader::new(file));
-            let mesh = mesh.map_err(|e| format!("{shown} is no STL file: {e}"))?;
+            let mesh = mesh.map_err(|e| match e.kind() {
+                ErrorKind::UnexpectedEof => format!(
+                    "{shown} ends before its last triangle: it was cut short; copy or export it again"
+                ),
+                _ => format!("{shown} is no STL file: {e}"),
+            })?;
             for face in &mesh.faces {
                 let corner = |k: usize| {
                     let [x, y, z] = mesh.vertices[face.vertices[k]].0;
@@ -37,8 +42,12 @@ pub fn read(path: &Path) -> Result<(Vec<V>, Vec<[u32; 3]>), String> {
                 ..tobj::LoadOptions::default()
             };
             File::open(path).map_err(|e| format!("cannot open {shown}: {e}"))?;
-            let (models, _) = tobj::load_obj(path, &options)
-                .map_err(|e| format!("{shown} is no OBJ file: {e}"))?;
+            let (models, _) = tobj::load_obj(path, &options).map_err(|e| match e {
+                tobj::LoadError::FaceVertexOutOfBounds => format!(
+                    "a face of {shown} names a vertex that it does not have; export it again"
+                ),
+                _ => format!("{shown} is no OBJ file: {e}"),
+            })?;
             for mesh in models.iter().map(|m| &m.mesh) {
                 let corner = |k: u32| V::from_row_slice(&mesh.positions[3 * k as usize..][..3]);
                 let triangles = mesh.indices.chunks_exact(3);

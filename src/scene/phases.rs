@@ -91,7 +91,7 @@ impl Redriven {
 }
 
 /// All drives that a body ever has on its degrees of freedom: its own, then those of phases.
-pub(super) fn drives_of(case: &Case, body: &BodySpec) -> Vec<(usize, Dof)> {
+pub fn drives_of(case: &Case, body: &BodySpec) -> Vec<(usize, Dof)> {
     let dimension = case.dimension as usize;
     let own = body.ordered(dimension).into_iter().enumerate();
     let phases = case.phases.iter().filter_map(|p| p.drives.get(&body.name));
@@ -109,6 +109,13 @@ pub(super) fn drives_of(case: &Case, body: &BodySpec) -> Vec<(usize, Dof)> {
 pub(super) fn check(case: &Case) -> Result<(), Fault> {
     for (k, phase) in case.phases.iter().enumerate() {
         let last = k + 1 == case.phases.len();
+        let name = &phase.name;
+        if case.phases[..k].iter().any(|p| p.name == *name) {
+            let message = format!(
+                "a phase before it is called `{name}` too; give each another name, `repeat` and `--set` go by it"
+            );
+            return Err(Fault::new(format!("phases.{k}.name"), message));
+        }
         one(case, phase, last)
             .and_then(|()| repeat(case, k))
             .map_err(|f| f.under(&format!("phases.{k}")))?;

@@ -169,3 +169,25 @@ fn a_scene_file_of_the_other_dimension() {
         assert!(said.contains(&place), "not at {place}\n{said}");
     }
 }
+
+/// Meshes that were cut short or that name what they do not have.
+#[test]
+fn meshes_that_are_damaged() {
+    let stl: Vec<u8> = [&[0u8; 80][..], &12u32.to_le_bytes(), &[1u8; 250]].concat();
+    let obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n".to_vec();
+    for (name, bytes, sentence) in [
+        (
+            "cut.stl",
+            stl,
+            "ends before its last triangle: it was cut short",
+        ),
+        ("cut.obj", obj, "names a vertex that it does not have"),
+    ] {
+        let trial = Trial::new();
+        trial.write(name, bytes);
+        let floor = "HeightField(points: (4, 4), spacing: (0.1, 0.1), rms: 1e-4)";
+        let mesh = format!("Mesh(file: \"{name}\")");
+        let case = trial.write("case.ron", with(SOLID, floor, &mesh));
+        trial.refuses(&case, &[], &[sentence]);
+    }
+}

@@ -203,3 +203,18 @@ fn a_law_for_three_dimensions_in_two() {
         String::from_utf8_lossy(&output.stderr)
     );
 }
+
+#[test]
+fn two_phases_of_one_name() {
+    let phases = r#"    phases: [(name: "press", until: After(1e-3)), (name: ‸"press")],
+"#;
+    let case = with(
+        PLANE,
+        "    friction: (",
+        &format!("{phases}    friction: ("),
+    );
+    refused(
+        &case,
+        &["a phase before it is called `press` too; give each another name"],
+    );
+}

@@ -161,3 +161,28 @@ fn statistics_that_are_never_written() {
         &["steps between two rows"],
     );
 }
+
+#[test]
+fn a_measure_that_begins_at_no_time() {
+    for (kind, more) in [
+        ("Slope", "from: 0.1, to: 0.2"),
+        ("Mass", "axis: 1, above: 0.0"),
+        ("Shear", "low: 0.0, high: 0.1"),
+    ] {
+        let list = format!("    measures: [{kind}(name: \"m\", {more}, start: ‸NaN)],\n");
+        let case = with(PLANE, "    friction: (", &format!("{list}    friction: ("));
+        refused(&case, &["must be finite, got NaN"]);
+    }
+}
+
+#[test]
+fn a_half_space_across_a_period() {
+    for normal in ["[1.0, 0.0]", "[1e-3, 1.0]"] {
+        let case = with(
+            PLANE,
+            "HalfSpace(normal: [0.0, 1.0])",
+            &format!("HalfSpace(normal: ‸{normal})"),
+        );
+        refused(&case, &["this one cuts across x"]);
+    }
+}

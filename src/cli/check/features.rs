@@ -1,6 +1,6 @@
 //! What a scene has switched on and what is off, and what a grain and a contact take in memory.
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Dof};
 use crate::contact::{Bond, Contact};
 use crate::geometry::shape::Ball;
 use crate::geometry::space::{Space, VectorLike};
@@ -8,8 +8,9 @@ use crate::laws::Interface;
 use crate::laws::demand::{Asked, Demand};
 use crate::record::views;
 use crate::scene::build::Built;
-use crate::scene::case::Case;
+use crate::scene::case::{BodySpec, Case};
 use crate::scene::methods::Demands;
+use crate::scene::phases::drives_of;
 use crate::solve::{ContactForm, Problem};
 use crate::step::Simulation;
 use crate::step::coupling::Coupling;
@@ -27,6 +28,7 @@ impl Features {
         let s = &built.simulation;
         let mut out = Self::default();
         out.motion(s);
+        out.programme(case, s);
         out.laws(s);
         out.scheme(case, s);
         out.output(case, S::D);
@@ -61,6 +63,55 @@ impl Features {
         );
         let g = s.gravity.norm();
         self.say("gravity", (g > 0.0).then(|| format!("{g:.3e} m/s^2")));
+    }
+
+    /// What changes during the run, and what pushes from outside.
+    fn programme<S: Space>(&mut self, case: &Case, s: &Simulation<S>) {
+        let phases = case.phases.iter().map(|p| match &p.repeat {
+            None => p.name.clone(),
+            Some(r) => match r.from.as_ref().filter(|from| **from != p.name) {
+                Some(from) => format!("{}, {} times from {from} on", p.name, r.times),
+                None => format!("{}, {} times", p.name, r.times),
+            },
+        });
+        self.list("phases", phases);
+        let names = BodySpec::names(S::D);
+        let drives = |which: fn(&Dof) -> bool| {
+            let mut found: Vec<String> = Vec::new();
+            for body in &case.bodies {
+                for (k, dof) in drives_of(case, body) {
+                    let name = format!("{} {}", body.name, names[k]);
+                    if dof.drives().any(which) && !found.contains(&name) {
+                        found.push(name);
+                    }
+                }
+            }
+            found.into_iter()
+        };
+        let imposed = |d: &Dof| matches!(d, Dof::Velocity(_) | Dof::Displacement(_));
+        self.list("imposed motion", drives(imposed));
+        self.list("imposed force", drives(|d| matches!(d, Dof::Force(_))));
+        let servo = |d: &Dof| matches!(d, Dof::Pressure { .. });
+        self.list("servo pressure", drives(servo));
+        let gates = s.control.gates.iter();
+        let timed =
+            gates.map(|(place, time)| format!("{} at {time:e} s", s.bodies.driven[*place].name));
+        let opened = case.phases.iter().flat_map(|p| {
+            let open = p.open.iter();
+            open.map(|body| format!("{body} with phase {}", p.name))
+        });
+        self.list("gates", timed.chain(opened));
+        let turns = s.control.gravity_drive.is_some()
+            || case.phases.iter().any(|p| p.gravity_drive.is_some());
+        self.say(
+            "gravity that changes",
+            turns.then(|| "by its drive".to_owned()),
+        );
+    }
+
+    fn list(&mut self, name: &str, all: impl Iterator<Item = String>) {
+        let all: Vec<String> = all.collect();
+        self.say(name, (!all.is_empty()).then(|| all.join(", ")));
     }
 
     fn laws<S: Space>(&mut self, s: &Simulation<S>) {
@@ -180,6 +231,11 @@ impl Features {
                     c.start
                 )
             }),
+        );
+        let measures = case.measures.iter();
+        self.list(
+            "measures",
+            measures.map(|m| format!("{} ({})", m.name(), m.kind())),
         );
         let o = &case.output;
         self.say("statistics", Some(format!("every {} steps", o.every)));
