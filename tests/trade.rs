@@ -30,6 +30,31 @@ const HEAP: &str = r#"(
     grains: [Lattice(material: "glass", count: 24, radius: (0.003, 0.006), low: [0.0, 0.0], high: [0.06, 0.2])],
 )"#;
 
+/// Disks that are thrown at each other in a box. Nothing is drawn, but every collision of disks spreads a difference.
+const BILLIARD: &str = r#"(
+    name: "a billiard",
+    dimension: 2,
+    time: (step: 1e-3, end: 3.0),
+    solver: (tolerance: 1e-6, max_iterations: 5000),
+    materials: {"glass": "glass_bead"},
+    interfaces: [(name: "all", between: ("glass", "glass"), contact: "coulomb",
+        parameters: (contact: {"mu": 0.0, "restitution_n": 0.98}))],
+    bodies: [
+        (name: "floor", material: "glass", shapes: [HalfSpace(normal: [0.0, 1.0])]),
+        (name: "left", material: "glass", shapes: [HalfSpace(normal: [1.0, 0.0])]),
+        (name: "right", material: "glass", shapes: [HalfSpace(normal: [-1.0, 0.0])], position: [1.0, 0.0]),
+        (name: "top", material: "glass", shapes: [HalfSpace(normal: [0.0, -1.0])], position: [0.0, 1.0]),
+    ],
+    grains: [List(material: "glass", grains: [
+        (at: [0.21, 0.20], radius: 0.09, velocity: [2.0, 0.4]), (at: [0.55, 0.18], radius: 0.09, velocity: [-1.0, 0.9]),
+        (at: [0.82, 0.27], radius: 0.09, velocity: [-1.5, 0.2]), (at: [0.18, 0.53], radius: 0.09, velocity: [0.7, -1.6]),
+        (at: [0.51, 0.48], radius: 0.09, velocity: [1.1, 1.3]), (at: [0.80, 0.55], radius: 0.09, velocity: [-0.6, -1.2]),
+        (at: [0.23, 0.82], radius: 0.09, velocity: [1.4, -0.8]), (at: [0.54, 0.79], radius: 0.09, velocity: [0.3, 1.7]),
+        (at: [0.83, 0.84], radius: 0.09, velocity: [-0.9, -0.5]),
+    ])],
+    output: (every: 100),
+)"#;
+
 /// A folder of a test, taken away at its end.
 struct Folder(PathBuf);
 
@@ -307,6 +332,39 @@ fn errors_are_told_from_scatter() {
         hidden > 0,
         "chance hides no error here: the test shows nothing"
     );
+}
+
+/// Runs whose steps differ by parts in 1e10 stand for seeds where nothing is drawn and collisions are chaotic; a bond that
+/// opens is not, see above.
+#[test]
+fn chaos_without_draws_has_intervals() {
+    let folder = Folder::new("billiard");
+    let (case, out) = (folder.file("billiard.ron", BILLIARD), folder.out());
+    let found = study(&[
+        &case,
+        "--vary",
+        "time.step=1e-3,2e-3",
+        "--output",
+        "energy.impact=1%",
+        "--seeds",
+        "3",
+        "--budget",
+        "5m",
+        "--out",
+        &out,
+    ]);
+    assert_eq!(
+        (&found["random"], &found["nudged"], &found["complete"]),
+        (&Value::Bool(true), &Value::Bool(true), &Value::Bool(true))
+    );
+    let notes = found["notes"].to_string();
+    assert!(notes.contains("contacts are chaotic here"), "{notes}");
+    for s in settings(&found) {
+        assert_eq!(s["seeds"], 3);
+        if s["reference"] == false {
+            assert!(number(&s, "/outputs/energy.impact/error/half_width") > 0.0);
+        }
+    }
 }
 
 #[test]

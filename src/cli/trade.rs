@@ -6,6 +6,7 @@ use crate::scene::build::Built;
 use crate::scene::methods::{Demands, Service};
 use crate::scene::{Loaded, Scene, load};
 use crate::solve::local::solver::Method;
+use crate::trade::chaos::Nudge;
 use crate::trade::child::{Ended, Launcher, Limits, Status, summary};
 use crate::trade::knobs::{knobs, openings};
 use crate::trade::output::Output;
@@ -36,7 +37,7 @@ pub struct TradeArgs {
     /// Vary any value of the case; the first value is the reference's
     #[arg(long = "vary", value_name = "KEY.PATH=A,B,C")]
     vary: Vec<String>,
-    /// Seeds a setting, from the case's own upwards; one where nothing in the case is random
+    /// Seeds a setting, from the case's own upwards; one run where nothing is drawn and nothing chaotic
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     seeds: u16,
     /// Time for everything: 90s, 10m, 2h
@@ -136,7 +137,11 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     };
     let _lock = crate::trade::lock::take(&out)?;
     let plugins = args.case.plugins.words();
-    let launcher = Launcher::new(&loaded, &first.materials, plugins, &out, limits)?;
+    let mut launcher = Launcher::new(&loaded, &first.materials, plugins, &out, limits)?;
+    launcher.nudge = (!random).then_some(Nudge {
+        first: loaded.case.seed,
+        step: loaded.case.time.step,
+    });
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
         // Without it an interruption ends the program at once; what ran stays on disk all the same.
@@ -167,9 +172,9 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
         notes: Vec::new(),
         started,
     };
-    if !random {
-        study.notes.push("Nothing in the case is drawn from its seed: one run a setting, and errors without intervals.".into());
-    } else if count == 1 {
+    if !random && args.seeds == 1 {
+        study.notes.push("Nothing in the case is drawn from its seed, and one run a setting does not show whether contacts are chaotic: errors have no intervals.".into());
+    } else if random && count == 1 {
         study.notes.push("One seed tells no scatter: no error has an interval, and nothing can be claimed. Give --seeds 3 or more.".into());
     }
     study
@@ -178,6 +183,7 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     if study.jobs > 1 {
         study.notes.push(format!("{} runs went side by side, which disturbs their timing; visits (contacts times iterations) do not depend on it.", study.jobs));
     }
+    study.look_for_chaos(args.seeds.into(), &stop)?;
     study.prepare(&stop)?;
     if !args.json {
         say(&format!("{}: {}", loaded.path.display(), loaded.case.name));

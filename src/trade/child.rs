@@ -1,6 +1,7 @@
 //! Runs of a case in processes of their own, and what they leave: kept by a key, so that none is done twice.
 
 use super::TradeError;
+use super::chaos::Nudge;
 use super::knobs::openings;
 use super::output::column;
 use crate::scene::Loaded;
@@ -105,6 +106,8 @@ pub struct Launcher {
     pub folder: PathBuf,
     /// When they are not to be trusted.
     pub limits: Limits,
+    /// How runs are told apart where the seed draws nothing.
+    pub nudge: Option<Nudge>,
     fingerprint: String,
 }
 
@@ -143,6 +146,7 @@ impl Launcher {
             plugins,
             folder,
             limits,
+            nudge: None,
             fingerprint: hex(&hash.finalize()),
         })
     }
@@ -250,7 +254,7 @@ impl Launcher {
         Ok(Ended::Finished(finished))
     }
 
-    fn command(&self, sets: &[String], seed: u64, place: &Path) -> Command {
+    fn command(&self, sets: &[String], number: u64, place: &Path) -> Command {
         let mut command = Command::new(&self.program);
         command.arg("run").arg(&self.case).arg("--json");
         command.arg("--out").arg(place).args(["--threads", "1"]);
@@ -260,9 +264,11 @@ impl Launcher {
             "output.figures=false",
             "output.checkpoint=Never",
         ];
-        let seed = format!("seed={seed}");
-        let all = self.sets.iter().chain(sets).map(String::as_str);
-        for set in all.chain(quiet).chain([seed.as_str()]) {
+        let seed = format!("seed={number}");
+        let all: Vec<&str> = self.sets.iter().chain(sets).map(String::as_str).collect();
+        let nudged = self.nudged(&all, number);
+        let last = [seed.as_str()].into_iter().chain(nudged.as_deref());
+        for set in all.into_iter().chain(quiet).chain(last) {
             command.args(["--set", set]);
         }
         command.args(&self.plugins);
@@ -390,6 +396,7 @@ mod tests {
                 unconverged: 0.01,
                 residual: 0.01,
             },
+            nudge: None,
             fingerprint: String::new(),
         };
         let place = launcher.place(&[], 1);

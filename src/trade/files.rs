@@ -69,7 +69,7 @@ pub fn json(study: &Study, found: &Comparison, verdicts: &[Verdict], complete: b
         .collect();
     json!({
         "case": study.launcher.case, "confidence": CONFIDENCE, "complete": complete, "seeds": study.seeds,
-        "random": study.random, "outputs": outputs, "settings": settings, "cheapest": cheapest,
+        "random": study.random, "nudged": study.random && study.launcher.nudge.is_some(), "outputs": outputs, "settings": settings, "cheapest": cheapest,
         "forecast": study.forecast, "runs": {"fresh": study.fresh, "reused": study.reused},
         "left_out": study.left_out.iter().map(|s| s.name(&study.knobs)).chain(study.dropped()).collect::<Vec<_>>(),
         "wall_seconds": study.started.elapsed().as_secs_f64(), "notes": study.notes,

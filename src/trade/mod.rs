@@ -5,7 +5,9 @@
 //! [`interval`]s, [`frontier`] finds what nothing dominates, [`verdict`] the cheapest for a wanted error, and [`table`],
 //! [`files`] and [`figure`] tell it.
 
+pub mod chaos;
 pub mod child;
+mod combinations;
 pub mod compare;
 pub mod figure;
 pub mod files;

@@ -1,0 +1,29 @@
+#!/bin/sh
+# Accuracy against cost of shipped cases; the tables of frontiers.md. Takes an hour or more: name cases to run only these.
+# Each study is kept in OUT (results/frontiers) and goes on where it stopped.
+# docs/frontiers.sh [CASE...]
+set -e
+out=${OUT:-results/frontiers}
+program=${FRETWORK:-cargo run --release --quiet --}
+study() {
+    name=$1
+    shift
+    if [ -n "$wanted" ] && ! echo " $wanted " | grep -q " $name "; then return; fi
+    mkdir -p "$out"
+    echo "== $name"
+    $program trade "cases/$name.ron" --out "$out/$name" --budget 20m "$@" | tee "$out/$name.txt"
+}
+wanted="$*"
+study collapse --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=5e-5,5e-4,5e-3 --output energy.friction=2%
+study regime_map --vary time.step=1e-4,2e-4,4e-4 --vary solver.tolerance=1e-4,1e-3,1e-2 --output friction_coefficient=5%
+study shear_cell_3d --vary time.step=5e-5,1e-4,2e-4 --vary solver.tolerance=1e-5,1e-4,1e-3 --output friction_coefficient=5%
+study plane_shear --vary time.step=1e-4,2e-4,4e-4 --vary solver.tolerance=1e-4,1e-3,1e-2 \
+    --output measures.bulk_mu=3% --output measures.bulk_phi=1%
+study silo --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=1e-4,1e-3,1e-2 --output measures.held_rate=5%
+study wheel_rail_rolling --vary time.step=1e-5,2e-5,4e-5 --output friction_coefficient=5% --seeds 5
+study voronoi_block --vary time.step=1e-6,2e-6,4e-6 --vary solver.tolerance=1e-5,1e-4,1e-3 --output statistics.wall_fx:max=2%
+study cohesive_shear --vary time.step=1e-4,2e-4,4e-4 --vary solver.tolerance=1e-4,1e-3,1e-2 --output measures.bulk_mu=3%
+study forced_fold --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=1e-4,1e-3,1e-2 --output damage_ratio=5%
+study rotating_drum_2d --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=1e-4,1e-3,1e-2 --output measures.slope=3%
+study wheel_rail_degradable --vary time.step=5e-5,1e-4,2e-4 --vary solver.tolerance=1e-4,1e-3 \
+    --output friction_coefficient=5% --output damage_ratio=5%

@@ -1,0 +1,143 @@
+//! Whether a case that draws nothing from its seed is chaotic all the same.
+//!
+//! The case's own setting is run twice, the second time with a step longer by a part in 1e10. Where no difference grows, the
+//! outputs agree as well as that; where contacts are chaotic they part as those of two seeds do. Then runs whose steps are longer by
+//! k parts in 1e10 stand for seeds, and errors have intervals.
+
+use super::TradeError;
+use super::child::{Ended, Launcher, Status, summary};
+use super::output::{Output, Wanted};
+use super::setting::Setting;
+use super::study::Study;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// A step is longer by so much, in parts of itself, for the second run, twice as much for the third.
+const NUDGE: f64 = 1e-10;
+
+/// A difference that is noticed, in parts of the error wanted.
+const NOTICED: f64 = 0.01;
+
+/// Share of the budget that the two runs may take.
+const SHARE: f64 = 0.2;
+
+/// How runs of a case that draws nothing are told apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nudge {
+    /// The seed of the run that is not nudged.
+    pub first: u64,
+    /// The case's own step (s).
+    pub step: f64,
+}
+
+impl Nudge {
+    /// The step of a run with these `--set` (s); none where it is the setting's own, or stands in a whole `time`.
+    pub fn step(&self, sets: &[&str], seed: u64) -> Option<f64> {
+        let times = seed.wrapping_sub(self.first);
+        let key = |set: &&str| set.split('=').next().unwrap_or_default().trim().to_owned();
+        if times == 0 || sets.iter().any(|s| key(s) == "time") {
+            return None;
+        }
+        let last = sets.iter().rfind(|s| key(s) == "time.step");
+        let value = last.and_then(|s| s.split_once('=')?.1.trim().parse().ok());
+        Some(value.unwrap_or(self.step) * (1.0 + NUDGE * times as f64))
+    }
+}
+
+impl Study {
+    /// Looks for chaos in a case that draws nothing; where there is some, each setting gets so many runs.
+    ///
+    /// # Errors
+    /// A run cannot be started.
+    pub fn look_for_chaos(&mut self, runs: u64, stop: &AtomicBool) -> Result<(), TradeError> {
+        let first = self.seeds[0];
+        if self.random || runs < 2 {
+            return Ok(());
+        }
+        let own = Setting::own(&self.knobs);
+        let sets = own.sets(&self.knobs);
+        let deadline = self.started + self.budget.mul_f64(SHARE);
+        let mut places = Vec::new();
+        for seed in [first, first.wrapping_add(1)] {
+            let run = match self.launcher.kept(&sets, seed) {
+                Some(run) => run,
+                None => match self.launcher.run(&sets, seed, deadline, None, stop)? {
+                    Ended::Finished(run) => {
+                        self.done.insert((own.clone(), seed), run.clone());
+                        run
+                    }
+                    Ended::Interrupted => {
+                        self.notes.push(format!(
+                            "Whether contacts are chaotic here was not seen: two runs take more than {:.0} % of the budget.",
+                            100.0 * SHARE
+                        ));
+                        return Ok(());
+                    }
+                },
+            };
+            if run.status != Status::Done {
+                return Ok(());
+            }
+            places.push(self.launcher.place(&sets, seed));
+        }
+        self.fresh = self.done.len();
+        let [one, other] = [&places[0], &places[1]];
+        let parted = self.outputs.iter().find_map(|o| parted(o, one, other));
+        match parted {
+            None => {
+                self.done.remove(&(own, first.wrapping_add(1)));
+                self.notes.push(format!(
+                    "Nothing in the case is drawn from its seed, and a step longer by {NUDGE:e} of itself changes no output \
+                     by a hundredth of the error wanted: one run a setting, and errors without intervals."
+                ));
+            }
+            Some(told) => {
+                self.random = true;
+                self.seeds = (0..runs).map(|k| first.wrapping_add(k)).collect();
+                self.notes.push(format!(
+                    "Nothing in the case is drawn from its seed, but a step longer by {NUDGE:e} of itself changes {told}: \
+                     contacts are chaotic here, and runs with steps longer by k times that stand for seeds."
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What an output does between two runs, where that is noticed.
+fn parted(output: &Output, one: &Path, other: &Path) -> Option<String> {
+    let [a, b] = [one, other].map(|place| output.read(&summary(place), place));
+    let (a, b) = (a?, b?);
+    let wanted = match output.wanted {
+        Wanted::Relative(w) => w * a.abs(),
+        Wanted::Absolute(w) => w,
+    };
+    ((a - b).abs() > NOTICED * wanted).then(|| format!("`{}` from {a:.6e} to {b:.6e}", output.name))
+}
+
+impl Launcher {
+    /// The `time.step` of a run that is nudged.
+    pub(super) fn nudged(&self, sets: &[&str], seed: u64) -> Option<String> {
+        let step = self.nudge?.step(sets, seed)?;
+        Some(format!("time.step={step:e}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_nudged_step_is_that_of_the_setting() {
+        let nudge = Nudge {
+            first: 7,
+            step: 1e-3,
+        };
+        assert_eq!(nudge.step(&[], 7), None);
+        let twice = nudge.step(&["solver.tolerance=1e-3"], 9).unwrap();
+        assert!((twice / 1e-3 - 1.0 - 2e-10).abs() < 1e-15);
+        let set = nudge.step(&["time.step=5e-4", "time.step = 2e-4"], 8);
+        assert!((set.unwrap() / 2e-4 - 1.0 - 1e-10).abs() < 1e-15);
+        assert_eq!(nudge.step(&["time=(step: 1e-4, end: 1.0)"], 8), None);
+    }
+}
