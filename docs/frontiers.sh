@@ -14,9 +14,9 @@ study() {
     $program trade "cases/$name.ron" --out "$out/$name" --budget 20m "$@" | tee "$out/$name.txt"
 }
 wanted="$*"
-study collapse --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=5e-5,5e-4,5e-3 --output energy.friction=2%
-study regime_map --vary time.step=1e-4,2e-4,4e-4 --vary solver.tolerance=1e-4,1e-3,1e-2 --output friction_coefficient=5%
-study shear_cell_3d --vary time.step=5e-5,1e-4,2e-4 --vary solver.tolerance=1e-5,1e-4,1e-3 --output friction_coefficient=5%
+study collapse --seeds 10 --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=5e-5,5e-4,5e-3 --output energy.friction=2%
+study regime_map --seeds 10 --vary time.step=1e-4,2e-4,4e-4 --vary solver.tolerance=1e-4,1e-3,1e-2 --output friction_coefficient=5%
+study shear_cell_3d --seeds 10 --vary time.step=5e-5,1e-4,2e-4 --vary solver.tolerance=1e-5,1e-4,1e-3 --output friction_coefficient=5%
 study plane_shear --vary time.step=1e-4,2e-4,4e-4 --vary solver.tolerance=1e-4,1e-3,1e-2 \
     --output measures.bulk_mu=3% --output measures.bulk_phi=1%
 study silo --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=1e-4,1e-3,1e-2 --output measures.held_rate=5%

@@ -3,6 +3,7 @@
 use super::{CaseArgs, Failure, say};
 use crate::geometry::space::Space;
 use crate::scene::build::Built;
+use crate::scene::measures::MeasureSpec;
 use crate::scene::methods::{Demands, Service};
 use crate::scene::{Loaded, Scene, load};
 use crate::solve::local::solver::Method;
@@ -366,8 +367,10 @@ fn outputs(
         let place = launcher.place(&short, seed);
         let summary = summary(&place);
         if summary.is_object() {
+            let measures = loaded.case.measures.iter();
+            let measures: Vec<&str> = measures.map(MeasureSpec::name).collect();
             for output in &outputs {
-                output.check(&summary, &place)?;
+                output.check(&summary, &place, &measures)?;
             }
         }
     }

@@ -25,6 +25,7 @@ use super::statistics::Column;
 use super::summary::PluginStamp;
 use events::Events;
 use std::path::Path;
+use std::time::{Duration, Instant};
 use store::{Growing, Slot, Store};
 use view::View;
 
@@ -55,8 +56,14 @@ pub struct Header {
     pub debris: Vec<Column>,
 }
 
-/// Rows of statistics held back before they are written.
-const HELD: usize = 64;
+/// Most rows of statistics, or events, that are held back, however short the time since the last were written.
+const MOST: usize = 8192;
+
+/// Rows are made safe no more often than this, so that a reader follows closely, and not all the time is spent on it.
+const PACE: Duration = Duration::from_secs(1);
+
+/// And no more often than takes this part of the time: a flush goes through all datasets, and disks differ.
+const PART: u32 = 20;
 
 /// The checkpoints, written in turn.
 const CHECKPOINTS: [&str; 2] = ["/checkpoints/even", "/checkpoints/odd"];
@@ -73,6 +80,8 @@ pub struct Results {
     held_grains: Vec<f64>,
     views: Vec<View>,
     checkpoints: Vec<Slot>,
+    /// When rows were made safe, and how long that took.
+    flushed: (Instant, Duration),
 }
 
 impl Results {
@@ -170,6 +179,7 @@ impl Results {
             held_grains: Vec::new(),
             views,
             checkpoints,
+            flushed: (Instant::now(), Duration::ZERO),
         })
     }
 
@@ -218,10 +228,7 @@ impl Results {
         for (column, value) in self.held.iter_mut().zip(row) {
             column.push(*value);
         }
-        if self.held.first().is_some_and(|c| c.len() >= HELD) {
-            self.write_statistics()?;
-        }
-        Ok(())
+        self.write_in_time(self.held.first().map_or(0, Vec::len))
     }
 
     /// Appends a bond that broke.
@@ -230,10 +237,7 @@ impl Results {
     /// The file cannot be written.
     pub fn append_break(&mut self, row: &[f64]) -> Result<(), ResultsError> {
         self.broken.hold(row);
-        if self.broken.rows() >= HELD {
-            self.write_statistics()?;
-        }
-        Ok(())
+        self.write_in_time(self.broken.rows())
     }
 
     /// Appends a piece of debris, and the identities of its grains.
@@ -246,9 +250,21 @@ impl Results {
         Ok(())
     }
 
+    /// Writes what is held back if it is much, or if enough time has passed.
+    fn write_in_time(&mut self, rows: usize) -> Result<(), ResultsError> {
+        let (last, cost) = self.flushed;
+        if rows >= MOST || last.elapsed() >= PACE.max(cost * PART) {
+            self.write_statistics()?;
+        }
+        Ok(())
+    }
+
     fn write_statistics(&mut self) -> Result<(), ResultsError> {
         self.write_held()?;
-        self.store.as_mut().map_or(Ok(()), Store::flush)
+        let clock = Instant::now();
+        let flushed = self.store.as_mut().map_or(Ok(()), Store::flush);
+        self.flushed = (Instant::now(), clock.elapsed());
+        flushed
     }
 
     fn write_held(&mut self) -> Result<(), ResultsError> {
