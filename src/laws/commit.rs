@@ -4,8 +4,10 @@ use super::columns::StepInfo;
 use super::interface::{Interface, Loaded};
 use super::library::{Call, LawError};
 use super::pass::{Passes, Site, Totals, Turn};
+use crate::contact::network::Key;
 use crate::contact::{Loss, Network, Spent};
 use crate::geometry::space::{Space, VectorLike};
+use std::collections::HashSet;
 
 impl Passes {
     /// Ends the step: `sites` are what the contacts did, in the network's order, `turns` the moments of
@@ -169,8 +171,16 @@ impl Passes {
         }
         self.columns.size_outputs();
         self.run(wear, info, 0.0, Call::Commit)?;
+        // What a bond gives when it breaks it gives once, also in a cycle that stands for many.
+        let breaks = network.breaks.iter().filter(|_| network.stands_for > 1.0);
+        let broke: HashSet<Key> = breaks.map(|b| b.key).collect();
         for (k, at) in self.members.iter().enumerate() {
-            let volume = network.stands_for * self.columns.out.volume[k];
+            let times = if broke.contains(&network.contacts[*at].key) {
+                1.0
+            } else {
+                network.stands_for
+            };
+            let volume = times * self.columns.out.volume[k];
             if network.contacts[*at].key.surface().is_some() {
                 totals.worn_first += volume;
                 if let (Some(losses), true) = (&mut network.losses, volume > 0.0) {

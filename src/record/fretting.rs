@@ -72,8 +72,26 @@ impl Outcome {
         let first = complete.first()?;
         let kind = Regime::of(first.energy_ratio);
         let same = complete.iter().all(|c| Regime::of(c.energy_ratio) == kind);
-        let represented = |c: &&Cycle| (c.work * (1.0 + f64::from(c.jumped)), c.wear_volume);
-        let points: Vec<(f64, f64)> = complete.iter().map(represented).collect();
+        // A cycle that stands for many holds the fracture of all of them: those beside it say what one takes.
+        let single = |c: &&&Cycle| c.jumped == 0;
+        let energy = |k: usize| {
+            let cycle = complete[k];
+            if cycle.jumped == 0 {
+                return cycle.work;
+            }
+            let before = complete[..k].iter().rfind(single);
+            let after = complete[k + 1..].iter().find(single);
+            let beside: Vec<f64> = [before, after]
+                .into_iter()
+                .flatten()
+                .map(|c| c.work)
+                .collect();
+            let mean = beside.iter().sum::<f64>() / beside.len().max(1) as f64;
+            let one = if beside.is_empty() { cycle.work } else { mean };
+            one * (1.0 + f64::from(cycle.jumped))
+        };
+        let represented = |k: usize| (energy(k), complete[k].wear_volume);
+        let points: Vec<(f64, f64)> = (0..complete.len()).map(represented).collect();
         let energy = points.iter().map(|p| p.0).sum();
         let volume = points.iter().map(|p| p.1).sum();
         Some(Self {

@@ -14,7 +14,12 @@ pub struct Jump {
     /// By how much it is off: the worst of volumes and damage, in parts of what it added, and of what is misplaced
     /// after it, in parts of the scar at the end of the run. See [`crate::wear::jump`].
     pub error: f64,
+    /// By how much the work of the cycles after it differs from that of the cycle before it, in parts of it.
+    pub work_change: f64,
 }
+
+/// A jump over which the work of a cycle changes by more than this has led, or passed, into another state.
+const CHANGED: f64 = 0.2;
 
 /// The state at the end of a computed cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,8 +46,12 @@ pub struct JumpSummary {
     /// Error of a jump that was aimed at.
     pub tolerance: f64,
     /// What all jumps were off by and what is misplaced at the end, in parts of all wear, or of all growth of damage:
-    /// the worst.
-    pub error_estimate: f64,
+    /// the worst; none where what jumps were off by has nothing to be set against.
+    pub error_estimate: Option<f64>,
+    /// Cycles of a jump that the run ended before it was checked.
+    pub unchecked_cycles: u32,
+    /// Internal variables of laws, which go on by the cycle that is computed only: they do not jump.
+    pub not_jumped: Vec<String>,
     /// Volume worn off first bodies, in all cycles (m^3; m^3/m in 2D).
     pub wear_volume: f64,
     /// Jumps that were checked.
@@ -58,13 +67,45 @@ impl JumpSummary {
         let mut lines = vec![(
             "cycle jump",
             format!(
-                "{} cycles by {} computed ones, {} jumps of at most {longest}; off by some {:.1} %",
+                "{} cycles by {} computed ones, {} jumps of at most {longest}; {}",
                 self.represented_cycles,
                 self.computed_cycles,
                 self.jumps.len(),
-                100.0 * self.error_estimate
+                match self.error_estimate {
+                    Some(e) => format!("off by some {:.1} %", 100.0 * e),
+                    None => "how far off is not known".to_owned(),
+                }
             ),
         )];
+        if !self.not_jumped.is_empty() {
+            let text = format!(
+                "{} stay as the computed cycles leave them; compare with a run of smaller jump.at_most",
+                self.not_jumped.join(", ")
+            );
+            lines.push(("NOT JUMPED", text));
+        }
+        if self.unchecked_cycles > 0 {
+            let text = format!(
+                "the run ended in or just after a jump of {} cycles, which is not checked",
+                self.unchecked_cycles
+            );
+            lines.push(("NOT CHECKED", text));
+        }
+        let changed = self.jumps.iter().filter(|j| j.work_change > CHANGED);
+        if let Some(worst) = changed
+            .clone()
+            .max_by(|a, b| a.work_change.total_cmp(&b.work_change))
+        {
+            let text = format!(
+                "over {} jumps the work of a cycle changes by more than {:.0} %, over that after cycle {} by {:.0} %: the estimate does \
+                 not hold; make jump.at_most smaller, and see whether the change stays",
+                changed.count(),
+                100.0 * CHANGED,
+                worst.after,
+                100.0 * worst.work_change
+            );
+            lines.push(("CYCLES CHANGE", text));
+        }
         let far = |j: &&Jump| j.error > 2.0 * self.tolerance;
         if let Some(worst) = self
             .jumps

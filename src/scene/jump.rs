@@ -1,8 +1,8 @@
 //! The words of a case about jumps over cycles.
 
-use super::case::Case;
+use super::case::{BodySpec, Case};
 use super::source::Fault;
-use crate::bodies::TimeFunction;
+use crate::bodies::{Dof, TimeFunction};
 use serde::{Deserialize, Serialize};
 
 /// Jumps over the cycles of a friction test: some computed cycles stand for many, see [`crate::wear::jump`].
@@ -37,6 +37,9 @@ impl Default for JumpSpec {
     }
 }
 
+/// Most cycles of a jump, or of its control.
+const MOST: u32 = 100_000;
+
 /// Refuses jumps that mean nothing.
 ///
 /// # Errors
@@ -59,6 +62,7 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
         );
         return Err(Fault::new("jump", message));
     }
+    repeats(case, jump)?;
     let wears = case.bodies.iter().any(|b| b.wears.is_some());
     let damages = case.interfaces.iter().any(|i| i.damage.is_some());
     if !wears && !damages {
@@ -74,6 +78,10 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
     for (name, count) in [("at_most", jump.at_most), ("control", jump.control)] {
         if count == 0 {
             return fault(&format!("jump.{name}"), "must be at least 1");
+        }
+        if count > MOST {
+            let message = format!("{count} is too many; at most {MOST}");
+            return Err(Fault::new(format!("jump.{name}"), message));
         }
     }
     if jump.after == 0 {
@@ -97,6 +105,66 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
         return Err(Fault::new("jump", message));
     }
     Ok(())
+}
+
+/// Refuses what does not come again with every cycle: a jump passes over cycles, and time does not go on in it.
+fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), Fault> {
+    let (Some(test), Some(cycle)) = (&case.friction, period(case)) else {
+        return Ok(());
+    };
+    if !case.phases.is_empty() {
+        let message = "phases go by the time that is computed, and a jump passes over cycles; make a case of the phase that \
+                       jumps (grains of the last state by `State`), or leave `jump` out";
+        return Err(Fault::new("phases", message));
+    }
+    if case.gravity_drive.is_some() {
+        let message = "gravity that changes does not come again with every cycle; leave `gravity_drive` or `jump` out";
+        return Err(Fault::new("gravity_drive", message));
+    }
+    let begins = test.start + f64::from(jump.after) * cycle;
+    for body in &case.bodies {
+        let names = BodySpec::names(case.dimension as usize);
+        for (k, dof) in body.ordered(case.dimension as usize).iter().enumerate() {
+            if let Some(why) = restless(dof, k < case.dimension as usize, cycle, begins) {
+                let path = format!("bodies.{}.dofs.{}", body.name, names[k]);
+                let message = format!(
+                    "a jump passes over whole cycles of {cycle:e} s from {begins:e} s on, so all that drives must come again with each, \
+                     but {why}; let it rest from then on, give it a period that divides the cycle, or leave `jump` out"
+                );
+                return Err(Fault::new(path, message));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Why a drive does not come again with every cycle from a time on, if it does not.
+fn restless(dof: &Dof, translates: bool, cycle: f64, begins: f64) -> Option<String> {
+    if let Dof::Stages(_) = dof {
+        return Some("its drives follow one another in time".into());
+    }
+    match dof.function()? {
+        TimeFunction::Constant(v) => (translates && *v != 0.0 && matches!(dof, Dof::Velocity(_)))
+            .then(|| "it goes on in one direction".into()),
+        TimeFunction::Ramp { end, .. } if *end > begins => {
+            Some(format!("its ramp lasts until {end:e} s"))
+        }
+        TimeFunction::Table(points) if points.last().is_some_and(|p| p.0 > begins) => {
+            Some("its table goes on after it".into())
+        }
+        TimeFunction::Sine {
+            frequency, start, ..
+        } => {
+            let turns = frequency * cycle;
+            let whole = (turns - turns.round()).abs() < 1e-6 * turns.max(1.0);
+            if *start > begins {
+                Some(format!("its sine begins at {start:e} s"))
+            } else {
+                (!whole).then(|| format!("its sine turns {turns} times in a cycle"))
+            }
+        }
+        TimeFunction::Ramp { .. } | TimeFunction::Table(_) => None,
+    }
 }
 
 /// Length of a cycle of the friction test (s).

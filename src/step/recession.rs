@@ -51,7 +51,9 @@ impl<S: Space> Simulation<S> {
     /// Lowers the surfaces whose turn it is.
     pub(super) fn recede(&mut self) {
         let steps = self.steps;
-        self.lower(|scar| steps.is_multiple_of(scar.every));
+        // A step that wears for many is followed at once: the contact must find what stands proud.
+        let many = self.network.stands_for > 1.0;
+        self.lower(|scar| many || steps.is_multiple_of(scar.every));
     }
 
     /// Lowers all surfaces to the depth of their scars, whatever their interval.

@@ -69,15 +69,14 @@ fn a_scar_by_jumps_is_the_scar_of_all_cycles() {
     let truly = volume.abs() + form;
     println!(
         "{} steps for {}: volume {volume:.1e}, deepest {deepest:.1e}, profile {form:.1e}, farthest {farthest:.1e}; estimated {:.1e}",
-        jumped.steps, full.steps, jump.error_estimate
+        jumped.steps,
+        full.steps,
+        jump.error_estimate.unwrap()
     );
     assert!(volume.abs() < BOUND && deepest.abs() < BOUND && form < BOUND);
-    assert!(
-        jump.error_estimate > 0.25 * truly,
-        "{} {truly}",
-        jump.error_estimate
-    );
-    assert!(jump.error_estimate < 10.0 * truly.max(0.01));
+    let estimate = jump.error_estimate.unwrap();
+    assert!(estimate > 0.5 * truly, "{estimate} {truly}");
+    assert!(estimate < 10.0 * truly.max(0.01));
     assert!(jumped.energy_residual_relative < 1e-12);
     // V against E_d is of all cycles: k/mu, as Archard's volume is k P times the path, and E_d mu P times it.
     let [a, b] = [&jumped, &full].map(|s| s.fretting.as_ref().unwrap());
@@ -105,13 +104,19 @@ fn the_damage_of_a_bond_by_jumps_is_that_of_all_cycles() {
         full.steps,
         jumped.mean_damage,
         full.mean_damage,
-        jump.error_estimate,
+        jump.error_estimate.unwrap(),
         jump.jumps
     );
     // Far from linear: the first cycle's rate would give less than three quarters of it.
     assert!(full.mean_damage > 0.2 && full.mean_damage < 0.9);
     assert!(error.abs() < BOUND);
-    assert!(jump.error_estimate > 0.25 * error.abs() && jump.error_estimate < BOUND);
+    let estimate = jump.error_estimate.unwrap();
+    assert!(estimate > error.abs() && estimate < 1.5 * BOUND);
+    let [a, b] = [&jumped, &full].map(|s| s.fretting.as_ref().unwrap().energy);
+    println!("E_d {:.1e}", a / b - 1.0);
+    assert!((a / b - 1.0).abs() < BOUND, "{a} {b}");
+    // The travel that the law counts, and the traction at which it last turned.
+    assert_eq!(jump.not_jumped.len(), 2, "{:?}", jump.not_jumped);
     assert!(jumped.energy_residual_relative < 1e-12);
 }
 
@@ -119,13 +124,37 @@ fn the_damage_of_a_bond_by_jumps_is_that_of_all_cycles() {
 #[test]
 fn a_bond_that_breaks_in_a_jump_closes_the_ledger() {
     let soft = "interfaces.0.parameters.damage.length=0.4";
-    let (jumped, _) = ran("verification/bond_fatigue", "breaks", &[soft]);
+    let wear = "interfaces.0.wear=\"broken-bonds\"";
+    let (jumped, _) = ran("verification/bond_fatigue", "breaks", &[soft, wear]);
     assert_eq!(jumped.broken, 1);
+    // A jump that broke the bond was off by something, and says so.
+    let estimate = jumped.jump.as_ref().unwrap().error_estimate;
+    assert!(estimate.is_some_and(|e| e > 0.0), "{estimate:?}");
+    // What a bond gives when it breaks it gives once, however many cycles the step stands for.
+    let once = jumped.wear.volume_third_body;
+    let (full, _) = ran(
+        "verification/bond_fatigue",
+        "breaks-full",
+        &[soft, wear, "jump=None"],
+    );
+    assert_eq!(full.broken, 1);
+    assert!(once > 0.0 && (once / full.wear.volume_third_body - 1.0).abs() < 1e-12);
     assert!(
         jumped.energy_residual_relative < 1e-12,
         "{}",
         jumped.energy_residual_relative
     );
+}
+
+/// Surfaces that follow seldom follow at once within a jump; the load is the case's, so the volume is Archard's whatever they do.
+#[test]
+fn surfaces_that_follow_seldom_do_so_at_once_in_a_jump() {
+    let sets = ["bodies.flat.wears.every=40", "jump.cycles=300"];
+    let (seldom, _) = ran("fretting_wear_jump", "seldom", &sets);
+    let (often, _) = ran("fretting_wear_jump", "often", &["jump.cycles=300"]);
+    let [a, b] = [&seldom, &often].map(|s| s.scars[0].depth);
+    println!("depth {:.1e} of that which follows every step", a / b - 1.0);
+    assert!((a / b - 1.0).abs() < 0.1, "{a} {b}");
 }
 
 #[test]
@@ -157,6 +186,30 @@ fn jumps_that_mean_nothing_are_refused() {
         (&["jump.tolerance=0.0"], "must be positive, got 0"),
         (&["jump.growth=-1.0"], "must be positive, got -1"),
         (&["time.step=3e-3"], "let time.step divide the cycle"),
+        (&["jump.at_most=4294967295"], "at most 100000"),
+        (
+            &["friction.period=0.013"],
+            "its sine turns 0.65 times in a cycle",
+        ),
+        (
+            &["bodies.cylinder.dofs.y=Force(Sine(amplitude: 9e4, frequency: 0.5, offset: -1e5))"],
+            "its sine turns 0.01 times in a cycle",
+        ),
+        (
+            &["bodies.cylinder.dofs.y=Force(Ramp(from: 0.0, to: -1e5, start: 0.0, end: 5.0))"],
+            "its ramp lasts until 5e0 s",
+        ),
+        (
+            &[
+                "bodies.cylinder.dofs.x=Velocity(Constant(1e-3))",
+                "friction.period=0.02",
+            ],
+            "it goes on in one direction",
+        ),
+        (
+            &["phases=[(name: \"a\", until: Time(10.0)), (name: \"b\")]"],
+            "phases go by the time that is computed",
+        ),
         (&["circuit=(bases: [\"flat\"])"], "leave one of the two out"),
     ] {
         let said = scar(sets);

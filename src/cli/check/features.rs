@@ -215,6 +215,18 @@ impl Features {
             "inertia scaling",
             (scaling != 1.0).then(|| format!("{scaling:e}")),
         );
+        let jump = case.jump.as_ref().map(|j| {
+            let ends = j
+                .cycles
+                .map_or(String::new(), |n| format!(", to {n} cycles"));
+            format!(
+                "from cycle {} on, of at most {} cycles, to {} of error each{ends}",
+                j.after + 1,
+                j.at_most,
+                j.tolerance
+            )
+        });
+        self.say("cycle jump", jump);
         let body = case.friction.as_ref().map(|f| f.body.clone());
         self.say("friction test", body);
         let walls = case.biaxial.as_ref().map(|b| format!("{:?}", b.axial));

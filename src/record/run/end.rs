@@ -48,11 +48,13 @@ impl<S: Dimensional> Recorder<'_, S> {
         summary.haste = n.haste;
         summary.energy = s.energy;
         summary.energy_residual_relative = s.energy.relative_residual();
-        summary.jump = self.jumps.as_ref().map(|j| j.outcome(s, self.worn.0));
+        summary.jump = self.jumps.as_ref().map(|j| j.outcome(s, self.worn));
         // Wear goes on over the cycles that were jumped over.
-        let cycles = self.jumps.as_ref().map_or(0, |j| j.jumped());
+        let share = self.cycles.as_ref().map_or(1.0, |(c, _)| c.share(s.time));
+        let share = if share < 1.0 { share } else { 0.0 };
+        let cycles = self.jumps.as_ref().map_or(0.0, |j| j.jumped(share));
         let period = self.cycles.as_ref().and_then(|(c, _)| c.period());
-        let over = f64::from(cycles) * period.unwrap_or(0.0);
+        let over = cycles * period.unwrap_or(0.0);
         let time = (s.time + over).max(f64::MIN_POSITIVE);
         // Nothing leaves a contact that is periodic along the sliding.
         let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
