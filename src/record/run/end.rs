@@ -4,7 +4,7 @@ use super::{Recorder, RunError, unwritable};
 use crate::record::biaxial::{self, Outcome};
 use crate::record::checkpoint::LAST;
 use crate::record::summary::Wear;
-use crate::record::{circuit, figures, fretting, jump, scars};
+use crate::record::{circuit, figures, fretting, jump, scars, warnings};
 use crate::scene::build::Dimensional;
 use std::path::Path;
 
@@ -74,6 +74,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         }
         summary.solver.coupling_iterations_mean = self.couplings as f64 / s.steps.max(1) as f64;
         summary.solver.why = summary.solver.choice.why(s.solver.method, s.steps);
+        summary.warnings = warnings::of(s, &summary.solver);
         summary.solver.iterations_mean = self.iterations as f64 / s.steps.max(1) as f64;
         let files = self.files();
         if let (Err(e), None) = (&files, &self.summary.stopped) {
