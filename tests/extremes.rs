@@ -47,6 +47,11 @@ fn another_cause_than_the_declared_one_is_broken() {
     assert!(broken(told(&[Cause::Jumped]), false, true, &[late]));
     assert!(broken(told(&[Cause::Late]), false, true, &[late, late]));
     // Without a proposal; not finite.
-    assert!(broken(told(&[Cause::Late]), false, true, &[(Cause::Late, "late")]));
+    assert!(broken(
+        told(&[Cause::Late]),
+        false,
+        true,
+        &[(Cause::Late, "late")]
+    ));
     assert!(broken(HELD, true, false, &[]));
 }

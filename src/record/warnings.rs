@@ -59,9 +59,15 @@ impl Missed {
         } else {
             format!(", or try solver.method {}", others.join(" or "))
         };
+        // Velocities of bodies that weigh little beside others round to more than a tight tolerance asks for.
+        let rounding = if options.tolerance < 1e-6 {
+            ", or allow a larger solver.tolerance (rounding may leave more than this one)"
+        } else {
+            ""
+        };
         Some(format!(
             "{} of {of} steps, the first is step {}, ended with an error of up to {:.1e} (tolerance {:.0e}); take a smaller \
-             time.step, raise solver.max_iterations (it is {}){other}",
+             time.step, raise solver.max_iterations (it is {}){other}{rounding}",
             self.steps, self.first, self.error, options.tolerance, options.max_iterations
         ))
     }
@@ -82,7 +88,10 @@ pub(super) fn of<S: Space>(simulation: &Simulation<S>, solver: &SolverSummary) -
     });
     let told = [
         ("TOO FAST", simulation.network.haste.warning()),
-        ("NOT CONVERGED", missed.warning(simulation, simulation.steps)),
+        (
+            "NOT CONVERGED",
+            missed.warning(simulation, simulation.steps),
+        ),
         ("NOT COUPLED", uncoupled),
     ];
     let told = told.into_iter();

@@ -63,7 +63,11 @@ impl Ran {
             told.push((Cause::Late, warning.clone().unwrap_or_default()));
             told.push((Cause::Jumped, warning.take().unwrap_or_default()));
         }
-        let cause = if haste.late > 0 { Cause::Late } else { Cause::Jumped };
+        let cause = if haste.late > 0 {
+            Cause::Late
+        } else {
+            Cause::Jumped
+        };
         told.extend(warning.map(|words| (cause, words)));
         let missed = self.missed.warning(s, self.steps);
         told.extend(missed.map(|words| (Cause::Unconverged, words)));

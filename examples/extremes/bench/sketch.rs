@@ -100,7 +100,10 @@ pub fn ball(at: &str, radius: f64) -> String {
 
 /// Disks or spheres of a material.
 pub fn grains(material: &str, all: &[String]) -> String {
-    format!("List(material: \"{material}\", grains: [{}]),", all.join(", "))
+    format!(
+        "List(material: \"{material}\", grains: [{}]),",
+        all.join(", ")
+    )
 }
 
 impl Sketch {

@@ -47,6 +47,11 @@ pub const fn told(told: &'static [Cause]) -> Expected {
     Expected { met: false, told }
 }
 
+/// The criterion is met, and these causes are told none the less.
+pub const fn held_though(told: &'static [Cause]) -> Expected {
+    Expected { met: true, told }
+}
+
 /// What became of a scene.
 pub enum Verdict {
     /// The criterion is met, as expected; with what was told none the less.
@@ -72,7 +77,9 @@ impl Verdict {
             ))
         } else if met != expected.met {
             let what = if met { "held" } else { "missed" };
-            Self::Broken(format!("the criterion is {what}, against what is expected; {words}"))
+            Self::Broken(format!(
+                "the criterion is {what}, against what is expected; {words}"
+            ))
         } else if !causes.eq(expected.told) {
             Self::Broken(format!("expected to be told {:?}; {words}", expected.told))
         } else if let Some((cause, _)) = told.iter().find(|(c, w)| !w.contains(c.proposal())) {

@@ -1,8 +1,9 @@
 //! Steps from tiny to senseless, functions of time that jump, and a million steps.
 
-use crate::bench::Cause::{Jumped, Late, Refused};
+use crate::bench::Cause::{self, Jumped, Late, Refused, Unconverged};
 use crate::bench::{
-    Group, HELD, Row, Sketch, ball, floor, go, grains, overlap, place, refused, told, up, watch,
+    Group, HELD, Row, Sketch, ball, floor, go, grains, held_though, overlap, place, refused, told,
+    up, watch,
 };
 use fretwork::geometry::space::{Plane, Solid, VectorLike};
 use fretwork::scene::build::Dimensional;
@@ -29,6 +30,11 @@ pub const MANY: Group = Group {
 };
 
 fn steps<S: Dimensional>() -> Vec<Row> {
+    // Spheres that were caught deep are wedged: more impulses than motions.
+    let coarse: &[Cause] = match S::D {
+        2 => &[Late],
+        _ => &[Late, Unconverged],
+    };
     let falling = |(h, expected)| {
         let mut all = Vec::new();
         let layers = if S::D == 2 { 1 } else { 2 };
@@ -72,9 +78,8 @@ fn steps<S: Dimensional>() -> Vec<Row> {
         });
         let residual = s.energy.relative_residual();
         let gained = most / s.energy.scale.max(f64::MIN_POSITIVE);
-        let found = format!(
-            "energy at most {gained:.1e}, residual {residual:.1e}, overlap {deepest:.1e}"
-        );
+        let found =
+            format!("energy at most {gained:.1e}, residual {residual:.1e}, overlap {deepest:.1e}");
         let met = gained < 1e-9 && residual < 1e-9 && deepest < 1e-3;
         ran.row(&s, (value, found), met, expected)
     };
@@ -84,7 +89,7 @@ fn steps<S: Dimensional>() -> Vec<Row> {
         (1e-6, HELD),
         (1e-4, HELD),
         (1e-3, HELD),
-        (1e-2, told(&[Late])),
+        (1e-2, told(coarse)),
         (0.1, told(&[Late, Jumped])),
         (1.0, told(&[Late, Jumped])),
     ]
@@ -152,7 +157,7 @@ fn jumps<S: Dimensional>() -> Vec<Row> {
             1.0,
             "Displacement(Table([(0.0, 0.0), (0.05, 0.0), (0.0500001, 1.0), (1.0, 1.0)]))",
             steady,
-            HELD,
+            held_though(&[Jumped]),
         ),
     ]
     .map(lid)
