@@ -31,7 +31,7 @@ pub const COLUMN: Group = Group {
     name: "column",
     criterion: "the floor bears n m g to 1e-6 and the root of n roundings of the height over g h^2 (gaps are differences of places)",
     runs: &[(2, disks), (3, spheres)],
-    quick: false,
+    quick: true,
 };
 
 /// Two balls, one above the other.
