@@ -102,6 +102,9 @@ pub struct Row {
     pub verdict: Verdict,
 }
 
+/// Dimensions, each with what runs its rows.
+pub type Runs = &'static [(u8, fn() -> Vec<Row>)];
+
 /// Rows of one kind.
 pub struct Group {
     /// Its name.
@@ -109,7 +112,7 @@ pub struct Group {
     /// What must hold.
     pub criterion: &'static str,
     /// Runs them, in each dimension that has them.
-    pub runs: &'static [(u8, fn() -> Vec<Row>)],
+    pub runs: Runs,
     /// Whether it takes seconds at most, so that the tests run it too.
     pub quick: bool,
 }
