@@ -183,7 +183,10 @@ impl TimeFunction {
                 } else if !points.iter().all(|p| finite(&[p.0, p.1])) {
                     Some("the numbers of a table must be finite".into())
                 } else if points.windows(2).any(|w| w[1].0 <= w[0].0) {
-                    Some("the times of a table must rise".into())
+                    Some(
+                        "the times of a table must rise; for a jump give two times that are close"
+                            .into(),
+                    )
                 } else {
                     None
                 }

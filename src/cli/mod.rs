@@ -115,9 +115,14 @@ impl PluginArgs {
             )));
         }
         if !limit.is_zero() {
-            watch(limit, |who| {
+            watch(limit, |who, saved| {
+                let left = if saved {
+                    "all rows up to this step and a summary.json that says so are on disk"
+                } else {
+                    "what was recorded up to the last flush is on disk"
+                };
                 eprintln!(
-                    "error: {who}; the program ends here; what was recorded up to the last flush is on disk (a longer wait: --law-timeout)"
+                    "error: {who}; the program ends here; {left} (a longer wait: --law-timeout)"
                 );
                 std::process::exit(1);
             });

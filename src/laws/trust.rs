@@ -2,30 +2,225 @@
 
 use std::path::Path;
 
-/// Why a library should not be opened, if it should not: anybody can write to it or to its folder.
+/// Why a library should not be opened, if it should not: others can write to it, or to a folder or a link on the way to it.
 #[cfg(unix)]
 pub(super) fn doubt(library: &Path) -> Option<String> {
-    use std::os::unix::fs::PermissionsExt;
-    // A link is judged by what it leads to.
-    let real = library.canonicalize().ok()?;
-    let open = |path: &Path| {
-        let mode = path.metadata().ok()?.permissions().mode();
-        (mode & 0o002 != 0).then(|| {
-            format!(
-                "anybody may write to {} (mode {:04o}), so it may not be what you put there; take that right away (chmod o-w), or \
-                 say --trust-plugins if you know who writes there",
-                path.display(),
-                mode & 0o7777
-            )
-        })
-    };
-    let folders = [library.parent(), real.parent()];
-    let folders = folders.into_iter().flatten();
-    open(&real).or_else(|| folders.filter(|f| !f.as_os_str().is_empty()).find_map(open))
+    on_the_way::doubt(library, on_the_way::me(), on_the_way::Place::of)
 }
 
 /// Rights are not looked at where they are not those of POSIX.
 #[cfg(not(unix))]
 pub(super) fn doubt(_: &Path) -> Option<String> {
     None
+}
+
+/// Owners and rights of all that leads to a file.
+#[cfg(unix)]
+mod on_the_way {
+    use std::collections::VecDeque;
+    use std::ffi::OsString;
+    use std::os::unix::fs::MetadataExt;
+    use std::path::{Component, Path, PathBuf};
+
+    /// The administrator.
+    const ROOT: u32 = 0;
+
+    /// Who runs the program, for the rights on files.
+    pub fn me() -> u32 {
+        // SAFETY: it has no arguments and cannot fail.
+        unsafe { libc::geteuid() }
+    }
+
+    /// What is known of a file, a folder or a link; a link is not followed.
+    #[derive(Clone, Debug)]
+    pub struct Place {
+        pub owner: u32,
+        pub mode: u32,
+        /// Where a link leads.
+        pub link: Option<PathBuf>,
+    }
+
+    impl Place {
+        pub fn of(path: &Path) -> Option<Self> {
+            let known = path.symlink_metadata().ok()?;
+            let link = known.is_symlink().then(|| path.read_link().ok()).flatten();
+            Some(Self {
+                owner: known.uid(),
+                mode: known.mode(),
+                link,
+            })
+        }
+
+        fn anybody_writes(&self) -> bool {
+            // The rights of a link say nothing.
+            self.link.is_none() && self.mode & 0o002 != 0
+        }
+
+        /// In a sticky folder only their owners, and its own, may rename or remove files.
+        fn sticky(&self) -> bool {
+            self.mode & 0o1000 != 0
+        }
+    }
+
+    /// Follows a path from the root, link by link, and doubts what others than `me` and the administrator may change.
+    pub fn doubt(
+        library: &Path,
+        me: u32,
+        place: impl Fn(&Path) -> Option<Place>,
+    ) -> Option<String> {
+        /// Links on the way; more are a circle, which opening will find.
+        const LINKS: usize = 40;
+        let mut left: VecDeque<OsString> = VecDeque::new();
+        let mut here = PathBuf::from("/");
+        let names = |path: &Path| -> Vec<OsString> {
+            let parts = path.components().filter(|c| *c != Component::CurDir);
+            parts.map(|c| c.as_os_str().to_owned()).collect()
+        };
+        left.extend(names(&std::path::absolute(library).ok()?));
+        let mut links = 0;
+        while let Some(name) = left.pop_front() {
+            if name == ".." {
+                here.pop();
+                continue;
+            }
+            here.push(&name);
+            let found = place(&here)?;
+            let end = left.is_empty();
+            if found.anybody_writes() && (end || !found.sticky()) {
+                return Some(open(&here, &found));
+            }
+            // Others may lay further laws into a folder of laws, even if it is sticky.
+            let folder = here.parent().filter(|_| end);
+            if let Some((path, folder)) = folder.and_then(|p| Some((p, place(p)?)))
+                && folder.anybody_writes()
+            {
+                return Some(open(path, &folder));
+            }
+            if found.owner != me && found.owner != ROOT {
+                return Some(foreign(&here, &found, me));
+            }
+            if let Some(target) = found.link {
+                links += 1;
+                if links > LINKS {
+                    return None;
+                }
+                here.pop();
+                for name in names(&target).into_iter().rev() {
+                    left.push_front(name);
+                }
+            }
+        }
+        None
+    }
+
+    fn open(path: &Path, found: &Place) -> String {
+        format!(
+            "anybody may write to {} (mode {:04o}), so it may not be what you put there; take that right away (chmod o-w), or say \
+             --trust-plugins if you know who writes there",
+            path.display(),
+            found.mode & 0o7777
+        )
+    }
+
+    fn foreign(path: &Path, found: &Place, me: u32) -> String {
+        format!(
+            "{} belongs to user {}, who may change it, and you are user {me}; copy the library to a folder of your own, or say \
+             --trust-plugins if you trust that user",
+            path.display(),
+            found.owner
+        )
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::*;
+        use std::collections::BTreeMap;
+
+        const ME: u32 = 1000;
+
+        /// A tree of places: owner, mode, target of a link.
+        fn doubt_in(places: &[(&str, u32, u32, &str)], library: &str) -> Option<String> {
+            let tree: BTreeMap<PathBuf, Place> = places
+                .iter()
+                .map(|(path, owner, mode, link)| {
+                    let place = Place {
+                        owner: *owner,
+                        mode: *mode,
+                        link: (!link.is_empty()).then(|| link.into()),
+                    };
+                    (PathBuf::from(path), place)
+                })
+                .collect();
+            doubt(Path::new(library), ME, |p| tree.get(p).cloned())
+        }
+
+        const ROOTS: [(&str, u32, u32, &str); 2] = [("/", 0, 0o755, ""), ("/tmp", 0, 0o1777, "")];
+
+        fn with(more: &[(&str, u32, u32, &str)], library: &str) -> Option<String> {
+            doubt_in(&[&ROOTS, more].concat(), library)
+        }
+
+        #[test]
+        fn a_library_of_ones_own_below_a_sticky_folder_is_trusted() {
+            let own = [("/tmp/a", ME, 0o755, ""), ("/tmp/a/law.so", ME, 0o644, "")];
+            assert_eq!(with(&own, "/tmp/a/law.so"), None);
+            assert_eq!(with(&own, "/tmp/a/../a/./law.so"), None);
+            let roots = [("/tmp/a", 0, 0o755, ""), ("/tmp/a/law.so", 0, 0o644, "")];
+            assert_eq!(with(&roots, "/tmp/a/law.so"), None);
+        }
+
+        #[test]
+        fn others_own_a_part_of_the_way() {
+            for other in 0..2 {
+                let owner = |k| if k == other { 1001 } else { ME };
+                let places = [
+                    ("/tmp/a", owner(0), 0o755, ""),
+                    ("/tmp/a/law.so", owner(1), 0o644, ""),
+                ];
+                let said = with(&places, "/tmp/a/law.so").unwrap();
+                assert!(said.starts_with(places[other].0), "{said}");
+                assert!(said.contains("user 1001") && said.contains("user 1000"));
+            }
+        }
+
+        #[test]
+        fn an_open_folder_above_is_doubted_unless_it_is_sticky() {
+            let below = |mode| {
+                [
+                    ("/tmp/a", ME, mode, ""),
+                    ("/tmp/a/b", ME, 0o755, ""),
+                    ("/tmp/a/b/law.so", ME, 0o644, ""),
+                ]
+            };
+            let said = with(&below(0o777), "/tmp/a/b/law.so").unwrap();
+            assert!(said.contains("write to /tmp/a (mode 0777)"), "{said}");
+            assert_eq!(with(&below(0o1777), "/tmp/a/b/law.so"), None);
+            // Its own folder may not even be sticky: others may lay further laws beside it.
+            let beside = [("/tmp/law.so", ME, 0o644, "")];
+            for path in ["/tmp/law.so", "/tmp/../tmp/law.so"] {
+                assert!(with(&beside, path).unwrap().contains("/tmp (mode 1777)"));
+            }
+        }
+
+        #[test]
+        fn each_link_is_followed_and_doubted() {
+            let linked = |mode, owner| {
+                [
+                    ("/a", ME, 0o755, ""),
+                    ("/a/law.so", ME, 0o777, "../b/law.so"),
+                    ("/b", ME, 0o777, "/c/d"),
+                    ("/c", ME, mode, ""),
+                    ("/c/d", ME, 0o755, ""),
+                    ("/c/d/law.so", owner, 0o644, ""),
+                ]
+            };
+            assert_eq!(with(&linked(0o755, ME), "/a/law.so"), None);
+            let said = with(&linked(0o777, ME), "/a/law.so").unwrap();
+            assert!(said.contains("write to /c "), "{said}");
+            let said = with(&linked(0o755, 7), "/a/law.so").unwrap();
+            assert!(said.starts_with("/c/d/law.so belongs to user 7"), "{said}");
+            let round = [("/a", ME, 0o755, "/b"), ("/b", ME, 0o755, "/a")];
+            assert_eq!(with(&round, "/a/law.so"), None);
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! A watch over plugins: native code that does not come back cannot be stopped, but it can be named.
 
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Mutex, mpsc};
 use std::time::Duration;
 
 /// What a thread is at.
@@ -69,9 +69,52 @@ pub(super) fn enter(label: Label, call: usize) -> Inside {
     Inside
 }
 
-/// Watches from a thread of its own, for the rest of the program: `stuck` is told, once, who did not come back from a call
-/// within the limit.
-pub fn watch(limit: Duration, stuck: impl FnOnce(&str) + Send + 'static) {
+/// What is to be done before the program ends; it gives whether it saved something.
+type Rescue = Box<dyn FnOnce(&str) -> bool + Send>;
+
+static RESCUES: Mutex<Vec<(u64, Rescue)>> = Mutex::new(Vec::new());
+
+/// A rescue that stands ready until this is dropped.
+#[derive(Debug)]
+pub struct Ready(u64);
+
+impl Drop for Ready {
+    fn drop(&mut self) {
+        let mut rescues = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
+        rescues.retain(|(number, _)| *number != self.0);
+    }
+}
+
+/// Makes ready what saves a run when a law does not come back. It runs on a thread of its own, beside the one that is stuck,
+/// is given who is stuck where, and says whether it saved something.
+pub fn rescue(save: impl FnOnce(&str) -> bool + Send + 'static) -> Ready {
+    static NUMBERS: AtomicU64 = AtomicU64::new(0);
+    let number = NUMBERS.fetch_add(1, Ordering::Relaxed);
+    let mut rescues = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
+    rescues.push((number, Box::new(save)));
+    Ready(number)
+}
+
+/// Watches from a thread of its own, for the rest of the program: once, who did not come back from a call within the limit
+/// is told, and whether all rescues saved something.
+pub fn watch(limit: Duration, stuck: impl FnOnce(&str, bool) + Send + 'static) {
+    /// A thread that is stuck may hold what a rescue needs, such as the lock of the allocator: it is not waited for longer.
+    const RESCUED_WITHIN: Duration = Duration::from_secs(10);
+    let (call, calls) = mpsc::sync_channel::<String>(1);
+    let (done, saved) = mpsc::sync_channel(1);
+    std::thread::spawn(move || {
+        if let Ok(who) = calls.recv() {
+            let rescues = {
+                let mut all = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
+                std::mem::take(&mut *all)
+            };
+            let count = rescues.len();
+            let saved = rescues
+                .into_iter()
+                .filter_map(|(_, save)| save(&who).then_some(()));
+            let _ = done.send(count > 0 && saved.count() == count);
+        }
+    });
     let looks = 20u32;
     std::thread::spawn(move || {
         let mut seen = vec![(0, 0); MOST];
@@ -93,13 +136,20 @@ pub fn watch(limit: Duration, stuck: impl FnOnce(&str) + Send + 'static) {
                 break who;
             }
         };
-        let (label, call) = (who / CALLS.len() as u64, who % CALLS.len() as u64);
-        let labels = LABELS.lock().unwrap_or_else(|e| e.into_inner());
-        let label = labels.get(label as usize).map_or("a law", String::as_str);
-        stuck(&format!(
-            "{label} has not come back from {} for {:.1} s",
-            CALLS[call as usize],
+        let (label, at) = (who / CALLS.len() as u64, who % CALLS.len() as u64);
+        let label = {
+            let labels = LABELS.lock().unwrap_or_else(|e| e.into_inner());
+            labels.get(label as usize).cloned()
+        };
+        let who = format!(
+            "{} has not come back from {} for {:.1} s",
+            label.as_deref().unwrap_or("a law"),
+            CALLS[at as usize],
             limit.as_secs_f64()
-        ));
+        );
+        let saved = call
+            .send(who.clone())
+            .is_ok_and(|()| saved.recv_timeout(RESCUED_WITHIN).unwrap_or(false));
+        stuck(&who, saved);
     });
 }

@@ -1,19 +1,25 @@
 //! What `auto` chose over a run, in one sentence.
 
 use crate::solve::local::solver::Method;
-use crate::solve::{Chosen, Report};
+use crate::solve::{Chosen, Report, Tried};
 use serde::{Deserialize, Serialize};
 
 /// Counts over the steps of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Choice {
+    /// Steps in which Newton or the interior point was tried.
+    pub factorised: u64,
     /// Steps in which Newton was tried.
     pub newton_tried: u64,
     /// Steps which it ended.
     pub newton_ended: u64,
-    /// Mean over the steps in which it was tried: unknowns that carry over degrees of freedom that they move.
+    /// Steps in which the interior point was tried.
+    pub interior_tried: u64,
+    /// Steps which it ended.
+    pub interior_ended: u64,
+    /// Mean over the steps in which either was tried: unknowns that carry over degrees of freedom that they move.
     pub hyperstaticity_mean: f64,
-    /// Mean sweeps before it.
+    /// Mean sweeps before them.
     pub sweeps_before_mean: f64,
     /// Steps that sweeps ended after Newton would have been due, on hyperstatic sets, where it comes later.
     pub swept_longer: u64,
@@ -31,14 +37,18 @@ impl Choice {
             Chosen::Longer { .. } => self.swept_longer += 1,
             Chosen::Unserved => self.newton_unserved += 1,
             Chosen::Large => self.too_large += 1,
-            Chosen::Newton {
+            Chosen::Factorised {
                 after,
                 hyperstaticity,
-                ended,
+                newton,
+                interior,
             } => {
-                self.newton_tried += 1;
-                self.newton_ended += u64::from(ended);
-                let part = 1.0 / self.newton_tried as f64;
+                self.newton_tried += u64::from(newton != Tried::No);
+                self.newton_ended += u64::from(newton == Tried::Ended);
+                self.interior_tried += u64::from(interior != Tried::No);
+                self.interior_ended += u64::from(interior == Tried::Ended);
+                self.factorised += 1;
+                let part = 1.0 / self.factorised as f64;
                 self.hyperstaticity_mean += (hyperstaticity - self.hyperstaticity_mean) * part;
                 self.sweeps_before_mean += (f64::from(after) - self.sweeps_before_mean) * part;
             }
@@ -50,18 +60,21 @@ impl Choice {
         if method != Method::Auto {
             return format!("{} was asked for", method.name());
         }
-        if self.newton_tried > 0 {
+        if self.factorised > 0 {
             let set = if self.hyperstaticity_mean > 1.0 {
                 "hyperstatic"
             } else {
                 "not hyperstatic"
             };
             return format!(
-                "newton was tried in {} of {steps} steps, after {:.0} sweeps on average had not been enough ({:.2} unknowns a degree of freedom: {set}), and ended {}; sweeps did the rest{}",
-                self.newton_tried,
+                "methods that factorise were tried in {} of {steps} steps, after {:.0} sweeps on average had not been enough ({:.2} unknowns a degree of freedom: {set}): newton ended {} of {}, interior {} of {}; sweeps did the rest{}",
+                self.factorised,
                 self.sweeps_before_mean,
                 self.hyperstaticity_mean,
                 self.newton_ended,
+                self.newton_tried,
+                self.interior_ended,
+                self.interior_tried,
                 match self.swept_longer {
                     0 => String::new(),
                     n => format!(", {n} of them because the contacts were hyperstatic"),
@@ -100,12 +113,16 @@ mod tests {
         choice.add(&Report::default());
         assert!(choice.why(Method::Auto, 1).starts_with("sweeps"));
         assert_eq!(choice.why(Method::Pg, 1), "pg was asked for");
-        for (after, hyperstaticity, ended) in [(100, 1.0, true), (300, 2.0, false)] {
+        for (after, hyperstaticity, newton, interior) in [
+            (100, 1.0, Tried::Ended, Tried::No),
+            (300, 2.0, Tried::Failed, Tried::Ended),
+        ] {
             choice.add(&Report {
-                chosen: Chosen::Newton {
+                chosen: Chosen::Factorised {
                     after,
                     hyperstaticity,
-                    ended,
+                    newton,
+                    interior,
                 },
                 ..Report::default()
             });
@@ -116,7 +133,8 @@ mod tests {
             "200 sweeps",
             "1.50",
             ": hyperstatic",
-            "ended 1",
+            "newton ended 1 of 2",
+            "interior 1 of 1",
         ] {
             assert!(why.contains(part), "{why}");
         }

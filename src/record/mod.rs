@@ -25,6 +25,8 @@ pub mod strain;
 pub mod stress;
 pub mod summary;
 pub mod views;
+pub mod warnings;
 
 pub use run::{Progress, RunError, RunOptions, go_on, run, stopped};
 pub use summary::Summary;
+pub use warnings::Missed;

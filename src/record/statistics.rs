@@ -27,7 +27,7 @@ impl Column {
 }
 
 /// Rows kept in memory for the figures, and written as they come.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Table {
     /// Columns.
     pub columns: Vec<Column>,

@@ -8,6 +8,7 @@ use super::ledger::Energy;
 use super::scars::ScarSummary;
 pub use super::solving::SolverSummary;
 use super::steady::Flow;
+use super::warnings::Warning;
 use crate::contact::Haste;
 use crate::step::control::Begun;
 use crate::wear::ledger::{Contents, Flows};
@@ -233,6 +234,8 @@ pub struct Summary {
     pub jump: Option<JumpSummary>,
     /// Scars of the surfaces that follow their wear; empty without.
     pub scars: Vec<ScarSummary>,
+    /// What went wrong without ending the run, each with what to change; empty where nothing did.
+    pub warnings: Vec<Warning>,
     /// What was too fast for the step.
     pub haste: Haste,
     /// The solver.
@@ -442,19 +445,6 @@ impl Summary {
                 format!("{} steps written in fclib/{skipped}", s.fclib_written),
             );
         }
-        if let Some(text) = self.haste.warning() {
-            line("TOO FAST", text);
-        }
-        if s.unconverged_steps > 0 {
-            line(
-                "NOT CONVERGED",
-                format!(
-                    "{} steps, the first is step {}; raise solver.max_iterations, take a smaller step, or try solver.method \
-                     Interior or Newton",
-                    s.unconverged_steps, s.first_unconverged
-                ),
-            );
-        }
         if s.coupling_iterations_mean > 0.0 {
             line(
                 "coupling",
@@ -464,14 +454,8 @@ impl Summary {
                 ),
             );
         }
-        if s.uncoupled_steps > 0 {
-            line(
-                "NOT COUPLED",
-                format!(
-                    "{} steps left damage and opening apart; raise coupling.max_iterations or take a smaller step",
-                    s.uncoupled_steps
-                ),
-            );
+        for warning in &self.warnings {
+            line(warning.of, warning.text.clone());
         }
         for p in &self.plugins {
             line(

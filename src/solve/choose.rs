@@ -2,11 +2,12 @@
 //!
 //! Sweeps over bodies are matrix-free and nearly always enough. [`Method::Auto`] lets them run for as long as
 //! twenty factorisations of W would take (twice as long at a loose tolerance), then tries Newton on the
-//! assembled W, and takes turns with longer sweeps until one of them ends. On a hyperstatic set Newton comes ten
-//! times as late. Where it did not help it is tried half as early in the steps that follow, until it helps again. The lengths follow from sizes
-//! alone: the same case takes the same path on any machine.
+//! assembled W, once the interior point where that did not end it and the set is not hyperstatic, and takes turns of longer
+//! sweeps and Newton until one of them ends. On a hyperstatic set Newton comes ten times as late. Where neither helped they are tried half as early in
+//! the steps that follow, until one helps again. The lengths follow from sizes alone: the same case takes the same path on
+//! any machine.
 
-use super::chosen::{Chosen, hyperstaticity};
+use super::chosen::{Chosen, Tried, hyperstaticity};
 use super::form::{ContactForm, Problem};
 use super::local::auto::sweeps_per_factorisation;
 use super::local::solver::Method;
@@ -21,11 +22,35 @@ use serde::{Deserialize, Serialize};
 pub struct Habit {
     /// Sweeps before Newton over what their costs say.
     patience: f64,
+    /// Whether the interior point ended the last step that Newton did not: it then comes first.
+    interior_first: bool,
+    /// How often the interior point is to be passed over, and was to be after its last failure.
+    passed_over: [u32; 2],
 }
 
 impl Default for Habit {
     fn default() -> Self {
-        Self { patience: 1.0 }
+        Self {
+            patience: 1.0,
+            interior_first: false,
+            passed_over: [0; 2],
+        }
+    }
+}
+
+impl Habit {
+    /// Whether the interior point has its turn: after each failure it is passed over twice as often, 64 times at most.
+    fn interior_is_due(&mut self) -> bool {
+        let due = self.passed_over[0] == 0;
+        self.passed_over[0] = self.passed_over[0].saturating_sub(1);
+        due
+    }
+
+    /// Learns from an attempt of the interior point.
+    fn learn(&mut self, ended: bool) {
+        self.interior_first = ended;
+        let next = (2 * self.passed_over[1]).clamp(1, 64);
+        self.passed_over = if ended { [0; 2] } else { [next; 2] };
     }
 }
 
@@ -129,6 +154,11 @@ impl<S: Space> Pieces<'_, S> {
         const LARGEST: usize = 60_000;
         /// Newton's steps.
         const NEWTON: u32 = 40;
+        /// Below this hyperstaticity what stops Newton is not a lack of rank but the length of the way, as in a column: the
+        /// interior point is tried. Above it, it failed in 7 attempts of 8.
+        const DETERMINED: f64 = 0.95;
+        /// Steps of the interior point.
+        const INTERIOR: u32 = 120;
         let options = self.options;
         let unknowns = problem.contacts() * S::D;
         // A contact of balls meets some eight others.
@@ -170,15 +200,33 @@ impl<S: Space> Pieces<'_, S> {
             report.chosen = Chosen::Longer { hyperstaticity };
         }
         let after = report.iterations;
+        let cohesion = self.forms.iter().any(|f| f.cohesion > 0.0);
+        let mut interior = hyperstaticity < DETERMINED
+            && refusal(Method::Interior, rolls, cohesion).is_none()
+            && habit.interior_is_due();
+        let (mut newton, mut inside) = (Tried::No, Tried::No);
         let mut round = 0;
         while !report.converged && report.iterations < options.max_iterations {
+            let first = round == 0 && interior && habit.interior_first;
+            if first {
+                inside = self.interior(problem, &mut report, INTERIOR, habit);
+                interior = false;
+            }
             let steps = NEWTON << round.min(16);
             // What the sweeps came to may be a dead end for Newton: every other time it starts where they did.
-            self.newton(problem, &mut report, steps, round % 2 == 1);
-            report.chosen = Chosen::Newton {
+            let anew = round % 2 == 1;
+            if !report.converged {
+                newton = self.attempt(problem, &mut report, Method::Newton, steps, anew);
+            }
+            if !report.converged && interior {
+                inside = self.interior(problem, &mut report, INTERIOR, habit);
+                interior = false;
+            }
+            report.chosen = Chosen::Factorised {
                 after,
                 hyperstaticity,
-                ended: report.converged,
+                newton,
+                interior: inside,
             };
             let left = options.max_iterations.saturating_sub(report.iterations);
             if !report.converged && left > 0 {
@@ -187,16 +235,43 @@ impl<S: Space> Pieces<'_, S> {
             }
             round += 1;
         }
-        let Chosen::Newton { ended, .. } = report.chosen else {
-            return report;
-        };
-        habit.patience *= if ended { 0.5 } else { 2.0 };
-        habit.patience = habit.patience.clamp(1.0, 64.0);
+        if let Chosen::Factorised { .. } = report.chosen {
+            let ended = newton == Tried::Ended || inside == Tried::Ended;
+            habit.patience *= if ended { 0.5 } else { 2.0 };
+            habit.patience = habit.patience.clamp(1.0, 64.0);
+        }
         report
     }
 
-    /// Newton from the impulses at hand or from those of the forms; keeps those with the smaller error.
-    fn newton(&self, problem: &mut Problem<S>, report: &mut Report, steps: u32, anew: bool) {
+    /// The interior point; it starts from nowhere near, so impulses at hand do not matter to it.
+    fn interior(
+        &self,
+        problem: &mut Problem<S>,
+        report: &mut Report,
+        steps: u32,
+        habit: &mut Habit,
+    ) -> Tried {
+        let tried = self.attempt(problem, report, Method::Interior, steps, false);
+        habit.learn(tried == Tried::Ended);
+        tried
+    }
+
+    /// A method that factorises, from the impulses at hand or from those of the forms; keeps those with the smaller error.
+    fn attempt(
+        &self,
+        problem: &mut Problem<S>,
+        report: &mut Report,
+        method: Method,
+        steps: u32,
+        anew: bool,
+    ) -> Tried {
+        let left = self
+            .options
+            .max_iterations
+            .saturating_sub(report.iterations);
+        if left == 0 {
+            return Tried::No;
+        }
         let mut saved = Vec::new();
         problem.store(&mut saved);
         let before = Report {
@@ -208,12 +283,16 @@ impl<S: Space> Pieces<'_, S> {
             let moments: Vec<_> = self.moments.iter().map(|m| Some(m.moment)).collect();
             problem.adopt(&impulses, &moments);
         }
-        let left = self.options.max_iterations - report.iterations;
         let tolerance = 0.3 * self.options.tolerance;
-        report.add(&self.improve(problem, Method::Newton, tolerance, steps.min(left)));
+        report.add(&self.improve(problem, method, tolerance, steps.min(left)));
         if !report.converged && report.error > before.error {
             problem.restore(&saved);
             report.add(&before);
+        }
+        if report.converged {
+            Tried::Ended
+        } else {
+            Tried::Failed
         }
     }
 }

@@ -3,6 +3,18 @@
 use super::form::{ContactForm, Problem};
 use crate::geometry::space::{Space, VectorLike};
 
+/// What came of a method in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tried {
+    /// It was not tried.
+    #[default]
+    No,
+    /// It did not reach the tolerance.
+    Failed,
+    /// It did.
+    Ended,
+}
+
 /// What [`super::local::solver::Method::Auto`] did in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Chosen {
@@ -14,14 +26,16 @@ pub enum Chosen {
         /// The set's [`hyperstaticity`].
         hyperstaticity: f64,
     },
-    /// Sweeps had taken their share, and Newton was tried.
-    Newton {
-        /// Sweeps before it.
+    /// Sweeps had taken their share, and methods that factorise were tried.
+    Factorised {
+        /// Sweeps before them.
         after: u32,
         /// The set's [`hyperstaticity`].
         hyperstaticity: f64,
-        /// Whether it reached the tolerance.
-        ended: bool,
+        /// What Newton did, the last time.
+        newton: Tried,
+        /// What the interior point did.
+        interior: Tried,
     },
     /// Sweeps had taken their share, and went on: Newton does not serve friction against rotation.
     Unserved,

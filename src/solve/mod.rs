@@ -21,7 +21,7 @@ pub mod row;
 pub mod standard;
 
 pub use choose::{Habit, solve};
-pub use chosen::Chosen;
+pub use chosen::{Chosen, Tried};
 pub use form::{ContactForm, Problem};
 pub use nlgs::{Options, Report};
 pub use row::{MomentForm, MomentSolution};

@@ -112,6 +112,46 @@ fn a_law_that_writes_behind_its_columns() {
     );
 }
 
+#[cfg(unix)]
+#[test]
+fn a_folder_farther_up_or_behind_a_link_that_anybody_may_write_to() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let (trial, _) = own("GOOD");
+    let files = std::fs::read_dir(trial.path("")).unwrap().flatten();
+    let library = files
+        .map(|f| f.path())
+        .find(|p| p.to_string_lossy().contains("contact_own"))
+        .unwrap();
+    let name = library.file_name().unwrap();
+    let (up, laws, linked) = (
+        trial.path("up"),
+        trial.path("up/laws"),
+        trial.path("linked"),
+    );
+    for folder in [&laws, &linked] {
+        std::fs::create_dir_all(folder).unwrap();
+    }
+    std::fs::rename(&library, laws.join(name)).unwrap();
+    symlink(laws.join(name), linked.join(name)).unwrap();
+    symlink("up/laws", trial.path("way")).unwrap();
+    let mode = |mode| {
+        std::fs::set_permissions(&up, std::fs::Permissions::from_mode(mode)).unwrap();
+    };
+    for folder in ["up/laws", "linked", "way", "linked/../way"] {
+        let words = ["run", "case.ron", "--plugin-path", folder];
+        mode(0o777);
+        let said = refusal(&trial.call(&words), &["mode 0777", "--trust-plugins"]);
+        assert!(said.contains("/up (mode"), "{folder}: {said}");
+        let trusting = [&words[..], &["--trust-plugins"]].concat();
+        assert!(trial.call(&trusting).status.success());
+        // Others may not rename what is not theirs.
+        mode(0o1777);
+        assert!(trial.call(&words).status.success(), "{folder}");
+        mode(0o755);
+        assert!(trial.call(&words).status.success(), "{folder}");
+    }
+}
+
 #[test]
 fn a_law_that_does_not_come_back() {
     let (trial, _) = own("LOOPS");
@@ -120,7 +160,28 @@ fn a_law_that_does_not_come_back() {
     says(
         &output,
         1,
-        &["the contact law `own` has not come back from prepare"],
+        &[
+            "the contact law `own` has not come back from prepare",
+            "all rows up to this step and a summary.json",
+        ],
     );
-    assert!(trial.path("results/case/results.h5").exists());
+    // Nothing that was computed is lost, and the summary says why there is no more.
+    let out = |name: &str| trial.path(&format!("results/case/{name}"));
+    let summary = std::fs::read_to_string(out("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let steps = summary["steps"].as_u64().unwrap() as usize;
+    assert!(steps > 1000, "{steps}");
+    let why = summary["stopped"].as_str().unwrap();
+    assert!(why.contains("`own` has not come back"), "{why}");
+    assert!(summary["cycles"].as_array().is_some_and(|c| !c.is_empty()));
+    let table = std::fs::read_to_string(out("statistics.csv")).unwrap();
+    assert_eq!(table.lines().count(), steps + 1);
+    let results = hdf5::H5File::open(out("results.h5")).unwrap();
+    let rows = results.dataset("/statistics/step").unwrap();
+    let rows = rows.read_raw::<f64>().unwrap();
+    assert_eq!(rows.len(), steps);
+    assert_eq!(rows.last(), Some(&(steps as f64)));
+    // It is a run that was stopped, not one that ended: it can be gone on with, and hangs again.
+    let again = run(&trial, &[&more[..], &["--resume"]].concat());
+    says(&again, 1, &["has not come back from prepare"]);
 }

@@ -4,6 +4,7 @@ use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
 use fretwork::record::code::{decode, encode};
 use fretwork::scene::{Built, Scene, load};
+use fretwork::solve::local::solver::Method;
 use fretwork::step::{Saved, Simulation};
 use std::path::Path;
 
@@ -89,4 +90,56 @@ fn a_state_of_another_scene_is_not_taken() {
     let saved = decode(&all(&one)).unwrap();
     assert!(!other.restore(saved));
     assert!(all(&other) == before);
+}
+
+/// A column that sweeps do not cross in their share of a step, nor Newton: what `auto` learns of that is a part of the state.
+/// Two threads give the bits of one.
+#[test]
+fn what_auto_learned_goes_on_with_the_same_bits() {
+    const DISKS: usize = 10_000;
+    let grains: Vec<String> = (0..DISKS)
+        .map(|k| format!("(at: [0.0, {:?}], radius: 0.1)", 0.1 + 0.2 * k as f64))
+        .collect();
+    let case = format!(
+        r#"(name: "column", dimension: 2, time: (step: 1e-3, end: 1.0), gravity: [0.0, -9.81],
+            solver: (tolerance: 1e-12, max_iterations: 100000), detection: (alert: 1e-3, skin: 1e-2),
+            materials: {{"grain": "grain"}},
+            interfaces: [(name: "all", between: ("grain", "grain"), contact: "coulomb", parameters: (contact: {{"mu": 0.3}}))],
+            bodies: [(name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 1.0])])],
+            grains: [List(material: "grain", grains: [{}])], output: (frames: 0, views: 0, figures: false))"#,
+        grains.join(", ")
+    );
+    let folder = super::common::Folder::new("column");
+    std::fs::create_dir_all(folder.0.join("materials")).unwrap();
+    let material = r#"(doc: "stone", density: (value: 1000.0, unit: "kg/m^3", source: "chosen"))"#;
+    std::fs::write(folder.0.join("materials/grain.ron"), material).unwrap();
+    let path = folder.0.join("case.ron");
+    std::fs::write(&path, case).unwrap();
+    let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let build = || match loaded.build(&SearchPath::new(&[])) {
+        Ok(Scene::Plane(built)) => built.simulation,
+        _ => panic!("the case is of the plane"),
+    };
+    // Twice the weight in each step: what the step before found does not help.
+    fn step<S: Space>(s: &mut Simulation<S>) {
+        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+        assert!(report.solver.converged, "{:?}", report.solver);
+        assert_eq!(report.solver.used, Method::Interior);
+        s.gravity += s.gravity;
+    }
+    let (mut whole, mut resumed, mut threads) = (build(), build(), build());
+    step(&mut whole);
+    let bytes = all(&whole);
+    assert!(resumed.restore(decode(&bytes).unwrap()));
+    assert!(all(&resumed) == bytes);
+    step(&mut whole);
+    step(&mut resumed);
+    assert!(all(&whole) == all(&resumed), "the step after it differs");
+    threads.solver.parallel = true;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+    pool.unwrap().install(|| {
+        step(&mut threads);
+        step(&mut threads);
+    });
+    assert!(all(&whole) == all(&threads), "two threads give other bits");
 }

@@ -1,84 +1,80 @@
 //! Next to nothing: no gravity, no grains, one grain, one contact.
 
-use crate::bench::{FLOOR, Group, Row, Sketch, go, refused};
-use fretwork::geometry::space::Plane;
+use crate::bench::{G, Group, HELD, Row, Sketch, ball, floor, go, grains, place, refused};
+use fretwork::geometry::space::{Plane, Solid};
+use fretwork::scene::build::Dimensional;
+use fretwork::step::Simulation;
 
 pub const WEIGHTLESS: Group = Group {
     name: "no gravity",
-    criterion: "disks at rest that touch stay at rest to the last bit; a disk that moves keeps its velocity to the last bit",
-    run: weightless,
+    criterion: "balls at rest that touch stay at rest to the last bit; a ball that moves keeps its velocity to the last bit",
+    runs: &[(2, weightless::<Plane>), (3, weightless::<Solid>)],
     quick: true,
 };
 
 pub const FEW: Group = Group {
     name: "few bodies",
-    criterion: "steps, all finite; a free disk falls by g t^2/2 to 1e-12; a contact bears m g to 1e-9",
-    run: few,
+    criterion: "steps, all finite; a free ball falls by g t^2/2 to 1e-12; a contact bears m g to 1e-9",
+    runs: &[(2, few::<Plane>), (3, few::<Solid>)],
     quick: true,
 };
 
-fn weightless() -> Vec<Row> {
+fn weightless<S: Dimensional>() -> Vec<Row> {
+    let at = |x, up| ball(&place::<S>(x, 0.0, up), 0.1);
+    let flies = format!(
+        "(at: {}, radius: 0.1, velocity: {})",
+        place::<S>(5.0, 0.0, 0.0),
+        place::<S>(0.3, -0.2, 0.7)
+    );
     let sketch = Sketch {
         gravity: 0.0,
-        grains: r#"List(material: "m0", grains: [(at: [0.0, 0.1], radius: 0.1), (at: [0.2, 0.1], radius: 0.1),
-            (at: [5.0, 0.0], radius: 0.1, velocity: [0.3, 0.7])])"#
-            .to_owned(),
+        grains: grains("m0", &[at(0.0, 0.1), at(0.2, 0.1), flies]),
         ..Sketch::default()
     };
-    let value = "three disks".to_owned();
-    let mut s = match sketch.build::<Plane>() {
+    let value = "three balls".to_owned();
+    let mut s = match sketch.build::<S>() {
         Ok(s) => s,
-        Err(e) => return vec![refused(value, &e)],
+        Err(e) => return vec![refused(value, HELD, &e)],
     };
-    let places = s.bodies.position.clone();
+    let (places, velocity) = (s.bodies.position.clone(), s.bodies.velocity[2]);
     let ran = go(&mut s, 1000);
     let rest = s.bodies.position[..2] == places[..2];
-    let moves = s.bodies.velocity[2].x == 0.3 && s.bodies.velocity[2].y == 0.7;
-    vec![Row {
-        value,
-        found: format!("at rest: {rest}, velocity kept: {moves}"),
-        verdict: ran.verdict(&s, rest && moves),
-    }]
+    let moves = s.bodies.velocity[2] == velocity;
+    let found = format!("at rest: {rest}, velocity kept: {moves}");
+    vec![ran.row(&s, (value, found), rest && moves, HELD)]
 }
 
-fn few() -> Vec<Row> {
-    let scene = |words: &str,
-                 bodies: &str,
-                 grains: &str,
-                 met: fn(&fretwork::step::Simulation<Plane>) -> (String, bool)| {
+fn few<S: Dimensional>() -> Vec<Row> {
+    type Look<S> = fn(&Simulation<S>) -> (String, bool);
+    let scene = |words: &str, bodies: &str, grains: &str, look: Look<S>| {
         let sketch = Sketch {
             bodies: bodies.to_owned(),
             grains: grains.to_owned(),
             ..Sketch::default()
         };
-        let mut s = match sketch.build::<Plane>() {
+        let mut s = match sketch.build::<S>() {
             Ok(s) => s,
-            Err(e) => return refused(words.to_owned(), &e),
+            Err(e) => return refused(words.to_owned(), HELD, &e),
         };
         let ran = go(&mut s, 100);
-        let (found, met) = met(&s);
-        Row {
-            value: words.to_owned(),
-            found,
-            verdict: ran.verdict(&s, met),
-        }
+        let (found, met) = look(&s);
+        ran.row(&s, (words.to_owned(), found), met, HELD)
     };
-    let one = r#"List(material: "m0", grains: [(at: [0.0, 0.1], radius: 0.1)])"#;
+    let one = grains("m0", &[ball(&place::<S>(0.0, 0.0, 0.1), 0.1)]);
+    let floor = floor::<S>();
+    let steps: Look<S> = |s| (format!("{} steps", s.steps), s.steps == 100);
     vec![
-        scene("nothing at all", "", "", |s| {
-            (format!("{} steps", s.steps), s.steps == 100)
-        }),
-        scene("a floor, no grains", FLOOR, "", |s| {
-            (format!("{} steps", s.steps), s.steps == 100)
-        }),
-        scene("one disk, nothing else", "", one, |s| {
+        scene("nothing at all", "", "", steps),
+        scene("a floor, no grains", &floor, "", steps),
+        scene("one ball, nothing else", "", &one, |s| {
             // From rest at theta = 1/2 the fall is exact.
-            let off = (0.1 - s.bodies.position[0].y) / (0.5 * 9.81 * s.time * s.time) - 1.0;
+            let fallen = 0.1 - s.bodies.position[0][S::D - 1];
+            let off = fallen / (0.5 * G * s.time * s.time) - 1.0;
             (format!("fall {off:.1e} off"), off.abs() < 1e-12)
         }),
-        scene("one disk on a floor", FLOOR, one, |s| {
-            let weight = s.bodies.mass[0] * 9.81 * s.scheme.h;
-            let off = s.network.contacts[0].impulse.y / weight - 1.0;
+        scene("one ball on a floor", &floor, &one, |s| {
+            let weight = s.bodies.mass[0] * G * s.scheme.h;
+            let off = s.network.contacts[0].impulse[S::D - 1] / weight - 1.0;
             (format!("contact {off:.1e} off"), off.abs() < 1e-9)
         }),
     ]

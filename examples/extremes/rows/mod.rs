@@ -1,6 +1,7 @@
 //! The rows of the table, by what is extreme in them.
 
 mod bonds;
+mod faces;
 mod geometry;
 mod inertia;
 mod little;
@@ -23,8 +24,8 @@ pub const ALL: &[Group] = &[
     time::MANY,
     packed::WEDGE,
     packed::ROD,
-    packed::WALL,
-    packed::FACES,
+    faces::WALL,
+    faces::FACES,
     motion::SPEED,
     little::WEIGHTLESS,
     little::FEW,

@@ -1,117 +1,108 @@
-//! Friction without bounds, wedges, rods that jam, walls, faces that fit, and a tolerance that none can meet.
+//! Friction from nothing to rigid, wedges, Painleve's rod, and a tolerance that none can meet.
 
-use crate::bench::{FLOOR, G, Group, Row, Sketch, carried, go, overlap, refused, watch};
-use fretwork::geometry::space::Plane;
+use crate::bench::Cause::Unconverged;
+use crate::bench::{
+    G, Group, HELD, Row, Sketch, ball, carried, floor, go, grains, held_though, overlap, place,
+    plane, refused, volume, watch,
+};
+use fretwork::geometry::space::{Plane, Solid, VectorLike};
+use fretwork::scene::build::Dimensional;
 use std::f64::consts::PI;
 
 pub const FRICTION: Group = Group {
     name: "friction",
-    criterion: "a block on 30 degrees has v = max(0, sin - mu cos) g t to 1e-9 of g t",
-    run: friction,
+    criterion: "a block on 30 degrees has v = max(0, sin - mu cos) g t down the slope and nothing across, to 1e-9 of g t",
+    runs: &[(2, friction::<Plane>), (3, friction::<Solid>)],
     quick: true,
 };
 
 pub const WEDGE: Group = Group {
     name: "wedge",
     criterion: "without friction each side bears m g/(2 sin a) to 1e-6; with it the sides together m g",
-    run: wedge,
+    runs: &[(2, wedge::<Plane>), (3, wedge::<Solid>)],
     quick: true,
 };
 
 pub const ROD: Group = Group {
     name: "Painleve's rod",
     criterion: "kinetic and potential energy never above that of the start, the ledger closes to 1e-9",
-    run: rod,
-    quick: true,
-};
-
-pub const WALL: Group = Group {
-    name: "hyperstatic wall",
-    criterion: "the floor bears the weight to 1e-6, and no block moves faster than 1e-6 m/s",
-    run: wall,
-    quick: true,
-};
-
-pub const FACES: Group = Group {
-    name: "aligned faces",
-    criterion: "the floor bears the weight to 1e-6, overlap below 1e-9 of the block, no block turns",
-    run: faces,
+    runs: &[(2, rod)],
     quick: true,
 };
 
 pub const TOLERANCE: Group = Group {
     name: "tolerance 0",
     criterion: "ends, with max_iterations or an error below rounding, and the floor bears the weight to 1e-12",
-    run: tolerance,
+    runs: &[(2, tolerance::<Plane>), (3, tolerance::<Solid>)],
     quick: true,
 };
 
-fn friction() -> Vec<Row> {
+fn friction<S: Dimensional>() -> Vec<Row> {
     let block = |mu: f64| {
         let angle = PI / 6.0;
+        let dofs = match S::D {
+            2 => "x: Free, y: Free, rz: Fixed",
+            _ => "x: Free, y: Free, z: Free, rx: Fixed, ry: Fixed, rz: Fixed",
+        };
         let sketch = Sketch {
             mu,
-            bodies: r#"(name: "floor", material: "m0", shapes: [HalfSpace(normal: [0.0, 1.0])]),
-                (name: "block", material: "m0", shapes: [Balls([([0.0, 0.0], 0.1)])], position: [0.0, 0.1],
-                 dofs: (x: Free, y: Free, rz: Fixed)),"#
-                .to_owned(),
+            bodies: format!(
+                r#"{} (name: "block", material: "m0", shapes: [Balls([({}, 0.1)])], position: {}, dofs: ({dofs})),"#,
+                floor::<S>(),
+                place::<S>(0.0, 0.0, 0.0),
+                place::<S>(0.0, 0.0, 0.1)
+            ),
             ..Sketch::default()
         };
         let value = format!("mu = {mu:e}");
-        let mut s = match sketch.build::<Plane>() {
+        let mut s = match sketch.build::<S>() {
             Ok(s) => s,
-            Err(e) => return refused(value, &e),
+            Err(e) => return refused(value, HELD, &e),
         };
-        s.gravity = [G * angle.sin(), -G * angle.cos()].into();
+        // In space down a slope between the axes.
+        let mut slope = S::Vector::null();
+        slope[0] = if S::D == 2 { 1.0 } else { 0.8 };
+        if S::D == 3 {
+            slope[1] = 0.6;
+        }
+        s.gravity = slope * (G * angle.sin());
+        s.gravity[S::D - 1] = -G * angle.cos();
         let ran = go(&mut s, 100);
         let expected = (angle.sin() - mu * angle.cos()).max(0.0) * G * s.time;
         let block = s.bodies.driven[1].body as usize;
-        let off = (s.bodies.velocity[block].x - expected) / (G * s.time);
-        Row {
-            value,
-            found: format!("v {off:.1e} off, overlap {:.1e}", overlap(&s)),
-            verdict: ran.verdict(&s, off.abs() < 1e-9),
-        }
+        let mut off = s.bodies.velocity[block] - slope * expected;
+        off[S::D - 1] = 0.0;
+        let off = off.norm() / (G * s.time);
+        let found = format!("v {off:.1e} off, overlap {:.1e}", overlap(&s));
+        ran.row(&s, (value, found), off < 1e-9, HELD)
     };
     [0.0, 1e-9, 1.0, 10.0, 1e6].map(block).into()
 }
 
-fn wedge() -> Vec<Row> {
+fn wedge<S: Dimensional>() -> Vec<Row> {
     let groove = |(degrees, mu): (f64, f64)| {
         // Half of the angle between the sides.
         let a = degrees.to_radians();
-        let side = |name: &str, sign: f64| {
-            format!(
-                "(name: \"{name}\", material: \"m0\", shapes: [HalfSpace(normal: [{:?}, {:?}])]),",
-                sign * a.cos(),
-                a.sin()
-            )
-        };
+        let side = |name: &str, sign: f64| plane::<S>(name, sign * a.cos(), 0.0, a.sin());
         let sketch = Sketch {
             mu,
             bodies: side("left", 1.0) + &side("right", -1.0),
-            grains: format!(
-                "List(material: \"m0\", grains: [(at: [0.0, {:?}], radius: 0.1)])",
-                0.1 / a.sin()
-            ),
+            grains: grains("m0", &[ball(&place::<S>(0.0, 0.0, 0.1 / a.sin()), 0.1)]),
             ..Sketch::default()
         };
         let value = format!("half angle {degrees} degrees, mu = {mu}");
-        let mut s = match sketch.build::<Plane>() {
+        let mut s = match sketch.build::<S>() {
             Ok(s) => s,
-            Err(e) => return refused(value, &e),
+            Err(e) => return refused(value, HELD, &e),
         };
         let ran = go(&mut s, 50);
-        let weight = 1e3 * PI * 0.01 * G;
+        let weight = 1e3 * volume::<S>(0.1) * G;
         let both = (carried(&s, "left") + carried(&s, "right")) / weight - 1.0;
         let left = s.received[0].0.norm() / s.scheme.h;
         let side = left * 2.0 * a.sin() / weight - 1.0;
         let met = both.abs() < 1e-6 && (mu > 0.0 || side.abs() < 1e-6);
-        Row {
-            value,
-            found: format!("together {both:.1e}, one side {side:.1e}"),
-            verdict: ran.verdict(&s, met),
-        }
+        let found = format!("together {both:.1e}, one side {side:.1e}");
+        ran.row(&s, (value, found), met, HELD)
     };
     [
         (45.0, 0.0),
@@ -131,7 +122,7 @@ fn rod() -> Vec<Row> {
         let sketch = Sketch {
             mu,
             step: 1e-4,
-            bodies: FLOOR.to_owned(),
+            bodies: floor::<Plane>(),
             grains: format!(
                 "Polygons(material: \"m0\", grains: [(at: [0.0, 0.0], points: [(0.0, 0.0), (1.0, 0.0), (1.0, 0.002), \
                  (0.0, 0.002)], angle: 1.1071487177940904, velocity: [{speed:?}, 0.0])])"
@@ -141,7 +132,7 @@ fn rod() -> Vec<Row> {
         let value = format!("mu = {mu}, v = {speed} m/s");
         let mut s = match sketch.build::<Plane>() {
             Ok(s) => s,
-            Err(e) => return refused(value, &e),
+            Err(e) => return refused(value, HELD, &e),
         };
         let start = s.energy.kinetic;
         let mut most = 0.0f64;
@@ -150,131 +141,58 @@ fn rod() -> Vec<Row> {
         });
         let gained = most / start - 1.0;
         let residual = s.energy.relative_residual();
-        Row {
-            value,
-            found: format!(
-                "energy {gained:.1e} above the start, residual {residual:.1e}, {} steps not converged",
-                ran.unconverged.0
-            ),
-            verdict: ran.verdict(&s, gained < 1e-9 && residual < 1e-9),
-        }
+        let found = format!(
+            "energy {gained:.1e} above the start, residual {residual:.1e}, {} steps not converged",
+            ran.missed.steps
+        );
+        let met = gained < 1e-9 && residual < 1e-9;
+        ran.row(&s, (value, found), met, HELD)
     };
     [(2.0, -1.0), (2.0, 1.0), (100.0, -1.0), (0.5, -100.0)]
         .map(thrown)
         .into()
 }
 
-/// Blocks on a floor for some steps: what it bears over the weight, less one; and the greatest speed.
-fn standing(value: String, grains: String, area: f64, mu: f64) -> Row {
-    let sketch = Sketch {
-        mu,
-        bodies: FLOOR.to_owned(),
-        grains,
-        ..Sketch::default()
-    };
-    let mut s = match sketch.build::<Plane>() {
-        Ok(s) => s,
-        Err(e) => return refused(value, &e),
-    };
-    let ran = go(&mut s, 50);
-    let bears = carried(&s, "floor") / (1e3 * area * G) - 1.0;
-    let fast = s
-        .bodies
-        .velocity
-        .iter()
-        .map(|v| v.norm())
-        .fold(0.0, f64::max);
-    let turns = s
-        .bodies
-        .rotation
-        .iter()
-        .map(|a| a.abs())
-        .fold(0.0, f64::max);
-    let deep = s
-        .network
-        .contacts
-        .iter()
-        .map(|c| -c.gap)
-        .fold(0.0, f64::max)
-        / 0.1;
-    let met = bears.abs() < 1e-6 && fast < 1e-6 && deep < 1e-9 && turns < 1e-9;
-    Row {
-        value,
-        found: format!(
-            "floor {bears:.1e}, speed {fast:.1e} m/s, turned {turns:.1e}, overlap {deep:.1e}, {} sweeps at most",
-            ran.iterations
+/// One ball on those of a side, or a triangle, of balls that touch.
+fn tolerance<S: Dimensional>() -> Vec<Row> {
+    let root = 3f64.sqrt();
+    let (base, top) = match S::D {
+        2 => (vec![[0.0, 0.0], [0.2, 0.0]], [0.1, 0.0, 0.1 + 0.1 * root]),
+        _ => (
+            vec![[0.0, 0.0], [0.2, 0.0], [0.1, 0.1 * root]],
+            [0.1, 0.1 / root, 0.1 + 0.2 * (2.0f64 / 3.0).sqrt()],
         ),
-        verdict: ran.verdict(&s, met),
-    }
-}
-
-fn wall() -> Vec<Row> {
-    let of = |mu: f64| {
-        let mut blocks = Vec::new();
-        for course in 0..10 {
-            let shift = if course % 2 == 0 { 0.0 } else { 0.1 };
-            for k in 0..6 {
-                blocks.push(square(0.2 * k as f64 + shift, 0.1 * course as f64, 0.2));
-            }
-        }
-        standing(
-            format!("60 blocks, mu = {mu}"),
-            polygons(&blocks),
-            60.0 * 0.02,
-            mu,
-        )
     };
-    [0.0, 0.6, 10.0].map(of).into()
-}
-
-fn faces() -> Vec<Row> {
-    let of = |n: usize| {
-        let blocks: Vec<String> = (0..n).map(|k| square(0.0, 0.1 * k as f64, 0.1)).collect();
-        standing(
-            format!("{n} equal blocks, flush"),
-            polygons(&blocks),
-            0.01 * n as f64,
-            0.5,
-        )
-    };
-    [1, 2, 20].map(of).into()
-}
-
-fn square(x: f64, y: f64, width: f64) -> String {
-    format!(
-        "(at: [{x:?}, {y:?}], points: [(0.0, 0.0), ({width:?}, 0.0), ({width:?}, 0.1), (0.0, 0.1)])"
-    )
-}
-
-fn polygons(all: &[String]) -> String {
-    format!("Polygons(material: \"m0\", grains: [{}])", all.join(", "))
-}
-
-fn tolerance() -> Vec<Row> {
+    let mut all: Vec<[f64; 3]> = base.iter().map(|[x, y]| [*x, *y, 0.1]).collect();
+    all.push(top);
+    let count = all.len();
+    let all: Vec<String> = all
+        .iter()
+        .map(|[x, y, z]| ball(&place::<S>(*x, *y, *z), 0.1))
+        .collect();
     let sketch = Sketch {
         solver: "tolerance: 0.0, max_iterations: 200,".to_owned(),
         mu: 0.5,
-        bodies: FLOOR.to_owned(),
-        grains: format!(
-            "List(material: \"m0\", grains: [(at: [0.0, 0.1], radius: 0.1), (at: [0.2, 0.1], radius: 0.1), \
-             (at: [0.1, {:?}], radius: 0.1)])",
-            0.1 + 0.03f64.sqrt()
-        ),
+        bodies: floor::<S>(),
+        grains: grains("m0", &all),
         ..Sketch::default()
     };
-    let value = "two disks with a third on them".to_owned();
-    let mut s = match sketch.build::<Plane>() {
+    let value = format!("{} balls with another on them", count - 1);
+    // In the plane the error is zero to the last bit.
+    let expected = match S::D {
+        2 => HELD,
+        _ => held_though(&[Unconverged]),
+    };
+    let mut s = match sketch.build::<S>() {
         Ok(s) => s,
-        Err(e) => return vec![refused(value, &e)],
+        Err(e) => return vec![refused(value, expected, &e)],
     };
     let ran = go(&mut s, 100);
-    let bears = carried(&s, "floor") / (3.0 * 1e3 * PI * 0.01 * G) - 1.0;
-    vec![Row {
-        value,
-        found: format!(
-            "floor {bears:.1e}; {} of {} steps not converged, error at most {:.1e}",
-            ran.unconverged.0, ran.steps, ran.unconverged.1
-        ),
-        verdict: ran.verdict(&s, ran.steps == 100 && bears.abs() < 1e-12),
-    }]
+    let bears = carried(&s, "floor") / (count as f64 * 1e3 * volume::<S>(0.1) * G) - 1.0;
+    let found = format!(
+        "floor {bears:.1e}; {} of {} steps not converged, error at most {:.1e}",
+        ran.missed.steps, ran.steps, ran.missed.error
+    );
+    let met = ran.steps == 100 && bears.abs() < 1e-12;
+    vec![ran.row(&s, (value, found), met, expected)]
 }

@@ -41,7 +41,7 @@ const BODY: usize = 80;
 
 impl Frame {
     /// Form of identities and states that this program writes: one more whenever anything of them changes.
-    pub const FORMAT: u32 = 1;
+    pub const FORMAT: u32 = 2;
 
     /// The frame as bytes.
     pub fn bytes(&self) -> Vec<u8> {

@@ -68,8 +68,8 @@ const PART: u32 = 20;
 /// The checkpoints, written in turn.
 const CHECKPOINTS: [&str; 2] = ["/checkpoints/even", "/checkpoints/odd"];
 
-/// The results file of a run.
-#[derive(Debug)]
+/// The results file of a run; by default none, and what is appended to it is lost.
+#[derive(Debug, Default)]
 pub struct Results {
     store: Option<Store>,
     statistics: Vec<Growing>,

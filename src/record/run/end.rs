@@ -1,23 +1,22 @@
 //! The end of a run: what is summed up, drawn and written last.
 
 use super::{Recorder, RunError, unwritable};
+use crate::geometry::space::Space;
 use crate::record::biaxial::{self, Outcome};
-use crate::record::checkpoint::LAST;
-use crate::record::summary::Wear;
-use crate::record::{circuit, figures, fretting, jump, scars};
+pub(super) use crate::record::checkpoint::LAST;
+use crate::record::friction::Cycles;
+use crate::record::summary::{Summary, Wear};
+use crate::record::{circuit, figures, fretting, jump, scars, warnings};
 use crate::scene::build::Dimensional;
 use std::path::Path;
 
-impl<S: Dimensional> Recorder<'_, S> {
-    /// Writes what a run leaves behind, whatever it reached.
-    pub(super) fn finish(&mut self) -> Result<(), RunError> {
+impl<S: Space> Recorder<'_, S> {
+    /// Brings up to date what is known between two steps, and costs nothing.
+    pub(super) fn count(&mut self) {
         let (s, n) = (&self.simulation, &self.simulation.network);
         let summary = &mut self.summary;
         summary.steps = s.steps;
         summary.time = s.time;
-        let wall = self.spent.0 + self.clock.elapsed();
-        summary.wall_seconds = wall.as_secs_f64();
-        summary.cpu_seconds = (self.spent.1 + self.processor.elapsed()).as_secs_f64();
         summary.bodies = s.bodies.len();
         summary.contacts = n.contacts.len();
         summary.bonds = n.bonds_made();
@@ -27,13 +26,35 @@ impl<S: Dimensional> Recorder<'_, S> {
         } else {
             0.0
         };
+        summary.haste = n.haste;
+        summary.energy = s.energy;
+        summary.energy_residual_relative = s.energy.relative_residual();
+        summary.solver.coupling_iterations_mean = self.couplings as f64 / s.steps.max(1) as f64;
+        summary.solver.iterations_mean = self.iterations as f64 / s.steps.max(1) as f64;
+    }
+}
+
+/// What the cycles of a friction test say.
+pub(super) fn sum_up(summary: &mut Summary, cycles: Option<&Cycles>) {
+    if let Some(cycles) = cycles {
+        summary.friction_coefficient = cycles.last().map(|c| c.friction_coefficient);
+        summary.friction_from_dissipation = cycles.last().map(|c| c.friction_from_dissipation);
+        summary.cycles.clone_from(&cycles.list);
+        summary.fretting = fretting::Outcome::new(&cycles.list).filter(|_| cycles.oscillates());
+    }
+}
+
+impl<S: Dimensional> Recorder<'_, S> {
+    /// Writes what a run leaves behind, whatever it reached.
+    pub(super) fn finish(&mut self) -> Result<(), RunError> {
+        self.count();
+        let (s, n) = (&self.simulation, &self.simulation.network);
+        let summary = &mut self.summary;
+        let wall = self.spent.0 + self.clock.elapsed();
+        summary.wall_seconds = wall.as_secs_f64();
+        summary.cpu_seconds = (self.spent.1 + self.processor.elapsed()).as_secs_f64();
         summary.mean_damage = n.mean_damage();
-        if let Some((cycles, _)) = &self.cycles {
-            summary.friction_coefficient = cycles.last().map(|c| c.friction_coefficient);
-            summary.friction_from_dissipation = cycles.last().map(|c| c.friction_from_dissipation);
-            summary.cycles.clone_from(&cycles.list);
-            summary.fretting = fretting::Outcome::new(&cycles.list).filter(|_| cycles.oscillates());
-        }
+        sum_up(summary, self.cycles.as_ref().map(|(c, _)| c));
         let start = self.loaded.case.biaxial.as_ref().map_or(0.0, |t| t.start);
         if let Some(test) = &self.biaxial {
             summary.biaxial = Some(Outcome::new(&self.table, start, test.grain_mass(s)));
@@ -45,9 +66,6 @@ impl<S: Dimensional> Recorder<'_, S> {
         summary.scars = scars::outcome(s);
         summary.measures = self.measures.outcome(&self.table);
         summary.findings = self.measures.verdict(&self.table);
-        summary.haste = n.haste;
-        summary.energy = s.energy;
-        summary.energy_residual_relative = s.energy.relative_residual();
         summary.jump = self.jumps.as_ref().map(|j| j.outcome(s, self.worn));
         // Wear goes on over the cycles that were jumped over.
         let share = self.cycles.as_ref().map_or(1.0, |(c, _)| c.share(s.time));
@@ -74,9 +92,8 @@ impl<S: Dimensional> Recorder<'_, S> {
             summary.wear.Qe = Some(circuit.flows.ejected.mass / span);
             summary.wear.Qw = Some(circuit.flows.wear.mass / span);
         }
-        summary.solver.coupling_iterations_mean = self.couplings as f64 / s.steps.max(1) as f64;
         summary.solver.why = summary.solver.choice.why(s.solver.method, s.steps);
-        summary.solver.iterations_mean = self.iterations as f64 / s.steps.max(1) as f64;
+        summary.warnings = warnings::of(s, &summary.solver);
         let files = self.files();
         if let (Err(e), None) = (&files, &self.summary.stopped) {
             self.summary.stopped = Some(e.to_string());
@@ -126,7 +143,7 @@ impl<S: Dimensional> Recorder<'_, S> {
 }
 
 /// Writes a file that is whole whenever it is there.
-fn whole(path: &Path, text: &str) -> Result<(), RunError> {
+pub(super) fn whole(path: &Path, text: &str) -> Result<(), RunError> {
     let part = path.with_extension("part");
     std::fs::write(&part, text).map_err(|e| unwritable(&part, &e))?;
     std::fs::rename(&part, path).map_err(|e| unwritable(path, &e))

@@ -7,6 +7,7 @@ mod error;
 mod frame;
 mod jumps;
 mod keep;
+mod rescue;
 mod row;
 mod stamps;
 
@@ -15,6 +16,7 @@ pub use self::error::RunError;
 use self::account::Account;
 use self::error::unwritable;
 use self::jumps::Jumps;
+use self::rescue::Refuge;
 use self::stamps::{density_of, stamps};
 use super::biaxial::Biaxial;
 use super::checkpoint::{Found, Identity, Keeper, Kind, Stop, find};
@@ -142,6 +144,8 @@ struct Recorder<'a, S: Space> {
     keeper: Keeper,
     /// Time that the run took before it was stopped, of the clock and of processors; and since when it runs now.
     spent: (Duration, Duration),
+    /// Where the watch over plugins finds the files during a step.
+    refuge: Refuge,
     clock: Instant,
     processor: ProcessTime,
     density: f64,
@@ -242,6 +246,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             total,
             keeper,
             spent: (Duration::ZERO, Duration::ZERO),
+            refuge: Refuge::new(options.out.clone(), (Duration::ZERO, Duration::ZERO)),
             clock: Instant::now(),
             processor: ProcessTime::now(),
             density: density_of(loaded, first.is_some()),
@@ -273,7 +278,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         for step in self.simulation.steps + 1..=self.total {
             let (before, phase) = (self.cumulated(), self.simulation.control.phase());
             let recurs = self.simulation.control.recurs();
-            let report = self.simulation.step()?;
+            let report = self.step()?;
             self.follow(&report, before);
             self.measures.follow(&self.simulation);
             if phase == 1 && self.simulation.control.phase() == 2 {

@@ -1,0 +1,106 @@
+//! Steps, and what was told during them.
+
+use super::verdict::{Cause, Expected, Row, Verdict};
+use fretwork::geometry::space::{Space, VectorLike};
+use fretwork::record::Missed;
+use fretwork::step::Simulation;
+
+/// What was told during some steps.
+#[derive(Default)]
+pub struct Ran {
+    /// Steps done.
+    pub steps: u64,
+    /// Steps that did not converge.
+    pub missed: Missed,
+    /// The sentence with which the run stopped.
+    pub stopped: Option<String>,
+    /// Most sweeps in a step.
+    pub iterations: u32,
+    /// Largest kinetic energy (J; J/m).
+    pub liveliest: f64,
+}
+
+/// Steps on, `steps` times.
+pub fn go<S: Space>(s: &mut Simulation<S>, steps: u64) -> Ran {
+    watch(s, steps, |_| ())
+}
+
+/// The same, with a look at the state after each step.
+pub fn watch<S: Space>(
+    s: &mut Simulation<S>,
+    steps: u64,
+    mut look: impl FnMut(&Simulation<S>),
+) -> Ran {
+    let mut ran = Ran::default();
+    for _ in 0..steps {
+        match s.step() {
+            Ok(report) => {
+                ran.steps += 1;
+                ran.iterations = ran.iterations.max(report.solver.iterations);
+                ran.missed.add(&report.solver, s.steps);
+                ran.liveliest = ran.liveliest.max(s.energy.kinetic);
+                look(s);
+            }
+            Err(e) => {
+                ran.stopped = Some(e.to_string());
+                break;
+            }
+        }
+    }
+    ran
+}
+
+impl Ran {
+    /// All that was told, in the words of the program.
+    fn told<S: Space>(&self, s: &Simulation<S>) -> Vec<(Cause, String)> {
+        let mut told = Vec::new();
+        let stopped = self.stopped.iter().cloned();
+        told.extend(stopped.map(|words| (Cause::Stopped, words)));
+        let haste = &s.network.haste;
+        let mut warning = haste.warning();
+        if haste.late > 0 && haste.hasty_steps > 0 {
+            // One sentence tells of both.
+            told.push((Cause::Late, warning.clone().unwrap_or_default()));
+            told.push((Cause::Jumped, warning.take().unwrap_or_default()));
+        }
+        let cause = if haste.late > 0 {
+            Cause::Late
+        } else {
+            Cause::Jumped
+        };
+        told.extend(warning.map(|words| (cause, words)));
+        let missed = self.missed.warning(s, self.steps);
+        told.extend(missed.map(|words| (Cause::Unconverged, words)));
+        told
+    }
+
+    /// The row of a scene that ran.
+    pub fn row<S: Space>(
+        &self,
+        s: &Simulation<S>,
+        (value, found): (String, String),
+        met: bool,
+        expected: Expected,
+    ) -> Row {
+        let sound = s.bodies.position.iter().all(VectorLike::is_finite)
+            && s.bodies.velocity.iter().all(VectorLike::is_finite)
+            && s.energy.relative_residual() < 1e-6;
+        Row {
+            value,
+            found,
+            verdict: Verdict::new(expected, met, sound, &self.told(s)),
+        }
+    }
+}
+
+/// Deepest overlap of the contacts at hand, in parts of their radius.
+pub fn overlap<S: Space>(s: &Simulation<S>) -> f64 {
+    let deep = s.network.contacts.iter().map(|c| -c.gap / c.radius);
+    deep.fold(0.0, f64::max)
+}
+
+/// The force along the last axis that a first body bears in the last step (N/m; N).
+pub fn carried<S: Space>(s: &Simulation<S>, name: &str) -> f64 {
+    let driven = s.bodies.driven.iter().position(|d| d.name == name);
+    driven.map_or(f64::NAN, |d| -s.received[d].0[S::D - 1] / s.scheme.h)
+}

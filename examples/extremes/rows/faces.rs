@@ -1,0 +1,99 @@
+//! Blocks face to face: walls with more unknowns than motions, and faces that are flush.
+
+use crate::bench::{G, Group, HELD, Row, Sketch, carried, floor, go, refused};
+use fretwork::geometry::space::{Plane, Solid, VectorLike};
+use fretwork::scene::build::Dimensional;
+
+pub const WALL: Group = Group {
+    name: "hyperstatic wall",
+    criterion: "the floor bears the weight to 1e-6, no block moves faster than 1e-6 m/s or turns",
+    runs: &[(2, wall::<Plane>), (3, wall::<Solid>)],
+    quick: true,
+};
+
+pub const FACES: Group = Group {
+    name: "aligned faces",
+    criterion: "the floor bears the weight to 1e-6, overlap below 1e-9 of the block, no block turns",
+    runs: &[(2, faces::<Plane>), (3, faces::<Solid>)],
+    quick: true,
+};
+
+/// A block 0.1 m high and, in space, 0.1 m deep.
+fn block<S: Dimensional>(x: f64, up: f64, width: f64) -> String {
+    match S::D {
+        2 => format!(
+            "(at: [{x:?}, {up:?}], points: [(0.0, 0.0), ({width:?}, 0.0), ({width:?}, 0.1), (0.0, 0.1)])"
+        ),
+        _ => format!(
+            "(at: [{:?}, 0.0, {:?}], size: ({width:?}, 0.1, 0.1))",
+            x + 0.5 * width,
+            up + 0.05
+        ),
+    }
+}
+
+/// Blocks on a floor for some steps.
+fn standing<S: Dimensional>(value: String, blocks: &[String], width: f64, mu: f64) -> Row {
+    let kind = if S::D == 2 { "Polygons" } else { "Polyhedra" };
+    let sketch = Sketch {
+        mu,
+        bodies: floor::<S>(),
+        grains: format!("{kind}(material: \"m0\", grains: [{}])", blocks.join(", ")),
+        ..Sketch::default()
+    };
+    let mut s = match sketch.build::<S>() {
+        Ok(s) => s,
+        Err(e) => return refused(value, HELD, &e),
+    };
+    let upright: Vec<S::Rotation> = s.bodies.rotation.clone();
+    let ran = go(&mut s, 50);
+    let each = width * 0.1f64.powi(S::D as i32 - 1);
+    let bears = carried(&s, "floor") / (1e3 * each * blocks.len() as f64 * G) - 1.0;
+    let fast = s.bodies.velocity.iter().map(VectorLike::norm);
+    let fast = fast.fold(0.0, f64::max);
+    // How far a turn moved the ends of the axes.
+    let turned = |(a, b): (&S::Rotation, &S::Rotation)| {
+        let ends = (0..S::D).map(|k| {
+            let mut axis = S::Vector::null();
+            axis[k] = 1.0;
+            (S::rotate(a, &axis) - S::rotate(b, &axis)).norm()
+        });
+        ends.fold(0.0, f64::max)
+    };
+    let turns = upright.iter().zip(&s.bodies.rotation).map(turned);
+    let turns = turns.fold(0.0, f64::max);
+    let deep = s.network.contacts.iter().map(|c| -c.gap);
+    let deep = deep.fold(0.0, f64::max) / 0.1;
+    let met = bears.abs() < 1e-6 && fast < 1e-6 && deep < 1e-9 && turns < 1e-9;
+    let found = format!(
+        "floor {bears:.1e}, speed {fast:.1e} m/s, turned {turns:.1e}, overlap {deep:.1e}, {} sweeps at most",
+        ran.iterations
+    );
+    ran.row(&s, (value, found), met, HELD)
+}
+
+/// Courses in running bond; in space a block touches at four corners a joint.
+fn wall<S: Dimensional>() -> Vec<Row> {
+    let of = |mu: f64| {
+        let mut blocks = Vec::new();
+        for course in 0..10 {
+            let shift = if course % 2 == 0 { 0.0 } else { 0.1 };
+            for k in 0..6 {
+                let x = 0.2 * f64::from(k) + shift;
+                blocks.push(block::<S>(x, 0.1 * f64::from(course), 0.2));
+            }
+        }
+        standing::<S>(format!("60 blocks, mu = {mu}"), &blocks, 0.2, mu)
+    };
+    [0.0, 0.6, 10.0].map(of).into()
+}
+
+fn faces<S: Dimensional>() -> Vec<Row> {
+    let of = |n: u32| {
+        let blocks: Vec<String> = (0..n)
+            .map(|k| block::<S>(0.0, 0.1 * f64::from(k), 0.1))
+            .collect();
+        standing::<S>(format!("{n} equal blocks, flush"), &blocks, 0.1, 0.5)
+    };
+    [1, 2, 20].map(of).into()
+}

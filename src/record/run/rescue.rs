@@ -1,0 +1,101 @@
+//! What is left for the watch over plugins to write when a law does not come back from a step.
+//!
+//! The thread that is stuck owns the simulation, half of a step done: nobody else may read it. The files of the run it does not
+//! use during a step. So before a step they are laid where the watch finds them, with what was known then, and taken back
+//! after it.
+
+use super::Recorder;
+use super::end::{self, LAST};
+use crate::geometry::space::Space;
+use crate::laws::watch::{self, Ready};
+use crate::record::friction::Cycles;
+use crate::record::results::Results;
+use crate::record::statistics::Table;
+use crate::record::summary::Summary;
+use crate::step::{StepError, StepReport};
+use cpu_time::ProcessTime;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+/// All that can be written without the simulation.
+struct Left {
+    table: Table,
+    results: Results,
+    cycles: Option<(Cycles, usize)>,
+    summary: Summary,
+}
+
+/// The place where it lies during a step.
+#[derive(Debug)]
+pub(super) struct Refuge {
+    left: Arc<Mutex<Option<Left>>>,
+    _ready: Ready,
+}
+
+impl std::fmt::Debug for Left {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Left").finish_non_exhaustive()
+    }
+}
+
+impl Refuge {
+    /// An empty place that the watch knows, for a run that took so long (by the clock, of processors) before.
+    pub fn new(out: PathBuf, spent: (Duration, Duration)) -> Self {
+        let left = Arc::new(Mutex::new(None));
+        let place = Arc::clone(&left);
+        let (clock, processor) = (Instant::now(), ProcessTime::now());
+        let ready = watch::rescue(move |who| {
+            let left: Option<Left> = place.lock().ok().and_then(|mut l| l.take());
+            left.is_some_and(|mut left| {
+                left.summary.wall_seconds = (spent.0 + clock.elapsed()).as_secs_f64();
+                left.summary.cpu_seconds = (spent.1 + processor.elapsed()).as_secs_f64();
+                left.write(who, &out)
+            })
+        });
+        Self {
+            left,
+            _ready: ready,
+        }
+    }
+}
+
+impl Left {
+    /// Writes it; whether all of it is on disk.
+    fn write(&mut self, who: &str, out: &std::path::Path) -> bool {
+        let summary = &mut self.summary;
+        summary.stopped = Some(who.to_owned());
+        end::sum_up(summary, self.cycles.as_ref().map(|(c, _)| c));
+        let text = serde_json::to_string_pretty(summary).unwrap_or_default();
+        let table = self.table.flush().is_ok();
+        let results = self.results.finish(out).is_ok();
+        end::whole(&out.join(LAST), &(text + "\n")).is_ok() && table && results
+    }
+}
+
+impl<S: Space> Recorder<'_, S> {
+    /// A step, during which the watch can save what was recorded.
+    pub(super) fn step(&mut self) -> Result<StepReport, StepError> {
+        self.count();
+        let left = Left {
+            table: std::mem::take(&mut self.table),
+            results: std::mem::take(&mut self.results),
+            cycles: self.cycles.take(),
+            summary: std::mem::take(&mut self.summary),
+        };
+        let place = || self.refuge.left.lock().unwrap_or_else(|e| e.into_inner());
+        *place() = Some(left);
+        let report = self.simulation.step();
+        let Some(left) = place().take() else {
+            // The watch took it, just before the law came back: the program ends.
+            loop {
+                std::thread::park();
+            }
+        };
+        self.table = left.table;
+        self.results = left.results;
+        self.cycles = left.cycles;
+        self.summary = left.summary;
+        report
+    }
+}
