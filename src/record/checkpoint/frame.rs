@@ -16,6 +16,8 @@ pub enum Kind {
     Begun,
     /// A state to go on from.
     State,
+    /// The run has come to its end: the state before it is in the other frame.
+    Ended,
 }
 
 /// A checkpoint.
@@ -41,13 +43,14 @@ const BODY: usize = 80;
 
 impl Frame {
     /// Form of identities and states that this program writes: one more whenever anything of them changes.
-    pub const FORMAT: u32 = 1;
+    pub const FORMAT: u32 = 2;
 
     /// The frame as bytes.
     pub fn bytes(&self) -> Vec<u8> {
         let kind: u32 = match self.kind {
             Kind::Begun => 0,
             Kind::State => 1,
+            Kind::Ended => 2,
         };
         let parts = [self.version.as_bytes(), &self.identity, &self.state];
         let mut bytes = Vec::with_capacity(BODY + parts.iter().map(|p| p.len()).sum::<usize>());
@@ -87,6 +90,7 @@ impl Frame {
         let kind = match word(12)? {
             0 => Kind::Begun,
             1 => Kind::State,
+            2 => Kind::Ended,
             _ => return None,
         };
         Some(Self {
