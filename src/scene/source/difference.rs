@@ -46,7 +46,7 @@ fn compare(
             [a, b] => {
                 let holds = |p: &&str| p.strip_prefix(&here).is_some_and(|r| r.starts_with('.'));
                 let group = a.or(b).and_then(Node::group);
-                match group.filter(|g| plain(g) && but.iter().any(|p| holds(p))) {
+                match group.filter(|g| plain(g) && but.iter().any(holds)) {
                     None => differ(path),
                     Some(group) => group.entries.iter().find_map(|e| {
                         let side = usize::from(a.is_none());
