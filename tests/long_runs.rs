@@ -52,7 +52,7 @@ const RUBBED: &str = r#"(
         Mass(name: "upper", axis: 1, above: 0.003),
         ThirdBody(name: "layer", between: ("floor", "lid"), along: 0, across: 1, bins: 4, slices: 2),
     ],
-    output: (frames: 0, views: 20, figures: false, checkpoint: Steps(100)),
+    output: (frames: 0, views: 20, figures: false, checkpoint: Steps(500)),
 )"#;
 
 /// Bytes held after each step of a run, and the bytes of the state in the last checkpoint.
