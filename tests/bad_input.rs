@@ -7,6 +7,8 @@ mod circuit;
 mod command_line;
 #[path = "bad_input/geometry.rs"]
 mod geometry;
+#[path = "bad_input/limits.rs"]
+mod limits;
 #[path = "bad_input/mutations.rs"]
 mod mutations;
 #[path = "bad_input/names.rs"]

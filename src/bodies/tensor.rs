@@ -56,9 +56,10 @@ impl<S: Space> Tensor<S> {
         spin: &S::Spin,
         time: f64,
     ) -> (S::Rotation, S::Spin) {
-        /// A body that turns this often in a step is not followed closer.
+        /// A body that turns by more than this (rad) in half a step, or takes more parts, is not followed closer.
+        const MOST_TURN: f64 = 100.0;
         const MOST_PARTS: f64 = 1e5;
-        let parts = spin.norm() * time.abs() / self.turn;
+        let parts = (spin.norm() * time.abs()).min(MOST_TURN) / self.turn;
         let parts = parts.ceil().clamp(1.0, MOST_PARTS);
         let time = time / parts;
         let mut rotation = *rotation;

@@ -43,6 +43,24 @@ pub fn pairs<V: VectorLike>(
     out
 }
 
+/// How many pairs [`pairs`] looks at: no fewer than it finds. Linear in the number of balls.
+pub fn most_pairs<V: VectorLike>(
+    centres: &[V],
+    radii: &[f64],
+    reach: f64,
+    periodic: &Periodic,
+) -> f64 {
+    let widest = radii.iter().copied().fold(0.0, f64::max);
+    let grid = Grid::new(centres, 2.0 * widest + reach, periodic);
+    let (mut near, mut sum) = (Vec::new(), 0.0);
+    for x in centres {
+        grid.around(x, periodic, &mut near);
+        let seen: usize = near.iter().map(|cell| grid.balls(*cell).len()).sum();
+        sum += seen as f64 - 1.0;
+    }
+    0.5 * sum
+}
+
 struct Grid {
     counts: [usize; 3],
     origin: [f64; 3],
@@ -220,6 +238,27 @@ mod tests {
                 brute(&x3, &r, 0.05, &periodic)
             );
         }
+    }
+
+    #[test]
+    fn pairs_are_no_more_than_are_looked_at() {
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(8);
+        let x: Vec<_> = (0..500)
+            .map(|_| Vector2::new(rng.random_range(0.0..10.0), rng.random_range(0.0..10.0)))
+            .collect();
+        let r = vec![0.1; 500];
+        let mut last = 0.0;
+        for (reach, period) in [(0.0, None), (0.5, Some(10.0)), (3.0, None), (1e3, None)] {
+            let periodic = Periodic {
+                period: [period, None, None],
+            };
+            let found = pairs(&x, &r, reach, &periodic, |_, _| true).len() as f64;
+            let most = most_pairs(&x, &r, reach, &periodic);
+            assert!(found <= most && most > last, "{found} of {most}");
+            last = most;
+        }
+        // All see all.
+        assert_eq!(last, 500.0 * 499.0 / 2.0);
     }
 
     #[test]

@@ -150,6 +150,11 @@ impl Cycles {
         self.period.is_some()
     }
 
+    /// Goes on to a later end (s).
+    pub fn lengthen(&mut self, end: f64) {
+        self.end = end;
+    }
+
     /// How many cycles the run has in all.
     pub fn total(&self) -> u32 {
         self.number(self.end)

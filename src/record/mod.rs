@@ -18,6 +18,7 @@ pub mod picture;
 pub mod results;
 pub mod run;
 pub mod scars;
+pub mod series;
 pub mod solving;
 pub mod statistics;
 pub mod steady;

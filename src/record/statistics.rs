@@ -1,8 +1,8 @@
 //! The table of statistics: one row every so many steps, as `statistics.csv` and in `results.h5`.
 
 use std::fs::File;
-use std::io::BufWriter;
-use std::path::Path;
+use std::io::{BufWriter, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
 
 /// A column.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,15 +26,15 @@ impl Column {
     }
 }
 
-/// Rows kept in memory for the figures, and written as they come.
+/// Rows written as they come, and read back in the end: a run holds none of them, however long it is.
 #[derive(Debug, Default)]
 pub struct Table {
     /// Columns.
     pub columns: Vec<Column>,
-    /// Values, row after row.
+    /// Values, row after row, once they were [`recalled`](Self::recall).
     pub rows: Vec<f64>,
-    /// None before the file is there.
-    writer: Option<csv::Writer<BufWriter<File>>>,
+    /// The file and its writer; none before it is there.
+    file: Option<(PathBuf, csv::Writer<BufWriter<File>>)>,
 }
 
 impl Table {
@@ -53,7 +53,7 @@ impl Table {
         Self {
             columns,
             rows: Vec::new(),
-            writer: None,
+            file: None,
         }
     }
 
@@ -67,7 +67,7 @@ impl Table {
             "" => c.name.clone(),
             unit => format!("{} [{unit}]", c.name),
         }))?;
-        self.writer = Some(writer);
+        self.file = Some((path.to_owned(), writer));
         Ok(())
     }
 
@@ -89,9 +89,8 @@ impl Table {
     /// The file cannot be written.
     pub fn push(&mut self, row: &[f64]) -> Result<(), csv::Error> {
         debug_assert_eq!(row.len(), self.columns.len());
-        self.rows.extend_from_slice(row);
-        match &mut self.writer {
-            Some(writer) => writer.write_record(row.iter().map(|x| format!("{x:e}"))),
+        match &mut self.file {
+            Some((_, writer)) => writer.write_record(row.iter().map(|x| format!("{x:e}"))),
             None => Ok(()),
         }
     }
@@ -101,15 +100,81 @@ impl Table {
     /// # Errors
     /// The file cannot be written.
     pub fn flush(&mut self) -> Result<(), csv::Error> {
-        Ok(self.writer.as_mut().map_or(Ok(()), csv::Writer::flush)?)
+        Ok(self.file.as_mut().map_or(Ok(()), |f| f.1.flush())?)
     }
 
-    /// The values of a column; empty if there is none of that name.
+    /// Reads the rows back: written digits stand for the same bits. A row that was not written to its end does not count.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn recall(&mut self) -> Result<(), csv::Error> {
+        // What cannot be written is told by whoever flushes last.
+        let _ = self.flush();
+        self.rows.clear();
+        let Some((path, _)) = &self.file else {
+            return Ok(());
+        };
+        let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(path)?;
+        let mut record = csv::StringRecord::new();
+        let mut counted = 0;
+        while reader.read_record(&mut record)? {
+            let row: Vec<f64> = record.iter().map_while(|x| x.parse().ok()).collect();
+            counted = if row.len() == self.columns.len() {
+                row.len()
+            } else {
+                0
+            };
+            self.rows.extend(&row[..counted]);
+        }
+        let mut file = File::open(path)?;
+        let mut last = [0];
+        if file.seek(SeekFrom::End(-1)).is_ok() {
+            file.read_exact(&mut last)?;
+        }
+        if last != *b"\n" {
+            self.rows.truncate(self.rows.len() - counted);
+        }
+        Ok(())
+    }
+
+    /// The values of a column that was recalled; empty if there is none of that name.
     pub fn column(&self, name: &str) -> Vec<f64> {
         let width = self.columns.len();
         match self.columns.iter().position(|c| c.name == name) {
             Some(k) => self.rows.chunks_exact(width).map(|r| r[k]).collect(),
             None => Vec::new(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_come_back_with_their_bits_and_a_cut_one_does_not() {
+        let path = std::env::temp_dir().join(format!("fretwork-table-{}.csv", std::process::id()));
+        let columns = ["a", "b"].map(|name| Column::new(name, "m", "")).to_vec();
+        let mut table = Table::create(&path, columns).unwrap();
+        let rows = [
+            [0.1 + 0.2, -0.0],
+            [f64::MIN_POSITIVE / 3.0, f64::MAX],
+            [f64::INFINITY, 1.0 / 3.0],
+        ];
+        rows.iter().for_each(|row| table.push(row).unwrap());
+        assert!(table.rows.is_empty());
+        table.recall().unwrap();
+        let bits = |rows: &[f64]| rows.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&table.rows), bits(rows.as_flattened()));
+        assert_eq!(table.column("b").len(), 3);
+        let text = std::fs::read_to_string(&path).unwrap();
+        // Within the last number, where it still is one, where it is none, and at once.
+        for (cut, left) in [(text.len() - 4, 2), (text.len() - 3, 2), (0, 0)] {
+            std::fs::write(&path, &text[..cut]).unwrap();
+            table.recall().unwrap();
+            assert_eq!(table.rows.len(), 2 * left);
+        }
+        std::fs::remove_file(&path).unwrap();
+        assert!(table.recall().is_err());
     }
 }

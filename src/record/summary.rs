@@ -182,6 +182,8 @@ impl CircuitSummary {
 pub struct Summary {
     /// Title of the case.
     pub case: String,
+    /// Name of what the run is of, case, materials, laws and scene: the results file knows its summary by it.
+    pub identity: String,
     /// 2 or 3.
     pub dimension: usize,
     /// Steps done.

@@ -18,12 +18,8 @@ pub fn rough(
     seed: u64,
 ) -> Vec<f64> {
     let mut rng = Pcg64::seed_from_u64(seed);
-    let low = (period / longest).ceil().max(1.0) as usize;
-    let high = ((period / shortest).floor() as usize)
-        .min(points / 2)
-        .max(low);
     let mut heights = vec![0.0; points];
-    for mode in low..=high {
+    for mode in waves(points, period, longest, shortest) {
         let amplitude = (mode as f64).powf(-0.5 - hurst);
         let phase = rng.random_range(0.0..TAU);
         for (k, z) in heights.iter_mut().enumerate() {
@@ -32,6 +28,20 @@ pub fn rough(
     }
     scale(&mut heights, rms);
     heights
+}
+
+/// The waves of a rough profile, by how often each fits into the period.
+pub fn waves(
+    points: usize,
+    period: f64,
+    longest: f64,
+    shortest: f64,
+) -> std::ops::RangeInclusive<usize> {
+    let low = (period / longest).ceil().max(1.0) as usize;
+    let high = ((period / shortest).floor() as usize)
+        .min(points / 2)
+        .max(low);
+    low..=high
 }
 
 /// Independent heights of the given root-mean-square, mean zero.

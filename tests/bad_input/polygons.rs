@@ -78,7 +78,7 @@ fn arches_that_cannot_be() {
     };
     of(
         "blocks: ‸1, radius: 0.03, thickness: 0.005",
-        "an arch has 2 to 1000000 blocks, got 1",
+        "an arch has 2 to 10000 blocks, got 1",
     );
     of(
         "blocks: 5, radius: 0.03, thickness: ‸0.06",

@@ -1,16 +1,19 @@
 //! A campaign: damaged inputs of one kind, each read on a thread of its own, under a clock and a count of bytes.
 
 use crate::memory::peak;
+use cpu_time::ProcessTime;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// What one input may take (s): a hang is what takes longer.
-const SECONDS: u64 = 10;
+/// What one input may take (s, of the processor: a busy machine makes no hang): a hang is what takes longer,
+const SECONDS: Duration = Duration::from_secs(10);
+/// or waits for so long (s).
+const WAITS: Duration = Duration::from_secs(300);
 /// What a reader may hold beyond a multiple of its file (bytes).
 const BASE: usize = 64 << 20;
 /// Bytes a reader may hold for each byte of its file.
@@ -69,6 +72,22 @@ fn worker(read: Read) -> (Sender<PathBuf>, Receiver<Answer>) {
     (to, from)
 }
 
+/// The answer to an input, unless it hangs.
+fn awaited(answers: &Receiver<Answer>) -> Option<Answer> {
+    let (work, clock) = (ProcessTime::now(), Instant::now());
+    loop {
+        match answers.recv_timeout(Duration::from_millis(200)) {
+            Ok(answer) => return Some(answer),
+            Err(RecvTimeoutError::Disconnected) => return None,
+            Err(RecvTimeoutError::Timeout) => {
+                if work.elapsed() > SECONDS || clock.elapsed() > WAITS {
+                    return None;
+                }
+            }
+        }
+    }
+}
+
 impl Campaign {
     /// A folder for its inputs, emptied.
     pub fn folder(&self) -> PathBuf {
@@ -107,8 +126,8 @@ impl Campaign {
             std::fs::write(&file, &bytes).unwrap();
             to.send(file.clone()).unwrap();
             let bound = self.scene + BASE + EACH * bytes.len();
-            let fault = match answers.recv_timeout(Duration::from_secs(SECONDS)) {
-                Ok((result, held, time)) => {
+            let fault = match awaited(&answers) {
+                Some((result, held, time)) => {
                     most = most.max((held, k));
                     longest = longest.max((time, k));
                     match result {
@@ -124,9 +143,9 @@ impl Campaign {
                         }
                     }
                 }
-                Err(_) => {
+                None => {
                     (to, answers) = worker(Arc::clone(&read));
-                    Some(format!("no answer within {SECONDS} s"))
+                    Some(format!("no answer within {} s", SECONDS.as_secs()))
                 }
             };
             if let Some(fault) = fault {

@@ -7,6 +7,7 @@ mod binary;
 mod campaign;
 mod cases;
 mod data;
+#[path = "../support/counting.rs"]
 mod memory;
 mod mutate;
 

@@ -116,7 +116,7 @@ pub fn said(output: &Output, code: i32) -> String {
 }
 
 /// All files below a folder, by their paths in it.
-fn files(folder: &Path) -> Vec<String> {
+pub fn files(folder: &Path) -> Vec<String> {
     let mut out = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let entry = entry.unwrap();

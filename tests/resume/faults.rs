@@ -63,16 +63,16 @@ fn another_case_is_refused_and_harms_nothing() {
     job().killed_after(&out.0, 2);
     let before = std::fs::read(out.0.join("results.h5")).unwrap();
     let mut sets = SETS;
-    sets[0] = "time.end=0.005";
-    let longer = Job {
+    sets[0] = "time.end=0.003";
+    let shorter = Job {
         case: "shear_cell_3d",
         sets: &sets,
     };
     refused(
         &out.0,
-        longer,
+        shorter,
         2,
-        &["another case", "`time.end`", "0.004", "0.005"],
+        &["another case", "`time.end`", "0.004", "0.003"],
     );
     let another = Job {
         case: "verification/shear_3d",

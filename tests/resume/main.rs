@@ -3,6 +3,7 @@
 mod cases;
 mod common;
 mod faults;
+mod folder;
 mod kills;
 mod laws;
 mod state;

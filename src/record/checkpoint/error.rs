@@ -49,6 +49,17 @@ pub enum ResumeError {
         /// What differs.
         what: String,
     },
+    /// The run cannot go on beyond the end that it was begun with.
+    #[error(
+        "the run in {} cannot go on beyond its `time.end`: {why}; run it anew without --resume",
+        path.display()
+    )]
+    Longer {
+        /// The file.
+        path: PathBuf,
+        /// What hangs on the end.
+        why: &'static str,
+    },
     /// A checkpoint that is whole holds something else than the case carries.
     #[error("the checkpoint in {} cannot be taken up: {source}; to begin anew leave --resume out", path.display())]
     State {
@@ -62,6 +73,9 @@ pub enum ResumeError {
 impl ResumeError {
     /// Whether the user gave something else than the run was begun with; else the file is at fault.
     pub fn is_input(&self) -> bool {
-        matches!(self, Self::Version { .. } | Self::Other { .. })
+        matches!(
+            self,
+            Self::Version { .. } | Self::Other { .. } | Self::Longer { .. }
+        )
     }
 }

@@ -30,11 +30,11 @@ pub struct Stop {
 /// The file that a run writes last, and takes away before it begins: with it all others are there.
 pub const LAST: &str = "summary.json";
 
-/// Whether the run of a folder came to its end, not to an error.
-fn finished(folder: &Path) -> bool {
+/// Whether the run of a folder, of an identity of this name, came to its end, not to an error.
+fn finished(folder: &Path, identity: &str) -> bool {
     let text = std::fs::read_to_string(folder.join(LAST)).unwrap_or_default();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-    summary["steps"].is_number() && summary["stopped"].is_null()
+    summary["identity"] == identity && summary["steps"].is_number() && summary["stopped"].is_null()
 }
 
 /// Looks into a folder for a run of this identity.
@@ -52,8 +52,9 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
     };
     let kept = Kept::open(&path).map_err(unreadable)?;
     let slots = kept.checkpoints().map_err(unreadable)?;
-    let frames = slots.iter().filter_map(|bytes| Frame::read(bytes));
-    let Some(frame) = frames.max_by_key(|f| f.number) else {
+    let mut frames: Vec<Frame> = slots.iter().filter_map(|b| Frame::read(b)).collect();
+    frames.sort_by_key(|f| f.number);
+    let Some(frame) = frames.last() else {
         return Err(ResumeError::Damaged { path });
     };
     let ours = env!("CARGO_PKG_VERSION");
@@ -72,12 +73,15 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
     if let Some(what) = theirs.differs(identity) {
         return Err(ResumeError::Other { path, what });
     }
-    if finished(folder) {
+    let later = theirs.ends_later(identity);
+    // The file says that it is whole, the summary of the same run that all others are.
+    if !later && frame.kind == Kind::Ended && finished(folder, &Identity::name(&frame.identity)) {
         return Ok(Found::Finished);
     }
-    Ok(match frame.kind {
-        Kind::Begun => Found::Nothing,
-        Kind::State => Found::State(Stop {
+    let mut states = frames.into_iter().filter(|f| f.kind == Kind::State);
+    Ok(match states.next_back() {
+        None => Found::Nothing,
+        Some(frame) => Found::State(Stop {
             kept,
             number: frame.number,
             state: frame.state,

@@ -16,6 +16,8 @@ pub enum Kind {
     Begun,
     /// A state to go on from.
     State,
+    /// The run has come to its end: the state before it is in the other frame.
+    Ended,
 }
 
 /// A checkpoint.
@@ -48,6 +50,7 @@ impl Frame {
         let kind: u32 = match self.kind {
             Kind::Begun => 0,
             Kind::State => 1,
+            Kind::Ended => 2,
         };
         let parts = [self.version.as_bytes(), &self.identity, &self.state];
         let mut bytes = Vec::with_capacity(BODY + parts.iter().map(|p| p.len()).sum::<usize>());
@@ -87,6 +90,7 @@ impl Frame {
         let kind = match word(12)? {
             0 => Kind::Begun,
             1 => Kind::State,
+            2 => Kind::Ended,
             _ => return None,
         };
         Some(Self {

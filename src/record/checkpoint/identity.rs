@@ -8,13 +8,20 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
+/// What a resumed run may have otherwise: it changes no number.
+const FREE: [&str; 2] = ["output.checkpoint", "output.figures"];
+/// What may be later when a run goes on.
+const END: &str = "time.end";
+
 /// What a run is of.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
     /// 2 or 3.
     dimension: u32,
     /// The case as text, `--set` applied.
     case: String,
+    /// When it ends (s).
+    end: f64,
     /// Material files: name and text.
     materials: Vec<(String, String)>,
     /// Libraries of laws: kind with name, and SHA-256.
@@ -45,20 +52,32 @@ impl Identity {
         Ok(Self {
             dimension: loaded.case.dimension,
             case: loaded.source.text().to_owned(),
+            end: loaded.case.time.end,
             materials: built.materials.clone(),
             plugins,
-            scene: hash.0.finalize().iter().fold(String::new(), |mut s, b| {
-                let _ = write!(s, "{b:02x}");
-                s
-            }),
+            scene: hex(&hash.0.finalize()),
         })
     }
 
-    /// What differs in another one, in words; none where nothing that counts does.
+    /// A name for one that was put into bytes: their SHA-256.
+    pub fn name(bytes: &[u8]) -> String {
+        hex(&Sha256::digest(bytes))
+    }
+
+    /// Whether the same run ends later now.
+    pub fn ends_later(&self, now: &Self) -> bool {
+        now.end > self.end
+    }
+
+    /// What differs in another one, in words; none where nothing that counts does, and it ends no earlier.
     pub fn differs(&self, now: &Self) -> Option<String> {
         if self.case != now.case {
             let [a, b] = [&self.case, &now.case].map(|t| Source::from_text("case", t.clone()));
-            if let Some(d) = first_difference(&a, &b) {
+            let mut free = FREE.to_vec();
+            if self.ends_later(now) {
+                free.push(END);
+            }
+            if let Some(d) = first_difference(&a, &b, &free) {
                 let said = |text: Option<String>| text.unwrap_or("nothing".to_owned());
                 return Some(format!(
                     "`{}` was {} there and is {} now",
@@ -100,6 +119,13 @@ impl Identity {
                 .to_owned()
         })
     }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut s, b| {
+        let _ = write!(s, "{b:02x}");
+        s
+    })
 }
 
 /// Hashes text as it is written.

@@ -46,6 +46,11 @@ impl Keeper {
         }
     }
 
+    /// Name of what the run is of: stands in its summary.
+    pub fn name(&self) -> String {
+        Identity::name(&self.identity)
+    }
+
     /// The next frame: its number, which says where it goes, and its bytes.
     pub fn frame(&mut self, kind: Kind, state: Vec<u8>) -> (u64, Vec<u8>) {
         let frame = Frame {

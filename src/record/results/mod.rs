@@ -81,7 +81,7 @@ pub struct Results {
     views: Vec<View>,
     checkpoints: Vec<Slot>,
     /// When rows were made safe, and how long that took.
-    flushed: (Instant, Duration),
+    flushed: Option<(Instant, Duration)>,
 }
 
 impl Results {
@@ -179,7 +179,7 @@ impl Results {
             held_grains: Vec::new(),
             views,
             checkpoints,
-            flushed: (Instant::now(), Duration::ZERO),
+            flushed: Some((Instant::now(), Duration::ZERO)),
         })
     }
 
@@ -252,8 +252,8 @@ impl Results {
 
     /// Writes what is held back if it is much, or if enough time has passed.
     fn write_in_time(&mut self, rows: usize) -> Result<(), ResultsError> {
-        let (last, cost) = self.flushed;
-        if rows >= MOST || last.elapsed() >= PACE.max(cost * PART) {
+        let rested = |(last, cost): (Instant, Duration)| last.elapsed() >= PACE.max(cost * PART);
+        if rows >= MOST || self.flushed.is_none_or(rested) {
             self.write_statistics()?;
         }
         Ok(())
@@ -263,7 +263,7 @@ impl Results {
         self.write_held()?;
         let clock = Instant::now();
         let flushed = self.store.as_mut().map_or(Ok(()), Store::flush);
-        self.flushed = (Instant::now(), clock.elapsed());
+        self.flushed = Some((Instant::now(), clock.elapsed()));
         flushed
     }
 

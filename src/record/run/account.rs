@@ -3,6 +3,7 @@
 use super::{Recorder, RunError};
 use crate::geometry::space::{Space, VectorLike};
 use crate::record::results::Results;
+use crate::record::series::Series;
 use crate::record::statistics::Column;
 use crate::record::steady;
 use crate::record::summary::{Base, CircuitSummary, Rates};
@@ -30,7 +31,7 @@ pub(super) struct Account<S: Space> {
     broken: u64,
     debris: u64,
     /// Time, and what passed by then, at each update.
-    series: Vec<(f64, Flows, f64)>,
+    series: Series<(f64, Flows, f64)>,
 }
 
 impl<S: Space> Account<S> {
@@ -44,7 +45,7 @@ impl<S: Space> Account<S> {
             largest: 0,
             broken: 0,
             debris: 0,
-            series: Vec::new(),
+            series: Series::default(),
         }
     }
 
@@ -141,7 +142,7 @@ impl<S: Space> Account<S> {
         circuit.update(s);
         let ledger = &circuit.ledger;
         self.series
-            .push((s.time, ledger.flows, ledger.contents.contact.mass));
+            .add((s.time, ledger.flows, ledger.contents.contact.mass));
         for d in &circuit.debris {
             self.pieces.0 += 1;
             self.pieces.1 += d.grains.len() as u64;
@@ -211,7 +212,7 @@ impl<S: Space> Account<S> {
         let flow = |of: &dyn Fn(&Flows, f64) -> f64| {
             let points: Vec<(f64, f64)> = self
                 .series
-                .iter()
+                .points()
                 .map(|(t, f, m)| (*t, of(f, *m)))
                 .collect();
             steady::flow(&points, middle, end)

@@ -1,8 +1,10 @@
 //! The end of a run: what is summed up, drawn and written last.
 
+use super::error::unreadable;
 use super::{Recorder, RunError, unwritable};
 use crate::geometry::space::Space;
 use crate::record::biaxial::{self, Outcome};
+use crate::record::checkpoint::Kind;
 pub(super) use crate::record::checkpoint::LAST;
 use crate::record::friction::Cycles;
 use crate::record::summary::{Summary, Wear};
@@ -47,6 +49,7 @@ pub(super) fn sum_up(summary: &mut Summary, cycles: Option<&Cycles>) {
 impl<S: Dimensional> Recorder<'_, S> {
     /// Writes what a run leaves behind, whatever it reached.
     pub(super) fn finish(&mut self) -> Result<(), RunError> {
+        let recalled = self.recall();
         self.count();
         let (s, n) = (&self.simulation, &self.simulation.network);
         let summary = &mut self.summary;
@@ -94,7 +97,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         }
         summary.solver.why = summary.solver.choice.why(s.solver.method, s.steps);
         summary.warnings = warnings::of(s, &summary.solver);
-        let files = self.files();
+        let files = self.files().and(recalled);
         if let (Err(e), None) = (&files, &self.summary.stopped) {
             self.summary.stopped = Some(e.to_string());
         }
@@ -103,13 +106,35 @@ impl<S: Dimensional> Recorder<'_, S> {
         files
     }
 
+    /// Reads the rows of the statistics back, where something is made of them.
+    fn recall(&mut self) -> Result<(), RunError> {
+        let case = &self.loaded.case;
+        if !case.output.figures && case.biaxial.is_none() && case.measures.is_empty() {
+            return Ok(());
+        }
+        let path = self.out.join("statistics.csv");
+        self.table.recall().map_err(|e| unreadable(&path, &e))
+    }
+
     /// Writes all other files, each whatever became of the one before it.
     fn files(&mut self) -> Result<(), RunError> {
         let table = self.table.flush();
         let table = table.map_err(|e| unwritable(&self.out.join("statistics.csv"), &e));
         let scars = scars::write(&self.out, &self.simulation).map_err(RunError::from);
-        let results = self.results.finish(&self.out).map_err(RunError::from);
+        let results = self.end_results();
         table.and(results).and(scars).and(self.draw())
+    }
+
+    /// Ends the file of results, and says in it that it is whole where the run came to its end.
+    fn end_results(&mut self) -> Result<(), RunError> {
+        let mut ended = Ok(());
+        if self.summary.stopped.is_none() {
+            // The rows stand before what says that they are all there.
+            let rows = self.results.rows().map_err(RunError::from);
+            ended = rows.and_then(|_| self.mark(Kind::Ended, Vec::new()));
+        }
+        let closed = self.results.finish(&self.out).map_err(RunError::from);
+        ended.and(closed)
     }
 
     /// Draws the figures.

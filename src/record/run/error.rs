@@ -21,6 +21,14 @@ pub enum RunError {
         /// Why.
         reason: String,
     },
+    /// What was written cannot be read back.
+    #[error("cannot read {} back: {reason}; nothing is summed up or drawn from it", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
     /// No bond ties a grain to a first body of the circuit.
     #[error(
         "at t = {time:.6e} s, when the circuit begins, no bond ties a grain to `{body}`: let bonds be made before \
@@ -48,6 +56,13 @@ pub enum RunError {
 
 pub(super) fn unwritable(path: &Path, e: &dyn std::fmt::Display) -> RunError {
     RunError::Write {
+        path: path.to_owned(),
+        reason: e.to_string(),
+    }
+}
+
+pub(super) fn unreadable(path: &Path, e: &dyn std::fmt::Display) -> RunError {
+    RunError::Read {
         path: path.to_owned(),
         reason: e.to_string(),
     }

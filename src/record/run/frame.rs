@@ -4,6 +4,9 @@ use super::{Recorder, RunError};
 use crate::record::picture::Subject;
 use crate::scene::build::Dimensional;
 
+/// Names of pictures: `frames/NAME_STEP.png`.
+pub(super) const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "chains"];
+
 impl<S: Dimensional> Recorder<'_, S> {
     /// Draws the frames of a step.
     pub(super) fn frame(&mut self, step: u64) -> Result<(), RunError> {
@@ -32,21 +35,22 @@ impl<S: Dimensional> Recorder<'_, S> {
             .strain
             .as_ref()
             .map(|strain| strain.shear(&self.simulation));
-        let mut subjects = vec![("frame", Subject::Scene)];
+        let [frame, sheared, bonds, circuit, forces] = PICTURES;
+        let mut subjects = vec![(frame, Subject::Scene)];
         if let (Some(values), Some(top)) = (&shear, self.loaded.case.output.shear) {
             let label = "local shear";
-            subjects.push(("shear", Subject::Values { values, label, top }));
+            subjects.push((sheared, Subject::Values { values, label, top }));
         }
         if self.loaded.case.output.layers.is_some() && self.simulation.network.bonds_made() > 0 {
-            subjects.push(("bonds", Subject::Bonds));
+            subjects.push((bonds, Subject::Bonds));
         }
         let paints = self.account.paints(&self.simulation);
         if !paints.is_empty() {
-            subjects.push(("circuit", Subject::Painted(&paints)));
+            subjects.push((circuit, Subject::Painted(&paints)));
         }
         let chains = self.measures.chains(&self.simulation).filter(|_| S::D == 2);
         if let Some(pairs) = &chains {
-            subjects.push(("chains", Subject::Chains(pairs)));
+            subjects.push((forces, Subject::Chains(pairs)));
         }
         for (name, subject) in subjects {
             let path = self

@@ -1,6 +1,7 @@
 //! Checkpoints of a run: what is kept, and how a run that was stopped takes it up.
 
 use super::account::Account;
+use super::clear;
 use super::jumps::Jumps;
 use super::rescue::Refuge;
 use super::{Recorder, RunError, unwritable};
@@ -16,6 +17,7 @@ use crate::scene::build::Dimensional;
 use crate::step::Saved;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// What a run carries from step to step, beside what follows from its case. Rows are in the results file; how many of
@@ -24,6 +26,8 @@ use std::time::{Duration, Instant};
 #[serde(bound = "")]
 struct Carried<'a, S: Space> {
     simulation: Saved<'a, S>,
+    /// Steps over which states and pictures are spread.
+    spread: u64,
     /// Rows of each growing dataset of the results, in the order of their declarations.
     rows: Vec<(u64, u32)>,
     paints: Cow<'a, [Paint]>,
@@ -60,7 +64,7 @@ impl<S: Dimensional> Recorder<'_, S> {
     }
 
     /// Writes a frame into the results.
-    fn mark(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
+    pub(super) fn mark(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
         let (number, bytes) = self.keeper.frame(kind, state);
         Ok(self.results.checkpoint(number, &bytes)?)
     }
@@ -75,7 +79,12 @@ impl<S: Dimensional> Recorder<'_, S> {
             }
             _ => {}
         }
-        self.results.publish(&self.out.join("results.h5"))?;
+        let results = self.out.join("results.h5");
+        let replaces = kind == Kind::Begun && results.exists();
+        self.results.publish(&results)?;
+        if replaces {
+            clear::clear(&self.out)?;
+        }
         let path = self.out.join("statistics.csv");
         self.table.open(&path).map_err(|e| unwritable(&path, &e))
     }
@@ -84,6 +93,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         let rows = self.results.rows()?;
         Ok(encode(&Carried {
             simulation: self.simulation.save(),
+            spread: self.spread,
             rows,
             paints: Cow::Borrowed(self.camera.paints()),
             strain: self.strain.as_ref().map(Cow::Borrowed),
@@ -122,11 +132,13 @@ impl<S: Dimensional> Recorder<'_, S> {
         if !same || !self.simulation.restore(kept.simulation) {
             return Err(refused(CodeError::other("bodies, laws or tests")).into());
         }
+        self.lengthen(kept.spread, &path)?;
         self.measures.restore(&kept.measures).map_err(refused)?;
         self.camera.paint(kept.paints.into_owned());
         self.strain = kept.strain.map(Cow::into_owned);
         if let (Some((cycles, _)), Some(kept)) = (&mut self.cycles, kept.cycles) {
             *cycles = kept.into_owned();
+            cycles.lengthen(self.loaded.case.time.end);
         }
         if let (Some(test), Some(reference)) = (&mut self.biaxial, kept.reference) {
             test.refer_to(reference);
@@ -151,5 +163,26 @@ impl<S: Dimensional> Recorder<'_, S> {
         let written = self.table.extend(&columns);
         written.map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
         Ok(())
+    }
+
+    /// Goes on with the spacing of states and pictures that the run was begun with, also beyond its end.
+    fn lengthen(&mut self, spread: u64, path: &Path) -> Result<(), ResumeError> {
+        let aperiodic = |(c, _): &(Cycles, usize)| !c.oscillates();
+        let why = if self.total <= spread {
+            None
+        } else if self.jumps.is_some() {
+            Some("its jumps over cycles are as long as what was left of it let them be")
+        } else if self.cycles.as_ref().is_some_and(aperiodic) {
+            Some("a friction test without a period counts the second half of the whole run")
+        } else {
+            None
+        };
+        self.spread = spread;
+        why.map_or(Ok(()), |why| {
+            Err(ResumeError::Longer {
+                path: path.to_owned(),
+                why,
+            })
+        })
     }
 }

@@ -1,6 +1,7 @@
 //! Runs a scene to its end and records it.
 
 mod account;
+mod clear;
 mod dump;
 mod end;
 mod error;
@@ -140,7 +141,9 @@ struct Recorder<'a, S: Space> {
     internal_flow: f64,
     iterations: u64,
     couplings: u64,
+    /// Steps of the run, and over how many of them states and pictures are spread: those it was begun with.
     total: u64,
+    spread: u64,
     keeper: Keeper,
     /// Time that the run took before it was stopped, of the clock and of processors; and since when it runs now.
     spent: (Duration, Duration),
@@ -204,6 +207,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             plugins,
             threads: options.threads,
             seed: case.seed,
+            identity: keeper.name(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             solver: SolverSummary {
                 tolerance: case.solver.tolerance,
@@ -244,6 +248,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             iterations: 0,
             couplings: 0,
             total,
+            spread: total,
             keeper,
             spent: (Duration::ZERO, Duration::ZERO),
             refuge: Refuge::new(options.out.clone(), (Duration::ZERO, Duration::ZERO)),
@@ -309,11 +314,11 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
                     .map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
                 self.results.append_statistics(&row)?;
             }
-            if due(step, self.total, output.views) || finished {
+            if due(step, self.spread, output.views) || finished {
                 self.views()?;
             }
             let turned = phase > 0 && self.simulation.control.phase() > phase && !recurs;
-            if due(step, self.total, output.frames) || finished || turned {
+            if due(step, self.spread, output.frames) || finished || turned {
                 self.frame(step)?;
             }
             progress(&self.progress(step, &report));

@@ -7,8 +7,8 @@ use crate::scene::case::{Edges, GrainSpec};
 use crate::scene::source::InputError;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// More blocks than memory holds are a slip of the keyboard.
-const MOST_BLOCKS: usize = 1_000_000;
+/// Thinner blocks than this makes are a slip of the keyboard, and as many of them are neighbours as their number is high.
+const MOST_BLOCKS: usize = 10_000;
 
 impl<S: Dimensional> Builder<'_, S> {
     /// The blocks between the radial joints of an arch, from right to left; none for other grains.

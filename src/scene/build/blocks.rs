@@ -12,10 +12,12 @@ use crate::scene::sample::voronoi_space::{self, Failure};
 use crate::scene::source::{Fault, InputError};
 use nalgebra::{Vector2, Vector3};
 
-/// More blocks than memory holds are a slip of the keyboard.
-const MOST_BLOCKS: usize = 1_000_000;
+/// More blocks than a run of days can follow are a slip of the keyboard.
+const MOST_BLOCKS: usize = 100_000;
 /// Lloyd's rounds change nothing that is seen after some hundred.
 const MOST_ROUNDS: usize = 1_000;
+/// Cells times rounds that are made in some seconds, in the plane and in space. Making the cells without a round counts as one.
+const MOST_WORK: [f64; 2] = [1e6, 5e4];
 
 impl<S: Dimensional> Builder<'_, S> {
     /// Voronoi cells of a box.
@@ -45,6 +47,16 @@ impl<S: Dimensional> Builder<'_, S> {
         }
         if spec.rounds > MOST_ROUNDS {
             let message = format!("at most {MOST_ROUNDS} rounds, got {}", spec.rounds);
+            return Err(self.fail(format!("{here}.rounds"), message));
+        }
+        let most = MOST_WORK[S::D - 2];
+        if cells * (spec.rounds + 1) as f64 > most {
+            let message = format!(
+                "{} rounds over {cells:.3e} cells take too long: cells times rounds, and one more, may be {most:e} at \
+                 most in {} dimensions",
+                spec.rounds,
+                S::D
+            );
             return Err(self.fail(format!("{here}.rounds"), message));
         }
         self.not_negative(&format!("{here}.gap"), spec.gap)?;

@@ -8,8 +8,10 @@ use crate::scene::case::GrainSpec;
 use crate::scene::sample;
 use crate::scene::source::{Fault, InputError};
 
-/// More grains than memory holds are a slip of the keyboard.
-const MOST_GRAINS: usize = 10_000_000;
+/// More grains than memory holds are a slip of the keyboard: those of a file,
+pub(super) const MOST_READ: usize = 10_000_000;
+/// and those that a line of the case makes.
+pub(super) const MOST_MADE: usize = 2_000_000;
 
 /// A grain to be: place, radius, material, density, velocity, spin, and where the case has it.
 pub(super) type Seed<S> = (
@@ -66,7 +68,7 @@ impl<S: Dimensional> Builder<'_, S> {
                     for (name, corner) in [("low", low), ("high", high)] {
                         self.corner(&format!("{here}.{name}"), corner)?;
                     }
-                    self.few_enough(&format!("{here}.count"), *count)?;
+                    self.few_enough(&format!("{here}.count"), *count, MOST_MADE)?;
                     let periodic = self.shapes.periodic.period[0].is_some();
                     let list =
                         sample::lattice(S::D, periodic, *count, *radius, low, high, self.case.seed);
@@ -175,12 +177,17 @@ impl<S: Dimensional> Builder<'_, S> {
         self.vector(path, corner)
     }
 
-    pub(super) fn few_enough(&self, path: &str, count: usize) -> Result<(), InputError> {
-        if count <= MOST_GRAINS {
+    pub(super) fn few_enough(
+        &self,
+        path: &str,
+        count: usize,
+        most: usize,
+    ) -> Result<(), InputError> {
+        if count <= most {
             return Ok(());
         }
         let fault = Fault::new(path, format!("{count} grains are too many"));
-        let fault = fault.expected(format!("at most {MOST_GRAINS}"));
+        let fault = fault.expected(format!("at most {most}"));
         Err(self.source.locate(fault))
     }
 

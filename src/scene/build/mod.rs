@@ -20,6 +20,7 @@ use super::methods::{Demands, Service};
 use super::scene_file::{self, SceneFile};
 use super::source::{Fault, InputError, Source};
 use crate::bodies::Bodies;
+use crate::geometry::grid;
 use crate::geometry::periodic::Periodic;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Plane, Solid, Space, VectorLike};
@@ -190,6 +191,9 @@ impl Loaded {
     }
 }
 
+/// Pairs of grains that a skin may make neighbours, see [`Builder::refuse_wide_skin`].
+const MOST_PAIRS: f64 = 2e8;
+
 struct Builder<'a, S: Space> {
     case: &'a Case,
     source: &'a Source,
@@ -299,6 +303,7 @@ impl<S: Dimensional> Builder<'_, S> {
             );
             return Err(self.fail("detection.alert", message));
         }
+        self.refuse_wide_skin(alert, skin, largest)?;
         let gravity = self.vector("gravity", &case.gravity)?;
         self.refuse_small_period(alert + skin)?;
         let (source, mut simulation) = (
@@ -340,6 +345,28 @@ impl<S: Dimensional> Builder<'_, S> {
     fn radii(&self) -> impl Iterator<Item = f64> + '_ {
         let pieces = self.shapes.pieces.iter().map(|p| p.bound);
         self.shapes.balls.iter().map(|b| b.radius).chain(pieces)
+    }
+
+    /// A skin beyond the grains' size makes neighbours of grains that never meet; the list must still fit into memory.
+    fn refuse_wide_skin(&self, alert: f64, skin: f64, largest: f64) -> Result<(), InputError> {
+        if self.case.detection.skin.is_none() || skin <= largest {
+            return Ok(());
+        }
+        let of = |body: u32| self.bodies.position[body as usize];
+        let balls = self.shapes.balls.iter().map(|b| of(b.body));
+        let centres: Vec<S::Vector> = balls
+            .chain(self.shapes.pieces.iter().map(|p| of(p.body)))
+            .collect();
+        let radii: Vec<f64> = self.radii().collect();
+        let pairs = grid::most_pairs(&centres, &radii, alert + skin, &self.shapes.periodic);
+        if pairs <= MOST_PAIRS {
+            return Ok(());
+        }
+        let message = format!(
+            "a skin of {skin:e} m makes {pairs:.1e} pairs to look at, of {MOST_PAIRS:e} at most; make it smaller than \
+             the largest radius ({largest:e} m), the default is 0.3 of the smallest"
+        );
+        Err(self.fail("detection.skin", message))
     }
 
     /// Two balls must not touch each other twice around a period.

@@ -1,6 +1,6 @@
 //! Samples that are made at random, and grains from tables and from other runs.
 
-use super::grains::Seed;
+use super::grains::{MOST_MADE, MOST_READ, Seed};
 use super::{Builder, Dimensional, Origin};
 use crate::geometry::space::VectorLike;
 use crate::record::results::state;
@@ -29,7 +29,7 @@ impl<S: Dimensional> Builder<'_, S> {
             return Err(self.fail(format!("{here}.high"), message));
         }
         let path = format!("{here}.count");
-        self.few_enough(&path, spec.count)?;
+        self.few_enough(&path, spec.count, MOST_MADE)?;
         let periodic = self.shapes.periodic;
         let seed = self.case.seed.wrapping_add(k as u64);
         let made = deposit::<S>(spec.count, &sizes, &corners, &periodic, seed);
@@ -136,7 +136,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let required = [place, &["radius"]].concat();
         let optional = [moving, turning].concat();
         let table = Table::read(&self.folder.join(&spec.file), &required, &optional)?;
-        self.few_enough(&format!("grains.{k}.file"), table.len())?;
+        self.few_enough(&format!("grains.{k}.file"), table.len(), MOST_READ)?;
         let columns = |names: &[&str]| names.iter().map(|n| table.column(n)).collect::<Vec<_>>();
         let (place, moving, turning) = (columns(place), columns(moving), columns(turning));
         let radius = table.column("radius");

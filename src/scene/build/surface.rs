@@ -16,6 +16,11 @@ use crate::scene::source::InputError;
 use crate::scene::{profile, profile_file, standard};
 use nalgebra::Vector2;
 
+/// Points of a random surface, at most,
+const MOST_POINTS: usize = 1_000_000;
+/// and points times waves of a rough profile, which its making takes time for.
+const MOST_TERMS: f64 = 2e8;
+
 /// Shapes that exist in one dimension only.
 pub trait Dimensional: Space {
     /// A profile of points, left to right.
@@ -232,16 +237,17 @@ impl<S: Dimensional> Builder<'_, S> {
                     && longest.is_none_or(|l| l > 0.0)
                     && rms.is_finite()
                     && hurst.is_finite();
-                if !valid || *points > 10_000_000 {
+                if !valid {
                     return Err(bad(
-                        "a rough profile needs 3 to 10,000,000 points, rms >= 0, shortest > 0 and longest > 0".into(),
+                        "a rough profile needs at least 3 points, rms >= 0, shortest > 0 and longest > 0".into(),
                     ));
                 }
+                let longest = longest.unwrap_or(period);
+                self.few_terms(here, *points, period, (longest, *shortest))?;
                 // Rail and wheel must not be each other's image.
                 let salt = here
                     .bytes()
                     .fold(17u64, |h, b| h.wrapping_mul(31).wrapping_add(u64::from(b)));
-                let longest = longest.unwrap_or(period);
                 let z = profile::rough(
                     *points,
                     period,
@@ -299,6 +305,30 @@ impl<S: Dimensional> Builder<'_, S> {
             | ShapeSpec::Box { .. }
             | ShapeSpec::Capsule { .. } => Err(bad("this shape is not a surface".into())),
         }
+    }
+
+    /// Refuses a rough profile that would take long to make.
+    fn few_terms(
+        &self,
+        here: &str,
+        points: usize,
+        period: f64,
+        (longest, shortest): (f64, f64),
+    ) -> Result<(), InputError> {
+        if points > MOST_POINTS {
+            let message = format!("a rough profile has at most {MOST_POINTS} points, got {points}");
+            return Err(self.fail(format!("{here}.points"), message));
+        }
+        let waves = profile::waves(points, period, longest, shortest);
+        let count = (waves.end() - waves.start()) as f64 + 1.0;
+        if points as f64 * count > MOST_TERMS {
+            let message = format!(
+                "{points} points with {count} waves take too long to make: points times waves may be {MOST_TERMS:e} at \
+                 most; take fewer points, or a larger `shortest`"
+            );
+            return Err(self.fail(format!("{here}.points"), message));
+        }
+        Ok(())
     }
 
     /// A profile by its points; one that spans the period repeats.

@@ -89,8 +89,8 @@ pub fn tiling(
     sites.sort_by_cached_key(|p| [p.z, p.y, p.x].map(|x| (x / (2.0 * size)).floor() as i64));
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut moved = 0;
+    let mut cut = region.cut_all(&sites);
     for _ in 0..NUDGES {
-        let cut = region.cut_all(&sites);
         let restless: Vec<usize> = (0..sites.len())
             .filter(|i| region.is_to_move(*i, &cut[*i]))
             .collect();
@@ -102,10 +102,12 @@ pub fn tiling(
             return tiling.ok_or(Failure::Short);
         }
         moved += restless.len();
-        for i in restless {
+        let left: Vec<V> = restless.iter().map(|i| sites[*i]).collect();
+        for i in &restless {
             let way = V::from_fn(|_, _| rng.random_range(-1.0..1.0)) * (NUDGE * size);
-            sites[i] = region.wrapped(sites[i] + way);
+            sites[*i] = region.wrapped(sites[*i] + way);
         }
+        region.cut_again(&sites, &restless, &left, &mut cut);
     }
     Err(Failure::Short)
 }
@@ -142,6 +144,14 @@ enum Side {
     Wall(usize, bool),
 }
 
+/// Sites and images by the cubes that they are in.
+type Cubes = HashMap<[i64; 3], Vec<(u32, [i8; 3])>>;
+
+/// Twice the distance of the farthest corner from the site: sites beyond do not cut the cell.
+fn farthest(corners: &[Corner<Side>]) -> f64 {
+    2.0 * corners.iter().map(|c| c.at.norm()).fold(0.0, f64::max)
+}
+
 /// What is filled.
 struct Region {
     corners: Corners<V>,
@@ -167,7 +177,7 @@ impl Region {
     }
 
     /// The sites and their images, by cubes as wide as a cell.
-    fn cubes(&self, sites: &[V]) -> HashMap<[i64; 3], Vec<(u32, [i8; 3])>> {
+    fn cubes(&self, sites: &[V]) -> Cubes {
         let images = |k: usize| -> &[i8] {
             if self.around[k].is_some() {
                 &[-1, 0, 1]
@@ -201,37 +211,56 @@ impl Region {
             .collect()
     }
 
+    /// Brings the corners up to date after some sites moved from where they were: those of cells near enough to notice.
+    /// A site farther away than twice the farthest corner of a cell never cut it, and never will.
+    fn cut_again(&self, sites: &[V], moved: &[usize], left: &[V], cut: &mut [Vec<Corner<Side>>]) {
+        const MARGIN: f64 = 1.0 + 1e-6;
+        let cubes = self.cubes(sites);
+        let limits: Vec<f64> = cut.iter().map(|c| MARGIN * farthest(c)).collect();
+        let reach = limits.iter().copied().fold(0.0, f64::max);
+        let mut touched = vec![false; sites.len()];
+        moved.iter().for_each(|i| touched[*i] = true);
+        for place in left.iter().chain(moved.iter().map(|i| &sites[*i])) {
+            self.near(&cubes, place, reach, |(j, periods)| {
+                let j = j as usize;
+                let far = (sites[j] + self.shift(periods) - place).norm();
+                touched[j] |= far <= limits[j];
+            });
+        }
+        for i in (0..sites.len()).filter(|i| touched[*i]) {
+            cut[i] = self.cell(sites, &cubes, i);
+        }
+    }
+
+    /// All in the cubes that come within a distance of a place.
+    fn near(&self, cubes: &Cubes, place: &V, reach: f64, mut found: impl FnMut((u32, [i8; 3]))) {
+        let [low, high] = [-reach, reach].map(|r| self.cube(&(place + V::repeat(r))));
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                for z in low[2]..=high[2] {
+                    let here = cubes.get(&[x, y, z]).into_iter().flatten();
+                    here.for_each(|image| found(*image));
+                }
+            }
+        }
+    }
+
     /// The corners of a cell, from its site.
-    fn cell(
-        &self,
-        sites: &[V],
-        cubes: &HashMap<[i64; 3], Vec<(u32, [i8; 3])>>,
-        i: usize,
-    ) -> Vec<Corner<Side>> {
+    fn cell(&self, sites: &[V], cubes: &Cubes, i: usize) -> Vec<Corner<Side>> {
         let own = sites[i];
         let mut corners = self.whole(i, &own);
         let (mut done, mut reach) = (0.0, 2.0 * self.size);
         loop {
-            let [low, high] = [-reach, reach].map(|r| self.cube(&(own + V::repeat(r))));
             let mut near = Vec::new();
-            for x in low[0]..=high[0] {
-                for y in low[1]..=high[1] {
-                    for z in low[2]..=high[2] {
-                        for (j, periods) in cubes.get(&[x, y, z]).into_iter().flatten() {
-                            let way = sites[*j as usize] + self.shift(*periods) - own;
-                            let far = way.norm();
-                            // Its own images bound the box that it starts with.
-                            if *j as usize != i && far > done && far <= reach {
-                                near.push((far, *j, *periods, way));
-                            }
-                        }
-                    }
+            self.near(cubes, &own, reach, |(j, periods)| {
+                let way = sites[j as usize] + self.shift(periods) - own;
+                let far = way.norm();
+                // Its own images bound the box that it starts with.
+                if j as usize != i && far > done && far <= reach {
+                    near.push((far, j, periods, way));
                 }
-            }
+            });
             near.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-            let farthest = |corners: &[Corner<Side>]| {
-                2.0 * corners.iter().map(|c| c.at.norm()).fold(0.0, f64::max)
-            };
             let mut limit = farthest(&corners);
             for (far, j, periods, way) in near {
                 if far > limit {

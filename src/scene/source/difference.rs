@@ -14,18 +14,23 @@ pub struct Difference {
     pub other: Option<String>,
 }
 
-/// The first place where two texts differ.
-pub fn first_difference(one: &Source, other: &Source) -> Option<Difference> {
+/// The first place where two texts differ, places below the dotted paths of `but` aside.
+pub fn first_difference(one: &Source, other: &Source, but: &[&str]) -> Option<Difference> {
     let mut path = Vec::new();
     let nodes = [&one.tree().root, &other.tree().root].map(Option::as_ref);
-    compare([one.text(), other.text()], nodes, &mut path)
+    compare([one.text(), other.text()], nodes, but, &mut path)
 }
 
 fn compare(
     texts: [&str; 2],
     nodes: [Option<&Node>; 2],
+    but: &[&str],
     path: &mut Vec<String>,
 ) -> Option<Difference> {
+    let here = join_path(path);
+    if but.contains(&here.as_str()) {
+        return None;
+    }
     let differ = |path: &[String]| {
         let said = |k: usize| nodes[k].map(|n| short(&texts[k][n.span.clone()]));
         Some(Difference {
@@ -37,7 +42,23 @@ fn compare(
     let [Some(a), Some(b)] = nodes else {
         return match nodes {
             [None, None] => None,
-            _ => differ(path),
+            // A group that holds nothing but what does not count is as good as none.
+            [a, b] => {
+                let holds = |p: &&str| p.strip_prefix(&here).is_some_and(|r| r.starts_with('.'));
+                let group = a.or(b).and_then(Node::group);
+                match group.filter(|g| plain(g) && but.iter().any(holds)) {
+                    None => differ(path),
+                    Some(group) => group.entries.iter().find_map(|e| {
+                        let side = usize::from(a.is_none());
+                        let key = e.key.clone().map(|r| texts[side][r].to_owned());
+                        let value = |k: usize| (k == side).then_some(&e.value);
+                        path.push(key.unwrap_or_default());
+                        let found = compare(texts, [value(0), value(1)], but, path);
+                        path.pop();
+                        found
+                    }),
+                }
+            }
         };
     };
     let (Some(one), Some(other)) = (a.group(), b.group()) else {
@@ -48,7 +69,8 @@ fn compare(
         };
     };
     let name = |text: &str, g: &Group| g.name.clone().map(|r| text[r].to_owned());
-    if one.shape != other.shape || name(texts[0], one) != name(texts[1], other) {
+    let other_shape = one.shape != other.shape && !(plain(one) && plain(other));
+    if other_shape || name(texts[0], one) != name(texts[1], other) {
         return differ(path);
     }
     let keys = |text: &str, g: &Group| -> Vec<String> {
@@ -70,13 +92,18 @@ fn compare(
         };
         let (a, b) = (value(&here, one), value(&there, other));
         path.push(key.clone());
-        let found = compare(texts, [a.as_ref(), b.as_ref()], path);
+        let found = compare(texts, [a.as_ref(), b.as_ref()], but, path);
         path.pop();
         if found.is_some() {
             return found;
         }
     }
     None
+}
+
+/// Whether a group has named fields, or none at all.
+fn plain(group: &Group) -> bool {
+    group.shape == Shape::Struct || (group.shape == Shape::Tuple && group.entries.is_empty())
 }
 
 /// Whether two values that hold no others are the same.
@@ -108,7 +135,26 @@ mod tests {
 
     fn between(one: &str, other: &str) -> Option<(String, Option<String>, Option<String>)> {
         let [a, b] = [one, other].map(|t| Source::from_text("a.ron", t));
-        first_difference(&a, &b).map(|d| (d.path, d.one, d.other))
+        first_difference(&a, &b, &["out.often"]).map(|d| (d.path, d.one, d.other))
+    }
+
+    #[test]
+    fn what_does_not_count_may_be_there_or_not() {
+        let often = "(seed: 3, out: (often: Steps(3), wide: 4))";
+        assert_eq!(between(often, &often.replace("Steps(3)", "Never")), None);
+        assert_eq!(between(often, "(seed: 3, out: (wide: 4))"), None);
+        assert_eq!(between("(seed: 3)", "(seed: 3, out: (often: Never))"), None);
+        assert_eq!(between("(seed: 3, out: ())", "(seed: 3)"), None);
+        let wide = |a: Option<&str>, b: Option<&str>| {
+            Some((
+                "out.wide".to_owned(),
+                a.map(str::to_owned),
+                b.map(str::to_owned),
+            ))
+        };
+        assert_eq!(between(often, "(seed: 3)"), wide(Some("4"), None));
+        assert_eq!(between("(seed: 3)", often), wide(None, Some("4")));
+        assert!(between("(seed: 3, often: 1)", "(seed: 3)").is_some());
     }
 
     #[test]

@@ -1,0 +1,77 @@
+//! Files of an older run that the one which takes its place does not write over: they go, and nothing else does.
+
+use super::frame::PICTURES;
+use super::{RunError, unwritable};
+use std::path::Path;
+
+/// Figures at the end of a run, by name. Those of measures and scars have the names of a case, and stay.
+const FIGURES: [&str; 7] = [
+    "damage_ratio.png",
+    "fretting_loops.png",
+    "friction_coefficient.png",
+    "energy.png",
+    "circuit.png",
+    "jump.png",
+    "biaxial.png",
+];
+
+/// Takes pictures, problems and figures of an older run out of its folder.
+pub(super) fn clear(folder: &Path) -> Result<(), RunError> {
+    let picture = |name: &str| {
+        PICTURES
+            .iter()
+            .any(|p| numbered(name, &format!("{p}_"), ".png"))
+    };
+    remove(&folder.join("frames"), &picture)?;
+    remove(&folder.join("fclib"), &|name| {
+        numbered(name, "step-", ".hdf5")
+    })?;
+    remove(folder, &|name| FIGURES.contains(&name))
+}
+
+/// Whether a name has the number of a step, of eight digits or more, between two texts.
+fn numbered(name: &str, before: &str, after: &str) -> bool {
+    let rest = name.strip_prefix(before);
+    let Some(number) = rest.and_then(|r| r.strip_suffix(after)) else {
+        return false;
+    };
+    let digits = number.bytes().all(|b| b.is_ascii_digit());
+    digits && (number.len() == 8 || number.len() > 8 && !number.starts_with('0'))
+}
+
+/// Removes the files of a folder with such names.
+fn remove(folder: &Path, ours: &dyn Fn(&str) -> bool) -> Result<(), RunError> {
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return Ok(());
+    };
+    for entry in entries.flatten() {
+        let is_file = entry.file_type().is_ok_and(|t| t.is_file());
+        if is_file && entry.file_name().to_str().is_some_and(ours) {
+            let path = entry.path();
+            std::fs::remove_file(&path).map_err(|e| unwritable(&path, &e))?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_steps_are_told_from_names_of_others() {
+        let ours = |name: &str| numbered(name, "frame_", ".png");
+        assert!(ours("frame_00000012.png") && ours("frame_123456789.png"));
+        for name in [
+            "frame_12.png",
+            "frame_0000001a.png",
+            "frame_000000012.png",
+            "frame_00000012.jpg",
+            "my_frame_00000012.png",
+            "frame_00000012.png.bak",
+            "frame_.png",
+        ] {
+            assert!(!ours(name), "{name}");
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! A series in time that takes no more room however long it gets: when it is full every second point goes.
+
+use serde::{Deserialize, Serialize};
+
+/// Points, the first and the last among them, and between them as many as there is room for, equally far apart.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Series<T> {
+    points: Vec<T>,
+    /// The last one taken in, where it is not among the points.
+    last: Option<T>,
+    /// Of so many that come one is kept.
+    each: u64,
+    seen: u64,
+}
+
+impl<T> Default for Series<T> {
+    fn default() -> Self {
+        Self {
+            points: Vec::new(),
+            last: None,
+            each: 1,
+            seen: 0,
+        }
+    }
+}
+
+impl<T> Series<T> {
+    /// Most points; half as many remain at least.
+    pub const MOST: usize = 2048;
+
+    /// Takes a point in.
+    pub fn add(&mut self, point: T) {
+        let kept = self.seen.is_multiple_of(self.each);
+        self.seen += 1;
+        if !kept {
+            self.last = Some(point);
+            return;
+        }
+        if self.points.len() == Self::MOST {
+            let mut k = 0;
+            self.points.retain(|_| {
+                k += 1;
+                k % 2 == 1
+            });
+            self.each *= 2;
+        }
+        // It is the first after an even number of kept ones: still one of every `each`.
+        self.points.push(point);
+        self.last = None;
+    }
+
+    /// The points, the last one too.
+    pub fn points(&self) -> impl Iterator<Item = &T> {
+        self.points.iter().chain(&self.last)
+    }
+
+    /// The last one taken in.
+    pub fn last(&self) -> Option<&T> {
+        self.last.as_ref().or(self.points.last())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_all_there_or_equally_far_apart_with_both_ends() {
+        for count in [0, 1, 5, 2048, 2049, 4096, 4097, 4101, 100_001] {
+            let mut series = Series::default();
+            (0..count).for_each(|k: u64| series.add(k));
+            let points: Vec<u64> = series.points().copied().collect();
+            assert_eq!(series.last().copied(), count.checked_sub(1));
+            assert_eq!(points.last(), series.last());
+            if count <= Series::<u64>::MOST as u64 {
+                assert_eq!(points, (0..count).collect::<Vec<_>>());
+                continue;
+            }
+            assert!(
+                points.len() > Series::<u64>::MOST / 2 && points.len() <= Series::<u64>::MOST + 1
+            );
+            let apart: Vec<u64> = points.windows(2).map(|w| w[1] - w[0]).collect();
+            let (end, rest) = apart.split_last().unwrap();
+            assert!(points[0] == 0 && rest.iter().all(|d| *d == rest[0]) && *end <= rest[0]);
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! A long run holds no more memory than a short one, and its checkpoint is no larger: counted to the byte.
+//!
+//! `FRETWORK_LONG=N` makes it N steps long.
+
+#[path = "support/counting.rs"]
+mod counting;
+
+use counting::held;
+use fretwork::geometry::space::Plane;
+use fretwork::laws::SearchPath;
+use fretwork::record::checkpoint::Frame;
+use fretwork::record::friction::Cycle;
+use fretwork::record::results::Kept;
+use fretwork::record::{RunOptions, run};
+use fretwork::scene::build::{Dimensional, Loaded};
+use fretwork::scene::case::Case;
+use fretwork::scene::source::Source;
+use std::path::PathBuf;
+
+#[global_allocator]
+static COUNTING: counting::Counting = counting::Counting;
+
+/// What the number of contacts at the moment, rows on their way to the disk and the file's index may change (bytes).
+const SLACK: usize = 64 << 10;
+
+/// Grains on a floor that holds some of them by bonds, rubbed to and fro by a lid: 100 steps a cycle.
+const RUBBED: &str = r#"(
+    name: "rubbed for long", dimension: 2,
+    time: (step: 1e-4, end: 2.0), gravity: [0.0, -9.81], periodic: (x: 0.02),
+    solver: (tolerance: 1e-3, max_iterations: 60),
+    materials: {"grain": "glass_bead", "steel": "rail_steel_r260"},
+    interfaces: [
+        (name: "grains", between: ("grain", "grain"), contact: "coulomb", wear: "archard", parameters: (contact: {"mu": 0.3})),
+        (
+            name: "floor", between: ("steel", "grain"), contact: "coulomb", cohesion: "elastic-bond", bonds: Start,
+            parameters: (contact: {"mu": 0.5}),
+        ),
+    ],
+    bodies: [
+        (name: "floor", material: "steel", shapes: [HalfSpace(normal: [0.0, 1.0])]),
+        (
+            name: "lid", material: "grain", shapes: [HalfSpace(normal: [0.0, -1.0])], position: [0.0, 0.0062], mass: 0.1,
+            dofs: (x: Displacement(Sine(amplitude: 1e-4, frequency: 100.0)), y: Force(Constant(-100.0))),
+        ),
+    ],
+    grains: [Lattice(material: "grain", count: 27, radius: (1e-3, 1e-3), low: [0.0, 0.0], high: [0.02, 0.0061])],
+    friction: (body: "lid", along: 0, normal: 1),
+    circuit: (bases: ["floor"], every: 1),
+    measures: [
+        Shear(name: "flow", low: 0.001, high: 0.005),
+        Profile(name: "profile", axis: 1, low: [0.0, 0.0], high: [0.02, 0.006], bins: 5),
+        Mass(name: "upper", axis: 1, above: 0.003),
+        ThirdBody(name: "layer", between: ("floor", "lid"), along: 0, across: 1, bins: 4, slices: 2),
+    ],
+    output: (frames: 0, views: 20, figures: false, checkpoint: Steps(500)),
+)"#;
+
+/// Bytes held after each step of a run, and the bytes of the state in the last checkpoint.
+fn followed<S: Dimensional>(name: &str, text: &str, steps: u64) -> (Vec<usize>, usize) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("cases/long_run.ron");
+    let mut source = Source::from_text(&path, text);
+    source
+        .set(&format!("time.end={:e}", 1e-4 * steps as f64))
+        .unwrap();
+    let case: Case = source.parse().unwrap_or_else(|e| panic!("{e}"));
+    let loaded = Loaded { source, case, path };
+    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let built = built.unwrap_or_else(|e| panic!("{e}"));
+    let out = std::env::temp_dir().join(format!("fretwork-long-{}-{name}", std::process::id()));
+    std::fs::remove_dir_all(&out).ok();
+    let options = RunOptions {
+        out: out.clone(),
+        threads: 1,
+    };
+    // What is counted must not count itself.
+    let mut seen = Vec::with_capacity(steps as usize);
+    let mut progress = |_: &fretwork::record::Progress| seen.push(held());
+    run(&loaded, built, &options, &mut progress).unwrap_or_else(|e| panic!("{e}"));
+    let kept = Kept::open(&out.join("results.h5")).unwrap();
+    let slots = kept.checkpoints().unwrap();
+    let states = slots
+        .iter()
+        .filter_map(|b| Frame::read(b))
+        .map(|f| f.state.len());
+    let state = states.max().unwrap();
+    drop(kept);
+    std::fs::remove_dir_all(&out).unwrap();
+    (seen, state)
+}
+
+/// Most bytes held in the last thousand of so many steps.
+fn most(seen: &[usize], steps: usize) -> usize {
+    seen[steps - 1000..steps].iter().copied().max().unwrap()
+}
+
+/// What the cycles' list may take: a cycle of it is written out in the end, so that each must be kept. The list doubles
+/// its room when it is full.
+fn of_cycles(steps: usize) -> usize {
+    (steps / 100).next_power_of_two() * size_of::<Cycle>()
+}
+
+#[test]
+fn a_rubbed_layer_holds_no_more_but_its_cycles() {
+    const SHORT: usize = 4_000;
+    let long = std::env::var("FRETWORK_LONG").map_or(20_000, |n| n.parse().unwrap());
+    let (_, small) = followed::<Plane>("short", RUBBED, SHORT as u64);
+    let (seen, large) = followed::<Plane>("long", RUBBED, long as u64);
+    let (early, late) = (most(&seen, SHORT), most(&seen, long));
+    println!("held {early} and {late} bytes, states {small} and {large}");
+    for k in (1000..=long).step_by(1000) {
+        println!("{k} {}", most(&seen, k));
+    }
+    let cycles = of_cycles(long) - of_cycles(SHORT);
+    assert!(late <= early + cycles + SLACK, "{early} to {late}");
+    let cycles = (long - SHORT) / 100 * size_of::<Cycle>();
+    assert!(large <= small + cycles + SLACK, "{small} to {large}");
+}

@@ -1,0 +1,215 @@
+//! What a folder holds beside a state: settings that change no number, files of older runs, summaries of others.
+
+use super::common::{Folder, Job, files, said, same};
+
+const SETS: [&str; 4] = [
+    "time.end=0.004",
+    "output.checkpoint=Steps(8)",
+    "output.frames=0",
+    "output.figures=false",
+];
+
+fn job(sets: &'static [&'static str]) -> Job<'static> {
+    Job {
+        case: "shear_cell_3d",
+        sets,
+    }
+}
+
+#[test]
+fn checkpoints_and_figures_may_be_others_when_a_run_goes_on() {
+    const OTHER: [&str; 4] = [
+        "time.end=0.004",
+        "output.checkpoint=Never",
+        "output.frames=0",
+        "output.figures=true",
+    ];
+    let (out, whole) = (Folder::new("free"), Folder::new("free-whole"));
+    job(&SETS).killed_after(&out.0, 2);
+    let told = job(&OTHER).done(&out.0, &["--resume"]);
+    assert!(told.contains("resumes the run"), "{told}");
+    job(&OTHER).done(&whole.0, &[]);
+    assert!(out.0.join("energy.png").exists());
+    same(&whole.0, &out.0);
+}
+
+#[test]
+fn files_of_an_older_run_go_and_those_of_others_stay() {
+    const MANY: [&str; 5] = [
+        "time.end=0.004",
+        "output.frames=4",
+        "output.fclib=10",
+        "output.figures=true",
+        "output.width=200",
+    ];
+    const FEW: [&str; 4] = [
+        "time.end=0.003",
+        "output.frames=1",
+        "output.figures=false",
+        "output.width=200",
+    ];
+    let (out, fresh) = (Folder::new("older"), Folder::new("older-fresh"));
+    job(&MANY).done(&out.0, &[]);
+    let before = files(&out.0);
+    for name in [
+        "frames/frame_00000040.png",
+        "fclib/step-00000040.hdf5",
+        "energy.png",
+    ] {
+        assert!(before.iter().any(|f| f == name), "{name}: {before:?}");
+    }
+    let own = [
+        "frames/frame_1.png",
+        "frames/notes_00000040.png",
+        "fclib/mine.hdf5",
+        "my_energy.png",
+    ];
+    for name in own {
+        std::fs::write(out.0.join(name), "mine").unwrap();
+    }
+    // What cannot begin takes nothing away.
+    let refused = Job {
+        case: "shear_cell_3d",
+        sets: &["time.end=-1.0"],
+    };
+    assert!(!refused.run(&out.0, &[]).status.success());
+    assert!(before.iter().all(|f| out.0.join(f).exists()));
+    job(&FEW).done(&out.0, &[]);
+    job(&FEW).done(&fresh.0, &[]);
+    let mut expected = files(&fresh.0);
+    expected.extend(own.map(str::to_owned));
+    expected.sort();
+    assert_eq!(files(&out.0), expected);
+    for name in own {
+        assert_eq!(std::fs::read(out.0.join(name)).unwrap(), b"mine");
+        std::fs::remove_file(out.0.join(name)).unwrap();
+    }
+    same(&fresh.0, &out.0);
+}
+
+#[test]
+fn a_summary_of_another_run_ends_none() {
+    const OTHER: [&str; 3] = ["time.end=0.002", "output.frames=0", "output.figures=false"];
+    let whole = Folder::new("summary-whole");
+    job(&SETS).done(&whole.0, &[]);
+    let other = Folder::new("summary-other");
+    job(&OTHER).done(&other.0, &[]);
+    let out = Folder::new("summary");
+    // That of another case, and that of another run of the same case: the file knows that it is not at its end.
+    for from in [&other, &whole] {
+        std::fs::remove_dir_all(&out.0).ok();
+        job(&SETS).killed_after(&out.0, 2);
+        std::fs::copy(from.0.join("summary.json"), out.0.join("summary.json")).unwrap();
+        let told = job(&SETS).done(&out.0, &["--resume"]);
+        assert!(told.contains("resumes the run"), "{told}");
+        same(&whole.0, &out.0);
+    }
+    // At its end, but beside the summary of another case.
+    std::fs::copy(other.0.join("summary.json"), out.0.join("summary.json")).unwrap();
+    let told = job(&SETS).done(&out.0, &["--resume"]);
+    assert!(told.contains("resumes the run"), "{told}");
+    same(&whole.0, &out.0);
+    let told = job(&SETS).done(&out.0, &["--resume"]);
+    assert!(told.contains("is finished"), "{told}");
+}
+
+/// What hangs on the whole length of a run is its spacing of states and pictures: without them it is the run that was longer
+/// from its start.
+#[test]
+fn a_run_goes_on_beyond_its_end() {
+    const SHORT: [&str; 4] = [
+        "time.end=0.04",
+        "output.checkpoint=Steps(40)",
+        "output.frames=0",
+        "output.views=0",
+    ];
+    const LONG: [&str; 4] = [
+        "time.end=0.06",
+        "output.checkpoint=Steps(40)",
+        "output.frames=0",
+        "output.views=0",
+    ];
+    let job = |sets: &'static [&'static str]| Job {
+        case: "plane_shear",
+        sets,
+    };
+    let long = Folder::new("long");
+    job(&LONG).done(&long.0, &[]);
+    // Cut off by a kill, and at its end.
+    for killed in [true, false] {
+        let out = Folder::new(if killed { "longer-killed" } else { "longer" });
+        if killed {
+            job(&SHORT).killed_after(&out.0, 2);
+        } else {
+            job(&SHORT).done(&out.0, &[]);
+        }
+        let told = job(&LONG).done(&out.0, &["--resume"]);
+        assert!(told.contains("resumes the run"), "{told}");
+        same(&long.0, &out.0);
+        // Back to an earlier end there is no way.
+        let told = said(&job(&SHORT).run(&out.0, &["--resume"]), 2);
+        assert!(told.contains("`time.end` was 0.06 there"), "{told}");
+    }
+}
+
+#[test]
+fn states_keep_their_spacing_beyond_the_end() {
+    const SHORT: [&str; 4] = [
+        "time.end=0.04",
+        "output.checkpoint=Steps(40)",
+        "output.frames=0",
+        "output.views=4",
+    ];
+    const LONG: [&str; 4] = [
+        "time.end=0.06",
+        "output.checkpoint=Steps(40)",
+        "output.frames=0",
+        "output.views=6",
+    ];
+    const LATER: [&str; 4] = [
+        "time.end=0.06",
+        "output.checkpoint=Steps(40)",
+        "output.frames=0",
+        "output.views=4",
+    ];
+    let job = |sets: &'static [&'static str]| Job {
+        case: "plane_shear",
+        sets,
+    };
+    let times = |out: &Folder| {
+        let file = hdf5::H5File::open(out.0.join("results.h5")).unwrap();
+        let names = file.dataset_names();
+        let name = names.iter().find(|n| n.ends_with("Steps/Values")).unwrap();
+        file.dataset(name).unwrap().read_raw::<f64>().unwrap()
+    };
+    let (out, long) = (Folder::new("spacing"), Folder::new("spacing-long"));
+    job(&SHORT).done(&out.0, &[]);
+    job(&LATER).done(&out.0, &["--resume"]);
+    job(&LONG).done(&long.0, &[]);
+    assert_eq!(times(&out), times(&long));
+    assert_eq!(times(&out).len(), 7);
+}
+
+#[test]
+fn what_hangs_on_the_end_is_refused_a_later_one() {
+    const LATER: [&str; 4] = [
+        "time.end=0.005",
+        "output.checkpoint=Steps(8)",
+        "output.frames=0",
+        "output.figures=false",
+    ];
+    let out = Folder::new("later");
+    job(&SETS).killed_after(&out.0, 2);
+    let before = std::fs::read(out.0.join("results.h5")).unwrap();
+    let told = said(&job(&LATER).run(&out.0, &["--resume"]), 2);
+    for word in [
+        "beyond its `time.end`",
+        "second half of the whole run",
+        "without --resume",
+    ] {
+        assert!(told.contains(word), "{told}");
+    }
+    assert!(std::fs::read(out.0.join("results.h5")).unwrap() == before);
+    assert!(!out.0.join("results.h5.part").exists());
+    job(&SETS).done(&out.0, &["--resume"]);
+}
