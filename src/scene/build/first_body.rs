@@ -3,7 +3,7 @@
 use super::{Builder, Dimensional, Origin};
 use crate::bodies::{Driven, tensor};
 use crate::geometry::space::MatrixLike;
-use crate::scene::case::BodySpec;
+use crate::scene::case::{BodySpec, ShapeSpec};
 use crate::scene::source::InputError;
 
 impl<S: Dimensional> Builder<'_, S> {
@@ -23,6 +23,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let (volume, own) = (union.volume(), union.inertia(&centre));
         let dofs = spec.ordered(S::D);
         self.check_dofs(here, spec, volume > 0.0)?;
+        self.check_periods(here, spec)?;
         let mass = spec
             .mass
             .unwrap_or(if volume > 0.0 { density * volume } else { 1.0 });
@@ -53,6 +54,26 @@ impl<S: Dimensional> Builder<'_, S> {
         let first = self.shapes.surfaces.len();
         self.carry(union, body, material, &centre);
         self.wears(here, spec, first)
+    }
+
+    /// Refuses half-spaces that a period cuts through; one that vanishes is a wall of a case that is made periodic by `--set`.
+    fn check_periods(&self, here: &str, spec: &BodySpec) -> Result<(), InputError> {
+        let periods = self.shapes.periodic.period;
+        for (k, shape) in spec.shapes.iter().enumerate() {
+            let ShapeSpec::HalfSpace { normal, .. } = shape else {
+                continue;
+            };
+            let cut = (0..S::D).find(|a| periods[*a].is_some() && normal[*a] != 0.0);
+            if let (Some(axis), None) = (cut, spec.vanishes) {
+                let axis = ["x", "y", "z"][axis];
+                let message = format!(
+                    "a half-space must run along a period, and this one cuts across {axis}; give its normal no part along \
+                     {axis}, or take `periodic` away"
+                );
+                return Err(self.fail(format!("{here}.shapes.{k}.normal"), message));
+            }
+        }
+        Ok(())
     }
 
     /// Whether a rotation of the body is imposed at some time.

@@ -162,15 +162,6 @@ impl<S: Dimensional> Builder<'_, S> {
                 if n.norm() == 0.0 {
                     return Err(self.fail(format!("{here}.normal"), "a normal must not be null"));
                 }
-                let periods = self.shapes.periodic.period;
-                if let Some(k) = (0..S::D).find(|k| periods[*k].is_some() && n[*k] != 0.0) {
-                    let axis = ["x", "y", "z"][k];
-                    let message = format!(
-                        "a half-space must run along a period, and this one cuts across {axis}; give its normal no \
-                         part along {axis}, or take `periodic` away"
-                    );
-                    return Err(self.fail(format!("{here}.normal"), message));
-                }
                 let at = self.vector(&format!("{here}.at"), at)?;
                 let shown = period.map_or(1.0, |p| 0.5 * p);
                 Ok((
