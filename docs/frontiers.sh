@@ -11,7 +11,7 @@ study() {
     if [ -n "$wanted" ] && ! echo " $wanted " | grep -q " $name "; then return; fi
     mkdir -p "$out"
     echo "== $name"
-    $program trade "cases/$name.ron" --out "$out/$name" --budget 20m "$@" | tee "$out/$name.txt"
+    $program trade "cases/$name.ron" --out "$out/$name" --budget 60m "$@" | tee "$out/$name.txt"
 }
 wanted="$*"
 study collapse --seeds 10 --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=5e-5,5e-4,5e-3 --output energy.friction=2%
