@@ -4,6 +4,10 @@
 //! and prints the table of `docs/features.md`. Variants take turns, and the least of several rounds counts, so that
 //! what else the machine does counts as little as it can. `pieces` times the narrow phase of polyhedra, by pairs.
 
+#[path = "../tests/support/features.rs"]
+mod features;
+
+use features::{FEATURES, Feature};
 use fretwork::contact::Bond;
 use fretwork::geometry::convex::polyhedron::Polyhedron;
 use fretwork::geometry::convex::{Core, Gauge};
@@ -21,47 +25,11 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
-/// A feature: its name and the `--set`s that switch it on.
-type Feature = (&'static str, &'static [&'static str]);
-
-const FEATURES: [Feature; 9] = [
-    (
-        "no friction",
-        &[
-            "interfaces.0.contact=frictionless",
-            "interfaces.0.parameters.contact={}",
-        ],
-    ),
-    ("Coulomb friction (the base)", &[]),
-    (
-        "friction against rotation",
-        &[
-            "interfaces.0.contact=rolling-friction",
-            "interfaces.0.parameters.contact={}",
-        ],
-    ),
-    ("wear (archard)", &["interfaces.0.wear=archard"]),
-    (
-        "a bond law, no bonds",
-        &[
-            "interfaces.0.cohesion=elastic-bond",
-            "interfaces.0.bonds=Never",
-        ],
-    ),
-    (
-        "bonds (elastic-bond)",
-        &["interfaces.0.cohesion=elastic-bond"],
-    ),
-    (
-        "bonds with damage (mac)",
-        &["interfaces.0.cohesion=mac", "interfaces.0.damage=mac"],
-    ),
-    ("position correction", &["solver.correction=0.1"]),
-    (
-        "implicit coupling, nothing to couple",
-        &["coupling=Implicit(tolerance: 1e-3, max_iterations: 50)"],
-    ),
-];
+/// Beside the shared ones: nothing is there to couple.
+const UNCOUPLED: Feature = (
+    "implicit coupling, nothing to couple",
+    &["coupling=Implicit(tolerance: 1e-3, max_iterations: 50)"],
+);
 
 /// Steps of a round, and rounds.
 const STEPS: u32 = 10;
@@ -94,7 +62,8 @@ fn main() {
 }
 
 fn run<S: Dimensional>(scene: &str, case: &str) {
-    let mut trials: Vec<Trial<S>> = FEATURES.iter().map(|f| trial(case, f)).collect();
+    let all = FEATURES.iter().chain([&UNCOUPLED]);
+    let mut trials: Vec<Trial<S>> = all.map(|f| trial(case, f)).collect();
     for _ in 0..ROUNDS {
         trials.iter_mut().for_each(round);
     }

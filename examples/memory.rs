@@ -7,8 +7,11 @@
 
 #[path = "../tests/support/counting.rs"]
 mod counting;
+#[path = "../tests/support/features.rs"]
+mod features;
 
 use counting::{held, peak};
+use features::{BASE, BONDS, FEATURES, Feature};
 use fretwork::bodies::Bodies;
 use fretwork::contact::{Bond, Contact};
 use fretwork::geometry::shape::Ball;
@@ -25,39 +28,8 @@ use std::path::PathBuf;
 #[global_allocator]
 static COUNTING: counting::Counting = counting::Counting;
 
-/// A feature: its name and the `--set`s that switch it on.
-type Feature = (&'static str, &'static [&'static str]);
-
-const FEATURES: [Feature; 10] = [
-    (
-        "no friction",
-        &[
-            "interfaces.0.contact=frictionless",
-            "interfaces.0.parameters.contact={}",
-        ],
-    ),
-    BASE,
-    (
-        "friction against rotation",
-        &[
-            "interfaces.0.contact=rolling-friction",
-            "interfaces.0.parameters.contact={}",
-        ],
-    ),
-    ("wear (archard)", &["interfaces.0.wear=archard"]),
-    (
-        "a bond law, no bonds",
-        &[
-            "interfaces.0.cohesion=elastic-bond",
-            "interfaces.0.bonds=Never",
-        ],
-    ),
-    BONDS,
-    (
-        "bonds with damage (mac)",
-        &["interfaces.0.cohesion=mac", "interfaces.0.damage=mac"],
-    ),
-    ("position correction", &["solver.correction=0.1"]),
+/// Measured here beside the shared ones.
+const MORE: [Feature; 2] = [
     ("projection of overlaps", &["solver.projection=1e-3"]),
     (
         "implicit coupling",
@@ -68,12 +40,6 @@ const FEATURES: [Feature; 10] = [
         ],
     ),
 ];
-
-const BASE: Feature = ("Coulomb friction (the base)", &[]);
-const BONDS: Feature = (
-    "bonds (elastic-bond)",
-    &["interfaces.0.cohesion=elastic-bond"],
-);
 
 /// What grains are.
 #[derive(Clone, Copy, PartialEq)]
@@ -96,8 +62,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "| scene | feature | contacts a grain | a grain | a contact | in a step: a grain | a contact | `check`: a grain | a contact |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
-    scene::<Plane>("disks", Grains::Balls, &FEATURES)?;
-    scene::<Solid>("spheres", Grains::Balls, &FEATURES)?;
+    let all = [&FEATURES[..], &MORE].concat();
+    scene::<Plane>("disks", Grains::Balls, &all)?;
+    scene::<Solid>("spheres", Grains::Balls, &all)?;
     scene::<Plane>("bricks in the plane", Grains::Bricks, &[BASE, BONDS])?;
     scene::<Solid>("bricks in space", Grains::Bricks, &[BASE, BONDS])?;
     Ok(())
