@@ -1,6 +1,7 @@
 #!/bin/sh
 # Accuracy against cost of shipped cases; the tables of frontiers.md. Takes an hour or more: name cases to run only these.
 # Each study is kept in OUT (results/frontiers) and goes on where it stopped.
+# BUDGET: time a study may take, by the clock (60m).
 # docs/frontiers.sh [CASE...]
 set -e
 out=${OUT:-results/frontiers}
@@ -11,7 +12,7 @@ study() {
     if [ -n "$wanted" ] && ! echo " $wanted " | grep -q " $name "; then return; fi
     mkdir -p "$out"
     echo "== $name"
-    $program trade "cases/$name.ron" --out "$out/$name" --budget 60m "$@" | tee "$out/$name.txt"
+    $program trade "cases/$name.ron" --out "$out/$name" --budget "${BUDGET:-60m}" "$@" | tee "$out/$name.txt"
 }
 wanted="$*"
 study collapse --seeds 10 --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=5e-5,5e-4,5e-3 --output energy.friction=2%
