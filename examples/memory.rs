@@ -13,14 +13,14 @@ mod features;
 use counting::{held, peak};
 use features::{BASE, BONDS, FEATURES, Feature};
 use fretwork::bodies::Bodies;
-use fretwork::contact::{Bond, Contact};
+use fretwork::contact::Bond;
 use fretwork::geometry::shape::Ball;
 use fretwork::geometry::space::{Plane, Solid, Space};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::source::Source;
 use fretwork::scene::{Loaded, case::Case};
-use fretwork::solve::{ContactForm, Problem};
+use fretwork::solve::Problem;
 use fretwork::step::Simulation;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -108,13 +108,13 @@ fn check<S: Space>(grains: Grains, sets: &[&str]) -> [usize; 2] {
     let [plain, full, general] = Problem::<S>::BYTES_A_CONTACT;
     let bonds = sets.iter().any(|s| s.contains("cohesion"));
     let made = bonds && !sets.iter().any(|s| s.contains("Never"));
+    let sort = Problem::<S>::BYTES_TO_SORT;
     let row = match (grains, bonds) {
-        (Grains::Bricks, _) => general,
-        (Grains::Balls, true) => full,
-        (Grains::Balls, false) => plain,
+        (Grains::Bricks, _) => general + sort[2],
+        (Grains::Balls, true) => full + sort[1],
+        (Grains::Balls, false) => plain + sort[0],
     };
-    let beside =
-        2 * size_of::<Contact<S>>() + size_of::<ContactForm<S>>() + size_of::<(u32, u32)>();
+    let beside = Simulation::<S>::BYTES_A_CONTACT;
     let bond = if made { size_of::<Bond<S>>() } else { 0 };
     let state = Bodies::<S>::BYTES + size_of::<Ball<S>>() + size_of::<S::Vector>();
     [state + Problem::<S>::BYTES_A_BODY, row + beside + bond]

@@ -465,7 +465,7 @@ fn ends_with_the_budget_and_goes_on_after_an_interruption() {
     let started = Instant::now();
     let code = child.wait().unwrap_or_else(|e| panic!("{e}")).code();
     assert!(started.elapsed() < Duration::from_secs(20));
-    assert_eq!(code, Some(0));
+    assert_eq!(code, Some(1));
     let text = std::fs::read_to_string(Path::new(&out).join("trade.json")).unwrap_or_default();
     let left: Value = serde_json::from_str(&text).unwrap_or_default();
     assert_eq!(left["complete"], false, "{text}");

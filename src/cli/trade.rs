@@ -256,9 +256,16 @@ fn tell(
         // One of an earlier study would be taken for this one's.
         let _ = std::fs::remove_file(&picture);
     }
+    let ended = if interrupted {
+        Err(Failure::Failed(
+            "interrupted: what ran is kept, and the same command goes on from there".into(),
+        ))
+    } else {
+        Ok(())
+    };
     if args.json {
         say(&text);
-        return Ok(());
+        return ended;
     }
     say("");
     say(table::text(study, &found, &verdicts).trim_end());
@@ -304,7 +311,7 @@ fn tell(
         "{0}/trade.csv, {0}/trade.json, {last}",
         out.display()
     ));
-    Ok(())
+    ended
 }
 
 /// The outputs asked for, checked against a run of two steps where the case allows one so short.

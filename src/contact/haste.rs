@@ -1,6 +1,7 @@
 //! Bodies that move so far in a step that a contact is seen late, already overlapping, or not at all.
 
 use crate::bodies::Bodies;
+use crate::geometry::convex::DEEP;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +22,11 @@ pub struct Haste {
     pub first: f64,
     /// The farthest that a free body moved in a step, in parts of its length (a grain's radius).
     pub farthest: f64,
+    /// Times that a polygon or polyhedron came near a profile or facets with a corner that moved more than a quarter of the piece's
+    /// size and the alert distance in the step: corners deeper than that behind them are not seen.
+    pub plunges: u64,
+    /// The farthest that such a corner moved in a step, in parts of its piece's size.
+    pub deepest_plunge: f64,
 }
 
 impl Haste {
@@ -43,6 +49,14 @@ impl Haste {
                 self.first = time;
             }
             self.hasty_steps += 1;
+        }
+    }
+
+    /// Notes how far the corners of a piece of this size moved in a step on to a skin that they are near (m).
+    pub(super) fn plunge(&mut self, path: f64, size: f64, alert: f64) {
+        if path > DEEP * size + alert {
+            self.plunges += 1;
+            self.deepest_plunge = self.deepest_plunge.max(path / size);
         }
     }
 
@@ -71,7 +85,15 @@ impl Haste {
                 self.first, self.farthest
             ),
         };
-        let told: Vec<String> = [late, hasty]
+        let plunges = match self.plunges {
+            0 => String::new(),
+            n => format!(
+                "{n} times the corners of a polygon or polyhedron near a profile, height field or mesh moved farther than a \
+                 quarter of its size in a step (up to {:.2e} times) and may have passed it unseen",
+                self.deepest_plunge
+            ),
+        };
+        let told: Vec<String> = [late, hasty, plunges]
             .into_iter()
             .filter(|t| !t.is_empty())
             .collect();

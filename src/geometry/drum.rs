@@ -92,6 +92,10 @@ impl<S: Space> Surface<S> for Drum {
             .collect()
     }
 
+    fn any_depth(&self) -> bool {
+        true
+    }
+
     fn keeps_place(&self, spin: &S::Spin) -> bool {
         let mut axis = S::Vector::null();
         if S::D == 3 {

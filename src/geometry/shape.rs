@@ -67,6 +67,11 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn flat(&self) -> Option<S::Vector> {
         None
     }
+    /// Whether what is behind it is seen at any depth: planes, the insides of drums. Behind a profile or facets something
+    /// else may be.
+    fn any_depth(&self) -> bool {
+        false
+    }
     /// The surface as one that wears; none where it cannot.
     fn receding(&self) -> Option<&dyn Recede<S>> {
         None
@@ -114,6 +119,10 @@ impl<S: Space> Surface<S> for HalfSpace<S> {
 
     fn flat(&self) -> Option<S::Vector> {
         Some(self.normal)
+    }
+
+    fn any_depth(&self) -> bool {
+        true
     }
 
     fn keeps_place(&self, spin: &S::Spin) -> bool {

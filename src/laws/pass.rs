@@ -44,12 +44,21 @@ pub struct Turn<S: Space> {
 }
 
 /// Relative velocities at the start of a step, contact by contact.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Velocities<S: Space> {
     /// u^- (m/s).
     pub relative: Vec<S::Vector>,
     /// Relative spins (rad/s); empty unless a bond resists rotation.
     pub turning: Vec<S::Spin>,
+}
+
+impl<S: Space> Default for Velocities<S> {
+    fn default() -> Self {
+        Self {
+            relative: Vec::new(),
+            turning: Vec::new(),
+        }
+    }
 }
 
 /// Energies and events of one step, summed over contacts (J, m^3).

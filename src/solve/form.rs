@@ -182,6 +182,9 @@ pub struct Problem<S: Space> {
     pub(super) places: Vec<Place>,
     /// The order in which `plain` and `full` are swept.
     pub(super) orders: [Order; 2],
+    /// Where `plain` and `full` are put in order.
+    pub(super) spare_plain: Vec<PlainRow<S>>,
+    pub(super) spare_full: Vec<FullRow<S>>,
 }
 
 impl<S: Space> Default for Problem<S> {
@@ -197,6 +200,8 @@ impl<S: Space> Default for Problem<S> {
             moments: Vec::new(),
             places: Vec::new(),
             orders: Default::default(),
+            spare_plain: Vec::new(),
+            spare_full: Vec::new(),
         }
     }
 }
@@ -214,6 +219,16 @@ impl<S: Space> Problem<S> {
         size_of::<FullRow<S>>(),
         size_of::<GeneralRow<S>>(),
     ];
+
+    /// Bytes of a contact's place in the order of the sweep, and of the copy of its row, of the same kinds, from which it
+    /// is put there: contacts with levers stay where they are.
+    pub const BYTES_TO_SORT: [usize; 3] = [
+        size_of::<PlainRow<S>>() + Self::BYTES_A_PLACE,
+        size_of::<FullRow<S>>() + Self::BYTES_A_PLACE,
+        size_of::<Place>(),
+    ];
+    /// Its place as pushed, and in the order: bodies, sequence and place.
+    const BYTES_A_PLACE: usize = size_of::<Place>() + size_of::<[u32; 2]>() + 2 * size_of::<u32>();
 
     /// Empties the problem, keeping its memory.
     pub fn clear(&mut self) {

@@ -314,12 +314,14 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
         places,
         orders,
         lines,
+        spare_plain,
+        spare_full,
         ..
     } = problem;
     let movable: Vec<bool> = lines.iter().map(|l| l.im > 0.0 || l.is > 0.0).collect();
     let [of_plain, of_full] = orders;
-    let moved_plain = permute(plain, &movable, of_plain);
-    let moved_full = permute(full, &movable, of_full);
+    let moved_plain = permute(plain, spare_plain, &movable, of_plain);
+    let moved_full = permute(full, spare_full, &movable, of_full);
     for place in places.iter_mut() {
         *place = match *place {
             Place::Plain(r) => Place::Plain(moved_plain[r as usize]),
@@ -335,15 +337,15 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
 /// Returns where each row went.
 fn permute<'a, S: Space, R: Row<S>>(
     rows: &mut Vec<R>,
+    spare: &mut Vec<R>,
     movable: &[bool],
     order: &'a mut Order,
 ) -> &'a [u32] {
     order.update(rows.iter().map(Row::bodies), movable);
-    *rows = order
-        .sequence()
-        .iter()
-        .map(|k| rows[*k as usize].clone())
-        .collect();
+    spare.clear();
+    let sorted = order.sequence().iter();
+    spare.extend(sorted.map(|k| rows[*k as usize].clone()));
+    std::mem::swap(rows, spare);
     order.places()
 }
 

@@ -55,10 +55,23 @@ pub struct StepReport {
     pub timing: Timing,
 }
 
-/// What the contacts did in a solved step.
+/// What the contacts did in a solved step. Its memory is kept from step to step: of many contacts the pages of a new
+/// list cost more than what is written there.
+#[derive(Debug)]
 struct Solved<S: Space> {
+    before: Velocities<S>,
     sites: Vec<Site<S>>,
     turns: Vec<Turn<S>>,
+}
+
+impl<S: Space> Default for Solved<S> {
+    fn default() -> Self {
+        Self {
+            before: Velocities::default(),
+            sites: Vec::new(),
+            turns: Vec::new(),
+        }
+    }
 }
 
 /// A scene that steps.
@@ -108,6 +121,7 @@ pub struct Simulation<S: Space> {
     pub(super) problem: Problem<S>,
     forms: Vec<ContactForm<S>>,
     moments: Vec<MomentForm<S>>,
+    solved: Solved<S>,
 }
 
 /// The gap a step may close, or the part of a penetration it must take back (m).
@@ -116,6 +130,14 @@ fn quasi_shock(gap: f64, correction: f64) -> f64 {
 }
 
 impl<S: Space> Simulation<S> {
+    /// Bytes of a contact beside the solver's rows and its bond: it at this step and at the last, its pair in the
+    /// neighbour list, its form, and what it did.
+    pub const BYTES_A_CONTACT: usize = 2 * size_of::<Contact<S>>()
+        + size_of::<(u32, u32)>()
+        + size_of::<ContactForm<S>>()
+        + size_of::<Site<S>>()
+        + size_of::<S::Vector>();
+
     /// A scene at rest at time zero.
     pub fn new(
         bodies: Bodies<S>,
@@ -164,6 +186,7 @@ impl<S: Space> Simulation<S> {
             problem: Problem::default(),
             forms: Vec::new(),
             moments: Vec::new(),
+            solved: Solved::default(),
         }
     }
 
@@ -202,15 +225,16 @@ impl<S: Space> Simulation<S> {
         remembered.map_err(|e| self.law_error(e))?;
         report.timing.detect = clock.elapsed();
 
-        let before = self.relative_velocities();
+        self.relative_velocities();
         let free = motion::free_velocities(&self.bodies, &self.gravity, self.time, h, theta);
         self.geometry_of_forms(h);
-        let Solved { sites, turns } = self.couple(&start, &before, &free, &info, &mut report)?;
+        self.couple(&start, &free, &info, &mut report)?;
 
         let clock = Instant::now();
+        let Solved { sites, turns, .. } = &self.solved;
         let committed = self
             .passes
-            .commit(&self.laws, &mut self.network, &sites, &turns, &info);
+            .commit(&self.laws, &mut self.network, sites, turns, &info);
         report.totals = committed.map_err(|e| self.law_error(e))?;
         self.put_losses();
         self.network.locate_breaks(&self.bodies);
@@ -218,8 +242,8 @@ impl<S: Space> Simulation<S> {
 
         self.book(&start, &report.totals);
         motion::advance(&mut self.bodies, theta * h);
+        let sites = self.solved.sites.iter();
         report.active = sites
-            .iter()
             .filter(|s| s.solution.impulse != S::Vector::null())
             .count();
         self.time += h;
@@ -234,18 +258,17 @@ impl<S: Space> Simulation<S> {
     fn couple(
         &mut self,
         start: &Before<S>,
-        before: &Velocities<S>,
         free: &[(S::Vector, S::Spin)],
         info: &StepInfo,
         report: &mut StepReport,
-    ) -> Result<Solved<S>, StepError> {
+    ) -> Result<(), StepError> {
         let mut coupling = Progress::new(&self.coupling);
         loop {
             let clock = Instant::now();
             let prepared = self.passes.prepare(
                 &self.laws,
                 &self.network,
-                before,
+                &self.solved.before,
                 info,
                 &mut self.forms,
                 &mut self.moments,
@@ -267,24 +290,25 @@ impl<S: Space> Simulation<S> {
             self.adopt_velocities()?;
             report.timing.solve += clock.elapsed();
 
-            let sites = self.sites(&before.relative);
-            let turns = self.turns(start);
+            self.sites();
+            self.turns(start);
             let Coupling::Implicit { .. } = self.coupling else {
-                return Ok(Solved { sites, turns });
+                return Ok(());
             };
             let clock = Instant::now();
+            let Solved { sites, turns, .. } = &self.solved;
             let change = self
                 .passes
-                .trial(&self.laws, &mut self.network, &sites, &turns, info);
+                .trial(&self.laws, &mut self.network, sites, turns, info);
             let change = change.map_err(|e| self.law_error(e))?;
             report.timing.laws += clock.elapsed();
             if coupling.ends(change) {
                 report.coupling = coupling.report();
-                return Ok(Solved { sites, turns });
+                return Ok(());
             }
             self.passes.adopt(&mut self.network);
-            for (k, form) in self.forms.iter_mut().enumerate() {
-                form.impulse = sites[k].solution.impulse;
+            for (form, site) in self.forms.iter_mut().zip(&self.solved.sites) {
+                form.impulse = site.solution.impulse;
             }
         }
     }
@@ -333,20 +357,21 @@ impl<S: Space> Simulation<S> {
             - S::sweep(&bodies.spin[j], &contact.arms[1])
     }
 
-    fn relative_velocities(&self) -> Velocities<S> {
+    /// Relative velocities and spins at the start of the step.
+    fn relative_velocities(&mut self) {
+        let mut before = std::mem::take(&mut self.solved.before);
         let contacts = &self.network.contacts;
-        let turning = if self.laws.iter().any(Interface::rotates) {
+        before.relative.clear();
+        let relative = contacts.iter().map(|c| self.relative_velocity(c));
+        before.relative.extend(relative);
+        before.turning.clear();
+        if self.laws.iter().any(Interface::rotates) {
             let spins = &self.bodies.spin;
             let relative =
                 |c: &Contact<S>| spins[c.bodies[0] as usize] - spins[c.bodies[1] as usize];
-            contacts.iter().map(relative).collect()
-        } else {
-            Vec::new()
-        };
-        Velocities {
-            relative: contacts.iter().map(|c| self.relative_velocity(c)).collect(),
-            turning,
+            before.turning.extend(contacts.iter().map(relative));
         }
+        self.solved.before = before;
     }
 
     /// The part of the forms that geometry gives.
@@ -407,41 +432,45 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
-    fn sites(&self, before: &[S::Vector]) -> Vec<Site<S>> {
+    fn sites(&mut self) {
+        let mut sites = std::mem::take(&mut self.solved.sites);
+        sites.clear();
         let theta = self.scheme.theta;
+        let before = &self.solved.before.relative;
         let contacts = self.network.contacts.iter().zip(before).enumerate();
-        contacts
-            .map(|(k, (contact, before))| {
-                let (form, solution) = (&self.forms[k], self.problem.solution(k));
-                let average = *before * (1.0 - theta) + self.relative_velocity(contact) * theta;
-                let n = &contact.normal;
-                let lost = form.elastic.map_or(0.0, |e| {
-                    let pulls = n.dot(&solution.impulse) != solution.unilateral_n;
-                    let (un, ut) = (n.dot(&average), S::tangential(n, &average));
-                    let normal = if pulls { e.loss_n * un * un } else { 0.0 };
-                    normal + e.loss_t * ut.dot(&ut)
-                });
-                // A shift below zero without an approach is the correction's: u_n >= -shift.
-                let lifts = form.shift_n < 0.0 && n.dot(before) >= form.shift_n;
-                let lift = if lifts && self.correction > 0.0 {
-                    -theta * form.shift_n * solution.unilateral_n.max(0.0)
-                } else {
-                    0.0
-                };
-                Site {
-                    before: *before,
-                    average,
-                    adheres: form.tension > 0.0,
-                    lost,
-                    corrected: lift,
-                    solution,
-                }
-            })
-            .collect()
+        sites.extend(contacts.map(|(k, (contact, before))| {
+            let (form, solution) = (&self.forms[k], self.problem.solution(k));
+            let average = *before * (1.0 - theta) + self.relative_velocity(contact) * theta;
+            let n = &contact.normal;
+            let lost = form.elastic.map_or(0.0, |e| {
+                let pulls = n.dot(&solution.impulse) != solution.unilateral_n;
+                let (un, ut) = (n.dot(&average), S::tangential(n, &average));
+                let normal = if pulls { e.loss_n * un * un } else { 0.0 };
+                normal + e.loss_t * ut.dot(&ut)
+            });
+            // A shift below zero without an approach is the correction's: u_n >= -shift.
+            let lifts = form.shift_n < 0.0 && n.dot(before) >= form.shift_n;
+            let lift = if lifts && self.correction > 0.0 {
+                -theta * form.shift_n * solution.unilateral_n.max(0.0)
+            } else {
+                0.0
+            };
+            Site {
+                before: *before,
+                average,
+                adheres: form.tension > 0.0,
+                lost,
+                corrected: lift,
+                solution,
+            }
+        }));
+        self.solved.sites = sites;
     }
 
     /// What the contacts that resist rotation did.
-    fn turns(&self, start: &Before<S>) -> Vec<Turn<S>> {
+    fn turns(&mut self, start: &Before<S>) {
+        let mut turns = std::mem::take(&mut self.solved.turns);
+        turns.clear();
         let theta = self.scheme.theta;
         let average = |b: u32| {
             let b = b as usize;
@@ -459,7 +488,8 @@ impl<S: Space> Simulation<S> {
             }
         };
         let solved = self.moments.iter().zip(self.problem.moments());
-        solved.map(turn).collect()
+        turns.extend(solved.map(turn));
+        self.solved.turns = turns;
     }
 
     /// Books the step in the energy ledger.

@@ -57,18 +57,15 @@ impl Ran {
         let stopped = self.stopped.iter().cloned();
         told.extend(stopped.map(|words| (Cause::Stopped, words)));
         let haste = &s.network.haste;
-        let mut warning = haste.warning();
-        if haste.late > 0 && haste.hasty_steps > 0 {
-            // One sentence tells of both.
-            told.push((Cause::Late, warning.clone().unwrap_or_default()));
-            told.push((Cause::Jumped, warning.take().unwrap_or_default()));
-        }
-        let cause = if haste.late > 0 {
-            Cause::Late
-        } else {
-            Cause::Jumped
-        };
-        told.extend(warning.map(|words| (cause, words)));
+        // One sentence tells of all of them.
+        let warning = haste.warning().unwrap_or_default();
+        let causes = [
+            (haste.late, Cause::Late),
+            (haste.hasty_steps, Cause::Jumped),
+            (haste.plunges, Cause::Plunged),
+        ];
+        let causes = causes.into_iter().filter(|(times, _)| *times > 0);
+        told.extend(causes.map(|(_, cause)| (cause, warning.clone())));
         let missed = self.missed.warning(s, self.steps);
         told.extend(missed.map(|words| (Cause::Unconverged, words)));
         told

@@ -7,6 +7,8 @@ pub enum Cause {
     Late,
     /// `TOO FAST`: a body moved farther than its own length in a step.
     Jumped,
+    /// `TOO FAST`: corners near a profile or facets moved more than a quarter of their body in a step.
+    Plunged,
     /// `NOT CONVERGED`.
     Unconverged,
     /// The scene was refused, in a sentence that holds these words.
@@ -19,7 +21,9 @@ impl Cause {
     /// What its sentence must hold: what to change.
     fn proposal(self) -> &'static str {
         match self {
-            Self::Late | Self::Jumped => "take a smaller time.step or a larger detection.alert",
+            Self::Late | Self::Jumped | Self::Plunged => {
+                "take a smaller time.step or a larger detection.alert"
+            }
             Self::Unconverged => "take a smaller time.step, raise solver.max_iterations",
             Self::Refused(words) => words,
             Self::Stopped => "",

@@ -27,6 +27,7 @@ pub const ALL: &[Group] = &[
     faces::WALL,
     faces::FACES,
     motion::SPEED,
+    motion::CORNERS,
     little::WEIGHTLESS,
     little::FEW,
     geometry::COINCIDENT,

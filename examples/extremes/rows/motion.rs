@@ -1,7 +1,7 @@
 //! Speeds up to 100 km/s.
 
-use crate::bench::Cause::{Jumped, Late};
-use crate::bench::{Expected, Group, HELD, Row, Sketch, go, place, refused, told};
+use crate::bench::Cause::{self, Jumped, Late, Plunged};
+use crate::bench::{Expected, Group, HELD, Row, Sketch, go, held_though, place, refused, told};
 use fretwork::geometry::space::{Plane, Solid};
 use fretwork::scene::build::Dimensional;
 
@@ -9,6 +9,13 @@ pub const SPEED: Group = Group {
     name: "speed",
     criterion: "a ball thrown at a post stays in front of it, and energy is not created",
     runs: &[(2, speeds::<Plane>), (3, speeds::<Solid>)],
+    quick: true,
+};
+
+pub const CORNERS: Group = Group {
+    name: "corners at speed",
+    criterion: "a box thrown at a profile or a height field stays in front of it, and energy is not created",
+    runs: &[(2, corners::<Plane>), (3, corners::<Solid>)],
     quick: true,
 };
 
@@ -64,6 +71,66 @@ fn speeds<S: Dimensional>() -> Vec<Row> {
         (1e3, NEAR, told(&[Jumped])),
         (1e4, NEAR, told(&[Jumped])),
         (1e5, NEAR, told(&[Jumped])),
+    ]
+    .map(thrown)
+    .into()
+}
+
+/// A box of 0.1 m, so many of its sides a step, whose lower side is a little more than the alert distance above the
+/// surface at the end of a step.
+fn corners<S: Dimensional>() -> Vec<Row> {
+    let thrown = |(sides, expected): (f64, Expected)| {
+        let v = sides * 0.1 / Sketch::default().step;
+        let at = place::<S>(0.0, 0.0, 0.05 + 1.01 * NEAR + 1.5 * sides * 0.1);
+        let velocity = place::<S>(0.0, 0.0, -v);
+        let (surface, grains) = if S::D == 2 {
+            let points = "points: [(-0.05, -0.05), (0.05, -0.05), (0.05, 0.05), (-0.05, 0.05)]";
+            (
+                "Profile(side: Below, points: [(-1.0, 0.0), (1.0, 0.0)])",
+                format!(
+                    "Polygons(material: \"m0\", grains: [(at: {at}, {points}, velocity: {velocity})])"
+                ),
+            )
+        } else {
+            (
+                "HeightField(points: (3, 3), spacing: (1.0, 1.0), heights: [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])",
+                format!(
+                    "Polyhedra(material: \"m0\", grains: [(at: {at}, size: (0.1, 0.1, 0.1), velocity: {velocity})])"
+                ),
+            )
+        };
+        let sketch = Sketch {
+            gravity: 0.0,
+            bodies: format!(r#"(name: "rail", material: "m0", shapes: [{surface}]),"#),
+            grains,
+            ..Sketch::default()
+        };
+        let value = format!("{sides} of its side a step");
+        let mut s = match sketch.build::<S>() {
+            Ok(s) => s,
+            Err(e) => return refused(value, expected, &e),
+        };
+        let start = s.energy.kinetic;
+        let ran = go(&mut s, 10);
+        let b = s.bodies.grains().next();
+        let up = b.map_or(f64::NAN, |b| s.bodies.position[b][S::D - 1]);
+        let gained = s.energy.kinetic / start - 1.0;
+        let found = format!("at height {up:.3} m, its half height 0.05; energy {gained:.1e}");
+        let met = up > 0.0 && gained <= 1e-12;
+        ran.row(&s, (value, found), met, expected)
+    };
+    // In space edges that cross are seen, deep as they are, and too few to hold the box.
+    let passed: &[Cause] = if S::D == 2 {
+        &[Plunged]
+    } else {
+        &[Late, Plunged]
+    };
+    [
+        (0.01, HELD),
+        (0.1, held_though(&[Late])),
+        (0.17, held_though(&[Late])),
+        (0.3, told(passed)),
+        (5.0, told(&[Jumped, Plunged])),
     ]
     .map(thrown)
     .into()

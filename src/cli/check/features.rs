@@ -1,7 +1,7 @@
 //! What a scene has switched on and what is off, and what a grain and a contact take in memory.
 
 use crate::bodies::{Bodies, Dof};
-use crate::contact::{Bond, Contact};
+use crate::contact::Bond;
 use crate::geometry::shape::Ball;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::Interface;
@@ -11,7 +11,7 @@ use crate::scene::build::Built;
 use crate::scene::case::{BodySpec, Case};
 use crate::scene::methods::Demands;
 use crate::scene::phases::drives_of;
-use crate::solve::{ContactForm, Problem};
+use crate::solve::Problem;
 use crate::step::Simulation;
 use crate::step::coupling::Coupling;
 
@@ -288,9 +288,8 @@ pub fn memory<S: Space>(s: &Simulation<S>) -> [String; 2] {
     if !central {
         rows.push(format!("{general} where it has levers"));
     }
-    // The contacts of this step and of the last, their forms, and a pair of the neighbour list.
-    let beside =
-        2 * size_of::<Contact<S>>() + size_of::<ContactForm<S>>() + size_of::<(u32, u32)>();
+    let [plain, full, _] = Problem::<S>::BYTES_TO_SORT;
+    let beside = Simulation::<S>::BYTES_A_CONTACT + if bonded { full } else { plain };
     [
         format!(
             "{} bytes: {kept} of state, {line} in the solver",

@@ -17,7 +17,7 @@ pub(super) struct Narrow<'a, S: Space> {
     pub(super) cores: Vec<S::Core>,
     pub(super) laws: &'a LawTable,
     pub(super) time: f64,
-    h: f64,
+    pub(super) h: f64,
     /// Next old contact not yet met.
     at: usize,
     touches: Vec<Touch<S::Vector>>,

@@ -21,6 +21,9 @@ impl<S: Space> Narrow<'_, S> {
     /// A pair of which one at least is a piece.
     pub(super) fn pieces(&mut self, network: &mut Network<S>, a: u32, b: u32) {
         let old = self.old_of(network, (a, b));
+        if b & Key::SURFACE != 0 {
+            self.watch(network, a, b);
+        }
         let gauge = Gauge {
             reach: self.reach(network, old.clone()),
             slack: SLACK * network.alert,
@@ -40,6 +43,25 @@ impl<S: Space> Narrow<'_, S> {
             old.for_each(|k| drop_contact(network, k));
         }
         self.meetings = meetings;
+    }
+
+    /// Notes how far a piece moved in the step against a skin that it is near: what sinks in deeper than it is looked
+    /// for is not seen.
+    fn watch(&self, network: &mut Network<S>, a: u32, b: u32) {
+        let (k, s) = ((a & !Key::PIECE) as usize, (b & !Key::SURFACE) as usize);
+        let (piece, surface) = (&self.shapes.pieces[k], &self.shapes.surfaces[s]);
+        if surface.shape.any_depth() {
+            return;
+        }
+        let centre = self.centres[self.shapes.balls.len() + k];
+        let motion = |b: u32| {
+            let b = b as usize;
+            let arm = (centre - self.bodies.position[b]).norm() + piece.bound;
+            (self.bodies.velocity[b], self.bodies.spin[b].norm() * arm)
+        };
+        let ((v, turn), (v_surface, turn_surface)) = (motion(piece.body), motion(surface.body));
+        let path = self.h * ((v - v_surface).norm() + turn + turn_surface);
+        network.haste.plunge(path, piece.bound, network.alert);
     }
 
     /// Finds the meetings of a pair in world axes, and where their origin stands from the centres of the

@@ -39,6 +39,10 @@ pub struct Piece<S: Space> {
     pub material: u16,
 }
 
+/// How deep a corner may be behind a skin, a profile or facets, and still be pushed out, in parts of the size of its
+/// piece: [`Piece::bound`]. What is deeper may be in front of another part of it.
+pub const DEEP: f64 = 0.25;
+
 /// The shape of a piece and its mass properties, before it has a body.
 #[derive(Clone, Debug)]
 pub struct Part<S: Space> {

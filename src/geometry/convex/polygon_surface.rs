@@ -2,7 +2,7 @@
 //! corners, and the surface's corners on the polygon's sides.
 
 use super::polygon::Polygon;
-use super::{Gauge, Meeting};
+use super::{DEEP, Gauge, Meeting};
 use crate::geometry::shape::{Surface, Touch};
 use crate::geometry::space::Plane;
 use nalgebra::Vector2;
@@ -25,12 +25,14 @@ pub fn meet(
 ) {
     let first = out.len();
     let reach = gauge.reach + rounding;
+    let deep = reach.max(DEEP * (polygon.farthest() + rounding));
     let n = polygon.points().len();
     let mut touches: Vec<Touch<V>> = Vec::new();
     for (k, point) in polygon.points().iter().enumerate() {
         let p = point + at;
         touches.clear();
-        surface.touches(&p, reach, &mut touches);
+        surface.touches(&p, deep, &mut touches);
+        keep_nearest(&mut touches, reach);
         for (t, touch) in touches.iter().enumerate() {
             // Over a seam both faces are met alike.
             let alike = |other: &Touch<V>| {
@@ -83,6 +85,18 @@ pub fn meet(
         });
     }
     out[first..].sort_by_key(|m| m.feature);
+}
+
+/// Of what a corner touches, leaves what is within reach; where that is nothing, the corner may have sunk in deeper within
+/// a step: then the place nearest to it, if it is behind that. A corner near a thin part is far behind its other side.
+fn keep_nearest(touches: &mut Vec<Touch<V>>, reach: f64) {
+    let depth = |t: &Touch<V>| t.distance.abs();
+    let nearest = touches.iter().map(depth).fold(f64::INFINITY, f64::min);
+    if nearest < reach {
+        touches.retain(|t| depth(t) < reach);
+    } else {
+        touches.retain(|t| t.distance < 0.0 && depth(t) == nearest);
+    }
 }
 
 #[cfg(test)]
@@ -150,5 +164,29 @@ mod tests {
         assert_eq!(points[0].normal, V::new(0.0, 1.0));
         assert!((points[0].gap - 0.01).abs() < 1e-15);
         assert_eq!(points[0].on_antagonist, V::zeros());
+    }
+
+    #[test]
+    fn corners_that_sank_in_within_a_step_are_found_and_those_before_a_thin_part_are_not() {
+        let floor = Polyline::new(vec![V::new(-5.0, 0.0), V::new(5.0, 0.0)], None).unwrap();
+        // Deeper than the reach of 0.2, and than a quarter of the size, 0.25 sqrt(2).
+        let sunk = met(&floor, &square(), V::new(0.4, 0.7), 0.0);
+        assert_eq!(sunk.len(), 2, "{sunk:?}");
+        assert!(sunk.iter().all(|m| (m.gap + 0.3).abs() < 1e-15));
+        assert!(met(&floor, &square(), V::new(0.4, 0.6), 0.0).is_empty());
+        // A fin 0.05 wide stands on the floor; the square is 0.25 to its left, 0.3 behind its right side.
+        let fin = [
+            (-5.0, -9.0),
+            (2.0, -9.0),
+            (2.0, 9.0),
+            (2.05, 9.0),
+            (2.05, -9.0),
+            (5.0, -9.0),
+        ];
+        let fin = Polyline::new(fin.map(|(x, y)| V::new(x, y)).to_vec(), None).unwrap();
+        assert!(met(&fin, &square(), V::new(0.75, 0.0), 0.0).is_empty());
+        let near = met(&fin, &square(), V::new(0.85, 0.0), 0.0);
+        assert_eq!(near.len(), 2, "{near:?}");
+        assert!(near.iter().all(|m| m.normal == V::new(-1.0, 0.0)));
     }
 }

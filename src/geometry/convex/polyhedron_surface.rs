@@ -7,7 +7,7 @@
 
 use super::polyhedron::Polyhedron;
 use super::polyhedron_pair::holds;
-use super::{Gauge, Meeting};
+use super::{DEEP, Gauge, Meeting};
 use crate::geometry::facets::{self, Facet, Ridge};
 use crate::geometry::shape::{Surface, Touch};
 use crate::geometry::space::Solid;
@@ -15,8 +15,6 @@ use nalgebra::Vector3;
 
 type V = Vector3<f64>;
 
-/// How deep a corner may be behind a surface and still be pushed out, in parts of the polyhedron's size.
-const DEEP: f64 = 0.25;
 /// Places nearer than this part of the size are the same.
 const SAME: f64 = 1e-9;
 
