@@ -3,7 +3,6 @@
 use super::account::Account;
 use super::clear;
 use super::jumps::Jumps;
-use super::rescue::Refuge;
 use super::{Recorder, RunError, unwritable};
 use crate::geometry::space::Space;
 use crate::record::checkpoint::{Kind, LAST, ResumeError, Stop};
@@ -153,7 +152,6 @@ impl<S: Dimensional> Recorder<'_, S> {
         self.couplings = kept.couplings;
         self.summary.solver = kept.solver.into_owned();
         self.spent = (kept.wall, kept.processor);
-        self.refuge = Refuge::new(self.out.clone(), self.spent);
         self.results.take_over(&stop.kept, &kept.rows)?;
         let names: Vec<String> = self.table.columns.iter().map(|c| c.name.clone()).collect();
         // The columns of the statistics are declared first.

@@ -251,7 +251,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             spread: total,
             keeper,
             spent: (Duration::ZERO, Duration::ZERO),
-            refuge: Refuge::new(options.out.clone(), (Duration::ZERO, Duration::ZERO)),
+            refuge: Refuge::new(options.out.clone()),
             clock: Instant::now(),
             processor: ProcessTime::now(),
             density: density_of(loaded, first.is_some()),

@@ -24,6 +24,8 @@ struct Left {
     results: Results,
     cycles: Option<(Cycles, usize)>,
     summary: Summary,
+    /// What parts of the run before this one took, by the clock and of processors.
+    spent: (Duration, Duration),
 }
 
 /// The place where it lies during a step.
@@ -40,16 +42,16 @@ impl std::fmt::Debug for Left {
 }
 
 impl Refuge {
-    /// An empty place that the watch knows, for a run that took so long (by the clock, of processors) before.
-    pub fn new(out: PathBuf, spent: (Duration, Duration)) -> Self {
+    /// An empty place that the watch knows.
+    pub fn new(out: PathBuf) -> Self {
         let left = Arc::new(Mutex::new(None));
         let place = Arc::clone(&left);
         let (clock, processor) = (Instant::now(), ProcessTime::now());
         let ready = watch::rescue(move |who| {
             let left: Option<Left> = place.lock().ok().and_then(|mut l| l.take());
             left.is_some_and(|mut left| {
-                left.summary.wall_seconds = (spent.0 + clock.elapsed()).as_secs_f64();
-                left.summary.cpu_seconds = (spent.1 + processor.elapsed()).as_secs_f64();
+                left.summary.wall_seconds = (left.spent.0 + clock.elapsed()).as_secs_f64();
+                left.summary.cpu_seconds = (left.spent.1 + processor.elapsed()).as_secs_f64();
                 left.write(who, &out)
             })
         });
@@ -82,6 +84,7 @@ impl<S: Space> Recorder<'_, S> {
             results: std::mem::take(&mut self.results),
             cycles: self.cycles.take(),
             summary: std::mem::take(&mut self.summary),
+            spent: self.spent,
         };
         let place = || self.refuge.left.lock().unwrap_or_else(|e| e.into_inner());
         *place() = Some(left);
