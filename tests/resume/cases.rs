@@ -20,6 +20,8 @@ fn resumes(name: &str, job: Job<'_>, states: u64) {
 #[test]
 fn fretting_with_damage_in_the_plane() {
     let sets = [
+        "time.step=1e-4",
+        "solver.tolerance=1e-4",
         "time.end=0.056",
         "output.checkpoint=Steps(70)",
         "output.frames=3",
