@@ -265,37 +265,6 @@ fn a_state_of_another_run_goes_on_bit_by_bit() {
     round_trip::<Solid>("solid", solid);
 }
 
-/// The results list polygons too, with the radius of the disk of their area.
-#[test]
-fn polygons_of_another_run_are_listed_and_not_taken_for_balls() {
-    let folder = Folder::new("polygons");
-    let cells = r#"Voronoi(material: "grain", size: 0.02, low: [0.0, 0.0], high: [0.2, 0.1], gap: 1e-3, rounding: 1e-3)"#;
-    let built = folder
-        .build::<Plane>(cells)
-        .unwrap_or_else(|e| panic!("{e}"));
-    assert!(
-        built.samples[0].contains("50 Voronoi cells"),
-        "{:?}",
-        built.samples
-    );
-    let path = folder.write("first.ron", &case(2, cells));
-    let out = folder.0.join("out");
-    let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
-        .args([
-            "run".as_ref(),
-            path.as_os_str(),
-            "--out".as_ref(),
-            out.as_os_str(),
-        ])
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
-    let state = format!(r#"State(results: "{}", material: "grain")"#, out.display());
-    let said = refusal(folder.build::<Plane>(&state));
-    assert!(said.contains("holds 50 polygons; only balls"), "{said}");
-}
-
 #[test]
 fn states_that_cannot_be_read_are_refused_with_a_sentence() {
     let folder = Folder::new("damaged");

@@ -33,6 +33,11 @@ impl<S: Space> Tensor<S> {
         Some(Self { own, inverse, turn })
     }
 
+    /// The tensor in the body's own axes (kg m^2).
+    pub fn own(&self) -> &S::Tensor {
+        &self.own
+    }
+
     /// The inverse in the world's axes (1/(kg m^2)).
     pub fn inverse(&self, rotation: &S::Rotation) -> S::Tensor {
         S::turned_tensor(rotation, &self.inverse)

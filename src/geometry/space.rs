@@ -82,6 +82,8 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     fn inverse(rotation: &Self::Rotation) -> Self::Rotation;
     /// The rotation as numbers: angle, or quaternion (w, x, y, z).
     fn rotation_numbers(rotation: &Self::Rotation) -> [f64; 4];
+    /// The rotation of such numbers, bit by bit; none where they are not those of a rotation.
+    fn rotation_from(numbers: &[f64; 4]) -> Option<Self::Rotation>;
     /// Two tangents which with `n` make a right-handed frame; in 2D the first is n turned by +90
     /// degrees and the second is null.
     fn tangents(n: &Self::Vector) -> [Self::Vector; 2];
@@ -199,6 +201,9 @@ impl Space for Plane {
     }
     fn rotation_numbers(rotation: &f64) -> [f64; 4] {
         [*rotation, 0.0, 0.0, 0.0]
+    }
+    fn rotation_from(numbers: &[f64; 4]) -> Option<f64> {
+        numbers[0].is_finite().then_some(numbers[0])
     }
     #[inline(always)]
     fn tangents(n: &Self::Vector) -> [Self::Vector; 2] {
@@ -337,6 +342,13 @@ impl Space for Solid {
     }
     fn rotation_numbers(rotation: &Self::Rotation) -> [f64; 4] {
         [rotation.w, rotation.i, rotation.j, rotation.k]
+    }
+    fn rotation_from(numbers: &[f64; 4]) -> Option<Self::Rotation> {
+        let [w, x, y, z] = *numbers;
+        let quaternion = nalgebra::Quaternion::new(w, x, y, z);
+        // A number that is none is not near one either.
+        let unit = (quaternion.norm() - 1.0).abs() < 1e-6;
+        unit.then(|| nalgebra::UnitQuaternion::new_unchecked(quaternion))
     }
     fn tangents(n: &Self::Vector) -> [Self::Vector; 2] {
         // Duff et al., "Building an orthonormal basis, revisited", JCGT 6(1), 2017.

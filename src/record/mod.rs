@@ -19,6 +19,7 @@ pub mod results;
 pub mod run;
 pub mod scars;
 pub mod series;
+pub mod shapes;
 pub mod solving;
 pub mod statistics;
 pub mod steady;

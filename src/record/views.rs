@@ -1,7 +1,9 @@
 //! The state of a simulation as the views of `results.h5`.
 
 use super::picture;
+use super::results::state::ORIENTATION;
 use super::results::{Header, Part, Results, ResultsError};
+use super::shapes;
 use super::statistics::Column;
 use super::summary::Summary;
 use crate::contact::detect::centre;
@@ -11,18 +13,38 @@ use crate::report::LinkState;
 use crate::scene::build::Loaded;
 use crate::step::Simulation;
 
+/// What was built of a case.
+#[derive(Debug)]
+pub struct Made<'a, S: Space> {
+    /// The stepper.
+    pub simulation: &'a Simulation<S>,
+    /// Material files: name and text.
+    pub materials: &'a [(String, String)],
+    /// Densities of the materials (kg/m^3).
+    pub densities: &'a [f64],
+}
+
 /// What the file says before the first step.
-pub fn header(
+pub fn header<S: Space>(
     loaded: &Loaded,
-    materials: &[(String, String)],
+    built: &Made<'_, S>,
     summary: &Summary,
     statistics: &[Column],
-    dimension: usize,
 ) -> Header {
+    let dimension = S::D;
     let c = Column::new;
     let newton = if dimension == 2 { "N/m" } else { "N" };
     let axes = ["spin_x", "spin_y", "spin_z"].map(|name| c(name, "rad/s", "angular velocity"));
     let axes = if dimension == 2 { &[][..] } else { &axes };
+    let turns = match (shapes::needed(built.simulation), dimension) {
+        (false, _) => Vec::new(),
+        (true, 2) => vec![c("angle", "rad", "orientation")],
+        (true, _) => ORIENTATION
+            .map(|name| c(name, "", "orientation, a unit quaternion"))
+            .to_vec(),
+    };
+    let gone = loaded.case.circuit.iter();
+    let gone = gone.map(|_| c("gone", "", "1 for grains that were taken out"));
     let shear = loaded.case.output.shear.map(|_| {
         let doc =
             "local shear since the second phase began, or the start; not a number on first bodies";
@@ -91,10 +113,11 @@ pub fn header(
         },
         case_name: loaded.case.name.clone(),
         case_text: loaded.source.text().to_owned(),
-        materials: materials.to_vec(),
+        materials: built.materials.to_vec(),
         plugins: summary.plugins.clone(),
         seed: loaded.case.seed,
         dimension,
+        shapes: shapes::of(built.simulation, built.densities),
         version: summary.version.clone(),
         statistics: statistics.to_vec(),
         fields: [
@@ -103,7 +126,7 @@ pub fn header(
                 c(
                     "radius",
                     "m",
-                    "radius; of a polygon that of the disk of its area",
+                    "radius; of other shapes that of the ball (2D: disk) of the same volume",
                 ),
                 c("material", "", "index of the material"),
                 c("first_body", "", "1 for parts of a first body"),
@@ -111,10 +134,16 @@ pub fn header(
                 c("velocity_y", "m/s", "velocity"),
                 c("velocity_z", "m/s", "velocity"),
                 c("spin", "rad/s", "angular velocity, its norm in 3D"),
-                c("corners", "", "corners of a polygon, 0 for a ball"),
+                c(
+                    "corners",
+                    "",
+                    "corners of a polygon or polyhedron, 2 of a capsule, 0 for a ball",
+                ),
             ]
             .into_iter()
             .chain(axes.iter().cloned())
+            .chain(turns)
+            .chain(gone)
             .chain(shear)
             .collect(),
             vec![
@@ -137,21 +166,39 @@ pub fn header(
 }
 
 /// Bytes that a state takes a grain and a contact: points, cells and fields of 8 bytes.
-pub fn bytes(dimension: usize) -> [usize; 2] {
-    let fields = if dimension == 2 { 9 } else { 12 };
+pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
+    let (plain, turns) = if S::D == 2 { (9, 1) } else { (12, 4) };
+    let turns = if shapes::needed(s) { turns } else { 0 };
+    let fields = plain + turns + usize::from(circuit);
     [8 * (3 + 2 + fields), 8 * (6 + 3 + 8)]
 }
 
-/// Appends the state at hand; `shear` is a column of the grains where the header has it.
+/// Appends the state at hand of a case; `shear` is a column of the grains where the header has it.
 ///
 /// # Errors
 /// The file cannot be written.
 pub fn append<S: Space>(
     results: &mut Results,
     s: &Simulation<S>,
+    loaded: &Loaded,
     shear: Option<Vec<f64>>,
 ) -> Result<(), ResultsError> {
     let mut grains = grains(s);
+    let balls = s.shapes.balls.iter().map(|b| b.body as usize);
+    let pieces = s.shapes.pieces.iter().map(|p| p.body as usize);
+    let of: Vec<usize> = balls.chain(pieces).collect();
+    if shapes::needed(s) {
+        for k in 0..if S::D == 2 { 1 } else { 4 } {
+            let turns = of
+                .iter()
+                .map(|b| S::rotation_numbers(&s.bodies.rotation[*b])[k]);
+            grains.data.push(turns.collect());
+        }
+    }
+    if loaded.case.circuit.is_some() {
+        let gone = of.iter().map(|b| f64::from(u8::from(s.bodies.gone[*b])));
+        grains.data.push(gone.collect());
+    }
     grains.data.extend(shear);
     results.append_views(s.time, &[grains, contacts(s), bodies(s)])
 }
@@ -174,7 +221,7 @@ fn grains<S: Space>(s: &Simulation<S>) -> Part {
     }
     for piece in &s.shapes.pieces {
         let at = picture::piece_centre(s, piece);
-        let corners = piece.core.outline(0.0).len() as u32;
+        let corners = piece.core.boundary().corners.len() as u32;
         let of = [piece.body, piece.material.into(), corners];
         grain(s, &mut part, at, of, piece.size);
     }

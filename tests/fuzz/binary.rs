@@ -113,6 +113,61 @@ fn damaged_results() {
     });
 }
 
+/// The case with other grains, in a dimension.
+fn with(dimension: usize, grains: &str) -> String {
+    let from = CASE.find("grains: [List").unwrap();
+    let to = CASE.find("    output:").unwrap();
+    let case = format!("{}grains: [{grains}],\n{}", &CASE[..from], &CASE[to..]);
+    match dimension {
+        2 => case,
+        _ => case
+            .replace("dimension: 2", "dimension: 3")
+            .replace("0.0, -9.81", "0.0, 0.0, -9.81")
+            .replace("0.0, 1.0", "0.0, 0.0, 1.0"),
+    }
+}
+
+const PLANE: &str = r#"Polygons(material: "grain", grains: [(at: [0.0, 0.011], regular: (6, 0.01)), (at: [0.03, 0.012], regular: (3, 0.01), rounding: 1e-3)]),
+    Clusters(material: "grain", grains: [(at: [0.06, 0.01], shapes: [Balls([([0.0, 0.0], 0.006)]), Capsule(from: (0.0, 0.0), to: (0.01, 0.0), radius: 0.004)])])"#;
+const SOLID: &str = r#"Polyhedra(material: "grain", grains: [(at: [0.0, 0.0, 0.011], size: (0.02, 0.02, 0.02)), (at: [0.03, 0.0, 0.012], size: (0.01, 0.02, 0.02), rounding: 1e-3)]),
+    Clusters(material: "grain", grains: [(at: [0.06, 0.0, 0.01], shapes: [Balls([([0.0, 0.0, 0.0], 0.006)]), Capsule(from: (0.0, 0.0, 0.0), to: (0.01, 0.0, 0.0), radius: 0.004)])])"#;
+
+/// Grains of every shape, taken from a damaged run.
+#[test]
+fn damaged_shapes() {
+    let campaign = Campaign {
+        kind: "shapes",
+        count: 1000,
+        scene: 0,
+        taken: true,
+    };
+    let folder = campaign.folder();
+    let case = small(&folder);
+    let mut seeds = Vec::new();
+    let mut begun = Vec::new();
+    for (dimension, grains) in [(2, PLANE), (3, SOLID)] {
+        std::fs::write(&case, with(dimension, grains)).unwrap();
+        let done = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+            .args(["run", case.to_str().unwrap(), "--out"])
+            .arg(folder.join("out"))
+            .env_remove("FRETWORK_PLUGIN_PATH")
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&done.stderr);
+        assert!(done.status.success(), "{said}");
+        seeds.push(std::fs::read(folder.join("out/results.h5")).unwrap());
+        let begins = folder.join(format!("begins_{dimension}.ron"));
+        let state = r#"State(results: "last-results.h5", material: "grain")"#;
+        std::fs::write(&begins, with(dimension, state)).unwrap();
+        begun.push(begins);
+    }
+    let laws = SearchPath::new(&[]);
+    campaign.run(&folder, damaged("results.h5", seeds), move |_| {
+        let built = begun.iter().map(|case| loaded(case).build(&laws).is_ok());
+        built.filter(|taken| *taken).count() == 1
+    });
+}
+
 fn loaded(case: &Path) -> Loaded {
     load(case, &[]).unwrap_or_else(|e| panic!("{e}"))
 }

@@ -31,7 +31,7 @@ impl Features {
         out.programme(case, s);
         out.laws(s);
         out.scheme(case, s);
-        out.output(case, S::D);
+        out.output(case, &built.simulation);
         out
     }
 
@@ -233,7 +233,7 @@ impl Features {
         self.say("biaxial test", walls);
     }
 
-    fn output(&mut self, case: &Case, dimension: usize) {
+    fn output<S: Space>(&mut self, case: &Case, s: &Simulation<S>) {
         self.say(
             "circuit of grains",
             case.circuit.as_ref().map(|c| {
@@ -255,7 +255,7 @@ impl Features {
             "frames",
             (o.frames > 0).then(|| format!("{} of {} pixels", o.frames, o.width)),
         );
-        let [grain, contact] = views::bytes(dimension);
+        let [grain, contact] = views::bytes(s, case.circuit.is_some());
         self.say(
             "views",
             (o.views > 0)

@@ -3,6 +3,7 @@
 //! Two points with a rounding are a capsule; several pieces on a body are a cluster. Cores are polygons in the
 //! plane and polyhedra in space.
 
+mod boundary;
 pub mod mass;
 pub mod polygon;
 pub mod polygon_pair;
@@ -15,6 +16,8 @@ mod polyhedron_pair;
 mod polyhedron_surface;
 #[cfg(test)]
 mod polyhedron_tests;
+
+pub use boundary::Boundary;
 
 use super::shape::Surface;
 use super::space::Space;
@@ -158,4 +161,13 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     /// Corners of the rounded core for pictures and files (m): one closed line without its last point in the
     /// plane, a polygon for every face in space.
     fn outline(&self, rounding: f64) -> Vec<Vec<S::Vector>>;
+
+    /// Its corners and faces.
+    fn boundary(&self) -> Boundary<S::Vector>;
+
+    /// The core of these corners and faces.
+    ///
+    /// # Errors
+    /// Why they are those of none.
+    fn bounded_by(boundary: Boundary<S::Vector>) -> Result<Self, String>;
 }

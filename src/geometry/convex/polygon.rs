@@ -1,6 +1,6 @@
 //! Convex polygons in the plane.
 
-use super::{Core, Gauge, Meeting, Part, mass, polygon_pair, polygon_surface};
+use super::{Boundary, Core, Gauge, Meeting, Part, mass, polygon_pair, polygon_surface};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{Plane, Space};
 use nalgebra::{Matrix1, Vector2};
@@ -262,6 +262,14 @@ impl Core<Plane> for Polygon {
             }
         }
         vec![out]
+    }
+
+    fn boundary(&self) -> Boundary<Vector2<f64>> {
+        self.as_boundary()
+    }
+
+    fn bounded_by(boundary: Boundary<Vector2<f64>>) -> Result<Self, String> {
+        Self::of_boundary(boundary)
     }
 }
 

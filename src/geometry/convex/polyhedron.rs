@@ -1,6 +1,8 @@
 //! Convex polyhedra in space, and the segments of capsules.
 
-use super::{Core, Gauge, Meeting, Part, polyhedron_mass, polyhedron_pair, polyhedron_surface};
+use super::{
+    Boundary, Core, Gauge, Meeting, Part, polyhedron_mass, polyhedron_pair, polyhedron_surface,
+};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{Solid, Space};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -444,6 +446,14 @@ impl Core<Solid> for Polyhedron {
 
     fn outline(&self, rounding: f64) -> Vec<Vec<V>> {
         super::polyhedron_outline::of(self, rounding)
+    }
+
+    fn boundary(&self) -> Boundary<V> {
+        self.as_boundary()
+    }
+
+    fn bounded_by(boundary: Boundary<V>) -> Result<Self, String> {
+        Self::of_boundary(boundary)
     }
 }
 

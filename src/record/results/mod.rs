@@ -3,6 +3,7 @@
 //! ```text
 //! /            attributes: program, version, case, seed, dimension
 //! /case        the case as text, `--set` applied          /materials/NAME   their texts
+//! /shapes      of grains that are no lone balls, see [`shapes`]
 //! /plugins     kind, name, version, sha256, path          /statistics/NAME  one column each, with unit
 //! /events/broken/NAME  one value a bond that broke         /events/debris/NAME  one a piece that came loose
 //! /events/debris/grains  identities of their grains, piece after piece
@@ -13,6 +14,8 @@
 
 mod events;
 mod kept;
+mod reader;
+pub mod shapes;
 pub mod state;
 mod store;
 mod view;
@@ -24,6 +27,7 @@ pub use view::{Cells, Part};
 use super::statistics::Column;
 use super::summary::PluginStamp;
 use events::Events;
+use shapes::Shaped;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use store::{Growing, Slot, Store};
@@ -54,6 +58,8 @@ pub struct Header {
     pub broken: Vec<Column>,
     /// Columns of debris; empty without a circuit.
     pub debris: Vec<Column>,
+    /// Shapes of grains that are no lone balls.
+    pub shapes: Shaped,
 }
 
 /// Most rows of statistics, or events, that are held back, however short the time since the last were written.
@@ -124,6 +130,7 @@ impl Results {
                 store.texts(&format!("/plugins/{name}"), &texts)?;
             }
         }
+        header.shapes.write(&mut store)?;
         store.group("/statistics")?;
         let mut statistics = Vec::new();
         for c in &header.statistics {

@@ -1,31 +1,57 @@
 //! Reads the grains of a state of `results.h5`, also of a run that was cut off or still goes on.
 
-use crate::record::fclib::guard;
-use hdf5::{H5File, H5Type};
+use super::reader::Reader;
+use super::shapes::{Shaped, ShapedBall, ShapedBody, ShapedPiece};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// A grain of a state, in SI units; unused components are zero, the spin of a plane case is the first.
+/// How a grain moves, in SI units; unused components are zero, the spin of a plane case is the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Grain {
-    /// Centre (m), within the period where there is one.
+pub struct Motion {
+    /// Where its centre is, or that of its first part (m), within the period where there is one.
     pub at: [f64; 3],
-    /// Radius (m).
-    pub radius: f64,
+    /// Orientation: the angle (rad) in the plane, a quaternion (w, x, y, z) in space; none where the file has none, which
+    /// is where all grains are lone balls.
+    pub rotation: Option<[f64; 4]>,
     /// Velocity (m/s).
     pub velocity: [f64; 3],
     /// Angular velocity (rad/s).
     pub spin: [f64; 3],
 }
 
-/// The grains of one state; first bodies are left out.
+/// A ball of a state.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Grain {
+    /// Radius (m).
+    pub radius: f64,
+    /// How it moves.
+    pub motion: Motion,
+}
+
+/// A grain of a state that is no lone ball.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapedGrain {
+    /// Mass, inertia.
+    pub body: ShapedBody,
+    /// Its balls; the first is its first part where there is one,
+    pub balls: Vec<ShapedBall>,
+    /// and the first of its pieces where there is none.
+    pub pieces: Vec<ShapedPiece>,
+    /// How it moves.
+    pub motion: Motion,
+}
+
+/// The grains of one state; first bodies and grains that were taken out are left out.
 #[derive(Clone, Debug, Default)]
 pub struct State {
     /// Number of the state, from 0.
     pub frame: usize,
     /// Its time (s).
     pub time: f64,
-    /// The grains, in the order of the file.
+    /// The balls, in the order of the file.
     pub grains: Vec<Grain>,
+    /// The other grains, in the order of the file.
+    pub shaped: Vec<ShapedGrain>,
 }
 
 /// Why a state cannot be read.
@@ -54,26 +80,15 @@ pub enum StateError {
 /// Reads a state (the last one without a `frame`) for a case of a dimension.
 ///
 /// # Errors
-/// A file that is not there, not of Fretwork, damaged, of the other dimension, or without that state.
+/// A file that is not there, not of Fretwork, damaged, of the other dimension, without that state, or without the shapes
+/// of its grains.
 pub fn read(path: &Path, frame: Option<usize>, dimension: usize) -> Result<State, StateError> {
     let unreadable = |reason: String| StateError::Unreadable {
         path: path.to_owned(),
         reason,
     };
-    let length = match std::fs::metadata(path) {
-        Ok(data) if data.is_file() => data.len(),
-        Ok(_) => return Err(unreadable("it is not a file".to_owned())),
-        Err(e) => return Err(unreadable(e.to_string())),
-    };
-    let file = guard(|| H5File::options().best_effort_locking().open(path))
-        .map_err(|e| unreadable(format!("it is not a file of results ({e})")))?;
-    let names = guard(|| Ok(file.dataset_names())).map_err(unreadable)?;
-    // A declared size is a claim: nothing is allocated by it that the file could not hold.
-    let grains = Grains {
-        file,
-        most: usize::try_from(length).unwrap_or(usize::MAX / 8) * 4 + (1 << 16),
-    };
-    let has = |name: &str| names.iter().any(|n| n == &format!("{ROOT}/{name}"));
+    let reader = Reader::open(path).map_err(unreadable)?;
+    let has = |name: &str| reader.has(&format!("{ROOT}/{name}"));
     if !has("Points") {
         return Err(unreadable(
             "it has no `/views/grains`; name a `results.h5` of `fretwork run`".to_owned(),
@@ -94,27 +109,58 @@ pub fn read(path: &Path, frame: Option<usize>, dimension: usize) -> Result<State
             ));
         }
     };
-    grains.read(path, frame, spins)
+    let turns: &[&str] = if dimension == 2 {
+        &["angle"]
+    } else {
+        &ORIENTATION
+    };
+    let shaped = Shaped::read(&reader).map_err(unreadable)?;
+    let turned = turns.iter().all(|t| has(&format!("PointData/{t}")));
+    if shaped.is_some() && !turned {
+        let reason = "it has shapes of grains and no orientations: it is damaged";
+        return Err(unreadable(reason.to_owned()));
+    }
+    let grains = Grains {
+        reader,
+        spins,
+        turns: if turned { turns } else { &[] },
+    };
+    grains.read(path, frame, shaped)
 }
 
 /// Where the view of the grains stands.
 const ROOT: &str = "views/grains";
 
+/// The columns of orientations in space.
+pub const ORIENTATION: [&str; 4] = [
+    "orientation_w",
+    "orientation_x",
+    "orientation_y",
+    "orientation_z",
+];
+
 struct Grains {
-    file: H5File,
-    /// Bytes that one column may take.
-    most: usize,
+    reader: Reader,
+    /// Columns of the angular velocity,
+    spins: &'static [&'static str],
+    /// and of the orientation; none where the file has none.
+    turns: &'static [&'static str],
 }
 
 impl Grains {
-    fn read(&self, path: &Path, frame: Option<usize>, spins: &[&str]) -> Result<State, StateError> {
+    fn read(
+        &self,
+        path: &Path,
+        frame: Option<usize>,
+        shaped: Option<Shaped>,
+    ) -> Result<State, StateError> {
         let unreadable = |reason: String| StateError::Unreadable {
             path: path.to_owned(),
             reason,
         };
         // Columns of a run that was cut off may differ by their last state.
         let states = ["Steps/Values", "Steps/PointOffsets", "NumberOfPoints"]
-            .map(|n| self.rows(n))
+            .map(|n| self.reader.rows(&format!("{ROOT}/{n}")))
             .into_iter()
             .try_fold(usize::MAX, |least, n| Ok(least.min(n?)))
             .map_err(unreadable)?;
@@ -130,96 +176,148 @@ impl Grains {
                 asked,
             });
         }
-        self.frame(asked, spins).map_err(unreadable)
+        self.frame(asked, shaped).map_err(unreadable)
     }
 
-    fn frame(&self, frame: usize, spins: &[&str]) -> Result<State, String> {
-        let time = self.slice::<f64>("Steps/Values", frame, 1)?[0];
+    fn frame(&self, frame: usize, shaped: Option<Shaped>) -> Result<State, String> {
+        let time = self
+            .reader
+            .numbers(&format!("{ROOT}/Steps/Values"), (frame, 1), 1)?[0];
         let whole = |name: &str| {
-            let value = self.slice::<i64>(name, frame, 1)?[0];
+            let value = self.reader.whole(&format!("{ROOT}/{name}"), (frame, 1))?[0];
             usize::try_from(value).map_err(|_| format!("`{name}` holds {value}"))
         };
         let (first, count) = (whole("Steps/PointOffsets")?, whole("NumberOfPoints")?);
-        let points = self.slice::<f64>("Points", first, count)?;
-        let column = |name: &str| self.slice::<f64>(&format!("PointData/{name}"), first, count);
-        let (radius, body) = (column("radius")?, column("first_body")?);
+        let rows = (first, count);
+        let points = self.reader.numbers(&format!("{ROOT}/Points"), rows, 3)?;
+        let place = |name: &str| format!("{ROOT}/PointData/{name}");
+        let column = |name: &str| self.reader.numbers(&place(name), rows, 1);
+        // What files of older versions, or of cases without such grains, do not list is zero.
+        let where_listed = |name: &str| match self.reader.has(&place(name)) {
+            true => column(name),
+            false => Ok(vec![0.0; count]),
+        };
         let axes = |names: &[&str]| {
             names
                 .iter()
                 .map(|n| column(n))
                 .collect::<Result<Vec<_>, _>>()
         };
-        // Files of older versions list balls alone.
-        let corners = match self.rows("PointData/corners") {
-            Ok(_) => column("corners")?,
-            Err(_) => vec![0.0; count],
-        };
-        let polygons = (0..count)
-            .filter(|k| body[*k] == 0.0 && corners[*k] > 0.0)
-            .count();
-        if polygons > 0 {
-            return Err(format!(
-                "state {frame} holds {polygons} polygons; only balls can be taken from another run"
-            ));
-        }
+        let (radius, first_body, id) = (column("radius")?, column("first_body")?, column("id")?);
+        let (corners, gone) = (where_listed("corners")?, where_listed("gone")?);
         let velocity = axes(&["velocity_x", "velocity_y", "velocity_z"])?;
-        let spin = axes(spins)?;
-        let at = |columns: &[Vec<f64>], k: usize| -> [f64; 3] {
+        let (spin, turn) = (axes(self.spins)?, axes(self.turns)?);
+        fn at<const N: usize>(columns: &[Vec<f64>], k: usize) -> [f64; N] {
             std::array::from_fn(|axis| columns.get(axis).map_or(0.0, |c| c[k]))
+        }
+        let mut sorted = Sorted::of(shaped.unwrap_or_default())?;
+        let mut state = State {
+            frame,
+            time,
+            ..State::default()
         };
-        let mut grains = Vec::with_capacity(count);
-        for k in (0..count).filter(|k| body[*k] == 0.0) {
-            let grain = Grain {
+        let mut balls: Vec<u64> = Vec::new();
+        let grains = (0..count).filter(|k| first_body[*k] == 0.0);
+        for k in grains.filter(|k| gone[*k] == 0.0) {
+            let motion = Motion {
                 at: std::array::from_fn(|axis| points[3 * k + axis]),
-                radius: radius[k],
+                rotation: (!turn.is_empty()).then(|| at(&turn, k)),
                 velocity: at(&velocity, k),
                 spin: at(&spin, k),
             };
-            let numbers = [grain.at, grain.velocity, grain.spin];
-            if !(grain.radius > 0.0 && numbers.iter().flatten().all(|x| x.is_finite())) {
+            let numbers = [motion.at, motion.velocity, motion.spin];
+            let turns = motion.rotation.unwrap_or_default();
+            let finite = |x: &f64| x.is_finite();
+            if !(radius[k] > 0.0 && numbers.iter().flatten().chain(&turns).all(finite)) {
                 return Err(format!(
                     "grain {k} of state {frame} has numbers that are none"
                 ));
             }
-            grains.push(grain);
+            let body = id[k] as u64;
+            match sorted.take(body, motion) {
+                Known::First(grain) => state.shaped.push(*grain),
+                Known::Again => {}
+                Known::Not if corners[k] > 0.0 => return Err(shapeless(frame)),
+                Known::Not => {
+                    balls.push(body);
+                    let radius = radius[k];
+                    state.grains.push(Grain { radius, motion });
+                }
+            }
         }
-        if grains.is_empty() {
+        balls.sort_unstable();
+        if balls.windows(2).any(|w| w[0] == w[1]) {
+            return Err(shapeless(frame));
+        }
+        if state.grains.is_empty() && state.shaped.is_empty() {
             return Err(format!("state {frame} holds no grains"));
         }
-        Ok(State {
-            frame,
-            time,
-            grains,
-        })
+        Ok(state)
+    }
+}
+
+fn shapeless(frame: usize) -> String {
+    format!(
+        "state {frame} holds grains that are no balls, and the file does not say of what shape: it is of an older version; \
+         run its case again with this one"
+    )
+}
+
+/// Shapes by the identities of their grains.
+struct Sorted(HashMap<u64, Option<Box<ShapedGrain>>>);
+
+/// What is known of the grain of a row.
+enum Known {
+    /// It has a shape, and this is its first part.
+    First(Box<ShapedGrain>),
+    /// It has a shape, and was met.
+    Again,
+    /// Nothing: it is a lone ball.
+    Not,
+}
+
+impl Sorted {
+    fn of(shaped: Shaped) -> Result<Self, String> {
+        let mut grains: HashMap<u64, Option<Box<ShapedGrain>>> = HashMap::new();
+        for body in shaped.bodies {
+            let grain = ShapedGrain {
+                balls: Vec::new(),
+                pieces: Vec::new(),
+                motion: Motion::default(),
+                body,
+            };
+            grains.insert(grain.body.id, Some(Box::new(grain)));
+        }
+        let lost = |body: u64| format!("`shapes` has parts of a grain {body} that is not there");
+        for ball in shaped.balls {
+            let body = ball.body;
+            let grain = grains.get_mut(&body).and_then(Option::as_mut);
+            grain.ok_or_else(|| lost(body))?.balls.push(ball);
+        }
+        for piece in shaped.pieces {
+            let body = piece.body;
+            let grain = grains.get_mut(&body).and_then(Option::as_mut);
+            grain.ok_or_else(|| lost(body))?.pieces.push(piece);
+        }
+        let bare = |g: &Option<Box<ShapedGrain>>| {
+            g.as_ref()
+                .is_some_and(|g| g.balls.is_empty() && g.pieces.is_empty())
+        };
+        if grains.values().any(bare) {
+            return Err("`shapes` has a grain of no parts".to_owned());
+        }
+        Ok(Self(grains))
     }
 
-    fn rows(&self, name: &str) -> Result<usize, String> {
-        let shape = guard(|| Ok(self.file.dataset(&format!("{ROOT}/{name}"))?.shape()))?;
-        Ok(shape.first().copied().unwrap_or(0))
-    }
-
-    /// Rows of a dataset, as one list.
-    fn slice<T: H5Type>(&self, name: &str, first: usize, count: usize) -> Result<Vec<T>, String> {
-        let rows = self.rows(name)?;
-        if first.checked_add(count).is_none_or(|end| end > rows) || count > self.most / 24 {
-            return Err(format!("`{name}` is cut short: it has {rows} rows"));
-        }
-        if count == 0 {
-            return Ok(Vec::new());
-        }
-        let values = guard(|| {
-            let dataset = self.file.dataset(&format!("{ROOT}/{name}"))?;
-            if dataset.shape().len() == 1 {
-                dataset.read_slice::<T>(&[first], &[count])
-            } else {
-                let width = dataset.shape()[1];
-                dataset.read_slice::<T>(&[first, 0], &[count, width])
+    /// The grain of a row of the state.
+    fn take(&mut self, body: u64, motion: Motion) -> Known {
+        match self.0.get_mut(&body).map(Option::take) {
+            None => Known::Not,
+            Some(None) => Known::Again,
+            Some(Some(mut grain)) => {
+                grain.motion = motion;
+                Known::First(grain)
             }
-        })?;
-        let width = if name == "Points" { 3 } else { 1 };
-        if values.len() != count * width {
-            return Err(format!("`{name}` has another shape than results have"));
         }
-        Ok(values)
     }
 }

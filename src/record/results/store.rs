@@ -1,4 +1,4 @@
-//! The only file of this folder, with `state.rs` and `kept.rs`, that knows the HDF5 crate: growing datasets through its SWMR writer, whose files can
+//! The only file of this folder, with `reader.rs` and `kept.rs`, that knows the HDF5 crate: growing datasets through its SWMR writer, whose files can
 //! be read up to the last flush after a crash.
 
 use hdf5::swmr::SwmrFileWriter;
@@ -204,6 +204,36 @@ impl Store {
         }
         let placed = self.writer.assign_dataset_to_group(group, index);
         self.named(placed)
+    }
+
+    /// A dataset of rows of `width` numbers, written once; none where there is no row.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn numbers<T: H5Type + Number>(
+        &mut self,
+        path: &str,
+        width: u64,
+        values: &[T],
+        unit: &str,
+    ) -> Result<(), ResultsError> {
+        if values.is_empty() {
+            return Ok(());
+        }
+        let rows = values.len() as u64 / width;
+        let dims = if width == 1 {
+            vec![rows]
+        } else {
+            vec![rows, width]
+        };
+        let name = path.trim_start_matches('/');
+        let made = self.writer.write_dataset::<T>(name, &dims, values);
+        let index = self.named(made)?;
+        if !unit.is_empty() {
+            let set = self.writer.set_dataset_attr_string(index, "unit", unit);
+            self.named(set)?;
+        }
+        self.place(split(path).0, index)
     }
 
     /// A growing dataset of rows of `width` numbers (1: a plain column), with its unit and a line of

@@ -217,7 +217,14 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             },
             ..Summary::default()
         };
-        let header = views::header(loaded, &built.materials, &summary, &columns, S::D);
+        let header = {
+            let made = views::Made {
+                simulation: &simulation,
+                materials: &built.materials,
+                densities: &built.densities,
+            };
+            views::header(loaded, &made, &summary, &columns)
+        };
         // The file of results comes first: it alone says what the folder holds.
         let part = options.out.join("results.h5.part");
         let results = Results::create(&part, &header)?;
@@ -434,7 +441,12 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             .strain
             .as_ref()
             .map(|strain| strain.shear(&self.simulation));
-        Ok(views::append(&mut self.results, &self.simulation, shear)?)
+        Ok(views::append(
+            &mut self.results,
+            &self.simulation,
+            self.loaded,
+            shear,
+        )?)
     }
 
     fn progress(&self, step: u64, report: &StepReport) -> Progress {

@@ -13,40 +13,59 @@ pub(super) const MOST_READ: usize = 10_000_000;
 /// and those that a line of the case makes.
 pub(super) const MOST_MADE: usize = 2_000_000;
 
-/// A grain to be: place, radius, material, density, velocity, spin, and where the case has it.
-pub(super) type Seed<S> = (
-    <S as Space>::Vector,
-    f64,
-    u16,
-    f64,
-    <S as Space>::Vector,
-    <S as Space>::Spin,
-    Origin,
-);
+/// A ball to be.
+pub(super) struct Seed<S: Space> {
+    /// Where its centre stands (m).
+    pub at: S::Vector,
+    /// Radius (m).
+    pub radius: f64,
+    /// Material, and its density (kg/m^3).
+    pub of: (u16, f64),
+    /// Orientation.
+    pub rotation: S::Rotation,
+    /// Velocity (m/s).
+    pub velocity: S::Vector,
+    /// Angular velocity (rad/s).
+    pub spin: S::Spin,
+    /// Where the case has it.
+    pub origin: Origin,
+}
+
+impl<S: Space> Seed<S> {
+    /// One at rest.
+    pub fn still(at: S::Vector, radius: f64, of: (u16, f64), origin: Origin) -> Self {
+        Self {
+            at,
+            radius,
+            of,
+            rotation: S::upright(),
+            velocity: S::Vector::null(),
+            spin: S::Spin::null(),
+            origin,
+        }
+    }
+}
 
 impl<S: Dimensional> Builder<'_, S> {
     pub(super) fn grains(&mut self) -> Result<(), InputError> {
         let mut found: Vec<Seed<S>> = Vec::new();
+        let mut shaped = Vec::new();
         for (k, spec) in self.case.grains.iter().enumerate() {
             let here = format!("grains.{k}");
             match spec {
                 GrainSpec::List { material, grains } => {
-                    let (m, density) = self.material(&format!("{here}.material"), material)?;
+                    let of = self.material(&format!("{here}.material"), material)?;
                     for (g, grain) in grains.iter().enumerate() {
                         let here = format!("{here}.grains.{g}");
                         let at = self.vector(&format!("{here}.at"), &grain.at)?;
                         let radius = self.radius(&format!("{here}.radius"), grain.radius)?;
                         let velocity = self.vector(&format!("{here}.velocity"), &grain.velocity)?;
                         let spin = self.spin(&format!("{here}.spin"), &grain.spin)?;
-                        found.push((
-                            at,
-                            radius,
-                            m,
-                            density,
+                        found.push(Seed {
                             velocity,
                             spin,
-                            Origin::Grain(k, Some(g)),
-                        ));
+                            ..Seed::still(at, radius, of, Origin::Grain(k, Some(g)))
+                        });
                     }
                 }
                 GrainSpec::Lattice {
@@ -56,7 +75,7 @@ impl<S: Dimensional> Builder<'_, S> {
                     low,
                     high,
                 } => {
-                    let (m, density) = self.material(&format!("{here}.material"), material)?;
+                    let of = self.material(&format!("{here}.material"), material)?;
                     for r in [radius.0, radius.1] {
                         self.radius(&format!("{here}.radius"), r)?;
                     }
@@ -80,10 +99,9 @@ impl<S: Dimensional> Builder<'_, S> {
                                 .expected("a larger box, smaller grains or fewer"),
                         ));
                     }
-                    let none = (S::Vector::null(), S::Spin::null());
                     found.extend(list.into_iter().map(|(x, r)| {
                         let at = S::Vector::from_slice(&x);
-                        (at, r, m, density, none.0, none.1, Origin::Grain(k, None))
+                        Seed::still(at, r, of, Origin::Grain(k, None))
                     }));
                 }
                 // After the balls, which stand first in memory.
@@ -98,12 +116,11 @@ impl<S: Dimensional> Builder<'_, S> {
                     material,
                     walls,
                 } => {
-                    let (m, density) = self.material(&format!("{here}.material"), material)?;
+                    let of = self.material(&format!("{here}.material"), material)?;
                     let scene = self.scene_file(file)?;
-                    let none = (S::Vector::null(), S::Spin::null());
                     found.extend(scene.balls.iter().map(|(x, r)| {
                         let at = S::Vector::from_slice(x);
-                        (at, *r, m, density, none.0, none.1, Origin::Grain(k, None))
+                        Seed::still(at, *r, of, Origin::Grain(k, None))
                     }));
                     if let Some(walls) = walls {
                         let (m, _) = self.material(&format!("{here}.walls"), walls)?;
@@ -124,11 +141,15 @@ impl<S: Dimensional> Builder<'_, S> {
                 }
                 GrainSpec::Deposit(spec) => found.extend(self.deposit(k, spec)?),
                 GrainSpec::Csv(spec) => found.extend(self.grains_of_csv(k, spec)?),
-                GrainSpec::State(spec) => found.extend(self.grains_of_run(k, spec)?),
+                GrainSpec::State(spec) => {
+                    let (balls, others) = self.grains_of_run(k, spec)?;
+                    found.extend(balls);
+                    shaped.push(others);
+                }
             }
         }
         // Neighbours in space become neighbours in memory.
-        let width = 4.0 * found.iter().map(|g| g.1).fold(0.0, f64::max);
+        let width = 4.0 * found.iter().map(|g| g.radius).fold(0.0, f64::max);
         let cell = |x: &S::Vector| -> Vec<i64> {
             (0..S::D)
                 .rev()
@@ -136,23 +157,29 @@ impl<S: Dimensional> Builder<'_, S> {
                 .collect()
         };
         if width > 0.0 {
-            found.sort_by_cached_key(|g| cell(&g.0));
+            found.sort_by_cached_key(|g| cell(&g.at));
         }
-        for (at, radius, material, density, velocity, spin, origin) in found {
-            let body = self.bodies.add_ball(at, radius, density);
-            self.origins.push(origin);
-            self.bodies.velocity[body as usize] = velocity;
-            self.bodies.spin[body as usize] = spin;
+        for seed in found {
+            let (material, density) = seed.of;
+            let body = self.bodies.add_ball(seed.at, seed.radius, density);
+            self.origins.push(seed.origin);
+            self.bodies.rotation[body as usize] = seed.rotation;
+            self.bodies.velocity[body as usize] = seed.velocity;
+            self.bodies.spin[body as usize] = seed.spin;
             self.shapes.balls.push(Ball {
                 body,
-                radius,
+                radius: seed.radius,
                 offset: S::Vector::null(),
                 material,
             });
         }
         self.polygons()?;
         self.polyhedra()?;
-        self.clusters()
+        self.clusters()?;
+        for others in shaped {
+            self.shaped_grains(others)?;
+        }
+        Ok(())
     }
 
     pub(super) fn spin(&self, path: &str, values: &[f64]) -> Result<S::Spin, InputError> {

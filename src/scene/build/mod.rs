@@ -1,5 +1,6 @@
 //! From a case to a scene that steps.
 
+mod another_run;
 mod arch;
 mod blocks;
 mod first_body;
@@ -58,6 +59,8 @@ pub struct Built<S: Space> {
     pub simulation: Simulation<S>,
     /// Material files read: name and text.
     pub materials: Vec<(String, String)>,
+    /// Densities of the materials, with the scaling of inertia (kg/m^3).
+    pub densities: Vec<f64>,
     /// The body under test and the names of the driven bodies, in their order.
     pub names: Vec<String>,
     /// What samples that were made at random, or read, turned out to be: one line each.
@@ -140,10 +143,15 @@ impl Loaded {
             .map(|d| d.name.clone())
             .collect();
         let samples = std::mem::take(&mut builder.samples);
+        let mut densities = vec![0.0; builder.densities.len()];
+        for (k, density) in builder.densities.values() {
+            densities[usize::from(*k)] = *density;
+        }
         let simulation = builder.finish(laws.interfaces, laws.table)?;
         Ok(Built {
             simulation,
             materials,
+            densities,
             names,
             samples,
         })

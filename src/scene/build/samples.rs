@@ -1,12 +1,11 @@
-//! Samples that are made at random, and grains from tables and from other runs.
+//! Samples that are made at random, and grains from tables.
 
 use super::grains::{MOST_MADE, MOST_READ, Seed};
 use super::{Builder, Dimensional, Origin};
 use crate::geometry::space::VectorLike;
-use crate::record::results::state;
 use crate::scene::sample::deposit::{Corners, deposit};
 use crate::scene::sample::sizes::Sizes;
-use crate::scene::sample::spec::{Counted, CsvSpec, DepositSpec, FrameSpec, SizeSpec, StateSpec};
+use crate::scene::sample::spec::{Counted, CsvSpec, DepositSpec, SizeSpec};
 use crate::scene::sample::table::Table;
 use crate::scene::source::{Fault, InputError};
 
@@ -18,7 +17,7 @@ impl<S: Dimensional> Builder<'_, S> {
         spec: &DepositSpec,
     ) -> Result<Vec<Seed<S>>, InputError> {
         let here = format!("grains.{k}");
-        let (m, density) = self.material(&format!("{here}.material"), &spec.material)?;
+        let of = self.material(&format!("{here}.material"), &spec.material)?;
         let sizes = self.sizes(&format!("{here}.sizes"), &spec.sizes)?;
         let corners = Corners {
             low: self.corner(&format!("{here}.low"), &spec.low)?,
@@ -50,10 +49,9 @@ impl<S: Dimensional> Builder<'_, S> {
             "{here}: {placed} grains placed at random without overlaps, {:.1} % of their box",
             100.0 * made.asked
         ));
-        let (none, origin) = ((S::Vector::null(), S::Spin::null()), Origin::Grain(k, None));
         let seeds = made.grains.into_iter();
         Ok(seeds
-            .map(|(at, r)| (at, r, m, density, none.0, none.1, origin))
+            .map(|(at, r)| Seed::still(at, r, of, Origin::Grain(k, None)))
             .collect())
     }
 
@@ -125,7 +123,7 @@ impl<S: Dimensional> Builder<'_, S> {
         k: usize,
         spec: &CsvSpec,
     ) -> Result<Vec<Seed<S>>, InputError> {
-        let (m, density) = self.material(&format!("grains.{k}.material"), &spec.material)?;
+        let of = self.material(&format!("grains.{k}.material"), &spec.material)?;
         let place = &["x", "y", "z"][..S::D];
         let moving = &["velocity_x", "velocity_y", "velocity_z"][..S::D];
         let turning: &[&str] = if S::D == 2 {
@@ -150,62 +148,16 @@ impl<S: Dimensional> Builder<'_, S> {
             if r <= 0.0 {
                 return Err(table.fail(row, format!("a radius must be positive, got {r}")));
             }
-            found.push((
-                S::Vector::from_slice(&values(&place)),
-                r,
-                m,
-                density,
-                S::Vector::from_slice(&values(&moving)),
-                S::Spin::from_slice(&values(&turning)),
-                Origin::Grain(k, None),
-            ));
+            let at = S::Vector::from_slice(&values(&place));
+            found.push(Seed {
+                velocity: S::Vector::from_slice(&values(&moving)),
+                spin: S::Spin::from_slice(&values(&turning)),
+                ..Seed::still(at, r, of, Origin::Grain(k, None))
+            });
         }
         let file = &spec.file;
         self.samples
             .push(format!("grains.{k}: {} grains of {file}", found.len()));
         Ok(found)
-    }
-
-    /// Grains of a state of another run.
-    pub(super) fn grains_of_run(
-        &mut self,
-        k: usize,
-        spec: &StateSpec,
-    ) -> Result<Vec<Seed<S>>, InputError> {
-        let (m, density) = self.material(&format!("grains.{k}.material"), &spec.material)?;
-        let mut path = self.folder.join(&spec.results);
-        if path.is_dir() {
-            path.push("results.h5");
-        }
-        let frame = match spec.frame {
-            FrameSpec::Last => None,
-            FrameSpec::Number(n) => Some(n),
-        };
-        let read = state::read(&path, frame, S::D).map_err(|e| {
-            let place = match e {
-                state::StateError::NoFrame { .. } => "frame",
-                _ => "results",
-            };
-            self.fail(format!("grains.{k}.{place}"), e.to_string())
-        })?;
-        self.samples.push(format!(
-            "grains.{k}: {} grains of state {} of {}, {:e} s",
-            read.grains.len(),
-            read.frame,
-            path.display(),
-            read.time
-        ));
-        let seeds = read.grains.iter().map(|g| {
-            (
-                S::Vector::from_slice(&g.at),
-                g.radius,
-                m,
-                density,
-                S::Vector::from_slice(&g.velocity),
-                S::Spin::from_slice(&g.spin),
-                Origin::Grain(k, None),
-            )
-        });
-        Ok(seeds.collect())
     }
 }

@@ -20,10 +20,11 @@ impl<L: Copy + PartialEq> Corner<L> {
     /// The two planes of the edge between two corners; none where there is no edge.
     pub fn edge(&self, other: &Self) -> Option<[L; 2]> {
         let [a, b, c] = self.sides;
-        match [a, b, c].map(|s| other.sides.contains(&s)) {
-            [true, true, false] => Some([a, b]),
-            [true, false, true] => Some([a, c]),
-            [false, true, true] => Some([b, c]),
+        let on = |s: L| other.sides.contains(&s);
+        match (on(a), on(b), on(c)) {
+            (true, true, false) => Some([a, b]),
+            (true, false, true) => Some([a, c]),
+            (false, true, true) => Some([b, c]),
             _ => None,
         }
     }
@@ -38,11 +39,12 @@ pub fn cut<L: Copy + PartialEq>(
     height: f64,
 ) -> bool {
     let over = |c: &Corner<L>| c.at.dot(normal) - height;
-    let (off, mut kept): (Vec<Corner<L>>, Vec<Corner<L>>) =
-        corners.iter().partition(|c| over(c) > 0.0);
-    if off.is_empty() {
+    // Most planes take nothing off.
+    if !corners.iter().any(|c| over(c) > 0.0) {
         return false;
     }
+    let (off, mut kept): (Vec<Corner<L>>, Vec<Corner<L>>) =
+        corners.iter().partition(|c| over(c) > 0.0);
     let whole = kept.len();
     for o in &off {
         for k in 0..whole {

@@ -15,7 +15,6 @@ use crate::geometry::space::Solid;
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
-use std::collections::HashMap;
 
 type V = Vector3<f64>;
 
@@ -90,10 +89,10 @@ pub fn tiling(
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut moved = 0;
     let mut cut = region.cut_all(&sites);
+    let to_move = |cut: &[Vec<Corner<Side>>], i: usize| region.is_to_move(i, &cut[i]);
+    let mut short: Vec<bool> = (0..sites.len()).map(|i| to_move(&cut, i)).collect();
     for _ in 0..NUDGES {
-        let restless: Vec<usize> = (0..sites.len())
-            .filter(|i| region.is_to_move(*i, &cut[*i]))
-            .collect();
+        let restless: Vec<usize> = (0..sites.len()).filter(|i| short[*i]).collect();
         if restless.is_empty() {
             let cells = cut.iter().enumerate();
             let cells = cells.map(|(i, corners)| region.finished(&sites, i, corners));
@@ -107,7 +106,9 @@ pub fn tiling(
             let way = V::from_fn(|_, _| rng.random_range(-1.0..1.0)) * (NUDGE * size);
             sites[*i] = region.wrapped(sites[*i] + way);
         }
-        region.cut_again(&sites, &restless, &left, &mut cut);
+        for i in region.cut_again(&sites, &restless, &left, &mut cut) {
+            short[i] = to_move(&cut, i);
+        }
     }
     Err(Failure::Short)
 }
@@ -144,8 +145,91 @@ enum Side {
     Wall(usize, bool),
 }
 
-/// Sites and images by the cubes that they are in.
-type Cubes = HashMap<[i64; 3], Vec<(u32, [i8; 3])>>;
+/// A site, and how many periods away from its place its image stands.
+type Image = (u32, [i8; 3]);
+
+/// Sites and images by the cubes that they are in, from a low corner on. Where most cubes would be empty, so many of
+/// them as two to the power of `merged` along each axis count as one.
+struct Cubes {
+    merged: u32,
+    low: [i64; 3],
+    counts: [usize; 3],
+    starts: Vec<u32>,
+    images: Vec<Image>,
+}
+
+impl Cubes {
+    /// From images and their cubes.
+    fn new(placed: &[([i64; 3], Image)]) -> Self {
+        let (mut low, mut high) = ([i64::MAX; 3], [i64::MIN; 3]);
+        if placed.is_empty() {
+            (low, high) = ([0; 3], [0; 3]);
+        }
+        for (cube, _) in placed {
+            for k in 0..3 {
+                (low[k], high[k]) = (low[k].min(cube[k]), high[k].max(cube[k]));
+            }
+        }
+        let (mut merged, mut counts) = (0, [0; 3]);
+        for shift in 0..64 {
+            merged = shift;
+            counts = [0, 1, 2]
+                .map(|k| (high[k] >> shift).abs_diff(low[k] >> shift) as usize)
+                .map(|n| n.saturating_add(1));
+            let all: f64 = counts.iter().map(|n| *n as f64).product();
+            if all <= 8.0 * placed.len() as f64 + 64.0 {
+                break;
+            }
+        }
+        let low = low.map(|c| c >> merged);
+        let mut out = Self {
+            merged,
+            low,
+            counts,
+            starts: vec![0; counts.iter().product::<usize>() + 1],
+            images: vec![(0, [0; 3]); placed.len()],
+        };
+        let place = |out: &Self, cube: &[i64; 3]| {
+            let [x, y, z] = [0, 1, 2].map(|k| ((cube[k] >> merged) - low[k]) as usize);
+            (z * out.counts[1] + y) * out.counts[0] + x
+        };
+        for (cube, _) in placed {
+            let at = place(&out, cube);
+            out.starts[at + 1] += 1;
+        }
+        for k in 1..out.starts.len() {
+            out.starts[k] += out.starts[k - 1];
+        }
+        let mut next = out.starts.clone();
+        for (cube, image) in placed {
+            let at = place(&out, cube);
+            out.images[next[at] as usize] = *image;
+            next[at] += 1;
+        }
+        out
+    }
+
+    /// All in the cubes from one to another.
+    fn between(&self, from: [i64; 3], to: [i64; 3], mut found: impl FnMut(Image)) {
+        let range = |k: usize| {
+            let place = |cube: i64| (cube >> self.merged).saturating_sub(self.low[k]);
+            let most = self.counts[k] as i64;
+            let end = place(to[k]).saturating_add(1).clamp(0, most);
+            place(from[k]).clamp(0, most) as usize..end as usize
+        };
+        let along = range(0);
+        for z in range(2) {
+            for y in range(1) {
+                // Cubes along x stand side by side.
+                let row = (z * self.counts[1] + y) * self.counts[0];
+                let [first, last] = [along.start, along.end].map(|x| self.starts[row + x] as usize);
+                self.images[first..last.max(first)]
+                    .iter()
+                    .for_each(|image| found(*image));
+            }
+        }
+    }
+}
 
 /// Twice the distance of the farthest corner from the site: sites beyond do not cut the cell.
 fn farthest(corners: &[Corner<Side>]) -> f64 {
@@ -185,18 +269,18 @@ impl Region {
                 &[0]
             }
         };
-        let mut out: HashMap<_, Vec<_>> = HashMap::new();
+        let mut placed = Vec::new();
         for (i, site) in sites.iter().enumerate() {
             for &x in images(0) {
                 for &y in images(1) {
                     for &z in images(2) {
                         let cube = self.cube(&(site + self.shift([x, y, z])));
-                        out.entry(cube).or_default().push((i as u32, [x, y, z]));
+                        placed.push((cube, (i as u32, [x, y, z])));
                     }
                 }
             }
         }
-        out
+        Cubes::new(&placed)
     }
 
     fn cube(&self, at: &V) -> [i64; 3] {
@@ -212,8 +296,14 @@ impl Region {
     }
 
     /// Brings the corners up to date after some sites moved from where they were: those of cells near enough to notice.
-    /// A site farther away than twice the farthest corner of a cell never cut it, and never will.
-    fn cut_again(&self, sites: &[V], moved: &[usize], left: &[V], cut: &mut [Vec<Corner<Side>>]) {
+    /// A site farther away than twice the farthest corner of a cell never cut it, and never will. Gives the cells.
+    fn cut_again(
+        &self,
+        sites: &[V],
+        moved: &[usize],
+        left: &[V],
+        cut: &mut [Vec<Corner<Side>>],
+    ) -> Vec<usize> {
         const MARGIN: f64 = 1.0 + 1e-6;
         let cubes = self.cubes(sites);
         let limits: Vec<f64> = cut.iter().map(|c| MARGIN * farthest(c)).collect();
@@ -227,22 +317,17 @@ impl Region {
                 touched[j] |= far <= limits[j];
             });
         }
-        for i in (0..sites.len()).filter(|i| touched[*i]) {
-            cut[i] = self.cell(sites, &cubes, i);
+        let touched: Vec<usize> = (0..sites.len()).filter(|i| touched[*i]).collect();
+        for i in &touched {
+            cut[*i] = self.cell(sites, &cubes, *i);
         }
+        touched
     }
 
     /// All in the cubes that come within a distance of a place.
-    fn near(&self, cubes: &Cubes, place: &V, reach: f64, mut found: impl FnMut((u32, [i8; 3]))) {
+    fn near(&self, cubes: &Cubes, place: &V, reach: f64, found: impl FnMut(Image)) {
         let [low, high] = [-reach, reach].map(|r| self.cube(&(place + V::repeat(r))));
-        for x in low[0]..=high[0] {
-            for y in low[1]..=high[1] {
-                for z in low[2]..=high[2] {
-                    let here = cubes.get(&[x, y, z]).into_iter().flatten();
-                    here.for_each(|image| found(*image));
-                }
-            }
-        }
+        cubes.between(low, high, found);
     }
 
     /// The corners of a cell, from its site.
