@@ -130,7 +130,7 @@ impl Results {
                 store.texts(&format!("/plugins/{name}"), &texts)?;
             }
         }
-        header.shapes.write(&mut store)?;
+        header.shapes.write(&mut store, header.dimension)?;
         store.group("/statistics")?;
         let mut statistics = Vec::new();
         for c in &header.statistics {

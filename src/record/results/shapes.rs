@@ -24,7 +24,7 @@ pub struct ShapedBody {
     pub density: f64,
     /// The length that makes its spin a velocity (m).
     pub length: f64,
-    /// Moments of inertia in its own axes (kg m^2), row by row; in the plane the first.
+    /// Moments of inertia in its own axes (kg m^2; 2D kg m), row by row; in the plane the first.
     pub inertia: [f64; 9],
 }
 
@@ -75,26 +75,30 @@ const GROUPS: [&str; 4] = [
 ];
 
 impl Shaped {
-    /// Writes them; nothing where there are none.
+    /// Writes them, of a case of this dimension; nothing where there are none.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub(super) fn write(&self, store: &mut Store) -> Result<(), ResultsError> {
+    pub(super) fn write(&self, store: &mut Store, dimension: usize) -> Result<(), ResultsError> {
         if self.bodies.is_empty() {
             return Ok(());
         }
         for group in GROUPS {
             store.group(group)?;
         }
+        let [mass, moment] = match dimension {
+            2 => ["kg/m", "kg m"],
+            _ => ["kg", "kg m^2"],
+        };
         let b = &self.bodies;
         let of = |get: fn(&ShapedBody) -> f64| b.iter().map(get).collect::<Vec<f64>>();
         let id: Vec<i64> = b.iter().map(|b| b.id as i64).collect();
         let inertia: Vec<f64> = b.iter().flat_map(|b| b.inertia).collect();
         store.numbers("/shapes/bodies/id", 1, &id, "")?;
-        store.numbers("/shapes/bodies/mass", 1, &of(|b| b.mass), "kg")?;
+        store.numbers("/shapes/bodies/mass", 1, &of(|b| b.mass), mass)?;
         store.numbers("/shapes/bodies/density", 1, &of(|b| b.density), "kg/m^3")?;
         store.numbers("/shapes/bodies/length", 1, &of(|b| b.length), "m")?;
-        store.numbers("/shapes/bodies/inertia", 9, &inertia, "kg m^2")?;
+        store.numbers("/shapes/bodies/inertia", 9, &inertia, moment)?;
         let body: Vec<i64> = self.balls.iter().map(|b| b.body as i64).collect();
         let radius: Vec<f64> = self.balls.iter().map(|b| b.radius).collect();
         let offset: Vec<f64> = self.balls.iter().flat_map(|b| b.offset).collect();
