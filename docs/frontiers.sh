@@ -26,14 +26,14 @@ study voronoi_block --vary time.step=1e-6,2e-6,4e-6 --vary solver.tolerance=1e-5
 study cohesive_shear --vary time.step=1e-4,2e-4,4e-4 --vary solver.tolerance=1e-4,1e-3,1e-2 --output measures.bulk_mu=3%
 study forced_fold --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=1e-4,1e-3,1e-2 --output damage_ratio=5%
 study rotating_drum_2d --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=1e-4,1e-3,1e-2 --output measures.slope=3%
-study wheel_rail_degradable --vary time.step=5e-5,1e-4,2e-4 --vary solver.tolerance=1e-4,1e-3 \
+study wheel_rail_degradable --vary time.step=2.5e-5,5e-5,1e-4,2e-4 --vary solver.tolerance=1e-4,1e-3 \
     --output friction_coefficient=5% --output damage_ratio=5%
 study silo_3d --vary time.step=5e-4,1e-3,2e-3 --vary solver.tolerance=1e-4,1e-3,1e-2 --output measures.held_rate=5%
 study rotating_drum_3d --vary time.step=5e-4,1e-3,2e-3 --vary solver.tolerance=1e-4,1e-3,1e-2 --output measures.slope=3%
 study fault_propagation --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=1e-4,1e-3,1e-2 --output damage_ratio=5%
 study voronoi_block_3d --vary time.step=1e-6,2e-6,4e-6 --vary solver.tolerance=1e-5,1e-4,1e-3 --output statistics.left_fx:max=2%
 study fretting_scar --vary time.step=5e-5,1e-4,2e-4 --vary solver.tolerance=1e-8,1e-6,1e-4 --output scars.0.depth=2%
-study punch_scar --seeds 10 --vary time.step=5e-5,1e-4,2e-4 --vary solver.tolerance=1e-8,1e-6,1e-4 --output scars.0.middle=5%
+study punch_scar --seeds 10 --vary time.step=2.5e-5,5e-5,1e-4,2e-4 --vary solver.tolerance=1e-8,1e-6,1e-4 --output scars.0.middle=5%
 study fretting_wear_jump --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=1e-6,1e-5,1e-4 --output scars.0.depth=4%
 study biaxial --vary time.step=2e-4,4e-4,8e-4 --vary solver.tolerance=5e-5,5e-4,5e-3 --output biaxial.peak_ratio=5%
 study third_body_steady --vary time.step=2e-5,4e-5,8e-5 --vary solver.tolerance=1e-5,1e-4,1e-3 --output friction_coefficient=5%

@@ -88,8 +88,8 @@ impl Haste {
         let plunges = match self.plunges {
             0 => String::new(),
             n => format!(
-                "{n} times the corners of a polygon or polyhedron near a profile, height field or mesh moved farther than a \
-                 quarter of its size in a step (up to {:.2e} times) and may have passed it unseen",
+                "{n} times the corners of a polygon or polyhedron moved farther than a quarter of its size in a step (up to \
+                 {:.2e} times), near or along a profile, height field or mesh, which they may have passed unseen",
                 self.deepest_plunge
             ),
         };

@@ -147,24 +147,13 @@ impl Polyline {
         (Vector2::new(centre.x - shift, centre.y), shift)
     }
 
-    /// Whether the nearest point of the neighbour across a vertex is that same vertex.
-    fn vertex_is_nearest(&self, segment: usize, at_end: bool, from_vertex: Vector2<f64>) -> bool {
-        let n = self.segments();
-        let neighbour = if at_end {
-            segment + 1
-        } else {
-            segment.wrapping_sub(1)
+    /// The direction in which the chain goes on behind a segment; none at its end.
+    fn following(&self, segment: usize) -> Option<Vector2<f64>> {
+        let next = match segment + 1 {
+            next if next < self.segments() => next,
+            _ => self.period.map(|_| 0)?,
         };
-        let neighbour = if neighbour < n {
-            neighbour
-        } else if self.period.is_some() {
-            if at_end { 0 } else { n - 1 }
-        } else {
-            return true;
-        };
-        let (a, b) = (self.points[neighbour], self.points[neighbour + 1]);
-        let along = if at_end { b - a } else { a - b };
-        from_vertex.dot(&along) <= 0.0
+        Some(self.points[next + 1] - self.points[next])
     }
 }
 
@@ -198,12 +187,19 @@ impl Surface<Plane> for Polyline {
                 continue;
             }
             let vertex = if at_end { b } else { a };
-            let distance = (c - vertex).norm();
-            if distance < reach
-                && distance > 0.0
-                && self.vertex_is_nearest(k as usize, at_end, c - vertex)
-            {
-                let normal = (c - vertex) / distance;
+            let next = if at_end {
+                self.following(k as usize)
+            } else {
+                None
+            };
+            let from = c - vertex;
+            let nearest = next.is_none_or(|next| from.dot(&next) <= 0.0);
+            // Beyond both faces of a valley is behind them.
+            let valley = next.is_some_and(|next| along.perp(&next) > 0.0);
+            let length = from.norm();
+            if length < reach && length > 0.0 && nearest {
+                let distance = if valley { -length } else { length };
+                let normal = from / distance;
                 let foot = vertex + Vector2::new(shift, 0.0);
                 let feature = if at_end { 2 * k + 1 } else { u32::MAX };
                 out.push(Touch {
@@ -383,6 +379,22 @@ mod tests {
             assert!(t.iter().all(|t| t.normal == Vector2::new(0.0, 1.0)));
         }
         assert_eq!(touches(&flat, 0.7, 0.3, 0.5).len(), 1);
+    }
+
+    #[test]
+    fn below_a_valley_is_behind_it() {
+        let valley = chain(&[[-2.0, 1.0], [0.0, 0.0], [2.0, 1.0]], None);
+        let again = chain(&[[0.0, 0.0], [2.0, 1.0], [4.0, 0.0]], Some(4.0));
+        for (x, depth) in [(0.0, 1e-9), (0.0, 0.3), (0.05, 0.3), (-0.1, 0.3)] {
+            for t in [
+                touches(&valley, x, -depth, 0.5),
+                touches(&again, x, -depth, 0.5),
+            ] {
+                assert_eq!(t.len(), 1, "{x}, {depth}: {t:?}");
+                assert_eq!(t[0].distance, -x.hypot(depth));
+                assert!(t[0].normal.y > 0.9);
+            }
+        }
     }
 
     #[test]

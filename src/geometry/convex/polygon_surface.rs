@@ -189,4 +189,35 @@ mod tests {
         assert_eq!(near.len(), 2, "{near:?}");
         assert!(near.iter().all(|m| m.normal == V::new(-1.0, 0.0)));
     }
+
+    #[test]
+    fn a_corner_below_a_valley_comes_out() {
+        let turned = |angle: f64| {
+            let (sin, cos) = angle.sin_cos();
+            let corner = |p: &V| V::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y);
+            Polygon::new(square().points().iter().map(corner).collect()).unwrap()
+        };
+        for slope in [0.02, 0.1, 0.5, 0.9] {
+            let points = vec![
+                V::new(-9.0, 9.0 * slope),
+                V::zeros(),
+                V::new(9.0, 9.0 * slope),
+            ];
+            let valley = Polyline::new(points, None).unwrap();
+            let quarter = std::f64::consts::FRAC_PI_4;
+            for angle in [quarter, quarter + 0.03, quarter - 0.1] {
+                let polygon = turned(angle);
+                let low = polygon.points().iter().map(|p| p.y).fold(0.0, f64::min);
+                let aside = polygon.points().iter().find(|p| p.y == low).unwrap().x;
+                for k in 1..=34 {
+                    let depth = 0.01 * f64::from(k);
+                    let at = V::new(-aside, -low - depth);
+                    let found = met(&valley, &polygon, at, 0.0);
+                    let deepest = found.iter().map(|m| m.gap).fold(0.0, f64::min);
+                    assert!(deepest < -0.7 * depth, "{slope} {angle} {depth}: {found:?}");
+                    assert!(found.iter().all(|m| m.normal.y > 0.7), "{found:?}");
+                }
+            }
+        }
+    }
 }
