@@ -12,6 +12,7 @@
 //!                                                ▼
 //!                               record (ledgers, statistics, files)
 //! ```
+mod answers;
 pub mod control;
 pub mod coupling;
 mod error;

@@ -1,6 +1,7 @@
 //! The stepper: one step, as the data flows.
 
 use super::StepError;
+use super::answers::Solved;
 use super::coupling::{Coupling, CouplingReport, Progress};
 use super::motion::{self, Before};
 use super::projection::Projected;
@@ -11,7 +12,7 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
 use crate::laws::pass::Passes;
-use crate::laws::{Interface, LawError, Site, Totals, Turn, Velocities};
+use crate::laws::{Interface, LawError, Site, Totals};
 use crate::record::ledger::Energy;
 use crate::solve::local::solver::Method;
 use crate::solve::{self, ContactForm, MomentForm, Problem};
@@ -53,25 +54,6 @@ pub struct StepReport {
     pub projected: Option<Projected>,
     /// Time spent.
     pub timing: Timing,
-}
-
-/// What the contacts did in a solved step. Its memory is kept from step to step: of many contacts the pages of a new
-/// list cost more than what is written there.
-#[derive(Debug)]
-struct Solved<S: Space> {
-    before: Velocities<S>,
-    sites: Vec<Site<S>>,
-    turns: Vec<Turn<S>>,
-}
-
-impl<S: Space> Default for Solved<S> {
-    fn default() -> Self {
-        Self {
-            before: Velocities::default(),
-            sites: Vec::new(),
-            turns: Vec::new(),
-        }
-    }
 }
 
 /// A scene that steps.
@@ -119,9 +101,9 @@ pub struct Simulation<S: Space> {
     pub(super) habit: solve::Habit,
     pub(super) passes: Passes,
     pub(super) problem: Problem<S>,
-    forms: Vec<ContactForm<S>>,
-    moments: Vec<MomentForm<S>>,
-    solved: Solved<S>,
+    pub(super) forms: Vec<ContactForm<S>>,
+    pub(super) moments: Vec<MomentForm<S>>,
+    pub(super) solved: Solved<S>,
 }
 
 /// The gap a step may close, or the part of a penetration it must take back (m).
@@ -348,32 +330,6 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Velocity of a contact's candidate relative to its antagonist, at the velocities at hand.
-    fn relative_velocity(&self, contact: &Contact<S>) -> S::Vector {
-        let [i, j] = contact.bodies.map(|b| b as usize);
-        let bodies = &self.bodies;
-        bodies.velocity[i] + S::sweep(&bodies.spin[i], &contact.arms[0])
-            - bodies.velocity[j]
-            - S::sweep(&bodies.spin[j], &contact.arms[1])
-    }
-
-    /// Relative velocities and spins at the start of the step.
-    fn relative_velocities(&mut self) {
-        let mut before = std::mem::take(&mut self.solved.before);
-        let contacts = &self.network.contacts;
-        before.relative.clear();
-        let relative = contacts.iter().map(|c| self.relative_velocity(c));
-        before.relative.extend(relative);
-        before.turning.clear();
-        if self.laws.iter().any(Interface::rotates) {
-            let spins = &self.bodies.spin;
-            let relative =
-                |c: &Contact<S>| spins[c.bodies[0] as usize] - spins[c.bodies[1] as usize];
-            before.turning.extend(contacts.iter().map(relative));
-        }
-        self.solved.before = before;
-    }
-
     /// The part of the forms that geometry gives.
     fn geometry_of_forms(&mut self, h: f64) {
         let correction = self.correction;
@@ -430,66 +386,6 @@ impl<S: Space> Simulation<S> {
             self.bodies.spin[b] = w;
         }
         Ok(())
-    }
-
-    fn sites(&mut self) {
-        let mut sites = std::mem::take(&mut self.solved.sites);
-        sites.clear();
-        let theta = self.scheme.theta;
-        let before = &self.solved.before.relative;
-        let contacts = self.network.contacts.iter().zip(before).enumerate();
-        sites.extend(contacts.map(|(k, (contact, before))| {
-            let (form, solution) = (&self.forms[k], self.problem.solution(k));
-            let average = *before * (1.0 - theta) + self.relative_velocity(contact) * theta;
-            let n = &contact.normal;
-            let lost = form.elastic.map_or(0.0, |e| {
-                let pulls = n.dot(&solution.impulse) != solution.unilateral_n;
-                let (un, ut) = (n.dot(&average), S::tangential(n, &average));
-                let normal = if pulls { e.loss_n * un * un } else { 0.0 };
-                normal + e.loss_t * ut.dot(&ut)
-            });
-            // A shift below zero without an approach is the correction's: u_n >= -shift.
-            let lifts = form.shift_n < 0.0 && n.dot(before) >= form.shift_n;
-            let lift = if lifts && self.correction > 0.0 {
-                -theta * form.shift_n * solution.unilateral_n.max(0.0)
-            } else {
-                0.0
-            };
-            Site {
-                before: *before,
-                average,
-                adheres: form.tension > 0.0,
-                lost,
-                corrected: lift,
-                solution,
-            }
-        }));
-        self.solved.sites = sites;
-    }
-
-    /// What the contacts that resist rotation did.
-    fn turns(&mut self, start: &Before<S>) {
-        let mut turns = std::mem::take(&mut self.solved.turns);
-        turns.clear();
-        let theta = self.scheme.theta;
-        let average = |b: u32| {
-            let b = b as usize;
-            start.spin(b) * (1.0 - theta) + self.bodies.spin[b] * theta
-        };
-        let turn = |(form, moment): (&MomentForm<S>, solve::MomentSolution<S>)| {
-            let contact = &self.network.contacts[moment.contact as usize];
-            let [i, j] = contact.bodies;
-            let spin = average(i) - average(j);
-            let (twist, bend) = S::split_spin(&contact.normal, &spin);
-            Turn {
-                spin,
-                lost: form.loss_twist * twist * twist + form.loss_bend * bend.dot(&bend),
-                moment,
-            }
-        };
-        let solved = self.moments.iter().zip(self.problem.moments());
-        turns.extend(solved.map(turn));
-        self.solved.turns = turns;
     }
 
     /// Books the step in the energy ledger.
