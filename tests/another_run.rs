@@ -2,65 +2,21 @@
 
 use fretwork::contact::detect::centre;
 use fretwork::geometry::space::{MatrixLike, Plane, Solid, Space, VectorLike};
-use fretwork::laws::SearchPath;
 use fretwork::record::picture::piece_outline;
 use fretwork::record::results::{Header, Part, Results};
 use fretwork::record::statistics::Column;
-use fretwork::scene::build::{Built, Dimensional};
-use fretwork::scene::load;
+use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
-use std::path::PathBuf;
 use std::process::Command;
 
-const STONE: &str = r#"(doc: "stone", density: (value: 2600.0, unit: "kg/m^3", source: "quartz"))"#;
+#[path = "support/grains.rs"]
+mod grains;
+
+use grains::{Folder, case};
+
 const STEPS: u32 = 400;
 
-/// A case of a dimension with one list of `grains` on a floor, and more bodies.
-fn case(dimension: usize, material: &str, grains: &str, bodies: &str) -> String {
-    let (up, weight) = if dimension == 2 {
-        ("0.0, 1.0", "0.0, -9.81")
-    } else {
-        ("0.0, 0.0, 1.0", "0.0, 0.0, -9.81")
-    };
-    format!(
-        r#"(
-    name: "a sample", dimension: {dimension}, seed: 4,
-    time: (step: 5e-5, end: 0.02), gravity: [{weight}], periodic: (x: 0.2),
-    materials: {{"grain": "{material}"}},
-    interfaces: [(name: "grains", between: ("grain", "grain"), contact: "coulomb", parameters: (contact: {{"mu": 0.4}}))],
-    bodies: [(name: "floor", material: "grain", shapes: [HalfSpace(normal: [{up}])]), {bodies}],
-    grains: [{grains}],
-    output: (frames: 0, views: 4, figures: false),
-)"#
-    )
-}
-
-struct Folder(PathBuf);
-
 impl Folder {
-    fn new(name: &str) -> Self {
-        let name = format!("fretwork-another-run-{}-{name}", std::process::id());
-        let folder = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(folder.join("materials")).unwrap();
-        let folder = Self(folder);
-        folder.write("materials/stone.ron", STONE);
-        folder.write("materials/heavy.ron", &STONE.replace("2600", "5200"));
-        folder
-    }
-
-    fn write(&self, name: &str, text: &str) -> PathBuf {
-        let path = self.0.join(name);
-        std::fs::write(&path, text).unwrap();
-        path
-    }
-
-    fn build<S: Dimensional>(&self, case: &str) -> Result<Built<S>, String> {
-        let path = self.write("case.ron", case);
-        let loaded = load(&path, &[]).map_err(|e| e.to_string())?;
-        let built = loaded.build_in::<S>(&SearchPath::new(&[]));
-        built.map_err(|e| e.to_string())
-    }
-
     /// Runs a case into the folder `out`, and in this process too: the same bits.
     fn run<S: Dimensional>(&self, case: &str) -> Simulation<S> {
         let path = self.write("first.ron", case);
@@ -79,12 +35,6 @@ impl Folder {
             first.step().unwrap_or_else(|e| panic!("{e}"));
         }
         first
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        std::fs::remove_dir_all(&self.0).ok();
     }
 }
 

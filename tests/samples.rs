@@ -4,60 +4,18 @@ use fretwork::geometry::space::{Plane, Solid, VectorLike};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::{Built, Dimensional};
 use fretwork::scene::load;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
-/// A case of a dimension with one entry of `grains`.
-fn case(dimension: usize, grains: &str) -> String {
-    let (up, zeros) = if dimension == 2 {
-        ("0.0, 1.0", "0.0, -9.81")
-    } else {
-        ("0.0, 0.0, 1.0", "0.0, 0.0, -9.81")
-    };
-    format!(
-        r#"(
-    name: "a sample", dimension: {dimension}, seed: 4,
-    time: (step: 5e-5, end: 0.02), gravity: [{zeros}], periodic: (x: 0.2),
-    materials: {{"grain": "stone"}},
-    interfaces: [(name: "grains", between: ("grain", "grain"), contact: "coulomb")],
-    bodies: [(name: "floor", material: "grain", shapes: [HalfSpace(normal: [{up}])])],
-    grains: [{grains}],
-    output: (frames: 0, views: 4, figures: false),
-)"#
-    )
-}
+#[path = "support/grains.rs"]
+mod grains;
 
-const STONE: &str = r#"(doc: "stone", density: (value: 2600.0, unit: "kg/m^3", source: "quartz"))"#;
-
-struct Folder(PathBuf);
+use grains::{Folder, case};
 
 impl Folder {
-    fn new(name: &str) -> Self {
-        let name = format!("fretwork-samples-{}-{name}", std::process::id());
-        let folder = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(folder.join("materials")).unwrap();
-        let folder = Self(folder);
-        folder.write("materials/stone.ron", STONE);
-        folder
-    }
-
-    fn write(&self, name: &str, text: &str) -> PathBuf {
-        let path = self.0.join(name);
-        std::fs::write(&path, text).unwrap();
-        path
-    }
-
-    fn build<S: Dimensional>(&self, grains: &str) -> Result<Built<S>, String> {
-        let path = self.write("case.ron", &case(S::D, grains));
-        let loaded = load(&path, &[]).map_err(|e| e.to_string())?;
-        let built = loaded.build_in::<S>(&SearchPath::new(&[]));
-        built.map_err(|e| e.to_string())
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        std::fs::remove_dir_all(&self.0).ok();
+    /// Builds a case with these grains.
+    fn sample<S: Dimensional>(&self, grains: &str) -> Result<Built<S>, String> {
+        self.build(&case(S::D, "stone", grains, ""))
     }
 }
 
@@ -75,11 +33,11 @@ const DEPOSIT: &str = r#"Deposit(material: "grain", count: 300, low: [0.0, 0.0],
 fn a_deposit_is_what_the_case_asks_for() {
     let folder = Folder::new("deposit");
     let built = folder
-        .build::<Plane>(DEPOSIT)
+        .sample::<Plane>(DEPOSIT)
         .unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(built.simulation.shapes.balls.len(), 300);
     assert!(built.samples[0].contains("300 grains placed at random"));
-    let none = folder.build::<Plane>(&DEPOSIT.replace("count: 300", "count: 30000"));
+    let none = folder.sample::<Plane>(&DEPOSIT.replace("count: 300", "count: 30000"));
     let said = refusal(none);
     assert!(said.contains("of 30000 grains found room"), "{said}");
     for (old, new, says) in [
@@ -93,7 +51,7 @@ fn a_deposit_is_what_the_case_asks_for() {
         ("[0.2, 0.2]", "[0.2, 0.0]", "greater than that of `low`"),
         ("[0.2, 0.2]", "[0.2]", "2 numbers"),
     ] {
-        let said = refusal(folder.build::<Plane>(&DEPOSIT.replace(old, new)));
+        let said = refusal(folder.sample::<Plane>(&DEPOSIT.replace(old, new)));
         assert!(said.contains(says), "{said}");
     }
 }
@@ -105,7 +63,7 @@ fn a_grading_curve_gives_the_sizes() {
         sizes: Sieve(file: "curve.csv"))"#;
     folder.write("curve.csv", "size,passing\n4e-3,0\n8e-3,0.5\n16e-3,1\n");
     let built = folder
-        .build::<Solid>(grains)
+        .sample::<Solid>(grains)
         .unwrap_or_else(|e| panic!("{e}"));
     let cubes = built
         .simulation
@@ -139,7 +97,7 @@ fn a_grading_curve_gives_the_sizes() {
         ),
     ] {
         folder.write("curve.csv", curve);
-        let said = refusal(folder.build::<Solid>(grains));
+        let said = refusal(folder.sample::<Solid>(grains));
         assert!(said.contains(says) && said.contains(line), "{said}");
     }
 }
@@ -153,7 +111,7 @@ fn a_table_gives_grains() {
         "radius,x,y,spin,velocity_y\n1e-2,0.05,0.01,3,-1\n2e-2,0.1,0.02,0,0\n",
     );
     let built = folder
-        .build::<Plane>(grains)
+        .sample::<Plane>(grains)
         .unwrap_or_else(|e| panic!("{e}"));
     let (bodies, balls) = (&built.simulation.bodies, &built.simulation.shapes.balls);
     assert_eq!((balls[0].radius, balls[1].radius), (1e-2, 2e-2));
@@ -178,13 +136,13 @@ fn a_table_gives_grains() {
         ),
     ] {
         folder.write("grains.csv", table);
-        let said = refusal(folder.build::<Plane>(grains));
+        let said = refusal(folder.sample::<Plane>(grains));
         assert!(said.contains(says) && said.contains(line), "{said}");
     }
     folder.write("grains.csv", "x,y,radius\n0.1,0.1,1e-2\n0.105,0.1,1e-2\n");
-    assert!(refusal(folder.build::<Plane>(grains)).contains("overlap by"));
+    assert!(refusal(folder.sample::<Plane>(grains)).contains("overlap by"));
     assert!(
-        refusal(folder.build::<Plane>(&grains.replace("grains.", "grain.")))
+        refusal(folder.sample::<Plane>(&grains.replace("grains.", "grain.")))
             .contains("no such file")
     );
 }
@@ -192,7 +150,7 @@ fn a_table_gives_grains() {
 /// Positions, velocities and spins of a run's end are those that another case begins with, bit by bit.
 fn round_trip<S: Dimensional>(name: &str, grains: &str) {
     let folder = Folder::new(name);
-    let path = folder.write("first.ron", &case(S::D, grains));
+    let path = folder.write("first.ron", &case(S::D, "stone", grains, ""));
     let out = folder.0.join("out");
     let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
         .args([
@@ -219,7 +177,7 @@ fn round_trip<S: Dimensional>(name: &str, grains: &str) {
     };
     steps(&mut first, 400);
     let state = r#"State(results: "out", material: "grain")"#;
-    let second = folder.build::<S>(state).unwrap_or_else(|e| panic!("{e}"));
+    let second = folder.sample::<S>(state).unwrap_or_else(|e| panic!("{e}"));
     assert!(
         second.samples[0].contains("state 4"),
         "{}",
@@ -247,10 +205,10 @@ fn round_trip<S: Dimensional>(name: &str, grains: &str) {
     // An earlier state, and one that is not there.
     let number = |n: u32| state.replace(")", &format!(", frame: Number({n}))"));
     let start = folder
-        .build::<S>(&number(0))
+        .sample::<S>(&number(0))
         .unwrap_or_else(|e| panic!("{e}"));
     assert_ne!(all(&first), all(&start.simulation));
-    let said = refusal(folder.build::<S>(&number(5)));
+    let said = refusal(folder.sample::<S>(&number(5)));
     assert!(
         said.contains("has the states 0 to 4, not number 5"),
         "{said}"
@@ -274,16 +232,16 @@ fn states_that_cannot_be_read_are_refused_with_a_sentence() {
             results.display()
         )
     };
-    let missing = refusal(folder.build::<Plane>(&state(&folder.0.join("nowhere"))));
+    let missing = refusal(folder.sample::<Plane>(&state(&folder.0.join("nowhere"))));
     assert!(missing.contains("cannot read"), "{missing}");
     let text = folder.write("text.h5", "no HDF5 at all");
-    let said = refusal(folder.build::<Plane>(&state(&text)));
+    let said = refusal(folder.sample::<Plane>(&state(&text)));
     assert!(said.contains("not a file of results"), "{said}");
     let other = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fclib/gfc3d_OneContact.hdf5");
-    let said = refusal(folder.build::<Plane>(&state(&other)));
+    let said = refusal(folder.sample::<Plane>(&state(&other)));
     assert!(said.contains("no `/views/grains`"), "{said}");
     // A file cut off at any place: a state or a sentence, never a panic.
-    let path = folder.write("first.ron", &case(2, DEPOSIT));
+    let path = folder.write("first.ron", &case(2, "stone", DEPOSIT, ""));
     let out = folder.0.join("out");
     let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
         .args([
@@ -299,8 +257,8 @@ fn states_that_cannot_be_read_are_refused_with_a_sentence() {
     let cut = folder.0.join("cut.h5");
     for part in 1..40 {
         std::fs::write(&cut, &whole[..whole.len() * part / 40]).unwrap();
-        drop(folder.build::<Plane>(&state(&cut)));
+        drop(folder.sample::<Plane>(&state(&cut)));
     }
-    let said = refusal(folder.build::<Solid>(&state(&out.join("results.h5"))));
+    let said = refusal(folder.sample::<Solid>(&state(&out.join("results.h5"))));
     assert!(said.contains("dimension 2"), "{said}");
 }

@@ -72,6 +72,19 @@ fn damaged_contact_problems() {
     });
 }
 
+/// The bytes of what a run of the case records.
+fn results(case: &Path, folder: &Path) -> Vec<u8> {
+    let done = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+        .args(["run", case.to_str().unwrap(), "--out"])
+        .arg(folder.join("out"))
+        .env_remove("FRETWORK_PLUGIN_PATH")
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{said}");
+    std::fs::read(folder.join("out/results.h5")).unwrap()
+}
+
 #[test]
 fn damaged_results() {
     let campaign = Campaign {
@@ -82,18 +95,7 @@ fn damaged_results() {
     };
     let folder = campaign.folder();
     let case = small(&folder);
-    let done = Command::new(env!("CARGO_BIN_EXE_fretwork"))
-        .args(["run", case.to_str().unwrap(), "--out"])
-        .arg(folder.join("out"))
-        .env_remove("FRETWORK_PLUGIN_PATH")
-        .output()
-        .unwrap();
-    assert!(
-        done.status.success(),
-        "{}",
-        String::from_utf8_lossy(&done.stderr)
-    );
-    let whole = std::fs::read(folder.join("out/results.h5")).unwrap();
+    let whole = results(&case, &folder);
     campaign.run(&folder, damaged("results.h5", vec![whole]), |path| {
         let last = state::read(path, None, 2);
         let first = state::read(path, Some(0), 2);
@@ -147,15 +149,7 @@ fn damaged_shapes() {
     let mut begun = Vec::new();
     for (dimension, grains) in [(2, PLANE), (3, SOLID)] {
         std::fs::write(&case, with(dimension, grains)).unwrap();
-        let done = Command::new(env!("CARGO_BIN_EXE_fretwork"))
-            .args(["run", case.to_str().unwrap(), "--out"])
-            .arg(folder.join("out"))
-            .env_remove("FRETWORK_PLUGIN_PATH")
-            .output()
-            .unwrap();
-        let said = String::from_utf8_lossy(&done.stderr);
-        assert!(done.status.success(), "{said}");
-        seeds.push(std::fs::read(folder.join("out/results.h5")).unwrap());
+        seeds.push(results(&case, &folder));
         let begins = folder.join(format!("begins_{dimension}.ron"));
         let state = r#"State(results: "last-results.h5", material: "grain")"#;
         std::fs::write(&begins, with(dimension, state)).unwrap();
