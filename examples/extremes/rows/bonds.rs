@@ -1,7 +1,7 @@
 //! Bonds from soft to nearly rigid, and bonds that all break at once.
 
-use crate::bench::Cause::Jumped;
-use crate::bench::{
+use super::super::bench::Cause::Jumped;
+use super::super::bench::{
     Expected, Group, HELD, Row, Sketch, ball, grains, held_though, place, plane, refused, volume,
     watch,
 };

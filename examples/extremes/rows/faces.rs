@@ -1,6 +1,6 @@
 //! Blocks face to face: walls with more unknowns than motions, and faces that are flush.
 
-use crate::bench::{G, Group, HELD, Row, Sketch, carried, floor, go, refused};
+use super::super::bench::{G, Group, HELD, Row, Sketch, carried, floor, go, refused};
 use fretwork::geometry::space::{Plane, Solid, VectorLike};
 use fretwork::scene::build::Dimensional;
 

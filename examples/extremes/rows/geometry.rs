@@ -1,7 +1,7 @@
 //! Centres in one place, and lengths from nanometres to megametres.
 
-use crate::bench::Cause::{Jumped, Late, Refused};
-use crate::bench::{
+use super::super::bench::Cause::{Jumped, Late, Refused};
+use super::super::bench::{
     Expected, Group, HELD, Row, Sketch, ball, floor, go, grains, held_though, overlap, place,
     refused, told,
 };

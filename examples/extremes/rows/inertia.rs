@@ -1,7 +1,7 @@
 //! Ratios of mass and of size, and tall columns: what stands bears its weight.
 
-use crate::bench::Cause::Unconverged;
-use crate::bench::{
+use super::super::bench::Cause::Unconverged;
+use super::super::bench::{
     Expected, G, Group, HELD, Row, Sketch, ball, carried, floor, go, grains, overlap, place,
     refused, told, volume,
 };

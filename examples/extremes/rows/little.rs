@@ -1,6 +1,6 @@
 //! Next to nothing: no gravity, no grains, one grain, one contact.
 
-use crate::bench::{G, Group, HELD, Row, Sketch, ball, floor, go, grains, place, refused};
+use super::super::bench::{G, Group, HELD, Row, Sketch, ball, floor, go, grains, place, refused};
 use fretwork::geometry::space::{Plane, Solid};
 use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;

@@ -9,7 +9,7 @@ mod motion;
 mod packed;
 mod time;
 
-use crate::bench::Group;
+use super::bench::Group;
 
 /// All groups, in the order of the table.
 pub const ALL: &[Group] = &[

@@ -1,7 +1,9 @@
 //! Speeds up to 100 km/s.
 
-use crate::bench::Cause::{Jumped, Late, Plunged};
-use crate::bench::{Expected, Group, HELD, Row, Sketch, go, held_though, place, refused, told};
+use super::super::bench::Cause::{Jumped, Late, Plunged};
+use super::super::bench::{
+    Expected, Group, HELD, Row, Sketch, go, held_though, place, refused, told,
+};
 use fretwork::geometry::space::{Plane, Solid};
 use fretwork::scene::build::Dimensional;
 use std::f64::consts::{FRAC_PI_4, SQRT_2};

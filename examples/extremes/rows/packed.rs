@@ -1,7 +1,7 @@
 //! Friction from nothing to rigid, wedges, Painleve's rod, and a tolerance that none can meet.
 
-use crate::bench::Cause::Unconverged;
-use crate::bench::{
+use super::super::bench::Cause::Unconverged;
+use super::super::bench::{
     G, Group, HELD, Row, Sketch, ball, carried, floor, go, grains, held_though, overlap, place,
     plane, refused, volume, watch,
 };

@@ -1,7 +1,7 @@
 //! Steps from tiny to senseless, functions of time that jump, and a million steps.
 
-use crate::bench::Cause::{self, Jumped, Late, Refused, Unconverged};
-use crate::bench::{
+use super::super::bench::Cause::{self, Jumped, Late, Refused, Unconverged};
+use super::super::bench::{
     Group, HELD, Row, Sketch, ball, floor, go, grains, held_though, overlap, place, refused, told,
     up, watch,
 };

@@ -1,31 +1,18 @@
 //! Wrong input, one mistake at a time: the program ends with exit code 2 and says where the mistake
 //! stands, what was expected, and which valid name is nearest. It never panics.
 
-#[path = "bad_input/circuit.rs"]
 mod circuit;
-#[path = "bad_input/command_line.rs"]
 mod command_line;
-#[path = "bad_input/geometry.rs"]
 mod geometry;
-#[path = "bad_input/limits.rs"]
 mod limits;
-#[path = "bad_input/mutations.rs"]
 mod mutations;
-#[path = "bad_input/names.rs"]
 mod names;
-#[path = "bad_input/numbers.rs"]
 mod numbers;
-#[path = "bad_input/polygons.rs"]
 mod polygons;
-#[path = "bad_input/stages.rs"]
 mod stages;
-#[path = "bad_input/text.rs"]
 mod text;
-#[path = "bad_input/trial.rs"]
 mod trial;
-#[path = "bad_input/trust.rs"]
 mod trust;
-#[path = "bad_input/wear.rs"]
 mod wear;
 
 use trial::{PLANE, SOLID, Trial};

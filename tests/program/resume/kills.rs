@@ -1,7 +1,7 @@
 //! SIGKILL at random moments: what is left opens, the run resumes, and ends in the same bits.
 //!
 //! A few in the suite; a hundred by
-//! `FRETWORK_KILLS=100 cargo test --release --test resume kills -- --nocapture`.
+//! `FRETWORK_KILLS=100 cargo test --release --test program resume::kills -- --nocapture`.
 
 use super::common::{Folder, Job, last_frame, same};
 use rand::{RngExt, SeedableRng};

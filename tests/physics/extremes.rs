@@ -1,9 +1,9 @@
 //! The extremes that take seconds: each ends as it declares, held, or told with its cause and what to change. The whole
 //! table: `cargo run --release --example extremes`.
 
-#[path = "../examples/extremes/bench/mod.rs"]
+#[path = "../../examples/extremes/bench/mod.rs"]
 mod bench;
-#[path = "../examples/extremes/rows/mod.rs"]
+#[path = "../../examples/extremes/rows/mod.rs"]
 mod rows;
 
 use bench::{Cause, HELD, Verdict, told};

@@ -1,6 +1,6 @@
 //! A bonded face that is pulled open, against its law's closed form: the same in the plane and in space.
 
-use crate::{close, driven, scene, step};
+use super::{close, driven, scene, step};
 use fretwork::scene::build::Dimensional;
 
 /// Pulls the face of a case open until its bonds, so many, are broken: peak, begin of the damage, end and work of a law

@@ -1,6 +1,6 @@
 //! Names of laws, parameters and materials.
 
-use crate::trial::{PLANE, SOLID, Trial, refused, refused_with, with};
+use super::trial::{PLANE, SOLID, Trial, refused, refused_with, with};
 
 #[test]
 fn an_unknown_plugin() {

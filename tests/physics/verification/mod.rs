@@ -1,6 +1,6 @@
 //! Runs `cases/verification/` and compares with closed forms.
 //!
-//! `cargo test --release --test verification -- --nocapture` prints the table: case, quantity, expected,
+//! `cargo test --release --test physics verification -- --nocapture` prints the table: case, quantity, expected,
 //! obtained, tolerance. Every expected value is a formula written here.
 
 mod bonds;

@@ -1,6 +1,6 @@
 //! Much work in few words: refused where it is asked for, before it is begun.
 
-use crate::trial::{PLANE, SOLID, refused, with};
+use super::trial::{PLANE, SOLID, refused, with};
 
 /// The plane case with these grains beside its own.
 fn grains(case: &str, more: &str) -> String {

@@ -1,6 +1,6 @@
 //! Numbers of the case, and its bodies.
 
-use crate::trial::{PLANE, refused, with};
+use super::trial::{PLANE, refused, with};
 
 #[test]
 fn a_step_that_is_none() {

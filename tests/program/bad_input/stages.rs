@@ -1,6 +1,6 @@
 //! Drives that follow one another, and the walls of a biaxial test.
 
-use crate::trial::{PLANE, refused, with};
+use super::trial::{PLANE, refused, with};
 
 /// The lid's vertical drive as stages.
 fn staged(stages: &str) -> String {

@@ -1,6 +1,5 @@
 //! FCLIB files: the shared ones, what comes back of what is written, and damaged bytes.
 
-#[path = "fclib/damage.rs"]
 mod damage;
 
 use fretwork::record::fclib::{self, Global, Info, Local, Problem, Solution};

@@ -1,6 +1,6 @@
 //! The text: names of fields, types, brackets, files.
 
-use crate::trial::{PLANE, Trial, refused, with};
+use super::trial::{PLANE, Trial, refused, with};
 
 #[test]
 fn an_unknown_field() {

@@ -1,6 +1,6 @@
 //! Convex polygons, capsules and arches.
 
-use crate::trial::{PLANE, SOLID, refused, with};
+use super::trial::{PLANE, SOLID, refused, with};
 
 /// The plane case with these grains beside its own.
 fn grains(more: &str) -> String {

@@ -1,6 +1,6 @@
 //! Profiles that are none, and surfaces that nothing can wear.
 
-use crate::trial::{PLANE, SOLID, Trial, refused, with};
+use super::trial::{PLANE, SOLID, Trial, refused, with};
 
 const FLOOR: &str =
     r#"(name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 1.0])])"#;

@@ -1,7 +1,7 @@
 //! Random damage to a valid case, the same at every run: whatever the text, the library answers with a
 //! scene or a refusal.
 
-use crate::trial::{PLANE, SOLID, Trial, with};
+use super::trial::{PLANE, SOLID, Trial, with};
 use fretwork::laws::SearchPath;
 use fretwork::scene::{Scene, load};
 use rand::{RngExt, SeedableRng};

@@ -7,10 +7,7 @@ use fretwork::scene::load;
 use std::path::Path;
 use std::process::Command;
 
-#[path = "support/grains.rs"]
-mod grains;
-
-use grains::{Folder, case};
+use super::grains::{Folder, case};
 
 impl Folder {
     /// Builds a case with these grains.

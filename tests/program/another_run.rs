@@ -9,10 +9,7 @@ use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
 use std::process::Command;
 
-#[path = "support/grains.rs"]
-mod grains;
-
-use grains::{Folder, case};
+use super::grains::{Folder, case};
 
 const STEPS: u32 = 400;
 

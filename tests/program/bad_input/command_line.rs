@@ -1,6 +1,6 @@
 //! The command line.
 
-use crate::trial::{PLANE, Trial, refusal, with};
+use super::trial::{PLANE, Trial, refusal, with};
 
 #[test]
 fn a_set_without_a_value() {

@@ -1,6 +1,6 @@
 //! Grains, surfaces and scene files.
 
-use crate::trial::{PLANE, SOLID, Trial, refused, with};
+use super::trial::{PLANE, SOLID, Trial, refused, with};
 
 #[test]
 fn overlapping_grains() {

@@ -2,9 +2,7 @@
 //!
 //! What a method says of its error is never believed: `made` computes it anew, from its formula.
 
-#[path = "solvers/limits.rs"]
 mod limits;
-#[path = "solvers/made.rs"]
 mod made;
 
 use fretwork::solve::error::Norm;

@@ -1,6 +1,6 @@
 //! The account of grains between first bodies, contact and outside.
 
-use crate::trial::{PLANE, refused, with};
+use super::trial::{PLANE, refused, with};
 
 /// The case with a bonding law and a circuit of these words.
 fn circuit(words: &str) -> String {

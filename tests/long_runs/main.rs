@@ -2,7 +2,7 @@
 //!
 //! `FRETWORK_LONG=N` makes it N steps long.
 
-#[path = "support/counting.rs"]
+#[path = "../support/counting.rs"]
 mod counting;
 
 use counting::held;

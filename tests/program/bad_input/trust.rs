@@ -1,6 +1,6 @@
 //! Libraries that others may have put there, that are not those of the case, and that do not keep to their columns.
 
-use crate::trial::{PLANE, Trial, refusal, with};
+use super::trial::{PLANE, Trial, refusal, with};
 use std::path::PathBuf;
 use std::process::Output;
 

@@ -1,0 +1,19 @@
+//! Physics: closed forms, identities and peers' figures, through the public library.
+
+mod blocks;
+mod bonded;
+mod extremes;
+mod masonry;
+mod packing;
+mod peer_traps;
+mod periodic_cell;
+mod programme;
+mod projection;
+mod rolling;
+mod scenes;
+mod solids;
+mod solvers;
+mod sweep;
+mod third_body;
+mod verification;
+mod wear;

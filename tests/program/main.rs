@@ -1,0 +1,18 @@
+//! The program: its commands, input, files, plugins, and that a run can be resumed and repeated bit by bit.
+
+mod another_run;
+mod bad_input;
+mod certify;
+mod check_features;
+mod check_methods;
+mod fclib;
+mod grains;
+mod law_drive;
+mod law_new;
+mod plugin_loading;
+mod results;
+mod resume;
+mod same_bits;
+mod samples;
+mod solve;
+mod trade;
