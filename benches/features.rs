@@ -1,7 +1,7 @@
 //! What each feature costs where it is on, and that it costs nothing where it is off.
 //!
 //! `cargo bench --bench features` steps the boxes of 5,000 disks and spheres at rest with one feature after another
-//! and prints the table of `docs/features.md`. Variants take turns, and the least of several rounds counts, so that
+//! and prints the table of `docs/dev/features.md`. Variants take turns, and the least of several rounds counts, so that
 //! what else the machine does counts as little as it can. `pieces` times the narrow phase of polyhedra, by pairs.
 
 #[path = "../tests/support/features.rs"]

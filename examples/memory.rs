@@ -1,7 +1,7 @@
 //! Memory of a grain and of a contact, counted to the byte, feature by feature.
 //!
 //! `cargo run --release --example memory` makes scenes of disks, spheres, bricks in the plane and in space at two
-//! sizes, steps them, and prints the table of `docs/memory.md`. Grains are counted where they stand apart, contacts
+//! sizes, steps them, and prints the table of `docs/dev/memory.md`. Grains are counted where they stand apart, contacts
 //! where they lie on each other, each by the difference between the two sizes, so that what is there once does not
 //! count.
 

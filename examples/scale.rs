@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example scale [-- MOST]` settles layers of disks (20 deep) and spheres (10 deep), as wide
 //! as their number asks, from 1,000 to MOST grains (1,000,000), each in a process of its own; prints the table of
-//! `docs/performance.md` and draws `docs/figures/scale.png`. The depth stays the same, and with it the number of
+//! `docs/dev/performance.md` and draws `docs/figures/scale.png`. The depth stays the same, and with it the number of
 //! sweeps that a load needs to cross the layer.
 
 use fretwork::geometry::grid;

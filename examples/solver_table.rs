@@ -1,6 +1,6 @@
 //! Every method on the fretting case at three tolerances, and on every shipped case.
 //!
-//! `cargo run --release --example solver_table` writes `docs/fretting_solvers.md` from the rows in
+//! `cargo run --release --example solver_table` writes `docs/dev/fretting_solvers.md` from the rows in
 //! `results/solver_table`, which it fills first: a run is not repeated while its row stands there. Parts:
 //! `PARTS=fretting,seeds,cases`, `METHODS=auto,newton`, `TOLERANCES=1e-4,1e-6`; `BUDGET` (40) is the wall time (s) a
 //! fretting run may take, `SHORT` (4) that of a run of the other cases. `PARTS=page` only writes the page.
@@ -84,7 +84,7 @@ fn main() -> Result<(), Any> {
         }
     }
     let text = page(&rows, budget, short)?;
-    std::fs::write("docs/fretting_solvers.md", text)?;
+    std::fs::write("docs/dev/fretting_solvers.md", text)?;
     Ok(())
 }
 

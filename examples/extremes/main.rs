@@ -1,6 +1,6 @@
 //! The extremes: scenes that make simulations explode, each with a criterion that is physics.
 //!
-//! `cargo run --release --example extremes` runs them all and prints the table of `docs/extremes.md`; words after it choose
+//! `cargo run --release --example extremes` runs them all and prints the table of `docs/dev/extremes.md`; words after it choose
 //! rows by the begin of their names (`-- mass step`). Each row declares what is to come of it: `held` where its criterion is
 //! met; `told` where a limit is reached and the program says so, in words that name that cause and what to change; all else is
 //! `BROKEN` and ends with exit code 1. `-- quick` leaves out what takes minutes.

@@ -2,7 +2,7 @@
 # Accuracy against cost of shipped cases; the tables of frontiers.md. Takes an hour or more: name cases to run only these.
 # Each study is kept in OUT (results/frontiers) and goes on where it stopped.
 # BUDGET: time a study may take, by the clock (60m).
-# docs/frontiers.sh [CASE...]
+# docs/dev/frontiers.sh [CASE...]
 set -e
 out=${OUT:-results/frontiers}
 program=${FRETWORK:-cargo run --release --quiet --}
