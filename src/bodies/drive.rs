@@ -1,10 +1,11 @@
 //! Driven degrees of freedom and their functions of time.
 
+use super::integral;
 use super::stages::{self, Stage};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// A function of time (s). Velocities and forces use its value, displacements its rate.
+/// A function of time (s). What a degree of freedom makes of it over a step: [`super::path`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum TimeFunction {
@@ -60,17 +61,7 @@ impl TimeFunction {
                 offset,
                 start,
             } => offset + amplitude * (TAU * frequency * (t - start).max(0.0) + phase).sin(),
-            Self::Table(points) => {
-                let k = points.partition_point(|p| p.0 <= t);
-                if k == 0 {
-                    points.first().map_or(0.0, |p| p.1)
-                } else if k == points.len() {
-                    points[k - 1].1
-                } else {
-                    let ((t0, x0), (t1, x1)) = (points[k - 1], points[k]);
-                    x0 + (x1 - x0) * (t - t0) / (t1 - t0)
-                }
-            }
+            Self::Table(points) => integral::value(points, t),
         }
     }
 
@@ -102,32 +93,7 @@ impl TimeFunction {
                 }
                 TAU * frequency * amplitude * (TAU * frequency * (t - start) + phase).cos()
             }
-            Self::Table(points) => {
-                let k = points.partition_point(|p| p.0 < t);
-                if k == 0 || k == points.len() {
-                    return 0.0;
-                }
-                (points[k].1 - points[k - 1].1) / (points[k].0 - points[k - 1].0)
-            }
-        }
-    }
-
-    /// The derivative at the end of a step of `h`: at corners the mean slope over half a step before and after, so
-    /// that the steps' motions add up to the function's however steep it is.
-    pub fn rate_in_steps(&self, t: f64, h: f64) -> f64 {
-        let (before, after) = (t - 0.5 * h, t + 0.5 * h);
-        let corner = match self {
-            Self::Ramp { start, end, .. } => {
-                [start, end].iter().any(|c| before < **c && **c < after)
-            }
-            Self::Table(points) => points.iter().any(|p| before < p.0 && p.0 < after),
-            Self::Sine { start, .. } => before < *start && *start < after,
-            Self::Constant(_) => false,
-        };
-        if corner {
-            (self.value(after) - self.value(before)) / h
-        } else {
-            self.rate(t)
+            Self::Table(points) => integral::slope(points, t),
         }
     }
 
@@ -204,9 +170,9 @@ pub enum Dof {
     Free,
     /// Does not move.
     Fixed,
-    /// Imposed velocity (m/s or rad/s).
+    /// Imposed velocity (m/s or rad/s); the body follows its integral.
     Velocity(TimeFunction),
-    /// Imposed displacement from the start (m or rad), through its rate.
+    /// Imposed displacement (m or rad): the body follows the function's change since the drive took over.
     Displacement(TimeFunction),
     /// Imposed force (N; N/m of depth in 2D) or moment.
     Force(TimeFunction),
@@ -240,6 +206,14 @@ impl Dof {
         self.at(time + 0.5 * h)
     }
 
+    /// The place of the drive in force at a time among its stages; 0 where there are none.
+    pub fn stage_at(&self, t: f64) -> usize {
+        match self {
+            Self::Stages(stages) => stages::index_at(stages, t),
+            _ => 0,
+        }
+    }
+
     /// All its drives, in their order; itself where there are no stages.
     pub fn drives(&self) -> impl DoubleEndedIterator<Item = &Self> {
         let stages = match self {
@@ -270,15 +244,6 @@ impl Dof {
             Self::Velocity(f) => Some(f.value(t)),
             Self::Displacement(f) => Some(f.rate(t)),
             Self::Stages(_) => self.at(t).imposed_velocity(t),
-        }
-    }
-
-    /// The velocity imposed at the end of a step of `h`, if one is.
-    pub fn imposed_in_steps(&self, t: f64, h: f64) -> Option<f64> {
-        match self {
-            Self::Displacement(f) => Some(f.rate_in_steps(t, h)),
-            Self::Stages(_) => self.at(t).imposed_in_steps(t, h),
-            other => other.imposed_velocity(t),
         }
     }
 
@@ -352,50 +317,6 @@ mod tests {
             }
             assert!(f.fault().is_none());
         }
-    }
-
-    /// The trapezoid of the steps' velocities is the way between the middles of steps, over any corner.
-    #[test]
-    fn steps_add_up_to_a_jump() {
-        let jump = TimeFunction::Table(vec![(0.0, 1.0), (0.52, 1.0), (0.5200001, 4.0)]);
-        let ramp = TimeFunction::Ramp {
-            from: 1.0,
-            to: 4.0,
-            start: 0.52,
-            end: 0.521,
-        };
-        for f in [jump, ramp] {
-            let way = way_in_steps(&f, 0.1, 10);
-            assert!((way - 3.0).abs() < 1e-12, "{way}");
-        }
-    }
-
-    /// A turn by a table and the circle of sines that goes with it begin together, wherever in a step.
-    #[test]
-    fn an_oscillation_begins_like_a_table() {
-        let h = 1e-3;
-        for start in [0.2, 0.2003, 0.2005, 0.2007] {
-            let sine = TimeFunction::Sine {
-                amplitude: 1.0,
-                frequency: 1.0 / TAU,
-                phase: 0.0,
-                offset: 0.0,
-                start,
-            };
-            let table = TimeFunction::Table(vec![(start, 0.0), (start + 1.0, 1.0)]);
-            for steps in 199..220 {
-                let [a, b] = [&sine, &table].map(|f| way_in_steps(f, h, steps));
-                // sin x = x - x^3/6.
-                assert!((a - b).abs() < 2e-6, "{a} {b} after {steps} of {start}");
-            }
-        }
-    }
-
-    fn way_in_steps(f: &TimeFunction, h: f64, steps: u32) -> f64 {
-        let rates: Vec<f64> = (0..=steps)
-            .map(|k| f.rate_in_steps(h * f64::from(k), h))
-            .collect();
-        rates.windows(2).map(|v| 0.5 * h * (v[0] + v[1])).sum()
     }
 
     #[test]

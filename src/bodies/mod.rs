@@ -1,6 +1,8 @@
 //! Rigid bodies: their state, inertia, and the degrees of freedom that are driven.
 pub mod delay;
 pub mod drive;
+pub mod integral;
+pub mod path;
 pub mod pressure;
 pub mod stages;
 pub mod state;

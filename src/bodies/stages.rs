@@ -17,10 +17,16 @@ pub struct Stage {
 /// The drive in force at a time.
 pub(super) fn at(stages: &[Stage], t: f64) -> &Dof {
     stages
-        .iter()
-        .find(|s| s.until.is_none_or(|end| t < end))
-        .or(stages.last())
+        .get(index_at(stages, t))
         .map_or(&Dof::Fixed, |s| &s.drive)
+}
+
+/// Its place among the stages.
+pub(super) fn index_at(stages: &[Stage], t: f64) -> usize {
+    let found = stages
+        .iter()
+        .position(|s| s.until.is_none_or(|end| t < end));
+    found.unwrap_or(stages.len().saturating_sub(1))
 }
 
 /// What is wrong with stages, if anything, and where below them.

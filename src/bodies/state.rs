@@ -1,6 +1,7 @@
 //! Positions, velocities and inertia of all bodies, in columns.
 
 use super::drive::{Dof, Driven};
+use super::path::Paths;
 use super::tensor::{self, Tensor};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use serde::{Deserialize, Serialize};
@@ -33,6 +34,8 @@ pub struct Bodies<S: Space> {
     pub inverse_inertia: Vec<f64>,
     /// The driven first bodies.
     pub driven: Vec<Driven>,
+    /// Their paths where their motion is imposed, in their order.
+    pub paths: Vec<Paths<S>>,
     /// Which bodies were taken away: they touch nothing and are not shown.
     pub gone: Vec<bool>,
 }
@@ -52,6 +55,7 @@ impl<S: Space> Default for Bodies<S> {
             inverse_mass: Vec::new(),
             inverse_inertia: Vec::new(),
             driven: Vec::new(),
+            paths: Vec::new(),
             gone: Vec::new(),
         }
     }
@@ -148,6 +152,7 @@ impl<S: Space> Bodies<S> {
 
     /// Makes a body driven, by the drives of time zero.
     pub fn drive(&mut self, driven: Driven) {
+        self.paths.push(Paths::new(driven.dofs.len()));
         self.driven.push(driven);
         self.engage(self.driven.len() - 1, 0.0);
     }
@@ -165,6 +170,7 @@ impl<S: Space> Bodies<S> {
     /// Gives a driven body another drive on one degree of freedom, in force at a time.
     pub fn redrive(&mut self, place: usize, dof: usize, drive: Dof, time: f64) {
         self.driven[place].dofs[dof] = drive;
+        self.paths[place].forget(dof);
         self.engage(place, time);
     }
 
@@ -173,6 +179,7 @@ impl<S: Space> Bodies<S> {
         let driven = &mut self.driven[place];
         self.gone[driven.body as usize] = true;
         driven.dofs.fill(Dof::Fixed);
+        self.paths[place].forget_all();
         self.engage(place, 0.0);
     }
 

@@ -8,7 +8,7 @@ use crate::geometry::space::Space;
 use crate::record::biaxial::Biaxial;
 use crate::scene::build::Built;
 use crate::scene::methods::{Demands, Service};
-use crate::scene::{Loaded, Scene, load};
+use crate::scene::{Loaded, Scene, load, sampling};
 use crate::solve::local::solver::Method;
 use crate::step::Simulation;
 use clap::Args;
@@ -126,6 +126,9 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
         line(if k == 0 { "on" } else { "" }, text);
     }
     line("off", off.join(", "));
+    for text in sampling::warnings(case) {
+        line("COARSE DRIVE", text);
+    }
     groups(loaded, built, high, &mut line);
     biaxial_groups(loaded, built, &mut line);
     out

@@ -21,6 +21,7 @@ pub struct Balance {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Layer<S: Space> {
+    /// Velocities of the driven bodies at the end of the last step that was followed.
     velocity: Vec<(S::Vector, S::Spin)>,
     /// Potential energy and dissipation by the scheme of the driven bodies, which the ledger holds too.
     apart: f64,
@@ -37,18 +38,18 @@ impl<S: Space> Layer<S> {
         }
     }
 
-    /// Velocity of a driven body over the last step, v_theta, before the step is followed.
-    pub fn velocity(&self, s: &Simulation<S>, place: usize) -> S::Vector {
+    /// Velocity of a driven body over the last step, v_theta.
+    pub fn velocity(s: &Simulation<S>, place: usize) -> S::Vector {
         let theta = s.scheme.theta;
         let now = s.bodies.velocity[s.bodies.driven[place].body as usize];
-        self.velocity[place].0 * (1.0 - theta) + now * theta
+        s.started[place].0 * (1.0 - theta) + now * theta
     }
 
     /// Takes in the last step. `test` is the driven body and the axis whose work is kept apart.
     pub fn follow(&mut self, s: &Simulation<S>, test: (usize, usize)) {
         let (h, theta) = (s.scheme.h, s.scheme.theta);
         let now = velocities(s);
-        let steps = self.velocity.iter().zip(&now).zip(&s.received);
+        let steps = s.started.iter().zip(&now).zip(&s.received);
         for (d, (((v0, w0), (v1, w1)), (impulse, moment))) in steps.enumerate() {
             let b = s.bodies.driven[d].body as usize;
             let (v, w) = (

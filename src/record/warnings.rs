@@ -2,7 +2,9 @@
 
 use super::solving::SolverSummary;
 use crate::geometry::space::Space;
+use crate::scene::case::Case;
 use crate::scene::methods::{Demands, Service};
+use crate::scene::sampling;
 use crate::solve::Report;
 use crate::solve::local::solver::Method;
 use crate::step::Simulation;
@@ -11,7 +13,7 @@ use serde::Serialize;
 /// A warning.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Warning {
-    /// `TOO FAST`, `NOT CONVERGED` or `NOT COUPLED`.
+    /// `TOO FAST`, `COARSE DRIVE`, `NOT CONVERGED` or `NOT COUPLED`.
     pub of: &'static str,
     /// What was seen, and what to change.
     pub text: String,
@@ -73,8 +75,12 @@ impl Missed {
     }
 }
 
-/// All warnings of a run.
-pub(super) fn of<S: Space>(simulation: &Simulation<S>, solver: &SolverSummary) -> Vec<Warning> {
+/// All warnings of a run of a case.
+pub(super) fn of<S: Space>(
+    case: &Case,
+    simulation: &Simulation<S>,
+    solver: &SolverSummary,
+) -> Vec<Warning> {
     let missed = Missed {
         steps: solver.unconverged_steps,
         first: solver.first_unconverged,
@@ -86,15 +92,17 @@ pub(super) fn of<S: Space>(simulation: &Simulation<S>, solver: &SolverSummary) -
             solver.uncoupled_steps
         )
     });
+    let too_fast = [("TOO FAST", simulation.network.haste.warning())];
+    let coarse = sampling::warnings(case);
+    let coarse = coarse.into_iter().map(|text| ("COARSE DRIVE", Some(text)));
     let told = [
-        ("TOO FAST", simulation.network.haste.warning()),
         (
             "NOT CONVERGED",
             missed.warning(simulation, simulation.steps),
         ),
         ("NOT COUPLED", uncoupled),
     ];
-    let told = told.into_iter();
+    let told = too_fast.into_iter().chain(coarse).chain(told);
     told.filter_map(|(of, text)| text.map(|text| Warning { of, text }))
         .collect()
 }

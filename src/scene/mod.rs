@@ -14,6 +14,7 @@ pub mod phases;
 pub mod profile;
 pub mod profile_file;
 pub mod sample;
+pub mod sampling;
 pub mod scene_file;
 pub mod source;
 pub mod standard;

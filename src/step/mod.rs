@@ -16,6 +16,7 @@ mod answers;
 pub mod control;
 pub mod coupling;
 mod error;
+mod imposed;
 pub mod motion;
 pub mod projection;
 mod recession;

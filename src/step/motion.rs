@@ -24,7 +24,7 @@ pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64) {
 }
 
 /// v_free = v + h M^-1 F, and the imposed velocities at the end of the step. Forces are taken at the
-/// step's theta-point.
+/// step's theta-point, t + theta h.
 pub fn free_velocities<S: Space>(
     bodies: &Bodies<S>,
     gravity: &S::Vector,
@@ -49,7 +49,7 @@ pub fn free_velocities<S: Space>(
         let mut moment = S::Spin::null();
         for (k, dof) in driven.dofs.iter().enumerate() {
             let dof = dof.over(time, h);
-            let imposed = dof.imposed_in_steps(time + h, h);
+            let imposed = dof.speeds(time, h, theta).map(|speeds| speeds.end);
             let force = dof.force(time + theta * h);
             if k < S::D {
                 match imposed {
@@ -90,6 +90,12 @@ impl<S: Space> Before<S> {
                 self.spin[b] = bodies.spin[b];
             }
         }
+    }
+
+    /// Velocities and spins of the driven bodies at the start of the step, in their order.
+    pub fn of_driven(&self, bodies: &Bodies<S>) -> Vec<(S::Vector, S::Spin)> {
+        let of = |b: usize| (self.velocity[b], self.spin[b]);
+        bodies.driven.iter().map(|d| of(d.body as usize)).collect()
     }
 
     /// The spin of a body at the start of the step.
@@ -144,7 +150,7 @@ impl<S: Space> Before<S> {
                 };
                 let average = (1.0 - theta) * old + theta * new;
                 work.external += average
-                    * if dof.imposed_velocity(time + h).is_some() {
+                    * if dof.imposes() {
                         inertia * (new - old) - weight - received
                     } else {
                         h * dof.force(time + theta * h)

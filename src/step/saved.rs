@@ -26,6 +26,7 @@ pub struct Saved<'a, S: Space> {
     /// Parameters of the contact law of each interface, which phases change.
     contact_parameters: Vec<Vec<f64>>,
     time: f64,
+    time_excess: f64,
     steps: u64,
     lifted: f64,
     energy: Energy,
@@ -48,6 +49,7 @@ impl<S: Space> Saved<'_, S> {
         let parameters = self.contact_parameters.iter().map(Vec::len);
         self.bodies.len() == s.bodies.len()
             && self.bodies.driven.len() == s.bodies.driven.len()
+            && self.bodies.paths.len() == s.bodies.driven.len()
             && self.received.len() == s.received.len()
             && self.scars.len() == s.scars.len()
             && self.network.memory.len() == s.network.memory.len()
@@ -66,6 +68,7 @@ impl<S: Space> Simulation<S> {
             tolerance: self.solver.tolerance,
             contact_parameters: parameters.collect(),
             time: self.time,
+            time_excess: self.time_excess,
             steps: self.steps,
             lifted: self.lifted,
             energy: self.energy,
@@ -97,6 +100,8 @@ impl<S: Space> Simulation<S> {
             law.contact.parameters = values;
         }
         (self.time, self.steps) = (saved.time, saved.steps);
+        self.time_excess = saved.time_excess;
+        self.started = self.motion_of_driven();
         self.lifted = saved.lifted;
         self.energy = saved.energy;
         self.received = saved.received;

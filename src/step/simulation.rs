@@ -92,12 +92,16 @@ pub struct Simulation<S: Space> {
     pub energy: Energy,
     /// Contact impulses and moments on the driven bodies in the last step, in their order.
     pub received: Vec<(S::Vector, S::Spin)>,
+    /// Velocities and spins of the driven bodies at the start of the last step, after the jumps of imposed motion.
+    pub started: Vec<(S::Vector, S::Spin)>,
     /// Surfaces that wear; none where nothing follows its wear.
     pub scars: Vec<Scar<S>>,
     /// The first surface that was worn as deep as it is thick.
     pub worn_through: Option<WornThrough>,
     /// What acts from outside and changes in time.
     pub control: super::control::Control<S>,
+    /// What the sum of the steps in `time` has too much by rounding (s).
+    pub(super) time_excess: f64,
     pub(super) habit: solve::Habit,
     pub(super) passes: Passes,
     pub(super) problem: Problem<S>,
@@ -136,7 +140,7 @@ impl<S: Space> Simulation<S> {
         }
         let kinetic = bodies.kinetic_energy();
         let received = vec![(S::Vector::null(), S::Spin::null()); bodies.driven.len()];
-        Self {
+        let mut simulation = Self {
             bodies,
             shapes,
             laws,
@@ -160,16 +164,20 @@ impl<S: Space> Simulation<S> {
                 ..Energy::default()
             },
             received,
+            started: Vec::new(),
             scars: Vec::new(),
             worn_through: None,
             control: Default::default(),
+            time_excess: 0.0,
             habit: solve::Habit::default(),
             passes: Passes::default(),
             problem: Problem::default(),
             forms: Vec::new(),
             moments: Vec::new(),
             solved: Solved::default(),
-        }
+        };
+        simulation.started = simulation.motion_of_driven();
+        simulation
     }
 
     /// One step of h.
@@ -187,10 +195,10 @@ impl<S: Space> Simulation<S> {
             h,
             theta,
         };
-        let mut start = Before::new(&self.bodies);
         self.network.breaks.clear();
         self.network.joins.clear();
-        self.obey();
+        self.begin_motion();
+        let mut start = Before::new(&self.bodies);
         let clock = Instant::now();
         motion::advance(&mut self.bodies, (1.0 - theta) * h);
         detect(
@@ -203,6 +211,7 @@ impl<S: Space> Simulation<S> {
         );
         report.projected = self.project();
         start.coasted(&self.bodies);
+        self.started = start.of_driven(&self.bodies);
         let remembered = self.passes.remember(&self.laws, &mut self.network, &info);
         remembered.map_err(|e| self.law_error(e))?;
         report.timing.detect = clock.elapsed();
@@ -228,7 +237,7 @@ impl<S: Space> Simulation<S> {
         report.active = sites
             .filter(|s| s.solution.impulse != S::Vector::null())
             .count();
-        self.time += h;
+        self.end_motion();
         self.steps += 1;
         self.end_phase();
         self.recede();

@@ -153,8 +153,8 @@ fn walls_that_are_fixed_stay_and_a_load_is_lifted() {
     let projected = report.projected.expect("overlaps are beyond the bound");
     let moved = s.bodies.position[lid] - from[lid];
     close(moved.y, 2.0 * DEPTH, 4e-3 * DEPTH);
-    // The imposed motion is what it was: the scheme's half of a first step from rest, 0.25 h.
-    close(moved.x, 0.125e-3, 1e-15);
+    // The imposed motion is what it was, 0.25 h.
+    close(moved.x, 0.25e-3, 1e-15);
     assert_eq!(s.bodies.position[floor], from[floor]);
     let given = 2.0 * LOAD * DEPTH;
     close(projected.against_loads, given, 2e-3 * given);

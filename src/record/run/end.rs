@@ -96,7 +96,7 @@ impl<S: Dimensional> Recorder<'_, S> {
             summary.wear.Qw = Some(circuit.flows.wear.mass / span);
         }
         summary.solver.why = summary.solver.choice.why(s.solver.method, s.steps);
-        summary.warnings = warnings::of(s, &summary.solver);
+        summary.warnings = warnings::of(&self.loaded.case, s, &summary.solver);
         let files = self.files().and(recalled);
         if let (Err(e), None) = (&files, &self.summary.stopped) {
             self.summary.stopped = Some(e.to_string());

@@ -359,14 +359,14 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         }
     }
 
-    /// Q, P and the slide of the friction test in the last step, before the layer has followed it.
+    /// Q, P and the slide of the friction test in the last step.
     fn sample(&self) -> Option<Sample> {
         let test = self.loaded.case.friction.as_ref()?;
         let (_, place) = self.cycles.as_ref()?;
         let s = &self.simulation;
         let h = s.scheme.h;
         let impulse = s.received[*place].0;
-        let slide = h * self.layer.velocity(s, *place)[test.along];
+        let slide = h * Layer::velocity(s, *place)[test.along];
         let q = -impulse[test.along] / h;
         Some(Sample {
             time: s.time,

@@ -346,6 +346,7 @@ impl<S: Dimensional> Builder<'_, S> {
         };
         super::check::overlaps(&mut simulation, smallest, &self.origins)
             .map_err(|f| source.locate(f))?;
+        simulation.set_in_motion();
         Ok(simulation)
     }
 

@@ -31,12 +31,9 @@ fn traction(s: &Simulation<Plane>) -> f64 {
 fn pull(case: &str, sets: &[&str], reach: f64) -> (f64, f64) {
     let mut s = plane(case, sets);
     let (mut peak, mut work, mut opening) = (0.0f64, 0.0, 0.0);
-    let mut first = true;
     while opening < reach {
         s.step().unwrap_or_else(|e| panic!("{e}"));
-        // The grip starts from rest: over the first step it moves half.
-        let du = 0.045 * s.scheme.h * if first { 0.5 } else { 1.0 };
-        first = false;
+        let du = 0.045 * s.scheme.h;
         opening += du;
         let t = traction(&s);
         peak = peak.max(t);

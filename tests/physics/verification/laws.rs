@@ -281,7 +281,7 @@ fn held(table: &mut Table) {
         broken,
         0.0,
     );
-    // Pulled 0.1 m less half a step: k A u^2/2, with a reduced radius of 1 m.
+    // Pulled 0.1 m: k A u^2/2, with a reduced radius of 1 m.
     let energy = 0.5e9 * 0.1f64.powi(2);
     table.compare(
         "stretched_on_surface",

@@ -4,6 +4,7 @@
 //! obtained, tolerance. Every expected value is a formula written here.
 
 mod bonds;
+mod drives;
 mod dynamics;
 mod energy;
 mod laws;

@@ -147,13 +147,30 @@ impl Faces {
         }
     }
 
-    /// Velocity of the second body's face relative to the first's.
+    /// Velocity of the first body's face, and of the second's relative to it.
     pub fn sliding<S: Space>(&self, s: &Simulation<S>) -> (S::Vector, S::Vector) {
-        let of = |k: usize| {
+        self.sliding_at::<S>(|k| {
             let b = self.body(s, k);
+            (s.bodies.velocity[b], s.bodies.spin[b])
+        })
+    }
+
+    /// The same as [`Self::sliding`] over the last step, at v_theta.
+    pub fn sliding_over_step<S: Space>(&self, s: &Simulation<S>) -> S::Vector {
+        let theta = s.scheme.theta;
+        let (_, before) = self.sliding_at::<S>(|k| s.started[self.places[k]]);
+        before * (1.0 - theta) + self.sliding(s).1 * theta
+    }
+
+    fn sliding_at<S: Space>(
+        &self,
+        motion: impl Fn(usize) -> (S::Vector, S::Spin),
+    ) -> (S::Vector, S::Vector) {
+        let of = |k: usize| {
+            let (velocity, spin) = motion(k);
             let mut arm = S::Vector::null();
             arm[self.gap.across] = self.offsets[k];
-            s.bodies.velocity[b] + S::sweep(&s.bodies.spin[b], &arm)
+            velocity + S::sweep(&spin, &arm)
         };
         (of(0), of(1) - of(0))
     }

@@ -213,8 +213,8 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
             faces.look(s, self.spec.extent, &grains(s));
         }
         self.spent = Dissipation::new(self.spec.bins, s.bodies.grain_flags());
-        if let Some(faces) = self.faces.as_ref().filter(|_| self.due(s)) {
-            self.spent.begin(s, faces, self.spec.along);
+        if self.faces.is_some() && self.due(s) {
+            self.spent.begin(s);
         }
         self.lost = vec![0.0; s.bodies.len()];
         self.seen = self.seen.max(s.time);
@@ -232,7 +232,7 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
         if self.spent.counts() {
             self.spent.follow(s, faces, &faces.gap(s), self.spec.along);
         } else if self.due(s) {
-            self.spent.begin(s, faces, self.spec.along);
+            self.spent.begin(s);
             self.seen = s.time;
         }
     }

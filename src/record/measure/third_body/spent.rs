@@ -77,8 +77,6 @@ pub(super) struct Dissipation<S: Space> {
     pub work: f64,
     /// The integral of P |V| (J).
     pub load: f64,
-    /// Sliding velocity at the end of the last step.
-    before: f64,
     /// What is dissipated and kept, and all work of the driven bodies; their balance when the count began, and now.
     ledger: Option<(Layer<S>, Balance, Balance)>,
     grain: Vec<bool>,
@@ -93,17 +91,15 @@ impl<S: Space> Dissipation<S> {
             places: Default::default(),
             work: 0.0,
             load: 0.0,
-            before: 0.0,
             ledger: None,
             grain,
         }
     }
 
     /// Counts from the state at hand on.
-    pub fn begin(&mut self, s: &Simulation<S>, faces: &Faces, along: usize) {
+    pub fn begin(&mut self, s: &Simulation<S>) {
         let layer = Layer::new(s);
         let balance = layer.balance(s);
-        self.before = faces.sliding(s).1[along];
         self.ledger = Some((layer, balance, balance));
     }
 
@@ -143,9 +139,7 @@ impl<S: Space> Dissipation<S> {
             let bin = gap.bin(gap.depth(&torn.place));
             self.add(torn.bodies, ends, bin, [0.0, 0.0, torn.torn, 0.0, 0.0]);
         }
-        let (theta, now) = (s.scheme.theta, faces.sliding(s).1[along]);
-        let sliding = self.before * (1.0 - theta) + now * theta;
-        self.before = now;
+        let sliding = faces.sliding_over_step(s)[along];
         if let Some((impulse, _)) = s.received.get(faces.places[1]) {
             self.work -= impulse[along] * sliding;
             self.load += gap.side * impulse[gap.across] * sliding.abs();

@@ -1,0 +1,521 @@
+//! Imposed motion: bodies are where their functions of time say, at every instant, and the work of it is booked.
+
+use fretwork::geometry::space::{Plane, Solid, Space};
+use fretwork::laws::SearchPath;
+use fretwork::record::code::{decode, encode};
+use fretwork::record::run::{RunOptions, run};
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::{Loaded, load};
+use fretwork::step::Simulation;
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+const H: f64 = 1e-3;
+
+fn text(dimension: usize, lines: &str) -> String {
+    format!(
+        r#"(
+    name: "drives", dimension: {dimension},
+    solver: (tolerance: 1e-13, norm: Velocity, max_iterations: 100000, test_every: 1),
+    materials: {{"glass": "glass_bead"}},
+    {lines}
+)"#
+    )
+}
+
+fn file(text: &str) -> PathBuf {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let number = COUNT.fetch_add(1, Ordering::Relaxed);
+    let name = format!("fretwork-drives-{}-{number}.ron", std::process::id());
+    let path = std::env::temp_dir().join(name);
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn loaded(dimension: usize, lines: &str) -> Loaded {
+    let path = file(&text(dimension, lines));
+    let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
+    std::fs::remove_file(path).ok();
+    loaded
+}
+
+fn build<S: Dimensional>(lines: &str) -> Simulation<S> {
+    let built = loaded(S::D, lines).build_in::<S>(&SearchPath::new(&[]));
+    built.unwrap_or_else(|e| panic!("{e}")).simulation
+}
+
+/// One body of 3 kg with this drive on one degree of freedom.
+fn driven<S: Dimensional>(dof: &str, drive: &str, theta: f64, more: &str) -> Simulation<S> {
+    let at = vec!["0.25"; S::D].join(", ");
+    build(&format!(
+        r#"time: (step: {H:?}, end: 1000.0, theta: {theta:?}),
+        bodies: [(name: "body", material: "glass", shapes: [Balls([([{}], 0.01)])], position: [{at}],
+                  mass: 3.0, inertia: 2.0, dofs: ({dof}: {drive}))],
+        {more}"#,
+        vec!["0.0"; S::D].join(", ")
+    ))
+}
+
+fn step<S: Space>(s: &mut Simulation<S>) {
+    s.step().unwrap_or_else(|e| panic!("{e}"));
+}
+
+type Way = fn(f64) -> f64;
+
+/// Drives, the ways that they make, and the velocities that they begin with.
+const DRIVES: [(&str, Way, f64); 9] = [
+    (
+        "Displacement(Sine(amplitude: 0.01, frequency: 20.0))",
+        |t| 0.01 * (TAU * 20.0 * t).sin(),
+        0.01 * TAU * 20.0,
+    ),
+    (
+        "Displacement(Sine(amplitude: 0.01, frequency: 20.0, phase: 0.5, offset: 3.0, start: 0.0313))",
+        |t| 0.01 * ((TAU * 20.0 * (t - 0.0313).max(0.0) + 0.5).sin() - 0.5f64.sin()),
+        0.0,
+    ),
+    (
+        "Displacement(Ramp(from: 0.0, to: 0.1, start: 0.0, end: 0.1))",
+        |t| t.min(0.1),
+        1.0,
+    ),
+    (
+        "Displacement(Ramp(from: 1.0, to: 0.9, start: 0.0302, end: 0.0709))",
+        |t| -0.1 * ((t - 0.0302) / 0.0407).clamp(0.0, 1.0),
+        0.0,
+    ),
+    // Corners at ends of steps (0.03 and 0.1), within steps, several within one, and a jump.
+    (
+        "Displacement(Table([(0.0, 0.0), (0.03, 0.06), (0.0504, 0.02), (0.0811, 0.0), (0.0813, 0.01), (0.0815, -0.03), (0.1, 0.0), (0.1200001, 0.0), (0.1200002, 0.05)]))",
+        |t| {
+            const P: [(f64, f64); 9] = [
+                (0.0, 0.0),
+                (0.03, 0.06),
+                (0.0504, 0.02),
+                (0.0811, 0.0),
+                (0.0813, 0.01),
+                (0.0815, -0.03),
+                (0.1, 0.0),
+                (0.1200001, 0.0),
+                (0.1200002, 0.05),
+            ];
+            let piece = P.windows(2).find(|w| t < w[1].0);
+            piece.map_or(0.05, |w| {
+                w[0].1 + (w[1].1 - w[0].1) / (w[1].0 - w[0].0) * (t - w[0].0)
+            })
+        },
+        2.0,
+    ),
+    ("Velocity(Constant(-0.7))", |t| -0.7 * t, -0.7),
+    (
+        "Velocity(Sine(amplitude: 0.3, frequency: 20.0, phase: 0.4, offset: 0.1))",
+        |t| 0.1 * t - 0.3 / (TAU * 20.0) * ((TAU * 20.0 * t + 0.4).cos() - 0.4f64.cos()),
+        0.1 + 0.3 * 0.389_418_342_308_650_5,
+    ),
+    (
+        "Velocity(Ramp(from: -1.0, to: 1.0, start: 0.0204, end: 0.0604))",
+        |t| {
+            let u = (t - 0.0204).clamp(0.0, 0.04);
+            -t + 25.0 * u * u + 2.0 * (t - 0.0604).max(0.0)
+        },
+        -1.0,
+    ),
+    // The velocity jumps at 0.05 and 0.0702.
+    (
+        "Velocity(Table([(0.0, 1.0), (0.05, 1.0), (0.05000000001, -1.0), (0.0702, -1.0), (0.07020000001, 0.5)]))",
+        |t| t.min(0.05) - (t - 0.05).clamp(0.0, 0.0202) + 0.5 * (t - 0.0702).max(0.0),
+        1.0,
+    ),
+];
+
+/// Furthest from its way, over the steps of 0.15 s; the ledger closes at each.
+fn off<S: Space>(mut s: Simulation<S>, way: Way, at: impl Fn(&Simulation<S>) -> f64) -> f64 {
+    let mut worst = at(&s).abs();
+    for _ in 0..150 {
+        step(&mut s);
+        worst = worst.max((at(&s) - way(s.time)).abs());
+        let e = &s.energy;
+        assert!(e.residual.abs() <= 1e-13 * e.scale, "{e:?}");
+    }
+    worst
+}
+
+#[test]
+fn imposed_translations_are_on_their_paths() {
+    for (drive, way, first) in DRIVES {
+        // The jumps of the last table last 1e-11 s.
+        let bound = if drive.contains("0.05000000001") {
+            5e-11
+        } else {
+            1e-14
+        };
+        for theta in [0.5, 0.7, 1.0] {
+            let s = driven::<Plane>("x", drive, theta, "gravity: [3.0, -9.81],");
+            // Once in motion, from the beginning: to the step's order.
+            let v = s.bodies.velocity[0].x;
+            let order = if theta == 0.5 { 2e-3 } else { 0.1 };
+            assert!(
+                (v - first).abs() <= order * first.abs().max(0.1),
+                "{drive}: {v} {first}"
+            );
+            assert!((s.energy.initial_kinetic - 1.5 * v * v).abs() < 1e-15);
+            let worst = off(s, way, |s| s.bodies.position[0].x - 0.25);
+            assert!(worst <= bound, "{drive}, theta {theta}: {worst:e}");
+            let s = driven::<Solid>("z", drive, theta, "gravity: [0.0, 2.0, -9.81],");
+            let worst = off(s, way, |s| s.bodies.position[0].z - 0.25);
+            assert!(worst <= bound, "{drive}, theta {theta}: {worst:e}");
+        }
+    }
+}
+
+#[test]
+fn imposed_rotations_are_on_their_paths() {
+    for (drive, way, first) in DRIVES {
+        let bound = if drive.contains("0.05000000001") {
+            5e-11
+        } else {
+            1e-14
+        };
+        for theta in [0.5, 1.0] {
+            let s = driven::<Plane>("rz", drive, theta, "");
+            assert!((s.bodies.spin[0].x - first).abs() <= 0.1 * first.abs().max(0.1));
+            let worst = off(s, way, |s| s.bodies.rotation[0]);
+            assert!(worst <= bound, "{drive}, theta {theta}: {worst:e}");
+            for (name, axis) in [("rx", Vector3::x()), ("ry", Vector3::y())] {
+                let s = driven::<Solid>(name, drive, theta, "");
+                let worst = off(s, way, |s| s.bodies.rotation[0].scaled_axis().dot(&axis));
+                assert!(worst <= bound, "{drive}, theta {theta}: {worst:e}");
+            }
+        }
+    }
+}
+
+/// Free under a force, then on a path that begins where it is, then at a velocity, then held: the work of the drives
+/// is the kinetic energy that they give.
+#[test]
+fn stages_take_over_where_the_body_is() {
+    let mut s = driven::<Plane>(
+        "x",
+        "Stages([(until: Some(0.02), drive: Force(Constant(6.0))),
+                 (until: Some(0.04), drive: Displacement(Sine(amplitude: 0.01, frequency: 20.0))),
+                 (until: Some(0.0604), drive: Displacement(Ramp(from: 0.0, to: 1.0, start: 0.0, end: 1.0))),
+                 (until: Some(0.08), drive: Velocity(Constant(-0.5))),
+                 (drive: Fixed)])",
+        0.5,
+        "",
+    );
+    let sine = |t: f64| 0.01 * (TAU * 20.0 * t).sin();
+    let place = |t: f64| {
+        let (fallen, end) = (0.5 * 2.0 * t.min(0.02).powi(2), |a: f64| t.clamp(a, 1.0));
+        let turned = sine(end(0.02).min(0.04)) - sine(0.02);
+        // A step belongs to the stage of its middle.
+        let pushed = end(0.04).min(0.06) - 0.04;
+        0.25 + fallen + turned + pushed - 0.5 * (end(0.06).min(0.08) - 0.06)
+    };
+    for _ in 0..100 {
+        step(&mut s);
+        let (x, expected) = (s.bodies.position[0].x, place(s.time));
+        assert!((x - expected).abs() < 1e-15, "{} s: {x} {expected}", s.time);
+        let e = &s.energy;
+        assert!(e.residual.abs() <= 1e-14 * e.scale, "{e:?}");
+    }
+    assert_eq!(s.energy.kinetic, 0.0);
+    assert!(s.energy.external_work.abs() < 1e-14);
+}
+
+/// Functions of a phase run on its own time; a repeated phase begins again where the body is.
+#[test]
+fn phases_begin_where_the_body_is() {
+    let mut s = driven::<Plane>(
+        "y",
+        "Free",
+        0.5,
+        r#"phases: [
+            (name: "go", until: After(0.0303), drives: {"body": (x: Displacement(Sine(amplitude: 0.01, frequency: 20.0)))}),
+            (name: "on", until: Steps(40), drives: {"body": (x: Velocity(Ramp(from: 2.0, to: 0.0, start: 0.0, end: 0.0205)))}),
+            (name: "tap", until: Steps(20), drives: {"body": (x: Displacement(Table([(0.0, 0.0), (0.0055, 0.01), (0.011, 0.0)])))},
+             repeat: (times: 3)),
+        ],"#,
+    );
+    assert!((s.bodies.velocity[0].x / (0.01 * TAU * 20.0) - 1.0).abs() < 2e-3);
+    assert!(s.energy.initial_kinetic > 0.0);
+    let mut started = s.bodies.position[0].x;
+    for _ in 0..130 {
+        step(&mut s);
+        let begun = s.control.begun();
+        let now = &begun[begun.len() - 1];
+        let t = s.time - now.start;
+        let way = match now.name.as_str() {
+            "go" => 0.01 * (TAU * 20.0 * t).sin(),
+            "on" => {
+                let u = t.min(0.0205);
+                2.0 * u - u * u / 0.0205
+            }
+            _ => 0.01 * (1.0 - (t / 0.0055 - 1.0).abs()).max(0.0),
+        };
+        let x = s.bodies.position[0].x;
+        assert!((x - started - way).abs() < 2e-15, "{}: {x}", s.time);
+        assert!(s.energy.residual.abs() <= 1e-13 * s.energy.scale);
+        if now.end.is_some() {
+            started = x;
+        }
+    }
+    assert!(s.control.finished());
+}
+
+/// After 100,000 steps bodies are where they should be, as exactly as a time and an angle of that size are numbers.
+#[test]
+fn a_long_run_does_not_drift() {
+    const STEPS: u32 = 100_000;
+    for (drive, way) in [(DRIVES[0].0, DRIVES[0].1), (DRIVES[6].0, DRIVES[6].1)] {
+        let mut s = driven::<Plane>("x", drive, 0.5, "");
+        let mut worst = 0.0f64;
+        for n in 1..=STEPS {
+            step(&mut s);
+            let t = f64::from(n) * H;
+            assert!((s.time - t).abs() <= 2.0 * f64::EPSILON * t);
+            worst = worst.max((s.bodies.position[0].x - 0.25 - way(t)).abs());
+        }
+        let angle = TAU * 20.0 * f64::from(STEPS) * H;
+        let bound = 4.0 * f64::EPSILON * (0.01 * angle + way(s.time).abs());
+        assert!(worst <= bound, "{drive}: {worst:e}, {bound:e}");
+    }
+    // A table of a saw's teeth for the velocity: its sum too.
+    let points: Vec<String> = (0..=5000)
+        .map(|k| {
+            format!(
+                "({:?}, {:?})",
+                0.0203 * f64::from(k),
+                0.3 * f64::from(k % 2)
+            )
+        })
+        .collect();
+    let drive = format!("Velocity(Table([{}]))", points.join(", "));
+    let mut s = driven::<Plane>("x", &drive, 0.5, "");
+    for _ in 0..STEPS {
+        step(&mut s);
+    }
+    let teeth = (s.time / 0.0203).floor();
+    let left = s.time - 0.0203 * teeth;
+    let rising = teeth % 2.0 == 0.0;
+    let part = 0.5 * 0.3 * left * left / 0.0203;
+    let way = 0.15 * 0.0203 * teeth + if rising { part } else { 0.3 * left - part };
+    let x = s.bodies.position[0].x - 0.25;
+    assert!((x - way).abs() < 1e-13 * way, "{x} {way}");
+}
+
+/// What begins to move at time zero has its energy from before; a corner costs m (v_s^2 - v_e^2)/2.
+#[test]
+fn jumps_of_the_velocity_are_work_of_the_drive() {
+    let table = "Displacement(Table([(0.0, 0.0), (0.01, 0.02), (0.03, -0.08)]))";
+    for theta in [0.5, 1.0] {
+        let mut s = driven::<Plane>("x", table, theta, "");
+        let expected = [(10, 2.0, 0.0), (20, -5.0, 1.5 * 21.0), (5, 0.0, -1.5 * 4.0)];
+        for (steps, v, work) in expected {
+            for _ in 0..steps {
+                step(&mut s);
+                assert!((s.bodies.velocity[0].x - v).abs() < 1e-12);
+                assert!(
+                    (s.energy.external_work - work).abs() < 1e-11,
+                    "{:?}",
+                    s.energy
+                );
+                assert!((s.energy.kinetic - 1.5 * v * v).abs() < 1e-11);
+            }
+        }
+        assert!((s.energy.initial_kinetic - 6.0).abs() < 1e-12);
+    }
+}
+
+/// A wall that moves from time zero on meets what touches it at its velocity: it leaves with (1 + e) V.
+#[test]
+fn a_wall_hits_with_the_velocity_it_starts_with() {
+    let mut s: Simulation<Plane> = build(
+        r#"time: (step: 1e-3, end: 1.0),
+        interfaces: [(name: "all", between: ("glass", "glass"), contact: "frictionless",
+                      parameters: (contact: {"restitution_n": 0.6}))],
+        bodies: [(name: "wall", material: "glass", shapes: [HalfSpace(normal: [1.0, 0.0])],
+                  dofs: (x: Displacement(Ramp(from: 0.0, to: 1.0, start: 0.0, end: 2.0))))],
+        grains: [List(material: "glass", grains: [(at: [0.01, 0.0], radius: 0.01)])],"#,
+    );
+    let grain = s.bodies.grains().next().unwrap();
+    for _ in 0..3 {
+        step(&mut s);
+        let v = s.bodies.velocity[grain].x;
+        assert!((v - 1.6 * 0.5).abs() < 1e-12, "{v}");
+        assert!(s.energy.residual.abs() < 1e-13 * s.energy.scale);
+    }
+}
+
+/// A block that friction holds on a floor that swings smoothly goes with it: after ten periods it has slipped by less
+/// than the square of the step's angle.
+#[test]
+fn what_sticks_goes_along() {
+    let (a, f) = (1e-3, 5.0);
+    let slip = |h: f64, theta: f64| {
+        let mut s: Simulation<Plane> = build(&format!(
+            r#"time: (step: {h:?}, end: 10.0, theta: {theta:?}), gravity: [0.0, -9.81],
+            interfaces: [(name: "all", between: ("glass", "glass"), contact: "coulomb", parameters: (contact: {{"mu": 0.5}}))],
+            bodies: [
+                (name: "floor", material: "glass", shapes: [HalfSpace(normal: [0.0, 1.0])],
+                 dofs: (x: Displacement(Sine(amplitude: {a:?}, frequency: {f:?}, phase: {:?})))),
+                (name: "block", material: "glass", position: [0.0, 0.01],
+                 shapes: [Polygon(points: [(-0.02, -0.01), (0.02, -0.01), (0.02, 0.01), (-0.02, 0.01)])],
+                 dofs: (x: Free, y: Free, rz: Free)),
+            ],"#,
+            0.25 * TAU
+        ));
+        let body =
+            |s: &Simulation<Plane>, k: usize| s.bodies.position[s.bodies.driven[k].body as usize].x;
+        let (floor, block) = (body(&s, 0), body(&s, 1));
+        let steps = (10.0 / f / h).round() as u32;
+        let mut worst = 0.0f64;
+        for _ in 0..steps {
+            step(&mut s);
+            worst = worst.max((body(&s, 1) - block - (body(&s, 0) - floor)).abs());
+        }
+        assert!(s.energy.residual.abs() < 1e-10 * s.energy.scale);
+        worst
+    };
+    for h in [2e-3f64, 1e-3] {
+        let angle = TAU * f * h;
+        let found = slip(h, 0.5);
+        println!(
+            "slip {found:e} m at h = {h:e}, {:e} of A (w h)^2",
+            found / (a * angle * angle)
+        );
+        assert!(found < 0.05 * a * angle * angle, "{found:e}");
+    }
+}
+
+/// A state in the middle of stages, of a table's sum and of a turn goes on with the same bits.
+#[test]
+fn a_kept_state_goes_on_along_its_paths() {
+    let saw = "Velocity(Table([(0.0, 0.1), (0.0123, 0.4), (0.0247, -0.3), (0.0555, 0.2), (0.0809, 0.1)]))";
+    let lines = format!(
+        r#"time: (step: 1e-3, end: 10.0),
+        bodies: [(name: "body", material: "glass", shapes: [Balls([([0.0, 0.0], 0.01)])], mass: 3.0, inertia: 2.0, dofs: (
+            x: Stages([(until: Some(0.0401), drive: {saw}), (drive: {})]), y: {saw}, rz: {}))],"#,
+        DRIVES[1].0, DRIVES[0].0
+    );
+    let mut one: Simulation<Plane> = build(&lines);
+    for at in [7, 30, 45] {
+        while one.steps < at {
+            step(&mut one);
+        }
+        let mut other: Simulation<Plane> = build(&lines);
+        let bytes = encode(&one.save()).unwrap();
+        assert!(other.restore(decode(&bytes).unwrap()));
+        let mut alone: Simulation<Plane> = build(&lines);
+        for _ in 0..at {
+            step(&mut alone);
+        }
+        for _ in 0..60 {
+            step(&mut other);
+            step(&mut alone);
+            let state = |s: &Simulation<Plane>| {
+                let b = &s.bodies;
+                let all = [
+                    b.position[0].x,
+                    b.position[0].y,
+                    b.rotation[0],
+                    b.velocity[0].x,
+                ];
+                let more = [
+                    b.spin[0].x,
+                    s.time,
+                    s.energy.external_work,
+                    s.energy.kinetic,
+                ];
+                [all, more]
+                    .concat()
+                    .iter()
+                    .map(|x| x.to_bits())
+                    .collect::<Vec<_>>()
+            };
+            assert_eq!(state(&other), state(&alone));
+        }
+    }
+}
+
+/// The slide of a friction test is the way of its body, and summaries say which drives the step cannot follow.
+#[test]
+fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
+    let case = |frequency: f64| {
+        loaded(
+            2,
+            &format!(
+                r#"time: (step: 1e-3, end: 0.1), gravity: [0.0, -9.81],
+            interfaces: [(name: "all", between: ("glass", "glass"), contact: "coulomb", parameters: (contact: {{"mu": 0.3}}))],
+            bodies: [
+                (name: "floor", material: "glass", shapes: [HalfSpace(normal: [0.0, 1.0])]),
+                (name: "pin", material: "glass", shapes: [Balls([([0.0, 0.0], 0.01)])], position: [0.0, 0.01],
+                 dofs: (x: Displacement(Sine(amplitude: 0.01, frequency: {frequency:?})), y: Free)),
+            ],
+            friction: (body: "pin", along: 0, normal: 1),
+            output: (frames: 0, views: 0, figures: false, every: 1),"#
+            ),
+        )
+    };
+    let ran = |frequency: f64| {
+        let loaded = case(frequency);
+        let built = loaded.build_in::<Plane>(&SearchPath::new(&[]));
+        let built = built.unwrap_or_else(|e| panic!("{e}"));
+        let name = format!("fretwork-drives-{}-{frequency}", std::process::id());
+        let out = std::env::temp_dir().join(name);
+        let options = RunOptions {
+            out: out.clone(),
+            threads: 1,
+        };
+        let summary = run(&loaded, built, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
+        let rows = std::fs::read_to_string(out.join("statistics.csv")).unwrap();
+        std::fs::remove_dir_all(out).ok();
+        (summary, rows)
+    };
+    let (summary, rows) = ran(20.0);
+    assert!(
+        summary.warnings.iter().all(|w| w.of != "COARSE DRIVE"),
+        "{:?}",
+        summary.warnings
+    );
+    let mut lines = rows.lines().filter(|l| !l.starts_with('#'));
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| {
+        names
+            .iter()
+            .position(|n| n.split(' ').next() == Some(name))
+            .unwrap()
+    };
+    let (time, delta) = (column("time"), column("delta"));
+    let mut seen = 0;
+    for line in lines {
+        let row: Vec<f64> = line.split(',').map(|x| x.parse().unwrap()).collect();
+        let way = 0.01 * (TAU * 20.0 * row[time]).sin();
+        assert!((row[delta] - way).abs() < 1e-15, "{} {way}", row[delta]);
+        seen += 1;
+    }
+    assert_eq!(seen, 100);
+    for (frequency, words) in [(100.0, "only 10.0 steps a period"), (1000.0, "ALIASES")] {
+        let (summary, _) = ran(frequency);
+        let told = summary.warnings.iter().find(|w| w.of == "COARSE DRIVE");
+        let told = &told.expect("a warning").text;
+        assert!(
+            told.contains("`pin` along x") && told.contains(words),
+            "{told}"
+        );
+        assert!(summary.text().contains("COARSE DRIVE"));
+        let path = file(&case(frequency).source.text().to_owned());
+        let mut check = std::process::Command::new(env!("CARGO_BIN_EXE_fretwork"));
+        let output = check
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .arg("check")
+            .arg(&path)
+            .output()
+            .unwrap();
+        std::fs::remove_file(path).ok();
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success() && said.contains(words), "{said}");
+    }
+}
