@@ -11,7 +11,7 @@ use serde::Serialize;
 /// A warning.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Warning {
-    /// `TOO FAST`, `NOT CONVERGED` or `NOT COUPLED`.
+    /// `TOO FAST`, `MOTION LOST`, `NOT CONVERGED` or `NOT COUPLED`.
     pub of: &'static str,
     /// What was seen, and what to change.
     pub text: String,
@@ -88,6 +88,7 @@ pub(super) fn of<S: Space>(simulation: &Simulation<S>, solver: &SolverSummary) -
     });
     let told = [
         ("TOO FAST", simulation.network.haste.warning()),
+        ("MOTION LOST", simulation.network.haste.rounding_warning()),
         (
             "NOT CONVERGED",
             missed.warning(simulation, simulation.steps),

@@ -16,6 +16,8 @@ mod answers;
 pub mod control;
 pub mod coupling;
 mod error;
+mod finite;
+mod foresight;
 pub mod motion;
 pub mod projection;
 mod recession;
