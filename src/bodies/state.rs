@@ -38,6 +38,8 @@ pub struct Bodies<S: Space> {
     pub paths: Vec<Paths<S>>,
     /// Which bodies were taken away: they touch nothing and are not shown.
     pub gone: Vec<bool>,
+    /// Motion of each body that rounding took away (m); empty while there is none.
+    pub lost: Vec<f64>,
 }
 
 impl<S: Space> Default for Bodies<S> {
@@ -57,6 +59,7 @@ impl<S: Space> Default for Bodies<S> {
             driven: Vec::new(),
             paths: Vec::new(),
             gone: Vec::new(),
+            lost: Vec::new(),
         }
     }
 }
@@ -68,6 +71,14 @@ impl<S: Space> Bodies<S> {
         + size_of::<S::Rotation>()
         + size_of::<S::Spin>()
         + 4 * size_of::<f64>();
+
+    /// What a user calls a body: a first body by its name, a grain by its number.
+    pub fn name(&self, body: u32) -> String {
+        match self.driven.iter().find(|d| d.body == body) {
+            Some(driven) => format!("body `{}`", driven.name),
+            None => format!("grain {}", self.id[body as usize]),
+        }
+    }
 
     /// Number of bodies.
     pub fn len(&self) -> usize {

@@ -1,8 +1,8 @@
 //! Contacts of the current step and what carries over from the last one.
 
 use super::events::{Break, Loss, Spent};
-use super::haste::Haste;
 use super::memory::Memory;
+use super::step_size::StepSizeDiagnostics;
 use crate::bodies::Bodies;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize, Serializer};
@@ -78,6 +78,12 @@ pub struct Contact<S: Space> {
     pub born: f64,
     /// Time under a compressive impulse without a break (s).
     pub pressed: f64,
+    /// It closes within this step, faster than detection at the start of the step can follow: its gap and normal are those
+    /// of the instant at which it closes, and an impact is one of this step.
+    pub closing: bool,
+    /// Beyond the alert distance at the start of the step: nothing but the constraint that it must not open below zero acts
+    /// on it, no bond, no cohesion, no wear.
+    pub beyond: bool,
 }
 
 impl<S: Space> Contact<S> {
@@ -123,12 +129,21 @@ pub struct Network<S: Space> {
     /// Times over that a step wears and damages: the cycles that the cycle at hand stands for, see
     /// [`crate::wear::jump`]; 1 without jumps.
     pub stands_for: f64,
-    /// What was too fast to be seen in time.
-    pub haste: Haste,
+    /// What shows whether the step was small enough.
+    pub haste: StepSizeDiagnostics,
     /// How often the neighbour list was rebuilt.
     pub rebuilds: u64,
+    /// Relative motion in a step (m) from which a pair is followed through the step.
+    pub fast: f64,
     pub(super) candidates: Vec<(u32, u32)>,
     pub(super) seen_at: Vec<S::Vector>,
+    /// How much farther the neighbour list looks about each body that is fast (m); empty where none is.
+    pub(super) widened: Vec<f64>,
+    /// The spin of each surface for which the list was made (rad/s); zero where turning leaves it in place.
+    pub(super) turning: Vec<f64>,
+    /// Half thicknesses and levers of what can touch.
+    #[serde(skip)]
+    pub(super) extents: super::detect::Extents,
     #[serde(skip)]
     pub(super) old: Vec<Contact<S>>,
 }
@@ -160,12 +175,23 @@ impl<S: Space> Network<S> {
             spent: None,
             losses: None,
             stands_for: 1.0,
-            haste: Haste::default(),
+            haste: StepSizeDiagnostics::default(),
             rebuilds: 0,
+            fast: alert,
             candidates: Vec::new(),
+            widened: Vec::new(),
+            turning: Vec::new(),
+            extents: Default::default(),
             seen_at: Vec::new(),
             old: Vec::new(),
         }
+    }
+
+    /// How many contacts there are: those within the alert distance or held, and of those made ahead because of speed the
+    /// ones that carry an impulse.
+    pub fn contact_count(&self) -> usize {
+        let counts = |c: &&Contact<S>| !c.beyond || c.impulse != S::Vector::null();
+        self.contacts.iter().filter(counts).count()
     }
 
     /// The bond of a contact, broken or not.

@@ -35,7 +35,7 @@ impl Passes {
             contact.impulse = site.solution.impulse;
             contact.moment = S::Spin::null();
             let n = &contact.normal;
-            contact.pressed = if n.dot(&contact.impulse) > 0.0 {
+            contact.pressed = if n.dot(&contact.impulse) > 0.0 && !contact.beyond {
                 contact.pressed + info.h
             } else {
                 0.0
@@ -86,6 +86,10 @@ impl Passes {
             }
             if law.contact.variables() > 0 {
                 self.commit_state(index, law, &law.contact, network, sites, info)?;
+            }
+            self.select(network, |c| c.law as usize == index && !c.beyond);
+            if self.members.is_empty() {
+                continue;
             }
             if let (Some(cohesion), false) = (&law.cohesion, law.opens())
                 && cohesion.variables() > 0

@@ -167,7 +167,7 @@ impl Passes {
                 let healed = law
                     .healing
                     .is_some_and(|time| contact.pressed > 0.0 && contact.pressed >= time);
-                let bonds = !intact && !contact.sharp && (due || healed);
+                let bonds = !intact && !contact.sharp && !contact.beyond && (due || healed);
                 // A bond that only pulls fills its gap; one that pushes too yields until the gap is closed. An overlap is
                 // filled by both: the bond is at rest where it is made.
                 let filled = if law.tension_only() {
@@ -246,9 +246,11 @@ impl Passes {
                 self.select_more(network, |c| c.law as usize == index && !bonded(c));
                 head
             } else {
-                self.select(network, |c| c.law as usize == index);
-                // Without an opening the cohesion acts on every contact.
-                law.cohesion.as_ref().map_or(0, |_| self.members.len())
+                self.select(network, |c| c.law as usize == index && !c.beyond);
+                // Without an opening the cohesion acts on every contact, but not on those that are there for their speed.
+                let head = law.cohesion.as_ref().map_or(0, |_| self.members.len());
+                self.select_more(network, |c| c.law as usize == index && c.beyond);
+                head
             };
             if self.members.is_empty() {
                 continue;
@@ -457,17 +459,21 @@ fn apply_friction<S: Space>(
     form.friction = friction.mu;
     form.tension = info.h * area * friction.tension;
     form.cohesion = info.h * area * friction.cohesion;
-    // Newton's restitution: closed contacts bounce off the velocity they come with, open ones are free
-    // (a quasi-shock would take the approach away before the impact).
+    if contact.beyond {
+        (form.tension, form.cohesion) = (0.0, 0.0);
+    }
+    // Newton's restitution: closed contacts bounce off the velocity they come with, and those that close within the step
+    // and would else pass through; other open ones are free (a quasi-shock would take the approach away before the impact).
     let un = contact.normal.dot(before);
+    let impact = gap <= 0.0 || contact.closing && un < 0.0;
     if friction.e_n > 0.0 {
-        if gap > 0.0 {
+        if !impact {
             form.shift_n = f64::INFINITY;
         } else if un < 0.0 {
             form.shift_n = friction.e_n * un;
         }
     }
-    if gap <= 0.0 && friction.e_t > 0.0 {
+    if impact && friction.e_t > 0.0 {
         form.shift_t = S::tangential(&contact.normal, before) * friction.e_t;
     }
 }

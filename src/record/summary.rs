@@ -9,7 +9,7 @@ use super::scars::ScarSummary;
 pub use super::solving::SolverSummary;
 use super::steady::Flow;
 use super::warnings::Warning;
-use crate::contact::Haste;
+use crate::contact::StepSizeDiagnostics;
 use crate::step::control::Begun;
 use crate::wear::ledger::{Contents, Flows};
 use serde::Serialize;
@@ -238,8 +238,8 @@ pub struct Summary {
     pub scars: Vec<ScarSummary>,
     /// What went wrong without ending the run, each with what to change; empty where nothing did.
     pub warnings: Vec<Warning>,
-    /// What was too fast for the step.
-    pub haste: Haste,
+    /// What shows whether the step was small enough to see every contact in time.
+    pub haste: StepSizeDiagnostics,
     /// The solver.
     pub solver: SolverSummary,
     /// Laws.

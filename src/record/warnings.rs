@@ -13,7 +13,7 @@ use serde::Serialize;
 /// A warning.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Warning {
-    /// `TOO FAST`, `COARSE DRIVE`, `NOT CONVERGED` or `NOT COUPLED`.
+    /// `TOO FAST`, `MOTION LOST`, `COARSE DRIVE`, `NOT CONVERGED` or `NOT COUPLED`.
     pub of: &'static str,
     /// What was seen, and what to change.
     pub text: String,
@@ -92,7 +92,11 @@ pub(super) fn of<S: Space>(
             solver.uncoupled_steps
         )
     });
-    let too_fast = [("TOO FAST", simulation.network.haste.warning())];
+    let haste = &simulation.network.haste;
+    let too_fast = [
+        ("TOO FAST", haste.warning()),
+        ("MOTION LOST", haste.rounding_warning()),
+    ];
     let coarse = sampling::warnings(case);
     let coarse = coarse.into_iter().map(|text| ("COARSE DRIVE", Some(text)));
     let told = [

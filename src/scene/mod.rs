@@ -6,6 +6,7 @@ pub mod check;
 pub mod circuit;
 pub mod interfaces;
 pub mod jump;
+mod magnitudes;
 pub mod material;
 pub mod measures;
 pub mod mesh_file;

@@ -48,4 +48,19 @@ pub enum StepError {
         /// Identity of the body.
         body: u64,
     },
+    /// A quantity of the state or of the ledger is not finite.
+    #[error(
+        "step {step} at t = {time:.6e} s: {quantity} is {value}, beyond what can be computed with; check the units of sizes, \
+         velocities, forces and laws, or take a smaller time.step"
+    )]
+    Overflow {
+        /// Number of the step.
+        step: u64,
+        /// Time at its end (s).
+        time: f64,
+        /// The quantity, and the body it is of.
+        quantity: String,
+        /// What it is.
+        value: f64,
+    },
 }

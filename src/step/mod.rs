@@ -17,6 +17,8 @@ pub mod control;
 pub mod coupling;
 mod error;
 mod imposed;
+mod finite;
+mod foresight;
 pub mod motion;
 pub mod projection;
 mod recession;

@@ -11,7 +11,13 @@ use crate::record::ledger::BodyWork;
 pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64) {
     for b in 0..bodies.len() {
         let v = bodies.velocity[b];
+        let from = bodies.position[b];
         bodies.position[b] += v * time;
+        if bodies.position[b] == from && v != S::Vector::null() {
+            // The way is less than the spacing of numbers here.
+            bodies.lost.resize(bodies.position.len(), 0.0);
+            bodies.lost[b] += v.norm() * time;
+        }
         let w = bodies.spin[b];
         if w != S::Spin::null() {
             let rotation = bodies.rotation[b];
@@ -96,6 +102,12 @@ impl<S: Space> Before<S> {
     pub fn of_driven(&self, bodies: &Bodies<S>) -> Vec<(S::Vector, S::Spin)> {
         let of = |b: usize| (self.velocity[b], self.spin[b]);
         bodies.driven.iter().map(|d| of(d.body as usize)).collect()
+    }
+
+    /// Gives the bodies the velocities back that they had.
+    pub fn restore(&self, bodies: &mut Bodies<S>) {
+        bodies.velocity.clone_from(&self.velocity);
+        bodies.spin.clone_from(&self.spin);
     }
 
     /// The spin of a body at the start of the step.

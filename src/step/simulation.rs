@@ -6,7 +6,7 @@ use super::coupling::{Coupling, CouplingReport, Progress};
 use super::motion::{self, Before};
 use super::projection::Projected;
 use crate::bodies::Bodies;
-use crate::contact::detect::{LawTable, detect};
+use crate::contact::detect::{self, LawTable, detect};
 use crate::contact::{Contact, Network};
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
@@ -138,6 +138,7 @@ impl<S: Space> Simulation<S> {
         for (memory, law) in network.memory.iter_mut().zip(&laws) {
             memory.rotates = law.rotates();
         }
+        network.fast = detect::fast_motion(&shapes, alert);
         let kinetic = bodies.kinetic_energy();
         let received = vec![(S::Vector::null(), S::Spin::null()); bodies.driven.len()];
         let mut simulation = Self {
@@ -212,14 +213,13 @@ impl<S: Space> Simulation<S> {
         report.projected = self.project();
         start.coasted(&self.bodies);
         self.started = start.of_driven(&self.bodies);
+        let free = motion::free_velocities(&self.bodies, &self.gravity, self.time, h, theta);
+        self.foresee(&free);
         let remembered = self.passes.remember(&self.laws, &mut self.network, &info);
         remembered.map_err(|e| self.law_error(e))?;
         report.timing.detect = clock.elapsed();
 
-        self.relative_velocities();
-        let free = motion::free_velocities(&self.bodies, &self.gravity, self.time, h, theta);
-        self.geometry_of_forms(h);
-        self.couple(&start, &free, &info, &mut report)?;
+        self.solve(&start, &free, &info, &mut report)?;
 
         let clock = Instant::now();
         let Solved { sites, turns, .. } = &self.solved;
@@ -239,6 +239,8 @@ impl<S: Space> Simulation<S> {
             .count();
         self.end_motion();
         self.steps += 1;
+        self.finite()?;
+        self.watch_rounding();
         self.end_phase();
         self.recede();
         Ok(report)
@@ -246,7 +248,7 @@ impl<S: Space> Simulation<S> {
 
     /// Prepares and solves: once where damage is coupled explicitly, else until the damage that the
     /// impulses are formed with is the one that their openings give.
-    fn couple(
+    pub(super) fn couple(
         &mut self,
         start: &Before<S>,
         free: &[(S::Vector, S::Spin)],
@@ -331,7 +333,7 @@ impl<S: Space> Simulation<S> {
         solve::choose::coulomb(&self.problem, &self.forms, &self.moments)
     }
 
-    fn law_error(&self, source: LawError) -> StepError {
+    pub(super) fn law_error(&self, source: LawError) -> StepError {
         StepError::Law {
             step: self.steps + 1,
             time: self.time,
@@ -340,7 +342,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// The part of the forms that geometry gives.
-    fn geometry_of_forms(&mut self, h: f64) {
+    pub(super) fn geometry_of_forms(&mut self, h: f64) {
         let correction = self.correction;
         self.forms.clear();
         let network = &self.network;

@@ -1,7 +1,13 @@
 //! Detection at q_m: a neighbour list with a skin (broad), then gaps and normals (narrow).
 
+mod extents;
+mod foresee;
 mod narrow;
 mod pieces;
+mod sweep;
+
+pub use extents::{Extents, fast_motion};
+pub use foresee::{Motion, foresee, overlooked, report_passing};
 
 use super::network::{Contact, Key, Network};
 use crate::bodies::Bodies;
@@ -9,6 +15,9 @@ use crate::geometry::grid;
 use crate::geometry::shape::{Ball, Shapes};
 use crate::geometry::space::{Space, VectorLike};
 use narrow::Narrow;
+
+/// Corners that stand nearer along a face than this part of the alert distance are seen as on it.
+const SLACK: f64 = 0.01;
 
 /// Which interface law governs a pair of materials, row by row; `None` when none is given.
 #[derive(Clone, Debug)]
@@ -63,17 +72,11 @@ pub fn detect<S: Space>(
     time: f64,
     h: f64,
 ) {
-    network.haste.watch(bodies, network.alert, time, h);
-    // The pieces' centres follow those of the balls.
-    let mut centres: Vec<S::Vector> = shapes.balls.iter().map(|b| centre(b, bodies)).collect();
-    centres.extend(
-        shapes
-            .pieces
-            .iter()
-            .map(|p| frame(p.body, &p.offset, bodies).0),
-    );
+    let centres = centres(shapes, bodies);
     if must_rebuild(network, shapes, bodies, &centres) {
-        rebuild(network, shapes, bodies, laws, &centres);
+        let velocities = bodies.velocity.iter().copied();
+        let velocities: Vec<_> = velocities.zip(bodies.spin.iter().copied()).collect();
+        rebuild(network, shapes, bodies, laws, &centres, &velocities, h);
     }
     std::mem::swap(&mut network.contacts, &mut network.old);
     network.contacts.clear();
@@ -95,6 +98,14 @@ pub fn detect<S: Space>(
     }
 }
 
+/// Centres of the balls, then of the pieces (m).
+fn centres<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>) -> Vec<S::Vector> {
+    let mut centres: Vec<S::Vector> = shapes.balls.iter().map(|b| centre(b, bodies)).collect();
+    let pieces = shapes.pieces.iter();
+    centres.extend(pieces.map(|p| frame(p.body, &p.offset, bodies).0));
+    centres
+}
+
 /// Where the neighbour list watches: the centres of balls and pieces, then the frames of the surfaces.
 fn watched<'a, S: Space>(
     shapes: &'a Shapes<S>,
@@ -107,6 +118,9 @@ fn watched<'a, S: Space>(
         .map(|s| bodies.position[s.body as usize]);
     centres.iter().copied().chain(frames)
 }
+
+/// The neighbour list is made for surfaces that turn so many times as fast as they do.
+const TURNING: f64 = 1.5;
 
 fn must_rebuild<S: Space>(
     network: &Network<S>,
@@ -140,9 +154,18 @@ fn rebuild<S: Space>(
     bodies: &Bodies<S>,
     laws: &LawTable,
     centres: &[S::Vector],
+    velocities: &[(S::Vector, S::Spin)],
+    h: f64,
 ) {
     let mut radii: Vec<f64> = shapes.balls.iter().map(|b| b.radius).collect();
     radii.extend(shapes.pieces.iter().map(|p| p.bound));
+    // About fast bodies the list looks as far as they go.
+    let wide = |body: u32| network.widened.get(body as usize).copied().unwrap_or(0.0);
+    if !network.widened.is_empty() {
+        let of = shapes.balls.iter().map(|b| b.body);
+        let of = of.chain(shapes.pieces.iter().map(|p| p.body));
+        radii.iter_mut().zip(of).for_each(|(r, b)| *r += wide(b));
+    }
     let reach = network.alert + network.skin;
     let balls = shapes.balls.len();
     // Body, material and name of the ball or piece at a place of the list of centres.
@@ -166,14 +189,27 @@ fn rebuild<S: Space>(
     if !shapes.pieces.is_empty() {
         pairs = pairs.iter().map(|p| (owner(p.0).2, owner(p.1).2)).collect();
     }
+    let mut turning = Vec::with_capacity(shapes.surfaces.len());
     for (s, surface) in shapes.surfaces.iter().enumerate() {
         let (origin, rotation) = frame(surface.body, &surface.offset, bodies);
+        let pivot = bodies.position[surface.body as usize];
+        let spin = velocities[surface.body as usize].1;
+        let sweeps = !surface
+            .shape
+            .keeps_place(&S::unrotate_spin(&rotation, &spin));
+        let spin = if sweeps { TURNING * spin.norm() } else { 0.0 };
+        turning.push(spin);
+        let extra = wide(surface.body);
         for (at, radius) in radii.iter().enumerate() {
             let (body, material, name) = owner(at as u32);
             let known = laws.get(material, surface.material).is_some();
             if known && touch(body, surface.body) {
                 let local = S::unrotate(&rotation, &(centres[at] - origin));
-                if surface.shape.near(&local, radius + reach) {
+                let mut reach = radius + reach + extra;
+                if sweeps {
+                    reach += spin * h * ((centres[at] - pivot).norm() + radius);
+                }
+                if surface.shape.near(&local, reach) {
                     pairs.push((name, s as u32 | Key::SURFACE));
                 }
             }
@@ -187,6 +223,7 @@ fn rebuild<S: Space>(
     pairs.sort_unstable();
     pairs.dedup();
     network.candidates = pairs;
+    network.turning = turning;
     network.seen_at.clear();
     network.seen_at.extend(watched(shapes, bodies, centres));
     network.rebuilds += 1;

@@ -136,6 +136,8 @@ impl<'a, S: Space> Narrow<'a, S> {
             moment: S::Spin::null(),
             born: self.time,
             pressed: 0.0,
+            closing: false,
+            beyond: false,
         };
         self.admit(network, found, old);
     }
@@ -208,6 +210,8 @@ impl<'a, S: Space> Narrow<'a, S> {
                 moment: S::Spin::null(),
                 born: self.time,
                 pressed: 0.0,
+                closing: false,
+                beyond: false,
             };
             self.admit(network, found, matched);
         }
@@ -269,7 +273,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                 found.broken = network.broken_pairs.contains(&found.key.pair());
                 // What overlaps from the start is the sample's.
                 if self.time > 0.0 {
-                    network.haste.meet(found.gap, found.radius);
+                    network.haste.meet(&found, self.time, self.bodies);
                 }
             }
         }

@@ -1,13 +1,10 @@
 //! Contacts of convex pieces: with balls, with each other and with surfaces, several points a pair.
 
 use super::narrow::Narrow;
-use super::{drop_contact, frame, held};
+use super::{SLACK, drop_contact, frame, held};
 use crate::contact::network::{Contact, Key, Network};
 use crate::geometry::convex::{Core, Gauge, Meeting};
 use crate::geometry::space::{Space, VectorLike};
-
-/// Corners that stand nearer along a face than this part of the alert distance are seen as on it.
-const SLACK: f64 = 0.01;
 
 /// Who meets: bodies, materials, and the size where the meeting gives none (m).
 struct Pair {
@@ -21,9 +18,6 @@ impl<S: Space> Narrow<'_, S> {
     /// A pair of which one at least is a piece.
     pub(super) fn pieces(&mut self, network: &mut Network<S>, a: u32, b: u32) {
         let old = self.old_of(network, (a, b));
-        if b & Key::SURFACE != 0 {
-            self.watch(network, a, b);
-        }
         let gauge = Gauge {
             reach: self.reach(network, old.clone()),
             slack: SLACK * network.alert,
@@ -43,25 +37,6 @@ impl<S: Space> Narrow<'_, S> {
             old.for_each(|k| drop_contact(network, k));
         }
         self.meetings = meetings;
-    }
-
-    /// Notes how far a piece moved in the step against a skin that it is near: what sinks in deeper than it is looked
-    /// for is not seen.
-    fn watch(&self, network: &mut Network<S>, a: u32, b: u32) {
-        let (k, s) = ((a & !Key::PIECE) as usize, (b & !Key::SURFACE) as usize);
-        let (piece, surface) = (&self.shapes.pieces[k], &self.shapes.surfaces[s]);
-        if surface.shape.any_depth() {
-            return;
-        }
-        let centre = self.centres[self.shapes.balls.len() + k];
-        let motion = |b: u32| {
-            let b = b as usize;
-            let arm = (centre - self.bodies.position[b]).norm() + piece.bound;
-            (self.bodies.velocity[b], self.bodies.spin[b].norm() * arm)
-        };
-        let ((v, turn), (v_surface, turn_surface)) = (motion(piece.body), motion(surface.body));
-        let path = self.h * ((v - v_surface).norm() + turn + turn_surface);
-        network.haste.plunge(path, piece.bound, network.alert);
     }
 
     /// Finds the meetings of a pair in world axes, and where their origin stands from the centres of the
@@ -184,6 +159,8 @@ impl<S: Space> Narrow<'_, S> {
                 moment: S::Spin::null(),
                 born: self.time,
                 pressed: 0.0,
+                closing: false,
+                beyond: false,
             };
             self.admit(network, found, before);
         }
@@ -272,6 +249,8 @@ mod tests {
             moment: nalgebra::Vector1::zeros(),
             born: 0.0,
             pressed: 0.0,
+            closing: false,
+            beyond: false,
         }
     }
 

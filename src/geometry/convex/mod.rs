@@ -20,7 +20,7 @@ mod polyhedron_tests;
 pub use boundary::Boundary;
 
 use super::shape::Surface;
-use super::space::Space;
+use super::space::{Space, VectorLike};
 use std::fmt::Debug;
 
 /// A convex part of a body: all points within `rounding` of its core.
@@ -76,6 +76,19 @@ impl<S: Space> Part<S> {
             material,
         }
     }
+}
+
+/// Half of the least thickness of points across these normals (m); zero where there is none.
+fn half_thickness<S: Space>(points: &[S::Vector], normals: &[S::Vector]) -> f64 {
+    let across = |n: &S::Vector| {
+        let along = points.iter().map(|p| p.dot(n));
+        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        0.5 * (high - low)
+    };
+    let least = normals.iter().map(across).fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
 }
 
 /// Where two bodies are near: one point of a contact.
@@ -146,6 +159,9 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
 
     /// Signed distance of a point from the core (m, negative inside) and the unit normal at the nearest point of it.
     fn outward(&self, point: &S::Vector) -> (f64, S::Vector);
+
+    /// Half of the least thickness across its faces (m); zero for a segment.
+    fn half_thickness(&self) -> f64;
 
     /// Meetings with a surface of a first body, in the order of their features. The core is in the
     /// surface's frame, its centre at `at`.

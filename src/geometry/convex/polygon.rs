@@ -232,6 +232,10 @@ impl Core<Plane> for Polygon {
         (distance, normal)
     }
 
+    fn half_thickness(&self) -> f64 {
+        super::half_thickness::<Plane>(&self.points, &self.normals)
+    }
+
     fn meet_surface(
         &self,
         surface: &dyn Surface<Plane>,

@@ -433,6 +433,10 @@ impl Core<Solid> for Polyhedron {
         self.distance(point)
     }
 
+    fn half_thickness(&self) -> f64 {
+        super::half_thickness::<Solid>(&self.points, &self.normals)
+    }
+
     fn meet_surface(
         &self,
         surface: &dyn Surface<Solid>,

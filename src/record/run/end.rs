@@ -20,7 +20,7 @@ impl<S: Space> Recorder<'_, S> {
         summary.steps = s.steps;
         summary.time = s.time;
         summary.bodies = s.bodies.len();
-        summary.contacts = n.contacts.len();
+        summary.contacts = n.contact_count();
         summary.bonds = n.bonds_made();
         summary.broken = n.bonds_broken();
         summary.damage_ratio = if n.bonds_made() > 0 {
@@ -28,7 +28,7 @@ impl<S: Space> Recorder<'_, S> {
         } else {
             0.0
         };
-        summary.haste = n.haste;
+        summary.haste = n.haste.clone();
         summary.energy = s.energy;
         summary.energy_residual_relative = s.energy.relative_residual();
         summary.solver.coupling_iterations_mean = self.couplings as f64 / s.steps.max(1) as f64;

@@ -456,7 +456,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
                 .cycles
                 .as_ref()
                 .map_or((0, 0), |(c, _)| (c.number(self.simulation.time), c.total())),
-            contacts: self.simulation.network.contacts.len(),
+            contacts: self.simulation.network.contact_count(),
             iterations: report.solver.iterations,
             error: report.solver.error,
             converged: report.solver.converged,

@@ -17,7 +17,7 @@ impl<S: Dimensional> Recorder<'_, S> {
             s.steps as f64,
             s.time,
             f64::from(cycle),
-            n.contacts.len() as f64,
+            n.contact_count() as f64,
             report.active as f64,
             f64::from(report.solver.iterations),
             report.solver.error,

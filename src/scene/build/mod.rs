@@ -344,6 +344,8 @@ impl<S: Dimensional> Builder<'_, S> {
             method: case.solver.method,
             parallel: false,
         };
+        super::magnitudes::check(&simulation, &self.origins, case.time.end)
+            .map_err(|f| source.locate(f))?;
         super::check::overlaps(&mut simulation, smallest, &self.origins)
             .map_err(|f| source.locate(f))?;
         simulation.set_in_motion();

@@ -1,0 +1,78 @@
+//! How thin and how long what can touch is: what decides whether a motion is fast.
+
+use crate::bodies::Bodies;
+use crate::geometry::convex::Core;
+use crate::geometry::shape::Shapes;
+use crate::geometry::space::{Space, VectorLike};
+
+/// Part of the half thickness of the thinnest body from which a relative motion in a step is fast.
+const FAST: f64 = 0.05;
+
+/// Half thicknesses of the pieces, and how far the points of each body are from its centre.
+#[derive(Clone, Debug, Default)]
+pub struct Extents {
+    /// Least half thickness of each piece, rounding included (m).
+    pub(super) pieces: Vec<f64>,
+    /// Farthest point of each body that moves when it turns (m); zero for centred balls. Surfaces do not count.
+    pub(super) levers: Vec<f64>,
+}
+
+impl Extents {
+    pub(super) fn new<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>) -> Self {
+        let mut levers = vec![0.0f64; bodies.len()];
+        for ball in &shapes.balls {
+            let lever = &mut levers[ball.body as usize];
+            if ball.offset != S::Vector::null() {
+                *lever = lever.max(ball.offset.norm() + ball.radius);
+            }
+        }
+        for piece in &shapes.pieces {
+            let lever = &mut levers[piece.body as usize];
+            *lever = lever.max(piece.offset.norm() + piece.bound);
+        }
+        let thickness = shapes.pieces.iter();
+        Self {
+            pieces: thickness
+                .map(|p| p.core.half_thickness() + p.rounding)
+                .collect(),
+            levers,
+        }
+    }
+
+    pub(super) fn fits<S: Space>(&self, shapes: &Shapes<S>, bodies: &Bodies<S>) -> bool {
+        self.levers.len() == bodies.len() && self.pieces.len() == shapes.pieces.len()
+    }
+
+    /// The farthest that a point of each body moves in `h` seconds (m), a surface's by turning left out.
+    pub(super) fn travels<S: Space>(
+        &self,
+        bodies: &Bodies<S>,
+        velocities: &[(S::Vector, S::Spin)],
+        h: f64,
+    ) -> Vec<f64> {
+        let of = |b: usize| {
+            let ((v, w), lever) = (&velocities[b], self.levers[b]);
+            let turn = if lever > 0.0 { w.norm() * lever } else { 0.0 };
+            if bodies.gone[b] {
+                0.0
+            } else {
+                h * (v.norm() + turn)
+            }
+        };
+        (0..bodies.len()).map(of).collect()
+    }
+}
+
+/// The relative motion in a step (m) from which a pair is followed through the step: a part of the least half thickness, and
+/// no more than the alert distance sees.
+pub fn fast_motion<S: Space>(shapes: &Shapes<S>, alert: f64) -> f64 {
+    let pieces = shapes.pieces.iter();
+    let pieces = pieces.map(|p| p.core.half_thickness() + p.rounding);
+    let thinnest = shapes
+        .balls
+        .iter()
+        .map(|b| b.radius)
+        .chain(pieces)
+        .fold(f64::INFINITY, f64::min);
+    alert.min(FAST * thinnest)
+}

@@ -1,0 +1,73 @@
+//! No step ends with a number that is none: what is not finite ends the run before anything is recorded of it.
+
+use super::{Simulation, StepError};
+use crate::geometry::space::{Space, VectorLike};
+
+/// Motion lost to rounding, in parts of the alert distance, from which it is reported: of balls a millionth of the radius.
+const LOST: f64 = 2e-5;
+
+impl<S: Space> Simulation<S> {
+    /// The state and the ledger are finite.
+    ///
+    /// # Errors
+    /// The first quantity that is not, and of which body.
+    pub(super) fn finite(&self) -> Result<(), StepError> {
+        let overflow = |quantity: String, value: f64| StepError::Overflow {
+            step: self.steps,
+            time: self.time,
+            quantity,
+            value,
+        };
+        let bodies = &self.bodies;
+        for b in 0..bodies.len() {
+            let name = || bodies.name(b as u32);
+            for (what, vector) in [
+                ("position", bodies.position[b].padded()),
+                ("velocity", bodies.velocity[b].padded()),
+                ("spin", bodies.spin[b].padded()),
+            ] {
+                if let Some(value) = vector.into_iter().find(|x| !x.is_finite()) {
+                    return Err(overflow(format!("the {what} of {}", name()), value));
+                }
+            }
+        }
+        let e = &self.energy;
+        if !e.kinetic.is_finite()
+            && let Some(b) = (0..bodies.len()).find(|b| !bodies.energy_of(*b).is_finite())
+        {
+            let quantity = format!("the kinetic energy of {}", bodies.name(b as u32));
+            return Err(overflow(quantity, bodies.energy_of(b)));
+        }
+        let ledger = [
+            ("the kinetic energy of all bodies", e.kinetic),
+            ("the energy entry `potential`", e.potential),
+            ("the energy entry `elastic`", e.elastic),
+            ("the energy entry `fracture`", e.fracture),
+            ("the energy entry `friction`", e.friction),
+            ("the energy entry `impact`", e.impact),
+            ("the energy entry `adhesion`", e.adhesion),
+            ("the energy entry `viscous`", e.viscous),
+            ("the energy entry `correction`", e.correction),
+            ("the energy entry `scheme`", e.scheme),
+            ("the energy entry `external_work`", e.external_work),
+            ("the residual of the energies", e.residual),
+        ];
+        match ledger.into_iter().find(|(_, x)| !x.is_finite()) {
+            Some((quantity, value)) => Err(overflow(quantity.to_owned(), value)),
+            None => Ok(()),
+        }
+    }
+
+    /// Notes bodies whose motion is less than the spacing of numbers where they are: they do not move although they should.
+    pub(super) fn watch_rounding(&mut self) {
+        if self.bodies.lost.is_empty() {
+            return;
+        }
+        let least = LOST * self.network.alert;
+        let stuck = (0..self.bodies.lost.len()).find(|b| self.bodies.lost[*b] > least);
+        if let Some(body) = stuck {
+            let haste = &mut self.network.haste;
+            haste.lose_motion(self.time, &self.bodies, body as u32);
+        }
+    }
+}
