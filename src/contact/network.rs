@@ -6,7 +6,7 @@ use super::memory::Memory;
 use crate::bodies::Bodies;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize, Serializer};
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 /// The name of a contact, stable in time: candidate (a ball, or a convex piece with [`Key::PIECE`] set),
 /// antagonist (the same, or a surface with [`Key::SURFACE`] set) and the face, edge or vertex that is
@@ -123,6 +123,8 @@ pub struct Network<S: Space> {
     /// Times over that a step wears and damages: the cycles that the cycle at hand stands for, see
     /// [`crate::wear::jump`]; 1 without jumps.
     pub stands_for: f64,
+    /// Volume worn off each surface so far, by its index (m^3; m^3/m in 2D).
+    pub worn: BTreeMap<usize, f64>,
     /// What was too fast to be seen in time.
     pub haste: Haste,
     /// How often the neighbour list was rebuilt.
@@ -160,6 +162,7 @@ impl<S: Space> Network<S> {
             spent: None,
             losses: None,
             stands_for: 1.0,
+            worn: BTreeMap::new(),
             haste: Haste::default(),
             rebuilds: 0,
             candidates: Vec::new(),

@@ -6,4 +6,6 @@ mod faults;
 mod folder;
 mod kills;
 mod laws;
+#[cfg(unix)]
+mod signals;
 mod state;
