@@ -1,4 +1,4 @@
-//! What went wrong in a run, and what to change: reasons not to trust it, and notes. docs/trust.md has the table.
+//! What went wrong in a run, and what to change: reasons not to trust it, and notes. docs/trustworthy.md has the table.
 
 use super::Summary;
 use crate::geometry::space::Space;

@@ -2,6 +2,7 @@
 
 mod cases;
 mod common;
+mod ending;
 mod faults;
 mod folder;
 mod kills;
