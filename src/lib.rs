@@ -9,6 +9,7 @@ pub mod certify;
 pub mod cli;
 pub mod contact;
 pub mod geometry;
+pub mod interrupt;
 pub mod laws;
 pub mod record;
 pub mod report;

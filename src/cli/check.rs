@@ -126,8 +126,13 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
         line(if k == 0 { "on" } else { "" }, text);
     }
     line("off", off.join(", "));
-    for text in sampling::warnings(case) {
-        line("COARSE DRIVE", text);
+    for drive in sampling::unresolved(case) {
+        let heading = if drive.aliased {
+            "ALIASED DRIVE"
+        } else {
+            "COARSE DRIVE"
+        };
+        line(heading, drive.text);
     }
     groups(loaded, built, high, &mut line);
     biaxial_groups(loaded, built, &mut line);

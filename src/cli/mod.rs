@@ -2,6 +2,7 @@
 //!
 //! Exit 0: done. 1: the run failed; what was computed is on disk. 2: the input is wrong.
 
+mod again;
 mod check;
 mod law;
 mod progress;

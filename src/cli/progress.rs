@@ -12,7 +12,7 @@ pub struct Display {
     started: Instant,
     next_line: Duration,
     next_update: Duration,
-    unconverged: u64,
+    begun: bool,
 }
 
 impl Display {
@@ -32,18 +32,24 @@ impl Display {
             started: Instant::now(),
             next_line: Duration::from_secs(2),
             next_update: Duration::ZERO,
-            unconverged: 0,
+            begun: false,
         }
     }
 
     /// After a step.
     pub fn step(&mut self, p: &Progress) {
-        self.unconverged += u64::from(!p.converged);
         if self.quiet {
             return;
         }
         let elapsed = self.started.elapsed();
         if let Some(bar) = &self.bar {
+            if !self.begun && p.resumed_at > 0 {
+                // The time left follows from the steps of this part of the run alone.
+                bar.set_length(p.steps.1);
+                bar.set_position(p.resumed_at);
+                bar.reset_eta();
+            }
+            self.begun = true;
             if elapsed >= self.next_update || p.steps.0 == p.steps.1 {
                 self.next_update = elapsed + Duration::from_millis(100);
                 bar.set_length(p.steps.1);
@@ -53,8 +59,7 @@ impl Display {
         } else if elapsed >= self.next_line || p.steps.0 == p.steps.1 {
             // Lines get rarer as the run gets longer.
             self.next_line = elapsed.mul_f64(1.25).max(elapsed + Duration::from_secs(2));
-            let left =
-                elapsed.as_secs_f64() * (p.steps.1 - p.steps.0) as f64 / p.steps.0.max(1) as f64;
+            let left = left(elapsed, p);
             eprintln!(
                 "step {}/{} {} left {left:.0} s",
                 p.steps.0,
@@ -70,8 +75,8 @@ impl Display {
         } else {
             String::new()
         };
-        let missed = if self.unconverged > 0 {
-            format!(" ({} steps not converged)", self.unconverged)
+        let missed = if p.unconverged > 0 {
+            format!(" ({} steps not converged)", p.unconverged)
         } else {
             String::new()
         };
@@ -86,5 +91,34 @@ impl Display {
         if let Some(bar) = &self.bar {
             bar.finish();
         }
+    }
+}
+
+/// Time left (s), by the steps done since the run began or went on.
+fn left(elapsed: Duration, p: &Progress) -> f64 {
+    let (done, all) = p.steps;
+    let here = done.saturating_sub(p.resumed_at).max(1);
+    elapsed.as_secs_f64() * all.saturating_sub(done) as f64 / here as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_counts_only_the_steps_of_this_part() {
+        let p = Progress {
+            steps: (900, 1000),
+            resumed_at: 800,
+            cycle: (0, 0),
+            contacts: 0,
+            iterations: 0,
+            error: 0.0,
+            unconverged: 0,
+            damage_ratio: 0.0,
+        };
+        assert_eq!(left(Duration::from_secs(20), &p), 20.0);
+        let whole = Progress { resumed_at: 0, ..p };
+        assert_eq!(left(Duration::from_secs(90), &whole), 10.0);
     }
 }

@@ -1,7 +1,8 @@
 //! `fretwork run`.
 
 use super::progress::Display;
-use super::{CaseArgs, Failure, say};
+use super::{CaseArgs, Failure, again, say};
+use crate::interrupt;
 use crate::record::checkpoint::Found;
 use crate::record::{self, RunOptions, Summary};
 use crate::scene::build::Dimensional;
@@ -22,6 +23,12 @@ pub struct RunArgs {
     /// Go on from the last checkpoint of the same run in the folder; the results are those of a run that was not stopped
     #[arg(long)]
     resume: bool,
+    /// Exit 1 also where the run came to its end and is not trustworthy (steps that missed the tolerance, a check that failed)
+    #[arg(long)]
+    strict: bool,
+    /// Print all that is known at the end: first and last cycle, measures, phases, solver, laws
+    #[arg(long, short)]
+    verbose: bool,
     /// No progress; the summary is printed as JSON
     #[arg(long)]
     json: bool,
@@ -41,6 +48,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     if !args.json {
         say(&format!("{}: {}", loaded.path.display(), loaded.case.name));
     }
+    interrupt::watch();
     let done = pool.install(|| match scene {
         Scene::Plane(built) => go(&loaded, *built, &options, args),
         Scene::Solid(built) => go(&loaded, *built, &options, args),
@@ -51,14 +59,32 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     if args.json {
         say(&serde_json::to_string_pretty(&summary).unwrap_or_default());
     } else {
+        let text = summary.text(args.verbose);
+        let more = if args.verbose {
+            ""
+        } else {
+            " (more: --verbose)"
+        };
         say(&format!(
-            "{}\n{}  results in {}",
-            summary.case,
-            summary.text(),
+            "{text}  results in {}{more}",
             options.out.display()
         ));
     }
-    Ok(())
+    if let Some(why) = summary.stopped.as_ref().filter(|_| summary.interrupted) {
+        let command = again::command(&["--resume"]);
+        return Err(Failure::Failed(format!("{why}; to go on:\n  {command}")));
+    }
+    strict(args, summary.reasons.first().map(String::as_str))
+}
+
+/// Fails where `--strict` asks for it and there is a reason not to trust the run.
+fn strict(args: &RunArgs, reason: Option<&str>) -> Result<(), Failure> {
+    match reason.filter(|_| args.strict) {
+        None => Ok(()),
+        Some(reason) => Err(Failure::Failed(format!(
+            "--strict: the run is not trustworthy, {reason}"
+        ))),
+    }
 }
 
 /// Runs, or goes on; none where there is nothing left to do.
@@ -84,12 +110,16 @@ fn go<S: Dimensional>(
             }
             Found::Finished => {
                 let path = options.out.join("summary.json");
-                match std::fs::read_to_string(&path).ok().filter(|_| args.json) {
-                    Some(summary) => say(summary.trim_end()),
-                    None => say(&format!(
+                let text = std::fs::read_to_string(&path).unwrap_or_default();
+                if args.json && !text.is_empty() {
+                    say(text.trim_end());
+                } else {
+                    say(&format!(
                         "the run in {out} is finished: nothing to do; to run it anew leave --resume out"
-                    )),
+                    ));
                 }
+                let kept: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+                strict(args, kept["reasons"][0].as_str())?;
                 return Ok(None);
             }
         }

@@ -1,7 +1,8 @@
 //! `fretwork trade`: accuracy against cost.
 
-use super::{CaseArgs, Failure, say};
+use super::{CaseArgs, Failure, again, say};
 use crate::geometry::space::Space;
+use crate::interrupt;
 use crate::scene::build::Built;
 use crate::scene::measures::MeasureSpec;
 use crate::scene::methods::{Demands, Service};
@@ -143,12 +144,8 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
         first: loaded.case.seed,
         step: loaded.case.time.step,
     });
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        // Without it an interruption ends the program at once; what ran stays on disk all the same.
-        let _ = signal_hook::flag::register(signal, Arc::clone(&stop));
-    }
-    let outputs = outputs(args, &loaded, &launcher, &stop)?;
+    let stop = interrupt::watch();
+    let outputs = outputs(args, &loaded, &launcher, stop)?;
     let count = if random { u64::from(args.seeds) } else { 1 };
     let mut study = Study {
         launcher: Arc::new(launcher),
@@ -184,8 +181,8 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     if study.jobs > 1 {
         study.notes.push(format!("{} runs went side by side, which disturbs their timing; visits (contacts times iterations) do not depend on it.", study.jobs));
     }
-    study.look_for_chaos(args.seeds.into(), &stop)?;
-    study.prepare(&stop)?;
+    study.look_for_chaos(args.seeds.into(), stop)?;
+    study.prepare(stop)?;
     if !args.json {
         say(&format!("{}: {}", loaded.path.display(), loaded.case.name));
         say(&table::forecast(&study));
@@ -219,7 +216,7 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
             }
         }
     };
-    study.go(&stop, &watch)?;
+    study.go(stop, &watch)?;
     tell(
         args,
         &study,
@@ -257,9 +254,10 @@ fn tell(
         let _ = std::fs::remove_file(&picture);
     }
     let ended = if interrupted {
-        Err(Failure::Failed(
-            "interrupted: what ran is kept, and the same command goes on from there".into(),
-        ))
+        Err(Failure::Failed(format!(
+            "interrupted: what ran is kept; to go on from there:\n  {}",
+            again::command(&[])
+        )))
     } else {
         Ok(())
     };

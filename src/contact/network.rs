@@ -6,7 +6,7 @@ use super::step_size::StepSizeDiagnostics;
 use crate::bodies::Bodies;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize, Serializer};
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 /// The name of a contact, stable in time: candidate (a ball, or a convex piece with [`Key::PIECE`] set),
 /// antagonist (the same, or a surface with [`Key::SURFACE`] set) and the face, edge or vertex that is
@@ -129,6 +129,8 @@ pub struct Network<S: Space> {
     /// Times over that a step wears and damages: the cycles that the cycle at hand stands for, see
     /// [`crate::wear::jump`]; 1 without jumps.
     pub stands_for: f64,
+    /// Volume worn off each surface so far, by its index (m^3; m^3/m in 2D).
+    pub worn: BTreeMap<usize, f64>,
     /// What shows whether the step was small enough.
     pub haste: StepSizeDiagnostics,
     /// How often the neighbour list was rebuilt.
@@ -175,6 +177,7 @@ impl<S: Space> Network<S> {
             spent: None,
             losses: None,
             stands_for: 1.0,
+            worn: BTreeMap::new(),
             haste: StepSizeDiagnostics::default(),
             rebuilds: 0,
             fast: alert,

@@ -185,8 +185,11 @@ impl Passes {
                 network.stands_for
             };
             let volume = times * self.columns.out.volume[k];
-            if network.contacts[*at].key.surface().is_some() {
+            if let Some(surface) = network.contacts[*at].key.surface() {
                 totals.worn_first += volume;
+                if volume > 0.0 {
+                    *network.worn.entry(surface).or_default() += volume;
+                }
                 if let (Some(losses), true) = (&mut network.losses, volume > 0.0) {
                     let contact = *at as u32;
                     losses.push(Loss { contact, volume });

@@ -3,6 +3,8 @@
 use super::fretting::Regime;
 use super::layer::Balance;
 use super::loops::Loop;
+use super::scatter::{self, Scatter};
+use super::steady::BLOCKS;
 use serde::{Deserialize, Serialize};
 
 /// What one step of the test measured.
@@ -81,6 +83,8 @@ pub struct Cycles {
     before: Option<State>,
     shape: Loop,
     place: f64,
+    /// Without a period: integrals of Q d delta and P |d delta| over parts of equal time.
+    blocks: Vec<(f64, f64)>,
 }
 
 /// What is cumulated over a run, at an end of a step.
@@ -92,6 +96,13 @@ pub struct State {
     pub broken: u64,
     /// Volume worn off first bodies (m^3; m^3/m in 2D).
     pub worn: f64,
+}
+
+impl Cycle {
+    /// Largest |Q| over the mean P; none where the body was not pressed.
+    pub fn peak_ratio(&self) -> Option<f64> {
+        (self.normal_force > 0.0).then(|| self.tangential_amplitude / self.normal_force)
+    }
 }
 
 impl Cycles {
@@ -117,7 +128,18 @@ impl Cycles {
             before: None,
             shape: Loop::default(),
             place: 0.0,
+            blocks: vec![(0.0, 0.0); if period.is_some() { 0 } else { BLOCKS }],
         }
+    }
+
+    /// How the friction coefficient scatters over the later cycles; without a period over the blocks that are done.
+    pub fn scatter(&self) -> Option<Scatter> {
+        if self.oscillates() {
+            return scatter::over_cycles(&self.list, |c| c.friction_coefficient);
+        }
+        let width = (self.end - self.start) / BLOCKS as f64;
+        let done = (self.time / width + 1e-6).floor() as usize;
+        scatter::over_blocks(&self.blocks[..done.min(self.blocks.len())])
     }
 
     /// Number of the cycle at a time, from 1; 0 before the start.
@@ -184,6 +206,15 @@ impl Cycles {
         };
         self.pressure_path += sample.p * sample.slide.abs();
         self.pressure_time += sample.p * h;
+        if self.period.is_none() {
+            // The step belongs to the block that its middle lies in.
+            let share = (self.time + 0.5 * h) / (self.end - self.start);
+            let block = (share * BLOCKS as f64) as usize;
+            if let Some(block) = self.blocks.get_mut(block) {
+                block.0 += sample.work;
+                block.1 += sample.p * sample.slide.abs();
+            }
+        }
         self.time += h;
         self.position += sample.slide;
         self.lowest = self.lowest.min(self.position);

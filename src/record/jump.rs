@@ -1,5 +1,6 @@
 //! What a run says of its jumps over cycles, and their figure.
 
+use super::warnings::{NOT_REACHED, Warning};
 use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -64,7 +65,7 @@ impl JumpSummary {
     /// Lines for a terminal.
     pub fn lines(&self) -> Vec<(&'static str, String)> {
         let longest = self.jumps.iter().map(|j| j.cycles).max().unwrap_or(0);
-        let mut lines = vec![(
+        vec![(
             "cycle jump",
             format!(
                 "{} cycles by {} computed ones, {} jumps of at most {longest}; {}",
@@ -76,20 +77,29 @@ impl JumpSummary {
                     None => "how far off is not known".to_owned(),
                 }
             ),
-        )];
+        )]
+    }
+
+    /// What the estimate of what jumps were off by does not hold for.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let mut list = Vec::new();
         if !self.not_jumped.is_empty() {
             let text = format!(
                 "{} stay as the computed cycles leave them; compare with a run of smaller jump.at_most",
                 self.not_jumped.join(", ")
             );
-            lines.push(("NOT JUMPED", text));
+            list.push(Warning::note("NOT JUMPED", text));
+        }
+        if self.error_estimate.is_none() && !self.jumps.is_empty() {
+            let text = "what jumps were off by has no growth to be set against; compare with a run of smaller jump.at_most";
+            list.push(Warning::serious("JUMPS NOT JUDGED", text));
         }
         if self.unchecked_cycles > 0 {
             let text = format!(
                 "the run ended in or just after a jump of {} cycles, which is not checked",
                 self.unchecked_cycles
             );
-            lines.push(("NOT CHECKED", text));
+            list.push(Warning::serious("NOT CHECKED", text));
         }
         let changed = self.jumps.iter().filter(|j| j.work_change > CHANGED);
         if let Some(worst) = changed
@@ -104,7 +114,7 @@ impl JumpSummary {
                 worst.after,
                 100.0 * worst.work_change
             );
-            lines.push(("CYCLES CHANGE", text));
+            list.push(Warning::serious("CYCLES CHANGE", text));
         }
         let far = |j: &&Jump| j.error > 2.0 * self.tolerance;
         if let Some(worst) = self
@@ -121,16 +131,16 @@ impl JumpSummary {
                 worst.after,
                 100.0 * worst.error
             );
-            lines.push(("JUMPS TOO LONG", text));
+            list.push(Warning::serious("JUMPS TOO LONG", text));
         }
         if let Some(asked) = self.asked_cycles.filter(|n| *n > self.represented_cycles) {
             let text = format!(
                 "the run ended at cycle {} of {asked}; let it run longer (time.end)",
                 self.represented_cycles
             );
-            lines.push(("NOT REACHED", text));
+            list.push(Warning::serious(NOT_REACHED, text));
         }
-        lines
+        list
     }
 }
 

@@ -50,23 +50,19 @@ impl ScarSummary {
         }
     }
 
-    /// A line for a terminal.
-    pub fn line(&self, volume: &str) -> (String, String) {
-        let form = match (self.form, self.from, self.to) {
+    /// Its form and extent in words; volume and depths stand with the wear of its body.
+    pub fn outline(&self) -> String {
+        match (self.form, self.from, self.to) {
             (Form::None, ..) | (_, None, _) | (_, _, None) => "no scar".to_owned(),
             (form, Some(from), Some(to)) => {
                 let [left, right] = self.sides;
                 format!(
-                    "{form:?} from x = {from:.4e} to {to:.4e} m, middle {:.3e} m, sides {left:.3e} and {right:.3e} m deep",
-                    self.middle
+                    "{form:?} from x = {from:.4e} to {to:.4e} m, deepest at x = {:.4e} m; middle {:.3e} m, sides {left:.3e} and \
+                     {right:.3e} m deep",
+                    self.deepest_at, self.middle
                 )
             }
-        };
-        let text = format!(
-            "{:.4e} {volume}, at most {:.4e} m deep at x = {:.4e} m; {form}",
-            self.volume, self.depth, self.deepest_at
-        );
-        (format!("scar of {}", self.body), text)
+        }
     }
 }
 

@@ -145,6 +145,25 @@ impl Table {
             None => Vec::new(),
         }
     }
+
+    /// Number of the last cycle that is as long as the one before it, and when it began (s), by the columns `cycle` and `time`;
+    /// none where there are no two cycles.
+    pub fn last_cycle(&self) -> Option<(u32, f64)> {
+        let (cycles, times) = (self.column("cycle"), self.column("time"));
+        // Before the first row of a cycle stands the last of the one before it.
+        let turns = (1..cycles.len()).filter(|k| cycles[*k] > cycles[k - 1]);
+        let begins: Vec<(u32, f64)> = turns.map(|k| (cycles[k] as u32, times[k - 1])).collect();
+        let [.., (_, before), last] = begins[..] else {
+            return None;
+        };
+        let (length, reached) = (last.1 - before, times.last()? - last.1);
+        // A row may come a step late.
+        if reached >= 0.9 * length {
+            Some(last)
+        } else {
+            begins.get(begins.len() - 2).copied()
+        }
+    }
 }
 
 #[cfg(test)]

@@ -64,6 +64,15 @@ fn at(points: &[(f64, f64)], time: f64) -> Option<f64> {
     Some(x0 + (x1 - x0) * (time - t0) / (t1 - t0))
 }
 
+/// Mean, interval and trend of means over blocks; none of fewer than two.
+pub(super) fn of_blocks(blocks: &[f64]) -> Option<Flow> {
+    if blocks.len() < 2 {
+        None
+    } else {
+        summary(blocks)
+    }
+}
+
 /// Mean, interval and trend of blocks.
 fn summary(blocks: &[f64]) -> Option<Flow> {
     let n = blocks.len();

@@ -1,22 +1,49 @@
-//! What went wrong in a run without ending it, and what to change.
+//! What went wrong in a run, and what to change: reasons not to trust it, and notes. docs/trustworthy.md has the table.
 
-use super::solving::SolverSummary;
+use super::Summary;
 use crate::geometry::space::Space;
-use crate::scene::case::Case;
 use crate::scene::methods::{Demands, Service};
-use crate::scene::sampling;
 use crate::solve::Report;
 use crate::solve::local::solver::Method;
 use crate::step::Simulation;
-use serde::Serialize;
+
+/// Residual of the energy ledger, in parts of the largest energy, that rounding does not explain: ledgers close to 1e-9 and
+/// better, over millions of steps too.
+pub const LEDGER: f64 = 1e-6;
+/// Overlap that a projection leaves, in parts of the smaller body's length, that is worth a note.
+const OVERLAP: f64 = 1e-2;
 
 /// A warning.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// `TOO FAST`, `MOTION LOST`, `COARSE DRIVE`, `NOT CONVERGED` or `NOT COUPLED`.
+    /// What it is of, such as `NOT CONVERGED`.
     pub of: &'static str,
     /// What was seen, and what to change.
     pub text: String,
+    /// Whether results are not to be trusted because of it; else it is a note.
+    pub serious: bool,
+}
+
+impl Warning {
+    /// A reason not to trust the run.
+    pub fn serious(of: &'static str, text: impl Into<String>) -> Self {
+        let text = text.into();
+        let serious = true;
+        Self { of, text, serious }
+    }
+
+    /// What is worth knowing.
+    pub fn note(of: &'static str, text: impl Into<String>) -> Self {
+        let text = text.into();
+        let serious = false;
+        Self { of, text, serious }
+    }
+}
+
+impl std::fmt::Display for Warning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.of, self.text)
+    }
 }
 
 /// Steps that ended above the tolerance.
@@ -68,45 +95,257 @@ impl Missed {
             ""
         };
         Some(format!(
-            "{} of {of} steps, the first is step {}, ended with an error of up to {:.1e} (tolerance {:.0e}); take a smaller \
-             time.step, raise solver.max_iterations (it is {}){other}{rounding}",
-            self.steps, self.first, self.error, options.tolerance, options.max_iterations
+            "{}, raise solver.max_iterations (it is {}){other}{rounding}",
+            self.seen(of, options.tolerance),
+            options.max_iterations
         ))
+    }
+
+    /// What was seen of `of` steps, and the first thing to change.
+    fn seen(&self, of: u64, tolerance: f64) -> String {
+        format!(
+            "{} of {of} steps, the first is step {}, ended with an error of up to {:.1e} (tolerance {tolerance:.0e}); take a \
+             smaller time.step",
+            self.steps, self.first, self.error
+        )
     }
 }
 
-/// All warnings of a run of a case.
-pub(super) fn of<S: Space>(
-    case: &Case,
-    simulation: &Simulation<S>,
-    solver: &SolverSummary,
-) -> Vec<Warning> {
-    let missed = Missed {
+/// Steps of a run that missed the tolerance.
+pub(super) fn missed(summary: &Summary) -> Missed {
+    let solver = &summary.solver;
+    Missed {
         steps: solver.unconverged_steps,
         first: solver.first_unconverged,
         error: solver.error_max,
+    }
+}
+
+/// All that is to be said of a run as far as its summary knows it, worst first; reasons before notes. `advice` is what the
+/// laws let one change where steps missed the tolerance ([`Missed::warning`]).
+pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
+    let mut list = Vec::new();
+    let mut serious = |of: &'static str, text: Option<String>| {
+        list.extend(text.map(|text| Warning::serious(of, text)));
     };
-    let uncoupled = (solver.uncoupled_steps > 0).then(|| {
+    let ended = if summary.interrupted {
+        "INTERRUPTED"
+    } else {
+        "STOPPED"
+    };
+    serious(ended, stopped(summary));
+    serious("NOT FINITE", infinite(summary));
+    serious("ENERGY DOES NOT ADD UP", ledger(summary));
+    serious("TOO FAST", summary.haste.warning());
+    serious("MOTION LOST", summary.haste.rounding_warning());
+    serious("ALIASED DRIVE", drives(summary, true));
+    let missed = missed(summary);
+    let generic = || missed.seen(summary.steps, summary.solver.tolerance);
+    let advice = advice.or_else(|| (missed.steps > 0).then(generic));
+    serious("NOT CONVERGED", advice);
+    serious("NOT COUPLED", uncoupled(summary));
+    serious("NOT CERTIFIED", uncertified(summary));
+    serious("GRAINS DO NOT ADD UP", grains(summary));
+    let reached = summary.stopped.is_none();
+    serious("NOT REACHED", phases(summary).filter(|_| reached));
+    let jumps = summary.jump.iter().flat_map(|j| j.warnings());
+    list.extend(jumps.filter(|w| reached || w.of != NOT_REACHED));
+    list.extend(notes(summary));
+    list.sort_by_key(|w| !w.serious);
+    list
+}
+
+/// Heading of what a run ended before.
+pub(super) const NOT_REACHED: &str = "NOT REACHED";
+
+fn stopped(summary: &Summary) -> Option<String> {
+    let why = summary.stopped.as_ref()?;
+    Some(if summary.interrupted {
         format!(
-            "{} steps left damage and opening apart; raise coupling.max_iterations or take a smaller time.step",
-            solver.uncoupled_steps
+            "{why}; the results are of the part that ran, the same command with --resume goes on"
         )
-    });
-    let haste = &simulation.network.haste;
-    let too_fast = [
-        ("TOO FAST", haste.warning()),
-        ("MOTION LOST", haste.rounding_warning()),
+    } else {
+        format!("{why}; the results are of the part that ran")
+    })
+}
+
+fn infinite(summary: &Summary) -> Option<String> {
+    let e = &summary.energy;
+    let energies = [
+        e.kinetic,
+        e.potential,
+        e.elastic,
+        e.external_work,
+        e.residual,
+        e.dissipated(),
     ];
-    let coarse = sampling::warnings(case);
-    let coarse = coarse.into_iter().map(|text| ("COARSE DRIVE", Some(text)));
-    let told = [
-        (
+    let friction = [
+        summary.friction_coefficient,
+        summary.friction_from_dissipation,
+    ];
+    let all = energies.into_iter().chain(friction.into_iter().flatten());
+    all.into_iter().any(|x| !x.is_finite()).then(|| {
+        "energies or friction are no finite numbers: forces, speeds or sizes of the case are beyond what f64 holds".to_owned()
+    })
+}
+
+fn ledger(summary: &Summary) -> Option<String> {
+    let share = summary.energy_residual_relative;
+    (share > LEDGER).then(|| {
+        format!(
+            "the ledger's residual is {share:.1e} of the largest energy (rounding leaves less than {LEDGER:.0e}): a law's energies \
+             may be wrong, see fretwork law certify"
+        )
+    })
+}
+
+fn uncoupled(summary: &Summary) -> Option<String> {
+    let steps = summary.solver.uncoupled_steps;
+    (steps > 0).then(|| {
+        format!(
+            "{steps} of {} steps left damage and opening apart; raise coupling.max_iterations or take a smaller time.step",
+            summary.steps
+        )
+    })
+}
+
+fn uncertified(summary: &Summary) -> Option<String> {
+    let wrong = summary.plugins.iter().filter(|p| !p.certified);
+    let names: Vec<String> = wrong
+        .map(|p| format!("{} law {}", p.kind, p.name))
+        .collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "the {} does not pass its certificate with the parameters of this run; fretwork law certify says why",
+            names.join(", the ")
+        )
+    })
+}
+
+/// Drives that the step aliases, or follows coarsely.
+fn drives(summary: &Summary, aliased: bool) -> Option<String> {
+    let drives = summary.unresolved_drives.iter();
+    let texts: Vec<&str> = drives
+        .filter(|d| d.aliased == aliased)
+        .map(|d| d.text.as_str())
+        .collect();
+    (!texts.is_empty()).then(|| texts.join("; "))
+}
+
+fn grains(summary: &Summary) -> Option<String> {
+    let r = &summary.circuit.as_ref()?.residual;
+    let off = [&r.tied, &r.contact, &r.ejected, &r.lost];
+    let off: i64 = off.iter().map(|a| a.grains.abs()).sum();
+    (off > 0).then(|| format!("the circuit's account misses {off} grains: this is a defect of the program, please report it"))
+}
+
+fn phases(summary: &Summary) -> Option<String> {
+    let missed = &summary.phases_missed;
+    (!missed.is_empty()).then(|| {
+        format!(
+            "the run ended before the phases {}; let it run longer (time.end)",
+            missed.join(", ")
+        )
+    })
+}
+
+/// What is worth knowing and leaves the results as they are.
+fn notes(summary: &Summary) -> Vec<Warning> {
+    let mut notes = Vec::new();
+    let mut note = |of, text: Option<String>| notes.extend(text.map(|t| Warning::note(of, t)));
+    let unfinished = !summary.cycles.is_empty() && summary.cycles.iter().all(|c| !c.complete);
+    note(
+        "NO COMPLETE CYCLE",
+        unfinished.then(|| {
+            "the run ended within the first cycle, or half, that counts: friction is of the part that ran; let it run longer \
+             (time.end)"
+                .to_owned()
+        }),
+    );
+    let mu = &summary.uncertainty.friction_coefficient;
+    let changes = mu
+        .method
+        .as_ref()
+        .filter(|m| mu.scatter.is_none() && m.starts_with("none"));
+    note(
+        "NOT STEADY",
+        changes.map(|m| format!("friction has no interval, {m}; let it run longer (time.end)")),
+    );
+    note("COARSE DRIVE", drives(summary, false));
+    let over = summary.solver.overlap_after;
+    note(
+        "OVERLAP",
+        (over > OVERLAP).then(|| {
+            format!(
+                "taking overlaps out left up to {over:.1e} of a body's length; take a smaller time.step"
+            )
+        }),
+    );
+    notes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of_run(change: impl FnOnce(&mut Summary)) -> Vec<Warning> {
+        let mut summary = Summary {
+            steps: 600,
+            ..Summary::default()
+        };
+        change(&mut summary);
+        of(&summary, None)
+    }
+
+    #[test]
+    fn a_sound_run_has_none() {
+        assert_eq!(of_run(|_| ()), []);
+        assert_eq!(of_run(|s| s.energy_residual_relative = 1e-9), []);
+    }
+
+    #[test]
+    fn each_failed_check_is_a_reason() {
+        let list = of_run(|s| {
+            s.solver.unconverged_steps = 12;
+            s.solver.uncoupled_steps = 1;
+            s.solver.overlap_after = 0.5;
+            s.haste.late = 3;
+            s.energy.kinetic = f64::NAN;
+            s.energy_residual_relative = 1e-3;
+            s.phases_missed = vec!["shear".to_owned()];
+            s.stopped = Some("no room".to_owned());
+            s.plugins = vec![crate::record::summary::PluginStamp {
+                kind: "contact".into(),
+                name: "mine".into(),
+                version: String::new(),
+                sha256: String::new(),
+                path: String::new(),
+                certified: false,
+            }];
+        });
+        let reasons: Vec<&str> = list.iter().filter(|w| w.serious).map(|w| w.of).collect();
+        let expected = [
+            "STOPPED",
+            "NOT FINITE",
+            "ENERGY DOES NOT ADD UP",
+            "TOO FAST",
             "NOT CONVERGED",
-            missed.warning(simulation, simulation.steps),
-        ),
-        ("NOT COUPLED", uncoupled),
-    ];
-    let told = too_fast.into_iter().chain(coarse).chain(told);
-    told.filter_map(|(of, text)| text.map(|text| Warning { of, text }))
-        .collect()
+            "NOT COUPLED",
+            "NOT CERTIFIED",
+        ];
+        assert_eq!(reasons, expected);
+        let notes: Vec<&str> = list.iter().filter(|w| !w.serious).map(|w| w.of).collect();
+        assert_eq!(notes, ["OVERLAP"]);
+        assert!(
+            list[4]
+                .to_string()
+                .starts_with("NOT CONVERGED: 12 of 600 steps")
+        );
+    }
+
+    #[test]
+    fn phases_that_were_not_reached_are_a_reason_of_a_run_to_its_end() {
+        let list = of_run(|s| s.phases_missed = vec!["shear".to_owned()]);
+        assert!(list.len() == 1 && list[0].serious && list[0].of == NOT_REACHED);
+    }
 }

@@ -9,6 +9,7 @@ use tiny_skia::{
 };
 
 use super::font::{self, TextStyle};
+use super::notice;
 
 /// Why a picture could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -270,6 +271,13 @@ impl Canvas {
     /// Writes the surface, which is opaque, to a PNG file. The encoder of
     /// plotters is some ten times as fast as that of tiny-skia.
     pub fn save(&self, path: &Path) -> Result<(), ReportError> {
+        match notice::current() {
+            Some(text) => notice::banded(self, &text)?.write(path),
+            None => self.write(path),
+        }
+    }
+
+    fn write(&self, path: &Path) -> Result<(), ReportError> {
         let size = (self.pixmap.width(), self.pixmap.height());
         let pixels = self.pixmap.data().as_chunks::<4>().0.iter();
         let rgb: Vec<u8> = pixels.flat_map(|p| [p[0], p[1], p[2]]).collect();

@@ -16,16 +16,28 @@ const ALIAS: f64 = 2.0;
 /// Steps that a ramp or a table should last.
 const SHORT: f64 = 5.0;
 
+/// A function of time that the step of a case does not resolve.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnresolvedDrive {
+    /// What it drives, what is wrong and what to change.
+    pub text: String,
+    /// Whether the steps see another frequency.
+    pub aliased: bool,
+}
+
 /// What the steps of a case cannot follow, each with what to change: bodies, then phases, then gravity.
-pub fn warnings(case: &Case) -> Vec<String> {
+pub fn unresolved(case: &Case) -> Vec<UnresolvedDrive> {
     let dimension = case.dimension as usize;
     let h = case.time.step;
-    let mut found: Vec<String> = Vec::new();
+    let mut found: Vec<UnresolvedDrive> = Vec::new();
     let mut say = |of: String, function: &TimeFunction, moves: bool| {
         if let Some(what) = fault(function, h, moves) {
-            let text = format!("{of}: {what}");
-            if !found.contains(&text) {
-                found.push(text);
+            let drive = UnresolvedDrive {
+                text: format!("{of}: {what}"),
+                aliased: aliased(function, h),
+            };
+            if !found.contains(&drive) {
+                found.push(drive);
             }
         }
     };
@@ -56,6 +68,18 @@ pub fn warnings(case: &Case) -> Vec<String> {
         }
     }
     found
+}
+
+/// Whether a function in steps of `h` shows as one of another frequency.
+fn aliased(function: &TimeFunction, h: f64) -> bool {
+    match function {
+        TimeFunction::Sine {
+            amplitude,
+            frequency,
+            ..
+        } => *amplitude != 0.0 && 1.0 / (frequency * h) <= ALIAS,
+        _ => false,
+    }
 }
 
 /// What is wrong with a function in steps of `h`; `moves` where it is a displacement.

@@ -220,7 +220,10 @@ impl Launcher {
             let nap = started.elapsed() / 50;
             std::thread::sleep(nap.clamp(Duration::from_millis(2), Duration::from_millis(100)));
         };
-        if stop.load(Ordering::Relaxed) && code.is_none_or(|c| c.code().is_none()) {
+        // Ctrl-C reaches the run too, maybe before this program: it then ends as one that did not finish.
+        let done = code.is_some_and(|c| c.success());
+        let signalled = || interrupted(&place);
+        if !done && (stop.load(Ordering::Relaxed) || signalled()) {
             return Ok(Ended::Interrupted);
         }
         let elapsed = started.elapsed().as_secs_f64();
@@ -320,6 +323,11 @@ impl Launcher {
             None => Some("its energy is not finite".into()),
         }
     }
+}
+
+/// Whether a run says that a signal ended it.
+fn interrupted(place: &Path) -> bool {
+    summary(place)["interrupted"] == Value::Bool(true)
 }
 
 /// What a run left in its folder; `exit` none where it did not end by itself.

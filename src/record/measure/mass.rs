@@ -41,6 +41,11 @@ impl<S: Space> Measure<S> for Mass {
             .collect()
     }
 
+    fn units(&self) -> Vec<(String, &'static str)> {
+        let unit = if S::D == 2 { "kg/(m s)" } else { "kg/s" };
+        vec![(format!("{}_rate", self.name), unit)]
+    }
+
     fn save(&self) -> Result<Vec<u8>, CodeError> {
         Ok(Vec::new())
     }

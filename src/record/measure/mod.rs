@@ -34,6 +34,10 @@ pub trait Measure<S: Space>: Debug {
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64>;
     /// What it says in the summary, by name.
     fn outcome(&self, table: &Table) -> Vec<(String, f64)>;
+    /// Units of what it says in the summary that is no mean of a column; what is not named is a pure number.
+    fn units(&self) -> Vec<(String, &'static str)> {
+        Vec::new()
+    }
     /// What it says in the summary in words, by name.
     fn verdict(&self, _: &Table) -> Vec<(String, String)> {
         Vec::new()
@@ -181,6 +185,16 @@ impl<S: Space> Measures<S> {
     /// What stands in the summary.
     pub fn outcome(&self, table: &Table) -> BTreeMap<String, f64> {
         self.list.iter().flat_map(|m| m.outcome(table)).collect()
+    }
+
+    /// Units of what stands in the summary, by name.
+    pub fn units(&self) -> BTreeMap<String, &'static str> {
+        let columns = self.columns().into_iter().map(|c| (c.name, c.unit));
+        let others = self.list.iter().flat_map(|m| m.units());
+        columns
+            .chain(others)
+            .filter(|(_, unit)| !unit.is_empty())
+            .collect()
     }
 
     /// What stands in the summary in words.

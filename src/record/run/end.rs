@@ -6,9 +6,10 @@ use crate::geometry::space::Space;
 use crate::record::biaxial::{self, Outcome};
 use crate::record::checkpoint::Kind;
 pub(super) use crate::record::checkpoint::LAST;
-use crate::record::friction::Cycles;
-use crate::record::summary::{Summary, Wear};
-use crate::record::{circuit, figures, fretting, jump, scars, warnings};
+use crate::record::friction::{Cycle, Cycles};
+use crate::record::summary::{Summary, Uncertainty, Wear};
+use crate::record::{circuit, figures, first_bodies, fretting, jump, scars};
+use crate::report::noted;
 use crate::scene::build::Dimensional;
 use std::path::Path;
 
@@ -41,9 +42,12 @@ pub(super) fn sum_up(summary: &mut Summary, cycles: Option<&Cycles>) {
     if let Some(cycles) = cycles {
         summary.friction_coefficient = cycles.last().map(|c| c.friction_coefficient);
         summary.friction_from_dissipation = cycles.last().map(|c| c.friction_from_dissipation);
+        summary.peak_friction = cycles.last().and_then(Cycle::peak_ratio);
         summary.cycles.clone_from(&cycles.list);
         summary.fretting = fretting::Outcome::new(&cycles.list).filter(|_| cycles.oscillates());
     }
+    let scatter = cycles.and_then(Cycles::scatter);
+    summary.uncertainty = Uncertainty::new(summary, scatter.as_ref());
 }
 
 impl<S: Dimensional> Recorder<'_, S> {
@@ -57,7 +61,6 @@ impl<S: Dimensional> Recorder<'_, S> {
         summary.wall_seconds = wall.as_secs_f64();
         summary.cpu_seconds = (self.spent.1 + self.processor.elapsed()).as_secs_f64();
         summary.mean_damage = n.mean_damage();
-        sum_up(summary, self.cycles.as_ref().map(|(c, _)| c));
         let start = self.loaded.case.biaxial.as_ref().map_or(0.0, |t| t.start);
         if let Some(test) = &self.biaxial {
             summary.biaxial = Some(Outcome::new(&self.table, start, test.grain_mass(s)));
@@ -68,6 +71,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         summary.phases_missed.dedup();
         summary.scars = scars::outcome(s);
         summary.measures = self.measures.outcome(&self.table);
+        summary.measure_units = self.measures.units();
         summary.findings = self.measures.verdict(&self.table);
         summary.jump = self.jumps.as_ref().map(|j| j.outcome(s, self.worn));
         // Wear goes on over the cycles that were jumped over.
@@ -80,6 +84,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         // Nothing leaves a contact that is periodic along the sliding.
         let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
         let closed = s.shapes.periodic.period[along].map(|_| 0.0);
+        let load_path = self.cycles.as_ref().map(|_| self.load_path);
         summary.wear = Wear {
             Qs: self.worn.0 * self.density / time,
             Qi: self.internal_flow / s.time.max(f64::MIN_POSITIVE),
@@ -87,7 +92,10 @@ impl<S: Dimensional> Recorder<'_, S> {
             Qw: closed,
             volume_first_bodies: self.worn.0,
             volume_third_body: self.worn.1,
+            load_path,
+            bodies: first_bodies::wear(s, load_path),
         };
+        sum_up(summary, self.cycles.as_ref().map(|(c, _)| c));
         summary.circuit = self.account.summary(s, wall);
         if let Some(circuit) = &summary.circuit {
             let span = (s.time - circuit.start).max(f64::MIN_POSITIVE);
@@ -96,10 +104,11 @@ impl<S: Dimensional> Recorder<'_, S> {
             summary.wear.Qw = Some(circuit.flows.wear.mass / span);
         }
         summary.solver.why = summary.solver.choice.why(s.solver.method, s.steps);
-        summary.warnings = warnings::of(&self.loaded.case, s, &summary.solver);
-        let files = self.files().and(recalled);
+        let notice = self.warn();
+        let files = noted(notice, || self.files()).and(recalled);
         if let (Err(e), None) = (&files, &self.summary.stopped) {
             self.summary.stopped = Some(e.to_string());
+            self.warn();
         }
         let text = serde_json::to_string_pretty(&self.summary).unwrap_or_default();
         whole(&self.out.join(LAST), &(text + "\n"))?;

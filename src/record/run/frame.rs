@@ -2,6 +2,7 @@
 
 use super::{Recorder, RunError};
 use crate::record::picture::Subject;
+use crate::report::noted;
 use crate::scene::build::Dimensional;
 
 /// Names of pictures: `frames/NAME_STEP.png`.
@@ -52,14 +53,18 @@ impl<S: Dimensional> Recorder<'_, S> {
         if let Some(pairs) = &chains {
             subjects.push((forces, Subject::Chains(pairs)));
         }
+        let notice = self.notice();
         for (name, subject) in subjects {
             let path = self
                 .out
                 .join("frames")
                 .join(format!("{name}_{step:08}.png"));
             let title = &self.loaded.case.name;
-            self.camera
-                .draw(&self.simulation, subject, title, caption.clone(), &path)?;
+            let caption = caption.clone();
+            noted(notice.clone(), || {
+                self.camera
+                    .draw(&self.simulation, subject, title, caption, &path)
+            })?;
         }
         Ok(())
     }

@@ -40,6 +40,7 @@ struct Carried<'a, S: Space> {
     layer: Cow<'a, Layer<S>>,
     slide: f64,
     worn: (f64, f64),
+    load_path: f64,
     internal_flow: f64,
     iterations: u64,
     couplings: u64,
@@ -104,6 +105,7 @@ impl<S: Dimensional> Recorder<'_, S> {
             layer: Cow::Borrowed(&self.layer),
             slide: self.slide,
             worn: self.worn,
+            load_path: self.load_path,
             internal_flow: self.internal_flow,
             iterations: self.iterations,
             couplings: self.couplings,
@@ -147,6 +149,8 @@ impl<S: Dimensional> Recorder<'_, S> {
         self.layer = kept.layer.into_owned();
         self.slide = kept.slide;
         self.worn = kept.worn;
+        self.load_path = kept.load_path;
+        self.resumed_at = self.simulation.steps;
         self.internal_flow = kept.internal_flow;
         self.iterations = kept.iterations;
         self.couplings = kept.couplings;

@@ -8,6 +8,7 @@ mod error;
 mod frame;
 mod jumps;
 mod keep;
+mod notice;
 mod rescue;
 mod row;
 mod stamps;
@@ -32,7 +33,9 @@ use super::summary::{SolverSummary, Summary};
 use super::views;
 use crate::bodies::TimeFunction;
 use crate::geometry::space::Space;
+use crate::interrupt;
 use crate::scene::build::{Built, Dimensional, Loaded};
+use crate::scene::sampling;
 use crate::step::{Simulation, StepReport};
 use cpu_time::ProcessTime;
 use std::path::PathBuf;
@@ -43,6 +46,8 @@ use std::time::{Duration, Instant};
 pub struct Progress {
     /// Steps done and in all.
     pub steps: (u64, u64),
+    /// Steps that were done before a resumed run went on; 0 for one from the start.
+    pub resumed_at: u64,
     /// Cycle and cycles in all; 0 before the first.
     pub cycle: (u32, u32),
     /// Contacts.
@@ -51,8 +56,8 @@ pub struct Progress {
     pub iterations: u32,
     /// Error of the last step.
     pub error: f64,
-    /// Whether it converged.
-    pub converged: bool,
+    /// Steps of the run that missed the tolerance.
+    pub unconverged: u64,
     /// Damage ratio.
     pub damage_ratio: f64,
 }
@@ -110,7 +115,10 @@ fn through<S: Dimensional>(
     mut recorder: Recorder<'_, S>,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
-    let outcome = recorder.go(progress);
+    let outcome = recorder.go(progress).map(|interrupted| {
+        recorder.summary.interrupted = interrupted.is_some();
+        recorder.summary.stopped = interrupted;
+    });
     if let Err(e) = &outcome {
         recorder.summary.stopped = Some(e.to_string());
     }
@@ -138,9 +146,13 @@ struct Recorder<'a, S: Space> {
     sample: Option<Sample>,
     slide: f64,
     worn: (f64, f64),
+    /// Normal force times sliding distance of the friction test, over the run and what it jumped over (N m; N).
+    load_path: f64,
     internal_flow: f64,
     iterations: u64,
     couplings: u64,
+    /// Steps that were done when the run was resumed.
+    resumed_at: u64,
     /// Steps of the run, and over how many of them states and pictures are spread: those it was begun with.
     total: u64,
     spread: u64,
@@ -208,6 +220,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             threads: options.threads,
             seed: case.seed,
             identity: keeper.name(),
+            unresolved_drives: sampling::unresolved(case),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             solver: SolverSummary {
                 tolerance: case.solver.tolerance,
@@ -251,9 +264,11 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             sample: None,
             slide: 0.0,
             worn: (0.0, 0.0),
+            load_path: 0.0,
             internal_flow: 0.0,
             iterations: 0,
             couplings: 0,
+            resumed_at: 0,
             total,
             spread: total,
             keeper,
@@ -281,7 +296,8 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         }
     }
 
-    fn go(&mut self, progress: &mut dyn FnMut(&Progress)) -> Result<(), RunError> {
+    /// Steps to the end, or until a signal asks for one: why, then.
+    fn go(&mut self, progress: &mut dyn FnMut(&Progress)) -> Result<Option<String>, RunError> {
         let output = &self.loaded.case.output;
         if self.simulation.steps == 0 {
             self.views()?;
@@ -333,11 +349,18 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             if last {
                 break;
             }
+            if let Some(signal) = interrupt::asked() {
+                self.keep()?;
+                let total = self.total;
+                return Ok(Some(format!(
+                    "interrupted by {signal} after step {step} of {total}"
+                )));
+            }
             if self.keeper.due(step) {
                 self.keep()?;
             }
         }
-        Ok(())
+        Ok(None)
     }
 
     /// What was cumulated so far.
@@ -410,6 +433,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let h = s.scheme.h;
         if let (Some(sample), Some((cycles, _))) = (self.sample, &mut self.cycles) {
             self.slide += sample.slide;
+            self.load_path += s.network.stands_for * sample.p * sample.slide.abs();
             cycles.add(&sample, h, before, after, damage);
         }
         let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
@@ -452,6 +476,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
     fn progress(&self, step: u64, report: &StepReport) -> Progress {
         Progress {
             steps: (step, self.total),
+            resumed_at: self.resumed_at,
             cycle: self
                 .cycles
                 .as_ref()
@@ -459,7 +484,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             contacts: self.simulation.network.contact_count(),
             iterations: report.solver.iterations,
             error: report.solver.error,
-            converged: report.solver.converged,
+            unconverged: self.summary.solver.unconverged_steps,
             damage_ratio: self.damage_ratio(),
         }
     }

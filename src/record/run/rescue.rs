@@ -6,12 +6,14 @@
 
 use super::Recorder;
 use super::end::{self, LAST};
+use super::notice;
 use crate::geometry::space::Space;
 use crate::laws::watch::{self, Ready};
 use crate::record::friction::Cycles;
 use crate::record::results::Results;
 use crate::record::statistics::Table;
 use crate::record::summary::Summary;
+use crate::record::warnings;
 use crate::step::{StepError, StepReport};
 use cpu_time::ProcessTime;
 use std::path::PathBuf;
@@ -68,6 +70,8 @@ impl Left {
         let summary = &mut self.summary;
         summary.stopped = Some(who.to_owned());
         end::sum_up(summary, self.cycles.as_ref().map(|(c, _)| c));
+        let list = warnings::of(summary, None);
+        notice::judge(summary, &list);
         let text = serde_json::to_string_pretty(summary).unwrap_or_default();
         let table = self.table.flush().is_ok();
         let results = self.results.finish(out).is_ok();

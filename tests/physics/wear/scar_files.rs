@@ -128,6 +128,46 @@ fn a_worn_profile_is_read_again_as_it_was_written() {
     }
 }
 
+/// Archard's law with k = 1e-8: a block drawn over a flat profile wears it by k P s, and the summary's V/(P s) is k again, for the body
+/// that wears. Mean depth times what was worn is the volume.
+#[test]
+fn the_specific_wear_rate_is_that_of_the_law() {
+    let out = Folder::new("rate");
+    let flat =
+        "bodies.rail.shapes.0=Profile(side: Below, points: [(-0.3, 0.0), (0.1, 0.0), (0.8, 0.0)])";
+    let test = "friction=(body: \"block\", along: 0, normal: 1)";
+    let done = run(&out, &[flat, test, "time.end=0.6", "output.frames=0"]);
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(done.status.code(), Some(0), "{said}");
+    let summary: serde_json::Value = serde_json::from_str(&out.read("summary.json")).unwrap();
+    let wear = &summary["wear"];
+    let of = |v: &serde_json::Value| v.as_f64().unwrap();
+    let bodies = wear["bodies"].as_array().unwrap();
+    assert_eq!(
+        (bodies.len(), bodies[0]["body"].as_str()),
+        (1, Some("rail"))
+    );
+    let rate = of(&bodies[0]["specific_rate"]);
+    assert!((rate / 1e-8 - 1.0).abs() < 1e-3, "{rate}");
+    // 2000 N/m over 0.7 m/s for 0.6 s.
+    assert!(
+        (of(&wear["load_path"]) / 840.0 - 1.0).abs() < 1e-3,
+        "{wear}"
+    );
+    assert!((of(&bodies[0]["volume"]) / of(&summary["scars"][0]["volume"]) - 1.0).abs() < 1e-12);
+    let rows = rows(&out.read("scar_rail.csv"));
+    let deepest = rows.iter().map(|r| r[3]).fold(0.0, f64::max);
+    assert!((of(&bodies[0]["depth_max"]) / deepest - 1.0).abs() < 1e-12);
+    // All three vertices are worn: their mean, each for its part of the length, is over 1.1 m.
+    assert!(rows.iter().all(|r| r[3] > 0.0));
+    assert!((of(&bodies[0]["depth_mean"]) * 1.1 / of(&bodies[0]["volume"]) - 1.0).abs() < 1e-12);
+    let printed = String::from_utf8_lossy(&done.stdout);
+    assert!(
+        printed.contains("wear of rail") && printed.contains(" mm3/(N m)"),
+        "{printed}"
+    );
+}
+
 #[test]
 fn a_profile_worn_through_stops_the_run_with_all_on_disk() {
     let out = Folder::new("through");

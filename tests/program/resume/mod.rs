@@ -2,8 +2,11 @@
 
 mod cases;
 mod common;
+mod ending;
 mod faults;
 mod folder;
 mod kills;
 mod laws;
+#[cfg(unix)]
+mod signals;
 mod state;

@@ -194,6 +194,13 @@ impl History {
         whole(&self.blocks)
     }
 
+    /// What lies for the most part after a time, in one; at least the last block.
+    pub fn since(&self, time: f64) -> Block {
+        let middle = |b: &Block| 0.5 * (b.time[0] + b.time[1]);
+        let first = self.blocks.partition_point(|b| middle(b) < time);
+        whole(&self.blocks[first.min(self.blocks.len().saturating_sub(1))..])
+    }
+
     /// In so many slices of about equal length.
     pub fn slices(&self, count: usize) -> Vec<Block> {
         let n = self.blocks.len();

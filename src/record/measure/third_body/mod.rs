@@ -157,11 +157,18 @@ impl<S: Space> ThirdBody<S> {
         s.time + s.scheme.h > self.spec.start
     }
 
-    /// The flow over all of the time, and the mean size of the clusters by mass.
-    fn flow(&self) -> (Option<Flow>, f64) {
-        let whole = self.history.whole();
-        let cluster = whole.cluster / whole.samples.max(1) as f64;
-        (flow(&whole.profile()), cluster)
+    /// The flow at the end, over the last complete cycle of the friction test or the second half of the time, the mean size of
+    /// the clusters by mass there, and which of the two it is.
+    fn flow(&self, table: &Table) -> (Option<Flow>, f64, String) {
+        let all = self.history.whole().time;
+        let cycle = table.last_cycle().filter(|(_, start)| *start >= all[0]);
+        let (over, start) = match cycle {
+            Some((number, start)) => (format!("from cycle {number} on"), start),
+            None => ("over the second half".to_owned(), 0.5 * (all[0] + all[1])),
+        };
+        let late = self.history.since(start);
+        let cluster = late.cluster / late.samples.max(1) as f64;
+        (flow(&late.profile()), cluster, over)
     }
 
     fn row(&mut self, now: &Instant) -> Vec<f64> {
@@ -285,7 +292,7 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
             let value = mean(&since(table, &column, self.spec.start));
             out.extend(value.map(|v| (column, v)));
         }
-        let (flow, cluster) = self.flow();
+        let (flow, cluster, _) = self.flow(table);
         let regime = Regime::of(flow.as_ref(), cluster);
         out.push((self.column("regime"), regime as i32 as f64));
         if let Some(flow) = flow {
@@ -325,10 +332,17 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
         out
     }
 
-    fn verdict(&self, _: &Table) -> Vec<(String, String)> {
-        let (flow, cluster) = self.flow();
+    fn units(&self) -> Vec<(String, &'static str)> {
+        let unit = if S::D == 2 { "J/m" } else { "J" };
+        let parts = MECHANISMS.iter().map(|m| format!("dissipated_{m}"));
+        let names = parts.chain(["dissipated".to_owned()]);
+        names.map(|name| (self.column(&name), unit)).collect()
+    }
+
+    fn verdict(&self, table: &Table) -> Vec<(String, String)> {
+        let (flow, cluster, over) = self.flow(table);
         let said = Regime::of(flow.as_ref(), cluster).said(flow.as_ref(), cluster);
-        vec![(self.column("regime"), said)]
+        vec![(self.column("regime"), format!("{said}; {over}"))]
     }
 
     fn chains(&self, s: &Simulation<S>) -> Option<Vec<[u32; 2]>> {

@@ -1,0 +1,38 @@
+//! The command of this process, to be given again.
+
+/// The words of this call, quoted for a shell, with those that are not among them at the end.
+pub(super) fn command(with: &[&str]) -> String {
+    let mut words: Vec<String> = std::env::args_os()
+        .map(|w| w.to_string_lossy().into_owned())
+        .collect();
+    for word in with {
+        if !words.iter().any(|w| w == word) {
+            words.push((*word).to_owned());
+        }
+    }
+    let quoted: Vec<String> = words.iter().map(|w| quote(w)).collect();
+    quoted.join(" ")
+}
+
+/// A word as a POSIX shell reads it back.
+fn quote(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_quoted_where_a_shell_would_read_them_otherwise() {
+        assert_eq!(quote("time.step=1e-4"), "time.step=1e-4");
+        assert_eq!(quote("a case.ron"), "'a case.ron'");
+        assert_eq!(quote("x=[\"it's\"]"), "'x=[\"it'\\''s\"]'");
+        assert_eq!(quote(""), "''");
+        assert!(command(&["--resume"]).ends_with(" --resume"));
+    }
+}

@@ -1,0 +1,139 @@
+//! How far a quantity scatters within one run: Student's interval of 95 % of its mean over the later half of the cycles, or
+//! over blocks of equal time where there are none.
+//!
+//! Cycles are batches (A. M. Law, Simulation Modeling and Analysis, section 9.5.3). Where they show a trend by the test of
+//! Mann and Kendall they are not steady, and there is no interval.
+
+use super::friction::Cycle;
+use super::steady::{self, Flow};
+
+/// Fewest cycles that an interval is made of.
+const FEWEST: usize = 3;
+/// Cycles from which on their correlation is looked at.
+const CORRELATED: usize = 8;
+
+/// A mean over cycles or blocks, with its interval.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scatter {
+    /// Mean, half-width of its interval, trend.
+    pub flow: Flow,
+    /// How many values it is of.
+    pub count: usize,
+    /// What they are: `cycles 6 to 10`.
+    pub over: String,
+}
+
+impl Scatter {
+    fn new(values: &[f64], over: String) -> Option<Self> {
+        let finite = values.iter().all(|v| v.is_finite());
+        let flow = steady::of_blocks(values).filter(|_| finite && values.len() >= FEWEST)?;
+        Some(Self {
+            flow,
+            count: values.len(),
+            over,
+        })
+    }
+
+    /// Half-width of the interval; none where the values show a trend.
+    pub fn half_width(&self) -> Option<f64> {
+        self.flow.steady.then_some(self.flow.half_width)
+    }
+
+    /// How the interval was made, or why there is none.
+    pub fn method(&self) -> String {
+        let n = self.count as f64;
+        if !self.flow.steady {
+            return format!(
+                "none: {} still show a trend (Mann-Kendall, p = {:.2})",
+                self.over, self.flow.trend_probability
+            );
+        }
+        let related = self.count >= CORRELATED && self.flow.correlation > 2.0 / n.sqrt();
+        let related = if related {
+            format!(
+                "; neighbours correlate by {:.2}, so that it is too narrow",
+                self.flow.correlation
+            )
+        } else {
+            String::new()
+        };
+        format!("95 %, Student, {}{related}", self.over)
+    }
+}
+
+/// Of a value over the later half of the complete cycles, but at least three; none where there are fewer.
+pub fn over_cycles(cycles: &[Cycle], value: impl Fn(&Cycle) -> f64) -> Option<Scatter> {
+    let complete: Vec<&Cycle> = cycles.iter().filter(|c| c.complete).collect();
+    let count = complete.len().div_ceil(2).max(FEWEST).min(complete.len());
+    let late = &complete[complete.len() - count..];
+    let (first, last) = (late.first()?.cycle, late.last()?.cycle);
+    let values: Vec<f64> = late.iter().map(|c| value(c)).collect();
+    Scatter::new(&values, format!("cycles {first} to {last}"))
+}
+
+/// Of the ratio of two sums, block by block; none where a block has no divisor.
+pub fn over_blocks(blocks: &[(f64, f64)]) -> Option<Scatter> {
+    let ratio = |b: &(f64, f64)| (b.1 > 0.0).then(|| b.0 / b.1);
+    let values: Option<Vec<f64>> = blocks.iter().map(ratio).collect();
+    Scatter::new(&values?, format!("{} blocks of equal time", blocks.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cycles(values: &[f64]) -> Vec<Cycle> {
+        let cycle = |(k, v): (usize, &f64)| Cycle {
+            cycle: k as u32 + 1,
+            complete: true,
+            friction_coefficient: *v,
+            ..Cycle::default()
+        };
+        values.iter().enumerate().map(cycle).collect()
+    }
+
+    #[test]
+    fn the_interval_is_student_s_over_the_later_half() {
+        // Of 0.39, 0.41, 0.40: mean 0.40, standard deviation 0.01, t(2, 0.975) = 4.302653: 0.0248414.
+        let list = cycles(&[0.9, 0.8, 0.7, 0.39, 0.41, 0.40]);
+        let scatter = over_cycles(&list, |c| c.friction_coefficient).unwrap();
+        assert_eq!(scatter.over, "cycles 4 to 6");
+        assert!((scatter.flow.mean - 0.40).abs() < 1e-12);
+        let half = scatter.half_width().unwrap();
+        assert!(
+            (half - 4.302_653 * 0.01 / 3f64.sqrt()).abs() < 1e-8,
+            "{half}"
+        );
+    }
+
+    #[test]
+    fn three_cycles_are_taken_where_the_half_is_fewer_and_two_are_too_few() {
+        let mu = |c: &Cycle| c.friction_coefficient;
+        let scatter = over_cycles(&cycles(&[0.5, 0.4, 0.4, 0.41]), mu).unwrap();
+        assert_eq!(scatter.over, "cycles 2 to 4");
+        assert!(over_cycles(&cycles(&[0.4, 0.41]), mu).is_none());
+        let mut unfinished = cycles(&[0.4, 0.41, 0.42]);
+        unfinished[2].complete = false;
+        assert!(over_cycles(&unfinished, mu).is_none());
+        assert!(over_cycles(&[], mu).is_none());
+    }
+
+    #[test]
+    fn what_still_changes_has_no_interval() {
+        let rising: Vec<f64> = (0..20).map(|k| 0.1 + 0.01 * f64::from(k)).collect();
+        let scatter = over_cycles(&cycles(&rising), |c| c.friction_coefficient).unwrap();
+        assert_eq!(scatter.half_width(), None);
+        assert!(
+            scatter
+                .method()
+                .contains("cycles 11 to 20 still show a trend")
+        );
+    }
+
+    #[test]
+    fn blocks_without_a_load_have_no_interval() {
+        assert!(over_blocks(&[(1.0, 2.0), (1.0, 0.0), (1.0, 2.0)]).is_none());
+        let scatter = over_blocks(&[(1.0, 2.0), (1.2, 2.0), (1.1, 2.0)]).unwrap();
+        assert!((scatter.flow.mean - 0.55).abs() < 1e-12);
+    }
+}
