@@ -12,7 +12,9 @@
 //! /VTKHDF      the grains' view, for ParaView             contacts.vtkhdf, bodies.vtkhdf: links to the others
 //! ```
 
+mod declare;
 mod events;
+mod growth;
 mod kept;
 mod reader;
 pub mod shapes;
@@ -26,6 +28,7 @@ pub use view::{Cells, Part};
 
 use super::statistics::Column;
 use super::summary::PluginStamp;
+use declare::MANY;
 use events::Events;
 use shapes::Shaped;
 use std::path::Path;
@@ -65,10 +68,10 @@ pub struct Header {
 /// Most rows of statistics, or events, that are held back, however short the time since the last were written.
 const MOST: usize = 8192;
 
-/// Rows are made safe no more often than this, so that a reader follows closely, and not all the time is spent on it.
-const PACE: Duration = Duration::from_secs(1);
+/// The file is flushed no more often than this.
+const PACE: Duration = Duration::from_secs(2);
 
-/// And no more often than takes this part of the time: a flush goes through all datasets, and disks differ.
+/// And no more often than takes one part in so many of the time: files and disks differ.
 const PART: u32 = 20;
 
 /// The checkpoints, written in turn.
@@ -86,7 +89,7 @@ pub struct Results {
     held_grains: Vec<f64>,
     views: Vec<View>,
     checkpoints: Vec<Slot>,
-    /// When rows were made safe, and how long that took.
+    /// When the file was flushed, and how long that took.
     flushed: Option<(Instant, Duration)>,
 }
 
@@ -137,8 +140,8 @@ impl Results {
             statistics.push(store.growing::<f64>(
                 &format!("/statistics/{}", c.name),
                 1,
-                c.unit,
-                c.doc,
+                (c.unit, c.doc),
+                MANY,
             )?);
         }
         if !header.broken.is_empty() || !header.debris.is_empty() {
@@ -149,7 +152,7 @@ impl Results {
         let doc = "identities of the grains of all pieces, one piece after another";
         let debris_grains = match header.debris.is_empty() {
             true => None,
-            false => Some(store.growing::<f64>("/events/debris/grains", 1, "", doc)?),
+            false => Some(store.growing::<f64>("/events/debris/grains", 1, ("", doc), MANY)?),
         };
         store.group("/views")?;
         let bodies = if header.dimension == 2 {
@@ -198,8 +201,7 @@ impl Results {
         let Some(store) = &mut self.store else {
             return Ok(());
         };
-        store.flush()?;
-        store.rename(path)
+        store.publish(path)
     }
 
     /// Rows of each growing dataset and the CRC-32 of their bytes, with those that are held back: these are written first.
@@ -219,12 +221,21 @@ impl Results {
     /// # Errors
     /// The file cannot be written.
     pub fn checkpoint(&mut self, number: u64, bytes: &[u8]) -> Result<(), ResultsError> {
-        let slot = &mut self.checkpoints[(number % 2) as usize];
         let Some(store) = &mut self.store else {
             return Ok(());
         };
+        let clock = Instant::now();
         // The rows that it counts must be there before it is: without its first word it is none.
-        store.write(slot, bytes, 8)
+        store.write(self.checkpoints[(number % 2) as usize], bytes, 8)?;
+        self.flushed = Some((Instant::now(), clock.elapsed()));
+        Ok(())
+    }
+
+    /// Keeps a checkpoint for the end of the file, see [`Results::finish`].
+    pub fn keep(&mut self, number: u64, bytes: &[u8]) {
+        if let Some(store) = &mut self.store {
+            store.keep(self.checkpoints[(number % 2) as usize], bytes);
+        }
     }
 
     /// Appends a row of statistics.
@@ -257,16 +268,21 @@ impl Results {
         Ok(())
     }
 
-    /// Writes what is held back if it is much, or if enough time has passed.
+    /// Flushes the file if enough time has passed; many rows are not held back until then.
     fn write_in_time(&mut self, rows: usize) -> Result<(), ResultsError> {
+        if rows >= MOST {
+            self.write_held()?;
+        }
         let rested = |(last, cost): (Instant, Duration)| last.elapsed() >= PACE.max(cost * PART);
-        if rows >= MOST || self.flushed.is_none_or(rested) {
-            self.write_statistics()?;
+        let full = self.store.as_ref().is_some_and(Store::full);
+        if full || self.flushed.is_none_or(rested) {
+            self.flush()?;
         }
         Ok(())
     }
 
-    fn write_statistics(&mut self) -> Result<(), ResultsError> {
+    /// Makes all that was appended visible and safe.
+    fn flush(&mut self) -> Result<(), ResultsError> {
         self.write_held()?;
         let clock = Instant::now();
         let flushed = self.store.as_mut().map_or(Ok(()), Store::flush);
@@ -302,7 +318,7 @@ impl Results {
         for (view, part) in self.views.iter_mut().zip(parts) {
             view.append(store, time, part)?;
         }
-        self.write_statistics()
+        self.write_in_time(0)
     }
 
     /// Ends the file and writes its companions beside it.
@@ -310,13 +326,10 @@ impl Results {
     /// # Errors
     /// A file cannot be written.
     pub fn finish(&mut self, folder: &Path) -> Result<(), ResultsError> {
-        self.write_statistics()?;
-        let Some(mut store) = self.store.take() else {
+        self.write_held()?;
+        let Some(store) = self.store.take() else {
             return Ok(());
         };
-        for view in &self.views {
-            view.finish(&mut store)?;
-        }
         store.close()?;
         for name in ["contacts", "bodies"] {
             let path = folder.join(format!("{name}.vtkhdf"));

@@ -127,14 +127,11 @@ impl<S: Dimensional> Recorder<'_, S> {
 
     /// Ends the file of results, and says in it that it is whole where the run came to its end.
     fn end_results(&mut self) -> Result<(), RunError> {
-        let mut ended = Ok(());
         if self.summary.stopped.is_none() {
-            // The rows stand before what says that they are all there.
-            let rows = self.results.rows().map_err(RunError::from);
-            ended = rows.and_then(|_| self.mark(Kind::Ended, Vec::new()));
+            let (number, bytes) = self.keeper.frame(Kind::Ended, Vec::new());
+            self.results.keep(number, &bytes);
         }
-        let closed = self.results.finish(&self.out).map_err(RunError::from);
-        ended.and(closed)
+        Ok(self.results.finish(&self.out)?)
     }
 
     /// Draws the figures.
