@@ -1,5 +1,6 @@
 //! Progress: a bar on a terminal, plain lines elsewhere.
 
+use super::output::report;
 use crate::record::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
@@ -55,12 +56,12 @@ impl Display {
             self.next_line = elapsed.mul_f64(1.25).max(elapsed + Duration::from_secs(2));
             let left =
                 elapsed.as_secs_f64() * (p.steps.1 - p.steps.0) as f64 / p.steps.0.max(1) as f64;
-            eprintln!(
+            report(&format!(
                 "step {}/{} {} left {left:.0} s",
                 p.steps.0,
                 p.steps.1,
                 self.message(p)
-            );
+            ));
         }
     }
 

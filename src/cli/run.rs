@@ -1,7 +1,8 @@
 //! `fretwork run`.
 
+use super::output::{answer, inform};
 use super::progress::Display;
-use super::{CaseArgs, Failure, say};
+use super::{CaseArgs, Failure};
 use crate::record::checkpoint::Found;
 use crate::record::{self, RunOptions, Summary};
 use crate::scene::build::Dimensional;
@@ -37,9 +38,14 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build()
-        .map_err(|e| Failure::Usage(format!("cannot start {} threads: {e}", options.threads)))?;
+        .map_err(|e| {
+            Failure::Failed(format!(
+                "cannot start {} threads: {e}; take fewer (--threads) or allow more (ulimit -u)",
+                options.threads
+            ))
+        })?;
     if !args.json {
-        say(&format!("{}: {}", loaded.path.display(), loaded.case.name));
+        inform(&format!("{}: {}", loaded.path.display(), loaded.case.name));
     }
     let done = pool.install(|| match scene {
         Scene::Plane(built) => go(&loaded, *built, &options, args),
@@ -49,9 +55,9 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         return Ok(());
     };
     if args.json {
-        say(&serde_json::to_string_pretty(&summary).unwrap_or_default());
+        answer(&serde_json::to_string_pretty(&summary).unwrap_or_default())?;
     } else {
-        say(&format!(
+        inform(&format!(
             "{}\n{}  results in {}",
             summary.case,
             summary.text(),
@@ -70,7 +76,7 @@ fn go<S: Dimensional>(
 ) -> Result<Option<Summary>, Failure> {
     let tell = |text: String| {
         if !args.json {
-            say(&text);
+            inform(&text);
         }
     };
     let out = options.out.display();
@@ -85,8 +91,8 @@ fn go<S: Dimensional>(
             Found::Finished => {
                 let path = options.out.join("summary.json");
                 match std::fs::read_to_string(&path).ok().filter(|_| args.json) {
-                    Some(summary) => say(summary.trim_end()),
-                    None => say(&format!(
+                    Some(summary) => answer(summary.trim_end())?,
+                    None => inform(&format!(
                         "the run in {out} is finished: nothing to do; to run it anew leave --resume out"
                     )),
                 }

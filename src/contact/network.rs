@@ -78,6 +78,10 @@ pub struct Contact<S: Space> {
     pub born: f64,
     /// Time under a compressive impulse without a break (s).
     pub pressed: f64,
+    /// Whether the last solve left friction at its bound.
+    pub slides: bool,
+    /// Energy that friction took at this contact since it formed (J).
+    pub friction_work: f64,
 }
 
 impl<S: Space> Contact<S> {

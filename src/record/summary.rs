@@ -32,10 +32,14 @@ pub struct PluginStamp {
     pub certified: bool,
 }
 
-/// Flows of matter, as mean mass flows over the run (kg/s; kg/(m s) in 2D).
+/// Flows of matter, as mean mass flows since the start of the friction test, or of the run without one.
 #[derive(Clone, Debug, Default, Serialize)]
 #[allow(non_snake_case)]
 pub struct Wear {
+    /// Unit of the flows: kg/s, in two dimensions kg/(m s), per metre of depth.
+    pub unit: &'static str,
+    /// Since when Qs of the wear law and Qi count (s); what a circuit counts begins with the circuit.
+    pub start: f64,
     /// Source: mass worn off first bodies by the wear law, and with a circuit the grains that came loose from them.
     pub Qs: f64,
     /// Internal: mass of the third body that crosses a section, mean of |m v_x|/L.
@@ -49,6 +53,13 @@ pub struct Wear {
     pub volume_first_bodies: f64,
     /// Volume worn between grains (m^3; m^3/m).
     pub volume_third_body: f64,
+}
+
+impl Wear {
+    /// Unit of flows in so many dimensions.
+    pub fn unit(dimension: usize) -> &'static str {
+        if dimension == 2 { "kg/(m s)" } else { "kg/s" }
+    }
 }
 
 /// Mean flows over the second half of the account, with their intervals (kg/s; kg/(m s) in 2D); null where it was brought up
@@ -94,6 +105,8 @@ pub struct CircuitSummary {
     pub flows: Flows,
     /// What does not add up.
     pub residual: Contents,
+    /// Unit of the mean flows: kg/s, in two dimensions kg/(m s), per metre of depth.
+    pub rates_unit: &'static str,
     /// Mean flows.
     pub rates: Rates,
     /// First bodies.
@@ -163,14 +176,15 @@ impl CircuitSummary {
             (
                 "flows, second half",
                 format!(
-                    "Qs {} ({}), Qw {} ({}), {equal}; Qe {}, Qr {}, Qa {} kg/s",
+                    "Qs {} ({}), Qw {} ({}), {equal}; Qe {}, Qr {}, Qa {} {}",
                     flow(&r.Qs),
                     steady(&r.Qs),
                     flow(&r.Qw),
                     steady(&r.Qw),
                     flow(&r.Qe),
                     flow(&r.Qr),
-                    flow(&r.Qa)
+                    flow(&r.Qa),
+                    self.rates_unit
                 ),
             ),
         ]
@@ -393,13 +407,14 @@ impl Summary {
         line(
             "wear",
             format!(
-                "{:.4e} {volume} off first bodies, {:.4e} {volume} between grains; Qs {:.3e}, Qi {:.3e}, Qe {}, Qw {} kg/s",
+                "{:.4e} {volume} off first bodies, {:.4e} {volume} between grains; Qs {:.3e}, Qi {:.3e}, Qe {}, Qw {} {}",
                 w.volume_first_bodies,
                 w.volume_third_body,
                 w.Qs,
                 w.Qi,
                 flow(w.Qe),
-                flow(w.Qw)
+                flow(w.Qw),
+                w.unit
             ),
         );
         for (label, text) in self.circuit.iter().flat_map(CircuitSummary::lines) {

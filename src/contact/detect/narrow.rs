@@ -136,6 +136,8 @@ impl<'a, S: Space> Narrow<'a, S> {
             moment: S::Spin::null(),
             born: self.time,
             pressed: 0.0,
+            slides: false,
+            friction_work: 0.0,
         };
         self.admit(network, found, old);
     }
@@ -208,6 +210,8 @@ impl<'a, S: Space> Narrow<'a, S> {
                 moment: S::Spin::null(),
                 born: self.time,
                 pressed: 0.0,
+                slides: false,
+                friction_work: 0.0,
             };
             self.admit(network, found, matched);
         }
@@ -249,6 +253,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                 found.impulse = old.impulse;
                 found.moment = old.moment;
                 found.born = old.born;
+                found.friction_work = old.friction_work;
                 found.pressed = old.pressed;
                 found.slot = old.slot;
                 found.broken = old.broken;

@@ -184,6 +184,8 @@ impl<S: Space> Narrow<'_, S> {
                 moment: S::Spin::null(),
                 born: self.time,
                 pressed: 0.0,
+                slides: false,
+                friction_work: 0.0,
             };
             self.admit(network, found, before);
         }
@@ -272,6 +274,8 @@ mod tests {
             moment: nalgebra::Vector1::zeros(),
             born: 0.0,
             pressed: 0.0,
+            slides: false,
+            friction_work: 0.0,
         }
     }
 

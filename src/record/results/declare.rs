@@ -84,17 +84,18 @@ impl Store {
         })
     }
 
-    /// A dataset of texts, written once.
+    /// A dataset of texts with a line of explanation, written once.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn texts(&mut self, path: &str, texts: &[&str]) -> Result<(), ResultsError> {
+    pub fn texts(&mut self, path: &str, texts: &[&str], doc: &str) -> Result<(), ResultsError> {
         let (parent, name) = split(path);
         let group = self.declared_group(parent)?;
-        self.named(group.write_vlen_strings(name, texts)).map(drop)
+        let dataset = self.named(group.write_vlen_strings(name, texts))?;
+        self.named(text_attribute(&dataset, "doc", doc))
     }
 
-    /// A dataset of rows of `width` numbers, written once; none where there is no row.
+    /// A dataset of rows of `width` numbers, written once, with its unit and a line of explanation; none where there is no row.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -103,7 +104,7 @@ impl Store {
         path: &str,
         width: u64,
         values: &[T],
-        unit: &str,
+        (unit, doc): (&str, &str),
     ) -> Result<(), ResultsError> {
         if values.is_empty() {
             return Ok(());
@@ -118,7 +119,7 @@ impl Store {
         let made = group.new_dataset::<T>().shape(shape).create(name);
         let dataset = self.named(made)?;
         self.named(dataset.write_raw(values))?;
-        self.named(text_attributes(&dataset, &[("unit", unit)]))
+        self.named(describe(&dataset, unit, doc))
     }
 
     /// A growing dataset of rows of `width` numbers (1: a plain column), with its unit and a line of
@@ -147,7 +148,7 @@ impl Store {
         let made = group.new_dataset::<T>().shape(shape);
         let made = made.chunk(&chunk).max_shape(&most).create(name);
         let dataset = self.named(made)?;
-        self.named(text_attributes(&dataset, &[("unit", unit), ("doc", doc)]))?;
+        self.named(describe(&dataset, unit, doc))?;
         Ok(self.add_grown(path, width, T::WHOLE))
     }
 
@@ -161,7 +162,7 @@ impl Store {
         let made = group.new_dataset::<u8>().shape([0]);
         let made = made.chunk(&[SLOT_CHUNK]).max_shape(&[None]).create(name);
         let dataset = self.named(made)?;
-        self.named(text_attributes(&dataset, &[("doc", doc)]))?;
+        self.named(text_attribute(&dataset, "doc", doc))?;
         Ok(self.add_slot(path))
     }
 }
@@ -175,13 +176,15 @@ pub(super) fn group(file: &H5File, path: &str) -> hdf5::Result<H5Group> {
     }
 }
 
-/// Text attributes of a dataset; empty ones are none.
-fn text_attributes(dataset: &H5Dataset, attributes: &[(&str, &str)]) -> hdf5::Result<()> {
-    for (name, text) in attributes.iter().filter(|a| !a.1.is_empty()) {
-        let attribute = dataset.new_attr::<VarLenUnicode>().create(name)?;
-        attribute.write_string(text)?;
-    }
-    Ok(())
+/// The unit of a dataset, `1` for pure numbers, and what its values are.
+fn describe(dataset: &H5Dataset, unit: &str, doc: &str) -> hdf5::Result<()> {
+    text_attribute(dataset, "unit", if unit.is_empty() { "1" } else { unit })?;
+    text_attribute(dataset, "doc", doc)
+}
+
+fn text_attribute(dataset: &H5Dataset, name: &str, text: &str) -> hdf5::Result<()> {
+    let attribute = dataset.new_attr::<VarLenUnicode>().create(name)?;
+    attribute.write_string(text)
 }
 
 /// Path of the parent, and name in it.

@@ -1,4 +1,4 @@
-//! `results.h5`: one self-contained file, readable while it is written and after a crash.
+//! `results.h5`: one self-contained file, readable while it is written and after a crash, see [`store`].
 //!
 //! ```text
 //! /            attributes: program, version, case, seed, dimension
@@ -57,6 +57,8 @@ pub struct Header {
     pub statistics: Vec<Column>,
     /// Fields of grains, contacts and bodies.
     pub fields: [Vec<Column>; 3],
+    /// Fields of them that are whole numbers.
+    pub numbers: [Vec<Column>; 3],
     /// Columns of the bonds that break; empty where nothing bonds.
     pub broken: Vec<Column>,
     /// Columns of debris; empty without a circuit.
@@ -113,24 +115,25 @@ impl Results {
         }
         store.integer_attribute("/", "seed", &[header.seed as i64])?;
         store.integer_attribute("/", "dimension", &[header.dimension as i64])?;
-        store.texts("/case", &[&header.case_text])?;
+        let doc = "the case as it was run, changes of the command line applied";
+        store.texts("/case", &[&header.case_text], doc)?;
         store.group("/materials")?;
         for (name, text) in &header.materials {
-            store.texts(&format!("/materials/{name}"), &[text])?;
+            store.texts(&format!("/materials/{name}"), &[text], "the material file")?;
         }
         store.group("/plugins")?;
         type Get = fn(&PluginStamp) -> &str;
-        let columns: [(&str, Get); 5] = [
-            ("kind", |p| &p.kind),
-            ("name", |p| &p.name),
-            ("version", |p| &p.version),
-            ("sha256", |p| &p.sha256),
-            ("path", |p| &p.path),
+        let columns: [(&str, &str, Get); 5] = [
+            ("kind", "kind of the law", |p| &p.kind),
+            ("name", "its name", |p| &p.name),
+            ("version", "its version", |p| &p.version),
+            ("sha256", "SHA-256 of its library", |p| &p.sha256),
+            ("path", "where its library was found", |p| &p.path),
         ];
-        for (name, get) in columns {
+        for (name, doc, get) in columns {
             let texts: Vec<&str> = header.plugins.iter().map(get).collect();
             if !texts.is_empty() {
-                store.texts(&format!("/plugins/{name}"), &texts)?;
+                store.texts(&format!("/plugins/{name}"), &texts, doc)?;
             }
         }
         header.shapes.write(&mut store, header.dimension)?;
@@ -161,17 +164,15 @@ impl Results {
             Cells::Polygons
         };
         let mut views = Vec::new();
-        for (name, cells, fields) in [
-            ("grains", Cells::Vertices, &header.fields[0]),
-            ("contacts", Cells::Lines, &header.fields[1]),
-            ("bodies", bodies, &header.fields[2]),
-        ] {
-            views.push(View::declare(
-                &mut store,
-                &format!("/views/{name}"),
-                cells,
-                fields,
-            )?);
+        let all = header.fields.iter().zip(&header.numbers);
+        let kinds = [
+            ("grains", Cells::Vertices),
+            ("contacts", Cells::Lines),
+            ("bodies", bodies),
+        ];
+        for ((name, cells), (fields, numbers)) in kinds.into_iter().zip(all) {
+            let path = format!("/views/{name}");
+            views.push(View::declare(&mut store, &path, cells, (fields, numbers))?);
         }
         store.link("/VTKHDF", "/views/grains")?;
         store.group("/checkpoints")?;

@@ -12,8 +12,10 @@ use super::growth::Growth;
 use hdf5::H5File;
 use std::path::{Path, PathBuf};
 
-/// A file of so many bytes is copied no more, and grows in place.
+/// A file of so many bytes is copied no more, and grows in place,
 const LARGE: u64 = 64 << 20;
+/// unless this variable of the environment says another number: where disks are far away copies cost more.
+const LARGE_FROM: &str = "FRETWORK_COPY_LIMIT";
 
 /// Rows of so many bytes are not kept in memory until the next flush.
 const MOST_HELD: usize = 8 << 20;
@@ -131,6 +133,8 @@ pub struct Store {
     attributes: Vec<(String, String, i64)>,
     /// Bytes of the rows kept in memory.
     held: usize,
+    /// From so many bytes on the file grows in place.
+    large: u64,
 }
 
 impl std::fmt::Debug for Store {
@@ -158,6 +162,10 @@ impl Store {
             slots: Vec::new(),
             attributes: Vec::new(),
             held: 0,
+            large: std::env::var(LARGE_FROM)
+                .ok()
+                .and_then(|n| n.parse().ok())
+                .unwrap_or(LARGE),
         })
     }
 
@@ -368,7 +376,7 @@ impl Store {
         let closed = file.close_no_sync();
         self.named(written.and(closed))?;
         let size = self.named(std::fs::metadata(&self.part))?.len();
-        if size >= LARGE {
+        if size >= self.large {
             self.growth = Some(self.named(Growth::begin(&self.part))?);
         }
         Ok(())

@@ -39,6 +39,8 @@ pub struct Part {
     pub cells: Vec<Vec<i64>>,
     /// One column a field, one value a point (vertices) or cell.
     pub data: Vec<Vec<f64>>,
+    /// The same of whole numbers.
+    pub numbers: Vec<Vec<i64>>,
 }
 
 /// A view in the file.
@@ -51,6 +53,7 @@ pub struct View {
     connectivity: [Growing; 4],
     offsets: [Growing; 4],
     data: Vec<Growing>,
+    whole: Vec<Growing>,
     values: Growing,
     steps: [Growing; 3],
     cell_offsets: Growing,
@@ -69,7 +72,7 @@ impl View {
         store: &mut Store,
         path: &str,
         cells: Cells,
-        fields: &[Column],
+        (fields, numbers): (&[Column], &[Column]),
     ) -> Result<Self, ResultsError> {
         store.group(path)?;
         store.integer_attribute(path, "Version", &[2, 0])?;
@@ -87,7 +90,7 @@ impl View {
             store.growing::<i64>(&format!("{path}/{name}"), width, ("", doc), chunk)
         };
         let number_of_points = whole(store, "NumberOfPoints", 1, FEW, "points of each state")?;
-        let mut numbers = Vec::new();
+        let mut kinds = Vec::new();
         for kind in KINDS {
             store.group(&format!("{path}/{kind}"))?;
             let mine = KINDS[cells.kind()] == kind;
@@ -95,7 +98,7 @@ impl View {
             let mut one = |name: &str, chunk: usize, doc: &str| {
                 whole(store, &format!("{kind}/{name}"), 1, chunk, doc)
             };
-            numbers.push([
+            kinds.push([
                 one("NumberOfCells", FEW, "cells of each state")?,
                 one(
                     "NumberOfConnectivityIds",
@@ -114,7 +117,7 @@ impl View {
                 )?,
             ]);
         }
-        let all: [[Growing; 4]; 4] = [numbers[0], numbers[1], numbers[2], numbers[3]];
+        let all: [[Growing; 4]; 4] = [kinds[0], kinds[1], kinds[2], kinds[3]];
         let steps = [
             whole(
                 store,
@@ -146,14 +149,17 @@ impl View {
         let values = store.growing::<f64>(&format!("{path}/Steps/Values"), 1, doc, FEW)?;
         let doc = ("m", "coordinates");
         let points = store.growing::<f64>(&format!("{path}/Points"), 3, doc, MANY)?;
-        let (mut data, mut data_offsets) = (Vec::new(), Vec::new());
-        for field in fields {
-            data.push(store.growing::<f64>(
-                &format!("{path}/{place}/{}", field.name),
-                1,
+        let (mut data, mut whole_data, mut data_offsets) = (Vec::new(), Vec::new(), Vec::new());
+        for (k, field) in fields.iter().chain(numbers).enumerate() {
+            let (name, doc) = (
+                format!("{path}/{place}/{}", field.name),
                 (field.unit, field.doc),
-                MANY,
-            )?);
+            );
+            if k < fields.len() {
+                data.push(store.growing::<f64>(&name, 1, doc, MANY)?);
+            } else {
+                whole_data.push(store.growing::<i64>(&name, 1, doc, MANY)?);
+            }
             data_offsets.push(store.growing::<i64>(
                 &format!("{path}/Steps/{place}Offsets/{}", field.name),
                 1,
@@ -169,6 +175,7 @@ impl View {
             connectivity: all.map(|n| n[3]),
             offsets: all.map(|n| n[2]),
             data,
+            whole: whole_data,
             values,
             steps,
             cell_offsets,
@@ -197,11 +204,15 @@ impl View {
             .map(|k| store.rows(self.connectivity[k]) as i64)
             .collect();
         let first_point = store.rows(self.points) as i64;
-        for (column, offsets) in self.data.iter().zip(&self.data_offsets) {
+        let columns = self.data.iter().chain(&self.whole);
+        for (column, offsets) in columns.zip(&self.data_offsets) {
             let first = store.rows(*column) as i64;
             store.append(*offsets, &[first])?;
         }
         for (column, values) in self.data.iter().zip(&part.data) {
+            store.append(*column, values)?;
+        }
+        for (column, values) in self.whole.iter().zip(&part.numbers) {
             store.append(*column, values)?;
         }
         store.append(self.points, &part.points)?;

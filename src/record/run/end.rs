@@ -76,13 +76,14 @@ impl<S: Dimensional> Recorder<'_, S> {
         let cycles = self.jumps.as_ref().map_or(0.0, |j| j.jumped(share));
         let period = self.cycles.as_ref().and_then(|(c, _)| c.period());
         let over = cycles * period.unwrap_or(0.0);
-        let time = (s.time + over).max(f64::MIN_POSITIVE);
         // Nothing leaves a contact that is periodic along the sliding.
         let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
         let closed = s.shapes.periodic.period[along].map(|_| 0.0);
         summary.wear = Wear {
-            Qs: self.worn.0 * self.density / time,
-            Qi: self.internal_flow / s.time.max(f64::MIN_POSITIVE),
+            unit: Wear::unit(S::D),
+            start: self.flows.start,
+            Qs: self.flows.source(over) * self.density,
+            Qi: self.flows.internal(),
             Qe: closed,
             Qw: closed,
             volume_first_bodies: self.worn.0,

@@ -2,6 +2,7 @@
 
 use super::account::Account;
 use super::clear;
+use super::flows::Flows;
 use super::jumps::Jumps;
 use super::{Recorder, RunError, unwritable};
 use crate::geometry::space::Space;
@@ -40,7 +41,7 @@ struct Carried<'a, S: Space> {
     layer: Cow<'a, Layer<S>>,
     slide: f64,
     worn: (f64, f64),
-    internal_flow: f64,
+    flows: Flows,
     iterations: u64,
     couplings: u64,
     solver: Cow<'a, SolverSummary>,
@@ -104,7 +105,7 @@ impl<S: Dimensional> Recorder<'_, S> {
             layer: Cow::Borrowed(&self.layer),
             slide: self.slide,
             worn: self.worn,
-            internal_flow: self.internal_flow,
+            flows: self.flows,
             iterations: self.iterations,
             couplings: self.couplings,
             solver: Cow::Borrowed(&self.summary.solver),
@@ -147,7 +148,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         self.layer = kept.layer.into_owned();
         self.slide = kept.slide;
         self.worn = kept.worn;
-        self.internal_flow = kept.internal_flow;
+        self.flows = kept.flows;
         self.iterations = kept.iterations;
         self.couplings = kept.couplings;
         self.summary.solver = kept.solver.into_owned();
