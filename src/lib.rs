@@ -4,6 +4,9 @@
 //! The folders mirror the step: a [`scene`] makes [`bodies`] with [`geometry`]; each [`step`] detects
 //! [`contact`]s, asks the [`laws`], [`solve`]s, commits, and [`record`]s.
 
+// A terminal or pipe that takes no more must not end a run: all output goes through `cli::output`.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 pub mod bodies;
 pub mod certify;
 pub mod cli;

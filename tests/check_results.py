@@ -50,6 +50,38 @@ def check_view(view, name):
     return n
 
 
+STORED_AND_SPENT = ("kinetic", "potential", "elastic", "fracture", "friction", "impact", "adhesion", "viscous", "correction", "scheme", "carried")
+
+
+def check_ledger(table):
+    """The columns of the ledger add up to its residual, row by row."""
+    entries = [table[n][:] for n in STORED_AND_SPENT] + [-table["external_work"][:], -table["initial_kinetic"][:]]
+    off = np.abs(sum(entries) - table["residual"][:])
+    scale = np.max(np.abs(entries), axis=0)
+    if (off > 1e-14 * scale).any():
+        fail(f"the energies do not add up: {off.max():e} of {scale.max():e}")
+
+
+def check_contacts(data, dimension):
+    """Components of forces, directions, bodies and status of contacts agree."""
+    axes = "xyz"[:dimension]
+    normal = np.array([data[f"normal_{a}"][:] for a in axes])
+    t = [data[f"force_tangential_{k}"][:] for k in range(1, dimension)]
+    norm = np.sqrt(sum(x**2 for x in t))
+    if not np.allclose(norm, data["force_tangential"][:], rtol=1e-12, atol=0.0):
+        fail("the components of tangential forces are not those of their norm")
+    if not np.allclose((normal**2).sum(axis=0), 1.0, rtol=1e-12):
+        fail("normals are not of length 1")
+    if dimension == 3:
+        tangent = np.array([data[f"tangent_1_{a}"][:] for a in axes])
+        if (np.abs((normal * tangent).sum(axis=0)) > 1e-12).any():
+            fail("tangents are not perpendicular to their normals")
+    if not all(data[n].dtype == np.int64 for n in ("body_1", "body_2")):
+        fail("identities of bodies are no whole numbers of 64 bits")
+    if not set(np.unique(data["status"][:])) <= {0.0, 1.0, 2.0, 3.0, 4.0}:
+        fail("contacts have a status that is none")
+
+
 def check_h5(path, live):
     with h5py.File(path, "r", swmr=live) as f:
         for group in ("case", "materials", "plugins", "statistics", "views/grains", "views/contacts", "views/bodies", "VTKHDF"):
@@ -58,9 +90,12 @@ def check_h5(path, live):
         lengths = {name: len(d) for name, d in f["statistics"].items()}
         if len(set(lengths.values())) != 1:
             fail(f"columns of the statistics differ in length: {lengths}")
-        bare = [n for n in ("time", "kinetic") if "unit" not in f["statistics"][n].attrs]
-        if bare:
-            fail(f"the statistics {bare} have no unit")
+        for group in ("statistics", "views/grains/PointData", "views/contacts/CellData", "views/bodies/CellData"):
+            bare = [n for n, d in f[group].items() if not (d.attrs.get("unit") and d.attrs.get("doc"))]
+            if bare:
+                fail(f"{bare} in {group} have no unit or no explanation")
+        check_ledger(f["statistics"])
+        check_contacts(f["views/contacts/CellData"], int(f.attrs["dimension"]))
         views = {name: check_view(f["views"][name], name) for name in ("grains", "contacts", "bodies")}
         laws = [b.decode() if isinstance(b, bytes) else b for b in f["plugins/name"][:]]
         print(f"h5py {h5py.__version__}: {next(iter(lengths.values()))} rows of {len(lengths)} statistics, states {views}, laws {laws}")

@@ -2,7 +2,8 @@
 
 mod features;
 
-use super::{CaseArgs, Failure, say};
+use super::output::answer;
+use super::{CaseArgs, Failure};
 use crate::bodies::Dof;
 use crate::geometry::space::Space;
 use crate::record::biaxial::Biaxial;
@@ -27,8 +28,7 @@ pub fn check(args: &CheckArgs) -> Result<(), Failure> {
         Scene::Plane(built) => describe(&loaded, &built),
         Scene::Solid(built) => describe(&loaded, &built),
     };
-    say(text.trim_end());
-    Ok(())
+    answer(text.trim_end())
 }
 
 fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {

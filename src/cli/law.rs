@@ -4,7 +4,8 @@ mod certify;
 mod drive;
 mod new;
 
-use super::{Failure, PluginArgs, say};
+use super::output::answer;
+use super::{Failure, PluginArgs};
 use crate::laws::{Kind, Plugin, SearchPath};
 use clap::Subcommand;
 use std::fmt::Write as _;
@@ -55,12 +56,11 @@ pub fn law(command: &LawCommand) -> Result<(), Failure> {
                     let _ = writeln!(out, "  {}", folder.display());
                 }
             }
-            say(out.trim_end());
-            Ok(())
+            answer(out.trim_end())
         }
         LawCommand::Show { name, plugins } => {
             for plugin in named(&plugins.search()?, name)? {
-                say(&describe(&plugin));
+                answer(&describe(&plugin))?;
             }
             Ok(())
         }

@@ -5,6 +5,7 @@
 mod again;
 mod check;
 mod law;
+mod output;
 mod progress;
 mod run;
 mod solve;
@@ -122,11 +123,16 @@ impl PluginArgs {
                 } else {
                     "what was recorded up to the last flush is on disk"
                 };
-                eprintln!(
+                output::report(&format!(
                     "error: {who}; the program ends here; {left} (a longer wait: --law-timeout)"
-                );
+                ));
                 std::process::exit(1);
-            });
+            })
+            .map_err(|e| {
+                Failure::Failed(format!(
+                    "cannot start the threads that watch over laws: {e}; allow more (ulimit -u), or do without: --law-timeout 0"
+                ))
+            })?;
         }
         let path = SearchPath::new(&self.plugin_path);
         Ok(if self.trust_plugins {
@@ -167,38 +173,38 @@ impl From<LawError> for Failure {
 
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
-    let outcome = match cli.command {
+    // Nothing but `run --threads` computes on more than this thread.
+    let here = rayon::ThreadPoolBuilder::new().num_threads(1);
+    let _ = here.use_current_thread().build_global();
+    let outcome = match Cli::try_parse() {
+        Ok(cli) => run(cli.command),
+        // Help and version are answers, all else is wrong input.
+        Err(e) if !e.use_stderr() => output::delivered(e.print()),
+        Err(e) => {
+            let _ = e.print();
+            return ExitCode::from(2);
+        }
+    };
+    let (message, code) = match outcome {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(Failure::Input(e)) => (e.render(std::io::stderr().is_terminal()), 2),
+        Err(Failure::Usage(message)) => (format!("error: {message}"), 2),
+        Err(Failure::Failed(message)) => (format!("error: {message}"), 1),
+        Err(Failure::Run(e)) => {
+            let input = matches!(&e, RunError::Resume(e) if e.is_input());
+            (format!("error: {e}"), if input { 2 } else { 1 })
+        }
+    };
+    output::report(&message);
+    ExitCode::from(code)
+}
+
+fn run(command: Command) -> Result<(), Failure> {
+    match command {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Law(command) => law::law(&command),
         Command::Solve(args) => solve::solve(&args),
         Command::Trade(args) => trade::trade(&args),
-    };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Input(e)) => {
-            eprintln!("{}", e.render(std::io::stderr().is_terminal()));
-            ExitCode::from(2)
-        }
-        Err(Failure::Usage(message)) => {
-            eprintln!("error: {message}");
-            ExitCode::from(2)
-        }
-        Err(Failure::Failed(message)) => {
-            eprintln!("error: {message}");
-            ExitCode::from(1)
-        }
-        Err(Failure::Run(e)) => {
-            eprintln!("error: {e}");
-            let input = matches!(&e, RunError::Resume(e) if e.is_input());
-            ExitCode::from(if input { 2 } else { 1 })
-        }
     }
-}
-
-/// Prints to standard output; a closed pipe ends the program quietly.
-fn say(text: &str) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stdout(), "{text}");
 }

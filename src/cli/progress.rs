@@ -1,5 +1,6 @@
 //! Progress: a bar on a terminal, plain lines elsewhere.
 
+use super::output::report;
 use crate::record::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
@@ -60,12 +61,12 @@ impl Display {
             // Lines get rarer as the run gets longer.
             self.next_line = elapsed.mul_f64(1.25).max(elapsed + Duration::from_secs(2));
             let left = left(elapsed, p);
-            eprintln!(
+            report(&format!(
                 "step {}/{} {} left {left:.0} s",
                 p.steps.0,
                 p.steps.1,
                 self.message(p)
-            );
+            ));
         }
     }
 

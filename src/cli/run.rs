@@ -1,7 +1,8 @@
 //! `fretwork run`.
 
+use super::output::{answer, inform};
 use super::progress::Display;
-use super::{CaseArgs, Failure, again, say};
+use super::{CaseArgs, Failure, again};
 use crate::interrupt;
 use crate::record::checkpoint::Found;
 use crate::record::{self, RunOptions, Summary};
@@ -44,9 +45,14 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build()
-        .map_err(|e| Failure::Usage(format!("cannot start {} threads: {e}", options.threads)))?;
+        .map_err(|e| {
+            Failure::Failed(format!(
+                "cannot start {} threads: {e}; take fewer (--threads) or allow more (ulimit -u)",
+                options.threads
+            ))
+        })?;
     if !args.json {
-        say(&format!("{}: {}", loaded.path.display(), loaded.case.name));
+        inform(&format!("{}: {}", loaded.path.display(), loaded.case.name));
     }
     interrupt::watch();
     let done = pool.install(|| match scene {
@@ -57,7 +63,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         return Ok(());
     };
     if args.json {
-        say(&serde_json::to_string_pretty(&summary).unwrap_or_default());
+        answer(&serde_json::to_string_pretty(&summary).unwrap_or_default())?;
     } else {
         let text = summary.text(args.verbose);
         let more = if args.verbose {
@@ -65,7 +71,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         } else {
             " (more: --verbose)"
         };
-        say(&format!(
+        inform(&format!(
             "{text}  results in {}{more}",
             options.out.display()
         ));
@@ -96,7 +102,7 @@ fn go<S: Dimensional>(
 ) -> Result<Option<Summary>, Failure> {
     let tell = |text: String| {
         if !args.json {
-            say(&text);
+            inform(&text);
         }
     };
     let out = options.out.display();
@@ -112,9 +118,9 @@ fn go<S: Dimensional>(
                 let path = options.out.join("summary.json");
                 let text = std::fs::read_to_string(&path).unwrap_or_default();
                 if args.json && !text.is_empty() {
-                    say(text.trim_end());
+                    answer(text.trim_end())?;
                 } else {
-                    say(&format!(
+                    inform(&format!(
                         "the run in {out} is finished: nothing to do; to run it anew leave --resume out"
                     ));
                 }

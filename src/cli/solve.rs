@@ -90,7 +90,7 @@ pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
                 if args.json {
                     all.push(say::json(&solved, args));
                 } else {
-                    super::say(&say::text(&solved, args));
+                    super::output::answer(&say::text(&solved, args))?;
                 }
             }
             // The files after it are still solved; it decides the exit code.
@@ -106,7 +106,7 @@ pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
                 all.into()
             }
         };
-        super::say(&serde_json::to_string_pretty(&value).unwrap_or_default());
+        super::output::answer(&serde_json::to_string_pretty(&value).unwrap_or_default())?;
     }
     let joined = |lines: &[String]| lines.join("\nerror: ");
     if !wrong.is_empty() {

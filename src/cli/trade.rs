@@ -1,6 +1,7 @@
 //! `fretwork trade`: accuracy against cost.
 
-use super::{CaseArgs, Failure, again, say};
+use super::output::{answer, inform, report};
+use super::{CaseArgs, Failure, again};
 use crate::geometry::space::Space;
 use crate::interrupt;
 use crate::scene::build::Built;
@@ -184,8 +185,8 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     study.look_for_chaos(args.seeds.into(), stop)?;
     study.prepare(stop)?;
     if !args.json {
-        say(&format!("{}: {}", loaded.path.display(), loaded.case.name));
-        say(&table::forecast(&study));
+        inform(&format!("{}: {}", loaded.path.display(), loaded.case.name));
+        inform(&table::forecast(&study));
     }
     let expected = study.work(&[study.first(), study.star()].concat());
     let quiet = args.json
@@ -196,11 +197,11 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
         }
         match event {
             Event::Begins(name, seed, expected) => {
-                eprintln!(
+                report(&format!(
                     "[{}] {name}, seed {seed}: {} expected",
                     table::seconds(started.elapsed().as_secs_f64()),
                     table::seconds(*expected)
-                );
+                ));
             }
             Event::Ended(name, seed, run) => {
                 let how = match &run.status {
@@ -208,11 +209,11 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
                     Status::Failed(_) => "FAILED",
                     Status::Slow(_) => "slower than the reference",
                 };
-                eprintln!(
+                report(&format!(
                     "[{}] {name}, seed {seed}: {how} in {}",
                     table::seconds(started.elapsed().as_secs_f64()),
                     table::seconds(run.seconds)
-                );
+                ));
             }
         }
     };
@@ -262,12 +263,11 @@ fn tell(
         Ok(())
     };
     if args.json {
-        say(&text);
-        return ended;
+        return answer(&text).and(ended);
     }
-    say("");
-    say(table::text(study, &found, &verdicts).trim_end());
-    say(&format!(
+    inform("");
+    inform(table::text(study, &found, &verdicts).trim_end());
+    inform(&format!(
         "{} runs in {}, {} kept from before; the forecast for the reference and one knob at a time was {}",
         study.fresh,
         table::seconds(study.started.elapsed().as_secs_f64()),
@@ -296,7 +296,7 @@ fn tell(
                 dropped.join("; ")
             ));
         }
-        say(&format!(
+        inform(&format!(
             "INCOMPLETE, {why}.{what} The same command goes on from here."
         ));
     }
@@ -305,7 +305,7 @@ fn tell(
     } else {
         "no picture: no setting has an error that is known".into()
     };
-    say(&format!(
+    inform(&format!(
         "{0}/trade.csv, {0}/trade.json, {last}",
         out.display()
     ));

@@ -84,6 +84,10 @@ pub struct Contact<S: Space> {
     /// Beyond the alert distance at the start of the step: nothing but the constraint that it must not open below zero acts
     /// on it, no bond, no cohesion, no wear.
     pub beyond: bool,
+    /// Whether the last solve left friction at its bound.
+    pub slides: bool,
+    /// Energy that friction took at this contact since it formed (J).
+    pub friction_work: f64,
 }
 
 impl<S: Space> Contact<S> {

@@ -43,6 +43,8 @@ impl Passes {
             let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
             let friction = -site.solution.unilateral_t.dot(&ut);
             totals.friction += friction;
+            contact.slides = site.slides;
+            contact.friction_work += friction;
             let work = -site.solution.unilateral_n * un + site.corrected;
             totals.correction -= site.corrected;
             let adheres = site.adheres && site.solution.unilateral_n < 0.0;
@@ -63,9 +65,11 @@ impl Passes {
             }
         }
         for turn in turns {
-            network.contacts[turn.moment.contact as usize].moment = turn.moment.moment;
+            let contact = &mut network.contacts[turn.moment.contact as usize];
+            contact.moment = turn.moment.moment;
             let friction = -turn.moment.friction.dot(&turn.spin);
             totals.friction += friction;
+            contact.friction_work += friction;
             if let Some(spent) = &mut network.spent {
                 spent[turn.moment.contact as usize].friction += friction;
             }

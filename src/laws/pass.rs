@@ -28,6 +28,8 @@ pub struct Site<S: Space> {
     pub lost: f64,
     /// Work that the position correction gives (J).
     pub corrected: f64,
+    /// Friction is at its bound.
+    pub slides: bool,
     /// The solver's answer.
     pub solution: ContactSolution<S>,
 }

@@ -97,12 +97,18 @@ pub fn rescue(save: impl FnOnce(&str) -> bool + Send + 'static) -> Ready {
 
 /// Watches from a thread of its own, for the rest of the program: once, who did not come back from a call within the limit
 /// is told, and whether all rescues saved something.
-pub fn watch(limit: Duration, stuck: impl FnOnce(&str, bool) + Send + 'static) {
+///
+/// # Errors
+/// The system gives no more threads.
+pub fn watch(
+    limit: Duration,
+    stuck: impl FnOnce(&str, bool) + Send + 'static,
+) -> std::io::Result<()> {
     /// A thread that is stuck may hold what a rescue needs, such as the lock of the allocator: it is not waited for longer.
     const RESCUED_WITHIN: Duration = Duration::from_secs(10);
     let (call, calls) = mpsc::sync_channel::<String>(1);
     let (done, saved) = mpsc::sync_channel(1);
-    std::thread::spawn(move || {
+    let rescuer = move || {
         if let Ok(who) = calls.recv() {
             let rescues = {
                 let mut all = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
@@ -114,9 +120,10 @@ pub fn watch(limit: Duration, stuck: impl FnOnce(&str, bool) + Send + 'static) {
                 .filter_map(|(_, save)| save(&who).then_some(()));
             let _ = done.send(count > 0 && saved.count() == count);
         }
-    });
+    };
+    std::thread::Builder::new().spawn(rescuer)?;
     let looks = 20u32;
-    std::thread::spawn(move || {
+    let watcher = move || {
         let mut seen = vec![(0, 0); MOST];
         let who = loop {
             std::thread::sleep(limit / looks);
@@ -151,5 +158,6 @@ pub fn watch(limit: Duration, stuck: impl FnOnce(&str, bool) + Send + 'static) {
             .send(who.clone())
             .is_ok_and(|()| saved.recv_timeout(RESCUED_WITHIN).unwrap_or(false));
         stuck(&who, saved);
-    });
+    };
+    std::thread::Builder::new().spawn(watcher).map(drop)
 }

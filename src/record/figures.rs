@@ -1,9 +1,13 @@
 //! The figures of a finished run, from its table of statistics.
 
 use super::friction::Cycles;
+use super::ledger::Energy;
 use super::statistics::Table;
 use crate::report::{Axis, Chart, ReportError, Series, Style};
 use std::path::Path;
+
+/// Entries of the ledger below this part of the largest are not drawn.
+const NEGLIGIBLE: f64 = 1e-3;
 
 /// Draws what the run has data for; gives the names of the files.
 ///
@@ -101,17 +105,18 @@ pub fn draw(
         Axis::new("energy", unit),
     );
     energy.subtitle = Some(title.to_owned());
-    for name in [
-        "external_work",
-        "friction",
-        "fracture",
-        "impact",
-        "elastic",
-        "kinetic",
-        "residual",
-    ] {
-        let values = table.column(name);
-        if values.iter().any(|x| *x != 0.0) {
+    let entries = Energy::default().entries();
+    let shown = entries.map(|(name, _, _)| (name, table.column(name)));
+    let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let all = shown.iter().fold(0.0, |m: f64, (_, v)| m.max(largest(v)));
+    for (name, values) in shown {
+        // What is too small to be seen is left out; the residual is shown to be small.
+        let least = if name == "residual" {
+            0.0
+        } else {
+            NEGLIGIBLE * all
+        };
+        if name != "initial_kinetic" && largest(&values) > least {
             energy = energy.with(Series::new(name.replace('_', " "), against(&values)));
         }
     }

@@ -96,6 +96,77 @@ impl Energy {
         self.correction -= potential - external;
     }
 
+    /// Every entry of the balance: name, what it is, value (J; J/m in 2D). The last is the sum of those before it, with external
+    /// work and the kinetic energy at the start taken off.
+    pub fn entries(&self) -> [(&'static str, &'static str, f64); 14] {
+        // Named one by one: a new entry of the ledger does not compile before it is here too.
+        let Self {
+            kinetic,
+            potential,
+            elastic,
+            fracture,
+            friction,
+            impact,
+            adhesion,
+            viscous,
+            correction,
+            scheme,
+            carried,
+            external_work,
+            initial_kinetic,
+            residual,
+            scale: _,
+        } = *self;
+        [
+            ("kinetic", "kinetic energy", kinetic),
+            ("potential", "potential energy since the start", potential),
+            ("elastic", "energy stored in bonds", elastic),
+            (
+                "fracture",
+                "energy released by damage since the start",
+                fracture,
+            ),
+            ("friction", "energy dissipated by friction", friction),
+            ("impact", "energy dissipated by impacts", impact),
+            (
+                "adhesion",
+                "energy spent against cohesion without opening",
+                adhesion,
+            ),
+            ("viscous", "energy dissipated by damping of bonds", viscous),
+            (
+                "correction",
+                "energy given by taking overlaps out, negative where it adds energy",
+                correction,
+            ),
+            (
+                "scheme",
+                "energy dissipated by the time integration; 0 at theta = 1/2",
+                scheme,
+            ),
+            (
+                "carried",
+                "kinetic energy of bodies when they were taken out",
+                carried,
+            ),
+            (
+                "external_work",
+                "work of imposed forces and motions",
+                external_work,
+            ),
+            (
+                "initial_kinetic",
+                "kinetic energy at the start",
+                initial_kinetic,
+            ),
+            (
+                "residual",
+                "what does not add up: all entries before external_work, less external_work and initial_kinetic",
+                residual,
+            ),
+        ]
+    }
+
     /// Energy turned into heat and surfaces.
     pub fn dissipated(&self) -> f64 {
         self.fracture + self.friction + self.impact + self.adhesion + self.viscous + self.correction

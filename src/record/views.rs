@@ -33,7 +33,6 @@ pub fn header<S: Space>(
 ) -> Header {
     let dimension = S::D;
     let c = Column::new;
-    let newton = if dimension == 2 { "N/m" } else { "N" };
     let axes = ["spin_x", "spin_y", "spin_z"].map(|name| c(name, "rad/s", "angular velocity"));
     let axes = if dimension == 2 { &[][..] } else { &axes };
     let turns = match (shapes::needed(built.simulation), dimension) {
@@ -146,23 +145,83 @@ pub fn header<S: Space>(
             .chain(gone)
             .chain(shear)
             .collect(),
-            vec![
-                c("state", "", "0 contact, 1 intact bond, 2 broken bond"),
-                c("damage", "", "damage D; 1 where there is no bond"),
-                c("gap", "m", "gap"),
-                c(
-                    "force_normal",
-                    newton,
-                    "normal force, positive in compression",
-                ),
-                c("force_tangential", newton, "norm of the tangential force"),
-                c("opening_normal", "m", "elongation of the bond"),
-                c("opening_tangential", "m", "norm of its tangential opening"),
-                c("law", "", "index of the interface"),
-            ],
+            contact_columns(dimension),
             vec![c("body", "", "identity of the body")],
         ],
+        numbers: [Vec::new(), contact_numbers(), Vec::new()],
     }
+}
+
+/// Fields of contacts: numbers.
+fn contact_columns(dimension: usize) -> Vec<Column> {
+    let c = Column::new;
+    let newton = if dimension == 2 { "N/m" } else { "N" };
+    let joule = if dimension == 2 { "J/m" } else { "J" };
+    let mut columns = vec![
+        c("state", "", "0 contact, 1 intact bond, 2 broken bond"),
+        c(
+            "status",
+            "",
+            "0 carries nothing, 1 sticks, 2 slides (friction is at its bound), 3 an intact bond holds, 4 carries nothing and its bond broke",
+        ),
+        c("damage", "", "damage D; 1 where there is no bond"),
+        c("gap", "m", "gap"),
+        c(
+            "force_normal",
+            newton,
+            "normal force, positive in compression",
+        ),
+        c("force_tangential", newton, "norm of the tangential force"),
+        c(
+            "force_tangential_1",
+            newton,
+            "tangential force on body_1 along the tangent t1; in 2D t1 is the normal turned by +90 degrees",
+        ),
+    ];
+    if dimension == 3 {
+        columns.push(c(
+            "force_tangential_2",
+            newton,
+            "tangential force on body_1 along t2 = normal x t1",
+        ));
+    }
+    let normal = ["normal_x", "normal_y", "normal_z"];
+    let normal = normal.map(|name| {
+        c(
+            name,
+            "",
+            "unit normal, from body_2 to body_1; a positive normal force pushes body_1 along it",
+        )
+    });
+    columns.extend(normal.into_iter().take(dimension));
+    if dimension == 3 {
+        let tangent = ["tangent_1_x", "tangent_1_y", "tangent_1_z"];
+        columns.extend(tangent.map(|name| c(name, "", "unit tangent t1")));
+    }
+    columns.extend([
+        c(
+            "friction_work",
+            joule,
+            "energy that friction took at this contact since it formed",
+        ),
+        c("opening_normal", "m", "elongation of the bond"),
+        c("opening_tangential", "m", "norm of its tangential opening"),
+        c("law", "", "index of the interface"),
+    ]);
+    columns
+}
+
+/// Fields of contacts: whole numbers.
+fn contact_numbers() -> Vec<Column> {
+    let c = Column::new;
+    vec![
+        c(
+            "body_1",
+            "",
+            "identity of the candidate, as `id` of grains and `body` of bodies",
+        ),
+        c("body_2", "", "identity of the antagonist"),
+    ]
 }
 
 /// Bytes that a state takes a grain and a contact: points, cells and fields of 8 bytes.
@@ -170,7 +229,8 @@ pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
     let (plain, turns) = if S::D == 2 { (9, 1) } else { (12, 4) };
     let turns = if shapes::needed(s) { turns } else { 0 };
     let fields = plain + turns + usize::from(circuit);
-    [8 * (3 + 2 + fields), 8 * (6 + 3 + 8)]
+    let contact = contact_columns(S::D).len() + contact_numbers().len();
+    [8 * (3 + 2 + fields), 8 * (6 + 3 + contact)]
 }
 
 /// Appends the state at hand of a case; `shear` is a column of the grains where the header has it.
@@ -260,7 +320,8 @@ fn grain<S: Space>(s: &Simulation<S>, part: &mut Part, at: S::Vector, of: [u32; 
 
 fn contacts<S: Space>(s: &Simulation<S>) -> Part {
     let mut part = Part {
-        data: vec![Vec::new(); 8],
+        data: vec![Vec::new(); contact_columns(S::D).len()],
+        numbers: vec![Vec::new(); contact_numbers().len()],
         ..Part::default()
     };
     for (k, contact) in s.network.contacts.iter().enumerate() {
@@ -277,17 +338,38 @@ fn contacts<S: Space>(s: &Simulation<S>) -> Part {
         let n = &contact.normal;
         let force = contact.impulse * (1.0 / s.scheme.h);
         let bond = s.network.bond(contact);
-        let values = [
+        let status = if state == 1.0 {
+            3.0
+        } else if contact.impulse == S::Vector::null() {
+            2.0 * state
+        } else {
+            1.0 + f64::from(u8::from(contact.slides))
+        };
+        let mut values = vec![
             state,
+            status,
             damage,
             contact.gap,
             n.dot(&force),
             S::tangential(n, &force).norm(),
+        ];
+        let tangents = S::tangents(n);
+        let along = tangents.iter().map(|t| t.dot(&force));
+        values.extend(along.take(S::D - 1));
+        values.extend((0..S::D).map(|k| n[k]));
+        if S::D == 3 {
+            values.extend(tangents[0].padded());
+        }
+        values.extend([
+            contact.friction_work,
             bond.map_or(0.0, |b| b.opening_n),
             bond.map_or(0.0, |b| b.opening_t.norm()),
             f64::from(contact.law),
-        ];
+        ]);
         push(&mut part, &values);
+        for (column, body) in part.numbers.iter_mut().zip(contact.bodies) {
+            column.push(s.bodies.id[body as usize] as i64);
+        }
     }
     part
 }

@@ -206,7 +206,7 @@ fn known(case: &Case, layer: &ThirdBodySpec) -> Result<(), Fault> {
 }
 
 /// Columns and figures that a run has anyway.
-const RESERVED: [&str; 52] = [
+const RESERVED: [&str; 55] = [
     "step",
     "time",
     "cycle",
@@ -229,7 +229,10 @@ const RESERVED: [&str; 52] = [
     "adhesion",
     "viscous",
     "correction",
+    "scheme",
+    "carried",
     "external_work",
+    "initial_kinetic",
     "residual",
     "worn_first",
     "worn_third",

@@ -77,8 +77,11 @@ impl<S: Space> Simulation<S> {
             } else {
                 0.0
             };
+            // Solvers that do not put a sliding contact on its bound leave it within their tolerance.
+            let bound = form.friction * (solution.unilateral_n + form.tension) + form.cohesion;
             Site {
                 before: *before,
+                slides: solution.unilateral_t.norm() >= (1.0 - 1e-6) * bound,
                 average,
                 adheres: form.tension > 0.0,
                 lost,

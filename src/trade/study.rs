@@ -327,40 +327,43 @@ impl Study {
         let failure: Mutex<Option<TradeError>> = Mutex::new(None);
         let jobs = shared.lock().map_or(1, |s| s.0.jobs);
         std::thread::scope(|scope| {
-            for _ in 0..jobs {
-                scope.spawn(|| {
-                    while let Some(job) = take(&shared, &reference, stop) {
-                        let Job {
-                            setting,
-                            seed,
-                            sets,
-                            name,
-                            expected,
-                            bound,
-                            launcher,
-                        } = job;
-                        watch(&Event::Begins(&name, seed, expected));
-                        let ended = launcher.run(&sets, seed, deadline, bound, stop);
-                        let Ok(mut guard) = shared.lock() else { return };
-                        match ended {
-                            Ok(Ended::Finished(run)) => {
-                                watch(&Event::Ended(&name, seed, &run));
-                                guard.0.fresh += 1;
-                                guard.0.done.insert((setting, seed), run);
-                            }
-                            Ok(Ended::Interrupted) => {
-                                guard.0.left_out.insert(setting);
-                            }
-                            Err(e) => {
-                                guard.1.clear();
-                                if let Ok(mut failure) = failure.lock() {
-                                    *failure = Some(e);
-                                }
+            let work = || {
+                while let Some(job) = take(&shared, &reference, stop) {
+                    let Job {
+                        setting,
+                        seed,
+                        sets,
+                        name,
+                        expected,
+                        bound,
+                        launcher,
+                    } = job;
+                    watch(&Event::Begins(&name, seed, expected));
+                    let ended = launcher.run(&sets, seed, deadline, bound, stop);
+                    let Ok(mut guard) = shared.lock() else { return };
+                    match ended {
+                        Ok(Ended::Finished(run)) => {
+                            watch(&Event::Ended(&name, seed, &run));
+                            guard.0.fresh += 1;
+                            guard.0.done.insert((setting, seed), run);
+                        }
+                        Ok(Ended::Interrupted) => {
+                            guard.0.left_out.insert(setting);
+                        }
+                        Err(e) => {
+                            guard.1.clear();
+                            if let Ok(mut failure) = failure.lock() {
+                                *failure = Some(e);
                             }
                         }
                     }
-                });
+                }
+            };
+            for _ in 1..jobs {
+                // Fewer side by side where the system gives no more threads.
+                let _ = std::thread::Builder::new().spawn_scoped(scope, work);
             }
+            work();
         });
         match failure.into_inner() {
             Ok(Some(e)) => Err(e),

@@ -1,5 +1,12 @@
 //! What a run leaves behind, through the program: the files of the contract and how they agree.
 
+#[path = "results/contacts.rs"]
+mod contacts;
+#[path = "results/ledger.rs"]
+mod ledger;
+#[path = "results/streams.rs"]
+mod streams;
+
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -62,6 +69,7 @@ fn a_run_leaves_the_files_of_the_contract() {
         "fracture",
         "friction",
         "impact",
+        "correction",
         "external_work",
         "residual",
     ] {

@@ -1,6 +1,7 @@
 //! `fretwork law certify`.
 
-use super::super::{Failure, PluginArgs, say};
+use super::super::output::answer;
+use super::super::{Failure, PluginArgs};
 use super::{all_used, named, values};
 use crate::certify::{Certificate, Outcome, certify as test};
 use crate::laws::{Plugin, SearchPath};
@@ -54,10 +55,10 @@ pub fn certify(args: &CertifyArgs) -> Result<(), Failure> {
     }
     all_used(&args.sets, &used, &laws.iter().collect::<Vec<_>>())?;
     if args.json {
-        say(&serde_json::to_string_pretty(&certificates).unwrap_or_default());
+        answer(&serde_json::to_string_pretty(&certificates).unwrap_or_default())?;
     } else {
         for certificate in &certificates {
-            say(&table(certificate));
+            answer(&table(certificate))?;
         }
     }
     let broken: Vec<String> = certificates

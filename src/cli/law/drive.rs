@@ -1,6 +1,7 @@
 //! `fretwork law drive`: one contact on the bench.
 
-use super::super::{Failure, PluginArgs, say};
+use super::super::output::{answer, report};
+use super::super::{Failure, PluginArgs};
 use super::{all_used, named, values};
 use crate::laws::bench::{Answer, Bench, Motion};
 use crate::laws::{AreaRule, BondRule, Interface, Kind, Loaded, Plugin};
@@ -128,11 +129,10 @@ pub fn drive(args: &DriveArgs) -> Result<(), Failure> {
         draw(file, &rows, args)?;
     }
     if args.json {
-        say(&serde_json::to_string_pretty(&rows).unwrap_or_default());
+        answer(&serde_json::to_string_pretty(&rows).unwrap_or_default())
     } else {
-        say(&text(&rows));
+        answer(&text(&rows))
     }
-    Ok(())
 }
 
 fn compose(args: &DriveArgs) -> Result<Interface, Failure> {
@@ -384,10 +384,10 @@ fn by_force(bench: &mut Bench, args: &DriveArgs) -> Result<Vec<Row>, Failure> {
         }
         if !found {
             let last = rows[rows.len() - 1];
-            eprintln!(
+            report(&format!(
                 "the bond does not carry {target:.6e} Pa: it failed between {:.6e} and {target:.6e} Pa",
                 last.traction_n.hypot(last.traction_t1)
-            );
+            ));
             break;
         }
         for _ in 0..60 {

@@ -1,6 +1,7 @@
 //! `fretwork law new`: a law to fill in, that builds and is certified as it stands.
 
-use super::super::{Failure, say};
+use super::super::Failure;
+use super::super::output::inform;
 use crate::laws::Kind;
 use crate::laws::search::{file_name, name_is_valid};
 use clap::{Args, ValueEnum};
@@ -163,7 +164,7 @@ pub fn new(args: &NewArgs) -> Result<(), Failure> {
             (build, folder.join("target/release"))
         }
     };
-    say(&format!(
+    inform(&format!(
         "{here} holds the {kind} law `{name}`; fill in the two functions marked (1) and (2)\n\
          build    {build}\n\
          certify  fretwork law certify {}\n\

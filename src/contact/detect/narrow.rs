@@ -138,6 +138,8 @@ impl<'a, S: Space> Narrow<'a, S> {
             pressed: 0.0,
             closing: false,
             beyond: false,
+            slides: false,
+            friction_work: 0.0,
         };
         self.admit(network, found, old);
     }
@@ -212,6 +214,8 @@ impl<'a, S: Space> Narrow<'a, S> {
                 pressed: 0.0,
                 closing: false,
                 beyond: false,
+                slides: false,
+                friction_work: 0.0,
             };
             self.admit(network, found, matched);
         }
@@ -253,6 +257,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                 found.impulse = old.impulse;
                 found.moment = old.moment;
                 found.born = old.born;
+                found.friction_work = old.friction_work;
                 found.pressed = old.pressed;
                 found.slot = old.slot;
                 found.broken = old.broken;

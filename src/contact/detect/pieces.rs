@@ -161,6 +161,8 @@ impl<S: Space> Narrow<'_, S> {
                 pressed: 0.0,
                 closing: false,
                 beyond: false,
+                slides: false,
+                friction_work: 0.0,
             };
             self.admit(network, found, before);
         }
@@ -251,6 +253,8 @@ mod tests {
             pressed: 0.0,
             closing: false,
             beyond: false,
+            slides: false,
+            friction_work: 0.0,
         }
     }
 

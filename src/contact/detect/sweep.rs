@@ -428,6 +428,8 @@ impl<'a, S: Space> Sweep<'a, S> {
                 moment: S::Spin::null(),
                 born: self.time,
                 pressed: 0.0,
+                slides: false,
+                friction_work: 0.0,
                 closing: true,
                 beyond: true,
             });

@@ -1,5 +1,6 @@
 //! Tables of events: columns that grow by a value an event, held back until the file is flushed.
 
+use super::declare::MANY;
 use super::store::{Growing, ResultsError, Store};
 use crate::record::statistics::Column;
 
@@ -23,7 +24,7 @@ impl Events {
         store.group(group)?;
         let grown = columns.iter().map(|c| {
             let path = format!("{group}/{}", c.name);
-            store.growing::<f64>(&path, 1, c.unit, c.doc)
+            store.growing::<f64>(&path, 1, (c.unit, c.doc), MANY)
         });
         Ok(Self {
             columns: grown.collect::<Result<_, _>>()?,

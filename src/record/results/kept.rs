@@ -95,7 +95,7 @@ impl Kept {
             return Err(fault("it has other columns than its case gives".to_owned()));
         }
         for (place, (grown, (rows, sum))) in grown.iter().zip(rows).enumerate() {
-            let name = grown.path.trim_start_matches('/');
+            let name = grown.name();
             let shape = self.shape(name).map_err(fault)?;
             let width = shape.get(1).copied().unwrap_or(1);
             let rows = usize::try_from(*rows).unwrap_or(usize::MAX);

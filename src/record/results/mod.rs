@@ -1,4 +1,4 @@
-//! `results.h5`: one self-contained file, readable while it is written and after a crash.
+//! `results.h5`: one self-contained file, readable while it is written and after a crash, see [`store`].
 //!
 //! ```text
 //! /            attributes: program, version, case, seed, dimension
@@ -12,7 +12,9 @@
 //! /VTKHDF      the grains' view, for ParaView             contacts.vtkhdf, bodies.vtkhdf: links to the others
 //! ```
 
+mod declare;
 mod events;
+mod growth;
 mod kept;
 mod reader;
 pub mod shapes;
@@ -26,6 +28,7 @@ pub use view::{Cells, Part};
 
 use super::statistics::Column;
 use super::summary::PluginStamp;
+use declare::MANY;
 use events::Events;
 use shapes::Shaped;
 use std::path::Path;
@@ -54,6 +57,8 @@ pub struct Header {
     pub statistics: Vec<Column>,
     /// Fields of grains, contacts and bodies.
     pub fields: [Vec<Column>; 3],
+    /// Fields of them that are whole numbers.
+    pub numbers: [Vec<Column>; 3],
     /// Columns of the bonds that break; empty where nothing bonds.
     pub broken: Vec<Column>,
     /// Columns of debris; empty without a circuit.
@@ -65,10 +70,10 @@ pub struct Header {
 /// Most rows of statistics, or events, that are held back, however short the time since the last were written.
 const MOST: usize = 8192;
 
-/// Rows are made safe no more often than this, so that a reader follows closely, and not all the time is spent on it.
-const PACE: Duration = Duration::from_secs(1);
+/// The file is flushed no more often than this.
+const PACE: Duration = Duration::from_secs(2);
 
-/// And no more often than takes this part of the time: a flush goes through all datasets, and disks differ.
+/// And no more often than takes one part in so many of the time: files and disks differ.
 const PART: u32 = 20;
 
 /// The checkpoints, written in turn.
@@ -86,7 +91,7 @@ pub struct Results {
     held_grains: Vec<f64>,
     views: Vec<View>,
     checkpoints: Vec<Slot>,
-    /// When rows were made safe, and how long that took.
+    /// When the file was flushed, and how long that took.
     flushed: Option<(Instant, Duration)>,
 }
 
@@ -110,24 +115,25 @@ impl Results {
         }
         store.integer_attribute("/", "seed", &[header.seed as i64])?;
         store.integer_attribute("/", "dimension", &[header.dimension as i64])?;
-        store.texts("/case", &[&header.case_text])?;
+        let doc = "the case as it was run, changes of the command line applied";
+        store.texts("/case", &[&header.case_text], doc)?;
         store.group("/materials")?;
         for (name, text) in &header.materials {
-            store.texts(&format!("/materials/{name}"), &[text])?;
+            store.texts(&format!("/materials/{name}"), &[text], "the material file")?;
         }
         store.group("/plugins")?;
         type Get = fn(&PluginStamp) -> &str;
-        let columns: [(&str, Get); 5] = [
-            ("kind", |p| &p.kind),
-            ("name", |p| &p.name),
-            ("version", |p| &p.version),
-            ("sha256", |p| &p.sha256),
-            ("path", |p| &p.path),
+        let columns: [(&str, &str, Get); 5] = [
+            ("kind", "kind of the law", |p| &p.kind),
+            ("name", "its name", |p| &p.name),
+            ("version", "its version", |p| &p.version),
+            ("sha256", "SHA-256 of its library", |p| &p.sha256),
+            ("path", "where its library was found", |p| &p.path),
         ];
-        for (name, get) in columns {
+        for (name, doc, get) in columns {
             let texts: Vec<&str> = header.plugins.iter().map(get).collect();
             if !texts.is_empty() {
-                store.texts(&format!("/plugins/{name}"), &texts)?;
+                store.texts(&format!("/plugins/{name}"), &texts, doc)?;
             }
         }
         header.shapes.write(&mut store, header.dimension)?;
@@ -137,8 +143,8 @@ impl Results {
             statistics.push(store.growing::<f64>(
                 &format!("/statistics/{}", c.name),
                 1,
-                c.unit,
-                c.doc,
+                (c.unit, c.doc),
+                MANY,
             )?);
         }
         if !header.broken.is_empty() || !header.debris.is_empty() {
@@ -149,7 +155,7 @@ impl Results {
         let doc = "identities of the grains of all pieces, one piece after another";
         let debris_grains = match header.debris.is_empty() {
             true => None,
-            false => Some(store.growing::<f64>("/events/debris/grains", 1, "", doc)?),
+            false => Some(store.growing::<f64>("/events/debris/grains", 1, ("", doc), MANY)?),
         };
         store.group("/views")?;
         let bodies = if header.dimension == 2 {
@@ -158,17 +164,15 @@ impl Results {
             Cells::Polygons
         };
         let mut views = Vec::new();
-        for (name, cells, fields) in [
-            ("grains", Cells::Vertices, &header.fields[0]),
-            ("contacts", Cells::Lines, &header.fields[1]),
-            ("bodies", bodies, &header.fields[2]),
-        ] {
-            views.push(View::declare(
-                &mut store,
-                &format!("/views/{name}"),
-                cells,
-                fields,
-            )?);
+        let all = header.fields.iter().zip(&header.numbers);
+        let kinds = [
+            ("grains", Cells::Vertices),
+            ("contacts", Cells::Lines),
+            ("bodies", bodies),
+        ];
+        for ((name, cells), (fields, numbers)) in kinds.into_iter().zip(all) {
+            let path = format!("/views/{name}");
+            views.push(View::declare(&mut store, &path, cells, (fields, numbers))?);
         }
         store.link("/VTKHDF", "/views/grains")?;
         store.group("/checkpoints")?;
@@ -198,8 +202,7 @@ impl Results {
         let Some(store) = &mut self.store else {
             return Ok(());
         };
-        store.flush()?;
-        store.rename(path)
+        store.publish(path)
     }
 
     /// Rows of each growing dataset and the CRC-32 of their bytes, with those that are held back: these are written first.
@@ -219,12 +222,21 @@ impl Results {
     /// # Errors
     /// The file cannot be written.
     pub fn checkpoint(&mut self, number: u64, bytes: &[u8]) -> Result<(), ResultsError> {
-        let slot = &mut self.checkpoints[(number % 2) as usize];
         let Some(store) = &mut self.store else {
             return Ok(());
         };
+        let clock = Instant::now();
         // The rows that it counts must be there before it is: without its first word it is none.
-        store.write(slot, bytes, 8)
+        store.write(self.checkpoints[(number % 2) as usize], bytes, 8)?;
+        self.flushed = Some((Instant::now(), clock.elapsed()));
+        Ok(())
+    }
+
+    /// Keeps a checkpoint for the end of the file, see [`Results::finish`].
+    pub fn keep(&mut self, number: u64, bytes: &[u8]) {
+        if let Some(store) = &mut self.store {
+            store.keep(self.checkpoints[(number % 2) as usize], bytes);
+        }
     }
 
     /// Appends a row of statistics.
@@ -257,16 +269,21 @@ impl Results {
         Ok(())
     }
 
-    /// Writes what is held back if it is much, or if enough time has passed.
+    /// Flushes the file if enough time has passed; many rows are not held back until then.
     fn write_in_time(&mut self, rows: usize) -> Result<(), ResultsError> {
+        if rows >= MOST {
+            self.write_held()?;
+        }
         let rested = |(last, cost): (Instant, Duration)| last.elapsed() >= PACE.max(cost * PART);
-        if rows >= MOST || self.flushed.is_none_or(rested) {
-            self.write_statistics()?;
+        let full = self.store.as_ref().is_some_and(Store::full);
+        if full || self.flushed.is_none_or(rested) {
+            self.flush()?;
         }
         Ok(())
     }
 
-    fn write_statistics(&mut self) -> Result<(), ResultsError> {
+    /// Makes all that was appended visible and safe.
+    fn flush(&mut self) -> Result<(), ResultsError> {
         self.write_held()?;
         let clock = Instant::now();
         let flushed = self.store.as_mut().map_or(Ok(()), Store::flush);
@@ -302,7 +319,7 @@ impl Results {
         for (view, part) in self.views.iter_mut().zip(parts) {
             view.append(store, time, part)?;
         }
-        self.write_statistics()
+        self.write_in_time(0)
     }
 
     /// Ends the file and writes its companions beside it.
@@ -310,13 +327,10 @@ impl Results {
     /// # Errors
     /// A file cannot be written.
     pub fn finish(&mut self, folder: &Path) -> Result<(), ResultsError> {
-        self.write_statistics()?;
-        let Some(mut store) = self.store.take() else {
+        self.write_held()?;
+        let Some(store) = self.store.take() else {
             return Ok(());
         };
-        for view in &self.views {
-            view.finish(&mut store)?;
-        }
         store.close()?;
         for name in ["contacts", "bodies"] {
             let path = folder.join(format!("{name}.vtkhdf"));

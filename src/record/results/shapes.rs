@@ -94,37 +94,119 @@ impl Shaped {
         let of = |get: fn(&ShapedBody) -> f64| b.iter().map(get).collect::<Vec<f64>>();
         let id: Vec<i64> = b.iter().map(|b| b.id as i64).collect();
         let inertia: Vec<f64> = b.iter().flat_map(|b| b.inertia).collect();
-        store.numbers("/shapes/bodies/id", 1, &id, "")?;
-        store.numbers("/shapes/bodies/mass", 1, &of(|b| b.mass), mass)?;
-        store.numbers("/shapes/bodies/density", 1, &of(|b| b.density), "kg/m^3")?;
-        store.numbers("/shapes/bodies/length", 1, &of(|b| b.length), "m")?;
-        store.numbers("/shapes/bodies/inertia", 9, &inertia, moment)?;
+        store.numbers("/shapes/bodies/id", 1, &id, ("", "identity of the grain"))?;
+        store.numbers(
+            "/shapes/bodies/mass",
+            1,
+            &of(|b| b.mass),
+            (mass, "its mass"),
+        )?;
+        store.numbers(
+            "/shapes/bodies/density",
+            1,
+            &of(|b| b.density),
+            ("kg/m^3", "density of its material"),
+        )?;
+        store.numbers(
+            "/shapes/bodies/length",
+            1,
+            &of(|b| b.length),
+            ("m", "the length that makes its spin a velocity"),
+        )?;
+        store.numbers(
+            "/shapes/bodies/inertia",
+            9,
+            &inertia,
+            (
+                moment,
+                "its moments of inertia in its own axes, row by row; in the plane the first",
+            ),
+        )?;
         let body: Vec<i64> = self.balls.iter().map(|b| b.body as i64).collect();
         let radius: Vec<f64> = self.balls.iter().map(|b| b.radius).collect();
         let offset: Vec<f64> = self.balls.iter().flat_map(|b| b.offset).collect();
-        store.numbers("/shapes/balls/body", 1, &body, "")?;
-        store.numbers("/shapes/balls/radius", 1, &radius, "m")?;
-        store.numbers("/shapes/balls/offset", 3, &offset, "m")?;
+        store.numbers(
+            "/shapes/balls/body",
+            1,
+            &body,
+            ("", "identity of the grain that the ball belongs to"),
+        )?;
+        store.numbers(
+            "/shapes/balls/radius",
+            1,
+            &radius,
+            ("m", "radius of the ball"),
+        )?;
+        store.numbers(
+            "/shapes/balls/offset",
+            3,
+            &offset,
+            (
+                "m",
+                "from the centre of the grain to that of the ball, in axes of the grain",
+            ),
+        )?;
         let p = &self.pieces;
         let whole = |get: fn(&ShapedPiece) -> i64| p.iter().map(get).collect::<Vec<i64>>();
         let of = |get: fn(&ShapedPiece) -> f64| p.iter().map(get).collect::<Vec<f64>>();
         let offset: Vec<f64> = p.iter().flat_map(|p| p.offset).collect();
         let corners = whole(|p| p.corners.len() as i64);
         let faces = whole(|p| p.faces.len() as i64);
-        store.numbers("/shapes/pieces/body", 1, &whole(|p| p.body as i64), "")?;
-        store.numbers("/shapes/pieces/rounding", 1, &of(|p| p.rounding), "m")?;
-        store.numbers("/shapes/pieces/size", 1, &of(|p| p.size), "m")?;
-        store.numbers("/shapes/pieces/offset", 3, &offset, "m")?;
-        store.numbers("/shapes/pieces/corners", 1, &corners, "")?;
-        store.numbers("/shapes/pieces/faces", 1, &faces, "")?;
+        store.numbers(
+            "/shapes/pieces/body",
+            1,
+            &whole(|p| p.body as i64),
+            ("", "identity of the grain that the convex piece belongs to"),
+        )?;
+        store.numbers(
+            "/shapes/pieces/rounding",
+            1,
+            &of(|p| p.rounding),
+            ("m", "radius of its rounded edges"),
+        )?;
+        store.numbers(
+            "/shapes/pieces/size",
+            1,
+            &of(|p| p.size),
+            ("m", "radius of the ball (2D: disk) of its volume"),
+        )?;
+        store.numbers(
+            "/shapes/pieces/offset",
+            3,
+            &offset,
+            (
+                "m",
+                "from the centre of the grain to that of the piece, in axes of the grain",
+            ),
+        )?;
+        store.numbers(
+            "/shapes/pieces/corners",
+            1,
+            &corners,
+            ("", "number of its corners"),
+        )?;
+        store.numbers(
+            "/shapes/pieces/faces",
+            1,
+            &faces,
+            ("", "number of its faces"),
+        )?;
         let places = p.iter().flat_map(|p| p.corners.iter().flatten().copied());
-        store.numbers("/shapes/corners", 3, &places.collect::<Vec<f64>>(), "m")?;
+        store.numbers(
+            "/shapes/corners",
+            3,
+            &places.collect::<Vec<f64>>(),
+            (
+                "m",
+                "corners of all pieces, one piece after another, from the centre of the piece",
+            ),
+        )?;
         let mut listed: Vec<i64> = Vec::new();
         for face in p.iter().flat_map(|p| &p.faces) {
             listed.push(face.len() as i64);
             listed.extend(face.iter().map(|c| i64::from(*c)));
         }
-        store.numbers("/shapes/faces", 1, &listed, "")
+        store.numbers("/shapes/faces", 1, &listed, ("", "faces of all pieces: the number of corners of a face, then these, counted in their piece from 0"))
     }
 
     /// Reads them; none where the file has none.

@@ -1,9 +1,24 @@
-//! The only file of this folder, with `reader.rs` and `kept.rs`, that knows the HDF5 crate: growing datasets through its SWMR writer, whose files can
-//! be read up to the last flush after a crash.
+//! The file of results: declared once, then growing by rows that are kept in memory and written by time.
+//!
+//! While the file is small, it is never changed where it stands: a copy beside it gets the new rows, is synced, and takes
+//! its name. So whatever has the name is whole at any moment, and a flush takes one `fdatasync`. Beyond [`LARGE`] copies would
+//! cost more than they save, and the file grows in place by HDF5's single-writer protocol ([`super::growth`]), whose
+//! flush syncs once a dataset.
+//!
+//! This file, with `growth.rs`, `reader.rs` and `kept.rs`, is all of this folder that knows the HDF5 crate.
 
-use hdf5::swmr::SwmrFileWriter;
-use hdf5::{DatatypeMessage, FileLocking, H5File, H5Type};
+use super::declare::group;
+use super::growth::Growth;
+use hdf5::H5File;
 use std::path::{Path, PathBuf};
+
+/// A file of so many bytes is copied no more, and grows in place,
+const LARGE: u64 = 64 << 20;
+/// unless this variable of the environment says another number: where disks are far away copies cost more.
+const LARGE_FROM: &str = "FRETWORK_COPY_LIMIT";
+
+/// Rows of so many bytes are not kept in memory until the next flush.
+const MOST_HELD: usize = 8 << 20;
 
 /// Why results cannot be written, or those of a run that was stopped not be read.
 #[derive(Debug, thiserror::Error)]
@@ -47,8 +62,7 @@ pub struct Growing {
 pub struct Grown {
     /// Its path.
     pub path: String,
-    index: usize,
-    /// Rows so far.
+    /// Rows so far, with those that are kept in memory.
     pub rows: u64,
     /// CRC-32 of their bytes.
     pub sum: u32,
@@ -56,295 +70,207 @@ pub struct Grown {
     pub width: u64,
     /// Whether they are whole numbers.
     pub whole: bool,
+    /// Numbers of the last rows, as bits, that are not in the file yet.
+    pub(super) held: Vec<u64>,
+}
+
+impl Grown {
+    /// Its name from the root on, as readers give it.
+    pub fn name(&self) -> &str {
+        self.path.trim_start_matches('/')
+    }
+
+    /// Rows in the file.
+    pub(super) fn written(&self) -> u64 {
+        self.rows - self.held.len() as u64 / self.width
+    }
+
+    /// A shape or place of so many rows.
+    pub(super) fn shape(&self, rows: u64, width: u64) -> Vec<u64> {
+        match self.width {
+            1 => vec![rows],
+            _ => vec![rows, width],
+        }
+    }
 }
 
 /// Bytes that are written over again and again.
 #[derive(Clone, Copy, Debug)]
 pub struct Slot {
-    index: usize,
+    /// Its place in [`Store::slots`].
+    place: usize,
+}
+
+/// What is known of a slot.
+#[derive(Debug, Default)]
+struct Bytes {
+    path: String,
+    /// Bytes that the file has room for.
     size: u64,
+    /// What is not in the file yet.
+    held: Option<Vec<u8>>,
+}
+
+impl Bytes {
+    fn name(&self) -> &str {
+        self.path.trim_start_matches('/')
+    }
 }
 
 /// An HDF5 file being written.
 pub struct Store {
-    writer: SwmrFileWriter,
-    path: PathBuf,
+    /// Where it is written before it takes its name,
+    part: PathBuf,
+    /// and its name, once it has one.
+    name: Option<PathBuf>,
+    /// The file, while things are declared.
+    draft: Option<H5File>,
+    /// The file, once it grows in place.
+    growth: Option<Growth>,
     grown: Vec<Grown>,
+    slots: Vec<Bytes>,
+    /// Attributes of groups that are not in the file yet: group, name, value.
+    attributes: Vec<(String, String, i64)>,
+    /// Bytes of the rows kept in memory.
+    held: usize,
+    /// From so many bytes on the file grows in place.
+    large: u64,
 }
 
 impl std::fmt::Debug for Store {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Store")
-            .field("path", &self.path)
+            .field("path", &self.path())
             .finish_non_exhaustive()
     }
 }
 
 impl Store {
-    /// Creates the file; what is declared until [`Store::start`] is visible to readers while it grows.
+    /// Creates the file, for things to be declared until [`Store::start`]. It has no name but `part` before
+    /// [`Store::publish`].
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn create(path: &Path) -> Result<Self, ResultsError> {
-        let writer = SwmrFileWriter::create_with_locking(path, FileLocking::BestEffort);
+    pub fn create(part: &Path) -> Result<Self, ResultsError> {
+        let file = H5File::options().best_effort_locking().create(part);
         Ok(Self {
-            writer: named(path, writer)?,
-            path: path.to_owned(),
+            part: part.to_owned(),
+            name: None,
+            draft: Some(named(part, file)?),
+            growth: None,
             grown: Vec::new(),
+            slots: Vec::new(),
+            attributes: Vec::new(),
+            held: 0,
+            large: std::env::var(LARGE_FROM)
+                .ok()
+                .and_then(|n| n.parse().ok())
+                .unwrap_or(LARGE),
         })
     }
 
-    /// Gives the file another name; one that stands there is replaced. Either the one or the other is there at any
-    /// moment.
-    ///
-    /// # Errors
-    /// The file cannot be renamed.
-    pub fn rename(&mut self, path: &Path) -> Result<(), ResultsError> {
-        named(path, std::fs::rename(&self.path, path))?;
-        path.clone_into(&mut self.path);
-        // The name is safe when its folder is; not every system can say so of a folder.
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
-        if let Ok(folder) = std::fs::File::open(folder.unwrap_or(Path::new("."))) {
-            let _ = folder.sync_all();
-        }
-        Ok(())
+    /// Where the file stands now.
+    fn path(&self) -> &Path {
+        self.name.as_deref().unwrap_or(&self.part)
     }
 
-    fn named<T, E: std::fmt::Display>(&self, result: Result<T, E>) -> Result<T, ResultsError> {
-        named(&self.path, result)
+    pub(super) fn declaring(&self) -> Result<&H5File, ResultsError> {
+        self.named(self.draft.as_ref().ok_or("all was declared before"))
     }
 
-    /// Makes a group; its parent must exist.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn group(&mut self, path: &str) -> Result<(), ResultsError> {
-        let (parent, name) = split(path);
-        let made = self.writer.create_group(parent, name);
-        self.named(made)
-    }
-
-    /// A second name for a group.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn link(&mut self, path: &str, target: &str) -> Result<(), ResultsError> {
-        let (parent, name) = split(path);
-        let made = self.writer.create_hard_link(parent, name, target);
-        self.named(made)
-    }
-
-    /// A text attribute of a group.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn text_attribute(
-        &mut self,
-        group: &str,
-        name: &str,
-        text: &str,
-    ) -> Result<(), ResultsError> {
-        let made = self.writer.set_group_attr_string(group, name, text);
-        self.named(made)
-    }
-
-    /// A fixed-length ASCII attribute, as VTK wants it.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn ascii_attribute(
-        &mut self,
-        group: &str,
-        name: &str,
-        text: &str,
-    ) -> Result<(), ResultsError> {
-        let datatype = DatatypeMessage::fixed_string(text.len() as u32);
-        let made =
-            self.writer
-                .set_group_attr_typed(group, name, datatype, text.as_bytes().to_vec());
-        self.named(made)
-    }
-
-    /// Whole numbers as an attribute: a scalar when there is one.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn integer_attribute(
-        &mut self,
-        group: &str,
-        name: &str,
-        values: &[i64],
-    ) -> Result<(), ResultsError> {
-        let made = match values {
-            [one] => self.writer.set_group_attr_numeric::<i64>(group, name, one),
-            many => {
-                self.writer
-                    .set_group_attr_array::<i64>(group, name, &[many.len() as u64], many)
-            }
-        };
-        self.named(made)
-    }
-
-    /// A dataset of texts, written once.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn texts(&mut self, path: &str, texts: &[&str]) -> Result<(), ResultsError> {
-        let (group, _) = split(path);
-        let made = self
-            .writer
-            .write_string_dataset(path.trim_start_matches('/'), texts);
-        let index = self.named(made)?;
-        self.place(group, index)
-    }
-
-    fn place(&mut self, group: &str, index: usize) -> Result<(), ResultsError> {
-        if group == "/" {
-            return Ok(());
-        }
-        let placed = self.writer.assign_dataset_to_group(group, index);
-        self.named(placed)
-    }
-
-    /// A dataset of rows of `width` numbers, written once; none where there is no row.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn numbers<T: H5Type + Number>(
-        &mut self,
-        path: &str,
-        width: u64,
-        values: &[T],
-        unit: &str,
-    ) -> Result<(), ResultsError> {
-        if values.is_empty() {
-            return Ok(());
-        }
-        let rows = values.len() as u64 / width;
-        let dims = if width == 1 {
-            vec![rows]
-        } else {
-            vec![rows, width]
-        };
-        let name = path.trim_start_matches('/');
-        let made = self.writer.write_dataset::<T>(name, &dims, values);
-        let index = self.named(made)?;
-        if !unit.is_empty() {
-            let set = self.writer.set_dataset_attr_string(index, "unit", unit);
-            self.named(set)?;
-        }
-        self.place(split(path).0, index)
-    }
-
-    /// A growing dataset of rows of `width` numbers (1: a plain column), with its unit and a line of
-    /// explanation.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn growing<T: H5Type + Number>(
-        &mut self,
-        path: &str,
-        width: u64,
-        unit: &str,
-        doc: &str,
-    ) -> Result<Growing, ResultsError> {
-        const CHUNK: u64 = 2048;
-        let (group, _) = split(path);
-        let shape = |rows: u64| {
-            if width == 1 {
-                vec![rows]
-            } else {
-                vec![rows, width]
-            }
-        };
-        let most = if width == 1 {
-            vec![None]
-        } else {
-            vec![None, Some(width)]
-        };
-        let made = self.writer.create_grid_dataset_with_max(
-            path.trim_start_matches('/'),
-            T::hdf5_type(),
-            &shape(0),
-            &most,
-            &shape(CHUNK),
-            None,
-        );
-        let index = self.named(made)?;
-        for (name, text) in [("unit", unit), ("doc", doc)] {
-            if !text.is_empty() {
-                let set = self.writer.set_dataset_attr_string(index, name, text);
-                self.named(set)?;
-            }
-        }
-        self.place(group, index)?;
+    pub(super) fn add_grown(&mut self, path: &str, width: u64, whole: bool) -> Growing {
         self.grown.push(Grown {
             path: path.to_owned(),
-            index,
             rows: 0,
             sum: 0,
             width,
-            whole: T::WHOLE,
+            whole,
+            held: Vec::new(),
         });
-        Ok(Growing {
+        Growing {
             place: self.grown.len() - 1,
-        })
-    }
-
-    /// Bytes that can be written over, with a line of explanation.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn slot(&mut self, path: &str, doc: &str) -> Result<Slot, ResultsError> {
-        const CHUNK: u64 = 1 << 15;
-        let (group, _) = split(path);
-        let made = self.writer.create_grid_dataset_with_max(
-            path.trim_start_matches('/'),
-            u8::hdf5_type(),
-            &[0],
-            &[None],
-            &[CHUNK],
-            None,
-        );
-        let index = self.named(made)?;
-        let set = self.writer.set_dataset_attr_string(index, "doc", doc);
-        self.named(set)?;
-        self.place(group, index)?;
-        Ok(Slot { index, size: 0 })
-    }
-
-    /// Writes over a slot, its first `seal` bytes last: when these are there, the rest is on the disk, and so is all
-    /// that was appended before. A slot never shrinks: what is longer than the bytes is left from before.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn write(
-        &mut self,
-        slot: &mut Slot,
-        bytes: &[u8],
-        seal: usize,
-    ) -> Result<(), ResultsError> {
-        let length = bytes.len() as u64;
-        if length > slot.size {
-            let grown = self.writer.set_extent(slot.index, &[length]);
-            self.named(grown)?;
-            slot.size = length;
         }
-        let (head, body) = bytes.split_at(seal);
-        let mut open = vec![0; seal];
-        open.extend_from_slice(body);
-        self.write_at(slot, &open)?;
-        self.flush()?;
-        self.write_at(slot, head)?;
-        // A flush would go through all datasets again.
-        let synced = std::fs::File::open(&self.path).and_then(|f| f.sync_data());
-        self.named(synced)
     }
 
-    fn write_at(&mut self, slot: &Slot, bytes: &[u8]) -> Result<(), ResultsError> {
-        let length = bytes.len() as u64;
-        let written = self.writer.write_slice(slot.index, &[0], &[length], bytes);
-        self.named(written)
+    pub(super) fn add_slot(&mut self, path: &str) -> Slot {
+        self.slots.push(Bytes {
+            path: path.to_owned(),
+            ..Bytes::default()
+        });
+        Slot {
+            place: self.slots.len() - 1,
+        }
+    }
+
+    pub(super) fn named<T, E: std::fmt::Display>(
+        &self,
+        result: Result<T, E>,
+    ) -> Result<T, ResultsError> {
+        named(&self.part, result)
+    }
+
+    /// Gives a whole number that is an attribute of a group another value, with the next flush; in a file that grows in
+    /// place when it is closed.
+    pub fn count(&mut self, group: &str, name: &str, value: i64) {
+        let same = |a: &&mut (String, String, i64)| a.0 == group && a.1 == name;
+        match self.attributes.iter_mut().find(same) {
+            Some(known) => known.2 = value,
+            None => self
+                .attributes
+                .push((group.to_owned(), name.to_owned(), value)),
+        }
+    }
+
+    /// Everything is declared.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn start(&mut self) -> Result<(), ResultsError> {
+        let closed = self.draft.take().map_or(Ok(()), H5File::close_no_sync);
+        self.named(closed)
+    }
+
+    /// Gives the file its name, with all that was appended: one that stood there is replaced.
+    ///
+    /// # Errors
+    /// The file cannot be written or renamed.
+    pub fn publish(&mut self, name: &Path) -> Result<(), ResultsError> {
+        self.flush()?;
+        if self.growth.is_none() {
+            self.sync(&self.part)?;
+        }
+        self.take_name(name)?;
+        self.name = Some(name.to_owned());
+        sync_folder(name);
+        Ok(())
+    }
+
+    /// Keeps bytes for a slot: they are written with the next flush, or when the file is closed. A slot never shrinks:
+    /// what is longer than the bytes is left from before.
+    pub fn keep(&mut self, slot: Slot, bytes: &[u8]) {
+        self.slots[slot.place].held = Some(bytes.to_vec());
+    }
+
+    /// Writes over a slot: when this returns, it is on the disk with all that was appended before. At no moment are
+    /// the first `seal` bytes of it in the file without the rest.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&mut self, slot: Slot, bytes: &[u8], seal: usize) -> Result<(), ResultsError> {
+        let Some(growth) = &mut self.growth else {
+            self.keep(slot, bytes);
+            self.flush()?;
+            sync_folder(self.path());
+            return Ok(());
+        };
+        let state = &mut self.slots[slot.place];
+        let name = state.path.trim_start_matches('/');
+        let written = growth
+            .write(&mut self.grown)
+            .and_then(|()| growth.write_over(name, &mut state.size, bytes, seal));
+        self.held = 0;
+        self.named(written)?;
+        self.sync(self.path())
     }
 
     /// The growing datasets, in the order of their declarations.
@@ -357,16 +283,7 @@ impl Store {
         self.grown[dataset.place].rows
     }
 
-    /// Everything is declared: readers may follow from here on.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn start(&mut self) -> Result<(), ResultsError> {
-        let started = self.writer.start_swmr();
-        self.named(started)
-    }
-
-    /// Appends rows; `values` has a whole number of them.
+    /// Appends rows; `values` has a whole number of them. They are kept in memory until the next flush, or until they are many.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -384,32 +301,33 @@ impl Store {
     /// # Errors
     /// The file cannot be written.
     pub fn append_bytes(&mut self, place: usize, bytes: &[u8]) -> Result<(), ResultsError> {
-        let dataset = self.grown[place].clone();
-        let rows = bytes.len() as u64 / (8 * dataset.width);
-        if rows == 0 {
-            return Ok(());
-        }
-        let (start, end) = (dataset.rows, dataset.rows + rows);
-        let plain = dataset.width == 1;
-        let dims = |r: u64| {
-            if plain {
-                vec![r]
-            } else {
-                vec![r, dataset.width]
-            }
-        };
-        let starts = if plain { vec![start] } else { vec![start, 0] };
-        let grown = self.writer.set_extent(dataset.index, &dims(end));
-        self.named(grown)?;
-        let written = self
-            .writer
-            .write_slice(dataset.index, &starts, &dims(rows), bytes);
-        self.named(written)?;
+        let dataset = &mut self.grown[place];
         let mut sum = crc32fast::Hasher::new_with_initial(dataset.sum);
         sum.update(bytes);
-        self.grown[place].sum = sum.finalize();
-        self.grown[place].rows = end;
-        Ok(())
+        dataset.sum = sum.finalize();
+        dataset.rows += bytes.len() as u64 / (8 * dataset.width);
+        let numbers = bytes.as_chunks::<8>().0.iter();
+        dataset.held.extend(numbers.map(|b| u64::from_le_bytes(*b)));
+        self.held += bytes.len();
+        if self.held < MOST_HELD {
+            return Ok(());
+        }
+        match &mut self.growth {
+            // Handed to the system, but not counted in the file before the next flush.
+            Some(growth) => {
+                let written = growth.write(&mut self.grown);
+                self.held = 0;
+                self.named(written)
+            }
+            None if self.name.is_none() => self.flush(),
+            // Half a state must not be seen: it waits for the flush.
+            None => Ok(()),
+        }
+    }
+
+    /// Whether so many rows are kept in memory that they are to be flushed.
+    pub fn full(&self) -> bool {
+        self.held >= MOST_HELD
     }
 
     /// Makes what was appended visible and safe.
@@ -417,19 +335,150 @@ impl Store {
     /// # Errors
     /// The file cannot be written.
     pub fn flush(&mut self) -> Result<(), ResultsError> {
-        let flushed = self.writer.flush();
-        self.named(flushed)
+        if let Some(growth) = &mut self.growth {
+            let written = growth.write(&mut self.grown).and_then(|()| growth.flush());
+            self.held = 0;
+            return self.named(written);
+        }
+        if self.is_settled() {
+            return Ok(());
+        }
+        let flushed = match self.name.clone() {
+            Some(name) => self.replace(&name),
+            None => self.renew(),
+        };
+        if flushed.is_err() && self.name.is_some() {
+            // What has the name is whole.
+            self.growth = None;
+            let _ = std::fs::remove_file(&self.part);
+        }
+        flushed?;
+        self.settle();
+        Ok(())
     }
 
-    /// Closes the file.
+    /// Puts a copy with the new rows in the place of the file.
+    fn replace(&mut self, name: &Path) -> Result<(), ResultsError> {
+        self.named(std::fs::copy(name, &self.part))?;
+        self.renew()?;
+        if self.growth.is_none() {
+            self.sync(&self.part)?;
+        }
+        self.take_name(name)
+    }
+
+    /// Adds what is kept in memory to the file that has not its name; one that is large grows in place from here on.
+    fn renew(&mut self) -> Result<(), ResultsError> {
+        let file = H5File::options().best_effort_locking().open_rw(&self.part);
+        let file = self.named(file)?;
+        let written = self.write_into(&file);
+        // A file that is dropped would be synced, and would say on the terminal what went wrong.
+        let closed = file.close_no_sync();
+        self.named(written.and(closed))?;
+        let size = self.named(std::fs::metadata(&self.part))?.len();
+        if size >= self.large {
+            self.growth = Some(self.named(Growth::begin(&self.part))?);
+        }
+        Ok(())
+    }
+
+    /// Whether all is in the file.
+    fn is_settled(&self) -> bool {
+        let slots = self.slots.iter().all(|s| s.held.is_none());
+        self.held == 0 && slots && self.attributes.is_empty()
+    }
+
+    /// Takes in that all is in the file.
+    fn settle(&mut self) {
+        for dataset in &mut self.grown {
+            dataset.held = Vec::new();
+        }
+        for slot in &mut self.slots {
+            let length = slot.held.take().map_or(0, |b| b.len() as u64);
+            slot.size = slot.size.max(length);
+        }
+        self.attributes.clear();
+        self.held = 0;
+    }
+
+    fn write_into(&self, file: &H5File) -> hdf5::Result<()> {
+        for (path, name, value) in &self.attributes {
+            group(file, path)?.set_attr_numeric::<i64>(name, value)?;
+        }
+        for grown in self.grown.iter().filter(|g| !g.held.is_empty()) {
+            let places = |rows: u64, width: u64| -> Vec<usize> {
+                let shape = grown.shape(rows, width);
+                shape.iter().map(|n| *n as usize).collect()
+            };
+            let (first, count) = (grown.written(), grown.rows - grown.written());
+            let dataset = file.dataset_writer(grown.name())?;
+            dataset.extend(&places(grown.rows, grown.width))?;
+            dataset.write_slice(&places(first, 0), &places(count, grown.width), &grown.held)?;
+        }
+        for slot in &self.slots {
+            let Some(bytes) = &slot.held else {
+                continue;
+            };
+            let dataset = file.dataset_writer(slot.name())?;
+            if bytes.len() as u64 > slot.size {
+                dataset.extend(&[bytes.len()])?;
+            }
+            dataset.write_slice(&[0], &[bytes.len()], bytes)?;
+        }
+        Ok(())
+    }
+
+    fn sync(&self, path: &Path) -> Result<(), ResultsError> {
+        self.named(std::fs::File::open(path).and_then(|f| f.sync_data()))
+    }
+
+    fn take_name(&self, name: &Path) -> Result<(), ResultsError> {
+        named(name, std::fs::rename(&self.part, name))
+    }
+
+    /// Closes the file, with what was appended and kept: it is on the disk when this returns.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn close(self) -> Result<(), ResultsError> {
-        let path = self.path;
-        named(&path, self.writer.close())?;
-        let synced = std::fs::File::open(&path).and_then(|f| f.sync_data());
-        named(&path, synced)
+    pub fn close(mut self) -> Result<(), ResultsError> {
+        if let Some(mut growth) = self.growth.take() {
+            let rows = growth.write(&mut self.grown);
+            let slots = self.slots.iter_mut().try_for_each(|slot| {
+                let held = slot.held.take();
+                let write = |b: Vec<u8>| {
+                    growth.write_slot(slot.path.trim_start_matches('/'), &mut slot.size, &b)
+                };
+                held.map_or(Ok(()), write)
+            });
+            let counts = self
+                .attributes
+                .iter()
+                .try_for_each(|(group, name, value)| growth.count(group, name, *value));
+            let closed = growth.close();
+            self.named(rows.and(slots).and(counts).and(closed))?;
+            self.sync(self.path())?;
+        } else {
+            self.flush()?;
+        }
+        sync_folder(self.path());
+        Ok(())
+    }
+}
+
+impl Drop for Store {
+    fn drop(&mut self) {
+        // Dropped without an end: what was handed to the system stays, and nothing is said on the terminal.
+        if let Some(file) = self.draft.take() {
+            let _ = file.close_no_sync();
+        }
+    }
+}
+
+/// A name is safe when its folder is; not every system can say so of a folder.
+fn sync_folder(path: &Path) {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    if let Ok(folder) = std::fs::File::open(folder.unwrap_or(Path::new("."))) {
+        let _ = folder.sync_all();
     }
 }
 
@@ -465,7 +514,7 @@ pub fn companion(path: &Path, file: &str, target: &str) -> Result<(), ResultsErr
     let write = || -> hdf5::Result<()> {
         let companion = H5File::create(path)?;
         companion.create_external_link("VTKHDF", file, target)?;
-        companion.close()
+        companion.close_no_sync()
     };
     named(path, write())
 }
@@ -475,12 +524,4 @@ fn named<T, E: std::fmt::Display>(path: &Path, result: Result<T, E>) -> Result<T
         path: path.to_owned(),
         reason: e.to_string(),
     })
-}
-
-fn split(path: &str) -> (&str, &str) {
-    match path.rsplit_once('/') {
-        Some(("", name)) => ("/", name),
-        Some((parent, name)) => (parent, name),
-        None => ("/", path),
-    }
 }

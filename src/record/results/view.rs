@@ -2,6 +2,7 @@
 //!
 //! Layout: Kitware, VTKHDF file format, version 2.0 (the four kinds of cells must all be there).
 
+use super::declare::{FEW, MANY};
 use super::store::{Growing, ResultsError, Store};
 use crate::record::statistics::Column;
 
@@ -38,6 +39,8 @@ pub struct Part {
     pub cells: Vec<Vec<i64>>,
     /// One column a field, one value a point (vertices) or cell.
     pub data: Vec<Vec<f64>>,
+    /// The same of whole numbers.
+    pub numbers: Vec<Vec<i64>>,
 }
 
 /// A view in the file.
@@ -50,6 +53,7 @@ pub struct View {
     connectivity: [Growing; 4],
     offsets: [Growing; 4],
     data: Vec<Growing>,
+    whole: Vec<Growing>,
     values: Growing,
     steps: [Growing; 3],
     cell_offsets: Growing,
@@ -68,7 +72,7 @@ impl View {
         store: &mut Store,
         path: &str,
         cells: Cells,
-        fields: &[Column],
+        (fields, numbers): (&[Column], &[Column]),
     ) -> Result<Self, ResultsError> {
         store.group(path)?;
         store.integer_attribute(path, "Version", &[2, 0])?;
@@ -82,45 +86,85 @@ impl View {
         store.group(&format!("{path}/Steps"))?;
         store.group(&format!("{path}/Steps/{place}Offsets"))?;
         store.integer_attribute(&format!("{path}/Steps"), "NSteps", &[0])?;
-        let whole = |store: &mut Store, name: &str, width: u64| {
-            store.growing::<i64>(&format!("{path}/{name}"), width, "", "")
+        let whole = |store: &mut Store, name: &str, width: u64, chunk: usize, doc: &str| {
+            store.growing::<i64>(&format!("{path}/{name}"), width, ("", doc), chunk)
         };
-        let number_of_points = whole(store, "NumberOfPoints", 1)?;
-        let mut numbers = Vec::new();
+        let number_of_points = whole(store, "NumberOfPoints", 1, FEW, "points of each state")?;
+        let mut kinds = Vec::new();
         for kind in KINDS {
             store.group(&format!("{path}/{kind}"))?;
-            let mut one = |name: &str| whole(store, &format!("{kind}/{name}"), 1);
-            numbers.push([
-                one("NumberOfCells")?,
-                one("NumberOfConnectivityIds")?,
-                one("Offsets")?,
-                one("Connectivity")?,
+            let mine = KINDS[cells.kind()] == kind;
+            let many = if mine { MANY } else { FEW };
+            let mut one = |name: &str, chunk: usize, doc: &str| {
+                whole(store, &format!("{kind}/{name}"), 1, chunk, doc)
+            };
+            kinds.push([
+                one("NumberOfCells", FEW, "cells of each state")?,
+                one(
+                    "NumberOfConnectivityIds",
+                    FEW,
+                    "corners of all cells of each state",
+                )?,
+                one(
+                    "Offsets",
+                    many,
+                    "where the corners of each cell begin, and where those of the last end",
+                )?,
+                one(
+                    "Connectivity",
+                    many,
+                    "points of the corners, counted in their state from 0",
+                )?,
             ]);
         }
-        let all: [[Growing; 4]; 4] = [numbers[0], numbers[1], numbers[2], numbers[3]];
+        let all: [[Growing; 4]; 4] = [kinds[0], kinds[1], kinds[2], kinds[3]];
         let steps = [
-            whole(store, "Steps/PartOffsets", 1)?,
-            whole(store, "Steps/NumberOfParts", 1)?,
-            whole(store, "Steps/PointOffsets", 1)?,
-        ];
-        let cell_offsets = whole(store, "Steps/CellOffsets", 4)?;
-        let connectivity_offsets = whole(store, "Steps/ConnectivityIdOffsets", 4)?;
-        let values =
-            store.growing::<f64>(&format!("{path}/Steps/Values"), 1, "s", "time of the state")?;
-        let points = store.growing::<f64>(&format!("{path}/Points"), 3, "m", "coordinates")?;
-        let (mut data, mut data_offsets) = (Vec::new(), Vec::new());
-        for field in fields {
-            data.push(store.growing::<f64>(
-                &format!("{path}/{place}/{}", field.name),
+            whole(
+                store,
+                "Steps/PartOffsets",
                 1,
-                field.unit,
-                field.doc,
-            )?);
+                FEW,
+                "number of the first part of each state",
+            )?,
+            whole(
+                store,
+                "Steps/NumberOfParts",
+                1,
+                FEW,
+                "parts of each state; 1",
+            )?,
+            whole(
+                store,
+                "Steps/PointOffsets",
+                1,
+                FEW,
+                "first point of each state",
+            )?,
+        ];
+        let doc = "first cell of each state, by kind: vertices, lines, polygons, strips";
+        let cell_offsets = whole(store, "Steps/CellOffsets", 4, FEW, doc)?;
+        let doc = "first corner of each state, by kind: vertices, lines, polygons, strips";
+        let connectivity_offsets = whole(store, "Steps/ConnectivityIdOffsets", 4, FEW, doc)?;
+        let doc = ("s", "time of the state");
+        let values = store.growing::<f64>(&format!("{path}/Steps/Values"), 1, doc, FEW)?;
+        let doc = ("m", "coordinates");
+        let points = store.growing::<f64>(&format!("{path}/Points"), 3, doc, MANY)?;
+        let (mut data, mut whole_data, mut data_offsets) = (Vec::new(), Vec::new(), Vec::new());
+        for (k, field) in fields.iter().chain(numbers).enumerate() {
+            let (name, doc) = (
+                format!("{path}/{place}/{}", field.name),
+                (field.unit, field.doc),
+            );
+            if k < fields.len() {
+                data.push(store.growing::<f64>(&name, 1, doc, MANY)?);
+            } else {
+                whole_data.push(store.growing::<i64>(&name, 1, doc, MANY)?);
+            }
             data_offsets.push(store.growing::<i64>(
                 &format!("{path}/Steps/{place}Offsets/{}", field.name),
                 1,
-                "",
-                "",
+                ("", "first value of each state"),
+                FEW,
             )?);
         }
         Ok(Self {
@@ -131,6 +175,7 @@ impl View {
             connectivity: all.map(|n| n[3]),
             offsets: all.map(|n| n[2]),
             data,
+            whole: whole_data,
             values,
             steps,
             cell_offsets,
@@ -159,11 +204,15 @@ impl View {
             .map(|k| store.rows(self.connectivity[k]) as i64)
             .collect();
         let first_point = store.rows(self.points) as i64;
-        for (column, offsets) in self.data.iter().zip(&self.data_offsets) {
+        let columns = self.data.iter().chain(&self.whole);
+        for (column, offsets) in columns.zip(&self.data_offsets) {
             let first = store.rows(*column) as i64;
             store.append(*offsets, &[first])?;
         }
         for (column, values) in self.data.iter().zip(&part.data) {
+            store.append(*column, values)?;
+        }
+        for (column, values) in self.whole.iter().zip(&part.numbers) {
             store.append(*column, values)?;
         }
         store.append(self.points, &part.points)?;
@@ -190,19 +239,17 @@ impl View {
         store.append(self.connectivity_offsets, &first_ids)?;
         store.append(self.values, &[time])?;
         self.count += 1;
+        store.count(&self.steps_path(), "NSteps", self.count);
         Ok(())
     }
 
     /// Takes up the states that the file has.
-    pub fn resume(&mut self, store: &Store) {
+    pub fn resume(&mut self, store: &mut Store) {
         self.count = store.rows(self.values) as i64;
+        store.count(&self.steps_path(), "NSteps", self.count);
     }
 
-    /// Writes the number of states, which readers of a finished file trust.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn finish(&self, store: &mut Store) -> Result<(), ResultsError> {
-        store.integer_attribute(&format!("{}/Steps", self.path), "NSteps", &[self.count])
+    fn steps_path(&self) -> String {
+        format!("{}/Steps", self.path)
     }
 }

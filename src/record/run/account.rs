@@ -6,7 +6,7 @@ use crate::record::results::Results;
 use crate::record::series::Series;
 use crate::record::statistics::Column;
 use crate::record::steady;
-use crate::record::summary::{Base, CircuitSummary, Rates};
+use crate::record::summary::{Base, CircuitSummary, Rates, Wear};
 use crate::report::Paint;
 use crate::scene::build::Dimensional;
 use crate::scene::case::Case;
@@ -234,6 +234,7 @@ impl<S: Space> Account<S> {
             contents: circuit.ledger.contents,
             flows: circuit.ledger.flows,
             residual: circuit.ledger.residual(),
+            rates_unit: Wear::unit(S::D),
             rates: Rates {
                 Qs: flow(&|f, _| f.source.mass),
                 Qa: flow(&|f, _| f.attached.mass),

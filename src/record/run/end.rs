@@ -80,14 +80,15 @@ impl<S: Dimensional> Recorder<'_, S> {
         let cycles = self.jumps.as_ref().map_or(0.0, |j| j.jumped(share));
         let period = self.cycles.as_ref().and_then(|(c, _)| c.period());
         let over = cycles * period.unwrap_or(0.0);
-        let time = (s.time + over).max(f64::MIN_POSITIVE);
         // Nothing leaves a contact that is periodic along the sliding.
         let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
         let closed = s.shapes.periodic.period[along].map(|_| 0.0);
         let load_path = self.cycles.as_ref().map(|_| self.load_path);
         summary.wear = Wear {
-            Qs: self.worn.0 * self.density / time,
-            Qi: self.internal_flow / s.time.max(f64::MIN_POSITIVE),
+            unit: Wear::unit(S::D),
+            start: self.flows.start,
+            Qs: self.flows.source(over) * self.density,
+            Qi: self.flows.internal(),
             Qe: closed,
             Qw: closed,
             volume_first_bodies: self.worn.0,
@@ -136,14 +137,11 @@ impl<S: Dimensional> Recorder<'_, S> {
 
     /// Ends the file of results, and says in it that it is whole where the run came to its end.
     fn end_results(&mut self) -> Result<(), RunError> {
-        let mut ended = Ok(());
         if self.summary.stopped.is_none() {
-            // The rows stand before what says that they are all there.
-            let rows = self.results.rows().map_err(RunError::from);
-            ended = rows.and_then(|_| self.mark(Kind::Ended, Vec::new()));
+            let (number, bytes) = self.keeper.frame(Kind::Ended, Vec::new());
+            self.results.keep(number, &bytes);
         }
-        let closed = self.results.finish(&self.out).map_err(RunError::from);
-        ended.and(closed)
+        Ok(self.results.finish(&self.out)?)
     }
 
     /// Draws the figures.

@@ -2,6 +2,7 @@
 
 use super::account::Account;
 use super::clear;
+use super::flows::Flows;
 use super::jumps::Jumps;
 use super::{Recorder, RunError, unwritable};
 use crate::geometry::space::Space;
@@ -41,7 +42,7 @@ struct Carried<'a, S: Space> {
     slide: f64,
     worn: (f64, f64),
     load_path: f64,
-    internal_flow: f64,
+    flows: Flows,
     iterations: u64,
     couplings: u64,
     solver: Cow<'a, SolverSummary>,
@@ -106,7 +107,7 @@ impl<S: Dimensional> Recorder<'_, S> {
             slide: self.slide,
             worn: self.worn,
             load_path: self.load_path,
-            internal_flow: self.internal_flow,
+            flows: self.flows,
             iterations: self.iterations,
             couplings: self.couplings,
             solver: Cow::Borrowed(&self.summary.solver),
@@ -151,7 +152,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         self.worn = kept.worn;
         self.load_path = kept.load_path;
         self.resumed_at = self.simulation.steps;
-        self.internal_flow = kept.internal_flow;
+        self.flows = kept.flows;
         self.iterations = kept.iterations;
         self.couplings = kept.couplings;
         self.summary.solver = kept.solver.into_owned();

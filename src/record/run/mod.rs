@@ -5,6 +5,7 @@ mod clear;
 mod dump;
 mod end;
 mod error;
+mod flows;
 mod frame;
 mod jumps;
 mod keep;
@@ -17,6 +18,7 @@ pub use self::error::RunError;
 
 use self::account::Account;
 use self::error::unwritable;
+use self::flows::Flows;
 use self::jumps::Jumps;
 use self::rescue::Refuge;
 use self::stamps::{density_of, stamps};
@@ -148,7 +150,7 @@ struct Recorder<'a, S: Space> {
     worn: (f64, f64),
     /// Normal force times sliding distance of the friction test, over the run and what it jumped over (N m; N).
     load_path: f64,
-    internal_flow: f64,
+    flows: Flows,
     iterations: u64,
     couplings: u64,
     /// Steps that were done when the run was resumed.
@@ -200,8 +202,10 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
                 Some(TimeFunction::Sine { start, .. }) => test.start.max(*start),
                 _ => test.start,
             };
-            Some((Cycles::new(start, period, case.time.end), place))
+            let cycles = Cycles::new(start, period, case.time.end);
+            Some(((cycles, place), start))
         });
+        let (cycles, start) = cycles.unzip();
         let spec = case.biaxial.as_ref();
         let biaxial = spec.and_then(|spec| Biaxial::new(spec, &simulation));
         let measures = Measures::new(&case.measures);
@@ -265,7 +269,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             slide: 0.0,
             worn: (0.0, 0.0),
             load_path: 0.0,
-            internal_flow: 0.0,
+            flows: Flows::since(start.unwrap_or(0.0)),
             iterations: 0,
             couplings: 0,
             resumed_at: 0,
@@ -437,7 +441,8 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             cycles.add(&sample, h, before, after, damage);
         }
         let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
-        self.internal_flow += h * internal_flow(s, along) / self.loaded.case.inertia_scaling;
+        let scaling = self.loaded.case.inertia_scaling;
+        self.flows.add(s, along, scaling, self.worn.0);
         let solver = &mut self.summary.solver;
         self.iterations += u64::from(report.solver.iterations);
         solver.iterations_max = solver.iterations_max.max(report.solver.iterations);
@@ -494,28 +499,4 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
 fn due(step: u64, total: u64, count: u32) -> bool {
     let number = |step: u64| u128::from(step) * u128::from(count) / u128::from(total.max(1));
     count > 0 && number(step) > number(step - 1)
-}
-
-/// Mass of the third body that crosses a section a second: sum m |v| / L along the sliding.
-fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
-    let grains = || {
-        (0..s.bodies.len())
-            .filter(|b| s.bodies.inverse_mass[*b][along] > 0.0 && s.bodies.length[*b] > 0.0)
-    };
-    let length = s.shapes.periodic.period[along].unwrap_or_else(|| {
-        let x = |b: usize| s.bodies.position[b][along];
-        let (low, high) = grains().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), b| {
-            (l.min(x(b)), h.max(x(b)))
-        });
-        high - low
-    });
-    if !(length.is_finite() && length > 0.0) {
-        return 0.0;
-    }
-    let grain = s.bodies.grain_flags();
-    grains()
-        .filter(|b| grain[*b])
-        .map(|b| s.bodies.mass[b] * s.bodies.velocity[b][along].abs())
-        .sum::<f64>()
-        / length
 }

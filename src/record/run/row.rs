@@ -26,19 +26,9 @@ impl<S: Dimensional> Recorder<'_, S> {
             n.bonds_broken() as f64,
             self.damage_ratio(),
             n.mean_damage(),
-            e.kinetic,
-            e.potential,
-            e.elastic,
-            e.fracture,
-            e.friction,
-            e.impact,
-            e.adhesion,
-            e.viscous,
-            e.external_work,
-            e.residual,
-            self.worn.0,
-            self.worn.1,
         ];
+        row.extend(e.entries().map(|(_, _, value)| value));
+        row.extend([self.worn.0, self.worn.1]);
         if let Some(sample) = self.sample {
             row.extend([
                 self.slide,
@@ -79,7 +69,7 @@ pub(super) fn columns<S: Space>(s: &Simulation<S>, friction: bool, biaxial: bool
     let newton = if S::D == 2 { "N/m" } else { "N" };
     let joule = if S::D == 2 { "J/m" } else { "J" };
     let volume = if S::D == 2 { "m^3/m" } else { "m^3" };
-    let c = Column::new;
+    let c = |name, unit, doc| Column::new(name, unit, doc);
     let mut out = vec![
         c("step", "", "number of the step"),
         c("time", "s", "time at its end"),
@@ -93,23 +83,13 @@ pub(super) fn columns<S: Space>(s: &Simulation<S>, friction: bool, biaxial: bool
         c("bonds_broken", "", "bonds that broke"),
         c("damage_ratio", "", "broken bonds over bonds made"),
         c("mean_damage", "", "mean damage over bonds made"),
-        c("kinetic", joule, "kinetic energy"),
-        c("potential", joule, "potential energy since the start"),
-        c("elastic", joule, "energy stored in bonds"),
-        c("fracture", joule, "fracture energy since the start"),
-        c("friction", joule, "energy dissipated by friction"),
-        c("impact", joule, "energy dissipated by impacts"),
-        c(
-            "adhesion",
-            joule,
-            "energy spent against cohesion without opening",
-        ),
-        c("viscous", joule, "energy dissipated by damping of bonds"),
-        c("external_work", joule, "work of imposed forces and motions"),
-        c("residual", joule, "what does not add up"),
+    ];
+    let entries = s.energy.entries().into_iter();
+    out.extend(entries.map(|(name, doc, _)| c(name, joule, doc)));
+    out.extend([
         c("worn_first", volume, "volume worn off first bodies"),
         c("worn_third", volume, "volume worn between grains"),
-    ];
+    ]);
     if friction {
         out.extend([
             c("delta", "m", "displacement of the body under test"),

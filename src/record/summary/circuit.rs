@@ -47,6 +47,8 @@ pub struct CircuitSummary {
     pub flows: Flows,
     /// What does not add up.
     pub residual: Contents,
+    /// Unit of the mean flows: kg/s, in two dimensions kg/(m s), per metre of depth.
+    pub rates_unit: &'static str,
     /// Mean flows.
     pub rates: Rates,
     /// First bodies.
@@ -116,14 +118,15 @@ impl CircuitSummary {
             (
                 "flows, second half",
                 format!(
-                    "Qs {} ({}), Qw {} ({}), {equal}; Qe {}, Qr {}, Qa {} kg/s",
+                    "Qs {} ({}), Qw {} ({}), {equal}; Qe {}, Qr {}, Qa {} {}",
                     flow(&r.Qs),
                     steady(&r.Qs),
                     flow(&r.Qw),
                     steady(&r.Qw),
                     flow(&r.Qe),
                     flow(&r.Qr),
-                    flow(&r.Qa)
+                    flow(&r.Qa),
+                    self.rates_unit
                 ),
             ),
         ]

@@ -38,10 +38,14 @@ pub struct PluginStamp {
     pub certified: bool,
 }
 
-/// Flows of matter, as mean mass flows over the run (kg/s; kg/(m s) in 2D).
+/// Flows of matter, as mean mass flows since the start of the friction test, or of the run without one.
 #[derive(Clone, Debug, Default, Serialize)]
 #[allow(non_snake_case)]
 pub struct Wear {
+    /// Unit of the flows: kg/s, in two dimensions kg/(m s), per metre of depth.
+    pub unit: &'static str,
+    /// Since when Qs of the wear law and Qi count (s); what a circuit counts begins with the circuit.
+    pub start: f64,
     /// Source: mass worn off first bodies by the wear law, and with a circuit the grains that came loose from them.
     pub Qs: f64,
     /// Internal: mass of the third body that crosses a section, mean of |m v_x|/L.
@@ -59,6 +63,13 @@ pub struct Wear {
     pub load_path: Option<f64>,
     /// The first bodies that lost something, each by itself.
     pub bodies: Vec<BodyWear>,
+}
+
+impl Wear {
+    /// Unit of flows in so many dimensions.
+    pub fn unit(dimension: usize) -> &'static str {
+        if dimension == 2 { "kg/(m s)" } else { "kg/s" }
+    }
 }
 
 /// What a first body lost by the wear law.

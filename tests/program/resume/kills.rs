@@ -3,17 +3,36 @@
 //! A few in the suite; a hundred by
 //! `FRETWORK_KILLS=100 cargo test --release --test program resume::kills -- --nocapture`.
 
-use super::common::{Folder, Job, last_frame, same};
+use super::common::{Folder, IN_PLACE, Job, last_frame, marked, same};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
+fn kills() -> u32 {
+    let kills = std::env::var("FRETWORK_KILLS");
+    kills.ok().and_then(|n| n.parse().ok()).unwrap_or(8)
+}
+
+/// A file that is copied and replaced is never seen half written.
 #[test]
 fn kills_at_random_moments_lose_nothing() {
-    let kills: u32 = std::env::var("FRETWORK_KILLS")
-        .ok()
-        .and_then(|n| n.parse().ok())
-        .unwrap_or(8);
+    kill_at_random("kills", 20, None);
+}
+
+/// The same of a file that grows in place, as large ones do: from the first flush on, or after some.
+#[test]
+fn kills_at_random_moments_lose_nothing_of_a_file_that_grows_in_place() {
+    kill_at_random("kills-in-place", 21, Some("0"));
+    kill_at_random("kills-on-the-way", 22, Some("2500000"));
+}
+
+fn kill_at_random(name: &str, seed: u64, in_place: Option<&str>) {
+    let kills = if in_place.is_some() {
+        kills() / 2
+    } else {
+        kills()
+    };
     // Checkpoints and flushes as often as can be, so that many kills meet one.
     let sets = [
         "time.end=0.012",
@@ -26,18 +45,24 @@ fn kills_at_random_moments_lose_nothing() {
         case: "shear_cell_3d",
         sets: &sets,
     };
-    let whole = Folder::new("kills-whole");
+    let whole = Folder::new(&format!("{name}-whole"));
     let begun = Instant::now();
     job.done(&whole.0, &[]);
     let length = begun.elapsed();
-    let mut rng = Pcg64::seed_from_u64(20);
+    let mut rng = Pcg64::seed_from_u64(seed);
     let (mut killed, mut ended, mut with_file) = (0, 0, 0);
-    let folder = Folder::new("kills");
+    let folder = Folder::new(name);
     while killed < kills {
         // Short ones too: a kill may meet the making of the file, or its replacement by the resumed one.
         let share: f64 = rng.random_range(0.0f64..1.0);
         let wait = length.mul_f64(share * share);
-        let mut child = job.start(&folder.0, &["--resume"]);
+        let mut command = job.command(&folder.0, &["--resume"]);
+        command.envs(in_place.map(|limit| (IN_PLACE, limit)));
+        let mut child = command
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
         std::thread::sleep(wait.min(Duration::from_secs(60)));
         let before = child.try_wait().unwrap();
         child.kill().unwrap();
@@ -55,6 +80,9 @@ fn kills_at_random_moments_lose_nothing() {
         }
         if folder.0.join("results.h5").exists() {
             with_file += 1;
+            if in_place.is_none() {
+                assert!(!marked(&folder.0.join("results.h5")), "after kill {killed}");
+            }
             let frame = last_frame(&folder.0);
             assert!(frame.is_some(), "after kill {killed}: no whole checkpoint");
         }

@@ -1,0 +1,197 @@
+//! What the file of results holds, declared before the first row: groups, attributes, texts, datasets.
+
+use super::store::{Growing, Number, ResultsError, Slot, Store};
+use hdf5::types::VarLenUnicode;
+use hdf5::{DatatypeMessage, H5Dataset, H5File, H5Group, H5Type};
+
+/// Bytes of a chunk of a slot.
+const SLOT_CHUNK: usize = 1 << 15;
+
+/// Rows of a chunk of a dataset that gets many rows a state,
+pub const MANY: usize = 2048;
+/// and of one that gets one row a state.
+pub const FEW: usize = 128;
+
+impl Store {
+    fn declared_group(&self, path: &str) -> Result<H5Group, ResultsError> {
+        let file = self.declaring()?;
+        self.named(group(file, path))
+    }
+
+    /// Makes a group; its parent must exist.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn group(&mut self, path: &str) -> Result<(), ResultsError> {
+        let (parent, name) = split(path);
+        let parent = self.declared_group(parent)?;
+        self.named(parent.create_group(name)).map(drop)
+    }
+
+    /// A second name for a group.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn link(&mut self, path: &str, target: &str) -> Result<(), ResultsError> {
+        let (parent, name) = split(path);
+        let parent = self.declared_group(parent)?;
+        self.named(parent.link(name, target))
+    }
+
+    /// A text attribute of a group.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn text_attribute(
+        &mut self,
+        group: &str,
+        name: &str,
+        text: &str,
+    ) -> Result<(), ResultsError> {
+        let group = self.declared_group(group)?;
+        self.named(group.set_attr_string(name, text))
+    }
+
+    /// A fixed-length ASCII attribute, as VTK wants it.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn ascii_attribute(
+        &mut self,
+        group: &str,
+        name: &str,
+        text: &str,
+    ) -> Result<(), ResultsError> {
+        let datatype = DatatypeMessage::fixed_string(text.len() as u32);
+        let group = self.declared_group(group)?;
+        self.named(group.set_attr_typed(name, datatype, text.as_bytes().to_vec()))
+    }
+
+    /// Whole numbers as an attribute: a scalar when there is one.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn integer_attribute(
+        &mut self,
+        group: &str,
+        name: &str,
+        values: &[i64],
+    ) -> Result<(), ResultsError> {
+        let group = self.declared_group(group)?;
+        self.named(match values {
+            [one] => group.set_attr_numeric::<i64>(name, one),
+            many => group.set_attr_array_numeric::<i64>(name, many),
+        })
+    }
+
+    /// A dataset of texts with a line of explanation, written once.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn texts(&mut self, path: &str, texts: &[&str], doc: &str) -> Result<(), ResultsError> {
+        let (parent, name) = split(path);
+        let group = self.declared_group(parent)?;
+        let dataset = self.named(group.write_vlen_strings(name, texts))?;
+        self.named(text_attribute(&dataset, "doc", doc))
+    }
+
+    /// A dataset of rows of `width` numbers, written once, with its unit and a line of explanation; none where there is no row.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn numbers<T: H5Type + Number>(
+        &mut self,
+        path: &str,
+        width: u64,
+        values: &[T],
+        (unit, doc): (&str, &str),
+    ) -> Result<(), ResultsError> {
+        if values.is_empty() {
+            return Ok(());
+        }
+        let rows = values.len() / width as usize;
+        let shape = match width {
+            1 => vec![rows],
+            _ => vec![rows, width as usize],
+        };
+        let (parent, name) = split(path);
+        let group = self.declared_group(parent)?;
+        let made = group.new_dataset::<T>().shape(shape).create(name);
+        let dataset = self.named(made)?;
+        self.named(dataset.write_raw(values))?;
+        self.named(describe(&dataset, unit, doc))
+    }
+
+    /// A growing dataset of rows of `width` numbers (1: a plain column), with its unit and a line of
+    /// explanation, in chunks of so many rows ([`MANY`], [`FEW`]).
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn growing<T: H5Type + Number>(
+        &mut self,
+        path: &str,
+        width: u64,
+        (unit, doc): (&str, &str),
+        chunk: usize,
+    ) -> Result<Growing, ResultsError> {
+        let numbers = width as usize;
+        let (shape, most, chunk) = match width {
+            1 => (vec![0], vec![None], vec![chunk]),
+            _ => (
+                vec![0, numbers],
+                vec![None, Some(numbers)],
+                vec![chunk, numbers],
+            ),
+        };
+        let (parent, name) = split(path);
+        let group = self.declared_group(parent)?;
+        let made = group.new_dataset::<T>().shape(shape);
+        let made = made.chunk(&chunk).max_shape(&most).create(name);
+        let dataset = self.named(made)?;
+        self.named(describe(&dataset, unit, doc))?;
+        Ok(self.add_grown(path, width, T::WHOLE))
+    }
+
+    /// Bytes that can be written over, with a line of explanation.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn slot(&mut self, path: &str, doc: &str) -> Result<Slot, ResultsError> {
+        let (parent, name) = split(path);
+        let group = self.declared_group(parent)?;
+        let made = group.new_dataset::<u8>().shape([0]);
+        let made = made.chunk(&[SLOT_CHUNK]).max_shape(&[None]).create(name);
+        let dataset = self.named(made)?;
+        self.named(text_attribute(&dataset, "doc", doc))?;
+        Ok(self.add_slot(path))
+    }
+}
+
+/// A group of a file being written.
+pub(super) fn group(file: &H5File, path: &str) -> hdf5::Result<H5Group> {
+    let root = file.root_group();
+    match path.trim_matches('/') {
+        "" => Ok(root),
+        path => root.group(path),
+    }
+}
+
+/// The unit of a dataset, `1` for pure numbers, and what its values are.
+fn describe(dataset: &H5Dataset, unit: &str, doc: &str) -> hdf5::Result<()> {
+    text_attribute(dataset, "unit", if unit.is_empty() { "1" } else { unit })?;
+    text_attribute(dataset, "doc", doc)
+}
+
+fn text_attribute(dataset: &H5Dataset, name: &str, text: &str) -> hdf5::Result<()> {
+    let attribute = dataset.new_attr::<VarLenUnicode>().create(name)?;
+    attribute.write_string(text)
+}
+
+/// Path of the parent, and name in it.
+fn split(path: &str) -> (&str, &str) {
+    match path.rsplit_once('/') {
+        Some(("", name)) => ("/", name),
+        Some((parent, name)) => (parent, name),
+        None => ("/", path),
+    }
+}
