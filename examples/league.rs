@@ -8,7 +8,7 @@
 use fretwork::record::fclib::{self, Problem, Solution};
 use fretwork::report::{Axis, Chart, Series};
 use fretwork::solve::local::solver::{self, Limits, Method, Outcome};
-use fretwork::solve::local::{Elimination, LocalProblem, Reduction};
+use fretwork::solve::local::{Elimination, LocalProblem, Reduction, scale_free};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::fmt::Write as _;
@@ -44,6 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut ours: Times = Times::new();
     let mut solved = BTreeMap::<&str, u32>::new();
     let (mut false_success, mut count) = (0, 0);
+    let mut doubtful = BTreeMap::<&str, u32>::new();
     for file in &files {
         let name = file
             .file_stem()
@@ -60,6 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let key = (name.clone(), tolerance.to_owned());
             let limits = Limits {
                 tolerance: tolerance.parse()?,
+                scale_free: None,
                 max_iterations: u32::MAX,
                 seconds: limit,
             };
@@ -85,6 +87,9 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let seconds = outcome.seconds + if global { reduction } else { 0.0 };
                 let time = outcome.converged.then_some(seconds);
                 if *method == Method::Auto {
+                    let limit = scale_free::usual_limit(limits.tolerance);
+                    *doubtful.entry(tolerance).or_default() +=
+                        u32::from(outcome.converged && outcome.scale_free_error > limit);
                     *solved.entry(tolerance).or_default() += u32::from(outcome.converged);
                     rows += &row(
                         &name,
@@ -103,7 +108,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
     }
-    let text = page(&rows, &ours, &peer, &solved, count, false_success, limit);
+    let counts = Counts {
+        solved,
+        doubtful,
+        problems: count,
+        false_success,
+    };
+    let text = page(&rows, &ours, &peer, &counts, limit);
     std::fs::create_dir_all(out.join("figures"))?;
     std::fs::write(out.join("fclib_table.md"), &text)?;
     println!("{}", text.split("\n| problem").next().unwrap_or_default());
@@ -204,37 +215,51 @@ fn row(
         (None, None) => "not run".to_owned(),
     };
     format!(
-        "| {name} | {nc} | {tolerance} | {} | {:.1e} | {} | {:.2e} | {theirs} | {ratio} |\n",
+        "| {name} | {nc} | {tolerance} | {} | {:.1e} | {:.1e} | {} | {:.2e} | {theirs} | {ratio} |\n",
         if outcome.converged { "yes" } else { "**no**" },
         outcome.error,
+        outcome.scale_free_error,
         outcome.method.trim_start_matches("auto: "),
         seconds,
     )
 }
 
-#[allow(clippy::too_many_arguments)]
-fn page(
-    rows: &str,
-    ours: &Times,
-    peer: &Times,
-    solved: &BTreeMap<&str, u32>,
-    count: u32,
+/// How the solves of `auto` went, by tolerance.
+struct Counts<'a> {
+    solved: BTreeMap<&'a str, u32>,
+    /// Solved, but with a scale-free error above its usual limit.
+    doubtful: BTreeMap<&'a str, u32>,
+    problems: u32,
     false_success: u32,
-    limit: f64,
-) -> String {
+}
+
+fn page(rows: &str, ours: &Times, peer: &Times, counts: &Counts<'_>, limit: f64) -> String {
     let mut out = String::from(
         "# The league table\n\nMade by `cargo run --release --example league -- FOLDER BASELINE.csv`; see [solvers](solvers.md) for what it means.\n\n",
     );
     let _ = writeln!(
         out,
-        "At most {limit} s a solve. Solved by `auto` of {count} problems: {}.",
+        "At most {limit} s a solve. Solved by `auto` of {} problems: {}.",
+        counts.problems,
         TOLERANCES
-            .map(|t| format!("{} at {t}", solved.get(t).unwrap_or(&0)))
+            .map(|t| format!("{} at {t}", counts.solved.get(t).unwrap_or(&0)))
             .join(", ")
     );
     let _ = writeln!(
         out,
-        "Solutions that claimed a tolerance and do not have it when read back: {false_success}.\n"
+        "Of those, with a scale-free error above its limit: {}.",
+        TOLERANCES
+            .map(|t| {
+                let limit = t.parse().map_or(f64::NAN, scale_free::usual_limit);
+                let doubtful = counts.doubtful.get(t).unwrap_or(&0);
+                format!("{doubtful} at {t} (limit {limit:.0e})")
+            })
+            .join(", ")
+    );
+    let _ = writeln!(
+        out,
+        "Solutions that claimed a tolerance and do not have it when read back: {}.\n",
+        counts.false_success
     );
     for tolerance in ["1e-4", "1e-8"] {
         let (mut faster, mut of, mut worst) = (0, 0, 0.0f64);
@@ -268,7 +293,7 @@ fn page(
             "At {tolerance}, of {of} problems of 20 contacts or more: `auto` is faster than the best of the peer's solvers on {faster}; at worst it takes {worst:.2} times as long.\n"
         );
     }
-    out += "| problem | contacts | tolerance | solved | error | chosen | time (s) | peer's best (s) | ratio |\n|---|---|---|---|---|---|---|---|---|\n";
+    out += "| problem | contacts | tolerance | solved | error | scale-free error | chosen | time (s) | peer's best (s) | ratio |\n|---|---|---|---|---|---|---|---|---|---|\n";
     out + rows
 }
 

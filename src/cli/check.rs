@@ -1,6 +1,9 @@
-//! `fretwork check`: what a scene activates, its size and dimensionless groups; runs nothing.
+//! `fretwork check`: what a scene activates, its size and dimensionless groups; writes nothing.
 
+mod bonds;
+pub(super) mod cost;
 mod features;
+mod load;
 
 use super::output::answer;
 use super::{CaseArgs, Failure};
@@ -13,22 +16,38 @@ use crate::scene::{Loaded, Scene, load, sampling};
 use crate::solve::local::solver::Method;
 use crate::step::Simulation;
 use clap::Args;
+use cost::Trial;
 use features::{Features, memory};
+use load::Load;
 use std::fmt::Write as _;
 
 #[derive(Args, Debug)]
 pub struct CheckArgs {
     #[command(flatten)]
     case: CaseArgs,
+    /// Leave out the estimate of the run time, for which steps are timed for half a second
+    #[arg(long)]
+    no_timing: bool,
 }
 
 pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     let loaded = load(&args.case.case, &args.case.sets)?;
-    let text = match loaded.build(&args.case.plugins.search()?)? {
-        Scene::Plane(built) => describe(&loaded, &built),
-        Scene::Solid(built) => describe(&loaded, &built),
-    };
-    answer(text.trim_end())
+    match loaded.build(&args.case.plugins.search()?)? {
+        Scene::Plane(built) => whole(&loaded, *built, args),
+        Scene::Solid(built) => whole(&loaded, *built, args),
+    }
+}
+
+fn whole<S: Space>(loaded: &Loaded, built: Built<S>, args: &CheckArgs) -> Result<(), Failure> {
+    answer(describe(loaded, &built).trim_end())?;
+    if !args.no_timing {
+        let time = &loaded.case.time;
+        let steps = (time.end / time.step - 1e-6).ceil().max(1.0) as u64;
+        let grains = built.simulation.bodies.grains().count();
+        let text = Trial::of(built.simulation, steps).text(steps, grains, S::D);
+        answer(&format!("  {:<20} {text}", "run time"))?;
+    }
+    Ok(())
 }
 
 fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
@@ -134,8 +153,12 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
         };
         line(heading, drive.text);
     }
+    let load = Load::of(case, built);
     groups(loaded, built, high, &mut line);
     biaxial_groups(loaded, built, &mut line);
+    for (label, text) in bonds::lines(case, built, &load) {
+        line(label, text);
+    }
     out
 }
 
@@ -234,7 +257,6 @@ fn groups<S: Space>(
             .fold(0.0, f64::max)
     };
     let speed = samples(&|t| driven.dofs[test.along].imposed_velocity(t).unwrap_or(0.0));
-    let force = samples(&|t| driven.dofs[test.normal].force(t));
     let step = speed * case.time.step;
     line(
         "fastest slide",
@@ -243,18 +265,11 @@ fn groups<S: Space>(
             step / largest
         ),
     );
-    let Some(period) = s.shapes.periodic.period[test.along] else {
+    let Some((area, pressure)) =
+        load::friction_area(case, built).zip(load::friction_pressure(case, built))
+    else {
         return;
     };
-    let area = if S::D == 2 {
-        period
-    } else {
-        period * s.shapes.periodic.period[3 - test.along - test.normal].unwrap_or(period)
-    };
-    let pressure = force / area;
-    if pressure <= 0.0 {
-        return;
-    }
     line("pressure", format!("{pressure:.3e} Pa"));
     let flags = s.bodies.grain_flags();
     // Of a piece the ball of its volume.
@@ -282,28 +297,5 @@ fn groups<S: Space>(
                 case.inertia_scaling
             ),
         );
-    }
-    for law in &s.laws {
-        if let (Some(c), Some(d)) = (&law.cohesion, &law.damage) {
-            let value = |l: &crate::laws::Loaded, n: &str| {
-                l.plugin
-                    .parameters
-                    .iter()
-                    .position(|p| p.name == n)
-                    .map(|k| l.parameters[k])
-            };
-            if let (Some(stiffness), Some(w)) = (value(c, "c_n"), value(d, "w")) {
-                let strength = (stiffness * w).sqrt();
-                line(
-                    "cohesion",
-                    format!(
-                        "{}: strength {strength:.3e} Pa = {:.2} of the pressure, opening at peak {:.2e} m",
-                        law.name,
-                        strength / pressure,
-                        (w / stiffness).sqrt()
-                    ),
-                );
-            }
-        }
     }
 }

@@ -37,7 +37,7 @@ enum Command {
         after_help = "Example:\n  fretwork run cases/wheel_rail_fretting.ron --out results/a --set interfaces.third_body.damage=mohr-coulomb-brittle"
     )]
     Run(run::RunArgs),
-    /// Say what a case activates and what it will cost, without running it
+    /// Say what a case activates and what it will cost, without running it or writing anything
     Check(check::CheckArgs),
     /// Interface laws: list, show, make, drive and certify them
     #[command(subcommand)]

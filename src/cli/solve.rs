@@ -5,7 +5,7 @@ mod say;
 use super::Failure;
 use crate::record::fclib::{self, Problem, Solution};
 use crate::solve::local::solver::{self, Limits, Method, Outcome};
-use crate::solve::local::{Elimination, LocalProblem, ReduceError, Reduction};
+use crate::solve::local::{Elimination, LocalProblem, ReduceError, Reduction, scale_free};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -22,6 +22,10 @@ pub struct SolveArgs {
     /// Error to reach: |p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|, |u|)
     #[arg(long, value_name = "T", default_value = "1e-8", value_parser = positive)]
     tolerance: f64,
+    /// Ask for the scale-free error too, |r| / max(|u|, |q|) in velocities: solve to it as well, and end with 1 where it is above T.
+    /// By default it is told, with a warning above 100 times the tolerance (no less than 1e-3, no more than 0.1)
+    #[arg(long, value_name = "T", value_parser = positive)]
+    scale_free_tolerance: Option<f64>,
     /// Iterations at most
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..))]
     max_iterations: u32,
@@ -57,6 +61,14 @@ fn long_help() -> String {
         out += &format!("  {:<12} {}\n", method.name(), method.about());
     }
     out + "  all          every one of them: a table, solved first, then by time"
+}
+
+impl SolveArgs {
+    /// The scale-free error above which a solution is doubted.
+    fn scale_free_limit(&self) -> f64 {
+        self.scale_free_tolerance
+            .unwrap_or_else(|| scale_free::usual_limit(self.tolerance))
+    }
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -209,6 +221,7 @@ fn one(path: &Path, args: &SolveArgs) -> Result<Solved, Failure> {
     let local = form.local(&problem);
     let limits = Limits {
         tolerance: args.tolerance,
+        scale_free: args.scale_free_tolerance,
         max_iterations: args.max_iterations,
         seconds: args.time_limit,
     };

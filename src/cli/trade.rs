@@ -1,18 +1,20 @@
 //! `fretwork trade`: accuracy against cost.
 
+mod refuse;
+
 use super::output::{answer, inform, report};
 use super::{CaseArgs, Failure, again};
 use crate::geometry::space::Space;
 use crate::interrupt;
-use crate::scene::build::Built;
-use crate::scene::measures::MeasureSpec;
+use crate::scene::build::{Built, Dimensional};
 use crate::scene::methods::{Demands, Service};
 use crate::scene::{Loaded, Scene, load};
 use crate::solve::local::solver::Method;
 use crate::trade::chaos::Nudge;
-use crate::trade::child::{Ended, Launcher, Limits, Status, summary};
+use crate::trade::child::{Launcher, Limits, Status};
 use crate::trade::knobs::{knobs, openings};
-use crate::trade::output::Output;
+use crate::trade::offer::Offer;
+use crate::trade::setting::Setting;
 use crate::trade::study::{Event, Ledger, Study};
 use crate::trade::{TradeError, figure, files, forecast::Forecast, table, verdict::verdicts};
 use clap::Args;
@@ -53,14 +55,24 @@ pub struct TradeArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Share of steps that may miss the tolerance in a run that counts
-    #[arg(long, value_name = "SHARE", default_value_t = 1e-2)]
+    #[arg(long, value_name = "SHARE", default_value = "0.01", value_parser = share)]
     unconverged: f64,
     /// Energy residual, over the largest energy, of a run that counts
-    #[arg(long, value_name = "SHARE", default_value_t = 1e-2)]
+    #[arg(long, value_name = "SHARE", default_value = "0.01", value_parser = share)]
     residual: f64,
     /// No progress; the study is printed as JSON
     #[arg(long)]
     json: bool,
+}
+
+/// A share, 0 to 1.
+fn share(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(x) if (0.0..=1.0).contains(&x) => Ok(x),
+        _ => Err(format!(
+            "`{text}` is no share; expected a number from 0 to 1"
+        )),
+    }
 }
 
 /// `90s`, `10m`, `1h30m`; a bare number is seconds.
@@ -105,7 +117,9 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     let started = Instant::now();
     let search = args.case.plugins.search()?;
     let loaded = load(&args.case.case, &args.case.sets)?;
-    let first = Facts::of(&loaded, &loaded.build(&search)?);
+    let scene = loaded.build(&search)?;
+    let first = Facts::of(&loaded, &scene);
+    let outputs = refuse::outputs(args, &first.offer)?;
     let other_seed = format!("seed={}", loaded.case.seed.wrapping_add(1));
     let sets = [args.case.sets.as_slice(), &[other_seed]].concat();
     let other = load(&args.case.case, &sets)?;
@@ -134,6 +148,12 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
         let name = args.case.case.file_stem().unwrap_or_default();
         Path::new("results").join("trade").join(name)
     });
+    // What an earlier study left may need no time at all.
+    let begun = out.join("runs").is_dir();
+    let mut scene = Some(scene);
+    if !begun && let Some(scene) = scene.take() {
+        refuse::budget(args, &loaded, scene)?;
+    }
     let limits = Limits {
         unconverged: args.unconverged,
         residual: args.residual,
@@ -141,12 +161,18 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     let _lock = crate::trade::lock::take(&out)?;
     let plugins = args.case.plugins.words();
     let mut launcher = Launcher::new(&loaded, &first.materials, plugins, &out, limits)?;
+    let own = Setting::own(&knobs).sets(&knobs);
+    if let Some(scene) = scene
+        && launcher.kept(&own, loaded.case.seed).is_none()
+    {
+        refuse::budget(args, &loaded, scene)?;
+    }
     launcher.nudge = (!random).then_some(Nudge {
         first: loaded.case.seed,
         step: loaded.case.time.step,
     });
     let stop = interrupt::watch();
-    let outputs = outputs(args, &loaded, &launcher, stop)?;
+    refuse::after_two_steps(args, &loaded, &launcher, &outputs, stop)?;
     let count = if random { u64::from(args.seeds) } else { 1 };
     let mut study = Study {
         launcher: Arc::new(launcher),
@@ -312,76 +338,6 @@ fn tell(
     ended
 }
 
-/// The outputs asked for, checked against a run of two steps where the case allows one so short.
-fn outputs(
-    args: &TradeArgs,
-    loaded: &Loaded,
-    launcher: &Launcher,
-    stop: &AtomicBool,
-) -> Result<Vec<Output>, Failure> {
-    let mut outputs = if args.outputs.is_empty() {
-        Output::usual(&loaded.case)
-    } else {
-        let all: Result<Vec<Output>, TradeError> =
-            args.outputs.iter().map(|t| Output::parse(t)).collect();
-        all?
-    };
-    if outputs.is_empty() {
-        return Err(Failure::Usage(
-            "the case has no friction test, damage or wear to compare; name an output, such as --output energy.kinetic=1%".into(),
-        ));
-    }
-    for (k, output) in outputs.iter().enumerate() {
-        if outputs[..k].iter().any(|o| o.name == output.name) {
-            return Err(Failure::Usage(format!(
-                "--output {} is given twice; name it once, with the error wanted",
-                output.name
-            )));
-        }
-    }
-    for text in &args.exact {
-        let wrong = |why: &str| {
-            Failure::Usage(format!(
-                "--exact {text}: {why}; expected NAME=VALUE of one of the outputs"
-            ))
-        };
-        let (name, value) = text
-            .split_once('=')
-            .ok_or_else(|| wrong("there is no `=`"))?;
-        let value: f64 = value
-            .trim()
-            .parse()
-            .ok()
-            .filter(|v: &f64| v.is_finite())
-            .ok_or_else(|| wrong("the value is no number"))?;
-        let found = outputs.iter_mut().find(|o| o.name == name.trim());
-        found
-            .ok_or_else(|| wrong("no --output has this name"))?
-            .exact = Some(value);
-    }
-    let short = vec![format!("time.end={:e}", 2.0 * loaded.case.time.step)];
-    let seed = loaded.case.seed;
-    let begun = launcher.kept(&short, seed).is_some();
-    let soon = Instant::now() + Duration::from_secs(60).min(args.budget);
-    if begun
-        || matches!(
-            launcher.run(&short, seed, soon, None, stop)?,
-            Ended::Finished(_)
-        )
-    {
-        let place = launcher.place(&short, seed);
-        let summary = summary(&place);
-        if summary.is_object() {
-            let measures = loaded.case.measures.iter();
-            let measures: Vec<&str> = measures.map(MeasureSpec::name).collect();
-            for output in &outputs {
-                output.check(&summary, &place, &measures)?;
-            }
-        }
-    }
-    Ok(outputs)
-}
-
 /// Whether a `--set` and a `--vary` name the same key.
 fn same_key(set: &str, vary: &str) -> bool {
     let key = |t: &str| t.split('=').next().map(|k| k.trim().to_owned());
@@ -391,6 +347,7 @@ fn same_key(set: &str, vary: &str) -> bool {
 /// What a study asks of a scene.
 struct Facts {
     methods: Vec<Method>,
+    offer: Offer,
     materials: Vec<(String, String)>,
     /// What a seed may change: places and shapes, as a hash.
     drawn: u64,
@@ -404,7 +361,7 @@ impl Facts {
         }
     }
 
-    fn from<S: Space>(loaded: &Loaded, built: &Built<S>) -> Self {
+    fn from<S: Dimensional>(loaded: &Loaded, built: &Built<S>) -> Self {
         let s = &built.simulation;
         let demands = Demands::of(s);
         let serves =
@@ -418,6 +375,7 @@ impl Facts {
             ),
         );
         Self {
+            offer: Offer::of(&loaded.case, built),
             methods: Method::ALL.iter().copied().filter(serves).collect(),
             materials: built.materials.clone(),
             drawn: hash.0,

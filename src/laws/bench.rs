@@ -1,5 +1,7 @@
 //! One contact without bodies: drives a composed interface law along a path, as a testing machine does.
 
+pub mod scale;
+
 use super::bonds::Held;
 use super::columns::StepInfo;
 use super::interface::Interface;

@@ -31,6 +31,6 @@ pub mod summary;
 pub mod views;
 pub mod warnings;
 
-pub use run::{Progress, RunError, RunOptions, go_on, run, stopped};
+pub use run::{Progress, RunError, RunOptions, go_on, run, statistics_columns, stopped};
 pub use summary::Summary;
 pub use warnings::Missed;

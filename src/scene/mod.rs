@@ -1,5 +1,6 @@
 //! Cases and materials: read, checked, and made into a scene that steps.
 pub mod biaxial;
+pub mod bond_sites;
 pub mod build;
 pub mod case;
 pub mod check;

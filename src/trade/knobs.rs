@@ -174,6 +174,12 @@ fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<Knob, Strin
             knob(Sense::Choice, methods.iter().map(level).collect(), own, own)
         }
         "test_every" => {
+            if !sweeps(case.solver.method) {
+                return Err(format!(
+                    "the solver of the case, {}, makes no sweeps between tests",
+                    case.solver.method.name()
+                ));
+            }
             let own = case.solver.test_every.max(1);
             let mut all = vec![(own / 4).max(1), own, own.saturating_mul(4)];
             all.dedup();
@@ -221,6 +227,11 @@ fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<Knob, Strin
             knob(Sense::Choice, levels, 0, 0)
         }
     }
+}
+
+/// Whether a method does sweeps, whose tests `test_every` sets apart.
+fn sweeps(method: Method) -> bool {
+    matches!(method, Method::Auto | Method::Nlgs | Method::Anderson)
 }
 
 /// Positive numbers and the case's own among them, from the finest up, each with what makes a level of it.
@@ -321,13 +332,20 @@ fn listed(loaded: &Loaded, argument: &str) -> Result<Knob, TradeError> {
     let mut levels: Vec<Level> = values.iter().map(level).collect();
     let before = [loaded.source.sets(), &openings(loaded)].concat();
     // The text of the case before and after: a value that leaves it as it is, is its own.
-    let mut own = None;
+    let (mut own, mut texts) = (None, Vec::new());
     for (k, level) in levels.iter().enumerate() {
         let sets: Vec<String> = before.iter().chain(&level.sets).cloned().collect();
-        let changed = load(&loaded.path, &sets)?;
-        if format!("{:?}", changed.case) == format!("{:?}", loaded.case) {
+        let text = format!("{:?}", load(&loaded.path, &sets)?.case);
+        if let Some(same) = texts.iter().position(|t| *t == text) {
+            return Err(TradeError::Usage(format!(
+                "--vary {argument}: {} and {} are the same case; give values that differ",
+                levels[same].label, level.label
+            )));
+        }
+        if text == format!("{:?}", loaded.case) {
             own = Some(k);
         }
+        texts.push(text);
     }
     // The two numbers that have an order by themselves.
     let numbers: Vec<f64> = levels.iter().filter_map(|l| l.number).collect();

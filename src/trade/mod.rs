@@ -16,6 +16,7 @@ pub mod frontier;
 pub mod interval;
 pub mod knobs;
 pub mod lock;
+pub mod offer;
 pub mod output;
 pub mod setting;
 pub mod study;

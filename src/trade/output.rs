@@ -1,7 +1,6 @@
 //! The numbers that a study compares: from `summary.json` or a column of `statistics.csv`.
 
 use super::TradeError;
-use crate::scene::case::Case;
 use crate::scene::source::nearest;
 use serde_json::Value;
 use std::path::Path;
@@ -71,7 +70,12 @@ impl Output {
             .parse()
             .map_err(|_| wrong(&format!("`{}` is no error to ask for", wanted.trim())))?;
         if !(value > 0.0 && value.is_finite()) {
-            return Err(wrong("the wanted error must be above zero"));
+            return Err(wrong("the wanted error must be a number above zero"));
+        }
+        if share && value >= 100.0 {
+            return Err(wrong(
+                "an error as large as the output itself tells nothing; ask for less than 100 %",
+            ));
         }
         let name = name.trim();
         if name.is_empty() {
@@ -122,18 +126,20 @@ impl Output {
         })
     }
 
-    /// What a case is asked for when nothing is named: friction where it has a friction test, the damage ratio where it has
-    /// a damage law, the source flow where it has a wear law; at 1 % each.
-    pub fn usual(case: &Case) -> Vec<Self> {
-        let law =
-            |has: fn(&crate::scene::case::InterfaceSpec) -> bool| case.interfaces.iter().any(has);
-        let names = [
-            ("friction_coefficient", case.friction.is_some()),
-            ("damage_ratio", law(|i| i.damage.is_some())),
-            ("wear.Qs", law(|i| i.wear.is_some())),
-        ];
-        let there = names.iter().filter(|n| n.1);
-        there.filter_map(|n| Self::parse(n.0).ok()).collect()
+    /// The parts of its name in `summary.json`; none where it is a column of the statistics.
+    pub(super) fn summary_path(&self) -> Option<&[String]> {
+        match &self.place {
+            Place::Summary(path) => Some(path),
+            Place::Column(..) => None,
+        }
+    }
+
+    /// Its column of the statistics, if it is one.
+    pub(super) fn column_name(&self) -> Option<&str> {
+        match &self.place {
+            Place::Summary(_) => None,
+            Place::Column(name, _) => Some(name),
+        }
     }
 
     /// Its value in the folder of a run; none where the run has none (null).
@@ -164,7 +170,7 @@ impl Output {
     }
 
     /// Whether it is something that one of these measures says at the end of a run.
-    fn measured(&self, measures: &[&str]) -> bool {
+    pub(super) fn measured(&self, measures: &[&str]) -> bool {
         let Place::Summary(path) = &self.place else {
             return false;
         };
@@ -178,6 +184,22 @@ impl Output {
         group == "measures" && measures.iter().any(begins)
     }
 
+    /// The sentence of an output that a case does not have, with the nearest of those it has.
+    pub(super) fn unknown(&self, names: &[String], prefix: &str, wanted: &str) -> TradeError {
+        let close = nearest(wanted, names.iter().map(String::as_str))
+            .or_else(|| {
+                // The last part alone, for a name whose parents were left out.
+                let last = |n: &&String| n.rsplit('.').next() == wanted.rsplit('.').next();
+                names.iter().find(last).map(String::as_str)
+            })
+            .map_or(String::new(), |c| format!(" did you mean `{prefix}{c}`?"));
+        TradeError::Usage(format!(
+            "--output {}: a run of this case has no such output;{close} {}",
+            self.name,
+            listed(names, prefix)
+        ))
+    }
+
     /// Whether a run has an output of this name, be it null there, or empty because one of the case's `measures` begins later.
     ///
     /// # Errors
@@ -188,30 +210,6 @@ impl Output {
         folder: &Path,
         measures: &[&str],
     ) -> Result<(), TradeError> {
-        let refuse = |names: &[String], prefix: &str, wanted: &str| {
-            let close = nearest(wanted, names.iter().map(String::as_str))
-                .or_else(|| {
-                    // The last part alone, for a name whose parents were left out.
-                    let last = |n: &&String| n.rsplit('.').next() == wanted.rsplit('.').next();
-                    names.iter().find(last).map(String::as_str)
-                })
-                .map_or(String::new(), |c| format!(" did you mean `{prefix}{c}`?"));
-            let shown: Vec<&str> = names.iter().map(String::as_str).collect();
-            TradeError::Usage(format!(
-                "--output {}: a run of this case has no such output;{close} {}{}",
-                self.name,
-                if shown.is_empty() {
-                    "it has none of this kind".to_owned()
-                } else {
-                    format!("there are {}", shown.join(", "))
-                },
-                if prefix.is_empty() {
-                    ", and statistics.COLUMN of statistics.csv (:mean of the last half, :max, :min, :last)"
-                } else {
-                    ""
-                }
-            ))
-        };
         match &self.place {
             Place::Summary(path) => {
                 let mut at = summary;
@@ -225,7 +223,7 @@ impl Output {
                             None => {
                                 let mut names = Vec::new();
                                 flatten(summary, "", &mut names);
-                                return Err(refuse(&names, "", &self.name));
+                                return Err(self.unknown(&names, "", &self.name));
                             }
                         },
                     };
@@ -243,15 +241,28 @@ impl Output {
                 if names.iter().any(|n| n == name) {
                     Ok(())
                 } else {
-                    Err(refuse(&names, "statistics.", name))
+                    Err(self.unknown(&names, "statistics.", name))
                 }
             }
         }
     }
 }
 
+/// The outputs there are.
+pub(super) fn listed(names: &[String], prefix: &str) -> String {
+    let more = if prefix.is_empty() {
+        ", and statistics.COLUMN of statistics.csv (:mean of the last half, :max, :min, :last)"
+    } else {
+        ""
+    };
+    if names.is_empty() {
+        return format!("it has none of this kind{more}");
+    }
+    format!("there are {}{more}", names.join(", "))
+}
+
 /// Paths of the numbers in a summary.
-fn flatten(value: &Value, path: &str, out: &mut Vec<String>) {
+pub(super) fn flatten(value: &Value, path: &str, out: &mut Vec<String>) {
     // Nobody compares these.
     if [
         "solver",
@@ -326,7 +337,20 @@ mod tests {
         );
         let absolute = Output::parse("energy_residual_relative=1e-3").unwrap();
         assert_eq!(absolute.wanted, Wanted::Absolute(1e-3));
-        for wrong in ["a=", "a=b%", "a=-1%", "=1%", "a=0", "statistics.q:mid=1%"] {
+        for wrong in [
+            "a=",
+            "a=b%",
+            "a=-1%",
+            "=1%",
+            "a=0",
+            "a=NaN",
+            "a=NaN%",
+            "a=inf",
+            "a=1%%",
+            "a=1,5%",
+            "a=100%",
+            "statistics.q:mid=1%",
+        ] {
             let said = Output::parse(wrong).unwrap_err().to_string();
             assert!(said.contains(wrong), "{said}");
         }

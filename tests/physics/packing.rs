@@ -46,6 +46,7 @@ fn conjugate_gradients_are_faster_than_sweeps() {
         let iterations = |method: Method| {
             let limits = Limits {
                 tolerance: 1e-6,
+                scale_free: None,
                 max_iterations: 20_000,
                 seconds: 60.0,
             };

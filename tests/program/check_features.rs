@@ -124,3 +124,152 @@ fn what_does_not_change_is_off() {
         assert!(off.iter().any(|f| f == name), "{name} is not off");
     }
 }
+
+/// A folder with a case, taken away at the end.
+struct Made(std::path::PathBuf);
+
+impl Made {
+    fn new(name: &str, text: &str) -> Self {
+        let folder =
+            std::env::temp_dir().join(format!("fretwork-check-{}-{name}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join("case.ron"), text).unwrap();
+        Self(folder)
+    }
+
+    fn check(&self, sets: &[&str]) -> String {
+        let case = self.0.join("case.ron").display().to_string();
+        let mut args = vec!["check", &case];
+        for set in sets {
+            args.extend(["--set", set]);
+        }
+        let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+            .args(&args)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let left: Vec<_> = std::fs::read_dir(&self.0).unwrap().collect();
+        assert_eq!(left.len(), 1, "check wrote something: {left:?}");
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    }
+}
+
+impl Drop for Made {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Two bonded disks of 0.1 m that are free, beside a wall that moves at 1 mm/s.
+const PAIR: &str = r#"(
+    name: "a bonded pair",
+    dimension: 2,
+    time: (step: 1e-4, end: 0.1),
+    materials: {"grain": "verification_grain"},
+    interfaces: [(name: "bond", between: ("grain", "grain"), contact: "frictionless", cohesion: "mac", damage: "mac",
+        parameters: (cohesion: {"c_n": 1e9, "c_t": 1e9}, damage: {"w": 0.1, "b": 0.0, "beta_broken": 0.0}))],
+    bodies: [(name: "wall", material: "grain", shapes: [HalfSpace(normal: [0.0, 1.0])], position: [0.0, -5.0],
+        dofs: (y: Velocity(Constant(1e-3))))],
+    grains: [List(material: "grain", grains: [(at: [0.0, 0.0], radius: 0.1), (at: [0.2, 0.0], radius: 0.1)])],
+)"#;
+
+/// The number after a word of a text.
+fn after(text: &str, word: &str) -> f64 {
+    let rest = text.split(word).nth(1);
+    let number = rest.and_then(|r| r.split_whitespace().next());
+    let number = number.map(|n| n.trim_end_matches([',', ':', ';']));
+    let value = number.and_then(|n| n.parse().ok());
+    value.unwrap_or_else(|| panic!("no number after `{word}` in {text}"))
+}
+
+#[track_caller]
+fn near(got: f64, expected: f64, tolerance: f64) {
+    assert!(
+        (got / expected - 1.0).abs() <= tolerance,
+        "{got} for {expected}"
+    );
+}
+
+/// MAC: strength sqrt(w C) at u_0 = sqrt(w/C), a hundredth of it left at 4.64 u_0. Two disks of mass m and inertia m r^2/2 with a
+/// bond of k a N/m, a = r/2: omega^2 = 2 k a/m along the normal, three times that along the tangent.
+#[test]
+fn bonds_are_weighed_against_step_and_load_by_driving_them() {
+    let made = Made::new("pair", PAIR);
+    let text = made.check(&[]);
+    assert!(
+        text.contains("bond: 1 contacts at the start, reduced radius 5.00e-2 m"),
+        "{text}"
+    );
+    near(after(&text, "opened: strength "), 1e4, 2e-3);
+    near(after(&text, "sheared: strength "), 1e4, 2e-3);
+    near(after(&text, "Pa at "), 1e-5, 1e-2);
+    let critical = 100f64.cbrt() * 1e-5;
+    near(after(&text, "broken at "), critical, 1e-2);
+    near(after(&text, "m by `wall`, "), 1e-3 * 1e-4 / critical, 2e-2);
+    let mass = 1000.0 * std::f64::consts::PI * 0.01;
+    let omega = (2.0 * 1e9 * 0.05 / mass).sqrt();
+    near(after(&text, "frequency of a bond: "), 1e-4 * omega, 1e-2);
+    near(after(&text, " opened, "), 1e-4 * omega * 3f64.sqrt(), 1e-2);
+    // Unfavourable: said, with what to change.
+    let fast = made.check(&["time.step=1e-2", "time.end=1.0"]);
+    assert!(
+        fast.contains("NOT RESOLVED: a bond that takes all of it breaks within"),
+        "{fast}"
+    );
+    assert!(
+        fast.contains("NOT RESOLVED: bonds are followed as at rest"),
+        "{fast}"
+    );
+    let advised = after(&fast, "its fracture energy is wrong; time.step of ");
+    near(advised, 0.01 * critical / 1e-3, 0.5);
+    // Another law that carries the same needs no name of its own.
+    let other = made.check(&[
+        "interfaces.bond.cohesion=elastic-bond",
+        "interfaces.bond.damage=linear-softening",
+        "interfaces.bond.parameters.cohesion={}",
+        "interfaces.bond.parameters.damage={}",
+    ]);
+    assert!(other.contains("opened: strength "), "{other}");
+}
+
+/// Against the pressure: the weight of what lies above.
+#[test]
+fn strength_is_told_over_the_pressure_of_the_scene() {
+    let made = Made::new("weight", PAIR);
+    let text = made.check(&["gravity=[0.0, -10.0]"]);
+    // Two disks of 31.4 kg on 0.4 m.
+    let pressure = 2.0 * 1000.0 * std::f64::consts::PI * 0.01 * 10.0 / 0.4;
+    assert!(
+        text.contains("estimated from the weight of the grains"),
+        "{text}"
+    );
+    near(after(&text, "of the grains ("), pressure, 1e-2);
+    let strong = made.check(&["gravity=[0.0, -0.001]"]);
+    assert!(strong.contains("STRONG"), "{strong}");
+    let weak = made.check(&["gravity=[0.0, -10000.0]"]);
+    assert!(weak.contains("WEAK"), "{weak}");
+}
+
+/// The run time is that of a few steps; a step that fails is told and is no crash; `--no-timing` leaves it out.
+#[test]
+fn the_run_time_is_estimated() {
+    let (_, _, text) = check("silo", &[]);
+    let line = text.lines().find(|l| l.trim().starts_with("run time"));
+    let line = line.unwrap_or_else(|| panic!("{text}"));
+    for word in [
+        "about ",
+        " on one thread, between ",
+        "steps timed",
+        "contacts and",
+        "iterations",
+    ] {
+        assert!(line.contains(word), "{line}");
+    }
+    let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(["check", "cases/silo.ron", "--no-timing"])
+        .output()
+        .unwrap();
+    assert!(!String::from_utf8_lossy(&output.stdout).contains("run time"));
+}

@@ -5,6 +5,7 @@ use std::process::Command;
 
 fn drive(line: &str) -> (Option<i32>, String, String) {
     let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
         .args(["law", "drive"])
         .args(line.split_whitespace())
         .output()
@@ -133,6 +134,55 @@ fn a_neck_is_pulled() {
     assert_eq!(force(rows.last().unwrap()), 0.0);
 }
 
+/// The interface of a case with its parameters, on the path that the law's own scale gives: the peak of MAC is sqrt(w C), and its
+/// curve has fallen to a hundredth of it at 4.64 u_0.
+#[test]
+fn an_interface_of_a_case_is_driven_with_its_parameters() {
+    let peak = |rows: &[Value]| {
+        let carried = rows.iter().map(|r| number(r, "traction_n"));
+        carried.fold(0.0, f64::max)
+    };
+    let case = "--case cases/verification/bond_mode_1.ron";
+    let u_0 = (0.1f64 / 1e12).sqrt();
+    let own = rows(&format!("{case} --interface grain --steps 20000"));
+    close("peak", peak(&own), (0.1f64 * 1e12).sqrt(), 1e-3);
+    let last = number(own.last().unwrap(), "opening_n");
+    close("path", last, 1.2 * 100f64.cbrt() * u_0, 2e-2);
+    // A case of one interface needs no name; --set changes the case: four times w is twice the peak, at twice the opening.
+    let set = "--set interfaces.grain.parameters.damage.w=0.4";
+    let other = rows(&format!("{case} {set} --steps 20000"));
+    close("peak", peak(&other), 2.0 * peak(&own), 1e-3);
+    let farther = number(other.last().unwrap(), "opening_n");
+    close("path", farther, 2.0 * last, 2e-2);
+    // Parameters that stand in a file of materials, and the laws that the case composes.
+    let fretting = "--case cases/wheel_rail_fretting.ron --interface third_body --mode II";
+    let (code, out, error) = drive(fretting);
+    assert_eq!(code, Some(0), "{error}");
+    assert!(
+        out.starts_with(
+            "third_body: contact coulomb, cohesion mac, damage mac, wear dissipated-energy"
+        ),
+        "{out}"
+    );
+}
+
+/// Without `--to` a law is driven through its own scale: a neck until it tears, a bond until it breaks.
+#[test]
+fn a_path_without_a_length_has_the_laws_own() {
+    let bond = rows("elastic-bond linear-softening --mode II");
+    let last = bond.last().unwrap();
+    assert_eq!(number(last, "damage"), 1.0);
+    assert!(bond.iter().filter(|r| number(r, "damage") < 1.0).count() > bond.len() / 2);
+    let neck = rows("jkr --set w=0.1 --set modulus=1e11");
+    let held = neck.iter().filter(|r| number(r, "tension_strength") > 0.0);
+    let held = held.count();
+    assert!(
+        held > neck.len() / 2 && held < neck.len(),
+        "{held} of {}",
+        neck.len()
+    );
+}
+
 #[test]
 fn bad_requests_are_refused() {
     for (line, part) in [
@@ -148,6 +198,22 @@ fn bad_requests_are_refused() {
         ("mac --pressure -1", "must not be negative"),
         ("mac --path /nowhere.csv", "/nowhere.csv"),
         ("mac --set w=-1", "must lie in"),
+        ("mac --radius 0", "--radius must be positive"),
+        ("--interface x", "--case"),
+        ("mac --case cases/silo.ron", "cannot be used with"),
+        ("--case cases/none.ron --interface x", "none.ron"),
+        (
+            "--case cases/wheel_rail_fretting.ron --interface third_bdy",
+            "did you mean `third_body`?",
+        ),
+        (
+            "--case cases/wheel_rail_fretting.ron",
+            "several interfaces; name one with --interface: third_body, rail_oxide, wheel_oxide",
+        ),
+        (
+            "--case cases/verification/bond_mode_1.ron --set interfaces.grain.damge=mac",
+            "did you mean `damage`?",
+        ),
     ] {
         let (code, _, error) = drive(line);
         assert_eq!(code, Some(2), "{line}: {error}");

@@ -1,7 +1,8 @@
 //! `fretwork solve` from outside: exit codes, sentences, JSON, the file of the solution.
 
 use fretwork::record::fclib::{self, Problem};
-use fretwork::solve::local::solver::field_error;
+use fretwork::solve::local::scale_free::scale_free_error;
+use fretwork::solve::local::solver::{self, Limits, Method, field_error};
 use fretwork::solve::local::{Csr, GlobalProblem, LocalProblem, Reduction};
 use serde_json::Value;
 use std::path::PathBuf;
@@ -220,7 +221,14 @@ fn all_solvers_stand_in_a_table() {
     assert!(in_order, "{said}");
     let output = solve(&[&file, "--solver", "all", "--tolerance", "1e-4"]);
     let text = String::from_utf8_lossy(&output.stdout);
-    let heads = ["solver", "solved", "error", "iterations", "time"];
+    let heads = [
+        "solver",
+        "solved",
+        "error",
+        "scale-free",
+        "iterations",
+        "time",
+    ];
     assert!(
         text.lines().any(|l| l.split_whitespace().eq(heads)),
         "{text}"
@@ -384,4 +392,137 @@ fn wrong_arguments_are_refused_with_a_sentence() {
     std::fs::copy(&file, &copy).unwrap();
     refused(&[&copy, "--out", &copy], &["--out", "the problem itself"]);
     assert_eq!(std::fs::read(&copy).unwrap(), std::fs::read(&file).unwrap());
+}
+
+/// A local problem of the collection.
+fn local_of(name: &str) -> LocalProblem {
+    match fclib::read(shared(name).as_ref()).unwrap() {
+        Problem::Local(l) => l.problem,
+        Problem::Global(_) => panic!("{name} is global"),
+    }
+}
+
+/// W times s: the same motion, with impulses over s.
+fn rescaled(problem: &LocalProblem, s: f64) -> LocalProblem {
+    let mut out = problem.clone();
+    out.w.values.iter_mut().for_each(|w| *w *= s);
+    out
+}
+
+const LOCAL: [&str; 4] = [
+    "fc2d_FrictionContactProblem00031",
+    "fc2d_SliderCrankLagrangian00000",
+    "fc3d_OneContact_reduced",
+    "fc3d_OneObject-i1028-138",
+];
+
+/// The same motion in other units has the same figure: to the bit where they differ by a power of two.
+#[test]
+fn the_scale_free_error_knows_no_units() {
+    for name in LOCAL {
+        let problem = local_of(name);
+        let limits = Limits {
+            tolerance: 1e-3,
+            scale_free: None,
+            max_iterations: 1000,
+            seconds: 10.0,
+        };
+        let mut p = solver::solve(&problem, Method::Nlgs, &limits).p;
+        // Away from the solution, so that the figure is no rounding.
+        p.iter_mut().for_each(|p| *p *= 1.01);
+        let figure = scale_free_error(&problem, &p);
+        assert!(figure > 1e-6, "{name}: {figure:e}");
+        for (s, k) in [(1e-9, 1.0), (2f64.powi(-30), 1.0), (1e9, 1e-3), (1.0, 7.0)] {
+            let mut other = rescaled(&problem, s);
+            other.q.iter_mut().for_each(|q| *q *= k);
+            let impulses: Vec<f64> = p.iter().map(|p| p * k / s).collect();
+            let again = scale_free_error(&other, &impulses);
+            let near = if s == 2f64.powi(-30) { 0.0 } else { 1e-9 };
+            assert!(
+                (again - figure).abs() <= near * figure,
+                "{name}, W times {s:e}, q times {k}: {again:e} for {figure:e}"
+            );
+        }
+    }
+}
+
+/// The field's figure of a problem whose W is 1e-9 of its own passes with velocities that are wrong by their own size: it is
+/// flagged, refused by the exit code where that is asked for, and solved to both where there are iterations for it.
+#[test]
+fn what_the_fields_figure_hides_is_flagged_and_can_be_refused() {
+    let folder = Folder::new();
+    // The others are solved exactly by a sweep, in any units.
+    for name in ["fc3d_OneObject-i1028-138"] {
+        let problem = local_of(name);
+        let whole = folder.local("whole.hdf5", &problem);
+        let said = json(&[&whole, "--tolerance", "1e-6"]);
+        assert_eq!(
+            (&said["scale_free_met"], &said["warning"]),
+            (&true.into(), &Value::Null),
+            "{said}"
+        );
+
+        let file = folder.local("small.hdf5", &rescaled(&problem, 1e-9));
+        let said = json(&[&file, "--tolerance", "1e-6"]);
+        assert_eq!(
+            (&said["solved"], &said["scale_free_met"]),
+            (&true.into(), &false.into()),
+            "{said}"
+        );
+        assert!(said["error"].as_f64().unwrap() <= 1e-6);
+        assert!(said["scale_free_error"].as_f64().unwrap() > 1e-2, "{said}");
+        assert_eq!(said["scale_free_tolerance"], 1e-3);
+        assert!(
+            said["warning"].as_str().unwrap().contains("above 1.0e-3"),
+            "{said}"
+        );
+        let text = solve(&[&file, "--tolerance", "1e-6"]);
+        let text = String::from_utf8_lossy(&text.stdout).into_owned();
+        assert!(
+            text.contains("WARNING") && text.contains("DOUBTFUL"),
+            "{text}"
+        );
+
+        // Asked for, and the iterations do not reach: exit code 1, with both figures.
+        let few = [
+            &file,
+            "--tolerance",
+            "1e-6",
+            "--scale-free-tolerance",
+            "1e-6",
+            "--solver",
+            "pg",
+            "--max-iterations",
+            "1",
+        ];
+        let output = solve(&few);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{error}");
+        assert!(error.contains("--scale-free-tolerance 1e-6"), "{error}");
+
+        // Asked for, and reached: both figures hold, recomputed from the file that was written.
+        let out = folder.path("out.hdf5");
+        let said = json(&[
+            &file,
+            "--tolerance",
+            "1e-6",
+            "--scale-free-tolerance",
+            "1e-6",
+            "--out",
+            &out,
+        ]);
+        assert_eq!(
+            (&said["solved"], &said["scale_free_met"]),
+            (&true.into(), &true.into()),
+            "{said}"
+        );
+        let r = fclib::read_solution(out.as_ref()).unwrap().unwrap().r;
+        let small = rescaled(&problem, 1e-9);
+        assert!(field_error(&small, &r) <= 1e-6 && scale_free_error(&small, &r) <= 1e-6);
+    }
+    let file = shared("fc3d_OneContact_reduced");
+    for wrong in ["0", "-1", "NaN", "inf"] {
+        let argument = format!("--scale-free-tolerance={wrong}");
+        refused(&[&file, &argument], &["--scale-free-tolerance", "above 0"]);
+    }
 }

@@ -406,20 +406,20 @@ fn failed_runs_are_marked_and_kept_off_the_frontier() {
 fn ends_with_the_budget_and_goes_on_after_an_interruption() {
     let folder = Folder::new("budget");
     let out = folder.out();
-    // 280,000 steps: longer than the budget on any machine.
+    // The finest step takes 280,000 steps, longer than the budget on any machine; the case's own some 1700.
     let long = [
         BOND,
         "--set",
-        "time.step=2.5e-10",
+        "time.step=4e-8",
         "--vary",
-        "time.step=2.5e-10,4e-8",
+        "time.step=2.5e-10,4e-8,8e-8",
         "--output",
         "energy.fracture=1%",
         "--out",
         &out,
     ];
     let started = Instant::now();
-    let output = call(&[&long[..], &["--budget", "3s"]].concat());
+    let output = call(&[&long[..], &["--budget", "10s"]].concat());
     let (said, wrong) = (
         String::from_utf8_lossy(&output.stdout),
         String::from_utf8_lossy(&output.stderr),
@@ -522,6 +522,35 @@ fn wrong_input_is_answered_with_the_nearest_name() {
             "no --output has this name",
         ),
         (&["--budget", "soon"], "is no time"),
+        (&["--budget", "NaN"], "is no time"),
+        (&["--unconverged", "NaN"], "is no share"),
+        (&["--residual", "-1"], "is no share"),
+        (&["--output", "energy.fracture=NaN%"], "a number above zero"),
+        (&["--output", "energy.fracture=100%"], "less than 100 %"),
+        (
+            &["--output", "measures.bulk_mu"],
+            "a run of this case has no such output",
+        ),
+        (&["--output", "wear.Qs"], "has a wear law"),
+        (&["--output", "wear.Qw"], "no circuit of grains"),
+        (&["--output", "biaxial.angle"], "no biaxial test"),
+        (&["--output", "plugins"], "it is no number"),
+        (
+            &["--output", "statistics.M"],
+            "a run of this case has no such output",
+        ),
+        (
+            &["--vary", "time.step=2e-8,2.0e-8"],
+            "2e-8 and 2.0e-8 are the same case",
+        ),
+        (
+            &["--set", "solver.method=Newton", "--knob", "test_every"],
+            "makes no sweeps",
+        ),
+        (
+            &["--set", "time.step=1e-13", "--budget", "3s"],
+            "one run of the case as it is takes",
+        ),
         (&["--vary", "seed=1,2"], "for more seeds give --seeds"),
         (&["--vary", "output.every=1,2"], "a study sets this itself"),
         (
@@ -540,4 +569,42 @@ fn wrong_input_is_answered_with_the_nearest_name() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
         assert!(text.contains(said), "{arguments:?}: {text}");
     }
+}
+
+/// What a case does not have is told before anything runs, with what it has: nothing is left on disk.
+#[test]
+fn outputs_that_a_case_does_not_have_are_refused_before_a_run() {
+    let folder = Folder::new("absent");
+    let (case, out) = (folder.file("heap.ron", HEAP), folder.out());
+    for (output, why) in [
+        ("friction_coefficient", "no friction test"),
+        ("cycles.2.work", "no friction test"),
+        ("damage_ratio", "no interface of the case makes bonds"),
+        ("energy.fracture", "bonds that are damaged"),
+        ("wear.Qs", "no interface of the case has a wear law"),
+        ("jump.cycles", "jumps over no cycles"),
+        ("measures.layer_flow", "did you mean"),
+        ("statistics.slide", "a run of this case has no such output"),
+    ] {
+        let answer = call(&[&case, "--out", &out, "--output", output]);
+        let said = String::from_utf8_lossy(&answer.stderr);
+        assert_eq!(answer.status.code(), Some(2), "{output}: {said}");
+        if output != "measures.layer_flow" {
+            assert!(said.contains(why), "{output}: {said}");
+        }
+        // The list of those it has, or of the columns.
+        let list = if output.starts_with("statistics") {
+            "kinetic"
+        } else {
+            "energy.friction"
+        };
+        assert!(said.contains(list), "{output}: {said}");
+        assert!(!said.contains("there are friction_coefficient"), "{said}");
+        assert!(!Path::new(&out).exists(), "{output} left something");
+    }
+    // The default asks for what there is, and there is nothing here.
+    let answer = call(&[&case, "--out", &out]);
+    let said = String::from_utf8_lossy(&answer.stderr);
+    assert_eq!(answer.status.code(), Some(2), "{said}");
+    assert!(said.contains("name an output"), "{said}");
 }

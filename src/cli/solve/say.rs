@@ -2,6 +2,7 @@
 
 use super::{Choice, SolveArgs, Solved};
 use crate::record::fclib::Problem;
+use crate::solve::local::scale_free;
 use crate::solve::local::solver::Outcome;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -63,15 +64,19 @@ pub fn text(solved: &Solved, args: &SolveArgs) -> String {
             ),
         );
     }
+    let limit = args.scale_free_limit();
+    let verdict = match (best.scale_free_error <= limit, args.scale_free_tolerance) {
+        (true, _) => "met",
+        (false, Some(_)) => "NOT met",
+        (false, None) => "DOUBTFUL",
+    };
     line(
-        "velocities",
-        format!("{:.3e} of |u|, whatever the units", best.velocity_error),
+        "scale-free",
+        format!("{:.3e} of {limit:.1e}: {verdict}", best.scale_free_error),
     );
-    if best.converged && best.velocity_error > (100.0 * args.tolerance).max(1e-3) {
-        line(
-            "",
-            "far more than the error: the figure adds impulses to velocities, and in these units the one hides the other; lower --tolerance, or store W/s and s r in place of W and r, s a mean of W's diagonal".into(),
-        );
+    line("", format!("error = {}", scale_free::FORMULA));
+    if let Some(warning) = warning(best, args) {
+        line("WARNING", warning);
     }
     if let Some(worst) = best.worst {
         line("worst", format!("contact {worst} (counted from 0)"));
@@ -97,22 +102,37 @@ pub fn text(solved: &Solved, args: &SolveArgs) -> String {
     out.trim_end().to_owned()
 }
 
+/// What to say where the field's figure passes and the scale-free one does not.
+fn warning(o: &Outcome, args: &SolveArgs) -> Option<String> {
+    let limit = args.scale_free_limit();
+    let passes = o.error <= args.tolerance && o.beside <= args.tolerance;
+    (passes && o.scale_free_error > limit).then(|| {
+        format!(
+            "the field's error passes, the scale-free one does not: velocities are wrong by {:.1e} of the largest of |u| and |q|, \
+             above {limit:.1e}. The field's figure adds impulses to velocities, and in these units the one hides the other; give \
+             --scale-free-tolerance {limit:.0e} to have both met, or store W/s and s r in place of W and r, s a mean of W's diagonal",
+            o.scale_free_error
+        )
+    })
+}
+
 fn table(outcomes: &[Outcome]) -> String {
     let width = outcomes
         .iter()
         .map(|o| o.method.chars().count())
         .fold(6, usize::max);
     let mut out = format!(
-        "  {:<width$}  {:<6}  {:>9}  {:>10}  {:>10}\n",
-        "solver", "solved", "error", "iterations", "time"
+        "  {:<width$}  {:<6}  {:>9}  {:>10}  {:>10}  {:>10}\n",
+        "solver", "solved", "error", "scale-free", "iterations", "time"
     );
     for o in outcomes {
         let solved = if o.converged { "yes" } else { "no" };
         let _ = writeln!(
             out,
-            "  {:<width$}  {solved:<6}  {:>9.2e}  {:>10}  {:>10}",
+            "  {:<width$}  {solved:<6}  {:>9.2e}  {:>10.2e}  {:>10}  {:>10}",
             o.method,
             o.error,
+            o.scale_free_error,
             o.iterations,
             seconds(o.seconds)
         );
@@ -127,7 +147,7 @@ fn seconds(s: f64) -> String {
 /// The object of one file.
 pub fn json(solved: &Solved, args: &SolveArgs) -> Value {
     let problem = &solved.problem;
-    let mut value = outcome(&solved.outcomes[0]);
+    let mut value = outcome(&solved.outcomes[0], args);
     let more = json!({
         "problem": solved.path.display().to_string(),
         "title": problem.info().title,
@@ -136,6 +156,9 @@ pub fn json(solved: &Solved, args: &SolveArgs) -> Value {
         "contacts": problem.contacts(),
         "tolerance": args.tolerance,
         "error_formula": FORMULA,
+        "scale_free_tolerance": args.scale_free_limit(),
+        "scale_free_asked": args.scale_free_tolerance.is_some(),
+        "scale_free_formula": scale_free::FORMULA,
         "read_seconds": solved.read_seconds,
         "reduce_seconds": solved.reduce_seconds,
         "out": args.out.as_ref().map(|p| p.display().to_string()),
@@ -144,20 +167,22 @@ pub fn json(solved: &Solved, args: &SolveArgs) -> Value {
     if let (Value::Object(into), Value::Object(more)) = (&mut value, more) {
         into.extend(more);
         if args.solver == Choice::All {
-            let all = solved.outcomes.iter().map(outcome).collect();
+            let all = solved.outcomes.iter().map(|o| outcome(o, args)).collect();
             into.insert("solvers".to_owned(), Value::Array(all));
         }
     }
     value
 }
 
-fn outcome(o: &Outcome) -> Value {
+fn outcome(o: &Outcome, args: &SolveArgs) -> Value {
     json!({
         "solver": o.method,
         "solved": o.converged,
         "error": o.error,
         "error_beside": o.beside,
-        "velocity_error": o.velocity_error,
+        "scale_free_error": o.scale_free_error,
+        "scale_free_met": o.scale_free_error <= args.scale_free_limit(),
+        "warning": warning(o, args),
         "worst": o.worst,
         "iterations": o.iterations,
         "seconds": o.seconds,
@@ -173,6 +198,19 @@ pub fn unsolved(solved: &Solved, args: &SolveArgs) -> String {
             solved.path.display(),
             best.error,
             best.beside
+        );
+    }
+    if let Some(asked) = args.scale_free_tolerance
+        && best.error <= args.tolerance
+    {
+        return format!(
+            "{}: the field's error is {:.3e}, but the scale-free one is {:.3e}, above --scale-free-tolerance {asked:e}, after {} \
+             iterations and {}; raise --max-iterations or --time-limit, or try --solver all",
+            solved.path.display(),
+            best.error,
+            best.scale_free_error,
+            best.iterations,
+            seconds(best.seconds)
         );
     }
     format!(

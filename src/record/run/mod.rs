@@ -15,6 +15,7 @@ mod row;
 mod stamps;
 
 pub use self::error::RunError;
+pub use self::row::statistics_columns;
 
 use self::account::Account;
 use self::error::unwritable;

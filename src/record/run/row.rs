@@ -1,11 +1,15 @@
 //! The rows of the statistics: their columns and what stands in them.
 
 use super::Recorder;
+use super::account::Account;
+use super::jumps::Jumps;
 use crate::geometry::space::Space;
 use crate::record::biaxial::Biaxial;
+use crate::record::measure::Measures;
 use crate::record::scars;
 use crate::record::statistics::Column;
 use crate::scene::build::Dimensional;
+use crate::scene::case::Case;
 use crate::step::{Simulation, StepReport};
 
 impl<S: Dimensional> Recorder<'_, S> {
@@ -63,6 +67,18 @@ impl<S: Dimensional> Recorder<'_, S> {
         }
         row
     }
+}
+
+/// The columns of the statistics that a run of a case has.
+pub fn statistics_columns<S: Dimensional>(case: &Case, s: &Simulation<S>) -> Vec<Column> {
+    let test = case.friction.as_ref();
+    let driven = |name: &str| s.bodies.driven.iter().any(|d| d.name == name);
+    let friction = test.is_some_and(|t| driven(&t.body));
+    let mut out = columns(s, friction, case.biaxial.is_some());
+    out.extend(case.jump.is_some().then(Jumps::column));
+    out.extend(Account::<S>::columns(case));
+    out.extend(Measures::<S>::new(&case.measures).columns());
+    out
 }
 
 pub(super) fn columns<S: Space>(s: &Simulation<S>, friction: bool, biaxial: bool) -> Vec<Column> {

@@ -25,6 +25,7 @@ pub mod linear;
 pub mod newton;
 pub mod nlgs;
 pub mod reduce;
+pub mod scale_free;
 pub mod solver;
 pub mod state;
 

@@ -11,6 +11,7 @@ use super::interior::Interior;
 use super::law::{self, Law};
 use super::newton::Newton;
 use super::nlgs::{Nlgs, Order};
+use super::scale_free;
 use super::state::{Budget, Solver, State};
 use crate::solve::error::{Norm, lost, unbounded};
 use serde::Deserialize;
@@ -143,6 +144,8 @@ impl FromStr for Method {
 pub struct Limits {
     /// The [`field_error`] to reach.
     pub tolerance: f64,
+    /// The [`Outcome::scale_free_error`] to reach too; none where it is told only.
+    pub scale_free: Option<f64>,
     /// Iterations at most.
     pub max_iterations: u32,
     /// Seconds at most.
@@ -163,15 +166,15 @@ pub struct Outcome {
     /// The larger of two figures that it does not hold and that must be within the tolerance too: what
     /// friction hides of Signorini's law, and impulses that grow without bound. See [`crate::solve::error`].
     pub beside: f64,
-    /// The error in velocity, |r|/max(|u|, |q|), which no choice of units changes.
-    pub velocity_error: f64,
+    /// The error in velocities alone, which no choice of units changes; see [`scale_free`].
+    pub scale_free_error: f64,
     /// The contact with the largest share of the error.
     pub worst: Option<usize>,
     /// Iterations done.
     pub iterations: u32,
     /// Seconds taken.
     pub seconds: f64,
-    /// Whether the errors are within the tolerance.
+    /// Whether the errors are within the tolerances asked for.
     pub converged: bool,
 }
 
@@ -187,7 +190,7 @@ pub fn solve(problem: &LocalProblem, method: Method, limits: &Limits) -> Outcome
             p,
             error: f64::INFINITY,
             beside: f64::INFINITY,
-            velocity_error: f64::INFINITY,
+            scale_free_error: f64::INFINITY,
             worst: None,
             iterations: 0,
             seconds: 0.0,
@@ -217,14 +220,17 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
     let mut solver = Choice::<D>::new(method);
     let (mut best, mut total) = (f64::INFINITY, 0.0);
     let mut state = None;
+    let velocity = Form::new(&w, &q, &laws, Norm::Velocity);
     for _ in 0..REPEATS {
         let clock = Instant::now();
         let form = Form::new(&w, &q, &laws, Norm::Field);
+        solver.used.clear();
         let mut now = State::new(&form, vec![[0.0; D]; laws.len()]);
         // A hair below, so that the figure recomputed in another order of sums is still within.
         let tolerance = limits.tolerance * (1.0 - 1e-9);
         let mut budget = Budget::new(tolerance, limits.max_iterations, limits.seconds);
-        solver.solve(&form, &mut now, &mut budget);
+        let step = |f: &Form<D>, s: &mut State<D>, b: &mut Budget| solver.solve(f, s, b);
+        scale_free::meet(&form, &velocity, &mut now, limits, &mut budget, step);
         let seconds = clock.elapsed().as_secs_f64();
         best = best.min(seconds);
         total += seconds;
@@ -240,6 +246,8 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
         beside,
         worst,
     } = measured::<D>(problem, &p);
+    let scale_free_error = scale_free::scale_free_error(problem, &p);
+    let doubted = limits.scale_free.is_some_and(|t| scale_free_error > t);
     Outcome {
         method: solver.name(method),
         u: problem.velocities(&p),
@@ -249,38 +257,52 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
         iterations: state.iterations,
         seconds: best,
         beside,
-        velocity_error: Form::new(&w, &q, &laws, Norm::Velocity)
-            .error(&state.p, &state.u)
-            .error,
-        converged: error <= limits.tolerance && beside <= limits.tolerance,
+        scale_free_error,
+        converged: error <= limits.tolerance && beside <= limits.tolerance && !doubted,
     }
 }
 
 /// A method, or the choice of one, which can tell afterwards.
-enum Choice<const D: usize> {
+struct Choice<const D: usize> {
+    kind: Kinds<D>,
+    /// What `auto` used, in the order of first use.
+    used: Vec<&'static str>,
+}
+
+enum Kinds<const D: usize> {
     Auto(Auto),
     Fixed(Box<dyn Solver<D>>),
 }
 
 impl<const D: usize> Choice<D> {
     fn new(method: Method) -> Self {
-        match method {
-            Method::Auto => Self::Auto(Auto::default()),
-            other => Self::Fixed(other.solver()),
+        Self {
+            kind: match method {
+                Method::Auto => Kinds::Auto(Auto::default()),
+                other => Kinds::Fixed(other.solver()),
+            },
+            used: Vec::new(),
         }
     }
 
     fn solve(&mut self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
-        match self {
-            Self::Auto(auto) => auto.solve(form, state, budget),
-            Self::Fixed(solver) => solver.solve(form, state, budget),
+        match &self.kind {
+            Kinds::Auto(auto) => {
+                auto.solve(form, state, budget);
+                for name in auto.names() {
+                    if !self.used.contains(&name) {
+                        self.used.push(name);
+                    }
+                }
+            }
+            Kinds::Fixed(solver) => solver.solve(form, state, budget),
         }
     }
 
     fn name(&self, method: Method) -> String {
-        match self {
-            Self::Auto(auto) => format!("auto: {}", auto.names().join(", ")),
-            Self::Fixed(_) => method.name().to_owned(),
+        match self.kind {
+            Kinds::Auto(_) => format!("auto: {}", self.used.join(", ")),
+            Kinds::Fixed(_) => method.name().to_owned(),
         }
     }
 }
@@ -344,7 +366,7 @@ fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> Measured {
 }
 
 /// The power of two below the largest number; 1 where all are 0.
-fn magnitude<'a>(x: impl Iterator<Item = &'a f64>) -> f64 {
+pub(super) fn magnitude<'a>(x: impl Iterator<Item = &'a f64>) -> f64 {
     let most = x.fold(0.0f64, |m, x| m.max(x.abs()));
     if most > 0.0 {
         most.log2().floor().clamp(-1000.0, 1000.0).exp2()
@@ -369,6 +391,7 @@ mod tests {
             };
             let limits = Limits {
                 tolerance: 1e-12,
+                scale_free: None,
                 max_iterations: 1000,
                 seconds: 10.0,
             };

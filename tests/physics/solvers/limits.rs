@@ -11,6 +11,7 @@ use nalgebra::DMatrix;
 
 const LIMITS: Limits = Limits {
     tolerance: 1e-8,
+    scale_free: None,
     max_iterations: 200,
     seconds: 1.0,
 };

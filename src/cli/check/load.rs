@@ -1,0 +1,149 @@
+//! What acts on a scene from outside, as far as the case tells: the speed of sliding and the pressure.
+
+use crate::bodies::{Dof, TimeFunction};
+use crate::geometry::space::{Space, VectorLike};
+use crate::record::biaxial::Biaxial;
+use crate::scene::build::Built;
+use crate::scene::case::Case;
+use crate::scene::phases::drives_of;
+use std::f64::consts::TAU;
+
+/// Samples of a drive over the run.
+const SAMPLES: u32 = 1000;
+
+/// What acts on a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Load {
+    /// Largest imposed speed (m/s), and whose it is; none where nothing is moved.
+    pub speed: Option<(f64, String)>,
+    /// Pressure (Pa), and what it follows from; none where nothing tells.
+    pub pressure: Option<(f64, &'static str)>,
+}
+
+impl Load {
+    /// That of a case and its scene.
+    pub fn of<S: Space>(case: &Case, built: &Built<S>) -> Self {
+        let test = friction_pressure(case, built).map(|p| (p, "of the friction test"));
+        let biaxial = || biaxial_pressure(case, built).map(|p| (p, "of the biaxial test"));
+        let servo = || servo_pressure(case).map(|p| (p, "of the servo"));
+        let weight = || weight(built).map(|p| (p, "estimated from the weight of the grains"));
+        Self {
+            speed: speed::<S>(case),
+            pressure: test.or_else(biaxial).or_else(servo).or_else(weight),
+        }
+    }
+}
+
+/// The largest magnitude of a function of a drive over the run.
+fn largest(end: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let times = (0..=SAMPLES).map(|k| end * f64::from(k) / f64::from(SAMPLES));
+    times.map(|t| f(t).abs()).fold(0.0, f64::max)
+}
+
+/// The largest speed that a drive imposes; of a sine by its formula, which samples may miss.
+fn peak_speed(dof: &Dof, end: f64) -> f64 {
+    let each = dof.drives().map(|drive| {
+        let sampled = largest(end, |t| drive.imposed_velocity(t).unwrap_or(0.0));
+        match drive {
+            Dof::Velocity(TimeFunction::Sine {
+                amplitude, offset, ..
+            }) => sampled.max(offset.abs() + amplitude.abs()),
+            Dof::Displacement(TimeFunction::Sine {
+                amplitude,
+                frequency,
+                ..
+            }) => sampled.max((TAU * frequency * amplitude).abs()),
+            _ => sampled,
+        }
+    });
+    each.fold(0.0, f64::max)
+}
+
+fn speed<S: Space>(case: &Case) -> Option<(f64, String)> {
+    // Where a friction test slides its slide is what counts, not how the body is pressed on.
+    let test = case.friction.as_ref();
+    let slide = test.and_then(|t| fastest(case, |name, k| name == t.body && k == t.along));
+    slide.or_else(|| fastest(case, |_, k| k < S::D))
+}
+
+/// The fastest of the drives that count, by body and axis.
+fn fastest(case: &Case, counts: impl Fn(&str, usize) -> bool) -> Option<(f64, String)> {
+    let mut fastest: Option<(f64, String)> = None;
+    for body in &case.bodies {
+        let counts = |k: usize| counts(&body.name, k);
+        for (_, dof) in drives_of(case, body).iter().filter(|(k, _)| counts(*k)) {
+            let speed = peak_speed(dof, case.time.end);
+            let more = fastest.as_ref().is_none_or(|f| speed > f.0);
+            if speed > 0.0 && speed.is_finite() && more {
+                fastest = Some((speed, body.name.clone()));
+            }
+        }
+    }
+    fastest
+}
+
+/// The imposed force over the period of the test.
+pub fn friction_pressure<S: Space>(case: &Case, built: &Built<S>) -> Option<f64> {
+    let (test, s) = (case.friction.as_ref()?, &built.simulation);
+    let driven = s.bodies.driven.iter().find(|d| d.name == test.body)?;
+    let force = largest(case.time.end, |t| driven.dofs[test.normal].force(t));
+    let pressure = force / friction_area::<S>(case, built)?;
+    (pressure > 0.0).then_some(pressure)
+}
+
+/// Area on which a friction test presses: of a contact that is periodic along the sliding (m^2; m in 2D).
+pub fn friction_area<S: Space>(case: &Case, built: &Built<S>) -> Option<f64> {
+    let (test, s) = (case.friction.as_ref()?, &built.simulation);
+    let period = s.shapes.periodic.period[test.along]?;
+    Some(if S::D == 2 {
+        period
+    } else {
+        period * s.shapes.periodic.period[3 - test.along - test.normal].unwrap_or(period)
+    })
+}
+
+/// The lateral force on a square sample, at a compacity of 0.82.
+fn biaxial_pressure<S: Space>(case: &Case, built: &Built<S>) -> Option<f64> {
+    let (spec, s) = (case.biaxial.as_ref()?, &built.simulation);
+    let test = Biaxial::new(spec, s)?;
+    let walls = s.bodies.driven.iter();
+    let walls = walls.filter(|d| d.name == spec.lateral.0 || d.name == spec.lateral.1);
+    let forces = walls.flat_map(|d| &d.dofs[..S::D]);
+    let force = forces.map(|dof| largest(case.time.end, |t| dof.force(t)));
+    let pressure = force.fold(0.0, f64::max) / (test.solid() / 0.82).sqrt();
+    (pressure > 0.0 && pressure.is_finite()).then_some(pressure)
+}
+
+fn servo_pressure(case: &Case) -> Option<f64> {
+    let bodies = case.bodies.iter().flat_map(|body| drives_of(case, body));
+    let values = bodies.flat_map(|(_, dof)| {
+        let each = dof.drives().map(|drive| match drive {
+            Dof::Pressure { value, .. } => largest(case.time.end, |t| value.value(t)),
+            _ => 0.0,
+        });
+        each.collect::<Vec<_>>()
+    });
+    let most = values.fold(0.0, f64::max);
+    (most > 0.0).then_some(most)
+}
+
+/// The weight of all grains over the ground they stand above.
+fn weight<S: Space>(built: &Built<S>) -> Option<f64> {
+    let s = &built.simulation;
+    let g = s.gravity.norm();
+    let down = (0..S::D).max_by(|a, b| s.gravity[*a].abs().total_cmp(&s.gravity[*b].abs()))?;
+    let (mut mass, mut area) = (0.0, 1.0);
+    for body in s.bodies.grains() {
+        mass += s.bodies.mass[body];
+    }
+    for k in (0..S::D).filter(|k| *k != down) {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for body in s.bodies.grains() {
+            let (x, r) = (s.bodies.position[body][k], s.bodies.length[body]);
+            (low, high) = (low.min(x - r), high.max(x + r));
+        }
+        area *= s.shapes.periodic.period[k].unwrap_or(high - low);
+    }
+    let pressure = mass * g / area;
+    (pressure > 0.0 && pressure.is_finite()).then_some(pressure)
+}

@@ -1,0 +1,131 @@
+//! The interface law on the bench: composed of named laws, or as a case has it.
+
+use super::super::super::{Failure, PluginArgs};
+use super::super::{all_used, named, values};
+use super::DriveArgs;
+use crate::geometry::space::Space;
+use crate::laws::bench::Bench;
+use crate::laws::{AreaRule, BondRule, Interface, Kind, Loaded, Plugin};
+use crate::scene::bond_sites::BondSites;
+use crate::scene::build::Built;
+use crate::scene::source::nearest;
+use crate::scene::{Scene, load};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Reduced radius of the contact, where neither the user nor a scene says (m).
+const RADIUS: f64 = 1e-5;
+
+/// What is driven: the bench, and what it is called.
+pub(super) fn bench(args: &DriveArgs) -> Result<(Bench, String), Failure> {
+    match &args.case {
+        Some(case) => of_case(case, args),
+        None => {
+            let law = compose(args, &args.plugins)?;
+            let bench = Bench::new(law, 3, args.radius.unwrap_or(RADIUS));
+            Ok((bench, args.laws.join(" + ")))
+        }
+    }
+}
+
+/// The laws of an interface as a case composes them, on the contacts of its scene.
+fn of_case(case: &Path, args: &DriveArgs) -> Result<(Bench, String), Failure> {
+    let loaded = load(case, &args.sets)?;
+    let names = || loaded.case.interfaces.iter().map(|i| i.name.as_str());
+    let all = names().collect::<Vec<_>>().join(", ");
+    let name = match (&args.interface, names().count()) {
+        (Some(name), _) => name.as_str(),
+        (None, 1) => names().next().unwrap_or_default(),
+        (None, 0) => {
+            return Err(Failure::Usage(format!(
+                "{} has no interface",
+                case.display()
+            )));
+        }
+        (None, _) => {
+            return Err(Failure::Usage(format!(
+                "{} has several interfaces; name one with --interface: {all}",
+                case.display()
+            )));
+        }
+    };
+    let Some(place) = names().position(|n| n == name) else {
+        let near =
+            nearest(name, names()).map_or(String::new(), |n| format!("; did you mean `{n}`?"));
+        return Err(Failure::Usage(format!(
+            "--interface {name}: {} has no interface of this name{near} It has {all}",
+            case.display()
+        )));
+    };
+    let scene = loaded.build(&args.plugins.search()?)?;
+    let (law, radius) = match &scene {
+        Scene::Plane(built) => site(built, place),
+        Scene::Solid(built) => site(built, place),
+    };
+    let laws: Vec<String> = law
+        .loaded()
+        .map(|l| format!("{} {}", l.plugin.kind, l.plugin.name))
+        .collect();
+    let title = format!("{name}: {}", laws.join(", "));
+    let radius = args.radius.or(radius).unwrap_or(RADIUS);
+    let bench = Bench::new(law, loaded.case.dimension, radius);
+    Ok((bench, title))
+}
+
+/// An interface of a scene, and the median reduced radius of its contacts (m).
+fn site<S: Space>(built: &Built<S>, place: usize) -> (Interface, Option<f64>) {
+    let s = &built.simulation;
+    let radius = BondSites::of(s, place).map(|b| b.radius);
+    (s.laws[place].clone(), radius)
+}
+
+fn compose(args: &DriveArgs, plugins: &PluginArgs) -> Result<Interface, Failure> {
+    let path = plugins.search()?;
+    let mut slots: [Option<Plugin>; 4] = [None, None, None, None];
+    let place = |kind: Kind| Kind::ALL.iter().position(|k| *k == kind).unwrap_or(0);
+    for name in &args.laws {
+        for plugin in named(&path, name)? {
+            let slot = &mut slots[place(plugin.kind)];
+            if let Some(other) = slot {
+                return Err(Failure::Usage(format!(
+                    "`{}` and `{}` are both {} laws; an interface has one of each kind",
+                    other.name, plugin.name, plugin.kind
+                )));
+            }
+            *slot = Some(plugin);
+        }
+    }
+    if slots[0].is_none() {
+        slots[0] = Some(path.find(Kind::Contact, "frictionless")?);
+    }
+    let mut used = vec![false; args.sets.len()];
+    let mut loaded = Vec::new();
+    for plugin in slots {
+        loaded.push(match plugin {
+            None => None,
+            Some(plugin) => Some(Loaded {
+                parameters: values(&plugin, &args.sets, &mut used)?,
+                plugin: Arc::new(plugin),
+                first_variable: 0,
+            }),
+        });
+    }
+    let laws: Vec<&Plugin> = loaded.iter().flatten().map(|l| &*l.plugin).collect();
+    all_used(&args.sets, &used, &laws)?;
+    let mut next = loaded.into_iter();
+    let mut slot = || next.next().flatten();
+    let Some(contact) = slot() else {
+        return Err(Failure::Usage("there is no contact law".into()));
+    };
+    let law = Interface {
+        name: "bench".into(),
+        contact,
+        cohesion: slot(),
+        damage: slot(),
+        wear: slot(),
+        bonds: BondRule::Start,
+        healing: None,
+        area: AreaRule::default(),
+    };
+    Ok(law.compose()?)
+}

@@ -1,0 +1,125 @@
+//! The table of a drive: as text, CSV and pictures.
+
+use super::super::super::Failure;
+use super::table::Row;
+use crate::report::{Axis, Chart, Series};
+use std::path::Path;
+
+pub(super) fn write_csv(file: &Path, rows: &[Row]) -> Result<(), Failure> {
+    let fail = |e: csv::Error| Failure::Failed(format!("cannot write {}: {e}", file.display()));
+    let mut writer = csv::Writer::from_path(file).map_err(fail)?;
+    for row in rows {
+        writer.serialize(row).map_err(fail)?;
+    }
+    writer.flush().map_err(|e| fail(e.into()))
+}
+
+pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failure> {
+    let fail = |e: crate::report::ReportError| Failure::Failed(e.to_string());
+    let points = |x: &dyn Fn(&Row) -> f64, y: &dyn Fn(&Row) -> f64| {
+        rows.iter().map(|r| (x(r), y(r))).collect::<Vec<_>>()
+    };
+    let carries = rows
+        .iter()
+        .any(|r| r.traction_n != 0.0 || r.traction_t1 != 0.0);
+    if !carries && rows.iter().any(|r| r.tension_strength > 0.0) {
+        let chart = Chart::new(
+            title,
+            Axis::new("gap", "m"),
+            Axis::new("attraction over the area", "Pa"),
+        )
+        .with(Series::new(
+            "attraction",
+            points(&|r| r.opening_n, &|r| r.tension_strength),
+        ));
+        return chart.draw(file).map_err(fail);
+    }
+    if !carries {
+        let chart = Chart::new(
+            title,
+            Axis::new("sliding distance", "m"),
+            Axis::new("friction coefficient", ""),
+        )
+        .with(Series::new("mu", points(&Row::opening, &|r| r.friction)));
+        return chart.draw(file).map_err(fail);
+    }
+    // Signed along the first direction that opens, so that cycles are loops.
+    let sign = |r: &Row| if r.opening_t1 < 0.0 { -1.0 } else { 1.0 };
+    let signed = |r: &Row| sign(r) * r.opening();
+    Chart::new(
+        title.clone(),
+        Axis::new("opening", "m"),
+        Axis::new("traction", "Pa"),
+    )
+    .with(Series::new(
+        "traction along the opening",
+        points(&signed, &|r| sign(r) * r.along()),
+    ))
+    .draw(file)
+    .map_err(fail)?;
+    let mut name = file.file_stem().unwrap_or_default().to_os_string();
+    name.push("_damage.png");
+    Chart::new(title, Axis::new("opening", "m"), Axis::new("damage", ""))
+        .with(Series::new("D", points(&signed, &|r| r.damage)))
+        .draw(&file.with_file_name(name))
+        .map_err(fail)
+}
+
+/// Some twenty rows, and what the whole path came to.
+pub(super) fn text(rows: &[Row]) -> String {
+    let mut out = format!(
+        "{:>11} {:>12} {:>12} {:>13} {:>13} {:>9} {:>12} {:>12} {:>8} {:>13}\n",
+        "time s",
+        "opening_n m",
+        "opening_t m",
+        "traction_n Pa",
+        "traction_t Pa",
+        "damage",
+        "work J/m2",
+        "stored J/m2",
+        "mu",
+        "attraction Pa"
+    );
+    let every = rows.len().div_ceil(20).max(1);
+    for (k, r) in rows.iter().enumerate() {
+        if k % every != 0 && k + 1 != rows.len() {
+            continue;
+        }
+        out += &format!(
+            "{:>11.4e} {:>12.4e} {:>12.4e} {:>13.6e} {:>13.6e} {:>9.6} {:>12.6e} {:>12.6e} {:>8.5} {:>13.6e}\n",
+            r.time,
+            r.opening_n,
+            r.opening_t1,
+            r.traction_n,
+            r.traction_t1,
+            r.damage,
+            r.work,
+            r.stored,
+            r.friction,
+            r.tension_strength
+        );
+    }
+    let peak = rows.iter().map(|r| r.along().abs()).fold(0.0, f64::max);
+    let Some(last) = rows.last() else {
+        return out;
+    };
+    let strongest = rows.iter().map(|r| r.tension_strength).fold(0.0, f64::max);
+    if peak > 0.0 {
+        out += &format!(
+            "peak traction {:.6e} Pa, area under the curve {:.6e} J/m2, dissipated {:.6e} J/m2, damage {:.6}",
+            peak,
+            last.work,
+            last.work - last.stored,
+            last.damage
+        );
+    } else {
+        out += &format!("friction at the end {:.6}", last.friction);
+    }
+    if strongest > 0.0 {
+        out += &format!(", attraction at most {strongest:.6e} Pa");
+    }
+    if last.worn > 0.0 {
+        out += &format!(", worn {:.6e} m3", last.worn);
+    }
+    out
+}

@@ -1,0 +1,171 @@
+//! The path of a contact: a mode of opening, or a file.
+
+use super::super::super::Failure;
+use super::DriveArgs;
+use crate::laws::LawError;
+use crate::laws::bench::Bench;
+use crate::laws::bench::scale::{BondScale, Mode, attraction_reach};
+use std::path::Path;
+
+/// Where a law has no scale of its own, and a sliding distance (m).
+const USUAL: f64 = 1e-5;
+
+/// How far the path goes, where `--to` does not say, by the law's own scale: a fifth beyond the opening at which a bond is
+/// broken (1.2 of the opening at the peak in cycles, 1.1 of the strength in force), or beyond the reach of an attraction.
+pub(super) fn extent(args: &DriveArgs, bench: &mut Bench) -> Result<f64, Failure> {
+    if let Some(to) = args.to {
+        return Ok(to);
+    }
+    if args.mode == "slide" || args.path.is_some() {
+        return Ok(USUAL);
+    }
+    let failed = |e: LawError| Failure::Failed(e.to_string());
+    let Some(scale) = bench.scale(args.rate).map_err(failed)? else {
+        let reach = attraction_reach(bench, args.rate).map_err(failed)?;
+        return Ok(reach.map_or(USUAL, |r| 1.2 * r));
+    };
+    let shear = match args.mode.as_str() {
+        "II" | "2" => true,
+        "I" | "1" => false,
+        // Of a mixed path the mode that is nearer.
+        "mixed" => args.angle.unwrap_or(45.0) > 45.0,
+        _ => args.angle.unwrap_or(0.0) > 45.0,
+    };
+    Ok(of_mode(&args.mode, &scale, shear))
+}
+
+fn of_mode(mode: &str, scale: &BondScale, shear: bool) -> f64 {
+    let Mode { peak, broken, .. } = if shear { scale.shear } else { scale.normal };
+    let strength = peak.map(|p| p.0);
+    let opening = peak.map(|p| p.1);
+    match mode {
+        // A bond that does not break is raised to a round traction.
+        "force" => strength.map_or(1e6, |s| 1.1 * s),
+        "cyclic" => opening.map_or(USUAL, |u| 1.2 * u),
+        _ => match (broken, opening) {
+            (Some(b), _) => 1.2 * b,
+            (None, Some(u)) => 5.0 * u,
+            (None, None) => USUAL,
+        },
+    }
+}
+
+/// Times at the ends of the steps (s) and openings there.
+pub(super) fn path(args: &DriveArgs, to: f64) -> Result<Vec<(f64, [f64; 3])>, Failure> {
+    if let Some(file) = &args.path {
+        return read_path(file);
+    }
+    let usage = |what: &str| Err(Failure::Usage(what.to_owned()));
+    let n = args.steps;
+    let at = |u: f64, degrees: f64| {
+        let angle = degrees.to_radians();
+        [u * angle.cos(), u * angle.sin(), 0.0]
+    };
+    let straight = |degrees: f64| {
+        let fraction = move |k: u32| f64::from(k) / f64::from(n);
+        let point = |k| {
+            let u = to * fraction(k);
+            (u / args.rate, at(u, degrees))
+        };
+        (1..=n).map(point).collect()
+    };
+    Ok(match args.mode.as_str() {
+        "I" | "1" => straight(0.0),
+        "II" | "2" => straight(90.0),
+        "mixed" => straight(args.angle.unwrap_or(45.0)),
+        "cyclic" => {
+            let degrees = args.angle.unwrap_or(0.0);
+            // Mode II goes to both sides; a normal opening goes from closed to open.
+            let both = (degrees - 90.0).abs() < 1e-9;
+            let travel = to * if both { 4.0 } else { 2.0 };
+            let point = |k: u32| {
+                let phase = f64::from(k) / f64::from(n);
+                let within = phase.fract();
+                let u = match (both, within) {
+                    (false, x) if x < 0.5 => 2.0 * x,
+                    (false, x) => 2.0 - 2.0 * x,
+                    (true, x) if x < 0.25 => 4.0 * x,
+                    (true, x) if x < 0.75 => 2.0 - 4.0 * x,
+                    (true, x) => 4.0 * x - 4.0,
+                };
+                (phase * travel / args.rate, at(u * to, degrees))
+            };
+            (1..=n * args.cycles).map(point).collect()
+        }
+        "slide" => {
+            if args.velocities.is_empty()
+                || args.velocities.iter().any(|v| !(v.is_finite() && *v > 0.0))
+            {
+                return usage("--mode slide needs --velocities V1,V2,... in m/s, each positive");
+            }
+            let (mut time, mut s, mut points) = (0.0, 0.0, Vec::new());
+            for v in &args.velocities {
+                let step = to / f64::from(n);
+                for _ in 0..n {
+                    time += step / v;
+                    s += step;
+                    points.push((time, [0.0, s, 0.0]));
+                }
+            }
+            points
+        }
+        other => {
+            return usage(&format!(
+                "--mode {other}: expected I, II, mixed, cyclic, force or slide"
+            ));
+        }
+    })
+}
+
+fn read_path(file: &Path) -> Result<Vec<(f64, [f64; 3])>, Failure> {
+    let fail = |what: String| Failure::Usage(format!("{}: {what}", file.display()));
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_path(file)
+        .map_err(|e| fail(e.to_string()))?;
+    let headings = reader.headers().map_err(|e| fail(e.to_string()))?.clone();
+    let place = |name: &str| headings.iter().position(|h| h == name);
+    let (Some(time), Some(n), Some(t1)) = (
+        place("time"),
+        place("n"),
+        place("t1").or_else(|| place("t")),
+    ) else {
+        return Err(fail(
+            "expected a heading with the columns time, n, t1 (or t) and perhaps t2".into(),
+        ));
+    };
+    let t2 = place("t2");
+    let mut out: Vec<(f64, [f64; 3])> = Vec::new();
+    for (k, record) in reader.records().enumerate() {
+        let record = record.map_err(|e| fail(e.to_string()))?;
+        let number = |column: usize| {
+            let value = record.get(column).and_then(|x| x.parse::<f64>().ok());
+            value.filter(|v| v.is_finite()).ok_or_else(|| {
+                fail(format!(
+                    "row {}: `{}` is no finite number",
+                    k + 1,
+                    &headings[column]
+                ))
+            })
+        };
+        let opening = [number(n)?, number(t1)?, t2.map_or(Ok(0.0), number)?];
+        let time = number(time)?;
+        if k == 0 && time == 0.0 {
+            if opening != [0.0; 3] {
+                return Err(fail(
+                    "at time 0 the bond is closed: its opening must be 0".into(),
+                ));
+            }
+            continue;
+        }
+        if time <= out.last().map_or(0.0, |l| l.0) {
+            return Err(fail(format!("row {}: times must rise from 0", k + 1)));
+        }
+        out.push((time, opening));
+    }
+    if out.is_empty() {
+        return Err(fail("holds no step; expected rows of time,n,t1,t2".into()));
+    }
+    Ok(out)
+}

@@ -1,0 +1,127 @@
+//! What a study cannot do is refused before anything runs: outputs that the case does not have, and a budget below one run.
+
+use super::TradeArgs;
+use crate::cli::Failure;
+use crate::cli::check::cost::Trial;
+use crate::geometry::space::Space;
+use crate::scene::build::Built;
+use crate::scene::{Loaded, Scene};
+use crate::trade::TradeError;
+use crate::trade::child::{Ended, Launcher, summary};
+use crate::trade::offer::{Offer, measure_names};
+use crate::trade::output::Output;
+use crate::trade::table::seconds;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// The outputs asked for, or the usual ones, if the case has them, with what they are in truth where that is given.
+pub fn outputs(args: &TradeArgs, offer: &Offer) -> Result<Vec<Output>, Failure> {
+    let mut outputs = if args.outputs.is_empty() {
+        offer.usual()
+    } else {
+        let all: Result<Vec<Output>, TradeError> =
+            args.outputs.iter().map(|t| Output::parse(t)).collect();
+        all?
+    };
+    if outputs.is_empty() {
+        return Err(Failure::Usage(
+            "the case has no friction test, damage or wear to compare; name an output, such as --output energy.kinetic=1%".into(),
+        ));
+    }
+    for (k, output) in outputs.iter().enumerate() {
+        if outputs[..k].iter().any(|o| o.name == output.name) {
+            return Err(Failure::Usage(format!(
+                "--output {} is given twice; name it once, with the error wanted",
+                output.name
+            )));
+        }
+        offer.check(output)?;
+    }
+    for text in &args.exact {
+        let wrong = |why: &str| {
+            Failure::Usage(format!(
+                "--exact {text}: {why}; expected NAME=VALUE of one of the outputs"
+            ))
+        };
+        let (name, value) = text
+            .split_once('=')
+            .ok_or_else(|| wrong("there is no `=`"))?;
+        let value: f64 = value
+            .trim()
+            .parse()
+            .ok()
+            .filter(|v: &f64| v.is_finite())
+            .ok_or_else(|| wrong("the value is no number"))?;
+        let found = outputs.iter_mut().find(|o| o.name == name.trim());
+        found
+            .ok_or_else(|| wrong("no --output has this name"))?
+            .exact = Some(value);
+    }
+    Ok(outputs)
+}
+
+/// Refuses a budget in which not even the case's own setting runs once, by the lower end of what a short trial of the scene
+/// tells. A case that phases or jumps may end early is not judged.
+pub fn budget(args: &TradeArgs, loaded: &Loaded, scene: Scene) -> Result<(), Failure> {
+    let case = &loaded.case;
+    let early = case.jump.is_some() || case.phases.last().is_some_and(|p| p.until.is_some());
+    if early {
+        return Ok(());
+    }
+    match scene {
+        Scene::Plane(built) => budget_of(args, loaded, *built),
+        Scene::Solid(built) => budget_of(args, loaded, *built),
+    }
+}
+
+fn budget_of<S: Space>(args: &TradeArgs, loaded: &Loaded, built: Built<S>) -> Result<(), Failure> {
+    let time = &loaded.case.time;
+    let steps = (time.end / time.step - 1e-6).ceil().max(1.0) as u64;
+    let grains = built.simulation.bodies.grains().count();
+    let trial = Trial::of(built.simulation, steps);
+    let budget = args.budget.as_secs_f64();
+    let Some(run) = trial.run_time(steps, grains, S::D) else {
+        // A step that fails is told by the run that fails.
+        return Ok(());
+    };
+    if run.least <= budget {
+        return Ok(());
+    }
+    // The case's own setting, a reference and two neighbours at half the step, over all seeds.
+    let usual = run.about.unwrap_or(run.least) * 8.0 * f64::from(args.seeds);
+    Err(Failure::Usage(format!(
+        "--budget {}: one run of the case as it is takes {}; give --budget {:.0}m or more, or a shorter case (--set time.end=...)",
+        seconds(budget),
+        trial.text(steps, grains, S::D),
+        (usual / 60.0).ceil()
+    )))
+}
+
+/// Names in groups that a run fills are checked against a run of two steps, where the case allows one so short.
+pub fn after_two_steps(
+    args: &TradeArgs,
+    loaded: &Loaded,
+    launcher: &Launcher,
+    outputs: &[Output],
+    stop: &AtomicBool,
+) -> Result<(), Failure> {
+    let short = vec![format!("time.end={:e}", 2.0 * loaded.case.time.step)];
+    let seed = loaded.case.seed;
+    let begun = launcher.kept(&short, seed).is_some();
+    let soon = Instant::now() + Duration::from_secs(60).min(args.budget);
+    if begun
+        || matches!(
+            launcher.run(&short, seed, soon, None, stop)?,
+            Ended::Finished(_)
+        )
+    {
+        let place = launcher.place(&short, seed);
+        let summary = summary(&place);
+        if summary.is_object() {
+            for output in outputs {
+                output.check(&summary, &place, &measure_names(&loaded.case))?;
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,174 @@
+//! The scales of a bond, whatever its law: stiffness, strength, and the openings at which it peaks and breaks, found by
+//! driving fresh bonds on the bench from 0.1 pm to 1 m.
+
+use super::{Bench, Motion};
+use crate::laws::LawError;
+
+/// First opening of a search (m).
+const FIRST: f64 = 1e-13;
+
+/// Largest opening of a search (m).
+const LAST: f64 = 1.0;
+
+/// A bond that carries less than this share of its peak is broken.
+const LITTLE: f64 = 0.01;
+
+/// How a bond answers one mode of opening.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mode {
+    /// Slope of the traction at the origin (Pa/m).
+    pub stiffness: f64,
+    /// Largest traction (Pa) and the opening at which it is carried (m); none where traction rises to the end of the search.
+    pub peak: Option<(f64, f64)>,
+    /// Opening (m) at which damage is 1, or beyond which less than a hundredth of the peak is carried; none where neither comes.
+    pub broken: Option<f64>,
+}
+
+/// The scales of a bond.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BondScale {
+    /// Opened along the normal.
+    pub normal: Mode,
+    /// Slid without pressure.
+    pub shear: Mode,
+}
+
+/// Opens along the normal or slides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Direction {
+    /// Along the normal.
+    Normal,
+    /// Along a tangent.
+    Shear,
+}
+
+impl Direction {
+    fn motion(self, opening: f64) -> Motion {
+        let k = usize::from(self == Self::Shear);
+        let mut motion = Motion::default();
+        motion.opening[k] = opening;
+        motion.gap = motion.opening[0];
+        motion
+    }
+}
+
+/// A point of a path: opening (m), traction along it (Pa), damage.
+type Point = (f64, f64, f64);
+
+impl Bench {
+    /// The scales of a bond that is opened at a speed (m/s); none where the law makes no bonds.
+    ///
+    /// # Errors
+    /// What a law said.
+    pub fn scale(&mut self, speed: f64) -> Result<Option<BondScale>, LawError> {
+        if !self.law().opens() {
+            return Ok(None);
+        }
+        Ok(Some(BondScale {
+            normal: Mode::find(self, Direction::Normal, speed)?,
+            shear: Mode::find(self, Direction::Shear, speed)?,
+        }))
+    }
+}
+
+impl Mode {
+    fn find(bench: &mut Bench, direction: Direction, speed: f64) -> Result<Self, LawError> {
+        // Coarse, over all scales; then fine about the peak, and on to where little is left.
+        let steps = ((LAST / FIRST).ln() / 1.05f64.ln()).ceil() as i32;
+        let coarse = (0..=steps).map(|k| FIRST * 1.05f64.powi(k));
+        let coarse = path(bench, direction, speed, coarse, true)?;
+        let Some(near) = peak(&coarse) else {
+            return Ok(Self::default());
+        };
+        let ends = broken(&coarse);
+        let rises = ends.is_none() && near.0 >= 0.9 * LAST;
+        let about = if rises { 1e-9 } else { near.0 };
+        let points = (1..=200).map(|k| 0.8 * about * f64::from(k) / 200.0);
+        let finely = (1..=1000).map(|k| about * (0.8 + 0.5 * f64::from(k) / 1000.0));
+        let last = ends.map_or(1.3 * about, |b| 1.1 * b).min(2.0 * LAST);
+        let tail = ((last / (1.3 * about)).ln() / 1.005f64.ln())
+            .max(0.0)
+            .ceil() as i32;
+        let tail = (1..=tail).map(|k| 1.3 * about * 1.005f64.powi(k));
+        let fine = path(
+            bench,
+            direction,
+            speed,
+            points.chain(finely).chain(tail),
+            true,
+        )?;
+        // Two small openings: what damping carries at one speed is the same in both.
+        let small = [5e-4, 1e-3].map(|x| x * about);
+        let start = path(bench, direction, speed, small.into_iter(), false)?;
+        let stiffness = match start[..] {
+            [a, b] => (b.1 - a.1) / (b.0 - a.0),
+            _ => 0.0,
+        };
+        Ok(Self {
+            stiffness: stiffness.max(0.0),
+            peak: peak(&fine).filter(|_| !rises).map(|p| (p.1, p.0)),
+            broken: broken(&fine).or(ends).filter(|_| !rises),
+        })
+    }
+}
+
+/// Drives a fresh bond through openings; ends where it is broken, if so wished.
+fn path(
+    bench: &mut Bench,
+    direction: Direction,
+    speed: f64,
+    openings: impl Iterator<Item = f64>,
+    to_break: bool,
+) -> Result<Vec<Point>, LawError> {
+    let mut state = [bench.fresh()];
+    let mut points: Vec<Point> = Vec::new();
+    let (mut before, mut most) = (0.0, 0.0f64);
+    for u in openings {
+        let answer = bench.step(&mut state, &[direction.motion(u)], (u - before) / speed)?[0];
+        let traction = answer.traction[usize::from(direction == Direction::Shear)];
+        points.push((u, traction, answer.damage));
+        most = most.max(traction);
+        let done = answer.damage >= 1.0 || (most > 0.0 && traction < LITTLE * most);
+        if to_break && done {
+            break;
+        }
+        before = u;
+    }
+    Ok(points)
+}
+
+fn peak(points: &[Point]) -> Option<Point> {
+    let carried = points.iter().filter(|p| p.1 > 0.0);
+    carried.copied().max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Where a path ended in a break.
+fn broken(points: &[Point]) -> Option<f64> {
+    let (most, last) = (peak(points)?.1, points.last()?);
+    (last.2 >= 1.0 || last.1 < LITTLE * most).then_some(last.0)
+}
+
+/// The gap (m) beyond which a law that attracts without bonds pulls less than a hundredth of what it pulls at most, opened from
+/// contact at a speed (m/s); none where it attracts nothing, or from any distance.
+///
+/// # Errors
+/// What a law said.
+pub fn attraction_reach(bench: &mut Bench, speed: f64) -> Result<Option<f64>, LawError> {
+    let mut state = [bench.fresh()];
+    let touch = Motion {
+        pressure: 1e6,
+        ..Motion::default()
+    };
+    let mut most = bench.step(&mut state, &[touch], 1.0)?[0].strength[0];
+    let mut gap = FIRST;
+    while gap < LAST {
+        let motion = Direction::Normal.motion(gap);
+        let pull = bench.step(&mut state, &[motion], 0.05 * gap / speed)?[0].strength[0];
+        most = most.max(pull);
+        if pull < LITTLE * most {
+            return Ok(Some(gap));
+        }
+        gap *= 1.05;
+    }
+    Ok(None)
+}

@@ -1,0 +1,91 @@
+//! A second figure beside the field's: the error in velocities, which no choice of units changes.
+//!
+//! The field's figure divides by max(|q|, |p|, |u|). Where W is far from 1 impulses dwarf velocities, and a figure of 1e-8
+//! may hide velocities that are all wrong. The scale-free error is [`Norm::Velocity`] of [`crate::solve::error`],
+//!
+//!     |r| / max(|u|, |q|),   r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c| n))) / rho_c,   rho_c = 1 / lambda_max(W_cc):
+//!
+//! W times s with p over s, and q with u and p in another unit, give the same number.
+
+use super::LocalProblem;
+use super::block::BlockMatrix;
+use super::form::{Form, coulomb};
+use super::solver::{Limits, magnitude};
+use super::state::{Budget, State};
+use crate::solve::error::Norm;
+
+/// The formula, for reports.
+pub const FORMULA: &str = "|r| / max(|u|, |q|), r = (p - proj_K(p - rho (u + mu |u_t| n))) / rho, rho = 1 / lambda_max(W_cc)";
+
+/// Turns of driving one figure, then the other.
+const TURNS: u32 = 6;
+
+/// The scale-free error above which a solution that meets the field's figure is doubted, where no tolerance is asked for: a
+/// hundred times the tolerance, no less than 1e-3 and no more than 0.1.
+pub fn usual_limit(tolerance: f64) -> f64 {
+    (100.0 * tolerance).clamp(1e-3, 0.1)
+}
+
+/// The scale-free error of impulses p, with u = W p + q; infinite where a number is not finite.
+pub fn scale_free_error(problem: &LocalProblem, p: &[f64]) -> f64 {
+    match problem.dimension {
+        2 => measured::<2>(problem, p),
+        _ => measured::<3>(problem, p),
+    }
+}
+
+fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> f64 {
+    let w = BlockMatrix::<D>::from_csr(&problem.w);
+    // In units of the largest free velocity: a power of two, so that no bit changes and no square leaves the range.
+    let unit = magnitude(problem.q.iter());
+    let scaled = |x: &[f64]| -> Vec<[f64; D]> {
+        let blocks = x.as_chunks::<D>().0.iter();
+        blocks.map(|b| b.map(|x| x / unit)).collect()
+    };
+    let (q, p) = (scaled(&problem.q), scaled(p));
+    let laws = coulomb(&problem.mu);
+    let form = Form::new(&w, &q, &laws, Norm::Velocity);
+    let mut u = vec![[0.0; D]; q.len()];
+    form.velocity(&p, &mut u);
+    form.error(&p, &u).error
+}
+
+/// Brings a state to the field's figure and to the scale-free one, if one is asked for, by turns: what is worse is solved for
+/// from where the other left off. `solve` is the method at work; ends as its budget says.
+pub(super) fn meet<'a, const D: usize>(
+    field: &Form<'a, D>,
+    velocity: &Form<'a, D>,
+    state: &mut State<D>,
+    limits: &Limits,
+    budget: &mut Budget,
+    mut solve: impl FnMut(&Form<'a, D>, &mut State<D>, &mut Budget),
+) {
+    solve(field, state, budget);
+    let Some(limit) = limits.scale_free else {
+        return;
+    };
+    // A hair below, so that the figures recomputed in another order of sums are still within.
+    let within = 1.0 - 1e-9;
+    let mut tighter = 1.0;
+    for _ in 0..TURNS {
+        let spent = state.iterations >= budget.max_iterations
+            || std::time::Instant::now() >= budget.deadline;
+        let error = velocity.error(&state.p, &state.u).error;
+        if error > limit {
+            if spent {
+                break;
+            }
+            budget.tolerance = limit * within * tighter;
+            // What follows for the other figure may undo some of it.
+            tighter *= 0.1;
+            state.judge(velocity);
+            solve(velocity, state, budget);
+        } else if state.judge(field) > limits.tolerance && !spent {
+            budget.tolerance = limits.tolerance * within;
+            solve(field, state, budget);
+        } else {
+            break;
+        }
+    }
+    state.judge(field);
+}

@@ -1,0 +1,181 @@
+//! The outputs that a case has, known before anything runs.
+
+use super::TradeError;
+use super::output::{Output, flatten, listed};
+use crate::laws::Interface;
+use crate::record::Summary;
+use crate::record::statistics_columns;
+use crate::scene::build::{Built, Dimensional};
+use crate::scene::case::Case;
+use crate::scene::measures::MeasureSpec;
+use serde_json::Value;
+
+/// The outputs of a case.
+#[derive(Clone, Debug)]
+pub struct Offer {
+    /// A summary of the case's kind, with nothing in it yet.
+    summary: Value,
+    /// Columns of the statistics.
+    columns: Vec<String>,
+    /// Names of its measures.
+    measures: Vec<String>,
+    /// Names and groups that its runs leave empty, with what the case lacks.
+    absent: Vec<(&'static str, &'static str)>,
+    /// Whether bonds are made.
+    bonded: bool,
+}
+
+const NO_TEST: &str = "the case has no friction test (`friction`)";
+const NO_BONDS: &str = "no interface of the case makes bonds";
+const NO_DAMAGE: &str = "no interface of the case has bonds that are damaged";
+const NO_WEAR: &str = "no interface of the case has a wear law";
+const NO_CIRCUIT: &str = "the case has no circuit of grains (`circuit`)";
+
+impl Offer {
+    /// That of a case and its scene.
+    pub fn of<S: Dimensional>(case: &Case, built: &Built<S>) -> Self {
+        let s = &built.simulation;
+        let bonds =
+            |l: &Interface| l.opens() && (l.bonding_time().is_some() || l.healing.is_some());
+        let bonded = s.laws.iter().any(bonds) || s.network.bonds_made() > 0;
+        let damaged = bonded && s.laws.iter().any(Interface::damages);
+        let wears = s.laws.iter().any(|l| l.wear.is_some());
+        let circuit = case.circuit.is_some();
+        let needs: [(&[&str], bool, &str); 9] = [
+            (
+                &[
+                    "friction_coefficient",
+                    "friction_from_dissipation",
+                    "cycles",
+                    "fretting",
+                ],
+                case.friction.is_some(),
+                NO_TEST,
+            ),
+            (
+                &["bonds", "broken", "damage_ratio", "energy.elastic"],
+                bonded,
+                NO_BONDS,
+            ),
+            (&["mean_damage", "energy.fracture"], damaged, NO_DAMAGE),
+            (&["wear.Qs"], wears || circuit, NO_WEAR),
+            (
+                &["wear.volume_first_bodies", "wear.volume_third_body"],
+                wears,
+                NO_WEAR,
+            ),
+            (&["wear.Qe", "wear.Qw", "circuit"], circuit, NO_CIRCUIT),
+            (
+                &["biaxial"],
+                case.biaxial.is_some(),
+                "the case has no biaxial test (`biaxial`)",
+            ),
+            (
+                &["jump"],
+                case.jump.is_some(),
+                "the case jumps over no cycles (`jump`)",
+            ),
+            (
+                &["scars"],
+                !s.scars.is_empty(),
+                "no surface of the case follows its wear",
+            ),
+        ];
+        let lacking = needs.iter().filter(|n| !n.1);
+        let absent = lacking.flat_map(|(names, _, why)| names.iter().map(|n| (*n, *why)));
+        let columns = statistics_columns(case, s).into_iter().map(|c| c.name);
+        Self {
+            summary: serde_json::to_value(Summary::default()).unwrap_or_default(),
+            columns: columns.collect(),
+            measures: case.measures.iter().map(|m| m.name().to_owned()).collect(),
+            absent: absent.collect(),
+            bonded,
+        }
+    }
+
+    /// What the case is asked for when nothing is named: friction where it has a friction test, the damage ratio where it has
+    /// bonds that are damaged, the source flow where it has a wear law; at 1 % each.
+    pub fn usual(&self) -> Vec<Output> {
+        let names = ["friction_coefficient", "damage_ratio", "wear.Qs"];
+        let damaged = self.bonded && self.lack(&["mean_damage".to_owned()]).is_none();
+        let there = names.into_iter().filter(|n| {
+            let path: Vec<String> = n.split('.').map(str::to_owned).collect();
+            self.lack(&path).is_none() && (*n != "damage_ratio" || damaged)
+        });
+        there.filter_map(|n| Output::parse(n).ok()).collect()
+    }
+
+    /// What the case lacks for a path.
+    fn lack(&self, path: &[String]) -> Option<&'static str> {
+        let name = path.join(".");
+        let below = |group: &str| {
+            let rest = name.strip_prefix(group);
+            rest.is_some_and(|r| r.is_empty() || r.starts_with('.'))
+        };
+        self.absent.iter().find(|a| below(a.0)).map(|a| a.1)
+    }
+
+    /// The names of the outputs in the summary.
+    fn names(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        flatten(&self.summary, "", &mut names);
+        names.retain(|n| self.lack(&[n.clone()]).is_none());
+        names.extend(self.measures.iter().map(|m| format!("measures.{m}")));
+        names
+    }
+
+    /// Refuses an output that no run of the case has.
+    ///
+    /// # Errors
+    /// A sentence with what the case lacks, the nearest name and those there are.
+    pub fn check(&self, output: &Output) -> Result<(), TradeError> {
+        if let Some(column) = output.column_name() {
+            return if self.columns.iter().any(|c| c == column) {
+                Ok(())
+            } else {
+                Err(output.unknown(&self.columns, "statistics.", column))
+            };
+        }
+        let path = output.summary_path().unwrap_or_default();
+        let unknown = || Err(output.unknown(&self.names(), "", &output.name));
+        if let Some(why) = self.lack(path) {
+            return Err(TradeError::Usage(format!(
+                "--output {}: {why}, so that there is nothing to compare; {}",
+                output.name,
+                listed(&self.names(), "")
+            )));
+        }
+        if path.first().is_some_and(|p| p == "measures") {
+            let measures: Vec<&str> = self.measures.iter().map(String::as_str).collect();
+            return match output.measured(&measures) {
+                true => Ok(()),
+                false => unknown(),
+            };
+        }
+        let mut at = &self.summary;
+        for part in path {
+            match at {
+                // A run fills it; what is in it then is seen on a run of two steps.
+                Value::Null | Value::Array(_) => return Ok(()),
+                Value::Object(map) if map.is_empty() => return Ok(()),
+                _ => match at.get(part) {
+                    Some(next) => at = next,
+                    None => return unknown(),
+                },
+            }
+        }
+        match at {
+            Value::Number(_) | Value::Null => Ok(()),
+            Value::Object(_) | Value::Array(_) => Err(TradeError::Usage(format!(
+                "--output {}: it is no number; name what is in it, as {}.NAME",
+                output.name, output.name
+            ))),
+            _ => unknown(),
+        }
+    }
+}
+
+/// Names of the measures of a case.
+pub fn measure_names(case: &Case) -> Vec<&str> {
+    case.measures.iter().map(MeasureSpec::name).collect()
+}
