@@ -15,6 +15,7 @@ pub mod profile;
 pub mod profile_file;
 pub mod sample;
 pub mod scene_file;
+pub mod shipped_materials;
 pub mod source;
 pub mod standard;
 

@@ -90,7 +90,7 @@ macro_rules! parameters {
 macro_rules! export {
     ($kind:ident $law:ty) => {
         const _: () = {
-            $crate::plugin_table!($kind $law);
+    $crate::plugin_table!($kind $law);
 
             /// The plugin's entry.
             #[unsafe(no_mangle)]
