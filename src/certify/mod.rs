@@ -4,17 +4,20 @@
 //! opening where it does something, and each promise gives a line: kept, broken or not made, with the
 //! number that decided.
 
+mod apart;
 mod bond;
 mod border;
 mod rig;
 mod surface;
 
+pub use apart::{CERTIFY_APART, certify_apart, certify_asked};
+
 use crate::laws::{Kind, LawError, Loaded, Plugin, SearchPath};
 use rig::Rig;
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// How a promise came out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
     /// Kept.
@@ -26,23 +29,24 @@ pub enum Outcome {
 }
 
 /// One promise.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Line {
     /// Its name.
-    pub check: &'static str,
+    pub check: String,
     /// How it came out.
     pub outcome: Outcome,
-    /// The number that decided; what it is, the text says.
+    /// The number that decided; what it is, the text says. Infinity is written as null.
+    #[serde(deserialize_with = "null_is_infinite")]
     pub number: f64,
     /// What was measured.
     pub text: String,
 }
 
 impl Line {
-    fn judged(check: &'static str, kept: bool, number: f64, text: impl Into<String>) -> Self {
+    fn judged(check: &str, kept: bool, number: f64, text: impl Into<String>) -> Self {
         let outcome = if kept { Outcome::Pass } else { Outcome::Fail };
         Self {
-            check,
+            check: check.to_owned(),
             outcome,
             number,
             text: text.into(),
@@ -50,22 +54,62 @@ impl Line {
     }
 
     /// Kept when the number is at most `limit`.
-    fn below(check: &'static str, number: f64, limit: f64, text: impl Into<String>) -> Self {
+    fn below(check: &str, number: f64, limit: f64, text: impl Into<String>) -> Self {
         let text = format!("{}; at most {limit:e}", text.into());
         Self::judged(check, number <= limit, number, text)
     }
 
-    fn skip(check: &'static str, why: impl Into<String>) -> Self {
+    fn skip(check: &str, why: impl Into<String>) -> Self {
         Self {
-            check,
+            check: check.to_owned(),
             outcome: Outcome::Skip,
             number: 0.0,
             text: why.into(),
         }
     }
 
-    fn failed(check: &'static str, e: &LawError) -> Self {
+    fn failed(check: &str, e: &LawError) -> Self {
         Self::judged(check, false, f64::INFINITY, e.to_string())
+    }
+}
+
+fn null_is_infinite<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(from)?.unwrap_or(f64::INFINITY))
+}
+
+/// What happens while a law is tested.
+enum Event<'a> {
+    /// A check begins.
+    Begins(&'a str),
+    /// It gave this line.
+    Line(&'a Line),
+}
+
+/// The lines of a certificate as they are written.
+struct Book<'a> {
+    lines: Vec<Line>,
+    /// Whom the law is tested with, at the end of each line.
+    partner: String,
+    tell: &'a mut dyn FnMut(Event<'_>),
+}
+
+type Check = fn(&mut Rig) -> Result<Line, LawError>;
+
+impl Book<'_> {
+    /// Makes checks, each whatever became of the one before it.
+    fn make(&mut self, rig: &mut Rig, checks: &[(&str, Check)]) {
+        for (name, check) in checks {
+            (self.tell)(Event::Begins(name));
+            let line = check(rig).unwrap_or_else(|e| Line::failed(name, &e));
+            self.write(line);
+        }
+    }
+
+    fn write(&mut self, line: Line) {
+        let text = format!("{}{}", line.text, self.partner);
+        let line = Line { text, ..line };
+        (self.tell)(Event::Line(&line));
+        self.lines.push(line);
     }
 }
 
@@ -104,37 +148,51 @@ pub fn certify(
     cohesion: Option<&Loaded>,
     path: &SearchPath,
 ) -> Result<Certificate, LawError> {
+    certify_telling(plugin, parameters, cohesion, path, &mut |_| {})
+}
+
+fn certify_telling(
+    plugin: &Plugin,
+    parameters: &[f64],
+    cohesion: Option<&Loaded>,
+    path: &SearchPath,
+    tell: &mut dyn FnMut(Event<'_>),
+) -> Result<Certificate, LawError> {
+    const SCALE: &str = "runs on the bench";
     plugin.validate(parameters)?;
-    let mut lines = Vec::new();
-    let kind = plugin.kind;
-    for (k, mut rig) in Rig::all(plugin, parameters, cohesion, path)?
-        .into_iter()
-        .enumerate()
-    {
-        let scale = match rig.find_scale() {
-            Ok(()) => Ok(()),
-            Err(e) => Err(Line::failed("runs on the bench", &e)),
-        };
-        let found = match (scale, kind) {
-            (Err(line), _) => vec![line],
-            (Ok(()), Kind::Cohesion | Kind::Damage) if rig.opens() => bond::checks(&mut rig),
-            (Ok(()), _) => surface::checks(&mut rig),
-        };
-        let partner = rig.partner().to_owned();
-        lines.extend(found.into_iter().map(|line| Line {
-            text: format!("{}{partner}", line.text),
-            ..line
-        }));
+    let mut book = Book {
+        lines: Vec::new(),
+        partner: String::new(),
+        tell,
+    };
+    let rigs = Rig::all(plugin, parameters, cohesion, path)?;
+    for (k, mut rig) in rigs.into_iter().enumerate() {
+        book.partner = rig.partner().to_owned();
+        (book.tell)(Event::Begins(SCALE));
+        match (rig.find_scale(), plugin.kind) {
+            (Err(e), _) => book.write(Line::failed(SCALE, &e)),
+            (Ok(()), Kind::Cohesion | Kind::Damage) if rig.opens() => {
+                book.make(&mut rig, &bond::CHECKS);
+            }
+            (Ok(()), kind) => book.make(&mut rig, surface::checks(kind)),
+        }
         if k == 0 {
-            lines.extend(border::checks(&mut rig));
+            book.partner.clear();
+            book.make(&mut rig, &border::CHECKS);
         }
     }
-    Ok(Certificate {
-        kind: kind.to_string(),
-        name: plugin.name.clone(),
-        version: plugin.version.clone(),
-        sha256: plugin.sha256.clone(),
-        library: plugin.path.display().to_string(),
-        lines,
-    })
+    Ok(Certificate::of(plugin, book.lines))
+}
+
+impl Certificate {
+    fn of(plugin: &Plugin, lines: Vec<Line>) -> Self {
+        Self {
+            kind: plugin.kind.to_string(),
+            name: plugin.name.clone(),
+            version: plugin.version.clone(),
+            sha256: plugin.sha256.clone(),
+            library: plugin.path.display().to_string(),
+            lines,
+        }
+    }
 }

@@ -47,7 +47,7 @@ impl Rig {
         cohesion: Option<&Loaded>,
         path: &SearchPath,
     ) -> Result<Vec<Self>, LawError> {
-        let own = || Plugin::open(&plugin.path).map(|p| loaded(p, parameters.to_vec()));
+        let own = || loaded(plugin.clone(), parameters.to_vec());
         let plain = Interface {
             name: "bench".into(),
             contact: by_default(path, Kind::Contact, "frictionless")?,
@@ -63,23 +63,20 @@ impl Rig {
             Kind::Contact => laws.push((
                 String::new(),
                 Interface {
-                    contact: own()?,
+                    contact: own(),
                     ..plain
                 },
             )),
             Kind::Cohesion => laws.push((
                 String::new(),
                 Interface {
-                    cohesion: Some(own()?),
+                    cohesion: Some(own()),
                     ..plain
                 },
             )),
             Kind::Damage => {
                 let partners = match cohesion {
-                    Some(own) => vec![loaded(
-                        Plugin::open(&own.plugin.path)?,
-                        own.parameters.clone(),
-                    )],
+                    Some(own) => vec![own.clone()],
                     None => ["elastic-bond", "mac"]
                         .map(|name| by_default(path, Kind::Cohesion, name))
                         .into_iter()
@@ -88,7 +85,7 @@ impl Rig {
                 for partner in partners {
                     let name = partner.plugin.name.clone();
                     let cohesion = Some(partner);
-                    let damage = Some(own()?);
+                    let damage = Some(own());
                     let law = Interface {
                         cohesion,
                         damage,
@@ -101,7 +98,7 @@ impl Rig {
                 String::new(),
                 Interface {
                     contact: by_default(path, Kind::Contact, "coulomb")?,
-                    wear: Some(own()?),
+                    wear: Some(own()),
                     ..plain
                 },
             )),
@@ -115,7 +112,7 @@ impl Rig {
             .map(|(partner, law)| {
                 let law = law.compose()?;
                 Ok(Self {
-                    bench: Bench::new(law.clone(), dimension, RADIUS),
+                    bench: Bench::new(law.clone(), dimension, RADIUS).lenient(),
                     law,
                     dimension,
                     partner: if partner.is_empty() {
@@ -161,6 +158,11 @@ impl Rig {
 
     /// A second bench with the same laws.
     pub fn another(&self) -> Bench {
+        self.strict().lenient()
+    }
+
+    /// One on which values that cannot be are errors, as in a run.
+    pub fn strict(&self) -> Bench {
         Bench::new(self.law.clone(), self.dimension, RADIUS)
     }
 

@@ -1,17 +1,18 @@
 //! Promises of laws without opening: contact, attraction, wear.
 
-use super::Line;
 use super::rig::{PRESSURE, Rig};
+use super::{Check, Line};
 use crate::laws::bench::{Answer, Motion};
 use crate::laws::{Kind, LawError};
 
-pub fn checks(rig: &mut Rig) -> Vec<Line> {
-    let mut out = vec![signs(rig).unwrap_or_else(|e| Line::failed("dissipation", &e))];
-    out.push(objectivity(rig).unwrap_or_else(|e| Line::failed("objectivity", &e)));
-    if rig.kind == Kind::Wear {
-        out.push(convergence(rig).unwrap_or_else(|e| Line::failed("convergence", &e)));
-    }
-    out
+/// The checks of a kind.
+pub fn checks(kind: Kind) -> &'static [(&'static str, Check)] {
+    const ALL: [(&str, Check); 3] = [
+        ("dissipation", signs),
+        ("objectivity", objectivity),
+        ("convergence", convergence),
+    ];
+    if kind == Kind::Wear { &ALL } else { &ALL[..2] }
 }
 
 /// Friction, strengths and wear are not negative, restitution gives back no more than came: so no
@@ -31,7 +32,7 @@ fn signs(rig: &mut Rig) -> Result<Line, LawError> {
                 a.worn,
             ]
             .into_iter()
-            .chain(a.restitution)
+            .chain([a.restitution[0], 1.0 + a.restitution[1]])
             .fold(f64::INFINITY, f64::min);
             worst = worst
                 .max(-least)

@@ -40,20 +40,20 @@ pub fn law(command: &LawCommand) -> Result<(), Failure> {
         LawCommand::List { plugins } => {
             let path = plugins.search()?;
             let mut out = String::new();
-            for (kind, name, file) in path.available() {
-                match path.open(&file) {
+            let laws = path.laws();
+            path.try_out(
+                laws.iter()
+                    .map(|(kind, name, _)| (*kind, name.as_str(), None)),
+            );
+            for (kind, name, place) in laws {
+                match path.open_law(kind, &name, &place) {
                     Ok(p) => {
-                        let _ = writeln!(out, "{kind:<9} {name:<22} {}", p.doc);
+                        let built_in = if p.built_in { " (built in)" } else { "" };
+                        let _ = writeln!(out, "{kind:<9} {name:<22} {}{built_in}", p.doc);
                     }
                     Err(e) => {
                         let _ = writeln!(out, "{kind:<9} {name:<22} unusable: {e}");
                     }
-                }
-            }
-            if out.is_empty() {
-                out = "no laws found; looked in:\n".into();
-                for folder in path.folders() {
-                    let _ = writeln!(out, "  {}", folder.display());
                 }
             }
             answer(out.trim_end())
@@ -84,7 +84,7 @@ fn named(path: &SearchPath, name: &str) -> Result<Vec<Plugin>, Failure> {
         }
         None => (None, name),
     };
-    let laws = path.available();
+    let laws = path.laws();
     let found: Vec<_> = laws
         .iter()
         .filter(|(k, n, _)| n == name && kind.is_none_or(|kind| kind == *k))
@@ -96,10 +96,13 @@ fn named(path: &SearchPath, name: &str) -> Result<Vec<Plugin>, Failure> {
             |n| format!("; did you mean `{n}`?"),
         );
         return Err(Failure::Usage(format!(
-            "there is no law named `{name}` on the search path{proposal}"
+            "there is no law named `{name}` in {}{proposal}",
+            path.looked()
         )));
     }
-    let opened = found.into_iter().map(|(_, _, file)| path.open(file));
+    let opened = found
+        .into_iter()
+        .map(|(kind, name, place)| path.open_law(*kind, name, place));
     Ok(opened.collect::<Result<_, _>>()?)
 }
 
@@ -149,6 +152,17 @@ fn all_used(sets: &[String], used: &[bool], laws: &[&Plugin]) -> Result<(), Fail
     )))
 }
 
+/// Where a law is, in words.
+fn library(p: &Plugin) -> String {
+    match p.built_in {
+        true => format!(
+            "built into {} (the SHA-256 is the program's)",
+            p.path.display()
+        ),
+        false => p.path.display().to_string(),
+    }
+}
+
 fn describe(p: &Plugin) -> String {
     let mut out = format!(
         "{} law {} {}\n  {}\n  reference  {}\n  library    {}\n  sha256     {}\n",
@@ -157,7 +171,7 @@ fn describe(p: &Plugin) -> String {
         p.version,
         p.doc,
         p.reference,
-        p.path.display(),
+        library(p),
         p.sha256
     );
     for (title, fields) in [("parameters", &p.parameters), ("variables", &p.variables)] {

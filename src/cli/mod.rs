@@ -11,8 +11,8 @@ mod run;
 mod solve;
 mod trade;
 
-use crate::laws::watch::watch;
-use crate::laws::{LawError, SearchPath};
+use crate::laws::watch::{Saved, watch};
+use crate::laws::{LawError, SearchPath, child, ending};
 use crate::record::RunError;
 use crate::scene::InputError;
 use clap::{Args, Parser, Subcommand};
@@ -52,6 +52,26 @@ enum Command {
         after_help = "Exit code: 0 done, also where the budget ended it early (it says so), 1 no reference could be run, 2 wrong input.\n\nExample:\n  fretwork trade cases/wheel_rail_fretting.ron --output friction_coefficient=5% --knob step --knob tolerance --budget 30m\n\ndocs/trade.md says how errors are judged and what the search does not explore."
     )]
     Trade(trade::TradeArgs),
+    /// For the program itself: opens libraries in a process of its own
+    #[command(name = child::TRY_LIBRARIES, hide = true)]
+    TryLibraries(ChildArgs),
+    /// For the program itself: certifies a law in a process of its own
+    #[command(name = crate::certify::CERTIFY_APART, hide = true)]
+    CertifyApart(ChildArgs),
+}
+
+/// What the program tells itself.
+#[derive(Args, Debug)]
+struct ChildArgs {
+    #[arg(long, default_value_t = LAW_TIMEOUT)]
+    law_timeout: f64,
+}
+
+impl ChildArgs {
+    fn help(&self, task: impl FnOnce() -> Result<(), String>) -> Result<(), Failure> {
+        watch_laws(law_limit(self.law_timeout)?)?;
+        task().map_err(Failure::Failed)
+    }
 }
 
 /// The case and what is changed in it.
@@ -104,36 +124,9 @@ impl PluginArgs {
                 missing.display()
             )));
         }
-        let limit = Duration::try_from_secs_f64(self.law_timeout).map_err(|e| {
-            Failure::Usage(format!(
-                "--law-timeout {}: {e}; give a time in seconds, 0 for none",
-                self.law_timeout
-            ))
-        })?;
-        if !limit.is_zero() && limit < Duration::from_millis(100) {
-            return Err(Failure::Usage(format!(
-                "--law-timeout {}: a call may take as long; give at least 0.1 s, or 0 for none",
-                self.law_timeout
-            )));
-        }
-        if !limit.is_zero() {
-            watch(limit, |who, saved| {
-                let left = if saved {
-                    "all rows up to this step and a summary.json that says so are on disk"
-                } else {
-                    "what was recorded up to the last flush is on disk"
-                };
-                output::report(&format!(
-                    "error: {who}; the program ends here; {left} (a longer wait: --law-timeout)"
-                ));
-                std::process::exit(1);
-            })
-            .map_err(|e| {
-                Failure::Failed(format!(
-                    "cannot start the threads that watch over laws: {e}; allow more (ulimit -u), or do without: --law-timeout 0"
-                ))
-            })?;
-        }
+        let limit = law_limit(self.law_timeout)?;
+        child::enable(limit);
+        watch_laws(limit)?;
         let path = SearchPath::new(&self.plugin_path);
         Ok(if self.trust_plugins {
             path.trusting()
@@ -141,6 +134,40 @@ impl PluginArgs {
             path
         })
     }
+}
+
+/// How long a call of a law may take; none for ever.
+fn law_limit(seconds: f64) -> Result<Option<Duration>, Failure> {
+    let limit = Duration::try_from_secs_f64(seconds).map_err(|e| {
+        Failure::Usage(format!(
+            "--law-timeout {seconds}: {e}; give a time in seconds, 0 for none"
+        ))
+    })?;
+    if !limit.is_zero() && limit < Duration::from_millis(100) {
+        return Err(Failure::Usage(format!(
+            "--law-timeout {seconds}: a call may take as long; give at least 0.1 s, or 0 for none"
+        )));
+    }
+    Ok((!limit.is_zero()).then_some(limit))
+}
+
+/// Ends the program when a law does not come back.
+fn watch_laws(limit: Option<Duration>) -> Result<(), Failure> {
+    let Some(limit) = limit else {
+        return Ok(());
+    };
+    watch(limit, |who, saved: Saved| {
+        let left = saved.words();
+        output::report(&format!(
+            "error: {who}; the program ends here; {left} (a longer wait: --law-timeout)"
+        ));
+        ending::now(ending::FAILED);
+    })
+    .map_err(|e| {
+        Failure::Failed(format!(
+            "cannot start the threads that watch over laws: {e}; allow more (ulimit -u), or do without: --law-timeout 0"
+        ))
+    })
 }
 
 /// What ends the program early.
@@ -177,7 +204,10 @@ pub fn main() -> ExitCode {
     let here = rayon::ThreadPoolBuilder::new().num_threads(1);
     let _ = here.use_current_thread().build_global();
     let outcome = match Cli::try_parse() {
-        Ok(cli) => run(cli.command),
+        Ok(cli) => {
+            let _armed = ending::arm();
+            run(cli.command)
+        }
         // Help and version are answers, all else is wrong input.
         Err(e) if !e.use_stderr() => output::delivered(e.print()),
         Err(e) => {
@@ -206,5 +236,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Law(command) => law::law(&command),
         Command::Solve(args) => solve::solve(&args),
         Command::Trade(args) => trade::trade(&args),
+        Command::TryLibraries(args) => args.help(child::try_libraries),
+        Command::CertifyApart(args) => args.help(crate::certify::certify_asked),
     }
 }

@@ -6,7 +6,7 @@ use super::bonds::Held;
 use super::columns::StepInfo;
 use super::interface::Interface;
 use super::library::{Call, LawError};
-use super::pass::Passes;
+use super::pass::{Care, Passes};
 use serde::Serialize;
 
 /// What a contact on the bench remembers.
@@ -87,6 +87,20 @@ impl Bench {
             passes: Passes::default(),
             said: Vec::new(),
         }
+    }
+
+    /// Lets laws give values that cannot be, such as a negative friction: for who judges them.
+    #[must_use]
+    pub fn lenient(mut self) -> Self {
+        self.passes.care = Care::Lenient;
+        self
+    }
+
+    /// Calls laws twice, where every wrong write is seen: slow.
+    #[must_use]
+    pub fn guarded(mut self) -> Self {
+        self.passes.care = Care::Guarded(Box::default());
+        self
     }
 
     /// The law on it.

@@ -51,7 +51,8 @@ impl Passes {
         let mut held = std::mem::take(&mut self.held);
         self.open(index, law, network, sites, turns, info, &mut held);
         self.gather_after(law, network, sites, info);
-        self.grow(law, info, &mut held)?;
+        self.grow(law, info, &mut held)
+            .map_err(|e| self.at(law, network, e))?;
         for (at, damage) in self.members.iter().zip(&mut held.damage) {
             let bond = network.bond(&network.contacts[*at]);
             let (before, used) = bond.map_or((0.0, 0.0), |b| (b.damage, b.used));
@@ -92,7 +93,8 @@ impl Passes {
             let mut held = std::mem::take(&mut self.held);
             self.open(index, law, network, sites, turns, info, &mut held);
             self.gather_after(law, network, sites, info);
-            self.grow(law, info, &mut held)?;
+            self.grow(law, info, &mut held)
+                .map_err(|e| self.at(law, network, e))?;
             network.memory[index].restore_openings(before);
             for (k, at) in self.members.iter().enumerate() {
                 let Some(slot) = network.contacts[*at].memory() else {

@@ -120,7 +120,8 @@ impl Passes {
     ) -> Result<(), LawError> {
         self.gather_after(law, network, sites, info);
         self.columns.size_outputs();
-        self.run(loaded, info, 0.0, Call::Commit)?;
+        self.run(loaded, info, 0.0, Call::Commit)
+            .map_err(|e| self.at(law, network, e))?;
         self.keep_state(index, network);
         Ok(())
     }
@@ -178,7 +179,8 @@ impl Passes {
             self.columns.friction_work.push(work.max(0.0));
         }
         self.columns.size_outputs();
-        self.run(wear, info, 0.0, Call::Commit)?;
+        self.run(wear, info, 0.0, Call::Commit)
+            .map_err(|e| self.at(law, network, e))?;
         // What a bond gives when it breaks it gives once, also in a cycle that stands for many.
         let breaks = network.breaks.iter().filter(|_| network.stands_for > 1.0);
         let broke: HashSet<Key> = breaks.map(|b| b.key).collect();

@@ -1,6 +1,8 @@
 //! A plugin: a shared library opened at run time, checked, and called.
 
-use super::watch;
+use super::built_in::hex;
+use super::range::Range;
+use super::{child, watch};
 use fretwork_abi as abi;
 use sha2::{Digest, Sha256};
 use std::ffi::{CStr, c_char};
@@ -35,7 +37,7 @@ impl Kind {
         }
     }
 
-    fn from_code(code: i32) -> Option<Self> {
+    pub(super) fn from_code(code: i32) -> Option<Self> {
         match code {
             abi::KIND_CONTACT => Some(Self::Contact),
             abi::KIND_COHESION => Some(Self::Cohesion),
@@ -74,7 +76,7 @@ pub enum LawError {
         sha256: String,
     },
     /// No such law on the search path.
-    #[error("there is no {kind} law named `{name}` on the search path (available: {available}); {}", advice(name, nearest.as_deref()))]
+    #[error("there is no {kind} law named `{name}` (available: {available}; looked in {looked}); {}", advice(name, nearest.as_deref()))]
     Unknown {
         /// Kind asked for.
         kind: Kind,
@@ -82,6 +84,8 @@ pub enum LawError {
         name: String,
         /// What there is.
         available: String,
+        /// Where it was looked for.
+        looked: String,
         /// The nearest name.
         nearest: Option<String>,
     },
@@ -140,12 +144,69 @@ pub enum LawError {
         /// Index in the batch.
         contact: Option<usize>,
     },
+    /// A function of the law said it was done and gave a value that cannot be.
+    #[error(
+        "the {kind} law `{name}` gave {value:e} as `{column}` in {call:?}{}; it must lie in {range}: check its parameters and the law",
+        contact.map_or(String::new(), |c| format!(" at contact {c} of its batch"))
+    )]
+    OutOfRange {
+        /// Kind.
+        kind: Kind,
+        /// Name.
+        name: String,
+        /// The call.
+        call: Call,
+        /// Index in the batch.
+        contact: Option<usize>,
+        /// The column, as the plugin interface names it.
+        column: &'static str,
+        /// What it gave.
+        value: f64,
+        /// What is accepted.
+        range: Range,
+    },
+    /// A function of the law wrote what is not its to write, or gave two answers to one question.
+    #[error("the {kind} law `{name}` {what} in {call:?}; mend the law before it is used again")]
+    Trespass {
+        /// Kind.
+        kind: Kind,
+        /// Name.
+        name: String,
+        /// The call.
+        call: Call,
+        /// What it did.
+        what: String,
+    },
+    /// One of these, in an interface of a case.
+    #[error("{source} (interface `{interface}`{})", bodies.map_or(String::new(), |[i, j]| format!(", contact of bodies {i} and {j}")))]
+    At {
+        /// Name of the interface.
+        interface: String,
+        /// Indices of the bodies, from 0, where one contact is at fault.
+        bodies: Option<[u32; 2]>,
+        /// What is wrong.
+        source: Box<LawError>,
+    },
 }
 
 impl LawError {
     /// Whether the law went wrong without saying so.
     pub fn is_silent(&self) -> bool {
-        matches!(self, Self::NotFinite { .. } | Self::Overrun { .. })
+        match self {
+            Self::NotFinite { .. } | Self::Overrun { .. } => true,
+            Self::At { source, .. } => source.is_silent(),
+            _ => false,
+        }
+    }
+
+    /// The contact at fault, as an index in the batch.
+    pub(super) fn contact(&self) -> Option<usize> {
+        match self {
+            Self::Failed { contact, .. }
+            | Self::NotFinite { contact, .. }
+            | Self::OutOfRange { contact, .. } => *contact,
+            _ => None,
+        }
     }
 }
 
@@ -195,7 +256,7 @@ pub enum Call {
 }
 
 /// A checked plugin. Its library stays open for the life of the program.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Plugin {
     /// Kind.
     pub kind: Kind,
@@ -215,10 +276,12 @@ pub struct Plugin {
     pub parameters: Vec<Field>,
     /// Schema of the internal variables.
     pub variables: Vec<Field>,
-    /// The library.
+    /// The library; the program where the law is built in.
     pub path: PathBuf,
-    /// SHA-256 of the library, in hexadecimal.
+    /// SHA-256 of that file, in hexadecimal.
     pub sha256: String,
+    /// Whether the law is linked into the program.
+    pub built_in: bool,
     pub(super) table: abi::FwPlugin,
     pub(super) label: watch::Label,
 }
@@ -248,10 +311,7 @@ impl Plugin {
             reason,
         };
         let bytes = std::fs::read(path).map_err(|e| refuse(format!("it cannot be read ({e})")))?;
-        let sha256: String = Sha256::digest(&bytes)
-            .iter()
-            .map(|b| format!("{b:02x}"))
-            .collect();
+        let sha256 = hex(&Sha256::digest(&bytes));
         if let Some(pin) = pin.filter(|p| !p.eq_ignore_ascii_case(&sha256)) {
             return Err(LawError::Pinned {
                 path: path.to_owned(),
@@ -259,6 +319,7 @@ impl Plugin {
                 sha256,
             });
         }
+        child::survives(path, &sha256).map_err(&refuse)?;
         let loading = watch::label(format!("the plugin {}", path.display()));
         let loading = watch::enter(loading, 5);
         // SAFETY: opening runs the library's initialisers: the user put it on the search path.
@@ -282,6 +343,24 @@ impl Plugin {
         drop(loading);
         // Never unloaded: threads may hold its code or its thread-local data.
         std::mem::forget(library);
+        // SAFETY: the ABI promises a table that is static and whole.
+        unsafe { Self::from_table(table, path, &sha256, false) }
+    }
+
+    /// Checks a table and copies what both sides know of it.
+    ///
+    /// # Safety
+    /// The table is null or one of the ABI, static, with static text.
+    pub(super) unsafe fn from_table(
+        table: *const abi::FwPlugin,
+        path: &Path,
+        sha256: &str,
+        built_in: bool,
+    ) -> Result<Self, LawError> {
+        let refuse = |reason: String| LawError::Unusable {
+            path: path.to_owned(),
+            reason,
+        };
         if table.is_null() || !table.is_aligned() {
             return Err(refuse(format!(
                 "`{}` returned null or a misaligned address; return the address of a static table",
@@ -315,7 +394,8 @@ impl Plugin {
             variables: unsafe { fields(table.variables, table.n_variables, "variable") }
                 .map_err(&refuse)?,
             path: path.to_owned(),
-            sha256,
+            sha256: sha256.to_owned(),
+            built_in,
             label: watch::label(format!("the {kind} law `{name}`")),
             name,
             table,

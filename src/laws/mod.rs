@@ -1,14 +1,19 @@
 //! Interface laws: libraries found by name, composed by the case, called in batches.
 pub mod bench;
 mod bonds;
+pub mod built_in;
 mod call;
+pub mod child;
 pub mod columns;
 mod commit;
 pub mod demand;
+pub mod ending;
 mod gather;
+mod guarded;
 pub mod interface;
 pub mod library;
 pub mod pass;
+mod range;
 pub mod search;
 mod trust;
 pub mod watch;
@@ -16,4 +21,5 @@ pub mod watch;
 pub use interface::{AreaRule, BondRule, Interface, Loaded};
 pub use library::{Call, Kind, LawError, Plugin};
 pub use pass::{Site, Totals, Turn, Velocities};
-pub use search::SearchPath;
+pub use range::Range;
+pub use search::{Place, SearchPath};

@@ -6,6 +6,7 @@
 use super::bonds::Held;
 use super::columns::{Columns, StepInfo};
 use super::gather::contact_area;
+use super::guarded::Guarded;
 use super::interface::{Interface, Loaded};
 use super::library::{Call, LawError};
 use crate::contact::{Contact, Network};
@@ -98,6 +99,20 @@ pub struct Passes {
     pub(super) debts: HashMap<(u32, u32), f64>,
     /// Interfaces whose bonds have been made.
     bonded: Vec<bool>,
+    /// How laws are watched.
+    pub(super) care: Care,
+}
+
+/// What is looked at when a law is called.
+#[derive(Debug, Default)]
+pub(super) enum Care {
+    /// Values that are not finite or cannot be, and writes just behind a column: errors.
+    #[default]
+    Run,
+    /// The same but for values that cannot be: certificates judge them one by one.
+    Lenient,
+    /// As in a run; and every call is made twice, where every wrong write is seen.
+    Guarded(Box<Guarded>),
 }
 
 /// What the passes carry from step to step.
@@ -219,7 +234,8 @@ impl Passes {
         self.gather(law, network, &still, info);
         self.columns.size_outputs();
         for loaded in law.loaded() {
-            self.run(loaded, info, 0.0, Call::Initialise)?;
+            self.run(loaded, info, 0.0, Call::Initialise)
+                .map_err(|e| self.at(law, network, e))?;
         }
         self.keep_state(index, network);
         Ok(())
@@ -265,7 +281,8 @@ impl Passes {
                 self.gather(law, network, &before.relative, info);
             }
             self.columns.size_outputs();
-            self.run(&law.contact, info, 0.0, Call::Prepare)?;
+            self.run(&law.contact, info, 0.0, Call::Prepare)
+                .map_err(|e| self.at(law, network, e))?;
             let answer = |out: &super::columns::Outputs, k: usize| Friction {
                 mu: out.friction[k],
                 e_n: out.restitution_n[k],
@@ -315,7 +332,8 @@ impl Passes {
                 self.columns.truncate(head);
             }
             self.columns.size_outputs();
-            self.run(cohesion, info, 0.0, Call::Prepare)?;
+            self.run(cohesion, info, 0.0, Call::Prepare)
+                .map_err(|e| self.at(law, network, e))?;
             for (k, at) in self.members.iter().enumerate() {
                 self.apply_cohesion(law, k, &before.relative[*at], info, &mut forms[*at]);
             }
@@ -358,12 +376,28 @@ impl Passes {
         call: Call,
     ) -> Result<(), LawError> {
         let plugin = &loaded.plugin;
-        let called = self
-            .columns
+        let (columns, care) = (&mut self.columns, &mut self.care);
+        let mut wrong = None;
+        let called = columns.with_batch(loaded, info, degradation, |batch| match care {
+            Care::Guarded(guarded) => {
+                let (parameters, variables) = (loaded.parameters.len(), loaded.variables());
+                // SAFETY: as below, and copies of the columns are as long as they.
+                let (called, what) =
+                    unsafe { guarded.call(batch, parameters, variables, |b| plugin.call(call, b)) };
+                wrong = what;
+                called
+            }
             // SAFETY: columns of the batch have `n` values or are null, and live in `self`.
-            .with_batch(loaded, info, degradation, |batch| unsafe {
-                plugin.call(call, batch)
+            _ => unsafe { plugin.call(call, batch) },
+        });
+        if let Some(what) = wrong {
+            return Err(LawError::Trespass {
+                kind: plugin.kind,
+                name: plugin.name.clone(),
+                call,
+                what,
             });
+        }
         if self.columns.overrun {
             let name = plugin.name.clone();
             return Err(LawError::Overrun {
@@ -377,14 +411,46 @@ impl Passes {
             Call::Commit | Call::Initialise => self.columns.state_not_finite(),
             _ => None,
         };
-        match self.columns.out.not_finite(plugin.kind, call).or(state) {
-            None => Ok(()),
-            Some(contact) => Err(LawError::NotFinite {
+        if let Some(contact) = self.columns.out.not_finite(plugin.kind, call).or(state) {
+            return Err(LawError::NotFinite {
                 kind: plugin.kind,
                 name: plugin.name.clone(),
                 call,
                 contact: Some(contact),
+            });
+        }
+        if matches!(self.care, Care::Lenient) {
+            return Ok(());
+        }
+        match self.columns.out.outside(plugin.kind, call) {
+            None => Ok(()),
+            Some(outside) => Err(LawError::OutOfRange {
+                kind: plugin.kind,
+                name: plugin.name.clone(),
+                call,
+                contact: Some(outside.contact),
+                column: outside.column,
+                value: outside.value,
+                range: outside.range,
             }),
+        }
+    }
+
+    /// An error of a law with the interface and the contact, which is one of the members.
+    pub(super) fn at<S: Space>(
+        &self,
+        law: &Interface,
+        network: &Network<S>,
+        source: LawError,
+    ) -> LawError {
+        // One answer for all contacts is no contact's.
+        let single = self.columns.n == self.members.len();
+        let member = source.contact().filter(|_| single);
+        let contact = member.and_then(|k| network.contacts.get(*self.members.get(k)?));
+        LawError::At {
+            interface: law.name.clone(),
+            bodies: contact.map(|c| c.bodies),
+            source: Box::new(source),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Where plugins are found: by kind and name, on a search path. A case cannot name a file.
 
 use super::library::{Kind, LawError, Plugin};
-use super::trust;
+use super::{built_in, child, trust};
 use std::path::{Path, PathBuf};
 
 /// Environment variable with further folders.
@@ -14,6 +14,15 @@ pub struct SearchPath {
     /// How many of them are the program's own.
     shipped: usize,
     trusting: bool,
+}
+
+/// Where a law is.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Place {
+    /// In a library.
+    Library(PathBuf),
+    /// In the program itself.
+    BuiltIn,
 }
 
 /// Whether a law's name is made of a-z, 0-9, `-` and `_` and begins with a letter or digit.
@@ -61,7 +70,8 @@ impl SearchPath {
         &self.folders
     }
 
-    /// Opens the law of this kind and name; the first folder that has it wins.
+    /// Opens the law of this kind and name: the first that has it wins, of the folders beside the program, the laws built
+    /// into it, and the other folders. So no library takes the place of a shipped law.
     ///
     /// # Errors
     /// No such law (with the nearest name), or a library that cannot be used.
@@ -79,10 +89,10 @@ impl SearchPath {
         name: &str,
         pin: Option<&str>,
     ) -> Result<Plugin, LawError> {
-        let files = self.folders.iter().map(|f| f.join(file_name(kind, name)));
-        let mut files = files.filter(|p| p.is_file());
-        let Some(path) = files.next().filter(|_| name_is_valid(name)) else {
-            return Err(self.unknown(kind, name));
+        let path = match self.place(kind, name) {
+            Some(Place::Library(path)) => path,
+            Some(Place::BuiltIn) => return self.linked_in(kind, name, pin),
+            None => return Err(self.unknown(kind, name)),
         };
         let plugin = self.open_pinned(&path, pin)?;
         if plugin.kind != kind || plugin.name != name {
@@ -95,6 +105,77 @@ impl SearchPath {
         Ok(plugin)
     }
 
+    /// Where the law of this kind and name is, unopened.
+    fn place(&self, kind: Kind, name: &str) -> Option<Place> {
+        if !name_is_valid(name) {
+            return None;
+        }
+        let (own, others) = self.folders.split_at(self.shipped);
+        let library = |folders: &[PathBuf]| {
+            let mut files = folders.iter().map(|f| f.join(file_name(kind, name)));
+            files.find(|p| p.is_file()).map(Place::Library)
+        };
+        let built_in = || {
+            let known = built_in::names().any(|law| law == (kind, name));
+            known.then_some(Place::BuiltIn)
+        };
+        library(own).or_else(built_in).or_else(|| library(others))
+    }
+
+    fn linked_in(&self, kind: Kind, name: &str, pin: Option<&str>) -> Result<Plugin, LawError> {
+        let found = built_in::open(kind, name);
+        let plugin = found.unwrap_or_else(|| Err(self.unknown(kind, name)))?;
+        match pin.filter(|p| !p.eq_ignore_ascii_case(&plugin.sha256)) {
+            Some(pin) => Err(LawError::Pinned {
+                path: plugin.path,
+                pin: pin.to_owned(),
+                sha256: plugin.sha256,
+            }),
+            None => Ok(plugin),
+        }
+    }
+
+    /// Opens what [`SearchPath::laws`] listed.
+    ///
+    /// # Errors
+    /// Why it cannot be used.
+    pub fn open_law(&self, kind: Kind, name: &str, place: &Place) -> Result<Plugin, LawError> {
+        match place {
+            Place::Library(path) => self.open(path),
+            Place::BuiltIn => self.linked_in(kind, name, None),
+        }
+    }
+
+    /// Tries the libraries of several laws in one process before they are opened one by one; laws that are not there, or
+    /// may not be opened, are left to what opens them.
+    pub fn try_out<'a>(&self, laws: impl IntoIterator<Item = (Kind, &'a str, Option<&'a str>)>) {
+        let mut libraries = Vec::new();
+        for (kind, name, pin) in laws {
+            if let Some(Place::Library(path)) = self.place(kind, name)
+                && self.doubt(&path).is_none()
+            {
+                libraries.push((path, pin));
+            }
+        }
+        child::try_out(&libraries);
+    }
+
+    /// Whether a law is the program's own: who changes it may change the program.
+    pub fn is_own(&self, plugin: &Plugin) -> bool {
+        plugin.built_in || self.own(&plugin.path)
+    }
+
+    fn own(&self, library: &Path) -> bool {
+        let folder = library.parent();
+        folder.is_some_and(|p| self.folders[..self.shipped].iter().any(|f| f == p))
+    }
+
+    /// Why a library should not be opened, if it should not.
+    fn doubt(&self, library: &Path) -> Option<String> {
+        let asked = !self.own(library) && !self.trusting;
+        asked.then(|| trust::doubt(library)).flatten()
+    }
+
     /// Opens a library, unless anybody may write to it or to its folder.
     ///
     /// # Errors
@@ -104,43 +185,64 @@ impl SearchPath {
     }
 
     fn open_pinned(&self, path: &Path, pin: Option<&str>) -> Result<Plugin, LawError> {
-        // Who may write beside the program may change the program.
-        let own = path
-            .parent()
-            .is_some_and(|p| self.folders[..self.shipped].iter().any(|f| f == p));
-        let doubt = (!own && !self.trusting)
-            .then(|| trust::doubt(path))
-            .flatten();
-        if let Some(reason) = doubt {
+        if let Some(reason) = self.doubt(path) {
             let path = path.to_owned();
             return Err(LawError::Unusable { path, reason });
         }
         Plugin::open_pinned(path, pin)
     }
 
-    /// All laws on the path by their file names (with `_` as `-`), unopened, sorted.
-    pub fn available(&self) -> Vec<(Kind, String, PathBuf)> {
-        let mut out: Vec<(Kind, String, PathBuf)> = Vec::new();
-        for folder in &self.folders {
+    /// All laws by the names under which they are found, unopened, sorted: libraries by their file names (with `_` as `-`),
+    /// and what is built in.
+    pub fn laws(&self) -> Vec<(Kind, String, Place)> {
+        let mut out: Vec<(Kind, String, Place)> = Vec::new();
+        let mut add = |kind: Kind, name: String, place: Place| {
+            if !out.iter().any(|(k, n, _)| *k == kind && *n == name) {
+                out.push((kind, name, place));
+            }
+        };
+        for (number, folder) in self.folders.iter().enumerate() {
+            if number == self.shipped {
+                built_in::names().for_each(|(k, n)| add(k, n.to_owned(), Place::BuiltIn));
+            }
             let Ok(entries) = std::fs::read_dir(folder) else {
                 continue;
             };
             for path in entries.flatten().map(|e| e.path()) {
                 if let Some((kind, name)) = parse(&path)
                     && path.is_file()
-                    && !out.iter().any(|(k, n, _)| *k == kind && *n == name)
                 {
-                    out.push((kind, name, path));
+                    add(kind, name, Place::Library(path));
                 }
             }
         }
+        built_in::names().for_each(|(k, n)| add(k, n.to_owned(), Place::BuiltIn));
         out.sort();
         out
     }
 
+    /// Those of them that are libraries.
+    pub fn available(&self) -> Vec<(Kind, String, PathBuf)> {
+        let libraries = self.laws().into_iter().filter_map(|law| match law {
+            (kind, name, Place::Library(path)) => Some((kind, name, path)),
+            _ => None,
+        });
+        libraries.collect()
+    }
+
+    /// Where laws are looked for, in order, in words.
+    pub fn looked(&self) -> String {
+        let folder = |f: &PathBuf| f.display().to_string();
+        let (own, others) = self.folders.split_at(self.shipped);
+        let own = own.iter().filter(|f| f.is_dir()).map(folder);
+        let built_in = std::iter::once("the program itself".to_owned());
+        let places = own.chain(built_in).chain(others.iter().map(folder));
+        places.collect::<Vec<_>>().join(", ")
+    }
+
     fn unknown(&self, kind: Kind, name: &str) -> LawError {
         let names: Vec<String> = self
-            .available()
+            .laws()
             .into_iter()
             .filter(|a| a.0 == kind)
             .map(|a| a.1)
@@ -161,6 +263,7 @@ impl SearchPath {
             kind,
             name: name.into(),
             available,
+            looked: self.looked(),
             nearest,
         }
     }

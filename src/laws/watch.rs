@@ -1,6 +1,6 @@
 //! A watch over plugins: native code that does not come back cannot be stopped, but it can be named.
 
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicPtr, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, mpsc};
 use std::time::Duration;
 
@@ -8,8 +8,10 @@ use std::time::Duration;
 struct Slot {
     /// Counts the begins and the ends of its calls: odd while one goes on.
     turns: AtomicU64,
-    /// What it calls: the place of its label, and the call.
-    who: AtomicU64,
+    /// Whom it calls; never freed.
+    who: AtomicPtr<String>,
+    /// What it calls of it: a place among the names.
+    call: AtomicUsize,
 }
 
 /// Threads beyond so many share the last slot, and are not watched.
@@ -17,7 +19,8 @@ const MOST: usize = 256;
 static SLOTS: [Slot; MOST] = [const {
     Slot {
         turns: AtomicU64::new(0),
-        who: AtomicU64::new(0),
+        who: AtomicPtr::new(std::ptr::null_mut()),
+        call: AtomicUsize::new(0),
     }
 }; MOST];
 static THREADS: AtomicUsize = AtomicUsize::new(0);
@@ -26,8 +29,6 @@ thread_local! {
     static MINE: &'static Slot =
         &SLOTS[THREADS.fetch_add(1, Ordering::Relaxed).min(MOST - 1)];
 }
-
-static LABELS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 /// Names of the calls, in the order of their numbers.
 const CALLS: [&str; 6] = [
@@ -41,7 +42,7 @@ const CALLS: [&str; 6] = [
 
 /// What a call is told by.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Label(u64);
+pub(super) struct Label(&'static String);
 
 /// A call that goes on until this is dropped.
 pub(super) struct Inside;
@@ -52,21 +53,38 @@ impl Drop for Inside {
     }
 }
 
-/// A label by which calls are told.
+/// A label by which calls are told. It is kept for good, as what it names: so it can be read wherever a call ends.
 pub(super) fn label(text: String) -> Label {
-    let mut labels = LABELS.lock().unwrap_or_else(|e| e.into_inner());
-    labels.push(text);
-    Label(labels.len() as u64 - 1)
+    Label(Box::leak(Box::new(text)))
 }
 
 /// Begins a call, by its number among the names above.
 pub(super) fn enter(label: Label, call: usize) -> Inside {
-    let who = label.0 * CALLS.len() as u64 + call as u64;
     MINE.with(|slot| {
-        slot.who.store(who, Ordering::Relaxed);
+        let text = std::ptr::from_ref(label.0).cast_mut();
+        slot.who.store(text, Ordering::Relaxed);
+        slot.call.store(call, Ordering::Relaxed);
         slot.turns.fetch_add(1, Ordering::Relaxed);
     });
     Inside
+}
+
+impl Slot {
+    /// Whom it calls, and what.
+    fn named(&self) -> (&'static str, &'static str) {
+        let who = self.who.load(Ordering::Relaxed);
+        // SAFETY: null, or a label, which is never freed nor written again.
+        let who = unsafe { who.as_ref() }.map_or("a law", String::as_str);
+        let call = CALLS.get(self.call.load(Ordering::Relaxed));
+        (who, call.copied().unwrap_or("a call"))
+    }
+}
+
+/// Whom this thread calls, and what, while a call goes on. It takes no lock and no memory.
+pub(super) fn inside() -> Option<(&'static str, &'static str)> {
+    let mine = MINE.try_with(|slot| *slot).ok()?;
+    let called = mine.turns.load(Ordering::Relaxed) % 2 == 1;
+    called.then(|| mine.named())
 }
 
 /// What is to be done before the program ends; it gives whether it saved something.
@@ -95,37 +113,69 @@ pub fn rescue(save: impl FnOnce(&str) -> bool + Send + 'static) -> Ready {
     Ready(number)
 }
 
+/// What became of what was computed, when the program ends early.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Saved {
+    /// All rows and a summary are on disk.
+    All,
+    /// Not all could be written.
+    Some,
+    /// There was nothing to save.
+    Nothing,
+}
+
+impl Saved {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::All => "all rows up to this step and a summary.json that says so are on disk",
+            Self::Some => "what was recorded up to the last flush is on disk",
+            Self::Nothing => "nothing was being recorded",
+        }
+    }
+}
+
+/// A thread that is stuck may hold what a rescue needs, such as the lock of the allocator: it is not waited for longer.
+pub(super) const RESCUED_WITHIN: Duration = Duration::from_secs(10);
+
+/// Lets all rescues save what they can, beside a thread that is stuck or was stopped.
+pub(super) fn save(who: &str) -> Saved {
+    let rescues = {
+        let mut all = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
+        std::mem::take(&mut *all)
+    };
+    let count = rescues.len();
+    let saved = rescues
+        .into_iter()
+        .filter_map(|(_, save)| save(who).then_some(()));
+    match (count, saved.count()) {
+        (0, _) => Saved::Nothing,
+        (count, saved) if saved == count => Saved::All,
+        _ => Saved::Some,
+    }
+}
+
 /// Watches from a thread of its own, for the rest of the program: once, who did not come back from a call within the limit
-/// is told, and whether all rescues saved something.
+/// is told, and what the rescues saved.
 ///
 /// # Errors
 /// The system gives no more threads.
 pub fn watch(
     limit: Duration,
-    stuck: impl FnOnce(&str, bool) + Send + 'static,
+    stuck: impl FnOnce(&str, Saved) + Send + 'static,
 ) -> std::io::Result<()> {
-    /// A thread that is stuck may hold what a rescue needs, such as the lock of the allocator: it is not waited for longer.
-    const RESCUED_WITHIN: Duration = Duration::from_secs(10);
     let (call, calls) = mpsc::sync_channel::<String>(1);
     let (done, saved) = mpsc::sync_channel(1);
     let rescuer = move || {
         if let Ok(who) = calls.recv() {
-            let rescues = {
-                let mut all = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
-                std::mem::take(&mut *all)
-            };
-            let count = rescues.len();
-            let saved = rescues
-                .into_iter()
-                .filter_map(|(_, save)| save(&who).then_some(()));
-            let _ = done.send(count > 0 && saved.count() == count);
+            let _ = done.send(save(&who));
         }
     };
     std::thread::Builder::new().spawn(rescuer)?;
     let looks = 20u32;
     let watcher = move || {
         let mut seen = vec![(0, 0); MOST];
-        let who = loop {
+        let (label, at) = loop {
             std::thread::sleep(limit / looks);
             // The last slot is of all threads that found no other.
             let slots = SLOTS[..MOST - 1].iter().zip(&mut seen);
@@ -137,26 +187,19 @@ pub fn watch(
                     0
                 };
                 *turns = now;
-                (*since >= looks).then(|| slot.who.load(Ordering::Relaxed))
+                (*since >= looks).then(|| slot.named())
             });
             if let Some(who) = late.next() {
                 break who;
             }
         };
-        let (label, at) = (who / CALLS.len() as u64, who % CALLS.len() as u64);
-        let label = {
-            let labels = LABELS.lock().unwrap_or_else(|e| e.into_inner());
-            labels.get(label as usize).cloned()
-        };
         let who = format!(
-            "{} has not come back from {} for {:.1} s",
-            label.as_deref().unwrap_or("a law"),
-            CALLS[at as usize],
+            "{label} has not come back from {at} for {:.1} s",
             limit.as_secs_f64()
         );
-        let saved = call
-            .send(who.clone())
-            .is_ok_and(|()| saved.recv_timeout(RESCUED_WITHIN).unwrap_or(false));
+        let saved = call.send(who.clone()).map_or(Saved::Some, |()| {
+            saved.recv_timeout(RESCUED_WITHIN).unwrap_or(Saved::Some)
+        });
         stuck(&who, saved);
     };
     std::thread::Builder::new().spawn(watcher).map(drop)

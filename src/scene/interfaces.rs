@@ -36,6 +36,11 @@ pub fn build(
         files: Vec::new(),
     };
     pins(case).map_err(|f| source.locate(f))?;
+    let wanted = case.interfaces.iter().flat_map(used);
+    path.try_out(wanted.map(|(kind, name)| {
+        let pin = case.pins.get(&format!("{kind}/{name}"));
+        (kind, name, pin.map(String::as_str))
+    }));
     for (k, spec) in case.interfaces.iter().enumerate() {
         let here = format!("interfaces.{k}");
         let at = |f: Fault| source.locate(f.under(&here));
@@ -81,19 +86,25 @@ pub fn build(
     Ok(out)
 }
 
+/// The laws that an interface names.
+fn used(spec: &InterfaceSpec) -> impl Iterator<Item = (Kind, &str)> {
+    let optional = [
+        (Kind::Cohesion, &spec.cohesion),
+        (Kind::Damage, &spec.damage),
+        (Kind::Wear, &spec.wear),
+    ];
+    let named = optional
+        .into_iter()
+        .filter_map(|(kind, name)| Some((kind, name.as_deref()?)));
+    std::iter::once((Kind::Contact, spec.contact.as_str())).chain(named)
+}
+
 /// Refuses pins that are none, or of laws that the case does not use.
 fn pins(case: &Case) -> Result<(), Fault> {
-    let mut used = Vec::new();
-    for i in &case.interfaces {
-        used.push(format!("contact/{}", i.contact));
-        for (kind, name) in [
-            ("cohesion", &i.cohesion),
-            ("damage", &i.damage),
-            ("wear", &i.wear),
-        ] {
-            used.extend(name.iter().map(|n| format!("{kind}/{n}")));
-        }
-    }
+    let wanted = case.interfaces.iter().flat_map(used);
+    let used: Vec<String> = wanted
+        .map(|(kind, name)| format!("{kind}/{name}"))
+        .collect();
     for (law, pin) in &case.pins {
         let path = format!("pins.{law}");
         if !used.contains(law) {
@@ -125,7 +136,7 @@ fn read_parameters(
         Err(error) => error,
         Ok(missing) => at(Fault::new(
             "parameters_from",
-            format!("there is no file `{name}.ron` in materials/"),
+            format!("there is no file `{name}.ron` in {}", missing.looked),
         )
         .expected(format!("one of {}", missing.available))
         .nearest(missing.nearest.as_deref())),
@@ -223,10 +234,16 @@ fn load(
     let pin = case.pins.get(&key).map(String::as_str);
     let plugin = path.find_pinned(kind, name, pin).map_err(|e| match &e {
         LawError::Unknown {
-            available, nearest, ..
-        } => Fault::new(slot, format!("there is no {kind} law named `{name}`"))
-            .expected(format!("one of {available}"))
-            .nearest(nearest.as_deref()),
+            available,
+            nearest,
+            looked,
+            ..
+        } => Fault::new(
+            slot,
+            format!("there is no {kind} law named `{name}` in {looked}"),
+        )
+        .expected(format!("one of {available}"))
+        .nearest(nearest.as_deref()),
         LawError::Pinned { .. } => Fault::new(format!("pins.{key}"), e.to_string()),
         other => Fault::new(slot, other.to_string()),
     })?;

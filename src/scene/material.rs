@@ -1,5 +1,6 @@
 //! Materials and the parameters of interface laws: numbers with their source.
 
+use super::shipped_materials;
 use super::source::{InputError, Source, nearest};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -48,7 +49,7 @@ pub struct InterfaceParameters {
 }
 
 /// The folders in which material files are looked for: `materials/` beside the case or in a folder
-/// above it, then in the working folder.
+/// above it, then in the working folder; a shipped one that none of them has is taken from the program.
 #[derive(Clone, Debug)]
 pub struct Shelf {
     folders: Vec<PathBuf>,
@@ -85,7 +86,13 @@ impl Shelf {
         });
         match found.flatten() {
             Some(path) => Source::read(&path).map_err(Err),
-            None => Err(Ok(self.missing(name))),
+            None => match shipped_materials::text(name) {
+                Some(text) => Ok(Source::from_text(
+                    format!("materials/{name}.ron (built in)"),
+                    text,
+                )),
+                None => Err(Ok(self.missing(name))),
+            },
         }
     }
 
@@ -104,9 +111,17 @@ impl Shelf {
             .collect();
         names.sort();
         names.dedup();
+        for (shipped, _) in shipped_materials::FILES {
+            if !names.iter().any(|n| n == shipped) {
+                names.push(shipped.to_owned());
+            }
+        }
+        let folders = self.folders.iter().map(|f| f.display().to_string());
+        let built_in = std::iter::once("the program itself".to_owned());
         Missing {
             nearest: nearest(name, names.iter().map(String::as_str)).map(str::to_owned),
             available: names.join(", "),
+            looked: folders.chain(built_in).collect::<Vec<_>>().join(", "),
         }
     }
 }
@@ -118,4 +133,6 @@ pub struct Missing {
     pub nearest: Option<String>,
     /// All names.
     pub available: String,
+    /// Where it was looked for.
+    pub looked: String,
 }

@@ -18,6 +18,7 @@ pub mod profile_file;
 pub mod sample;
 pub mod sampling;
 pub mod scene_file;
+pub mod shipped_materials;
 pub mod source;
 pub mod standard;
 

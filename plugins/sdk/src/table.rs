@@ -88,60 +88,9 @@ macro_rules! parameters {
 /// `export!(damage Mac);`, `export!(wear Archard);`.
 #[macro_export]
 macro_rules! export {
-    (contact $law:ty) => {
-        $crate::export!(@table $law, KIND_CONTACT, 0.0,
-            prepare: Some($crate::border::contact_prepare::<$law>),
-            commit: if <$law as $crate::Law>::VARIABLES.is_empty() { None } else { Some($crate::border::contact_commit::<$law>) },
-            energy: None);
-    };
-    (cohesion $law:ty) => {
-        $crate::export!(@table $law, KIND_COHESION, <$law as $crate::CohesionLaw>::DEGRADATION,
-            prepare: Some($crate::border::cohesion_prepare::<$law>),
-            commit: if <$law as $crate::Law>::VARIABLES.is_empty() && <$law as $crate::Law>::FLAGS & $crate::abi::FLAG_BREAKS == 0 { None } else { Some($crate::border::cohesion_commit::<$law>) },
-            energy: Some($crate::border::cohesion_energy::<$law>));
-    };
-    (damage $law:ty) => {
-        $crate::export!(@table $law, KIND_DAMAGE, 0.0,
-            prepare: None, commit: Some($crate::border::damage_commit::<$law>), energy: None);
-    };
-    (wear $law:ty) => {
-        $crate::export!(@table $law, KIND_WEAR, 0.0,
-            prepare: None, commit: Some($crate::border::wear_commit::<$law>), energy: None);
-    };
-    (@table $law:ty, $kind:ident, $degradation:expr, prepare: $prepare:expr, commit: $commit:expr, energy: $energy:expr) => {
+    ($kind:ident $law:ty) => {
         const _: () = {
-            use $crate::{Law, Parameters};
-            const VARIABLES: usize = <$law>::VARIABLES.len();
-            static SCHEMA: $crate::table::Fields<VARIABLES> =
-                $crate::table::Fields($crate::table::variables(<$law>::VARIABLES));
-            static NAME: [u8; <$law>::NAME.len() + 1] = $crate::table::terminated(<$law>::NAME);
-            static VERSION: [u8; <$law>::VERSION.len() + 1] = $crate::table::terminated(<$law>::VERSION);
-            static DOC: [u8; <$law>::DOC.len() + 1] = $crate::table::terminated(<$law>::DOC);
-            static REFERENCE: [u8; <$law>::REFERENCE.len() + 1] = $crate::table::terminated(<$law>::REFERENCE);
-            static TABLE: $crate::table::Table = $crate::table::Table($crate::abi::FwPlugin {
-                size: core::mem::size_of::<$crate::abi::FwPlugin>(),
-                abi_major: $crate::abi::ABI_MAJOR,
-                abi_minor: $crate::abi::ABI_MINOR,
-                kind: $crate::abi::$kind,
-                reserved: 0,
-                flags: <$law>::FLAGS,
-                name: NAME.as_ptr().cast(),
-                version: VERSION.as_ptr().cast(),
-                doc: DOC.as_ptr().cast(),
-                reference: REFERENCE.as_ptr().cast(),
-                n_parameters: <$law>::FIELDS.len(),
-                parameters: <$law>::FIELDS.as_ptr(),
-                n_variables: VARIABLES,
-                variables: SCHEMA.0.as_ptr(),
-                degradation: $degradation,
-                validate: Some($crate::border::validate::<$law>),
-                initialise: None,
-                prepare: $prepare,
-                solve_local: None,
-                commit: $commit,
-                energy: $energy,
-                fracture_energy: Some($crate::border::fracture_energy::<$law>),
-            });
+    $crate::plugin_table!($kind $law);
 
             /// The plugin's entry.
             #[unsafe(no_mangle)]
@@ -149,6 +98,65 @@ macro_rules! export {
                 &TABLE.0
             }
         };
+    };
+}
+
+/// The table of a law, a static named `TABLE`, without the exported entry: for programs that link laws in.
+#[macro_export]
+macro_rules! plugin_table {
+    (contact $law:ty) => {
+        $crate::plugin_table!(@table $law, KIND_CONTACT, 0.0,
+            prepare: Some($crate::border::contact_prepare::<$law>),
+            commit: if <$law as $crate::Law>::VARIABLES.is_empty() { None } else { Some($crate::border::contact_commit::<$law>) },
+            energy: None);
+    };
+    (cohesion $law:ty) => {
+        $crate::plugin_table!(@table $law, KIND_COHESION, <$law as $crate::CohesionLaw>::DEGRADATION,
+            prepare: Some($crate::border::cohesion_prepare::<$law>),
+            commit: if <$law as $crate::Law>::VARIABLES.is_empty() && <$law as $crate::Law>::FLAGS & $crate::abi::FLAG_BREAKS == 0 { None } else { Some($crate::border::cohesion_commit::<$law>) },
+            energy: Some($crate::border::cohesion_energy::<$law>));
+    };
+    (damage $law:ty) => {
+        $crate::plugin_table!(@table $law, KIND_DAMAGE, 0.0,
+            prepare: None, commit: Some($crate::border::damage_commit::<$law>), energy: None);
+    };
+    (wear $law:ty) => {
+        $crate::plugin_table!(@table $law, KIND_WEAR, 0.0,
+            prepare: None, commit: Some($crate::border::wear_commit::<$law>), energy: None);
+    };
+    (@table $law:ty, $kind:ident, $degradation:expr, prepare: $prepare:expr, commit: $commit:expr, energy: $energy:expr) => {
+        use $crate::{Law as _, Parameters as _};
+        const VARIABLES: usize = <$law>::VARIABLES.len();
+        static SCHEMA: $crate::table::Fields<VARIABLES> =
+            $crate::table::Fields($crate::table::variables(<$law>::VARIABLES));
+        static NAME: [u8; <$law>::NAME.len() + 1] = $crate::table::terminated(<$law>::NAME);
+        static VERSION: [u8; <$law>::VERSION.len() + 1] = $crate::table::terminated(<$law>::VERSION);
+        static DOC: [u8; <$law>::DOC.len() + 1] = $crate::table::terminated(<$law>::DOC);
+        static REFERENCE: [u8; <$law>::REFERENCE.len() + 1] = $crate::table::terminated(<$law>::REFERENCE);
+        static TABLE: $crate::table::Table = $crate::table::Table($crate::abi::FwPlugin {
+            size: core::mem::size_of::<$crate::abi::FwPlugin>(),
+            abi_major: $crate::abi::ABI_MAJOR,
+            abi_minor: $crate::abi::ABI_MINOR,
+            kind: $crate::abi::$kind,
+            reserved: 0,
+            flags: <$law>::FLAGS,
+            name: NAME.as_ptr().cast(),
+            version: VERSION.as_ptr().cast(),
+            doc: DOC.as_ptr().cast(),
+            reference: REFERENCE.as_ptr().cast(),
+            n_parameters: <$law>::FIELDS.len(),
+            parameters: <$law>::FIELDS.as_ptr(),
+            n_variables: VARIABLES,
+            variables: SCHEMA.0.as_ptr(),
+            degradation: $degradation,
+            validate: Some($crate::border::validate::<$law>),
+            initialise: None,
+            prepare: $prepare,
+            solve_local: None,
+            commit: $commit,
+            energy: $energy,
+            fracture_energy: Some($crate::border::fracture_energy::<$law>),
+        });
     };
 }
 

@@ -3,7 +3,7 @@
 use super::super::output::answer;
 use super::super::{Failure, PluginArgs};
 use super::{all_used, named, values};
-use crate::certify::{Certificate, Outcome, certify as test};
+use crate::certify::{Certificate, Outcome, certify_apart as test};
 use crate::laws::{Plugin, SearchPath};
 use clap::Args;
 use std::fmt::Write as _;
@@ -41,10 +41,14 @@ pub fn certify(args: &CertifyArgs) -> Result<(), Failure> {
         }
         Some(law) => named(&path, law)?,
         None => {
-            let all = path
-                .available()
-                .into_iter()
-                .map(|(_, _, file)| path.open(&file));
+            let laws = path.laws();
+            path.try_out(
+                laws.iter()
+                    .map(|(kind, name, _)| (*kind, name.as_str(), None)),
+            );
+            let all = laws
+                .iter()
+                .map(|(kind, name, place)| path.open_law(*kind, name, place));
             all.collect::<Result<_, _>>()?
         }
     };

@@ -1,16 +1,18 @@
 //! What a run is stamped with: its laws, and the density of its first bodies.
 
-use crate::certify::certify;
-use crate::laws::{Interface, Kind, SearchPath};
+use crate::certify::{Certificate, certify, certify_apart};
+use crate::laws::{Interface, Kind, LawError, Loaded as Law, Plugin, SearchPath};
 use crate::record::summary::PluginStamp;
 use crate::scene::build::Loaded;
 
 /// The laws of a run, each once, and whether they keep their promises with its parameters: a damage law with the
-/// cohesion that it stands beside, the others with plain shipped partners.
+/// cohesion that it stands beside where that keeps its own, the others with plain shipped partners. So the law is blamed that
+/// is at fault, and none beside it.
 pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
-    let path = SearchPath::new(&[]);
-    type Seen<'a> = (&'a str, &'a [f64], Option<(&'a str, &'a [f64])>);
-    let mut seen: Vec<Seen<'_>> = Vec::new();
+    let mut known = Known {
+        path: SearchPath::new(&[]),
+        found: Vec::new(),
+    };
     let mut stamps: Vec<PluginStamp> = Vec::new();
     for interface in laws {
         for law in interface.loaded() {
@@ -18,32 +20,73 @@ pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
             let partner = interface
                 .cohesion
                 .as_ref()
-                .filter(|_| p.kind == Kind::Damage);
-            let key: Seen<'_> = (
-                &p.sha256,
-                &law.parameters,
-                partner.map(|l| (l.plugin.sha256.as_str(), l.parameters.as_slice())),
-            );
-            if seen.contains(&key) {
-                continue;
-            }
-            seen.push(key);
-            let certified =
-                certify(p, &law.parameters, partner, &path).is_ok_and(|c| c.certified());
-            match stamps.iter_mut().find(|s| s.sha256 == p.sha256) {
+                .filter(|_| p.kind == Kind::Damage)
+                .filter(|cohesion| known.certified(cohesion, None));
+            let certified = known.certified(law, partner);
+            let same = |s: &&mut PluginStamp| {
+                (&s.sha256, &s.name) == (&p.sha256, &p.name) && s.kind == p.kind.word()
+            };
+            match stamps.iter_mut().find(same) {
                 Some(stamp) => stamp.certified &= certified,
                 None => stamps.push(PluginStamp {
                     kind: p.kind.to_string(),
                     name: p.name.clone(),
                     version: p.version.clone(),
                     sha256: p.sha256.clone(),
-                    path: p.path.display().to_string(),
+                    path: match p.built_in {
+                        true => format!("built into {}", p.path.display()),
+                        false => p.path.display().to_string(),
+                    },
                     certified,
                 }),
             }
         }
     }
     stamps
+}
+
+/// A law with its parameters.
+#[derive(PartialEq)]
+struct Key {
+    kind: Kind,
+    name: String,
+    sha256: String,
+    parameters: Vec<u64>,
+}
+
+impl Key {
+    fn of(law: &Law) -> Self {
+        Self {
+            kind: law.plugin.kind,
+            name: law.plugin.name.clone(),
+            sha256: law.plugin.sha256.clone(),
+            parameters: law.parameters.iter().map(|x| x.to_bits()).collect(),
+        }
+    }
+}
+
+/// What was found of laws, with their partners.
+struct Known {
+    path: SearchPath,
+    found: Vec<((Key, Option<Key>), bool)>,
+}
+
+impl Known {
+    fn certified(&mut self, law: &Law, partner: Option<&Law>) -> bool {
+        let key = (Key::of(law), partner.map(Key::of));
+        if let Some((_, certified)) = self.found.iter().find(|(k, _)| *k == key) {
+            return *certified;
+        }
+        // What is not the program's own may end the process in which it is tested, or spoil its memory.
+        let own = |p: &Plugin| self.path.is_own(p);
+        let trusted = own(&law.plugin) && partner.is_none_or(|p| own(&p.plugin));
+        type Test = fn(&Plugin, &[f64], Option<&Law>, &SearchPath) -> Result<Certificate, LawError>;
+        let test: Test = if trusted { certify } else { certify_apart };
+        let made = test(&law.plugin, &law.parameters, partner, &self.path);
+        let certified = made.is_ok_and(|c| c.certified());
+        self.found.push((key, certified));
+        certified
+    }
 }
 
 /// Density of the first bodies, for wear as a mass.

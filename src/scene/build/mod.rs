@@ -176,7 +176,7 @@ impl Loaded {
                 Ok(missing) => self.source.locate(
                     Fault::new(
                         format!("materials.{name}"),
-                        format!("there is no file `{file}.ron` in materials/"),
+                        format!("there is no file `{file}.ron` in {}", missing.looked),
                     )
                     .expected(format!("one of {}", missing.available))
                     .nearest(missing.nearest.as_deref()),

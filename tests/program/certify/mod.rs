@@ -20,7 +20,7 @@ fn broken(certificate: &Certificate) -> Vec<&str> {
         .lines
         .iter()
         .filter(failed)
-        .map(|l| l.check)
+        .map(|l| l.check.as_str())
         .collect()
 }
 

@@ -1,0 +1,129 @@
+//! A law certified in a process of its own: one that crashes, ends the program or hangs costs a line of its certificate.
+
+use super::{Certificate, Event, Line, certify, certify_telling};
+use crate::laws::child::{self, End};
+use crate::laws::{Kind, LawError, Loaded, Plugin, SearchPath, built_in};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// The hidden word by which the program is asked to certify a law.
+pub const CERTIFY_APART: &str = "__certify";
+
+/// What a crash is a line of.
+const COMES_BACK: &str = "comes back";
+
+/// A law with parameters, as one process names it to another.
+#[derive(Serialize, Deserialize)]
+struct Named {
+    /// Its library; none where it is built in.
+    library: Option<PathBuf>,
+    kind: String,
+    name: String,
+    /// Values of the parameters, as bits: they must not be rounded.
+    parameters: Vec<u64>,
+}
+
+impl Named {
+    fn of(plugin: &Plugin, parameters: &[f64]) -> Self {
+        Self {
+            library: (!plugin.built_in).then(|| plugin.path.clone()),
+            kind: plugin.kind.to_string(),
+            name: plugin.name.clone(),
+            parameters: parameters.iter().map(|x| x.to_bits()).collect(),
+        }
+    }
+
+    fn open(self) -> Result<Loaded, LawError> {
+        let plugin = match &self.library {
+            Some(path) => Plugin::open(path)?,
+            None => {
+                let kind = Kind::ALL.into_iter().find(|k| k.word() == self.kind);
+                let found = kind.and_then(|k| built_in::open(k, &self.name));
+                found.unwrap_or_else(|| {
+                    Err(LawError::Unusable {
+                        path: PathBuf::from(&self.name),
+                        reason: "it is not built in".to_owned(),
+                    })
+                })?
+            }
+        };
+        Ok(Loaded {
+            plugin: Arc::new(plugin),
+            parameters: self.parameters.into_iter().map(f64::from_bits).collect(),
+            first_variable: 0,
+        })
+    }
+}
+
+/// As [`certify`], in a process of its own where the program can start one. What the law does to that process is a line.
+///
+/// # Errors
+/// As [`certify`]; and where no process can be started.
+pub fn certify_apart(
+    plugin: &Plugin,
+    parameters: &[f64],
+    cohesion: Option<&Loaded>,
+    path: &SearchPath,
+) -> Result<Certificate, LawError> {
+    if !child::enabled() {
+        return certify(plugin, parameters, cohesion, path);
+    }
+    plugin.validate(parameters)?;
+    let refuse = |reason: String| LawError::Unusable {
+        path: plugin.path.clone(),
+        reason,
+    };
+    let named = Named::of(plugin, parameters);
+    let partner = cohesion.map(|c| Named::of(&c.plugin, &c.parameters));
+    let question = serde_json::to_value((named, partner)).map_err(|e| refuse(e.to_string()))?;
+    let told = child::ask(CERTIFY_APART, &question).map_err(refuse)?;
+    let (mut lines, mut begun) = (Vec::new(), String::new());
+    for mut piece in told.pieces {
+        if let Some(reason) = piece["refused"].as_str() {
+            return Err(refuse(reason.to_owned()));
+        }
+        if let Some(name) = piece["begins"].as_str() {
+            name.clone_into(&mut begun);
+        }
+        if let Ok(line) = serde_json::from_value::<Line>(piece["line"].take()) {
+            lines.push(line);
+        }
+    }
+    if let End::Early(why) = told.end {
+        let text = format!("{why}, while `{begun}` was tested; nothing after it was");
+        lines.push(Line::judged(COMES_BACK, false, f64::INFINITY, text));
+    }
+    Ok(Certificate::of(plugin, lines))
+}
+
+/// In the called process: certifies the law it is asked after.
+///
+/// # Errors
+/// The question cannot be read.
+pub fn certify_asked() -> Result<(), String> {
+    let question = child::asked()?;
+    let (named, partner): (Named, Option<Named>) =
+        serde_json::from_value(question).map_err(|e| e.to_string())?;
+    let mut tell = |event: Event<'_>| match event {
+        Event::Begins(name) => child::tell(&json!({ "begins": name })),
+        Event::Line(line) => child::tell(&json!({ "line": line })),
+    };
+    let made = named.open().and_then(|law| {
+        let partner = partner.map(Named::open).transpose()?;
+        let path = SearchPath::new(&[]);
+        certify_telling(
+            &law.plugin,
+            &law.parameters,
+            partner.as_ref(),
+            &path,
+            &mut tell,
+        )
+    });
+    if let Err(e) = made {
+        child::tell(&json!({ "refused": e.to_string() }));
+    }
+    child::tell_done();
+    Ok(())
+}

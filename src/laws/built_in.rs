@@ -1,0 +1,92 @@
+//! The shipped laws that are linked into the program, for where their libraries are not beside it.
+
+use super::library::{Kind, LawError, Plugin};
+use fretwork_abi::FwPlugin;
+use sha2::{Digest, Sha256};
+use std::ffi::CStr;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// A linked-in law.
+struct Entry {
+    kind: Kind,
+    name: String,
+    table: &'static FwPlugin,
+}
+
+// SAFETY: tables are static and never written.
+unsafe impl Send for Entry {}
+// SAFETY: as above.
+unsafe impl Sync for Entry {}
+
+fn entries() -> &'static [Entry] {
+    static ENTRIES: OnceLock<Vec<Entry>> = OnceLock::new();
+    ENTRIES.get_or_init(|| {
+        let tables = fretwork_shipped::plugins().into_iter();
+        let known = tables.filter_map(|table| {
+            // SAFETY: the wrapper makes names of NUL-terminated static text.
+            let name = unsafe { CStr::from_ptr(table.name) };
+            Some(Entry {
+                kind: Kind::from_code(table.kind)?,
+                name: name.to_str().ok()?.to_owned(),
+                table,
+            })
+        });
+        known.collect()
+    })
+}
+
+/// Kinds and names of all of them.
+pub fn names() -> impl Iterator<Item = (Kind, &'static str)> {
+    entries().iter().map(|e| (e.kind, e.name.as_str()))
+}
+
+/// The law of this kind and name, where it is linked in. Its path and SHA-256 are those of the program.
+pub fn open(kind: Kind, name: &str) -> Option<Result<Plugin, LawError>> {
+    let entry = entries()
+        .iter()
+        .find(|e| e.kind == kind && e.name == name)?;
+    Some(executable().and_then(|(path, sha256)| {
+        // SAFETY: a static table of the wrapper, of this version.
+        unsafe { Plugin::from_table(entry.table, path, sha256, true) }
+    }))
+}
+
+/// The program's own file and its SHA-256, read once.
+fn executable() -> Result<(&'static Path, &'static str), LawError> {
+    static KNOWN: OnceLock<Result<(PathBuf, String), String>> = OnceLock::new();
+    let known = KNOWN.get_or_init(|| {
+        let path = std::env::current_exe().map_err(|e| e.to_string())?;
+        let sha256 = file_sum(&path).map_err(|e| e.to_string())?;
+        Ok((path, sha256))
+    });
+    match known {
+        Ok((path, sha256)) => Ok((path, sha256)),
+        Err(reason) => Err(LawError::Unusable {
+            path: PathBuf::from("built in"),
+            reason: format!(
+                "the program's own file, whose SHA-256 stands for its built-in laws, cannot be read ({reason})"
+            ),
+        }),
+    }
+}
+
+fn file_sum(path: &Path) -> std::io::Result<String> {
+    let mut file = std::fs::File::open(path)?;
+    let mut sum = Sha256::new();
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        let n = file.read(&mut buffer)?;
+        if n == 0 {
+            break;
+        }
+        sum.update(&buffer[..n]);
+    }
+    Ok(hex(&sum.finalize()))
+}
+
+/// Bytes in hexadecimal.
+pub(super) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
+}

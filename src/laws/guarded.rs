@@ -1,0 +1,215 @@
+//! A batch copied to where every wrong write is seen: wide marks between the columns, inputs compared afterwards. Too
+//! slow for a run; certificates are made with it.
+
+use fretwork_abi::FwBatch;
+
+/// Marks between columns, in values (4 kB).
+const GAP: usize = 512;
+/// Marks before the first and behind the last column, in values (256 kB).
+const END: usize = 1 << 15;
+/// What stands there: a NaN that no law computes.
+const MARK: u64 = 0x7ff4_6a2d_0c39_9e17;
+
+/// The memory in which a law works; kept from call to call.
+#[derive(Debug, Default)]
+pub(super) struct Guarded {
+    words: Vec<u64>,
+    before: Vec<u64>,
+    columns: Vec<Column>,
+}
+
+#[derive(Clone, Debug)]
+struct Column {
+    name: String,
+    start: usize,
+    len: usize,
+    /// Where the host has it; null for inputs.
+    home: *mut f64,
+}
+
+// SAFETY: the addresses are used during one call only, which the owner of the columns makes.
+unsafe impl Send for Guarded {}
+
+impl Column {
+    fn holds(&self, word: usize) -> bool {
+        (self.start..self.start + self.len).contains(&word)
+    }
+}
+
+impl Guarded {
+    /// Makes the call twice on a copy of the batch: its answer, and what the law did that it must not.
+    ///
+    /// # Safety
+    /// As the ABI says of the batch, for a law of so many parameters and variables.
+    pub unsafe fn call<R>(
+        &mut self,
+        batch: &FwBatch,
+        parameters: usize,
+        variables: usize,
+        mut call: impl FnMut(&FwBatch) -> R,
+    ) -> (R, Option<String>) {
+        let mut inside = *batch;
+        // SAFETY: by the contract of this function.
+        let (state, next) = unsafe { self.lay_out(&mut inside, parameters, variables) };
+        let (tables, whole) = ((state.clone(), next.clone()), bytes(&inside));
+        let answer = call(&inside);
+        let mut wrong = self.trespass();
+        if (&state, &next) != (&tables.0, &tables.1) || bytes(&inside) != whole {
+            wrong = Some("wrote to the batch itself or its lists of columns".to_owned());
+        }
+        let first = self.words.clone();
+        for column in self.columns.iter().filter(|c| !c.home.is_null()) {
+            // SAFETY: an output column of the host, as long as it was copied from.
+            unsafe {
+                let from = self.words.as_ptr().add(column.start).cast::<f64>();
+                std::ptr::copy_nonoverlapping(from, column.home, column.len);
+            }
+        }
+        if wrong.is_none() {
+            self.words.copy_from_slice(&self.before);
+            call(&inside);
+            if self.words != first {
+                wrong = Some(
+                    "gave two answers to the same call: it keeps something between calls"
+                        .to_owned(),
+                );
+            }
+        }
+        (answer, wrong)
+    }
+
+    /// Copies all columns in, and points the batch and lists of its internal variables to the copies.
+    unsafe fn lay_out(
+        &mut self,
+        batch: &mut FwBatch,
+        parameters: usize,
+        variables: usize,
+    ) -> (Vec<*const f64>, Vec<*mut f64>) {
+        let n = batch.n;
+        self.columns.clear();
+        self.words.clear();
+        self.words.resize(END, MARK);
+        // Room first: the addresses must stay.
+        self.words
+            .reserve(GAP * (80 + 2 * variables) + 80 * n + 2 * variables * n + parameters + END);
+        let room = self.words.capacity();
+        let mut state: Vec<*const f64> = Vec::new();
+        let mut next: Vec<*mut f64> = Vec::new();
+        // SAFETY: columns of the host, of `n` values or null.
+        unsafe {
+            batch.parameters = self.put("parameters", batch.parameters, parameters, false);
+            for (name, column) in inputs(batch) {
+                *column = self.put(name, *column, n, false);
+            }
+            for (name, column) in outputs(batch) {
+                *column = self.put(name, *column, n, true).cast_mut();
+            }
+            for v in 0..variables {
+                if !batch.state.is_null() {
+                    let column = *batch.state.add(v);
+                    state.push(self.put(&format!("state[{v}]"), column, n, false));
+                }
+                if !batch.state_next.is_null() {
+                    let column = *batch.state_next.add(v);
+                    let put = self.put(&format!("state_next[{v}]"), column, n, true);
+                    next.push(put.cast_mut());
+                }
+            }
+        }
+        if !state.is_empty() {
+            batch.state = state.as_ptr();
+        }
+        if !next.is_empty() {
+            batch.state_next = next.as_ptr();
+        }
+        self.words.resize(self.words.len() + END, MARK);
+        debug_assert_eq!(room, self.words.capacity(), "the columns have not moved");
+        self.before.clone_from(&self.words);
+        (state, next)
+    }
+
+    /// Copies a column in, with marks behind it.
+    unsafe fn put(
+        &mut self,
+        name: &str,
+        column: *const f64,
+        len: usize,
+        output: bool,
+    ) -> *const f64 {
+        if column.is_null() {
+            return column;
+        }
+        let start = self.words.len();
+        // SAFETY: by the contract of the caller.
+        let values = unsafe { std::slice::from_raw_parts(column, len) };
+        self.words.extend(values.iter().map(|x| x.to_bits()));
+        self.words.resize(start + len + GAP, MARK);
+        self.columns.push(Column {
+            name: name.to_owned(),
+            start,
+            len,
+            home: if output {
+                column.cast_mut()
+            } else {
+                std::ptr::null_mut()
+            },
+        });
+        // SAFETY: `start` is within the words.
+        unsafe { self.words.as_ptr().add(start).cast() }
+    }
+
+    /// What was written beside the outputs, if anything.
+    fn trespass(&self) -> Option<String> {
+        let mut changed = (0..self.words.len()).filter(|k| self.words[*k] != self.before[*k]);
+        let wrong = changed.find(|k| {
+            let inside = self.columns.iter().find(|c| c.holds(*k));
+            inside.is_none_or(|c| c.home.is_null())
+        })?;
+        if let Some(input) = self.columns.iter().find(|c| c.holds(wrong)) {
+            return Some(format!(
+                "wrote to the input `{}` (value {} of it)",
+                input.name,
+                wrong - input.start
+            ));
+        }
+        let distance = |c: &Column| match wrong < c.start {
+            true => c.start - wrong,
+            false => wrong + 1 - (c.start + c.len),
+        };
+        let near = self.columns.iter().min_by_key(|c| distance(c))?;
+        let side = if wrong < near.start {
+            "before the begin"
+        } else {
+            "behind the end"
+        };
+        Some(format!(
+            "wrote {} values {side} of the column `{}`",
+            distance(near),
+            near.name
+        ))
+    }
+}
+
+/// The batch as bytes, to compare.
+fn bytes(batch: &FwBatch) -> Vec<u8> {
+    let start = std::ptr::from_ref(batch).cast::<u8>();
+    // SAFETY: a struct of numbers and addresses without padding.
+    unsafe { std::slice::from_raw_parts(start, size_of::<FwBatch>()) }.to_vec()
+}
+
+macro_rules! slots {
+    ($batch:ident: $($name:ident)*) => { vec![$((stringify!($name), &mut $batch.$name)),*] };
+}
+
+fn inputs(batch: &mut FwBatch) -> Vec<(&'static str, &mut *const f64)> {
+    slots!(batch: gap area radius age opening_n opening_t1 opening_t2 velocity_n velocity_t1 velocity_t2
+        impulse_n impulse_t1 impulse_t2 damage energy_intact intact_n intact_t1 intact_t2 slip friction_work pressed
+        rotation_n rotation_t1 rotation_t2 intact_moment_n intact_moment_t1 intact_moment_t2)
+}
+
+fn outputs(batch: &mut FwBatch) -> Vec<(&'static str, &mut *mut f64)> {
+    slots!(batch: out_friction out_restitution_n out_restitution_t out_tension_strength out_shear_cohesion out_rolling
+        out_spinning out_traction_n out_traction_t1 out_traction_t2 out_stiffness_n out_stiffness_t out_damping_n
+        out_damping_t out_energy out_damage out_volume out_moment_n out_moment_t1 out_moment_t2 out_stiffness_twist
+        out_stiffness_bend)
+}
