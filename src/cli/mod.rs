@@ -4,6 +4,7 @@
 
 mod check;
 mod law;
+mod number;
 mod progress;
 mod run;
 mod solve;
@@ -13,6 +14,7 @@ use crate::laws::watch::watch;
 use crate::laws::{LawError, SearchPath};
 use crate::record::RunError;
 use crate::scene::InputError;
+use crate::scene::source::{clean_json, clean_lines};
 use clap::{Args, Parser, Subcommand};
 use std::io::IsTerminal;
 use std::path::PathBuf;
@@ -121,6 +123,7 @@ impl PluginArgs {
                 } else {
                     "what was recorded up to the last flush is on disk"
                 };
+                let who = clean_lines(&who.to_string());
                 eprintln!(
                     "error: {who}; the program ends here; {left} (a longer wait: --law-timeout)"
                 );
@@ -181,23 +184,30 @@ pub fn main() -> ExitCode {
             ExitCode::from(2)
         }
         Err(Failure::Usage(message)) => {
-            eprintln!("error: {message}");
+            eprintln!("error: {}", clean_lines(&message));
             ExitCode::from(2)
         }
         Err(Failure::Failed(message)) => {
-            eprintln!("error: {message}");
+            eprintln!("error: {}", clean_lines(&message));
             ExitCode::from(1)
         }
         Err(Failure::Run(e)) => {
-            eprintln!("error: {e}");
+            eprintln!("error: {}", clean_lines(&e.to_string()));
             let input = matches!(&e, RunError::Resume(e) if e.is_input());
             ExitCode::from(if input { 2 } else { 1 })
         }
     }
 }
 
-/// Prints to standard output; a closed pipe ends the program quietly.
+/// Prints to standard output, without what a terminal would take for a command: titles and names are the user's, and
+/// documentation of laws that of plugins. A closed pipe ends the program quietly.
 fn say(text: &str) {
     use std::io::Write;
-    let _ = writeln!(std::io::stdout(), "{text}");
+    let _ = writeln!(std::io::stdout(), "{}", clean_lines(text));
+}
+
+/// Prints JSON to standard output.
+fn say_json(text: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stdout(), "{}", clean_json(text));
 }

@@ -1,10 +1,12 @@
 //! `fretwork run`.
 
 use super::progress::Display;
-use super::{CaseArgs, Failure, say};
+use super::{CaseArgs, Failure, say, say_json};
 use crate::record::checkpoint::Found;
 use crate::record::{self, RunOptions, Summary};
 use crate::scene::build::Dimensional;
+use crate::scene::interfaces::without_interface;
+use crate::scene::source::clean;
 use crate::scene::{Built, Loaded, Scene, load};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -39,7 +41,11 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         .build()
         .map_err(|e| Failure::Usage(format!("cannot start {} threads: {e}", options.threads)))?;
     if !args.json {
-        say(&format!("{}: {}", loaded.path.display(), loaded.case.name));
+        say(&format!(
+            "{}: {}",
+            loaded.path.display(),
+            clean(&loaded.case.name)
+        ));
     }
     let done = pool.install(|| match scene {
         Scene::Plane(built) => go(&loaded, *built, &options, args),
@@ -49,11 +55,11 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         return Ok(());
     };
     if args.json {
-        say(&serde_json::to_string_pretty(&summary).unwrap_or_default());
+        say_json(&serde_json::to_string_pretty(&summary).unwrap_or_default());
     } else {
         say(&format!(
             "{}\n{}  results in {}",
-            summary.case,
+            clean(&summary.case),
             summary.text(),
             options.out.display()
         ));
@@ -73,6 +79,9 @@ fn go<S: Dimensional>(
             say(&text);
         }
     };
+    for pair in without_interface(&loaded.case, &built.simulation.table) {
+        tell(format!("no interface: {pair}"));
+    }
     let out = options.out.display();
     let mut stop = None;
     if args.resume {
@@ -85,7 +94,7 @@ fn go<S: Dimensional>(
             Found::Finished => {
                 let path = options.out.join("summary.json");
                 match std::fs::read_to_string(&path).ok().filter(|_| args.json) {
-                    Some(summary) => say(summary.trim_end()),
+                    Some(summary) => say_json(summary.trim_end()),
                     None => say(&format!(
                         "the run in {out} is finished: nothing to do; to run it anew leave --resume out"
                     )),

@@ -1,6 +1,8 @@
 //! `fretwork trade`: accuracy against cost.
 
-use super::{CaseArgs, Failure, say};
+use super::number::{not_negative, share};
+use super::{CaseArgs, Failure, say, say_json};
+use crate::scene::source::clean;
 use crate::geometry::space::Space;
 use crate::scene::build::Built;
 use crate::scene::measures::MeasureSpec;
@@ -51,10 +53,10 @@ pub struct TradeArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Share of steps that may miss the tolerance in a run that counts
-    #[arg(long, value_name = "SHARE", default_value_t = 1e-2)]
+    #[arg(long, value_name = "SHARE", default_value_t = 1e-2, value_parser = share)]
     unconverged: f64,
     /// Energy residual, over the largest energy, of a run that counts
-    #[arg(long, value_name = "SHARE", default_value_t = 1e-2)]
+    #[arg(long, value_name = "SHARE", default_value_t = 1e-2, value_parser = not_negative)]
     residual: f64,
     /// No progress; the study is printed as JSON
     #[arg(long)]
@@ -75,11 +77,11 @@ fn duration(text: &str) -> Result<Duration, String> {
                 continue;
             }
         };
-        total += unit * digits.parse::<f64>().map_err(|_| wrong())?;
+        total += unit * not_negative(&digits).map_err(|_| wrong())?;
         digits.clear();
     }
     if !digits.is_empty() {
-        total += digits.parse::<f64>().map_err(|_| wrong())?;
+        total += not_negative(&digits).map_err(|_| wrong())?;
     }
     let most = 365.0 * 86400.0;
     if total > 0.0 && total <= most {
@@ -187,7 +189,11 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     study.look_for_chaos(args.seeds.into(), &stop)?;
     study.prepare(&stop)?;
     if !args.json {
-        say(&format!("{}: {}", loaded.path.display(), loaded.case.name));
+        say(&format!(
+            "{}: {}",
+            loaded.path.display(),
+            clean(&loaded.case.name)
+        ));
         say(&table::forecast(&study));
     }
     let expected = study.work(&[study.first(), study.star()].concat());
@@ -199,6 +205,7 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
         }
         match event {
             Event::Begins(name, seed, expected) => {
+                let name = clean(name);
                 eprintln!(
                     "[{}] {name}, seed {seed}: {} expected",
                     table::seconds(started.elapsed().as_secs_f64()),
@@ -211,6 +218,7 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
                     Status::Failed(_) => "FAILED",
                     Status::Slow(_) => "slower than the reference",
                 };
+                let name = clean(name);
                 eprintln!(
                     "[{}] {name}, seed {seed}: {how} in {}",
                     table::seconds(started.elapsed().as_secs_f64()),
@@ -264,7 +272,7 @@ fn tell(
         Ok(())
     };
     if args.json {
-        say(&text);
+        say_json(&text);
         return ended;
     }
     say("");

@@ -17,6 +17,7 @@ pub mod sample;
 pub mod scene_file;
 pub mod source;
 pub mod standard;
+pub mod units;
 
 pub use build::{Built, Loaded, Scene, load};
 pub use source::InputError;

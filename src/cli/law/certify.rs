@@ -1,6 +1,6 @@
 //! `fretwork law certify`.
 
-use super::super::{Failure, PluginArgs, say};
+use super::super::{Failure, PluginArgs, say, say_json};
 use super::{all_used, named, values};
 use crate::certify::{Certificate, Outcome, certify as test};
 use crate::laws::{Plugin, SearchPath};
@@ -54,7 +54,7 @@ pub fn certify(args: &CertifyArgs) -> Result<(), Failure> {
     }
     all_used(&args.sets, &used, &laws.iter().collect::<Vec<_>>())?;
     if args.json {
-        say(&serde_json::to_string_pretty(&certificates).unwrap_or_default());
+        say_json(&serde_json::to_string_pretty(&certificates).unwrap_or_default());
     } else {
         for certificate in &certificates {
             say(&table(certificate));

@@ -1,9 +1,11 @@
 //! `fretwork law drive`: one contact on the bench.
 
-use super::super::{Failure, PluginArgs, say};
+use super::super::number::{finite, not_negative, positive};
+use super::super::{Failure, PluginArgs, say, say_json};
 use super::{all_used, named, values};
 use crate::laws::bench::{Answer, Bench, Motion};
 use crate::laws::{AreaRule, BondRule, Interface, Kind, Loaded, Plugin};
+use crate::scene::sample::table::Table;
 use crate::report::{Axis, Chart, Series};
 use clap::Args;
 use serde::Serialize;
@@ -31,13 +33,13 @@ pub struct DriveArgs {
     #[arg(long, default_value = "I")]
     mode: String,
     /// Angle of the opening from the normal, degrees (mixed, cyclic, force)
-    #[arg(long)]
+    #[arg(long, value_parser = finite)]
     angle: Option<f64>,
     /// Largest opening (m), traction (force, Pa) or sliding distance at each velocity (slide, m)
-    #[arg(long, default_value_t = 1e-5)]
+    #[arg(long, default_value_t = 1e-5, value_parser = positive)]
     to: f64,
     /// Speed of the opening (m/s)
-    #[arg(long, default_value_t = 1e-3)]
+    #[arg(long, default_value_t = 1e-3, value_parser = positive)]
     rate: f64,
     /// Steps of the path, of a cycle, or of each velocity
     #[arg(long, default_value_t = 2000)]
@@ -46,10 +48,10 @@ pub struct DriveArgs {
     #[arg(long, default_value_t = 5)]
     cycles: u32,
     /// Velocities one after the other (slide, m/s)
-    #[arg(long, value_delimiter = ',')]
+    #[arg(long, value_delimiter = ',', value_parser = positive)]
     velocities: Vec<f64>,
     /// Compressive pressure (Pa); 1e6 in slide, else 0
-    #[arg(long)]
+    #[arg(long, value_parser = not_negative)]
     pressure: Option<f64>,
     /// A path from a CSV file with a heading: time,n,t1,t2 (s, m)
     #[arg(long)]
@@ -128,7 +130,7 @@ pub fn drive(args: &DriveArgs) -> Result<(), Failure> {
         draw(file, &rows, args)?;
     }
     if args.json {
-        say(&serde_json::to_string_pretty(&rows).unwrap_or_default());
+        say_json(&serde_json::to_string_pretty(&rows).unwrap_or_default());
     } else {
         say(&text(&rows));
     }
@@ -255,48 +257,30 @@ fn path(args: &DriveArgs) -> Result<Vec<(f64, [f64; 3])>, Failure> {
 
 fn read_path(file: &Path) -> Result<Vec<(f64, [f64; 3])>, Failure> {
     let fail = |what: String| Failure::Usage(format!("{}: {what}", file.display()));
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_path(file)
-        .map_err(|e| fail(e.to_string()))?;
-    let headings = reader.headers().map_err(|e| fail(e.to_string()))?.clone();
-    let place = |name: &str| headings.iter().position(|h| h == name);
-    let (Some(time), Some(n), Some(t1)) = (
-        place("time"),
-        place("n"),
+    let table = Table::read(file, &["time", "n"], &["t1", "t", "t2"])?;
+    let place = |name: &str| table.column(name);
+    let (Some(t1), false) = (
         place("t1").or_else(|| place("t")),
+        place("t1").is_some() && place("t").is_some(),
     ) else {
         return Err(fail(
             "expected a heading with the columns time, n, t1 (or t) and perhaps t2".into(),
         ));
     };
-    let t2 = place("t2");
+    let (time, n, t2) = (place("time"), place("n"), place("t2"));
     let mut out: Vec<(f64, [f64; 3])> = Vec::new();
-    for (k, record) in reader.records().enumerate() {
-        let record = record.map_err(|e| fail(e.to_string()))?;
-        let number = |column: usize| {
-            let value = record.get(column).and_then(|x| x.parse::<f64>().ok());
-            value.filter(|v| v.is_finite()).ok_or_else(|| {
-                fail(format!(
-                    "row {}: `{}` is no finite number",
-                    k + 1,
-                    &headings[column]
-                ))
-            })
-        };
-        let opening = [number(n)?, number(t1)?, t2.map_or(Ok(0.0), number)?];
-        let time = number(time)?;
-        if k == 0 && time == 0.0 {
+    for row in 0..table.len() {
+        let opening = [n, Some(t1), t2].map(|column| table.value(row, column));
+        let time = table.value(row, time);
+        if row == 0 && time == 0.0 {
             if opening != [0.0; 3] {
-                return Err(fail(
-                    "at time 0 the bond is closed: its opening must be 0".into(),
-                ));
+                let message = "at time 0 the bond is closed: its opening must be 0";
+                return Err(table.fail(row, message).into());
             }
             continue;
         }
         if time <= out.last().map_or(0.0, |l| l.0) {
-            return Err(fail(format!("row {}: times must rise from 0", k + 1)));
+            return Err(table.fail(row, "times must rise from 0").into());
         }
         out.push((time, opening));
     }

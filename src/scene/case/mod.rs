@@ -10,6 +10,7 @@ pub use wear::WearSpec;
 
 use super::circuit::CircuitSpec;
 use super::jump::JumpSpec;
+use super::material::Given;
 use super::measures::MeasureSpec;
 use super::phases::PhaseSpec;
 use crate::bodies::Dof;
@@ -216,18 +217,18 @@ fn one() -> f64 {
     1.0
 }
 
-/// Values by slot and parameter.
+/// Values by slot and parameter: numbers in the unit of the law, or `(value: 5, unit: "um")`.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SlotValues {
     /// Of the contact law.
-    pub contact: BTreeMap<String, f64>,
+    pub contact: BTreeMap<String, Given>,
     /// Of the cohesion law.
-    pub cohesion: BTreeMap<String, f64>,
+    pub cohesion: BTreeMap<String, Given>,
     /// Of the damage law.
-    pub damage: BTreeMap<String, f64>,
+    pub damage: BTreeMap<String, Given>,
     /// Of the wear law.
-    pub wear: BTreeMap<String, f64>,
+    pub wear: BTreeMap<String, Given>,
 }
 
 /// A first body.
