@@ -5,6 +5,8 @@
 mod circuit;
 #[path = "bad_input/command_line.rs"]
 mod command_line;
+#[path = "bad_input/files.rs"]
+mod files;
 #[path = "bad_input/geometry.rs"]
 mod geometry;
 #[path = "bad_input/limits.rs"]
@@ -17,6 +19,10 @@ mod names;
 mod numbers;
 #[path = "bad_input/polygons.rs"]
 mod polygons;
+#[path = "bad_input/printed.rs"]
+mod printed;
+#[path = "bad_input/spelling.rs"]
+mod spelling;
 #[path = "bad_input/stages.rs"]
 mod stages;
 #[path = "bad_input/text.rs"]
@@ -25,6 +31,8 @@ mod text;
 mod trial;
 #[path = "bad_input/trust.rs"]
 mod trust;
+#[path = "bad_input/units.rs"]
+mod units;
 #[path = "bad_input/wear.rs"]
 mod wear;
 

@@ -40,7 +40,10 @@ mod tests {
     fn what_is_no_number_is_refused() {
         for text in ["NaN", "nan", "inf", "-inf", "1e400", "", "one", "0x1"] {
             assert!(finite(text).is_err() && positive(text).is_err(), "{text}");
-            assert!(not_negative(text).is_err() && share(text).is_err(), "{text}");
+            assert!(
+                not_negative(text).is_err() && share(text).is_err(),
+                "{text}"
+            );
         }
         assert_eq!((finite("-2"), positive("1e-8")), (Ok(-2.0), Ok(1e-8)));
         assert_eq!((not_negative("0"), share("1")), (Ok(0.0), Ok(1.0)));

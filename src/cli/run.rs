@@ -3,11 +3,12 @@
 use super::progress::Display;
 use super::{CaseArgs, Failure, say, say_json};
 use crate::record::checkpoint::Found;
-use crate::record::{self, RunOptions, Summary};
-use crate::scene::build::Dimensional;
+use crate::record::{self, RunError, RunOptions, Summary};
+use crate::scene::build::{Dimensional, Origin};
 use crate::scene::interfaces::without_interface;
 use crate::scene::source::clean;
 use crate::scene::{Built, Loaded, Scene, load};
+use crate::step::StepError;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -103,6 +104,8 @@ fn go<S: Dimensional>(
             }
         }
     }
+    let mut built = built;
+    let origins = std::mem::take(&mut built.origins);
     let mut display = Display::new(args.json);
     let mut step = |p: &record::Progress| display.step(p);
     let summary = match stop {
@@ -110,7 +113,34 @@ fn go<S: Dimensional>(
         None => record::run(loaded, built, options, &mut step),
     };
     display.finish();
-    Ok(Some(summary?))
+    summary
+        .map(Some)
+        .map_err(|error| match place(loaded, &origins, &error) {
+            Some(place) => Failure::Failed(format!("{error}; {place}")),
+            None => Failure::Run(error),
+        })
+}
+
+/// Where the case writes the law or the body that ended a run.
+fn place(loaded: &Loaded, origins: &[Origin], error: &RunError) -> Option<String> {
+    let (path, what) = match error {
+        RunError::Step(StepError::Law { source, .. }) => {
+            let (kind, name) = source.law()?;
+            let slot = kind.word();
+            let interfaces = &loaded.case.interfaces;
+            let k = interfaces.iter().position(|i| i.law(kind) == Some(name))?;
+            let what = format!("interface `{}` has this law", interfaces[k].name);
+            (format!("interfaces.{k}.{slot}"), what)
+        }
+        RunError::Step(StepError::NotFinite { body, .. }) => {
+            let origin = origins.get(usize::try_from(*body).ok()?)?;
+            (origin.path(), "the body is written".to_owned())
+        }
+        _ => return None,
+    };
+    let (line, column) = loaded.source.position_of(&path)?;
+    let file = loaded.path.display();
+    Some(format!("{what} at {file}:{line}:{column}"))
 }
 
 fn folder(args: &RunArgs) -> PathBuf {

@@ -2,11 +2,11 @@
 
 use super::number::{not_negative, share};
 use super::{CaseArgs, Failure, say, say_json};
-use crate::scene::source::clean;
 use crate::geometry::space::Space;
 use crate::scene::build::Built;
 use crate::scene::measures::MeasureSpec;
 use crate::scene::methods::{Demands, Service};
+use crate::scene::source::clean;
 use crate::scene::{Loaded, Scene, load};
 use crate::solve::local::solver::Method;
 use crate::trade::chaos::Nudge;

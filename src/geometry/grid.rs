@@ -213,7 +213,9 @@ impl Levels {
         let cells = self.levels.iter().flat_map(|level| {
             let grid = &level.grid;
             let counts = grid.starts.windows(2).map(|w| (w[1] - w[0]) as usize);
-            counts.enumerate().map(move |(cell, count)| (grid, cell, count))
+            counts
+                .enumerate()
+                .map(move |(cell, count)| (grid, cell, count))
         });
         let (grid, cell, count) = cells.max_by_key(|c| c.2)?;
         let size = grid.size[..grid.dimension].iter().copied();
@@ -502,7 +504,9 @@ mod tests {
     #[test]
     fn a_pile_is_found_without_its_pairs() {
         let mut x: Vec<_> = (0..3000).map(|k| Vector2::new(f64::from(k), 0.0)).collect();
-        let none = more_than(&x, &[0.6; 3000], 0.0, &Periodic::default(), 2999, |_, _| true);
+        let none = more_than(&x, &[0.6; 3000], 0.0, &Periodic::default(), 2999, |_, _| {
+            true
+        });
         assert_eq!(none, None);
         x[1000..2000].fill(Vector2::new(500.25, 0.0));
         let radii = vec![0.6; 3000];
@@ -513,7 +517,10 @@ mod tests {
         for most in [10, found - 1] {
             let crowd = pile(most).unwrap();
             assert_eq!(x[crowd.ball as usize].x.floor(), 500.0);
-            assert!((1000..1003).contains(&crowd.count) && crowd.size < 2.5, "{crowd:?}");
+            assert!(
+                (1000..1003).contains(&crowd.count) && crowd.size < 2.5,
+                "{crowd:?}"
+            );
         }
         // Pairs that do not matter do not count.
         let apart = |a: u32, b: u32| a / 1000 != b / 1000;

@@ -2,8 +2,8 @@
 
 use super::case::{Case, InterfaceSpec};
 use super::material::{Given, InterfaceParameters, Shelf, Sourced};
-use super::units;
 use super::source::{Fault, InputError, Source, nearest};
+use super::units;
 use crate::contact::detect::LawTable;
 use crate::laws::{AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath};
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
@@ -89,7 +89,9 @@ pub fn without_interface(case: &Case, table: &LawTable) -> Vec<String> {
     for (a, first) in materials.iter().enumerate() {
         for (b, second) in materials.iter().enumerate().skip(a) {
             if table.get(a as u16, b as u16).is_none() {
-                out.push(format!("{first} and {second}: they do not touch each other"));
+                out.push(format!(
+                    "{first} and {second}: they do not touch each other"
+                ));
             }
         }
     }
@@ -268,14 +270,21 @@ fn load(
         })
         .chain(own.iter().map(|(n, g)| {
             let unit = g.unit.as_deref().unwrap_or_default();
-            (n.as_str(), (g.value, unit, format!("parameters.{slot}.{n}"), true))
+            (
+                n.as_str(),
+                (g.value, unit, format!("parameters.{slot}.{n}"), true),
+            )
         }))
         .collect();
     let mut values: BTreeMap<&str, f64> = BTreeMap::new();
     let names = || plugin.parameters.iter().map(|p| p.name.as_str());
     for (parameter, (number, unit, at, in_case)) in &given {
         let own_number = *in_case && unit.is_empty();
-        let at_value = if own_number { at.clone() } else { format!("{at}.value") };
+        let at_value = if own_number {
+            at.clone()
+        } else {
+            format!("{at}.value")
+        };
         let wrong = |fault: Fault| Wrong {
             fault,
             in_file: !in_case,

@@ -8,10 +8,11 @@ use runits::{Dimension, ParseError, UnknownUnit};
 
 /// Units that are proposed where one is wrong, or not known.
 const USUAL: [&str; 62] = [
-    "m", "mm", "um", "nm", "cm", "km", "s", "ms", "us", "min", "h", "kg", "g", "mg", "t", "N", "mN", "kN", "MN", "Pa",
-    "kPa", "MPa", "GPa", "bar", "J", "mJ", "kJ", "MJ", "W", "kW", "Hz", "kHz", "rad", "deg", "K", "m/s", "mm/s", "km/h",
-    "kg/m^3", "g/cm^3", "t/m^3", "N/m", "N/mm", "J/m^2", "kJ/m^2", "MJ/m^2", "Pa/m", "MPa/mm", "GPa/mm", "1/Pa",
-    "1/MPa", "m^3/J", "mm^3/J", "m^2", "mm^2", "m^3", "mm^3", "Pa s", "J s/m^2", "Pa s/m", "1/s", "%",
+    "m", "mm", "um", "nm", "cm", "km", "s", "ms", "us", "min", "h", "kg", "g", "mg", "t", "N",
+    "mN", "kN", "MN", "Pa", "kPa", "MPa", "GPa", "bar", "J", "mJ", "kJ", "MJ", "W", "kW", "Hz",
+    "kHz", "rad", "deg", "K", "m/s", "mm/s", "km/h", "kg/m^3", "g/cm^3", "t/m^3", "N/m", "N/mm",
+    "J/m^2", "kJ/m^2", "MJ/m^2", "Pa/m", "MPa/mm", "GPa/mm", "1/Pa", "1/MPa", "m^3/J", "mm^3/J",
+    "m^2", "mm^2", "m^3", "mm^3", "Pa s", "J s/m^2", "Pa s/m", "1/s", "%",
 ];
 
 /// Scales of hardness: what a test prints, no pressure.
@@ -161,7 +162,9 @@ fn read(text: &str) -> Result<Unit, UnitError> {
         other => refused(other.to_string()),
     })?;
     if quantity.value() != 1.0 {
-        return Err(refused("it holds a number, which belongs to the value".into()));
+        return Err(refused(
+            "it holds a number, which belongs to the value".into(),
+        ));
     }
     if quantity.unit().is_affine() {
         return Err(refused("its zero is not that of its kelvins; use K".into()));
@@ -287,7 +290,11 @@ mod tests {
             (2.0, "kHz", "Hz", 2e3),
         ] {
             let found = convert(value, given, wanted).unwrap_or_else(|e| panic!("{given}: {e:?}"));
-            assert_eq!(found.to_bits(), f64::to_bits(si), "{value} {given}: {found:e}");
+            assert_eq!(
+                found.to_bits(),
+                f64::to_bits(si),
+                "{value} {given}: {found:e}"
+            );
         }
         let angle = convert(30.0, "deg", "rad").map(|a| a - std::f64::consts::FRAC_PI_6);
         assert!(angle.is_ok_and(|d| d.abs() < 1e-16), "{angle:?}");
@@ -296,25 +303,54 @@ mod tests {
     #[test]
     fn other_dimensions_are_refused_by_both_names() {
         for (given, wanted, base) in [
-            ("MJ/m^3", "J/m^2", "(kg m^-1 s^-2) does not measure the same as `J/m^2` (kg s^-2)"),
-            ("MPa", "Pa/m", "(kg m^-1 s^-2) does not measure the same as `Pa/m` (kg m^-2 s^-2)"),
+            (
+                "MJ/m^3",
+                "J/m^2",
+                "(kg m^-1 s^-2) does not measure the same as `J/m^2` (kg s^-2)",
+            ),
+            (
+                "MPa",
+                "Pa/m",
+                "(kg m^-1 s^-2) does not measure the same as `Pa/m` (kg m^-2 s^-2)",
+            ),
             ("um", "", "(m) does not measure the same as a pure number"),
             // Radians are no friction coefficient, and 2 pi is between a cycle and a radian a second.
-            ("deg", "", "(an angle) does not measure the same as a pure number"),
-            ("rad/s", "Hz", "(an angle s^-1) does not measure the same as `Hz` (s^-1)"),
+            (
+                "deg",
+                "",
+                "(an angle) does not measure the same as a pure number",
+            ),
+            (
+                "rad/s",
+                "Hz",
+                "(an angle s^-1) does not measure the same as `Hz` (s^-1)",
+            ),
             ("rpm", "1/s", "(an angle s^-1)"),
-            ("%", "rad", "(a pure number) does not measure the same as `rad` (an angle)"),
-            ("HBW", "Pa", "is a scale of hardness, and the unit here is `Pa`"),
+            (
+                "%",
+                "rad",
+                "(a pure number) does not measure the same as `rad` (an angle)",
+            ),
+            (
+                "HBW",
+                "Pa",
+                "is a scale of hardness, and the unit here is `Pa`",
+            ),
         ] {
             match convert(1.0, given, wanted) {
                 Err(error) => {
                     assert!(error.message.contains(base), "{error:?}");
-                    assert!(error.message.starts_with(&format!("`{given}`")), "{error:?}");
+                    assert!(
+                        error.message.starts_with(&format!("`{given}`")),
+                        "{error:?}"
+                    );
                 }
                 Ok(_) => panic!("{given} passes for {wanted}"),
             }
         }
-        let fits = convert(1.0, "MJ/m^3", "J/m^2").err().and_then(|e| e.expected);
+        let fits = convert(1.0, "MJ/m^3", "J/m^2")
+            .err()
+            .and_then(|e| e.expected);
         assert_eq!(
             fits.as_deref(),
             Some("`J/m^2`, `N/m`, `N/mm`, `kJ/m^2`, `MJ/m^2`")
@@ -337,10 +373,28 @@ mod tests {
                 assert_eq!(error.nearest.as_deref(), near, "{error:?}");
             }
         }
-        for bad in ["Mpa", "kj/m^2", "3 MPa", "MPa)", "degC", "m^", "\u{1b}[31m", "m/0"] {
+        for bad in [
+            "Mpa",
+            "kj/m^2",
+            "3 MPa",
+            "MPa)",
+            "degC",
+            "m^",
+            "\u{1b}[31m",
+            "m/0",
+        ] {
             assert!(known(bad).is_err(), "{bad:?} passes");
         }
-        for good in ["HBW", "HV 10", "HBW 10/3000", "HRC", "J s/m^2", "-", "W/(m K)", "\u{b0}"] {
+        for good in [
+            "HBW",
+            "HV 10",
+            "HBW 10/3000",
+            "HRC",
+            "J s/m^2",
+            "-",
+            "W/(m K)",
+            "\u{b0}",
+        ] {
             assert!(known(good).is_ok(), "{good:?} is refused");
         }
     }

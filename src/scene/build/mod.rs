@@ -66,6 +66,8 @@ pub struct Built<S: Space> {
     pub names: Vec<String>,
     /// What samples that were made at random, or read, turned out to be: one line each.
     pub samples: Vec<String>,
+    /// Where the case writes each body, by the identity of the body.
+    pub origins: Vec<Origin>,
 }
 
 /// Reads a case and applies `--set`s.
@@ -144,6 +146,7 @@ impl Loaded {
             .map(|d| d.name.clone())
             .collect();
         let samples = std::mem::take(&mut builder.samples);
+        let origins = builder.origins.clone();
         let mut densities = vec![0.0; builder.densities.len()];
         for (k, density) in builder.densities.values() {
             densities[usize::from(*k)] = *density;
@@ -155,6 +158,7 @@ impl Loaded {
             densities,
             names,
             samples,
+            origins,
         })
     }
 
@@ -219,7 +223,7 @@ struct Builder<'a, S: Space> {
 
 /// The place of a body in the case.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Origin {
+pub enum Origin {
     /// Of one of `grains`, and which of its list where it has one.
     Grain(usize, Option<usize>),
     /// One of `bodies`.
@@ -293,11 +297,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(scene)
     }
 
-    fn finish(
-        self,
-        laws: Vec<Interface>,
-        table: LawTable,
-    ) -> Result<Simulation<S>, InputError> {
+    fn finish(self, laws: Vec<Interface>, table: LawTable) -> Result<Simulation<S>, InputError> {
         let case = self.case;
         let smallest = self.radii().fold(f64::INFINITY, f64::min);
         let smallest = if smallest.is_finite() { smallest } else { 1.0 };
@@ -396,7 +396,12 @@ impl<S: Dimensional> Builder<'_, S> {
         }));
         let radii: Vec<f64> = self.radii().collect();
         // A wide skin that the case asks for has a limit of its own.
-        let reach = alert + if self.case.detection.skin.is_some() { 0.0 } else { skin };
+        let reach = alert
+            + if self.case.detection.skin.is_some() {
+                0.0
+            } else {
+                skin
+            };
         let most = MOST_PAIRS_AT_ALL + MOST_PAIRS_A_GRAIN * centres.len();
         let still = self.bodies.still();
         let keep = |a: u32, b: u32| {
@@ -417,7 +422,10 @@ impl<S: Dimensional> Builder<'_, S> {
             crowd.size,
             at.join(", ")
         );
-        let origin = self.origins.get(body as usize).map_or_else(|| "grains".to_owned(), |o| o.path());
+        let origin = self
+            .origins
+            .get(body as usize)
+            .map_or_else(|| "grains".to_owned(), |o| o.path());
         let fault = Fault::new(origin, message).expected(
             "grains beside each other: look for places that are there twice, radii in another unit, or too large a \
              `detection.alert`",

@@ -14,7 +14,7 @@ use super::material::Given;
 use super::measures::MeasureSpec;
 use super::phases::PhaseSpec;
 use crate::bodies::Dof;
-use crate::laws::BondRule;
+use crate::laws::{BondRule, Kind};
 use crate::solve::error::Norm;
 use crate::solve::local::solver::Method;
 use crate::step::control::GravityDrive;
@@ -215,6 +215,18 @@ pub struct InterfaceSpec {
 
 fn one() -> f64 {
     1.0
+}
+
+impl InterfaceSpec {
+    /// The law in a slot.
+    pub fn law(&self, kind: Kind) -> Option<&str> {
+        match kind {
+            Kind::Contact => Some(&self.contact),
+            Kind::Cohesion => self.cohesion.as_deref(),
+            Kind::Damage => self.damage.as_deref(),
+            Kind::Wear => self.wear.as_deref(),
+        }
+    }
 }
 
 /// Values by slot and parameter: numbers in the unit of the law, or `(value: 5, unit: "um")`.

@@ -174,7 +174,10 @@ impl InputError {
 
     /// Whether no line of a file is at fault, but all of it: it is missing, cannot be read, or is empty.
     pub fn is_about_a_whole_file(&self) -> bool {
-        self.context.text.as_ref().is_none_or(|text| text.is_empty())
+        self.context
+            .text
+            .as_ref()
+            .is_none_or(|text| text.is_empty())
     }
 
     /// The bytes of the file at fault, if the error is at a place in a file.

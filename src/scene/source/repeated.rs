@@ -36,10 +36,7 @@ impl Source {
         let place = owner.map_or_else(String::new, |path| format!(" in {path}"));
         let before = self.place_in_words(&earlier);
         let message = format!("the key `{name}` is given twice{place}, first at {before}");
-        Some(
-            self.error_in(&again, message)
-                .help("remove one of the two"),
-        )
+        Some(self.error_in(&again, message).help("remove one of the two"))
     }
 
     /// Line and column of a place, and the `--set` that brought it.

@@ -170,7 +170,9 @@ impl<'de> Deserializer<'de> for Probe<'_> {
             Some(&self.text[span.clone()])
         });
         match written.filter(|name| variants.contains(name)) {
-            Some(name) if !self.path.is_empty() => visitor.visit_enum(Variant { name, probe: self }),
+            Some(name) if !self.path.is_empty() => {
+                visitor.visit_enum(Variant { name, probe: self })
+            }
             _ => {
                 self.note(Level::Enum(variants.to_vec()));
                 Err(end())
@@ -193,7 +195,10 @@ struct One<'a> {
 impl<'de> MapAccess<'de> for One<'_> {
     type Error = Error;
 
-    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Error> {
+    fn next_key_seed<K: DeserializeSeed<'de>>(
+        &mut self,
+        seed: K,
+    ) -> Result<Option<K::Value>, Error> {
         let name = self.name.take();
         name.map(|name| seed.deserialize(StrDeserializer::new(name)))
             .transpose()
@@ -225,7 +230,10 @@ impl<'de, 'a> EnumAccess<'de> for Variant<'a> {
     type Error = Error;
     type Variant = Probe<'a>;
 
-    fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Probe<'a>), Error> {
+    fn variant_seed<V: DeserializeSeed<'de>>(
+        self,
+        seed: V,
+    ) -> Result<(V::Value, Probe<'a>), Error> {
         let name = seed.deserialize(StrDeserializer::<Error>::new(self.name))?;
         Ok((name, self.probe))
     }

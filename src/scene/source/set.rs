@@ -282,7 +282,10 @@ impl Source {
     ) -> Result<(), InputError> {
         for (k, part) in wanted.path.iter().enumerate().skip(depth) {
             let place = wanted.place(k);
-            let shape = parent.group().filter(|_| k == depth).map(|g| (g.shape, g.entries.len()));
+            let shape = parent
+                .group()
+                .filter(|_| k == depth)
+                .map(|g| (g.shape, g.entries.len()));
             let listed = match shape {
                 // What reads the text says what is wrong with a name, at its place in the file.
                 Some((Shape::Struct | Shape::Map, _) | (Shape::Tuple, 0))
@@ -404,7 +407,13 @@ pub(super) fn shorten(text: &str) -> String {
     let mut short: String = line
         .chars()
         .take(MOST)
-        .map(|c| if super::commands_a_terminal(c) { ' ' } else { c })
+        .map(|c| {
+            if super::commands_a_terminal(c) {
+                ' '
+            } else {
+                c
+            }
+        })
         .collect();
     if short.len() < text.len() {
         short.push_str("...");

@@ -50,6 +50,9 @@ mod tests {
         let json = serde_json::to_string(title).unwrap_or_default();
         let clean = clean_json(&json);
         assert!(!clean.chars().any(commands_a_terminal));
-        assert_eq!(serde_json::from_str::<String>(&clean).ok().as_deref(), Some(title));
+        assert_eq!(
+            serde_json::from_str::<String>(&clean).ok().as_deref(),
+            Some(title)
+        );
     }
 }

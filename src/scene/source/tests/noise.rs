@@ -27,7 +27,9 @@ fn deep_nesting_is_refused() {
     // Depth in a value that is skipped, and depth brought by sets, count as well.
     let fine = format!("{}1{}", "[".repeat(100), "]".repeat(100));
     let mut source = Source::from_text("d.ron", format!("(a: {fine})"));
-    source.set::<Case>(&format!("a{}={fine}", ".0".repeat(50))).unwrap();
+    source
+        .set::<Case>(&format!("a{}={fine}", ".0".repeat(50)))
+        .unwrap();
     let error = source.parse::<Case>().unwrap_err();
     assert!(error.set().is_some() && error.message.contains("more than 128"));
 }

@@ -40,7 +40,9 @@ fn set_replaces_values() {
 #[test]
 fn set_takes_whole_subtrees_and_options() {
     let mut source = source();
-    source.set::<Case>("bodies=[\n(name: \"a\", mass: 1),\n]").unwrap();
+    source
+        .set::<Case>("bodies=[\n(name: \"a\", mass: 1),\n]")
+        .unwrap();
     source.set::<Case>("drive=None").unwrap();
     source.set::<Case>("interfaces.0.cohesion=None").unwrap();
     source.set::<Case>("materials.brass=(young: 1e11)").unwrap();
