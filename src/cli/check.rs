@@ -11,7 +11,9 @@ use crate::bodies::Dof;
 use crate::geometry::space::Space;
 use crate::record::biaxial::Biaxial;
 use crate::scene::build::Built;
+use crate::scene::interfaces::without_interface;
 use crate::scene::methods::{Demands, Service};
+use crate::scene::source::clean;
 use crate::scene::{Loaded, Scene, load, sampling};
 use crate::solve::local::solver::Method;
 use crate::step::Simulation;
@@ -52,7 +54,7 @@ fn whole<S: Space>(loaded: &Loaded, built: Built<S>, args: &CheckArgs) -> Result
 
 fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
     let (case, s) = (&loaded.case, &built.simulation);
-    let mut out = format!("{}: {}\n", loaded.path.display(), case.name);
+    let mut out = format!("{}: {}\n", loaded.path.display(), clean(&case.name));
     let mut line = |label: &str, value: String| {
         let _ = writeln!(out, "  {label:<20} {value}");
     };
@@ -123,16 +125,8 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
             ),
         );
     }
-    let materials: Vec<&String> = case.materials.keys().collect();
-    for (a, first) in materials.iter().enumerate() {
-        for (b, second) in materials.iter().enumerate().skip(a) {
-            if s.table.get(a as u16, b as u16).is_none() {
-                line(
-                    "no interface",
-                    format!("{first} and {second}: they do not touch each other"),
-                );
-            }
-        }
+    for pair in without_interface(case, &s.table) {
+        line("no interface", pair);
     }
     let [grain, contact] = memory(s);
     line("memory a grain", grain);

@@ -5,6 +5,7 @@
 mod again;
 mod check;
 mod law;
+mod number;
 mod output;
 mod progress;
 mod run;
@@ -217,7 +218,10 @@ pub fn main() -> ExitCode {
     };
     let (message, code) = match outcome {
         Ok(()) => return ExitCode::SUCCESS,
-        Err(Failure::Input(e)) => (e.render(std::io::stderr().is_terminal()), 2),
+        Err(Failure::Input(e)) => {
+            output::report_rendered(&e.render(std::io::stderr().is_terminal()));
+            return ExitCode::from(2);
+        }
         Err(Failure::Usage(message)) => (format!("error: {message}"), 2),
         Err(Failure::Failed(message)) => (format!("error: {message}"), 1),
         Err(Failure::Run(e)) => {

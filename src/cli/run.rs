@@ -1,13 +1,16 @@
 //! `fretwork run`.
 
-use super::output::{answer, inform};
+use super::output::{answer_json, inform};
 use super::progress::Display;
 use super::{CaseArgs, Failure, again};
 use crate::interrupt;
 use crate::record::checkpoint::Found;
-use crate::record::{self, RunOptions, Summary};
-use crate::scene::build::Dimensional;
+use crate::record::{self, RunError, RunOptions, Summary};
+use crate::scene::build::{Dimensional, Origin};
+use crate::scene::interfaces::without_interface;
+use crate::scene::source::clean;
 use crate::scene::{Built, Loaded, Scene, load};
+use crate::step::StepError;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -52,7 +55,11 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
             ))
         })?;
     if !args.json {
-        inform(&format!("{}: {}", loaded.path.display(), loaded.case.name));
+        inform(&format!(
+            "{}: {}",
+            loaded.path.display(),
+            clean(&loaded.case.name)
+        ));
     }
     interrupt::watch();
     let done = pool.install(|| match scene {
@@ -63,7 +70,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         return Ok(());
     };
     if args.json {
-        answer(&serde_json::to_string_pretty(&summary).unwrap_or_default())?;
+        answer_json(&serde_json::to_string_pretty(&summary).unwrap_or_default())?;
     } else {
         let text = summary.text(args.verbose);
         let more = if args.verbose {
@@ -105,6 +112,9 @@ fn go<S: Dimensional>(
             inform(&text);
         }
     };
+    for pair in without_interface(&loaded.case, &built.simulation.table) {
+        tell(format!("no interface: {pair}"));
+    }
     let out = options.out.display();
     let mut stop = None;
     if args.resume {
@@ -118,7 +128,7 @@ fn go<S: Dimensional>(
                 let path = options.out.join("summary.json");
                 let text = std::fs::read_to_string(&path).unwrap_or_default();
                 if args.json && !text.is_empty() {
-                    answer(text.trim_end())?;
+                    answer_json(text.trim_end())?;
                 } else {
                     inform(&format!(
                         "the run in {out} is finished: nothing to do; to run it anew leave --resume out"
@@ -130,6 +140,8 @@ fn go<S: Dimensional>(
             }
         }
     }
+    let mut built = built;
+    let origins = std::mem::take(&mut built.origins);
     let mut display = Display::new(args.json);
     let mut step = |p: &record::Progress| display.step(p);
     let summary = match stop {
@@ -137,7 +149,34 @@ fn go<S: Dimensional>(
         None => record::run(loaded, built, options, &mut step),
     };
     display.finish();
-    Ok(Some(summary?))
+    summary
+        .map(Some)
+        .map_err(|error| match place(loaded, &origins, &error) {
+            Some(place) => Failure::Failed(format!("{error}; {place}")),
+            None => Failure::Run(error),
+        })
+}
+
+/// Where the case writes the law or the body that ended a run.
+fn place(loaded: &Loaded, origins: &[Origin], error: &RunError) -> Option<String> {
+    let (path, what) = match error {
+        RunError::Step(StepError::Law { source, .. }) => {
+            let (kind, name) = source.law()?;
+            let slot = kind.word();
+            let interfaces = &loaded.case.interfaces;
+            let k = interfaces.iter().position(|i| i.law(kind) == Some(name))?;
+            let what = format!("interface `{}` has this law", interfaces[k].name);
+            (format!("interfaces.{k}.{slot}"), what)
+        }
+        RunError::Step(StepError::NotFinite { body, .. }) => {
+            let origin = origins.get(usize::try_from(*body).ok()?)?;
+            (origin.path(), "the body is written".to_owned())
+        }
+        _ => return None,
+    };
+    let (line, column) = loaded.source.position_of(&path)?;
+    let file = loaded.path.display();
+    Some(format!("{what} at {file}:{line}:{column}"))
 }
 
 fn folder(args: &RunArgs) -> PathBuf {

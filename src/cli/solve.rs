@@ -3,6 +3,7 @@
 mod say;
 
 use super::Failure;
+use super::number::positive;
 use crate::record::fclib::{self, Problem, Solution};
 use crate::solve::local::solver::{self, Limits, Method, Outcome};
 use crate::solve::local::{Elimination, LocalProblem, ReduceError, Reduction, scale_free};
@@ -71,13 +72,6 @@ impl SolveArgs {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
-        _ => Err("a number above 0 is expected".to_owned()),
-    }
-}
-
 /// What was done with one file.
 struct Solved {
     path: PathBuf,
@@ -118,7 +112,7 @@ pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
                 all.into()
             }
         };
-        super::output::answer(&serde_json::to_string_pretty(&value).unwrap_or_default())?;
+        super::output::answer_json(&serde_json::to_string_pretty(&value).unwrap_or_default())?;
     }
     let joined = |lines: &[String]| lines.join("\nerror: ");
     if !wrong.is_empty() {

@@ -2,12 +2,14 @@
 
 mod refuse;
 
-use super::output::{answer, inform, report};
+use super::number::{not_negative, share};
+use super::output::{answer_json, inform, report};
 use super::{CaseArgs, Failure, again};
 use crate::geometry::space::Space;
 use crate::interrupt;
 use crate::scene::build::{Built, Dimensional};
 use crate::scene::methods::{Demands, Service};
+use crate::scene::source::clean;
 use crate::scene::{Loaded, Scene, load};
 use crate::solve::local::solver::Method;
 use crate::trade::chaos::Nudge;
@@ -55,24 +57,14 @@ pub struct TradeArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Share of steps that may miss the tolerance in a run that counts
-    #[arg(long, value_name = "SHARE", default_value = "0.01", value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value_t = 1e-2, value_parser = share)]
     unconverged: f64,
     /// Energy residual, over the largest energy, of a run that counts
-    #[arg(long, value_name = "SHARE", default_value = "0.01", value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value_t = 1e-2, value_parser = not_negative)]
     residual: f64,
     /// No progress; the study is printed as JSON
     #[arg(long)]
     json: bool,
-}
-
-/// A share, 0 to 1.
-fn share(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(x) if (0.0..=1.0).contains(&x) => Ok(x),
-        _ => Err(format!(
-            "`{text}` is no share; expected a number from 0 to 1"
-        )),
-    }
 }
 
 /// `90s`, `10m`, `1h30m`; a bare number is seconds.
@@ -89,11 +81,11 @@ fn duration(text: &str) -> Result<Duration, String> {
                 continue;
             }
         };
-        total += unit * digits.parse::<f64>().map_err(|_| wrong())?;
+        total += unit * not_negative(&digits).map_err(|_| wrong())?;
         digits.clear();
     }
     if !digits.is_empty() {
-        total += digits.parse::<f64>().map_err(|_| wrong())?;
+        total += not_negative(&digits).map_err(|_| wrong())?;
     }
     let most = 365.0 * 86400.0;
     if total > 0.0 && total <= most {
@@ -211,7 +203,11 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     study.look_for_chaos(args.seeds.into(), stop)?;
     study.prepare(stop)?;
     if !args.json {
-        inform(&format!("{}: {}", loaded.path.display(), loaded.case.name));
+        inform(&format!(
+            "{}: {}",
+            loaded.path.display(),
+            clean(&loaded.case.name)
+        ));
         inform(&table::forecast(&study));
     }
     let expected = study.work(&[study.first(), study.star()].concat());
@@ -289,7 +285,7 @@ fn tell(
         Ok(())
     };
     if args.json {
-        return answer(&text).and(ended);
+        return answer_json(&text).and(ended);
     }
     inform("");
     inform(table::text(study, &found, &verdicts).trim_end());

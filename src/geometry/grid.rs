@@ -26,32 +26,60 @@ pub fn pairs<V: VectorLike>(
     let mut out = Vec::with_capacity(4 * n);
     let mut near = Vec::new();
     for a in 0..n as u32 {
-        let (xa, ra) = (centres[a as usize], radii[a as usize]);
         let first = out.len();
-        for level in levels.of(a) {
-            level.grid.around(&xa, periodic, &mut near);
-            let own = levels.is_own(a, level);
-            for &cell in &near {
-                for &b in level.grid.balls(cell) {
-                    // Two of one level see each other.
-                    if own && b <= a {
-                        continue;
-                    }
-                    let d = periodic.shortest(centres[b as usize] - xa);
-                    let limit = ra + radii[b as usize] + reach;
-                    let pair = (a.min(b), a.max(b));
-                    if d.dot(&d) < limit * limit && keep(pair.0, pair.1) {
-                        out.push(pair);
-                    }
-                }
+        levels.near(a, centres, radii, reach, periodic, &mut near, |b| {
+            let pair = (a.min(b), a.max(b));
+            if keep(pair.0, pair.1) {
+                out.push(pair);
             }
-        }
+            true
+        });
         out[first..].sort_unstable();
     }
     if levels.levels.len() > 1 {
         out.sort_unstable();
     }
     out
+}
+
+/// Balls that stand in one place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crowd {
+    /// One of them.
+    pub ball: u32,
+    /// How many there are,
+    pub count: usize,
+    /// within a cell of this size (m).
+    pub size: f64,
+}
+
+/// Whether [`pairs`] would find more than `most`: then the cell that holds most balls. Stores no pair, and stops
+/// counting when it knows.
+pub fn more_than<V: VectorLike>(
+    centres: &[V],
+    radii: &[f64],
+    reach: f64,
+    periodic: &Periodic,
+    most: usize,
+    keep: impl Fn(u32, u32) -> bool,
+) -> Option<Crowd> {
+    let n = centres.len();
+    // All of them together are fewer.
+    if n < 2 || n.saturating_mul(n - 1) / 2 <= most {
+        return None;
+    }
+    let levels = Levels::new(centres, radii, reach, periodic);
+    let (mut near, mut found) = (Vec::new(), 0usize);
+    for a in 0..n as u32 {
+        levels.near(a, centres, radii, reach, periodic, &mut near, |b| {
+            found += usize::from(keep(a.min(b), a.max(b)));
+            found <= most
+        });
+        if found > most {
+            return levels.crowd();
+        }
+    }
+    None
 }
 
 /// How many pairs [`pairs`] looks at: no fewer than it finds. Linear in the number of balls.
@@ -146,6 +174,56 @@ impl Levels {
     fn of(&self, ball: u32) -> &[Level] {
         let own = self.own.get(ball as usize).copied().unwrap_or(0);
         &self.levels[usize::from(own)..]
+    }
+
+    /// Calls `each` with the balls within reach of `a` that it is paired with, until that says false.
+    #[allow(clippy::too_many_arguments)]
+    fn near<V: VectorLike>(
+        &self,
+        a: u32,
+        centres: &[V],
+        radii: &[f64],
+        reach: f64,
+        periodic: &Periodic,
+        cells: &mut Vec<usize>,
+        mut each: impl FnMut(u32) -> bool,
+    ) {
+        let (xa, ra) = (centres[a as usize], radii[a as usize]);
+        for level in self.of(a) {
+            level.grid.around(&xa, periodic, cells);
+            let own = self.is_own(a, level);
+            for &cell in cells.iter() {
+                for &b in level.grid.balls(cell) {
+                    // Two of one level see each other.
+                    if own && b <= a {
+                        continue;
+                    }
+                    let d = periodic.shortest(centres[b as usize] - xa);
+                    let limit = ra + radii[b as usize] + reach;
+                    if d.dot(&d) < limit * limit && !each(b) {
+                        return;
+                    }
+                }
+            }
+        }
+    }
+
+    /// The cell that holds most balls.
+    fn crowd(&self) -> Option<Crowd> {
+        let cells = self.levels.iter().flat_map(|level| {
+            let grid = &level.grid;
+            let counts = grid.starts.windows(2).map(|w| (w[1] - w[0]) as usize);
+            counts
+                .enumerate()
+                .map(move |(cell, count)| (grid, cell, count))
+        });
+        let (grid, cell, count) = cells.max_by_key(|c| c.2)?;
+        let size = grid.size[..grid.dimension].iter().copied();
+        Some(Crowd {
+            ball: *grid.balls(cell).first()?,
+            count,
+            size: size.fold(0.0, f64::max),
+        })
     }
 
     fn is_own(&self, ball: u32, level: &Level) -> bool {
@@ -421,6 +499,33 @@ mod tests {
         }
         // All see all.
         assert_eq!(last, 500.0 * 499.0 / 2.0);
+    }
+
+    #[test]
+    fn a_pile_is_found_without_its_pairs() {
+        let mut x: Vec<_> = (0..3000).map(|k| Vector2::new(f64::from(k), 0.0)).collect();
+        let none = more_than(&x, &[0.6; 3000], 0.0, &Periodic::default(), 2999, |_, _| {
+            true
+        });
+        assert_eq!(none, None);
+        x[1000..2000].fill(Vector2::new(500.25, 0.0));
+        let radii = vec![0.6; 3000];
+        let found = pairs(&x, &radii, 0.0, &Periodic::default(), |_, _| true).len();
+        assert!(found > 499_500);
+        let pile = |most| more_than(&x, &radii, 0.0, &Periodic::default(), most, |_, _| true);
+        assert_eq!(pile(found), None);
+        for most in [10, found - 1] {
+            let crowd = pile(most).unwrap();
+            assert_eq!(x[crowd.ball as usize].x.floor(), 500.0);
+            assert!(
+                (1000..1003).contains(&crowd.count) && crowd.size < 2.5,
+                "{crowd:?}"
+            );
+        }
+        // Pairs that do not matter do not count.
+        let apart = |a: u32, b: u32| a / 1000 != b / 1000;
+        let few = more_than(&x, &radii, 0.0, &Periodic::default(), 5000, apart);
+        assert_eq!(few, None);
     }
 
     #[test]

@@ -190,6 +190,17 @@ pub enum LawError {
 }
 
 impl LawError {
+    /// The law that failed in a call.
+    pub fn law(&self) -> Option<(Kind, &str)> {
+        match self {
+            Self::Parameters { kind, name, .. }
+            | Self::Failed { kind, name, .. }
+            | Self::Overrun { kind, name, .. }
+            | Self::NotFinite { kind, name, .. } => Some((*kind, name)),
+            _ => None,
+        }
+    }
+
     /// Whether the law went wrong without saying so.
     pub fn is_silent(&self) -> bool {
         match self {

@@ -1,8 +1,9 @@
 //! From the case's words to interface laws: plugins found, parameters resolved and checked.
 
 use super::case::{Case, InterfaceSpec};
-use super::material::{InterfaceParameters, Shelf, Sourced};
+use super::material::{Given, InterfaceParameters, Shelf, Sourced};
 use super::source::{Fault, InputError, Source, nearest};
+use super::units;
 use crate::contact::detect::LawTable;
 use crate::laws::{AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath};
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
@@ -75,7 +76,7 @@ pub fn build(
         if !(spec.area_factor.is_finite() && spec.area_factor > 0.0) {
             return Err(at(Fault::new("area_factor", "must be positive")));
         }
-        let (parameters, file) = read_parameters(spec, shelf, &mut out.files, &at)?;
+        let (parameters, file) = read_parameters(spec, shelf, &mut out.files, source, &here, &at)?;
         let interface = compose(case, spec, &parameters, path).map_err(|wrong| match &file {
             Some(file) if wrong.in_file => file.locate(wrong.fault),
             _ => at(wrong.fault),
@@ -97,6 +98,22 @@ fn used(spec: &InterfaceSpec) -> impl Iterator<Item = (Kind, &str)> {
         .into_iter()
         .filter_map(|(kind, name)| Some((kind, name.as_deref()?)));
     std::iter::once((Kind::Contact, spec.contact.as_str())).chain(named)
+}
+
+/// Pairs of materials that pass through each other, since no interface is between them.
+pub fn without_interface(case: &Case, table: &LawTable) -> Vec<String> {
+    let materials: Vec<&String> = case.materials.keys().collect();
+    let mut out = Vec::new();
+    for (a, first) in materials.iter().enumerate() {
+        for (b, second) in materials.iter().enumerate().skip(a) {
+            if table.get(a as u16, b as u16).is_none() {
+                out.push(format!(
+                    "{first} and {second}: they do not touch each other"
+                ));
+            }
+        }
+    }
+    out
 }
 
 /// Refuses pins that are none, or of laws that the case does not use.
@@ -127,13 +144,15 @@ fn read_parameters(
     spec: &InterfaceSpec,
     shelf: &Shelf,
     files: &mut Vec<(String, String)>,
+    source: &Source,
+    here: &str,
     at: &impl Fn(Fault) -> InputError,
 ) -> Result<(InterfaceParameters, Option<Source>), InputError> {
     let Some(name) = &spec.parameters_from else {
         return Ok((InterfaceParameters::default(), None));
     };
     let file = shelf.read(name).map_err(|e| match e {
-        Err(error) => error,
+        Err(error) => source.named_at(&format!("{here}.parameters_from"), error),
         Ok(missing) => at(Fault::new(
             "parameters_from",
             format!("there is no file `{name}.ron` in {}", missing.looked),
@@ -141,7 +160,8 @@ fn read_parameters(
         .expected(format!("one of {}", missing.available))
         .nearest(missing.nearest.as_deref())),
     })?;
-    let parsed = file.parse()?;
+    let parsed: InterfaceParameters = file.parse()?;
+    parsed.units().map_err(|fault| file.locate(fault))?;
     if !files.iter().any(|f| f.0 == *name) {
         files.push((name.clone(), file.text().to_owned()));
     }
@@ -171,7 +191,7 @@ fn compose(
     file: &InterfaceParameters,
     path: &SearchPath,
 ) -> Result<Interface, Wrong> {
-    let load = |kind: Kind, name: &str, file: &ByLaw, own: &BTreeMap<String, f64>| {
+    let load = |kind: Kind, name: &str, file: &ByLaw, own: &BTreeMap<String, Given>| {
         load(case, kind, name, file.get(name), own, path)
     };
     let (p, own) = (file, &spec.parameters);
@@ -226,7 +246,7 @@ fn load(
     kind: Kind,
     name: &str,
     file: Option<&BTreeMap<String, Sourced>>,
-    own: &BTreeMap<String, f64>,
+    own: &BTreeMap<String, Given>,
     path: &SearchPath,
 ) -> Result<Loaded, Wrong> {
     let slot = kind.word();
@@ -256,17 +276,31 @@ fn load(
             return Err(Fault::new(slot, message).into());
         }
     }
-    let given: BTreeMap<&str, (f64, bool)> = file
+    // Value, unit, path, and whether it is written in the case.
+    type Number<'a> = (f64, &'a str, String, bool);
+    let given: BTreeMap<&str, Number<'_>> = file
         .iter()
-        .flat_map(|m| m.iter().map(|(n, s)| (n.as_str(), (s.value, false))))
-        .chain(own.iter().map(|(n, v)| (n.as_str(), (*v, true))))
+        .flat_map(|m| m.iter())
+        .map(|(n, s)| {
+            let at = format!("{slot}.{name}.{n}");
+            (n.as_str(), (s.value, s.unit.as_str(), at, false))
+        })
+        .chain(own.iter().map(|(n, g)| {
+            let unit = g.unit.as_deref().unwrap_or_default();
+            (
+                n.as_str(),
+                (g.value, unit, format!("parameters.{slot}.{n}"), true),
+            )
+        }))
         .collect();
+    let mut values: BTreeMap<&str, f64> = BTreeMap::new();
     let names = || plugin.parameters.iter().map(|p| p.name.as_str());
-    for (parameter, (value, in_case)) in &given {
-        let at = if *in_case {
-            format!("parameters.{slot}.{parameter}")
+    for (parameter, (number, unit, at, in_case)) in &given {
+        let own_number = *in_case && unit.is_empty();
+        let at_value = if own_number {
+            at.clone()
         } else {
-            format!("{slot}.{name}.{parameter}.value")
+            format!("{at}.value")
         };
         let wrong = |fault: Fault| Wrong {
             fault,
@@ -275,21 +309,30 @@ fn load(
         let Some(field) = plugin.parameters.iter().find(|p| p.name == *parameter) else {
             return Err(wrong(
                 Fault::new(
-                    at,
+                    at_value,
                     format!("the {kind} law `{name}` has no parameter `{parameter}`"),
                 )
                 .expected(format!("one of {}", names().collect::<Vec<_>>().join(", ")))
                 .nearest(nearest(parameter, names())),
             ));
         };
-        if !value.is_finite() || !(field.minimum..=field.maximum).contains(value) {
+        let value = units::convert(*number, unit, &field.unit).map_err(|e| {
+            let mut fault = e.at(format!("{at}.unit"));
+            fault.message = format!(
+                "`{parameter}` of the {kind} law `{name}`: {}",
+                fault.message
+            );
+            wrong(fault)
+        })?;
+        values.insert(parameter, value);
+        if !value.is_finite() || !(field.minimum..=field.maximum).contains(&value) {
             let range = format!(
                 "a value between {:e} and {:e} {}",
                 field.minimum, field.maximum, field.unit
             );
             return Err(wrong(
                 Fault::new(
-                    at,
+                    at_value,
                     format!("`{parameter}` of the {kind} law `{name}` is {value}"),
                 )
                 .expected(range.trim_end()),
@@ -299,7 +342,7 @@ fn load(
     let parameters: Vec<f64> = plugin
         .parameters
         .iter()
-        .map(|f| given.get(f.name.as_str()).map_or(f.default, |v| v.0))
+        .map(|f| values.get(f.name.as_str()).copied().unwrap_or(f.default))
         .collect();
     plugin
         .validate(&parameters)

@@ -1,8 +1,11 @@
-//! Materials and the parameters of interface laws: numbers with their source.
+//! Materials and the parameters of interface laws: numbers with their unit and their source.
 
 use super::shipped_materials;
-use super::source::{InputError, Source, nearest};
+use super::source::{Fault, InputError, Source, nearest};
+use super::units::{self, UnitError};
 use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, Visitor};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -10,13 +13,70 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sourced {
-    /// Value, SI.
+    /// Value.
     pub value: f64,
-    /// Unit, for the reader.
+    /// Its unit; that of the schema, in SI units, by default.
     #[serde(default)]
     pub unit: String,
     /// Paper, norm or table.
     pub source: String,
+}
+
+impl Sourced {
+    /// The value in the unit of the schema.
+    ///
+    /// # Errors
+    /// A unit that is not known, or measures something else.
+    pub fn in_unit(&self, wanted: &str) -> Result<f64, UnitError> {
+        units::convert(self.value, &self.unit, wanted)
+    }
+}
+
+/// A number of a case: as it is, in the unit of the schema, or `(value: 5, unit: "um")`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Given {
+    /// Value.
+    pub value: f64,
+    /// Its unit, where one is given.
+    pub unit: Option<String>,
+}
+
+impl<'de> Deserialize<'de> for Given {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct WithUnit {
+            value: f64,
+            unit: String,
+            /// For the reader.
+            #[serde(default, rename = "source")]
+            _source: Option<String>,
+        }
+        struct NumberOrGroup;
+        impl<'de> Visitor<'de> for NumberOrGroup {
+            type Value = Given;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("a number, or `(value: number, unit: \"...\")`")
+            }
+            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Given, E> {
+                Ok(Given { value, unit: None })
+            }
+            fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<Given, E> {
+                self.visit_f64(value as f64)
+            }
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Given, E> {
+                self.visit_f64(value as f64)
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Given, A::Error> {
+                let found = WithUnit::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(Given {
+                    value: found.value,
+                    unit: Some(found.unit),
+                })
+            }
+        }
+        deserializer.deserialize_any(NumberOrGroup)
+    }
 }
 
 /// A material.
@@ -30,6 +90,51 @@ pub struct Material {
     /// Further properties, for the record.
     #[serde(default)]
     pub properties: BTreeMap<String, Sourced>,
+}
+
+/// Properties whose unit is known.
+const PROPERTIES: [(&str, &str); 9] = [
+    ("young", "Pa"),
+    ("shear_modulus", "Pa"),
+    ("bulk_modulus", "Pa"),
+    ("yield_stress", "Pa"),
+    ("tensile_strength", "Pa"),
+    ("poisson", ""),
+    ("conductivity", "W/(m K)"),
+    ("heat_capacity", "J/(kg K)"),
+    ("expansion", "1/K"),
+];
+
+impl Material {
+    /// The density (kg/m^3), and the units of all properties looked at.
+    ///
+    /// # Errors
+    /// A density that is not positive, a unit that is not known or measures something else: with its path.
+    pub fn density(&self) -> Result<f64, Fault> {
+        let density = self
+            .density
+            .in_unit("kg/m^3")
+            .map_err(|e| e.at("density.unit"))?;
+        if !(density.is_finite() && density > 0.0) {
+            let message = format!("a density must be positive, got {density}");
+            return Err(Fault::new("density.value", message));
+        }
+        for (name, property) in &self.properties {
+            let at = |field: &str| format!("properties.{name}.{field}");
+            if !property.value.is_finite() {
+                let message = format!("`{name}` must be finite, got {}", property.value);
+                return Err(Fault::new(at("value"), message));
+            }
+            let wanted = PROPERTIES.iter().find(|p| p.0 == name).map(|p| p.1);
+            let pressed = name == "hardness" && units::hardness(&property.unit).is_none();
+            match wanted.or(pressed.then_some("Pa")) {
+                Some(wanted) => property.in_unit(wanted).map(|_| ()),
+                None => units::known(&property.unit),
+            }
+            .map_err(|e| e.at(at("unit")))?;
+        }
+        Ok(density)
+    }
 }
 
 /// Parameters of laws for a kind of interface: slot, law, parameter.
@@ -46,6 +151,29 @@ pub struct InterfaceParameters {
     pub damage: BTreeMap<String, BTreeMap<String, Sourced>>,
     /// Wear laws.
     pub wear: BTreeMap<String, BTreeMap<String, Sourced>>,
+}
+
+impl InterfaceParameters {
+    /// Refuses units that are none, also of laws that a case does not use.
+    ///
+    /// # Errors
+    /// The first one, with its path.
+    pub fn units(&self) -> Result<(), Fault> {
+        for (slot, laws) in [
+            ("contact", &self.contact),
+            ("cohesion", &self.cohesion),
+            ("damage", &self.damage),
+            ("wear", &self.wear),
+        ] {
+            for (law, parameters) in laws {
+                for (name, number) in parameters {
+                    units::known(&number.unit)
+                        .map_err(|e| e.at(format!("{slot}.{law}.{name}.unit")))?;
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The folders in which material files are looked for: `materials/` beside the case or in a folder

@@ -1,37 +1,30 @@
 //! Triangles from STL and OBJ files.
 
+use super::source::read_bytes;
 use nalgebra::Vector3;
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::{BufReader, ErrorKind};
+use std::io::{Cursor, ErrorKind};
 use std::path::Path;
 
 type V = Vector3<f64>;
 
+/// The largest file of triangles accepted, in bytes.
+const MAX_BYTES: u64 = 1 << 30;
+
 /// Points in the unit of the file, each once, and triangles of them.
 ///
 /// # Errors
-/// The file cannot be read, is none of the two formats or holds no triangles.
+/// The file cannot be read, is none of the two formats, holds no triangles, or other ones than it announces.
 pub fn read(path: &Path) -> Result<(Vec<V>, Vec<[u32; 3]>), String> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let shown = path.display();
+    let bytes = || read_bytes(path, MAX_BYTES).map_err(|e| e.in_a_sentence());
     let mut soup = Vec::new();
     match extension.as_deref() {
         Some("stl") => {
-            let file = File::open(path).map_err(|e| format!("cannot open {shown}: {e}"))?;
-            let mesh = stl_io::read_stl(&mut BufReader::new(file));
-            let mesh = mesh.map_err(|e| match e.kind() {
-                ErrorKind::UnexpectedEof => format!(
-                    "{shown} ends before its last triangle: it was cut short; copy or export it again"
-                ),
-                _ => format!("{shown} is no STL file: {e}"),
-            })?;
-            for face in &mesh.faces {
-                let corner = |k: usize| {
-                    let [x, y, z] = mesh.vertices[face.vertices[k]].0;
-                    V::new(x.into(), y.into(), z.into())
-                };
-                soup.push([corner(0), corner(1), corner(2)]);
+            let bytes = bytes()?;
+            for solid in solids(&bytes).map_err(|why| format!("{shown} {why}"))? {
+                triangles(solid, &mut soup).map_err(|why| format!("{shown} {why}"))?;
             }
         }
         Some("obj") => {
@@ -41,17 +34,29 @@ pub fn read(path: &Path) -> Result<(Vec<V>, Vec<[u32; 3]>), String> {
                 ignore_lines: true,
                 ..tobj::LoadOptions::default()
             };
-            File::open(path).map_err(|e| format!("cannot open {shown}: {e}"))?;
-            let (models, _) = tobj::load_obj(path, &options).map_err(|e| match e {
+            // Files of colours that it names stay closed.
+            let no_colours = |_: &Path| Ok((Vec::new(), Default::default()));
+            let read = tobj::load_obj_buf(&mut Cursor::new(bytes()?), &options, no_colours);
+            let (models, _) = read.map_err(|e| match e {
                 tobj::LoadError::FaceVertexOutOfBounds => format!(
                     "a face of {shown} names a vertex that it does not have; export it again"
                 ),
                 _ => format!("{shown} is no OBJ file: {e}"),
             })?;
             for mesh in models.iter().map(|m| &m.mesh) {
-                let corner = |k: u32| V::from_row_slice(&mesh.positions[3 * k as usize..][..3]);
-                let triangles = mesh.indices.chunks_exact(3);
-                soup.extend(triangles.map(|t| [corner(t[0]), corner(t[1]), corner(t[2])]));
+                let corner = |k: u32| {
+                    let at = mesh.positions.get(3 * k as usize..)?.get(..3)?;
+                    Some(V::from_row_slice(at))
+                };
+                for t in mesh.indices.chunks_exact(3) {
+                    let corners = (corner(t[0]), corner(t[1]), corner(t[2]));
+                    let (Some(a), Some(b), Some(c)) = corners else {
+                        return Err(format!(
+                            "a face of {shown} names a vertex that it does not have; export it again"
+                        ));
+                    };
+                    soup.push([a, b, c]);
+                }
             }
         }
         _ => return Err(format!("{shown} is neither an .stl nor an .obj file")),
@@ -60,6 +65,101 @@ pub fn read(path: &Path) -> Result<(Vec<V>, Vec<[u32; 3]>), String> {
         return Err(format!("{shown} holds no triangles"));
     }
     Ok(joined(&soup))
+}
+
+/// Bytes before the triangles of a binary STL file, and of each triangle.
+const HEADER: usize = 84;
+const TRIANGLE: usize = 50;
+
+/// The solids of an STL file, each as a file of its own: one where it is binary, as many as there are in text.
+fn solids(bytes: &[u8]) -> Result<Vec<Vec<u8>>, String> {
+    let announced = bytes.get(HEADER - 4..HEADER).map(|count| {
+        let count: [u8; 4] = [count[0], count[1], count[2], count[3]];
+        u32::from_le_bytes(count) as usize
+    });
+    let whole = |count: usize| count.saturating_mul(TRIANGLE).saturating_add(HEADER);
+    // A binary file may begin with "solid" too: its length tells.
+    let binary = announced.is_some_and(|count| whole(count) == bytes.len());
+    let text = bytes.starts_with(b"solid") && bytes.get(5).is_none_or(u8::is_ascii_whitespace);
+    if text && !binary {
+        return texts(bytes);
+    }
+    let Some(count) = announced else {
+        return Err("is no STL file: it is shorter than the header of one".into());
+    };
+    let held = (bytes.len() - HEADER) / TRIANGLE;
+    if bytes.len() < whole(count) {
+        return Err(format!(
+            "announces {count} triangles and ends before its last triangle: it holds {held}; it was cut short, copy \
+             or export it again"
+        ));
+    }
+    if bytes.len() > whole(count) {
+        return Err(format!(
+            "announces {count} triangles, and {} bytes follow them, room for {} more: its count is wrong, export it \
+             again",
+            bytes.len() - whole(count),
+            held - count
+        ));
+    }
+    // Without a first letter it cannot be taken for text.
+    let mut plain = bytes.to_vec();
+    plain[0] = b' ';
+    Ok(vec![plain])
+}
+
+/// The solids of an STL file in text.
+fn texts(bytes: &[u8]) -> Result<Vec<Vec<u8>>, String> {
+    let first_word = |line: &[u8]| {
+        let words = line.split(u8::is_ascii_whitespace);
+        words.filter(|w| !w.is_empty()).map(<[u8]>::to_vec).next()
+    };
+    let mut solids: Vec<Vec<u8>> = Vec::new();
+    let mut open = false;
+    for (k, line) in bytes.split_inclusive(|byte| *byte == b'\n').enumerate() {
+        let word = first_word(line);
+        match (open, word.as_deref()) {
+            (false, None) => {}
+            (false, Some(b"solid")) => {
+                open = true;
+                // The reader wants a name.
+                solids.push(b"solid mesh\n".to_vec());
+            }
+            (false, Some(_)) => {
+                return Err(format!(
+                    "has text after its `endsolid`, in line {}: remove it, or begin another `solid` there",
+                    k + 1
+                ));
+            }
+            (true, word) => {
+                if let Some(solid) = solids.last_mut() {
+                    solid.extend_from_slice(line);
+                }
+                open = word != Some(b"endsolid");
+            }
+        }
+    }
+    Ok(solids)
+}
+
+fn triangles(solid: Vec<u8>, soup: &mut Vec<[V; 3]>) -> Result<(), String> {
+    let mut bytes = Cursor::new(solid);
+    let read = stl_io::create_stl_reader(&mut bytes).and_then(|faces| {
+        for face in faces {
+            let corners = face?.vertices.map(|v| {
+                let [x, y, z] = v.0;
+                V::new(x.into(), y.into(), z.into())
+            });
+            soup.push(corners);
+        }
+        Ok(())
+    });
+    read.map_err(|e| match e.kind() {
+        ErrorKind::UnexpectedEof => {
+            "ends before its last triangle: it was cut short; copy or export it again".to_owned()
+        }
+        _ => format!("is no STL file: {e}"),
+    })
 }
 
 /// Corners at the same place become one point; what has no area is left out.

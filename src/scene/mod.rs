@@ -21,6 +21,7 @@ pub mod scene_file;
 pub mod shipped_materials;
 pub mod source;
 pub mod standard;
+pub mod units;
 
 pub use build::{Built, Loaded, Scene, load};
 pub use source::InputError;

@@ -60,7 +60,7 @@ fn followed<S: Dimensional>(name: &str, text: &str, steps: u64) -> (Vec<usize>, 
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("cases/long_run.ron");
     let mut source = Source::from_text(&path, text);
     source
-        .set(&format!("time.end={:e}", 1e-4 * steps as f64))
+        .set::<Case>(&format!("time.end={:e}", 1e-4 * steps as f64))
         .unwrap();
     let case: Case = source.parse().unwrap_or_else(|e| panic!("{e}"));
     let loaded = Loaded { source, case, path };

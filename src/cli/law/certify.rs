@@ -1,6 +1,6 @@
 //! `fretwork law certify`.
 
-use super::super::output::answer;
+use super::super::output::{answer, answer_json};
 use super::super::{Failure, PluginArgs};
 use super::{all_used, named, values};
 use crate::certify::{Certificate, Outcome, certify_apart as test};
@@ -59,7 +59,7 @@ pub fn certify(args: &CertifyArgs) -> Result<(), Failure> {
     }
     all_used(&args.sets, &used, &laws.iter().collect::<Vec<_>>())?;
     if args.json {
-        answer(&serde_json::to_string_pretty(&certificates).unwrap_or_default())?;
+        answer_json(&serde_json::to_string_pretty(&certificates).unwrap_or_default())?;
     } else {
         for certificate in &certificates {
             answer(&table(certificate))?;

@@ -88,6 +88,15 @@ pub struct BodyWear {
     pub specific_rate: Option<f64>,
 }
 
+/// What may differ between the summaries of two runs of one case, as JSON pointers: what the clock gives, and the number
+/// of threads, which is the command line's. All else has the same bits; `docs/checkpoints.md` says so.
+pub const FROM_THE_CLOCK: [&str; 4] = [
+    "/wall_seconds",
+    "/cpu_seconds",
+    "/threads",
+    "/circuit/cost_share",
+];
+
 /// The whole run.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Summary {

@@ -117,7 +117,7 @@ impl<S: Dimensional> Builder<'_, S> {
                     walls,
                 } => {
                     let of = self.material(&format!("{here}.material"), material)?;
-                    let scene = self.scene_file(file)?;
+                    let scene = self.scene_file(&here, file)?;
                     found.extend(scene.balls.iter().map(|(x, r)| {
                         let at = S::Vector::from_slice(x);
                         Seed::still(at, *r, of, Origin::Grain(k, None))

@@ -21,6 +21,7 @@ use super::methods::{Demands, Service};
 use super::scene_file::{self, SceneFile};
 use super::source::{Fault, InputError, Source};
 use crate::bodies::Bodies;
+use crate::contact::detect::{LawTable, centre};
 use crate::geometry::grid;
 use crate::geometry::periodic::Periodic;
 use crate::geometry::shape::Shapes;
@@ -65,6 +66,8 @@ pub struct Built<S: Space> {
     pub names: Vec<String>,
     /// What samples that were made at random, or read, turned out to be: one line each.
     pub samples: Vec<String>,
+    /// Where the case writes each body, by the identity of the body.
+    pub origins: Vec<Origin>,
 }
 
 /// Reads a case and applies `--set`s.
@@ -74,7 +77,7 @@ pub struct Built<S: Space> {
 pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
     let mut source = Source::read(path)?;
     for set in sets {
-        source.set(set)?;
+        source.set::<Case>(set)?;
     }
     let case: Case = source.parse()?;
     super::check::numbers(&case).map_err(|f| source.locate(f))?;
@@ -143,6 +146,7 @@ impl Loaded {
             .map(|d| d.name.clone())
             .collect();
         let samples = std::mem::take(&mut builder.samples);
+        let origins = builder.origins.clone();
         let mut densities = vec![0.0; builder.densities.len()];
         for (k, density) in builder.densities.values() {
             densities[usize::from(*k)] = *density;
@@ -154,6 +158,7 @@ impl Loaded {
             densities,
             names,
             samples,
+            origins,
         })
     }
 
@@ -171,8 +176,9 @@ impl Loaded {
     ) -> Result<(BTreeMap<String, (u16, f64)>, Vec<(String, String)>), InputError> {
         let (mut densities, mut texts) = (BTreeMap::new(), Vec::new());
         for (k, (name, file)) in self.case.materials.iter().enumerate() {
+            let here = format!("materials.{name}");
             let source = shelf.read(file).map_err(|e| match e {
-                Err(error) => error,
+                Err(error) => self.source.named_at(&here, error),
                 Ok(missing) => self.source.locate(
                     Fault::new(
                         format!("materials.{name}"),
@@ -183,13 +189,7 @@ impl Loaded {
                 ),
             })?;
             let material: Material = source.parse()?;
-            let density = material.density.value;
-            if !(density.is_finite() && density > 0.0) {
-                return Err(source.error_at(
-                    "density.value",
-                    format!("a density must be positive, got {density}"),
-                ));
-            }
+            let density = material.density().map_err(|f| source.locate(f))?;
             densities.insert(name.clone(), (k as u16, density));
             if !texts.iter().any(|t: &(String, String)| t.0 == *file) {
                 texts.push((file.clone(), source.text().to_owned()));
@@ -201,6 +201,9 @@ impl Loaded {
 
 /// Pairs of grains that a skin may make neighbours, see [`Builder::refuse_wide_skin`].
 const MOST_PAIRS: f64 = 2e8;
+/// Pairs of grains at the start, see [`Builder::refuse_piles`]: of any case, and for each grain.
+const MOST_PAIRS_AT_ALL: usize = 2_000_000;
+const MOST_PAIRS_A_GRAIN: usize = 100;
 
 struct Builder<'a, S: Space> {
     case: &'a Case,
@@ -220,7 +223,7 @@ struct Builder<'a, S: Space> {
 
 /// The place of a body in the case.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Origin {
+pub enum Origin {
     /// Of one of `grains`, and which of its list where it has one.
     Grain(usize, Option<usize>),
     /// One of `bodies`.
@@ -284,20 +287,17 @@ impl<S: Dimensional> Builder<'_, S> {
         )))
     }
 
-    fn scene_file(&mut self, file: &str) -> Result<SceneFile, InputError> {
+    fn scene_file(&mut self, here: &str, file: &str) -> Result<SceneFile, InputError> {
         if let Some(scene) = self.files.get(file) {
             return Ok(scene.clone());
         }
-        let scene = scene_file::read(&self.folder.join(file), S::D)?;
+        let read = scene_file::read(&self.folder.join(file), S::D);
+        let scene = read.map_err(|e| self.source.named_at(&format!("{here}.file"), e))?;
         self.files.insert(file.to_owned(), scene.clone());
         Ok(scene)
     }
 
-    fn finish(
-        self,
-        laws: Vec<Interface>,
-        table: crate::contact::detect::LawTable,
-    ) -> Result<Simulation<S>, InputError> {
+    fn finish(self, laws: Vec<Interface>, table: LawTable) -> Result<Simulation<S>, InputError> {
         let case = self.case;
         let smallest = self.radii().fold(f64::INFINITY, f64::min);
         let smallest = if smallest.is_finite() { smallest } else { 1.0 };
@@ -312,6 +312,7 @@ impl<S: Dimensional> Builder<'_, S> {
             return Err(self.fail("detection.alert", message));
         }
         self.refuse_wide_skin(alert, skin, largest)?;
+        self.refuse_piles(alert, skin, &table)?;
         let gravity = self.vector("gravity", &case.gravity)?;
         self.refuse_small_period(alert + skin)?;
         let (source, mut simulation) = (
@@ -378,6 +379,61 @@ impl<S: Dimensional> Builder<'_, S> {
              the largest radius ({largest:e} m), the default is 0.3 of the smallest"
         );
         Err(self.fail("detection.skin", message))
+    }
+
+    /// Grains that stand in each other, such as all at one place, make more pairs than memory holds: refused before
+    /// any pair is stored. Grains that only touch have some twenty neighbours each, whatever their sizes.
+    fn refuse_piles(&self, alert: f64, skin: f64, table: &LawTable) -> Result<(), InputError> {
+        let balls = &self.shapes.balls;
+        let owner = |at: u32| match balls.get(at as usize) {
+            Some(ball) => (ball.body, ball.material),
+            None => {
+                let piece = &self.shapes.pieces[at as usize - balls.len()];
+                (piece.body, piece.material)
+            }
+        };
+        let mut centres: Vec<S::Vector> = balls.iter().map(|b| centre(b, &self.bodies)).collect();
+        centres.extend(self.shapes.pieces.iter().map(|p| {
+            let b = p.body as usize;
+            self.bodies.position[b] + S::rotate(&self.bodies.rotation[b], &p.offset)
+        }));
+        let radii: Vec<f64> = self.radii().collect();
+        // A wide skin that the case asks for has a limit of its own.
+        let reach = alert
+            + if self.case.detection.skin.is_some() {
+                0.0
+            } else {
+                skin
+            };
+        let most = MOST_PAIRS_AT_ALL + MOST_PAIRS_A_GRAIN * centres.len();
+        let still = self.bodies.still();
+        let keep = |a: u32, b: u32| {
+            let ((i, m), (j, n)) = (owner(a), owner(b));
+            i != j && !(still[i as usize] && still[j as usize]) && table.get(m, n).is_some()
+        };
+        let periodic = &self.shapes.periodic;
+        let Some(crowd) = grid::more_than(&centres, &radii, reach, periodic, most, keep) else {
+            return Ok(());
+        };
+        let (body, _) = owner(crowd.ball);
+        let at = centres[crowd.ball as usize];
+        let at: Vec<String> = (0..S::D).map(|k| format!("{:e}", at[k])).collect();
+        let looked = grid::most_pairs(&centres, &radii, reach, periodic);
+        let message = format!(
+            "more than {most} pairs of grains are within reach of each other (up to {looked:.1e}), where grains that              touch make some 20 each: {} of them stand within {:.1e} m of ({}) m",
+            crowd.count,
+            crowd.size,
+            at.join(", ")
+        );
+        let origin = self
+            .origins
+            .get(body as usize)
+            .map_or_else(|| "grains".to_owned(), |o| o.path());
+        let fault = Fault::new(origin, message).expected(
+            "grains beside each other: look for places that are there twice, radii in another unit, or too large a \
+             `detection.alert`",
+        );
+        Err(self.source.locate(fault))
     }
 
     /// Two balls must not touch each other twice around a period.

@@ -63,7 +63,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 radius,
                 by,
             } => (*radius, *exponent, *by),
-            SizeSpec::Sieve { file } => return self.sieve(file),
+            SizeSpec::Sieve { file } => return self.sieve(&format!("{here}.file"), file),
         };
         for r in [radius.0, radius.1] {
             self.radius(&format!("{here}.radius"), r)?;
@@ -84,8 +84,9 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(Sizes::power(radius, exponent + steeper))
     }
 
-    fn sieve(&self, file: &str) -> Result<Sizes, InputError> {
-        let table = Table::read(&self.folder.join(file), &["size", "passing"], &[])?;
+    fn sieve(&self, here: &str, file: &str) -> Result<Sizes, InputError> {
+        let table = Table::read(&self.folder.join(file), &["size", "passing"], &[])
+            .map_err(|e| self.source.named_at(here, e))?;
         let (size, passing) = (table.column("size"), table.column("passing"));
         let mut curve: Vec<(f64, f64)> = Vec::new();
         for row in 0..table.len() {
@@ -133,7 +134,8 @@ impl<S: Dimensional> Builder<'_, S> {
         };
         let required = [place, &["radius"]].concat();
         let optional = [moving, turning].concat();
-        let table = Table::read(&self.folder.join(&spec.file), &required, &optional)?;
+        let table = Table::read(&self.folder.join(&spec.file), &required, &optional)
+            .map_err(|e| self.source.named_at(&format!("grains.{k}.file"), e))?;
         self.few_enough(&format!("grains.{k}.file"), table.len(), MOST_READ)?;
         let columns = |names: &[&str]| names.iter().map(|n| table.column(n)).collect::<Vec<_>>();
         let (place, moving, turning) = (columns(place), columns(moving), columns(turning));

@@ -182,7 +182,8 @@ impl<S: Dimensional> Builder<'_, S> {
             }
             ShapeSpec::Profile { points, file, side } => {
                 let points = match (points.is_empty(), file) {
-                    (true, Some(file)) => profile_file::read(&self.folder.join(file))?,
+                    (true, Some(file)) => profile_file::read(&self.folder.join(file))
+                        .map_err(|e| self.source.named_at(&format!("{here}.file"), e))?,
                     (false, None) | (true, None) => points.clone(),
                     (false, Some(_)) => {
                         let message = "a profile is given by `points` or by a `file`, not by both";

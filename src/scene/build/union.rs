@@ -129,7 +129,7 @@ impl<S: Dimensional> Builder<'_, S> {
         file: &str,
         name: &str,
     ) -> Result<Vec<(S::Vector, f64)>, InputError> {
-        let scene = self.scene_file(file)?;
+        let scene = self.scene_file(here, file)?;
         let names = || scene.clusters.iter().map(|c| c.0.as_str());
         let Some(cluster) = scene.clusters.iter().find(|c| c.0 == name) else {
             let message = format!("the scene has no cluster `{name}`");

@@ -102,7 +102,7 @@ impl<S: Dimensional> Builder<'_, S> {
                     .parameters
                     .contact
                     .get("mu")
-                    .is_some_and(|mu| *mu == 0.0);
+                    .is_some_and(|mu| mu.value == 0.0);
             let worn = |m: &String| {
                 let mut bodies = self.case.bodies.iter();
                 bodies.any(|b| b.wears.is_some() && b.material == *m)

@@ -10,10 +10,11 @@ pub use wear::WearSpec;
 
 use super::circuit::CircuitSpec;
 use super::jump::JumpSpec;
+use super::material::Given;
 use super::measures::MeasureSpec;
 use super::phases::PhaseSpec;
 use crate::bodies::Dof;
-use crate::laws::BondRule;
+use crate::laws::{BondRule, Kind};
 use crate::solve::error::Norm;
 use crate::solve::local::solver::Method;
 use crate::step::control::GravityDrive;
@@ -216,18 +217,30 @@ fn one() -> f64 {
     1.0
 }
 
-/// Values by slot and parameter.
+impl InterfaceSpec {
+    /// The law in a slot.
+    pub fn law(&self, kind: Kind) -> Option<&str> {
+        match kind {
+            Kind::Contact => Some(&self.contact),
+            Kind::Cohesion => self.cohesion.as_deref(),
+            Kind::Damage => self.damage.as_deref(),
+            Kind::Wear => self.wear.as_deref(),
+        }
+    }
+}
+
+/// Values by slot and parameter: numbers in the unit of the law, or `(value: 5, unit: "um")`.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SlotValues {
     /// Of the contact law.
-    pub contact: BTreeMap<String, f64>,
+    pub contact: BTreeMap<String, Given>,
     /// Of the cohesion law.
-    pub cohesion: BTreeMap<String, f64>,
+    pub cohesion: BTreeMap<String, Given>,
     /// Of the damage law.
-    pub damage: BTreeMap<String, f64>,
+    pub damage: BTreeMap<String, Given>,
     /// Of the wear law.
-    pub wear: BTreeMap<String, f64>,
+    pub wear: BTreeMap<String, Given>,
 }
 
 /// A first body.

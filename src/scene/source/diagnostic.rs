@@ -159,6 +159,27 @@ impl InputError {
         (self.line > 0).then_some((self.line, self.column))
     }
 
+    /// File and message, as a part of another message.
+    pub fn in_short(&self) -> String {
+        super::clean(&format!("{} {}", self.file, self.message))
+    }
+
+    /// The same with what to do about it.
+    pub fn in_a_sentence(&self) -> String {
+        match &self.help {
+            Some(help) => format!("{}; {}", self.in_short(), super::clean(help)),
+            None => self.in_short(),
+        }
+    }
+
+    /// Whether no line of a file is at fault, but all of it: it is missing, cannot be read, or is empty.
+    pub fn is_about_a_whole_file(&self) -> bool {
+        self.context
+            .text
+            .as_ref()
+            .is_none_or(|text| text.is_empty())
+    }
+
     /// The bytes of the file at fault, if the error is at a place in a file.
     pub fn span(&self) -> Option<Range<usize>> {
         (self.line > 0).then(|| self.context.span.clone())
@@ -195,9 +216,7 @@ impl InputError {
             line.push_str("; ");
             line.push_str(part);
         }
-        line.chars()
-            .map(|c| if c.is_control() { ' ' } else { c })
-            .collect()
+        super::clean(&line)
     }
 
     /// The error on one line, then the place in the text; with colours if asked.
@@ -262,6 +281,7 @@ fn picture(
     note: Option<&str>,
     colour: bool,
 ) -> Option<String> {
+    let file = &*super::clean(file);
     let begin = boundary(text, span.start);
     let start = text[..begin].rfind('\n').map_or(0, |newline| newline + 1);
     let end = text[begin..]
@@ -272,7 +292,7 @@ fn picture(
     let clean = |c: char| match c {
         '\t' => c,
         '\u{2028}' | '\u{2029}' => ' ',
-        c if c.is_control() => ' ',
+        c if super::commands_a_terminal(c) => ' ',
         c => c,
     };
     let mut line: String = text[start..end].chars().map(clean).collect();
@@ -296,9 +316,9 @@ fn picture(
         .with_index_type(IndexType::Char);
     let mut report = Report::build(ReportKind::Error, (file, from..to))
         .with_config(config)
-        .with_label(Label::new((file, from..to)).with_message(label));
+        .with_label(Label::new((file, from..to)).with_message(super::clean(label)));
     if let Some(note) = note {
-        report = report.with_note(note);
+        report = report.with_note(super::clean(note));
     }
     let lines = ariadne::Source::from(line);
     let mut drawn = Vec::new();

@@ -68,7 +68,14 @@ impl Source {
             RonError::DuplicateStructField { field, outer } => {
                 let span = self.word(field, end);
                 let place = self.owner(outer.as_deref(), &span);
-                self.error_in(&span, format!("the field `{field}` is given twice{place}"))
+                let error =
+                    self.error_in(&span, format!("the field `{field}` is given twice{place}"));
+                match self.earlier_field(field, &span) {
+                    Some(first) => {
+                        error.note(format!("first given at {}", self.place_in_words(&first)))
+                    }
+                    None => error,
+                }
             }
             RonError::MissingStructField { field, outer } => {
                 self.missing(field, outer.as_deref(), end)
@@ -100,6 +107,15 @@ impl Source {
         }
     }
 
+    /// The first field of this name in the struct that has a field at `again`.
+    fn earlier_field(&self, field: &str, again: &Range<usize>) -> Option<Range<usize>> {
+        let group = self.tree.around(again.start)?.group()?;
+        let mut keys = group.entries.iter().filter_map(|entry| entry.key.as_ref());
+        keys.find(|key| plain(&self.text[(*key).clone()]) == plain(field))
+            .filter(|key| key.start < again.start)
+            .cloned()
+    }
+
     /// The last mention of a word up to `limit`.
     fn word(&self, word: &str, limit: usize) -> Range<usize> {
         let found = self.tree.last_word(&self.text, plain(word), limit);
@@ -128,7 +144,7 @@ impl Source {
             .unwrap_or_default()
     }
 
-    fn path_to(&self, span: &Range<usize>) -> Option<String> {
+    pub(super) fn path_to(&self, span: &Range<usize>) -> Option<String> {
         let path = self.tree.path_of(&self.text, span);
         (!path.is_empty()).then(|| format!("`{}`", join_path(&path)))
     }

@@ -6,33 +6,38 @@
 mod diagnostic;
 mod difference;
 mod explain;
+mod file;
 mod nearest;
 pub mod numbers;
 mod pieces;
+mod repeated;
+mod respell;
 mod scan;
+mod schema;
 mod set;
+mod terminal;
 mod tree;
 
 #[cfg(test)]
 mod tests;
 
-use std::io::Read;
+use std::borrow::Cow;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use ron::error::SpannedError;
 use ron::extensions::Extensions;
 use serde::de::DeserializeOwned;
 
 pub use diagnostic::InputError;
 pub use difference::{Difference, first_difference};
+pub use file::{MAX_BYTES, open, read_bytes, read_text};
 pub use nearest::nearest;
+pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};
 pub use tree::{Entry, Fault as TextFault, Group, Kind, MAX_DEPTH, Node, Shape, Tree};
 
 use pieces::Pieces;
-
-/// The largest input accepted, in bytes.
-pub const MAX_BYTES: u64 = 64 << 20;
 
 /// A text and where it came from.
 #[derive(Debug, Clone)]
@@ -100,13 +105,55 @@ impl Source {
     /// `Some` may be left out, newtypes are written as their content, and the
     /// fields of a struct in a variant may stand in the variant's own
     /// parentheses, `Sine(frequency: 5)`, or in theirs, `Sine((frequency: 5))`.
+    /// Lists and tuples stand for each other, and a number for `Constant(number)`
+    /// where an enum has that variant.
     ///
     /// # Errors
-    /// What ron or `T` refuses, at the token at fault.
+    /// What ron or `T` refuses, at the token at fault; a key that a map gives twice.
     pub fn parse<T: DeserializeOwned>(&self) -> Result<T, InputError> {
         if let Some(refusal) = self.refuse_depth() {
             return Err(refusal);
         }
+        // What stands in brackets that do not match says nothing of its keys.
+        if self.tree.fault.is_none()
+            && let Some(repeated) = self.repeated_key()
+        {
+            return Err(repeated);
+        }
+        let mut error = match self.read_once() {
+            Ok(value) => return Ok(value),
+            Err(error) => error,
+        };
+        let mut source = Cow::Borrowed(self);
+        for _ in 0..MOST_SPELLINGS {
+            let Some((other, passed)) = source.respelled(&error) else {
+                break;
+            };
+            match other.read_once() {
+                Ok(value) => return Ok(value),
+                // Only what brings ron past the value was meant.
+                Err(next) if passes(&other, &next, passed) => {
+                    source = Cow::Owned(other);
+                    error = next;
+                }
+                Err(_) => break,
+            }
+        }
+        // Whether a new field is a text shows only here: quote its value after all.
+        if error.code == ron::Error::ExpectedString {
+            let offset = source
+                .offset(&error.span.start)
+                .max(source.offset(&error.span.end));
+            let mut quoted = source.clone().into_owned();
+            if quoted.quote_set_at(offset) || quoted.quote_set_at(offset.saturating_sub(1)) {
+                return quoted.parse();
+            }
+        }
+        Err(source.explain(&error))
+    }
+
+    /// Reads the text as it is spelt.
+    fn read_once<T: DeserializeOwned>(&self) -> Result<T, SpannedError> {
         let plain = Extensions::IMPLICIT_SOME | Extensions::UNWRAP_NEWTYPES;
         let options = |extensions| ron::Options::default().with_default_extension(extensions);
         let unwrapped = options(plain | Extensions::UNWRAP_VARIANT_NEWTYPES);
@@ -115,22 +162,11 @@ impl Source {
             Err(error) => error,
         };
         // ron takes one spelling of newtype variants or the other, never both.
-        let error = match options(plain).from_str(&self.text) {
-            Ok(value) => return Ok(value),
-            Err(other) if further(&other, &error) => other,
-            Err(_) => error,
-        };
-        // Whether a new field is a text shows only here: quote its value after all.
-        if error.code == ron::Error::ExpectedString {
-            let offset = self
-                .offset(&error.span.start)
-                .max(self.offset(&error.span.end));
-            let mut quoted = self.clone();
-            if quoted.quote_set_at(offset) || quoted.quote_set_at(offset.saturating_sub(1)) {
-                return quoted.parse();
-            }
+        match options(plain).from_str(&self.text) {
+            Ok(value) => Ok(value),
+            Err(other) if further(&other, &error) => Err(other),
+            Err(_) => Err(error),
         }
-        Err(self.explain(&error))
     }
 
     /// An error at a dotted path; at its nearest parent when the text leaves it out.
@@ -154,6 +190,20 @@ impl Source {
         let parts = tree::split_path(path)?;
         let node = self.tree.find(&self.text, &parts).ok()?;
         self.error_in(&node.span, "").position()
+    }
+
+    /// An error of a file that the value at a path names. Where the file as a whole is at fault (it is not there, or
+    /// empty), the value is the place to look at; else the error keeps its place in the file, and a note tells of
+    /// the value.
+    pub fn named_at(&self, path: &str, error: InputError) -> InputError {
+        if error.is_about_a_whole_file() {
+            let mut found = self.error_at(path, error.in_short());
+            found.help = error.help;
+            return found;
+        }
+        let place = self.position_of(path);
+        let place = place.map_or_else(String::new, |(l, c)| format!(", {}:{l}:{c}", self.name));
+        error.note(format!("the file is read for `{path}`{place}"))
     }
 
     /// Finishes an error that knows its path.
@@ -190,45 +240,26 @@ impl Source {
     }
 }
 
-/// Reads a text file.
-///
-/// # Errors
-/// A file that is missing, unreadable, a folder, too large, empty, or not UTF-8.
-pub fn read_text(path: &Path) -> Result<String, InputError> {
-    let refused = |message: String| InputError::about(path.display(), message);
-    let unreadable = |error: std::io::Error| InputError::file(path, &error);
-    let file = std::fs::File::open(path).map_err(unreadable)?;
-    if file.metadata().map_err(unreadable)?.is_dir() {
-        return Err(refused("cannot be read: it is a folder, not a file".into()));
+/// Values that may be spelt otherwise than ron takes them, each with all at the same place of the schema.
+const MOST_SPELLINGS: usize = 256;
+
+/// Whether ron went past the value that was spelt anew, or into it where it is a group.
+fn passes(source: &Source, error: &SpannedError, end: usize) -> bool {
+    let at = source.offset(&error.span.end);
+    if at >= end {
+        return true;
     }
-    // The length a file declares is not to be trusted: a device has none.
-    let mut bytes = Vec::new();
-    let mut limited = file.take(MAX_BYTES + 1);
-    limited.read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > MAX_BYTES {
-        let most = MAX_BYTES >> 20;
-        return Err(refused(format!("is larger than {most} MiB")));
-    }
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let before = String::from_utf8_lossy(&error.as_bytes()[..valid]).into_owned();
-        InputError::at(
-            &path.display().to_string(),
-            &before,
-            valid..valid,
-            "is not UTF-8 text",
+    let group = source.tree.around(at);
+    group.is_some_and(|node| node.group().is_none() || node.span.start < at)
+        && !matches!(
+            error.code,
+            ron::Error::NoSuchEnumVariant { .. } | ron::Error::ExpectedIdentifier
         )
-        .help("save the file as UTF-8")
-    })?;
-    if text.trim_start_matches('\u{feff}').trim().is_empty() {
-        return Err(refused("is empty".into()));
-    }
-    Ok(text)
 }
 
 /// Whether `one` was found further into the text than `other`.
-fn further(one: &ron::error::SpannedError, other: &ron::error::SpannedError) -> bool {
-    let end = |error: &ron::error::SpannedError| (error.span.end.line, error.span.end.col);
+fn further(one: &SpannedError, other: &SpannedError) -> bool {
+    let end = |error: &SpannedError| (error.span.end.line, error.span.end.col);
     end(one) > end(other)
 }
 

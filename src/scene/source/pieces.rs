@@ -14,6 +14,8 @@ struct Piece {
 enum Origin {
     /// From the file, beginning at this byte.
     File(usize),
+    /// Written by the reader of the text, for what stands at this byte of the file.
+    Added(usize),
     /// From a `--set`.
     Set {
         /// Which one.
@@ -70,6 +72,10 @@ impl Pieces {
                     set: Some((*set, within)),
                 }
             }
+            Origin::Added(file) => Place {
+                span: *file..*file,
+                set: None,
+            },
             Origin::File(file) => {
                 let begin = file + (span.start - start).min(first.length);
                 let (last_start, last) = self.piece_at(span.end.saturating_sub(1).max(span.start));
@@ -77,6 +83,7 @@ impl Pieces {
                     Origin::File(file) => {
                         file + (span.end - last_start.min(span.end)).min(last.length)
                     }
+                    Origin::Added(file) => *file,
                     Origin::Set { landed, .. } => landed.end,
                 };
                 Place {
@@ -102,6 +109,38 @@ impl Pieces {
         };
         let last = self.0.last().unwrap_or(NOTHING);
         (start - last.length, last)
+    }
+
+    /// Puts text of the reader's own before a byte.
+    pub fn insert(&mut self, at: usize, length: usize) {
+        let place = self.place(&(at..at));
+        let from = match place.set {
+            Some((set, argument)) => Origin::Set {
+                set,
+                argument: argument.start..argument.start,
+                landed: place.span,
+            },
+            None => Origin::Added(place.span.start),
+        };
+        let mut pieces = Vec::with_capacity(self.0.len() + 2);
+        let mut start = 0;
+        let mut new = Some(Piece { length, from });
+        for piece in &self.0 {
+            let end = start + piece.length;
+            if at < end && new.is_some() {
+                let left = at.saturating_sub(start);
+                if left > 0 {
+                    pieces.push(piece.part(0, left));
+                }
+                pieces.extend(new.take());
+                pieces.push(piece.part(left, piece.length - left));
+            } else {
+                pieces.push(piece.clone());
+            }
+            start = end;
+        }
+        pieces.extend(new);
+        self.0 = pieces;
     }
 
     /// Puts text of a `--set` in the place of `range`: lengths, and bytes of the argument.
@@ -138,6 +177,7 @@ impl Piece {
     fn part(&self, skip: usize, length: usize) -> Piece {
         let from = match &self.from {
             Origin::File(start) => Origin::File(start + skip),
+            Origin::Added(at) => Origin::Added(*at),
             Origin::Set {
                 set,
                 argument,

@@ -2,6 +2,9 @@
 
 use std::ops::Range;
 
+use serde::de::DeserializeOwned;
+
+use super::schema::{self, Level};
 use super::tree::{Kind, Node, Shape, Tree, join_path, split_path};
 use super::{InputError, Source, scan};
 
@@ -81,6 +84,15 @@ impl<'a> Assignment<'a> {
         Err(error.expected("one number, text, name, list or struct"))
     }
 
+    /// What the first components name, for a sentence.
+    fn place(&self, depth: usize) -> String {
+        if depth == 0 {
+            "the file".to_owned()
+        } else {
+            format!("`{}`", join_path(&self.path[..depth]))
+        }
+    }
+
     fn fail(&self, message: impl Into<String>) -> InputError {
         InputError::argument(format!("--set {}", self.argument), message)
     }
@@ -109,14 +121,13 @@ fn quote(text: &str) -> String {
 }
 
 impl Source {
-    /// Applies `key.path=value`: replaces a value, or adds the last part of the
-    /// key as a new field of its parent. The value is RON text; a bare word in
-    /// the place of a text is quoted.
+    /// Applies `key.path=value` to the text of a `T`: replaces a value, or adds it where the text leaves it out,
+    /// with the structs and maps around it. The value is RON text; a bare word in the place of a text is quoted.
     ///
     /// # Errors
-    /// A malformed argument, a key whose parent is not in the text, a value
+    /// A malformed argument, a key that `T` does not have, an element of a list that is not in the text, a value
     /// which is not one complete RON value.
-    pub fn set(&mut self, argument: &str) -> Result<(), InputError> {
+    pub fn set<T: DeserializeOwned>(&mut self, argument: &str) -> Result<(), InputError> {
         let wanted = Assignment::parse(argument)?;
         if let Some(refusal) = self.refuse_depth() {
             return Err(refusal);
@@ -130,8 +141,13 @@ impl Source {
                 let (span, new) = replacement(&self.text, node, &wanted)?;
                 self.edit(&wanted, span, &[(&new, &wanted.value)]);
             }
-            Err(_) => {
-                let (at, before, after) = self.insertion(&wanted)?;
+            Err(missing) => {
+                let root = self.tree.root.as_ref();
+                let levels = schema::levels::<T>(&self.text, root, &wanted.path);
+                let (at, before, after) = match missing.parent {
+                    Some(parent) => self.insertion(&wanted, parent, missing.depth, &levels)?,
+                    None => return Err(wanted.fail("the file holds no value to set this in")),
+                };
                 let new = if wanted.is_bare() {
                     quote(wanted.value())
                 } else {
@@ -140,7 +156,7 @@ impl Source {
                 let parts = [
                     (before.as_str(), &wanted.key),
                     (&new, &wanted.value),
-                    (after, &wanted.value),
+                    (after.as_str(), &wanted.value),
                 ];
                 self.edit(&wanted, at..at, &parts);
             }
@@ -186,92 +202,153 @@ impl Source {
         self.sets.push(wanted.argument.to_owned());
     }
 
-    /// Where a new field goes, and the text before and after its value.
+    /// Where what is missing below `parent` goes, and the text before and after its value. The first `depth`
+    /// components of the key are in the text; `levels` are those of the type along the key, as far as it has them.
     fn insertion(
         &self,
         wanted: &Assignment<'_>,
-    ) -> Result<(usize, String, &'static str), InputError> {
+        parent: &Node,
+        depth: usize,
+        levels: &[Level],
+    ) -> Result<(usize, String, String), InputError> {
         let text = &self.text;
-        let (last, parents) = match wanted.path.split_last() {
-            Some(split) => split,
-            None => return Err(wanted.fail("the key is empty")),
-        };
-        let parent = match self.tree.find(text, parents) {
-            Ok(parent) => parent.inner(text),
-            Err(missing) => {
-                let reached = join_path(&wanted.path[..missing.depth]);
-                let place = if reached.is_empty() {
-                    "the file".to_owned()
-                } else {
-                    format!("`{reached}`")
-                };
-                let wrong = &wanted.path[missing.depth];
-                let mut error = wanted.fail(format!("there is no `{wrong}` in {place}"));
-                if !missing.choices.is_empty() {
-                    error = error.expected(one_of(&missing.choices));
-                }
-                return Err(match missing.correction(&wanted.path) {
-                    Some(right) => error.help(format!("did you mean `{}`?", join_path(&right))),
-                    None if reached.is_empty() => error,
-                    None => error.help(format!("the nearest that is there is `{reached}`")),
-                });
-            }
-        };
-        let place = if parents.is_empty() {
-            "the file".to_owned()
-        } else {
-            format!("`{}`", join_path(parents))
-        };
+        let parent = parent.inner(text);
         let Some(group) = parent.group() else {
-            let held = &text[parent.span.clone()];
-            let message = format!(
-                "{place} is `{}`, which has no `{last}` to set",
-                shorten(held)
-            );
-            return Err(wanted.fail(message));
+            let (place, next) = (wanted.place(depth), &wanted.path[depth]);
+            let held = shorten(&text[parent.span.clone()]);
+            let error = wanted.fail(format!("{place} is `{held}`, which has no `{next}` to set"));
+            return Err(match levels.get(depth) {
+                Some(Level::Enum(variants)) => error
+                    .expected(format!("{} as a whole", one_of(variants)))
+                    .help(format!(
+                        "write it as one value: --set '{}=...'",
+                        join_path(&wanted.path[..depth])
+                    )),
+                _ => error,
+            });
         };
-        let key = match group.shape {
-            Shape::Struct => last.clone(),
-            Shape::Tuple if group.entries.is_empty() => last.clone(),
+        self.refuse_unknown(wanted, parent, depth, levels)?;
+        let key = |level: Option<&Level>, part: &String| match level {
+            Some(Level::Map) => quote(part),
+            _ => part.clone(),
+        };
+        let first = match group.shape {
+            Shape::Struct => wanted.path[depth].clone(),
             Shape::Map => {
                 let quoted = |span: &Range<usize>| text[span.clone()].contains('"');
-                let keys = || group.entries.iter().filter_map(|entry| entry.key.as_ref());
+                let mut keys = group.entries.iter().filter_map(|entry| entry.key.as_ref());
                 // A map without texts for keys has numbers or words, taken as they are.
-                if keys().next().is_none() || keys().any(quoted) {
-                    quote(last)
+                let words = !group.entries.is_empty() && !keys.any(quoted);
+                if words {
+                    wanted.path[depth].clone()
                 } else {
-                    last.clone()
+                    quote(&wanted.path[depth])
                 }
             }
-            Shape::Tuple | Shape::List => {
-                let choices = parent.choices(text);
-                let count = group.entries.len();
-                let error = wanted.fail(format!("{place} has {count} elements, and no `{last}`"));
-                let path: Vec<String> = wanted.path.clone();
-                let near = super::nearest(last, choices.iter().map(String::as_str)).map(|near| {
-                    let mut right = path;
-                    right.pop();
-                    right.push(near.to_owned());
-                    format!("did you mean `{}`?", join_path(&right))
-                });
-                let error = if choices.is_empty() {
-                    error
-                } else {
-                    error.expected(one_of(&choices))
-                };
-                return Err(match near {
-                    Some(near) => error.help(near),
-                    None => error,
-                });
+            Shape::Tuple | Shape::List => key(levels.get(depth), &wanted.path[depth]),
+        };
+        // The structs and maps between the parent and the value, which the text leaves out.
+        let (mut before, mut after) = (format!("{first}: "), String::new());
+        for (k, part) in wanted.path.iter().enumerate().skip(depth + 1) {
+            let level = levels.get(k);
+            let (open, close) = match level {
+                Some(Level::Map) => ('{', '}'),
+                _ => ('(', ')'),
+            };
+            before.push_str(&format!("{open}{}: ", key(level, part)));
+            after.insert(0, close);
+        }
+        let at = match group.entries.last() {
+            Some(entry) => {
+                before.insert_str(0, ", ");
+                entry.value.span.end
+            }
+            None => {
+                // An empty group may hold a comment up to its bracket; a comma is harmless.
+                after.push(',');
+                group.open + 1
             }
         };
-        let (at, before) = match group.entries.last() {
-            Some(entry) => (entry.value.span.end, format!(", {key}: ")),
-            None => (group.open + 1, format!("{key}: ")),
-        };
-        // An empty group may hold a comment up to its bracket; a comma is harmless.
-        let after = if group.entries.is_empty() { "," } else { "" };
         Ok((at, before, after))
+    }
+
+    /// Refuses a component that neither the text nor the type has: the first one, with the nearest that is there.
+    fn refuse_unknown(
+        &self,
+        wanted: &Assignment<'_>,
+        parent: &Node,
+        depth: usize,
+        levels: &[Level],
+    ) -> Result<(), InputError> {
+        for (k, part) in wanted.path.iter().enumerate().skip(depth) {
+            let place = wanted.place(k);
+            let shape = parent
+                .group()
+                .filter(|_| k == depth)
+                .map(|g| (g.shape, g.entries.len()));
+            let listed = match shape {
+                // What reads the text says what is wrong with a name, at its place in the file.
+                Some((Shape::Struct | Shape::Map, _) | (Shape::Tuple, 0))
+                    if k + 1 == wanted.path.len() =>
+                {
+                    continue;
+                }
+                Some((Shape::List, count)) => Some(count),
+                Some((Shape::Tuple, count)) if count > 0 => Some(count),
+                _ => None,
+            };
+            let written = || shape.map_or_else(Vec::new, |_| parent.choices(&self.text));
+            let (message, choices) = match (listed, levels.get(k)) {
+                (Some(count), _) => {
+                    let message = format!("{place} has {count} elements, and no `{part}`");
+                    (message, written())
+                }
+                (None, Some(Level::Map)) => continue,
+                (None, Some(Level::Struct(fields))) if fields.contains(&part.as_str()) => continue,
+                (None, Some(Level::Struct(fields))) => {
+                    let fields = fields.iter().map(|f| (*f).to_owned());
+                    (
+                        format!("there is no `{part}` in {place}"),
+                        fields.collect::<Vec<_>>(),
+                    )
+                }
+                (None, Some(Level::List | Level::Tuple)) => {
+                    let whole = join_path(&wanted.path[..k]);
+                    let message = format!("{place} is a list that the file does not write");
+                    let error = wanted.fail(message).expected("the list as a whole");
+                    return Err(error.help(format!("write --set '{whole}=[...]'")));
+                }
+                (None, Some(Level::Enum(variants))) => {
+                    let whole = join_path(&wanted.path[..k]);
+                    let message = format!("{place} is one of several kinds: give it as a whole");
+                    let error = wanted.fail(message).expected(one_of(variants));
+                    return Err(error.help(format!("write --set '{whole}=...'")));
+                }
+                (None, Some(Level::Value)) => {
+                    let message = format!("{place} is one value, which has no `{part}` to set");
+                    (message, written())
+                }
+                (None, None) => (format!("there is no `{part}` in {place}"), written()),
+            };
+            let mut error = wanted.fail(message);
+            if !choices.is_empty() {
+                error = error.expected(one_of(&choices));
+            }
+            let near = super::nearest(part, choices.iter().map(String::as_str)).map(|near| {
+                let mut right = wanted.path.clone();
+                near.clone_into(&mut right[k]);
+                join_path(&right)
+            });
+            return Err(match near {
+                Some(right) => error.help(format!("did you mean `{right}`?")),
+                None if k == 0 => error,
+                None => error.help(format!(
+                    "the nearest that is there is `{}`",
+                    join_path(&wanted.path[..k])
+                )),
+            });
+        }
+        Ok(())
     }
 }
 
@@ -330,7 +407,13 @@ pub(super) fn shorten(text: &str) -> String {
     let mut short: String = line
         .chars()
         .take(MOST)
-        .map(|c| if c.is_control() { ' ' } else { c })
+        .map(|c| {
+            if super::commands_a_terminal(c) {
+                ' '
+            } else {
+                c
+            }
+        })
         .collect();
     if short.len() < text.len() {
         short.push_str("...");

@@ -283,7 +283,7 @@ impl Node {
         values.into_iter().find(|value| wanted(&value.span))
     }
 
-    fn step(&self, text: &str, part: &str) -> Option<&Node> {
+    pub(super) fn step(&self, text: &str, part: &str) -> Option<&Node> {
         let mut node = self.peel(text);
         loop {
             let group = node.group()?;

@@ -3,16 +3,20 @@
 
 mod circuit;
 mod command_line;
+mod files;
 mod geometry;
 mod limits;
 mod mutations;
 mod names;
 mod numbers;
 mod polygons;
+mod printed;
+mod spelling;
 mod stages;
 mod text;
 mod trial;
 mod trust;
+mod units;
 mod wear;
 
 use trial::{PLANE, SOLID, Trial};

@@ -99,7 +99,7 @@ fn a_file_that_cannot_be_read() {
     trial.refuses(
         &trial.write("empty.ron", " \n"),
         &[],
-        &["empty.ron: error: is empty"],
+        &["empty.ron:1:1: error: is empty"],
     );
     let latin = trial.write("latin.ron", b"(\n  name: \"caf\xe9\",\n)");
     trial.refuses(

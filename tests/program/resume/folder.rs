@@ -213,3 +213,26 @@ fn what_hangs_on_the_end_is_refused_a_later_one() {
     assert!(!out.0.join("results.h5.part").exists());
     job(&SETS).done(&out.0, &["--resume"]);
 }
+
+/// What the documentation excepts from equal bits, and nothing else, differs between two runs of one case.
+#[test]
+fn two_runs_differ_in_what_the_clock_gives_alone() {
+    let docs = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/checkpoints.md"));
+    let docs = docs.unwrap();
+    let paragraph = docs
+        .split("\n\n")
+        .find(|p| p.contains("are the same, but for"))
+        .unwrap();
+    let excepted = paragraph.split("are the same, but for").nth(1).unwrap();
+    let excepted = excepted.split('.').next().unwrap();
+    let named: Vec<&str> = excepted.split('`').skip(1).step_by(2).collect();
+    let listed: Vec<&str> = fretwork::record::summary::FROM_THE_CLOCK
+        .iter()
+        .filter_map(|pointer| pointer.rsplit('/').next())
+        .collect();
+    assert_eq!(named, listed);
+    let (one, other) = (Folder::new("clock-1"), Folder::new("clock-2"));
+    job(&SETS).done(&one.0, &[]);
+    job(&SETS).done(&other.0, &["--threads", "2"]);
+    same(&one.0, &other.0);
+}

@@ -5,6 +5,7 @@ use super::DriveArgs;
 use crate::laws::LawError;
 use crate::laws::bench::Bench;
 use crate::laws::bench::scale::{BondScale, Mode, attraction_reach};
+use crate::scene::sample::table::Table;
 use std::path::Path;
 
 /// Where a law has no scale of its own, and a sliding distance (m).
@@ -119,48 +120,30 @@ pub(super) fn path(args: &DriveArgs, to: f64) -> Result<Vec<(f64, [f64; 3])>, Fa
 
 fn read_path(file: &Path) -> Result<Vec<(f64, [f64; 3])>, Failure> {
     let fail = |what: String| Failure::Usage(format!("{}: {what}", file.display()));
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_path(file)
-        .map_err(|e| fail(e.to_string()))?;
-    let headings = reader.headers().map_err(|e| fail(e.to_string()))?.clone();
-    let place = |name: &str| headings.iter().position(|h| h == name);
-    let (Some(time), Some(n), Some(t1)) = (
-        place("time"),
-        place("n"),
+    let table = Table::read(file, &["time", "n"], &["t1", "t", "t2"])?;
+    let place = |name: &str| table.column(name);
+    let (Some(t1), false) = (
         place("t1").or_else(|| place("t")),
+        place("t1").is_some() && place("t").is_some(),
     ) else {
         return Err(fail(
             "expected a heading with the columns time, n, t1 (or t) and perhaps t2".into(),
         ));
     };
-    let t2 = place("t2");
+    let (time, n, t2) = (place("time"), place("n"), place("t2"));
     let mut out: Vec<(f64, [f64; 3])> = Vec::new();
-    for (k, record) in reader.records().enumerate() {
-        let record = record.map_err(|e| fail(e.to_string()))?;
-        let number = |column: usize| {
-            let value = record.get(column).and_then(|x| x.parse::<f64>().ok());
-            value.filter(|v| v.is_finite()).ok_or_else(|| {
-                fail(format!(
-                    "row {}: `{}` is no finite number",
-                    k + 1,
-                    &headings[column]
-                ))
-            })
-        };
-        let opening = [number(n)?, number(t1)?, t2.map_or(Ok(0.0), number)?];
-        let time = number(time)?;
-        if k == 0 && time == 0.0 {
+    for row in 0..table.len() {
+        let opening = [n, Some(t1), t2].map(|column| table.value(row, column));
+        let time = table.value(row, time);
+        if row == 0 && time == 0.0 {
             if opening != [0.0; 3] {
-                return Err(fail(
-                    "at time 0 the bond is closed: its opening must be 0".into(),
-                ));
+                let message = "at time 0 the bond is closed: its opening must be 0";
+                return Err(table.fail(row, message).into());
             }
             continue;
         }
         if time <= out.last().map_or(0.0, |l| l.0) {
-            return Err(fail(format!("row {}: times must rise from 0", k + 1)));
+            return Err(table.fail(row, "times must rise from 0").into());
         }
         out.push((time, opening));
     }

@@ -159,7 +159,7 @@ fn paths_lead_to_values() {
 fn both_spellings_of_newtype_variants_parse() {
     let drive = |text: &str| {
         let mut source = source();
-        source.set(&format!("drive={text}")).unwrap();
+        source.set::<Case>(&format!("drive={text}")).unwrap();
         parsed(&source).drive.unwrap()
     };
     let sine = drive("Sine((amplitude: 2, frequency: 1))");

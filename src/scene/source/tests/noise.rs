@@ -17,7 +17,7 @@ fn deep_nesting_is_refused() {
         let error = source.parse::<Case>().unwrap_err();
         assert!(error.message.contains("more than 128 levels"), "{error}");
         assert!(error.line == 1 && error.column > 128);
-        assert!(source.set("a=1").is_err());
+        assert!(source.set::<Case>("a=1").is_err());
     }
     let comment = format!("{}1", "/*".repeat(100_000));
     let error = Source::from_text("c.ron", comment)
@@ -27,7 +27,9 @@ fn deep_nesting_is_refused() {
     // Depth in a value that is skipped, and depth brought by sets, count as well.
     let fine = format!("{}1{}", "[".repeat(100), "]".repeat(100));
     let mut source = Source::from_text("d.ron", format!("(a: {fine})"));
-    source.set(&format!("a{}={fine}", ".0".repeat(50))).unwrap();
+    source
+        .set::<Case>(&format!("a{}={fine}", ".0".repeat(50)))
+        .unwrap();
     let error = source.parse::<Case>().unwrap_err();
     assert!(error.set().is_some() && error.message.contains("more than 128"));
 }
@@ -122,7 +124,7 @@ fn mutations_never_panic() {
         }
         let mut source = Source::from_text("f.ron", String::from_utf8_lossy(&bytes));
         for _ in 0..random.below(3) {
-            if let Err(error) = source.set(SETS[random.below(SETS.len())]) {
+            if let Err(error) = source.set::<Case>(SETS[random.below(SETS.len())]) {
                 assert!(!error.compact().is_empty());
             }
         }
@@ -149,7 +151,7 @@ fn noise_never_panics() {
         let bytes: Vec<u8> = (0..length).map(|_| random.below(256) as u8).collect();
         let mut source = Source::from_text("n.ron", String::from_utf8_lossy(&bytes));
         let argument = String::from_utf8_lossy(&bytes).replace('\0', "=");
-        let _ = source.set(&argument);
+        let _ = source.set::<Case>(&argument);
         if let Err(error) = source.parse::<Case>() {
             assert!(!error.render(false).is_empty());
         }

@@ -17,7 +17,7 @@ fn set_replaces_values() {
         "comment=out/run 1",
         "loading.phase=0.5",
     ] {
-        source.set(set).unwrap();
+        source.set::<Case>(set).unwrap();
     }
     let case = parsed(&source);
     assert_eq!(case.loading.amplitude.get(), 4.0);
@@ -40,12 +40,14 @@ fn set_replaces_values() {
 #[test]
 fn set_takes_whole_subtrees_and_options() {
     let mut source = source();
-    source.set("bodies=[\n(name: \"a\", mass: 1),\n]").unwrap();
-    source.set("drive=None").unwrap();
-    source.set("interfaces.0.cohesion=None").unwrap();
-    source.set("materials.brass=(young: 1e11)").unwrap();
-    source.set("bodies.a.mass=3").unwrap();
-    source.set("bodies.a.mass=5").unwrap();
+    source
+        .set::<Case>("bodies=[\n(name: \"a\", mass: 1),\n]")
+        .unwrap();
+    source.set::<Case>("drive=None").unwrap();
+    source.set::<Case>("interfaces.0.cohesion=None").unwrap();
+    source.set::<Case>("materials.brass=(young: 1e11)").unwrap();
+    source.set::<Case>("bodies.a.mass=3").unwrap();
+    source.set::<Case>("bodies.a.mass=5").unwrap();
     let case = parsed(&source);
     assert_eq!(case.bodies.len(), 1);
     assert_eq!(case.bodies[0].mass.get(), 5.0);
@@ -56,9 +58,9 @@ fn set_takes_whole_subtrees_and_options() {
 #[test]
 fn a_new_text_field_needs_no_quotes() {
     let mut source = Source::from_text("case.ron", text().replace(", cohesion: \"none\"", ""));
-    source.set("interfaces.0.cohesion=mac").unwrap();
-    source.set("name=12").unwrap();
-    source.set("comment=true").unwrap();
+    source.set::<Case>("interfaces.0.cohesion=mac").unwrap();
+    source.set::<Case>("name=12").unwrap();
+    source.set::<Case>("comment=true").unwrap();
     let case = parsed(&source);
     assert_eq!(case.interfaces[0].cohesion.as_deref(), Some("mac"));
     assert_eq!(
@@ -77,17 +79,17 @@ fn set_fills_empty_groups() {
         map: BTreeMap<String, u8>,
     }
     let mut source = Source::from_text("e.ron", "( /* nothing */ )");
-    source.set("map={}").unwrap();
-    source.set("map.k=2").unwrap();
-    source.set("map.l=3").unwrap();
-    source.set("a=1").unwrap();
+    source.set::<Empty>("map={}").unwrap();
+    source.set::<Empty>("map.k=2").unwrap();
+    source.set::<Empty>("map.l=3").unwrap();
+    source.set::<Empty>("a=1").unwrap();
     let empty: Empty = source.parse().unwrap();
     assert_eq!((empty.a, empty.map["k"], empty.map["l"]), (1, 2, 3));
 }
 
 #[test]
 fn malformed_sets_are_refused() {
-    let refused = |set: &str| source().set(set).unwrap_err().compact();
+    let refused = |set: &str| source().set::<Case>(set).unwrap_err().compact();
     assert_eq!(
         refused("loading.amplitude"),
         "--set loading.amplitude: error: there is no `=` between a key and a value; expected key.path=value"
@@ -115,10 +117,10 @@ fn malformed_sets_are_refused() {
         "{element}"
     );
     assert!(refused("bodies.5=3").contains("`bodies` has 2 elements, and no `5`"));
-    assert!(refused("seed.x.y=3").contains("there is no `seed`"));
+    assert!(refused("seed.x.y=3").contains("`seed` is one value, which has no `x` to set"));
     assert!(refused("loading.frequency.x=3").contains("`loading.frequency` is `5.0`"));
     let broken = Source::from_text("b.ron", "(a: [1, 2)")
-        .set("a=1")
+        .set::<Case>("a=1")
         .unwrap_err();
     assert_eq!(broken.position(), Some((1, 10)));
 }
@@ -127,7 +129,7 @@ fn malformed_sets_are_refused() {
 fn errors_in_sets_name_the_set_and_the_line() {
     let mut source = source();
     source
-        .set("bodies.0=(\n name: \"a\",\n mass: -1\n)")
+        .set::<Case>("bodies.0=(\n name: \"a\",\n mass: -1\n)")
         .unwrap();
     let error = source.parse::<Case>().unwrap_err();
     assert_eq!(error.position(), Some((11, 9)));
@@ -144,14 +146,14 @@ fn errors_in_sets_name_the_set_and_the_line() {
 
     // What stands after a value of several lines keeps its own line.
     let mut source = Source::from_text("case.ron", text().replace("mu: 0.3", "mu: -0.3"));
-    source.set("bodies=[\n\n\n]").unwrap();
-    source.set("loading.phase=1.0").unwrap();
+    source.set::<Case>("bodies=[\n\n\n]").unwrap();
+    source.set::<Case>("loading.phase=1.0").unwrap();
     let error = source.parse::<Case>().unwrap_err();
     assert_eq!(error.position(), Some((14, 23)), "{error}");
     assert_eq!(error.set(), None);
 
     let mut source = self::source();
-    source.set("loading.amplitud=3").unwrap();
+    source.set::<Case>("loading.amplitud=3").unwrap();
     let error = source.parse::<Case>().unwrap_err();
     assert_eq!(error.position(), Some((8, 23)));
     let line = error.compact();
@@ -163,7 +165,7 @@ fn errors_in_sets_name_the_set_and_the_line() {
     assert!(error.to_string().contains("command line"));
 
     let mut source = self::source();
-    source.set("seed=red").unwrap();
+    source.set::<Case>("seed=red").unwrap();
     assert_eq!(source.error_at("seed", "x").set(), Some("seed=red"));
     let line = source.parse::<Case>().unwrap_err().compact();
     assert!(line.contains("found the word `red` (from"), "{line}");

@@ -1,0 +1,93 @@
+//! Files that the program reads: regular ones, not too large, and never waited for.
+
+use std::fs::{File, Metadata};
+use std::io::Read;
+use std::path::Path;
+
+use super::InputError;
+
+/// The largest text accepted, in bytes.
+pub const MAX_BYTES: u64 = 64 << 20;
+
+/// Opens a regular file of at most `most` bytes; its length is returned beside it.
+///
+/// The kind is looked at before the file is opened, since to open a pipe waits for its other end. A length of zero is
+/// taken at its word, since what the kernel shows below `/proc` declares none and some of it (`/proc/kmsg`) is waited
+/// for when it is read.
+///
+/// # Errors
+/// A file that is missing, unreadable, a folder, a device, a pipe or a socket, empty, or too large.
+pub fn open(path: &Path, most: u64) -> Result<(File, u64), InputError> {
+    let unreadable = |error: std::io::Error| InputError::file(path, &error);
+    let refused = |message: String| InputError::about(path.display(), message);
+    let judge = |data: &Metadata| {
+        if data.is_dir() {
+            return Err(refused("cannot be read: it is a folder, not a file".into()));
+        }
+        if !data.is_file() {
+            let message = "cannot be read: it is a device, a pipe or a socket, not a regular file";
+            return Err(refused(message.into()).help("copy what it gives into a file"));
+        }
+        if data.len() > most {
+            let shown = if most >= 1 << 30 {
+                format!("{} GiB", most >> 30)
+            } else {
+                format!("{} MiB", most >> 20)
+            };
+            return Err(refused(format!("is larger than {shown}")));
+        }
+        Ok(data.len())
+    };
+    judge(&std::fs::metadata(path).map_err(unreadable)?)?;
+    let file = File::open(path).map_err(unreadable)?;
+    // Again, by the handle: another file may have taken the place of the first.
+    let length = judge(&file.metadata().map_err(unreadable)?)?;
+    if length == 0 {
+        return Err(empty(path));
+    }
+    Ok((file, length))
+}
+
+fn empty(path: &Path) -> InputError {
+    InputError::at(&path.display().to_string(), "", 0..0, "is empty")
+}
+
+/// Reads a whole file as [`open`] takes it.
+///
+/// # Errors
+/// As [`open`], or a file that grows beyond `most` bytes while it is read.
+pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
+    let (file, length) = open(path, most)?;
+    let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
+    file.take(most + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| InputError::file(path, &error))?;
+    if bytes.len() as u64 > most {
+        let message = format!("is larger than {} MiB", most >> 20);
+        return Err(InputError::about(path.display(), message));
+    }
+    Ok(bytes)
+}
+
+/// Reads a text file.
+///
+/// # Errors
+/// As [`read_bytes`], or a file that is not UTF-8 or holds white space alone.
+pub fn read_text(path: &Path) -> Result<String, InputError> {
+    let bytes = read_bytes(path, MAX_BYTES)?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let before = String::from_utf8_lossy(&error.as_bytes()[..valid]).into_owned();
+        InputError::at(
+            &path.display().to_string(),
+            &before,
+            valid..valid,
+            "is not UTF-8 text",
+        )
+        .help("save the file as UTF-8")
+    })?;
+    if text.trim_start_matches('\u{feff}').trim().is_empty() {
+        return Err(empty(path));
+    }
+    Ok(text)
+}

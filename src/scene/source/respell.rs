@@ -1,0 +1,172 @@
+//! Spellings that ron itself does not take: a tuple for a list or a list for a tuple, and a number for a constant
+//! function of time.
+//!
+//! ron says at which value it stopped. That value is written as the type wants it, together with all values that stand
+//! at the same place of the schema (the other points of a table, say), and the text is read again.
+
+use ron::error::{Error as RonError, SpannedError};
+use std::ops::Range;
+
+use super::Source;
+use super::tree::{Kind, Node, Shape, Tree};
+
+/// What is written anew.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Change {
+    /// `(1, 2)` becomes `[1, 2]`.
+    List,
+    /// `[1, 2]` becomes `(1, 2)`.
+    Tuple,
+    /// `0.1` becomes `Constant(0.1)`.
+    Constant,
+}
+
+const CONSTANT: &str = "Constant(";
+
+/// A step from a value to one in it.
+#[derive(Debug, PartialEq, Eq)]
+enum Step {
+    /// A field of this name.
+    Field(String),
+    /// A place in a tuple.
+    Place(usize),
+    /// Any element of a list or a map.
+    Any,
+}
+
+impl Source {
+    /// The same text with the value at which ron stopped spelt otherwise, and the end of that value in it;
+    /// nothing where no other spelling could help.
+    pub(super) fn respelled(&self, error: &SpannedError) -> Option<(Source, usize)> {
+        let node = self.stopped_at(error)?;
+        let change = match (&error.code, &node.kind) {
+            (RonError::ExpectedArray, Kind::Group(group)) => {
+                (group.shape == Shape::Tuple && group.name.is_none()).then_some(Change::List)
+            }
+            (RonError::ExpectedStructLike, Kind::Group(group)) => {
+                (group.shape == Shape::List).then_some(Change::Tuple)
+            }
+            (RonError::ExpectedIdentifier | RonError::SuggestRawIdentifier(_), Kind::Number) => {
+                Some(Change::Constant)
+            }
+            _ => None,
+        }?;
+        let mut alike = Vec::new();
+        let way = self.way_to(&node.span);
+        let root = self.tree.root.as_ref()?;
+        self.collect(root, &way, change, &mut alike);
+        let added = if change == Change::Constant {
+            CONSTANT.len() + 1
+        } else {
+            0
+        };
+        let before = alike.iter().filter(|s| s.start < node.span.start).count();
+        let end = node.span.end + added * (before + 1);
+        let mut other = self.clone();
+        // From the last on, so that the places of the others stay.
+        for span in alike.iter().rev() {
+            other.write(span, change);
+        }
+        other.tree = Tree::of(&other.text);
+        Some((other, end))
+    }
+
+    /// The value that begins where ron stopped.
+    fn stopped_at(&self, error: &SpannedError) -> Option<&Node> {
+        let end = self.offset(&error.span.end);
+        let rest = self.text.get(end..)?;
+        let token = self.text.len() - rest.trim_start().len();
+        let start = self.offset(&error.span.start);
+        [start, end, token].into_iter().find_map(|at| {
+            let node = self.tree.around(at)?;
+            (node.span.start == at).then_some(node)
+        })
+    }
+
+    fn way_to(&self, span: &Range<usize>) -> Vec<(Option<&str>, Step)> {
+        let mut way = Vec::new();
+        let mut node = self.tree.root.as_ref();
+        while let Some((current, group)) = node.and_then(|n| Some((n, n.group()?))) {
+            if current.span == *span {
+                break;
+            }
+            let holds = |child: &Range<usize>| child.start <= span.start && span.end <= child.end;
+            let entries = &group.entries;
+            let Some(index) = entries.iter().position(|e| holds(&e.value.span)) else {
+                break;
+            };
+            let name = group.name.as_ref().map(|name| &self.text[name.clone()]);
+            way.push((name, self.step(current, index)));
+            node = Some(&entries[index].value);
+        }
+        way
+    }
+
+    fn step(&self, node: &Node, index: usize) -> Step {
+        let Some(group) = node.group() else {
+            return Step::Any;
+        };
+        match (group.shape, group.entries.get(index)) {
+            (Shape::Struct, Some(entry)) => {
+                let key = entry.key.as_ref().map(|key| &self.text[key.clone()]);
+                Step::Field(key.unwrap_or_default().to_owned())
+            }
+            (Shape::Tuple, _) => Step::Place(index),
+            _ => Step::Any,
+        }
+    }
+
+    /// Values at the end of this way that the change is for, in the order of the text.
+    fn collect(
+        &self,
+        node: &Node,
+        way: &[(Option<&str>, Step)],
+        change: Change,
+        out: &mut Vec<Range<usize>>,
+    ) {
+        let Some(((name, step), rest)) = way.split_first() else {
+            let fits = match (&node.kind, change) {
+                (Kind::Group(group), Change::List) => {
+                    group.shape == Shape::Tuple && group.name.is_none()
+                }
+                (Kind::Group(group), Change::Tuple) => group.shape == Shape::List,
+                (Kind::Number, Change::Constant) => true,
+                _ => false,
+            };
+            if fits {
+                out.push(node.span.clone());
+            }
+            return;
+        };
+        let Some(group) = node.group() else { return };
+        if group.name.as_ref().map(|n| &self.text[n.clone()]) != *name {
+            return;
+        }
+        for (index, entry) in group.entries.iter().enumerate() {
+            if self.step(node, index) == *step {
+                self.collect(&entry.value, rest, change, out);
+            }
+        }
+    }
+
+    fn write(&mut self, span: &Range<usize>, change: Change) {
+        match change {
+            Change::Constant => {
+                for (at, text) in [(span.end, ")"), (span.start, CONSTANT)] {
+                    self.pieces.insert(at, text.len());
+                    self.text.insert_str(at, text);
+                }
+            }
+            // Brackets are of one length: no place moves.
+            Change::List | Change::Tuple => {
+                let (open, close) = if change == Change::List {
+                    ("[", "]")
+                } else {
+                    ("(", ")")
+                };
+                self.text.replace_range(span.end - 1..span.end, close);
+                self.text.replace_range(span.start..span.start + 1, open);
+            }
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! Text of files and of plugins, made fit for a terminal where it is printed.
+//!
+//! A title that holds escape sequences could otherwise clear the screen, set the window's title or hide lines of the
+//! output; marks that turn the direction of writing could show other words than there are.
+
+/// Whether a terminal would take a character for a command, or write what follows in another direction.
+pub fn commands_a_terminal(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// The text on one line, with a blank in the place of each such character.
+pub fn clean(text: &str) -> String {
+    let plain = |c| if commands_a_terminal(c) { ' ' } else { c };
+    text.chars().map(plain).collect()
+}
+
+/// The same where lines and tabulators are meant.
+pub fn clean_lines(text: &str) -> String {
+    let plain = |c| match c {
+        '\n' | '\t' => c,
+        c if commands_a_terminal(c) => ' ',
+        c => c,
+    };
+    text.chars().map(plain).collect()
+}
+
+/// JSON with these characters escaped: `serde_json` leaves those beyond ASCII as they are.
+pub fn clean_json(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c != '\n' && commands_a_terminal(c) {
+            out.push_str(&format!("\\u{:04x}", u32::from(c)));
+        } else {
+            out.push(c);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_commands_the_terminal() {
+        let title = "a\u{1b}[2Jb\u{9b}31mc\rd\u{202e}e\u{7f}";
+        assert_eq!(clean(title), "a [2Jb 31mc d e ");
+        assert_eq!(clean_lines("a\tb\nc\u{1b}]0;x\u{7}"), "a\tb\nc ]0;x ");
+        let json = serde_json::to_string(title).unwrap_or_default();
+        let clean = clean_json(&json);
+        assert!(!clean.chars().any(commands_a_terminal));
+        assert_eq!(
+            serde_json::from_str::<String>(&clean).ok().as_deref(),
+            Some(title)
+        );
+    }
+}

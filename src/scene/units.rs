@@ -1,0 +1,408 @@
+//! Units beside numbers: read, checked against the unit that the schema gives the number, and converted.
+//!
+//! The names, prefixes and products are those of the crate `runits`. What it does not know stands here: angles
+//! (radians are pure numbers to it, and so would be a friction coefficient in degrees) and scales of hardness.
+
+use super::source::{Fault, nearest};
+use runits::{Dimension, ParseError, UnknownUnit};
+
+/// Units that are proposed where one is wrong, or not known.
+const USUAL: [&str; 62] = [
+    "m", "mm", "um", "nm", "cm", "km", "s", "ms", "us", "min", "h", "kg", "g", "mg", "t", "N",
+    "mN", "kN", "MN", "Pa", "kPa", "MPa", "GPa", "bar", "J", "mJ", "kJ", "MJ", "W", "kW", "Hz",
+    "kHz", "rad", "deg", "K", "m/s", "mm/s", "km/h", "kg/m^3", "g/cm^3", "t/m^3", "N/m", "N/mm",
+    "J/m^2", "kJ/m^2", "MJ/m^2", "Pa/m", "MPa/mm", "GPa/mm", "1/Pa", "1/MPa", "m^3/J", "mm^3/J",
+    "m^2", "mm^2", "m^3", "mm^3", "Pa s", "J s/m^2", "Pa s/m", "1/s", "%",
+];
+
+/// Scales of hardness: what a test prints, no pressure.
+const HARDNESS: [&str; 8] = ["HBW", "HB", "HV", "HK", "HRA", "HRB", "HRC", "HLD"];
+
+/// Why a unit does not fit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnitError {
+    /// What is wrong.
+    pub message: String,
+    /// What would fit.
+    pub expected: Option<String>,
+    /// The nearest unit by name.
+    pub nearest: Option<String>,
+}
+
+impl UnitError {
+    /// As a fault at a path.
+    pub fn at(self, path: impl Into<String>) -> Fault {
+        let mut fault = Fault::new(path, self.message).nearest(self.nearest.as_deref());
+        fault.expected = self.expected;
+        fault
+    }
+}
+
+/// A unit that was read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Unit {
+    /// Its size in SI units.
+    factor: f64,
+    dimension: Dimension,
+    /// Whether an angle is part of it.
+    angle: bool,
+}
+
+/// A value in the unit of the schema: `value` in `given` where the schema says `wanted`, both as text. An empty text
+/// is the schema's own unit.
+///
+/// # Errors
+/// A unit that is not known, or of another dimension.
+pub fn convert(value: f64, given: &str, wanted: &str) -> Result<f64, UnitError> {
+    let same = |text: &str| text.split_whitespace().collect::<String>();
+    if given.trim().is_empty() || same(given) == same(wanted) {
+        return Ok(value);
+    }
+    if let Some(scale) = hardness(given) {
+        return Err(UnitError {
+            message: format!(
+                "`{scale}` is a scale of hardness, and the unit here is {}",
+                named(wanted)
+            ),
+            expected: fitting(wanted),
+            nearest: None,
+        });
+    }
+    let unit = read(given)?;
+    let Ok(schema) = read(wanted) else {
+        return Err(UnitError {
+            message: format!(
+                "the unit here is `{wanted}`, which is not known: `{given}` cannot be converted to it"
+            ),
+            expected: Some(format!("`{wanted}`, or no unit")),
+            nearest: None,
+        });
+    };
+    if unit.dimension != schema.dimension || unit.angle != schema.angle {
+        return Err(UnitError {
+            message: format!(
+                "`{given}` ({}) does not measure the same as {} ({})",
+                base(&unit),
+                named(wanted),
+                base(&schema)
+            ),
+            expected: fitting(wanted),
+            nearest: None,
+        });
+    }
+    let factor = decimal(unit.factor / schema.factor);
+    let inverse = decimal(schema.factor / unit.factor);
+    // A number in another decimal unit has the bits that it has when written in the schema's.
+    Ok(if inverse > 1.0 && inverse == inverse.round() {
+        value / inverse
+    } else {
+        value * factor
+    })
+}
+
+/// Refuses a text that is neither a unit nor a scale of hardness.
+///
+/// # Errors
+/// The unit that is not known.
+pub fn known(text: &str) -> Result<(), UnitError> {
+    if text.trim().is_empty() || hardness(text).is_some() {
+        return Ok(());
+    }
+    read(text).map(|_| ())
+}
+
+/// The scale of hardness that a text names, with or without its load: `HBW`, `HV 10`, `HBW 10/3000`.
+pub fn hardness(text: &str) -> Option<&'static str> {
+    let letters = text.trim();
+    let end = letters
+        .find(|c: char| !c.is_ascii_alphabetic())
+        .unwrap_or(letters.len());
+    let load = &letters[end..];
+    let plain = load
+        .chars()
+        .all(|c| c.is_ascii_digit() || matches!(c, ' ' | '/' | '.'));
+    HARDNESS
+        .into_iter()
+        .find(|scale| *scale == &letters[..end] && plain)
+}
+
+fn read(text: &str) -> Result<Unit, UnitError> {
+    let mut plain = text.trim().to_owned();
+    for (sign, ascii) in [
+        ("\u{207b}\u{b9}", "^-1"),
+        ("\u{207b}\u{b2}", "^-2"),
+        ("\u{207b}\u{b3}", "^-3"),
+        ("\u{b2}", "^2"),
+        ("\u{b3}", "^3"),
+        ("\u{b0}", "deg"),
+        ("\u{22c5}", " "),
+    ] {
+        plain = plain.replace(sign, ascii);
+    }
+    if plain.is_empty() || plain == "-" {
+        plain = "1".to_owned();
+    }
+    let unknown = |name: &str| UnitError {
+        message: if name == text {
+            format!("`{name}` is no known unit")
+        } else {
+            format!("`{name}` in `{text}` is no known unit")
+        },
+        expected: None,
+        nearest: nearest(name, USUAL).map(|near| text.replacen(name, near, 1)),
+    };
+    let refused = |why: String| UnitError {
+        message: format!("`{text}` is no unit: {why}"),
+        expected: Some("a unit such as `MPa`, `um`, `kJ/m^2` or `J s/m^2`".into()),
+        nearest: nearest(text, USUAL).map(str::to_owned),
+    };
+    let quantity = runits::parse(&plain).map_err(|error| match error {
+        ParseError::Unit(UnknownUnit::Unknown(name)) => unknown(&name),
+        ParseError::Unexpected(token) => refused(format!("{token} has no meaning here")),
+        other => refused(other.to_string()),
+    })?;
+    if quantity.value() != 1.0 {
+        return Err(refused(
+            "it holds a number, which belongs to the value".into(),
+        ));
+    }
+    if quantity.unit().is_affine() {
+        return Err(refused("its zero is not that of its kelvins; use K".into()));
+    }
+    Ok(Unit {
+        factor: quantity.unit().factor() * si(quantity.dimension()),
+        dimension: quantity.dimension(),
+        angle: turns(&plain),
+    })
+}
+
+/// From the base units of the crate, which has grams, to those of the SI.
+fn si(dimension: Dimension) -> f64 {
+    1e3f64.powi(-i32::from(dimension.mass))
+}
+
+/// Whether a unit has an angle in it.
+fn turns(text: &str) -> bool {
+    let words = text.split(|c: char| !c.is_alphabetic() && c != '_');
+    words.filter(|word| !word.is_empty()).any(|word| {
+        if matches!(word, "percent" | "ppm" | "count") {
+            return false;
+        }
+        matches!(word, "rpm" | "rps")
+            || runits::unit(word).is_ok_and(|unit| unit.dimension().is_dimensionless())
+    })
+}
+
+/// The nearest number of few digits, where round-off alone is between.
+fn decimal(x: f64) -> f64 {
+    let rounded: f64 = format!("{x:.12e}").parse().unwrap_or(x);
+    if (rounded - x).abs() <= 8.0 * f64::EPSILON * x.abs() {
+        rounded
+    } else {
+        x
+    }
+}
+
+fn named(unit: &str) -> String {
+    if unit.is_empty() {
+        "a pure number".to_owned()
+    } else {
+        format!("`{unit}`")
+    }
+}
+
+/// Usual units that measure the same.
+fn fitting(wanted: &str) -> Option<String> {
+    let schema = read(wanted).ok()?;
+    let fits = |name: &&&str| {
+        **name != wanted
+            && read(name).is_ok_and(|u| u.dimension == schema.dimension && u.angle == schema.angle)
+    };
+    let own = named(wanted);
+    let others = USUAL.iter().filter(fits).map(|name| format!("`{name}`"));
+    let all: Vec<String> = std::iter::once(own).chain(others).collect();
+    Some(all.join(", "))
+}
+
+/// The base units of a dimension, such as `kg/s^2`.
+fn base(unit: &Unit) -> String {
+    let d = &unit.dimension;
+    let parts = [
+        ("kg", d.mass),
+        ("m", d.length),
+        ("s", d.time),
+        ("A", d.current),
+        ("K", d.temperature),
+        ("mol", d.substance),
+        ("cd", d.luminosity),
+    ];
+    let mut words: Vec<String> = parts
+        .iter()
+        .filter(|(_, power)| *power != 0)
+        .map(|(name, power)| match power {
+            1 => (*name).to_owned(),
+            power => format!("{name}^{power}"),
+        })
+        .collect();
+    if unit.angle {
+        words.insert(0, "an angle".to_owned());
+    }
+    if words.is_empty() {
+        "a pure number".to_owned()
+    } else {
+        words.join(" ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn usual_units_have_the_bits_of_the_number_in_si() {
+        for (value, given, wanted, si) in [
+            (600.0, "MPa", "Pa", 6e8),
+            (2.1, "GPa", "Pa", 2.1e9),
+            (3.0, "um", "m", 3e-6),
+            (3.0, "\u{b5}m", "m", 3e-6),
+            (3.0, "\u{3bc}m", "m", 3e-6),
+            (0.7, "mm", "m", 0.7e-3),
+            (9.0, "nm", "m", 9e-9),
+            (1.3, "kJ/m^2", "J/m^2", 1.3e3),
+            (1.3, "kJ/m\u{b2}", "J/m^2", 1.3e3),
+            (1.0, "MJ/m^2", "J/m^2", 1e6),
+            (30.0, "N/mm", "J/m^2", 3e4),
+            (4.7, "N/mm", "N/m", 4.7e3),
+            (7.0, "mm/s", "m/s", 7e-3),
+            (7.85, "g/cm^3", "kg/m^3", 7850.0),
+            (1.2, "t/m^3", "kg/m^3", 1200.0),
+            (12.0, "GPa/mm", "Pa/m", 12e12),
+            (3e-13, "1/kPa", "1/Pa", 3e-16),
+            (3e-5, "mm^3/J", "m^3/J", 3e-14),
+            (3e-5, "mm^3/(N m)", "m^3/J", 3e-14),
+            (2.0, "mPa s", "Pa s", 2e-3),
+            (5.0, "J s/m^2", "J s/m^2", 5.0),
+            (5.0, "kg/s", "J s/m^2", 5.0),
+            (40.0, "%", "", 0.4),
+            (0.4, "", "", 0.4),
+            (0.4, "1", "", 0.4),
+            (6.0, "", "Pa", 6.0),
+            (2.0, "kHz", "Hz", 2e3),
+        ] {
+            let found = convert(value, given, wanted).unwrap_or_else(|e| panic!("{given}: {e:?}"));
+            assert_eq!(
+                found.to_bits(),
+                f64::to_bits(si),
+                "{value} {given}: {found:e}"
+            );
+        }
+        let angle = convert(30.0, "deg", "rad").map(|a| a - std::f64::consts::FRAC_PI_6);
+        assert!(angle.is_ok_and(|d| d.abs() < 1e-16), "{angle:?}");
+    }
+
+    #[test]
+    fn other_dimensions_are_refused_by_both_names() {
+        for (given, wanted, base) in [
+            (
+                "MJ/m^3",
+                "J/m^2",
+                "(kg m^-1 s^-2) does not measure the same as `J/m^2` (kg s^-2)",
+            ),
+            (
+                "MPa",
+                "Pa/m",
+                "(kg m^-1 s^-2) does not measure the same as `Pa/m` (kg m^-2 s^-2)",
+            ),
+            ("um", "", "(m) does not measure the same as a pure number"),
+            // Radians are no friction coefficient, and 2 pi is between a cycle and a radian a second.
+            (
+                "deg",
+                "",
+                "(an angle) does not measure the same as a pure number",
+            ),
+            (
+                "rad/s",
+                "Hz",
+                "(an angle s^-1) does not measure the same as `Hz` (s^-1)",
+            ),
+            ("rpm", "1/s", "(an angle s^-1)"),
+            (
+                "%",
+                "rad",
+                "(a pure number) does not measure the same as `rad` (an angle)",
+            ),
+            (
+                "HBW",
+                "Pa",
+                "is a scale of hardness, and the unit here is `Pa`",
+            ),
+        ] {
+            match convert(1.0, given, wanted) {
+                Err(error) => {
+                    assert!(error.message.contains(base), "{error:?}");
+                    assert!(
+                        error.message.starts_with(&format!("`{given}`")),
+                        "{error:?}"
+                    );
+                }
+                Ok(_) => panic!("{given} passes for {wanted}"),
+            }
+        }
+        let fits = convert(1.0, "MJ/m^3", "J/m^2")
+            .err()
+            .and_then(|e| e.expected);
+        assert_eq!(
+            fits.as_deref(),
+            Some("`J/m^2`, `N/m`, `N/mm`, `kJ/m^2`, `MJ/m^2`")
+        );
+    }
+
+    #[test]
+    fn unknown_units_come_with_the_nearest() {
+        for (given, near) in [
+            ("Mpa", Some("MPa")),
+            ("kJ/m^2x", None),
+            ("GPas", None),
+            ("kj/m^2", Some("kJ/m^2")),
+            ("furlongs/fortnite", None),
+            ("newtonn", None),
+        ] {
+            let Err(error) = known(given) else { continue };
+            assert!(error.message.contains("unit"), "{error:?}");
+            if near.is_some() {
+                assert_eq!(error.nearest.as_deref(), near, "{error:?}");
+            }
+        }
+        for bad in [
+            "Mpa",
+            "kj/m^2",
+            "3 MPa",
+            "MPa)",
+            "degC",
+            "m^",
+            "\u{1b}[31m",
+            "m/0",
+        ] {
+            assert!(known(bad).is_err(), "{bad:?} passes");
+        }
+        for good in [
+            "HBW",
+            "HV 10",
+            "HBW 10/3000",
+            "HRC",
+            "J s/m^2",
+            "-",
+            "W/(m K)",
+            "\u{b0}",
+        ] {
+            assert!(known(good).is_ok(), "{good:?} is refused");
+        }
+    }
+
+    #[test]
+    fn all_usual_units_are_known() {
+        for name in USUAL {
+            assert!(read(name).is_ok(), "{name}");
+        }
+    }
+}
