@@ -11,7 +11,7 @@ mod panels;
 mod solid;
 mod sphere;
 
-pub use axis::Axis;
+pub use axis::{Axis, quantity};
 pub use canvas::ReportError;
 pub use chart::{Chart, Series, Style};
 pub use frame::{Arrow, Disk, Frame, Link, LinkState, Outline};
