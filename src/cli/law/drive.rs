@@ -490,8 +490,8 @@ fn draw(file: &Path, rows: &[Row], args: &DriveArgs) -> Result<(), Failure> {
     if !carries && rows.iter().any(|r| r.tension_strength > 0.0) {
         let chart = Chart::new(
             title,
-            Axis::new("gap", "m"),
-            Axis::new("attraction over the area", "Pa"),
+            Axis::new("gap g", "m"),
+            Axis::new("attraction / area", "Pa"),
         )
         .with(Series::new(
             "attraction",
@@ -502,10 +502,10 @@ fn draw(file: &Path, rows: &[Row], args: &DriveArgs) -> Result<(), Failure> {
     if !carries {
         let chart = Chart::new(
             title,
-            Axis::new("sliding distance", "m"),
-            Axis::new("friction coefficient", ""),
+            Axis::new("sliding distance s", "m"),
+            Axis::new("friction coefficient µ", ""),
         )
-        .with(Series::new("mu", points(&Row::opening, &|r| r.friction)));
+        .with(Series::new("", points(&Row::opening, &|r| r.friction)));
         return chart.draw(file).map_err(fail);
     }
     // Signed along the first direction that opens, so that cycles are loops.
@@ -513,8 +513,8 @@ fn draw(file: &Path, rows: &[Row], args: &DriveArgs) -> Result<(), Failure> {
     let signed = |r: &Row| sign(r) * r.opening();
     Chart::new(
         title.clone(),
-        Axis::new("opening", "m"),
-        Axis::new("traction", "Pa"),
+        Axis::new("opening δ", "m"),
+        Axis::new("traction T", "Pa"),
     )
     .with(Series::new(
         "traction along the opening",
@@ -524,8 +524,8 @@ fn draw(file: &Path, rows: &[Row], args: &DriveArgs) -> Result<(), Failure> {
     .map_err(fail)?;
     let mut name = file.file_stem().unwrap_or_default().to_os_string();
     name.push("_damage.png");
-    Chart::new(title, Axis::new("opening", "m"), Axis::new("damage", ""))
-        .with(Series::new("D", points(&signed, &|r| r.damage)))
+    Chart::new(title, Axis::new("opening δ", "m"), Axis::new("damage D", ""))
+        .with(Series::new("", points(&signed, &|r| r.damage)))
         .draw(&file.with_file_name(name))
         .map_err(fail)
 }
