@@ -94,7 +94,7 @@ fn loops(title: &str, table: &Table, cycles: &Cycles, newton: &'static str) -> [
     let force = Axis::new("tangential force Q", newton);
     let mut q = headed("Fretting loops", title, axis(), force);
     let ratio = Axis::new("force ratio Q/P", "");
-    let mut share = headed("Fretting loops over the normal force P", title, axis(), ratio);
+    let mut share = headed("Force ratio", title, axis(), ratio);
     let columns = ["time", "delta", "Q", "P"].map(|name| table.column(name));
     for cycle in chosen(&cycles.list, LOOPS) {
         let Some(span) = cycles.span(cycle.cycle) else {
@@ -105,13 +105,14 @@ fn loops(title: &str, table: &Table, cycles: &Cycles, newton: &'static str) -> [
             continue;
         }
         let label = format!("cycle {}", cycle.cycle);
+        // One legend serves both panels.
         let of = |f: &dyn Fn(&[f64; 3]) -> f64| -> Vec<(f64, f64)> {
             points.iter().map(|p| (p[0], f(p))).collect()
         };
-        q = q.with(Series::new(label.clone(), of(&|p| p[1])));
+        q = q.with(Series::new(label, of(&|p| p[1])));
         // A body that is not pressed has no ratio.
         let over = |p: &[f64; 3]| if p[2] > 0.0 { p[1] / p[2] } else { f64::NAN };
-        share = share.with(Series::new(label, of(&over)));
+        share = share.with(Series::new("", of(&over)));
     }
     for chart in [&mut q, &mut share] {
         chart.colour_by_order = true;

@@ -297,7 +297,7 @@ fn round_ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
 /// Ticks at powers of ten, or at round values when there is less than a decade.
 fn decades(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
     let (first, last) = (low.ceil() as i32, high.floor() as i32);
-    let stride = ((last - first) / count.max(1) as i32 + 1).max(1);
+    let stride = ((last - first) / (count as i32 + 1) + 1).max(1);
     if last - first >= 1 {
         return (first..=last)
             .filter(|e| e.rem_euclid(stride) == 0)

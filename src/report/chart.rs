@@ -243,9 +243,11 @@ impl Chart {
         // The legend goes where no curve passes, else in rows over the plot.
         let mut curves = self.curves(&x, &y, &plot);
         let legend = Legend::of(self, u);
+        let mut ink = curves.clone();
+        ink.push(self.bars(&x, &y, &plot));
         let corner = legend
             .as_ref()
-            .and_then(|l| l.free_place(&curves, &plot, u));
+            .and_then(|l| l.free_place(&ink, &plot, u));
         let mut rows = None;
         if legend.is_some() && corner.is_none() {
             let laid = Rows::of(self, plot.width as f32, u);
@@ -289,7 +291,22 @@ impl Chart {
         (lines, height)
     }
 
-    /// Error bars of a series, with caps.
+    /// Error bars of a series from low to high, in pixels of the plot.
+    fn bars_of(&self, series: &Series, x: &Scale, y: &Scale, plot: &Plot) -> Runs {
+        let with = series.points.iter().zip(&series.intervals);
+        let bars = with.map(|(p, (low, high))| {
+            vec![plot.place(x, y, (p.0, *low)), plot.place(x, y, (p.0, *high))]
+        });
+        bars.filter(|b| b.iter().flatten().all(|v| v.is_finite()))
+            .collect()
+    }
+
+    fn bars(&self, x: &Scale, y: &Scale, plot: &Plot) -> Runs {
+        let all = self.series.iter();
+        all.flat_map(|s| self.bars_of(s, x, y, plot)).collect()
+    }
+
+    /// Draws the error bars of a series, with caps.
     fn draw_intervals(
         &self,
         field: &mut Canvas,
@@ -300,16 +317,11 @@ impl Chart {
         u: f32,
     ) {
         let colour = self.colour(series);
-        let s = &self.series[series];
-        for (p, (low, high)) in s.points.iter().zip(&s.intervals) {
-            let [low, high] = [*low, *high].map(|v| plot.place(x, y, (p.0, v)));
-            if low.iter().chain(&high).any(|v| !v.is_finite()) {
-                continue;
-            }
-            let (at, cap) = (low[0], 10.0 * u);
-            field.stroke(&[low, high], false, 2.4 * u, colour, None);
-            for end in [low[1], high[1]] {
-                field.stroke(&[[at - cap, end], [at + cap, end]], false, 2.4 * u, colour, None);
+        for bar in self.bars_of(&self.series[series], x, y, plot) {
+            field.stroke(&bar, false, 2.4 * u, colour, None);
+            for [at, end] in bar {
+                let cap = [[at - 10.0 * u, end], [at + 10.0 * u, end]];
+                field.stroke(&cap, false, 2.4 * u, colour, None);
             }
         }
     }

@@ -100,23 +100,37 @@ struct Set {
     drop: f32,
 }
 
-/// Characters of a line, and whether each is a subscript: one or two letters or digits after a single letter and `_`,
-/// as in `v_x`. Other underscores belong to names.
-fn subscripts(text: &str) -> Vec<(char, bool)> {
+/// Where a character stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Level {
+    Line,
+    Below,
+    Above,
+}
+
+/// Characters of a line with their levels. Below stand one or two letters or digits after a single letter and `_`, as in
+/// `v_x`; other underscores belong to names. Raised digits are those of the line, set smaller: the faces do not have
+/// them all.
+fn levels(text: &str) -> Vec<(char, Level)> {
     let all: Vec<char> = text.chars().collect();
     let word = |k: usize| all.get(k).is_some_and(|c| c.is_alphanumeric() || *c == '_');
     let mut out = Vec::with_capacity(all.len());
     let mut k = 0;
     while k < all.len() {
         let symbol = k > 0 && all[k - 1].is_alphabetic() && !(k > 1 && word(k - 2));
-        let long = (k + 1..all.len()).take_while(|i| all[*i].is_alphanumeric()).count();
+        let rest = k + 1..all.len();
+        let long = rest.take_while(|i| all[*i].is_alphanumeric()).count();
         if all[k] == '_' && symbol && (1..=2).contains(&long) && !word(k + 1 + long) {
-            out.extend(all[k + 1..=k + long].iter().map(|c| (*c, true)));
+            out.extend(all[k + 1..=k + long].iter().map(|c| (*c, Level::Below)));
             k += long + 1;
-        } else {
-            out.push((all[k], false));
-            k += 1;
+            continue;
         }
+        out.push(match "⁰¹²³⁴⁵⁶⁷⁸⁹⁻".chars().position(|c| c == all[k]) {
+            Some(10) => ('−', Level::Above),
+            Some(digit) => (char::from(b'0' + digit as u8), Level::Above),
+            None => (all[k], Level::Line),
+        });
+        k += 1;
     }
     out
 }
@@ -126,14 +140,18 @@ fn set_line(text: &str, size: f32) -> (Vec<Set>, f32) {
     let mut pen = 0.0;
     let mut previous = None;
     let mut glyphs = Vec::with_capacity(text.len());
-    for (character, below) in subscripts(text) {
+    for (character, level) in levels(text) {
         let Some((face_index, id)) = glyph(character) else {
             continue;
         };
         let Some(face) = faces().get(face_index) else {
             continue;
         };
-        let (size, drop) = if below { (0.72 * size, 0.2 * size) } else { (size, 0.0) };
+        let (size, drop) = match level {
+            Level::Line => (size, 0.0),
+            Level::Below => (0.72 * size, 0.2 * size),
+            Level::Above => (0.68 * size, -0.36 * size),
+        };
         let scale = size / face.units_per_em().unwrap_or(1000.0);
         if let Some((before_face, before)) = previous
             && before_face == face_index
@@ -230,11 +248,16 @@ mod tests {
     #[test]
     fn symbols_have_subscripts_and_names_keep_their_underscores() {
         let shown = |text: &str| -> String {
-            let mark = |(c, below): (char, bool)| if below { format!("<{c}>") } else { c.to_string() };
-            subscripts(text).into_iter().map(mark).collect()
+            let mark = |(c, level): (char, Level)| match level {
+                Level::Line => c.to_string(),
+                Level::Below => format!("<{c}>"),
+                Level::Above => format!("^{c}"),
+            };
+            levels(text).into_iter().map(mark).collect()
         };
         assert_eq!(shown("force F_x (N)"), "force F<x> (N)");
         assert_eq!(shown("σ_yy, across"), "σ<y><y>, across");
+        assert_eq!(shown("2×10⁻¹⁶ m²"), "2×10^−^1^6 m^2");
         for name in ["damage_ratio", "my_x", "a_long", "v_", "_x", "a_b_c"] {
             assert_eq!(shown(name), name);
         }

@@ -123,23 +123,21 @@ impl Raster {
         (covered, hidden)
     }
 
-    /// A straight line, hidden by what is nearer.
-    pub fn line(&mut self, a: Corner, b: Corner, width: f64, colour: Rgb, share: f32) {
+    /// A straight line, hidden by what is nearer by more than `lift` pixels: a line on a steep face is not hidden by it.
+    pub fn line(&mut self, a: Corner, b: Corner, width: f64, lift: f64, colour: Rgb, share: f32) {
         let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
         let length = dx.hypot(dy);
         if !(length > 0.0 && length.is_finite()) {
             return;
         }
         let half = 0.5 * width;
-        // A line on a face is not hidden by it.
-        let lift = 2.0 + width;
         for row in self.rows(a[1].min(b[1]) - half, a[1].max(b[1]) + half) {
             let y = row as f64 + 0.5;
             // Where the strip about the line crosses the row.
             let reach = half + 1.0;
             let (from, to) = if dy.abs() > 1e-9 * length {
                 let middle = a[0] + (y - a[1]) / dy * dx;
-                let wide = (reach * length / dy.abs()).min(length + width);
+                let wide = reach * length / dy.abs();
                 (middle - wide, middle + wide)
             } else {
                 (f64::NEG_INFINITY, f64::INFINITY)
@@ -267,10 +265,13 @@ mod tests {
     fn lines_are_hidden_by_what_is_nearer() {
         let mut r = Raster::new(40, 20, [255; 3]);
         r.polygon(&square(50.0), RED, Cover::Opaque);
-        r.line([0.0, 10.0, 0.0], [40.0, 10.0, 0.0], 2.0, BLUE, 1.0);
+        r.line([0.0, 10.0, 0.0], [40.0, 10.0, 0.0], 2.0, 3.0, BLUE, 1.0);
         assert_eq!(r.colour[10 * 40 + 10], RED);
         assert_eq!(r.colour[10 * 40 + 30], BLUE);
-        r.line([30.0, 0.0, 0.0], [30.0, 0.0, 9.0], 2.0, BLUE, 1.0);
+        r.line([30.0, 0.0, 0.0], [30.0, 0.0, 9.0], 2.0, 3.0, BLUE, 1.0);
+        // An almost level line is whole.
+        r.line([1.0, 15.0, 60.0], [39.0, 15.001, 60.0], 2.0, 3.0, BLUE, 1.0);
+        assert!((2..38).all(|x| r.colour[15 * 40 + x] == BLUE));
         let (w, h, pixels) = r.reduced(2);
         assert_eq!((w, h, pixels.len()), (20, 10, 200));
     }

@@ -50,10 +50,10 @@ const SEEN_THROUGH: f64 = 0.01;
 /// Cosine of the angle between two faces below which their common edge is drawn.
 const CREASE: f64 = 0.9;
 /// First bodies: faces, and edges.
-const WALL: Rgb = [206, 212, 220];
+const WALL: Rgb = [226, 230, 236];
 const WALL_EDGE: Rgb = [74, 84, 98];
 /// How much a wall that is seen through tints what is behind it.
-const VEIL: f32 = 0.10;
+const VEIL: f32 = 0.07;
 
 /// From metres to pixels.
 pub(super) struct Place {
@@ -128,7 +128,7 @@ impl Scene {
             }
             let edge = mix(base, [0, 0, 0], 0.45);
             for [a, b] in seen.edges {
-                raster.line(a, b, 1.0 * line, edge, 0.9);
+                raster.line(a, b, 1.0 * line, 3.0, edge, 0.9);
             }
         }
         // What is in front of grains is a veil: it is laid over all that hides.
@@ -156,7 +156,7 @@ impl Scene {
             raster.polygon(face, WALL_EDGE, Cover::Veil(VEIL));
         }
         for [a, b] in edges {
-            raster.line(a, b, 1.8 * line, WALL_EDGE, 0.85);
+            raster.line(a, b, 1.8 * line, 12.0, WALL_EDGE, 0.85);
         }
         let (across, _, pixels) = raster.reduced(fine);
         field.write(across, &pixels);
@@ -231,7 +231,7 @@ impl Scene {
 
 fn solid(raster: &mut Raster, group: &Group, base: Rgb) {
     for (face, light) in group.faces.iter().zip(&group.lights) {
-        let by = 0.62 + 0.44 * light;
+        let by = 0.7 + 0.36 * light;
         let colour = base.map(|c| (f64::from(c) * by).min(255.0) as u8);
         raster.polygon(face, colour, Cover::Opaque);
     }
