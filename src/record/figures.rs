@@ -145,6 +145,11 @@ fn within(columns: &[Vec<f64>; 4], [from, to]: [f64; 2]) -> Vec<[f64; 3]> {
     if first > 0 && first < time.len() && time[first] > from + slack {
         out.push(between(first, from));
     }
+    if first == 0 && end > 0 && time[0] > from + slack {
+        // The run begins with the cycle: from rest at zero, with the force of its first row.
+        let [_, q, p] = row(0);
+        out.push([0.0, q, p]);
+    }
     out.extend((first..end).map(row));
     if end > first && end < time.len() && time[end - 1] < to - slack {
         out.push(between(end, to));
@@ -315,6 +320,8 @@ mod tests {
             assert!((a[0] - 1.0).abs() < 5e-3 && a[1].abs() < 5e-3, "{a:?}");
             let longest = points.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1]));
             assert!(longest.fold(0.0, f64::max) < 1.1 * std::f64::consts::TAU * every);
+            // The first begins before the first row, from rest.
+            assert_eq!(within(&columns, [0.0, 1.0])[0][0], 0.0);
             // What there is of a cycle that is not whole.
             assert!(within(&columns, [3.0, 4.0]).len() >= (0.45 / every) as usize);
         }

@@ -42,12 +42,18 @@ impl Raster {
     pub fn sphere(&mut self, [x, y, z]: Corner, radius: f64, base: Rgb) {
         // Light from the left above, in front of the picture; unit length.
         const LIGHT: [f64; 3] = [-0.45, -0.6, 0.661];
+        // The smallest still shows.
+        let radius = radius.max(0.75);
         for row in self.rows(y - radius, y + radius) {
             let ny = (row as f64 + 0.5 - y) / radius;
             let half = radius * (1.0 - ny * ny).max(0.0).sqrt();
             for column in span(x - half, x + half, self.width) {
                 let nx = (column as f64 + 0.5 - x) / radius;
-                let nz = (1.0 - nx * nx - ny * ny).max(0.0).sqrt();
+                let inside = 1.0 - nx * nx - ny * ny;
+                if inside < 0.0 {
+                    continue;
+                }
+                let nz = inside.sqrt();
                 let at = row * self.width + column;
                 let depth = (z + radius * nz) as f32;
                 if depth <= self.depth[at] {

@@ -320,13 +320,19 @@ fn normal(corners: &[[f64; 3]]) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// A unit cube about a place.
+    /// A cube of two metres about a place.
     fn cube(x: f64, y: f64) -> Vec<Vec<[f64; 3]>> {
-        let core = crate::geometry::convex::polyhedron::Polyhedron::cuboid([1.0; 3]);
-        let at = nalgebra::Vector3::new(x, y, 0.0);
-        (0..6)
-            .map(|f| core.face(f).map(|p| (p + at).into()).collect())
-            .collect()
+        const FACES: [[u32; 4]; 6] = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        let at = |k: u32, bit: u32| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let corner = |k: u32| [x + at(k, 0), y + at(k, 1), at(k, 2)];
+        FACES.map(|f| f.map(corner).to_vec()).to_vec()
     }
 
     fn scene(view: View, faces: Vec<Faces>, spheres: Vec<Sphere>) -> Scene {
