@@ -74,8 +74,8 @@ fn main() -> Result<(), Failure> {
     if given.is_empty() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures/adhesion.png");
         let charts = [
-            chart("to saturation and beyond", 8.4, &without, &layers),
-            chart("small creepages", 1.6, &without, &layers),
+            chart("To saturation and beyond", 8.4, &without, &layers),
+            chart("Small creepages", 1.6, &without, &layers),
         ];
         draw_panels(&charts, 2, &path)?;
         println!("drawn to docs/figures/adhesion.png");
@@ -156,17 +156,18 @@ fn chart(title: &str, end: f64, without: &[Rolling], layers: &[Rolling]) -> Char
         if x <= end {
             let (q, half) = spread(&group.iter().map(|r| r.force).collect::<Vec<_>>());
             means.push((x, q));
-            bars.extend([(x, q - half), (x, q + half), (f64::NAN, f64::NAN)]);
+            bars.push((q - half, q + half));
         }
     }
-    let mut bar = Series::new("", bars);
-    bar.colour = Some((90, 90, 90));
-    let mut chart = Chart::new(title, Axis::new("creepage", "%"), Axis::new("Q/P", ""))
+    let mut chart = Chart::new(title, Axis::new("creepage ξ", "%"), Axis::new("traction coefficient Q/P", ""))
         .with(Series::new("without third body", points).style(Style::Markers))
         .with(Series::new("brush, closed form", curve(&closed)))
         .with(Series::new("Carter, half-plane", curve(&carter)).style(Style::Dashed))
-        .with(Series::new("with third body", means).style(Style::LineMarkers))
-        .with(bar);
+        .with(
+            Series::new("with third body", means)
+                .style(Style::LineMarkers)
+                .intervals(bars),
+        );
     chart.x_range = Some((0.0, end));
     chart.y_range = Some((-0.05, 0.45));
     chart

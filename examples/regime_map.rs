@@ -1,15 +1,16 @@
 //! Regimes of a sheared layer of bonded grains, by the strength of the bonds and the pressure.
 //!
-//! `cargo run --release --example regime_map` runs `cases/regime_map.ron` for six strengths and three pressures, two at a
-//! time, prints the table of `docs/circuit.md` and draws `docs/figures/regime_map.png`: friction and mean cluster against
+//! `cargo run --release --example regime_map` runs `cases/regime_map.ron` for six strengths, three pressures and three
+//! seeds, two at a time, prints means over the seeds with their intervals of 95 % as the table of `docs/circuit.md` and draws `docs/figures/regime_map.png`: friction and mean cluster against
 //! strength over pressure. What walls and bonds do depends on that ratio; pressure alone changes the inertial number.
 
 use fretwork::geometry::space::Plane;
 use fretwork::laws::SearchPath;
 use fretwork::record::run::{RunOptions, run};
-use fretwork::report::{Axis, Chart, Series, Style, draw_panels};
+use fretwork::report::{Axis, Chart, Series, Style, draw_panels, quantity};
 use fretwork::scene::load;
 use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::path::Path;
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
@@ -18,6 +19,8 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 const RATIOS: [f64; 6] = [0.1, 1.0, 10.0, 30.0, 100.0, 1000.0];
 /// Pressures (Pa).
 const PRESSURES: [f64; 3] = [300.0, 1e3, 3e3];
+/// Samples.
+const SEEDS: [u64; 3] = [19, 20, 21];
 
 struct Outcome {
     pressure: f64,
@@ -34,64 +37,91 @@ fn main() -> Result<(), Failure> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(2)
         .build_global()?;
-    let pairs: Vec<(f64, f64)> = PRESSURES
-        .iter()
-        .flat_map(|p| RATIOS.iter().map(move |r| (*p, *r)))
-        .collect();
-    let runs: Result<Vec<Outcome>, Failure> = pairs.par_iter().map(|(p, r)| one(*p, *r)).collect();
+    let mut all: Vec<(f64, f64, u64)> = Vec::new();
+    for p in PRESSURES {
+        for r in RATIOS {
+            all.extend(SEEDS.map(|seed| (p, r, seed)));
+        }
+    }
+    let runs: Result<Vec<Outcome>, Failure> =
+        all.par_iter().map(|(p, r, seed)| one(*p, *r, *seed)).collect();
     let runs = runs?;
     println!(
-        "| pressure | strength / pressure | regime | mu | broken | mean cluster | interior shear / V | slips / V |"
+        "| pressure | strength / pressure | regime, by seed | mu | broken | mean cluster | interior shear / V | slips / V |"
     );
     println!("|---|---|---|---|---|---|---|---|");
-    for o in &runs {
+    for group in runs.chunks(SEEDS.len()) {
+        let of = |value: &dyn Fn(&Outcome) -> f64| spread(group, value);
+        let (friction, half) = of(&|o| o.friction);
+        let mut regimes: Vec<&str> = group.iter().map(|o| o.regime.as_str()).collect();
+        regimes.dedup();
         println!(
-            "| {:.0} Pa | {} | {} | {:.3} | {:.2} | {:.0} | {:.2} | {:.2}, {:.2} |",
-            o.pressure,
-            o.ratio,
-            o.regime,
-            o.friction,
-            o.broken,
-            o.cluster,
-            o.interior,
-            o.slips[0],
-            o.slips[1]
+            "| {:.0} Pa | {} | {} | {friction:.3} +- {half:.3} | {:.2} | {:.0} | {:.2} | {:.2}, {:.2} |",
+            group[0].pressure,
+            group[0].ratio,
+            regimes.join("; "),
+            of(&|o| o.broken).0,
+            of(&|o| o.cluster).0,
+            of(&|o| o.interior).0,
+            of(&|o| o.slips[0]).0,
+            of(&|o| o.slips[1]).0
         );
     }
     let chart = |heading: &str, y: Axis, value: &dyn Fn(&Outcome) -> f64| {
-        let x = Axis::new("bond strength over pressure", "").log();
+        let x = Axis::new("bond strength / pressure", "").log();
+        let floor = if y.log { 1.0 } else { f64::NEG_INFINITY };
         let mut chart = Chart::new(heading, x, y);
+        let seeds = SEEDS.len();
+        chart.subtitle = Some(format!("Sheared layer of bonded grains, means and 95 % intervals of {seeds} seeds"));
         for p in PRESSURES {
-            let of = runs.iter().filter(|o| o.pressure == p);
-            let points = of.map(|o| (o.ratio, value(o))).collect();
-            let label = format!("{p:.0} Pa");
-            chart = chart.with(Series::new(label, points).style(Style::LineMarkers));
+            let (mut points, mut bars) = (Vec::new(), Vec::new());
+            for group in runs.chunks(seeds).filter(|g| g[0].pressure == p) {
+                let (mean, half) = spread(group, value);
+                points.push((group[0].ratio, mean));
+                bars.push(((mean - half).max(floor), mean + half));
+            }
+            let series = Series::new(format!("p = {}", quantity(p, "Pa", 1)), points);
+            chart = chart.with(series.style(Style::LineMarkers).intervals(bars));
         }
         chart
     };
     let charts = [
-        chart("friction coefficient", Axis::new("mu", ""), &|o| o.friction),
         chart(
-            "shear of the interior over V",
-            Axis::new("w(0.9) - w(0.1)", ""),
+            "Friction",
+            Axis::new("friction coefficient µ", ""),
+            &|o| o.friction,
+        ),
+        chart(
+            "Shear of the interior",
+            Axis::new("[v(0.9 e) − v(0.1 e)]/V", ""),
             &|o| o.interior,
         ),
         chart(
-            "mean cluster by mass",
-            Axis::new("grains", "").log(),
+            "Mean cluster by mass",
+            Axis::new("grains in a cluster", "").log(),
             &|o| o.cluster,
         ),
     ];
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures/regime_map.png");
-    draw_panels(&charts, 3, &path)?;
+    draw_panels(&charts, 2, &path)?;
     println!("drawn to docs/figures/regime_map.png");
     Ok(())
 }
 
-fn one(pressure: f64, ratio: f64) -> Result<Outcome, Failure> {
+/// Mean over the seeds, and half the width of its interval of 95 % by Student's t.
+fn spread(group: &[Outcome], value: &dyn Fn(&Outcome) -> f64) -> (f64, f64) {
+    let n = group.len() as f64;
+    let mean = group.iter().map(value).sum::<f64>() / n;
+    let square: f64 = group.iter().map(|o| (value(o) - mean).powi(2)).sum();
+    let t = StudentsT::new(0.0, 1.0, n - 1.0).map_or(f64::NAN, |t| t.inverse_cdf(0.975));
+    (mean, t * (square / (n * (n - 1.0).max(1.0))).sqrt())
+}
+
+fn one(pressure: f64, ratio: f64, seed: u64) -> Result<Outcome, Failure> {
     let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/regime_map.ron");
     let strength = ratio * pressure;
     let sets = [
+        format!("seed={seed}"),
         format!("interfaces.0.parameters.damage.strength={strength:e}"),
         format!(
             "interfaces.0.parameters.damage.energy={:e}",
@@ -102,7 +132,7 @@ fn one(pressure: f64, ratio: f64) -> Result<Outcome, Failure> {
     ];
     let loaded = load(&case, &sets)?;
     let built = loaded.build_in::<Plane>(&SearchPath::new(&[]))?;
-    let folder = format!("fretwork-regime-{}-{pressure}-{ratio}", std::process::id());
+    let folder = format!("fretwork-regime-{}-{pressure}-{ratio}-{seed}", std::process::id());
     let out = std::env::temp_dir().join(folder);
     let options = RunOptions {
         out: out.clone(),

@@ -66,30 +66,42 @@ impl<S: Space> Surface<S> for Drum {
 
     fn outline(&self) -> Vec<Vec<S::Vector>> {
         let [i, j] = self.plane::<S>();
+        if S::D == 2 {
+            let point = |k: usize| {
+                let (sin, cos) = (TAU * (k % 180) as f64 / 180.0).sin_cos();
+                let mut p = S::Vector::null();
+                (p[i], p[j]) = (self.radius * cos, self.radius * sin);
+                p
+            };
+            // Solid on the right, as with profiles: anticlockwise, closed.
+            return vec![(0..=180).map(point).collect()];
+        }
+        let mut faces = Surface::<S>::faces_within(self, 0.5 * self.radius);
+        // Files hold them the other way round.
+        faces.iter_mut().for_each(|f| f.swap(1, 3));
+        faces
+    }
+
+    fn faces_within(&self, reach: f64) -> Vec<Vec<S::Vector>> {
+        if S::D == 2 {
+            return Surface::<S>::outline(self);
+        }
+        let [i, j] = self.plane::<S>();
         let point = |k: usize, along: f64| {
-            let (sin, cos) = (TAU * k as f64 / 180.0).sin_cos();
+            let (sin, cos) = (TAU * (k % 180) as f64 / 180.0).sin_cos();
             let mut p = S::Vector::null();
-            (p[i], p[j]) = (self.radius * cos, self.radius * sin);
-            if S::D == 3 {
-                p[self.axis] = along;
-            }
+            (p[i], p[j], p[self.axis]) = (self.radius * cos, self.radius * sin, along);
             p
         };
-        if S::D == 2 {
-            // Solid on the right, as with profiles: anticlockwise, closed.
-            return vec![(0..=180).map(|k| point(k % 180, 0.0)).collect()];
-        }
-        let half = 0.5 * self.radius;
-        (0..180)
-            .map(|k| {
-                vec![
-                    point(k, -half),
-                    point(k + 1, -half),
-                    point(k + 1, half),
-                    point(k, half),
-                ]
-            })
-            .collect()
+        let face = |k: usize| {
+            vec![
+                point(k, -reach),
+                point(k, reach),
+                point(k + 1, reach),
+                point(k + 1, -reach),
+            ]
+        };
+        (0..180).map(face).collect()
     }
 
     fn any_depth(&self) -> bool {
@@ -133,6 +145,19 @@ mod tests {
             touch::<Plane>(&drum, Vector2::zeros(), 3.0)[0].distance,
             2.0
         );
+    }
+
+    #[test]
+    fn faces_look_inwards_and_reach_as_far_as_asked() {
+        for axis in 0..3 {
+            let drum = Drum::new(2.0, axis);
+            for face in Surface::<Solid>::faces_within(&drum, 5.0) {
+                let middle = face.iter().sum::<Vector3<f64>>() / 4.0;
+                let normal = (face[1] - face[0]).cross(&(face[2] - face[1]));
+                assert!(normal.dot(&middle) < 0.0 && normal[axis].abs() < 1e-12);
+                assert!(face.iter().all(|p| (p[axis].abs() - 5.0).abs() < 1e-12));
+            }
+        }
     }
 
     #[test]

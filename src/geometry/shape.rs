@@ -59,6 +59,10 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn facets(&self, _low: &S::Vector, _high: &S::Vector, _out: &mut Vec<Facet<S::Vector>>) {}
     /// Corners for pictures and files (m): polylines in 2D, polygons in 3D, in the surface's frame.
     fn outline(&self) -> Vec<Vec<S::Vector>>;
+    /// Faces for pictures of it within `reach` (m) of the origin of its frame, anticlockwise seen from the open side (3D).
+    fn faces_within(&self, _reach: f64) -> Vec<Vec<S::Vector>> {
+        self.outline()
+    }
     /// Whether the outline shows all of it.
     fn bounded(&self) -> bool {
         false
@@ -130,8 +134,11 @@ impl<S: Space> Surface<S> for HalfSpace<S> {
     }
 
     fn outline(&self) -> Vec<Vec<S::Vector>> {
+        self.faces_within(self.shown)
+    }
+
+    fn faces_within(&self, s: f64) -> Vec<Vec<S::Vector>> {
         let [t1, t2] = S::tangents(&self.normal);
-        let s = self.shown;
         if S::D == 2 {
             // Solid on the right, as with profiles.
             vec![vec![t1 * s, t1 * -s]]

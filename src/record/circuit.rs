@@ -20,11 +20,11 @@ pub fn draw(
     let series =
         |name: &str| -> Vec<(f64, f64)> { time.iter().copied().zip(table.column(name)).collect() };
     let chart = |heading: &str, y: &str| {
-        let mut chart = Chart::new(heading, Axis::new("time", "s"), Axis::new(y, unit));
+        let mut chart = Chart::new(heading, Axis::new("time t", "s"), Axis::new(y, unit));
         chart.subtitle = Some(title.to_owned());
         chart
     };
-    let mut passed = chart("what passed since the start", "mass");
+    let mut passed = chart("Mass that passed since the start", "mass m");
     for (column, label) in [
         ("source", "source, Qs"),
         ("ejected", "ejected, Qe"),
@@ -32,16 +32,15 @@ pub fn draw(
         ("lost", "lost, Qw"),
         ("attached", "tied again, Qa"),
     ] {
-        let points = series(column);
-        if points.iter().any(|p| p.1 != 0.0) {
-            passed = passed.with(Series::new(label, points));
-        }
+        passed = passed.with_unless_zero(Series::new(label, series(column)));
     }
     let inside = series("M");
     let top = inside.iter().map(|p| p.1).fold(0.0, f64::max);
     let from = vec![(window[0], 0.0), (window[0], 1.05 * top)];
-    let contact = chart("third body in the contact", "M")
-        .with(Series::new("M", inside))
-        .with(Series::new("means from here on", from).style(Style::Dashed));
+    let mut contact =
+        chart("Third body in the contact", "mass M").with_unless_zero(Series::new("M", inside));
+    if contact.has_data() {
+        contact = contact.with(Series::new("means from here on", from).style(Style::Dashed));
+    }
     draw_panels(&[passed, contact], 2, &dir.join("circuit.png"))
 }

@@ -1,15 +1,15 @@
 //! The state of a simulation as pictures and as points, lines and outlines for files.
 
 mod links;
+mod quantity;
+mod space;
 
 pub use links::{ends, state};
 
 use crate::geometry::convex::{Core, Piece};
 use crate::geometry::shape::Ball;
-use crate::geometry::space::{Space, VectorLike};
-use crate::report::{
-    self, Disk, Frame, Link, LinkState, Outline, Paint, ReportError, Scale, Solid, View,
-};
+use crate::geometry::space::Space;
+use crate::report::{Disk, Frame, Link, LinkState, Outline, Paint, ReportError, Scale};
 use crate::scene::case::OutputSpec;
 use crate::step::Simulation;
 use links::{forces, links};
@@ -30,7 +30,8 @@ pub struct Camera {
 /// What a picture shows.
 #[derive(Clone, Copy, Debug)]
 pub enum Subject<'a> {
-    /// Grains, in the colours of their layers where there are layers, else with the forces and bonds between them.
+    /// Grains in the colours of their layers where there are layers; else with their speed, or the damage of their
+    /// bonds where there are bonds, and in the plane the forces and bonds between them.
     Scene,
     /// The bonds, intact and broken.
     Bonds,
@@ -104,20 +105,23 @@ impl Camera {
             f64::INFINITY,
             f64::NEG_INFINITY,
         ];
-        let pieces = &simulation.shapes.pieces;
-        let pieces = pieces
-            .iter()
-            .map(|p| (piece_centre(simulation, p), p.bound));
-        for (centre, radius) in balls(simulation).chain(pieces) {
-            let at = if S::D == 2 {
-                let c = periodic.wrapped(centre);
-                [c[0], c[1]]
-            } else {
-                view().project(centre.padded()).0
-            };
+        let mut take = |at: [f64; 2], radius: f64| {
             for k in 0..2 {
                 w[2 * k] = w[2 * k].min(at[k] - radius);
                 w[2 * k + 1] = w[2 * k + 1].max(at[k] + radius);
+            }
+        };
+        if S::D == 3 {
+            let scene = space::scene(simulation, &[]);
+            scene.extent().for_each(|p| take(p, 0.0));
+        } else {
+            let pieces = &simulation.shapes.pieces;
+            let pieces = pieces
+                .iter()
+                .map(|p| (piece_centre(simulation, p), p.bound));
+            for (centre, radius) in balls(simulation).chain(pieces) {
+                let c = periodic.wrapped(centre);
+                take([c[0], c[1]], radius);
             }
         }
         if !w.iter().all(|x| x.is_finite()) {
@@ -149,53 +153,37 @@ impl Camera {
         caption: Vec<String>,
         path: &Path,
     ) -> Result<(), ReportError> {
-        let values: Vec<Paint>;
+        let made: Vec<Paint>;
         let (paints, scale) = match subject {
+            Subject::Scene if self.paints.is_empty() => {
+                let scale;
+                (made, scale) = quantity::of(simulation);
+                (&made[..], scale)
+            }
             Subject::Scene => (&self.paints[..], None),
             Subject::Bonds | Subject::Chains(_) => (&[][..], None),
             Subject::Painted(paints) => (paints, None),
-            Subject::Values {
-                values: list,
-                label,
-                top,
-            } => {
-                values = list.iter().map(|v| Paint::Value(v / top)).collect();
-                let label = label.to_owned();
-                (&values[..], Some(Scale { label, top }))
+            Subject::Values { values, label, top } => {
+                made = values.iter().map(|v| Paint::Value(v / top)).collect();
+                let label = format!("{label}, that or more");
+                let scale = Scale {
+                    label,
+                    unit: String::new(),
+                    top,
+                    bonds: false,
+                };
+                (&made[..], Some(scale))
             }
         };
-        // Colours say something of the grains: nothing is drawn over them.
-        let linked = paints.is_empty();
         let flat = S::D == 2;
-        let solids = if flat {
-            Vec::new()
-        } else {
-            solids(simulation, paints)
-        };
-        let (disks, links, bodies) = if flat {
-            (
-                disks(simulation, self.window, paints),
-                if matches!(subject, Subject::Bonds) {
-                    // A map of the state alone: forces would hide it.
-                    let bonds = links(simulation, self.window).into_iter();
-                    let bonds = bonds.filter(|l| l.state != LinkState::Plain);
-                    bonds.map(|l| Link { width: 0.3, ..l }).collect()
-                } else if let Subject::Chains(pairs) = subject {
-                    forces(simulation, self.window, pairs)
-                } else if linked {
-                    links(simulation, self.window)
-                } else {
-                    Vec::new()
-                },
-                [
-                    outlines(simulation, self.window),
-                    pieces(simulation, self.window, paints),
-                ]
-                .concat(),
-            )
-        } else {
-            (Vec::new(), Vec::new(), Vec::new())
-        };
+        let scene = (!flat).then(|| space::scene(simulation, paints));
+        let (mut disks, mut links, mut bodies) = (Vec::new(), Vec::new(), Vec::new());
+        if flat {
+            disks = self::disks(simulation, self.window, paints);
+            links = self.lines(simulation, subject);
+            bodies = outlines(simulation, self.window);
+            bodies.extend(pieces(simulation, self.window, paints));
+        }
         Frame {
             title: title.to_owned(),
             caption,
@@ -205,15 +193,27 @@ impl Camera {
             links: &links,
             arrows: &[],
             scale,
-            solids: &solids,
+            scene: scene.as_ref(),
             width_px: self.width,
         }
         .draw(path)
     }
-}
 
-fn view() -> View {
-    View::new(0.6, 0.4)
+    /// The contacts that a subject shows as lines (2D).
+    fn lines<S: Space>(&self, simulation: &Simulation<S>, subject: Subject<'_>) -> Vec<Link> {
+        match subject {
+            // A map of the state alone: forces would hide it.
+            Subject::Bonds => {
+                let bonds = links(simulation, self.window).into_iter();
+                let bonds = bonds.filter(|l| l.state != LinkState::Plain);
+                bonds.map(|l| Link { width: 0.3, ..l }).collect()
+            }
+            Subject::Chains(pairs) => forces(simulation, self.window, pairs),
+            Subject::Scene if self.paints.is_empty() => links(simulation, self.window),
+            // Colours say something of the grains: nothing is drawn over them.
+            _ => Vec::new(),
+        }
+    }
 }
 
 fn balls<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (S::Vector, f64)> + '_ {
@@ -303,41 +303,6 @@ fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Vec
 
 fn paint(paints: &[Paint], ball: usize) -> Paint {
     paints.get(ball).copied().unwrap_or_default()
-}
-
-/// Grains in space, before them the meshes of first bodies.
-fn solids<S: Space>(s: &Simulation<S>, paints: &[Paint]) -> Vec<Solid> {
-    let all = s.shapes.balls.iter().zip(balls(s)).enumerate();
-    let list: Vec<([f64; 3], f64, Paint)> = all
-        .filter(|(_, (b, _))| !s.bodies.gone[b.body as usize])
-        .map(|(k, (_, (c, r)))| (s.shapes.periodic.wrapped(c).padded(), r, paint(paints, k)))
-        .collect();
-    let padded = |face: &Vec<S::Vector>| face.iter().map(VectorLike::padded).collect();
-    let piece = |p: &Piece<S>| {
-        let faces = piece_outline(s, p);
-        (faces.iter().map(padded).collect(), 0.3)
-    };
-    let shown = |b: u32| !s.bodies.gone[b as usize];
-    let pieces = s.shapes.pieces.iter().filter(|p| shown(p.body));
-    let pieces: Vec<report::Body> = pieces.map(piece).collect();
-    let mut out = Vec::new();
-    let meshes = s.shapes.surfaces.iter();
-    // Planes and drums have no end: they would hide all.
-    for mesh in meshes.filter(|m| shown(m.body) && m.shape.bounded()) {
-        let b = mesh.body as usize;
-        let world = |p: &S::Vector| {
-            let own = mesh.offset + *p;
-            (s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &own)).padded()
-        };
-        let outline = mesh.shape.outline();
-        let faces: Vec<Vec<[f64; 3]>> = outline
-            .iter()
-            .map(|f| f.iter().map(world).collect())
-            .collect();
-        out.push(Solid::Faces(report::faces(&faces, 0.9, &view())));
-    }
-    out.extend(report::project(&list, &pieces, &view()));
-    out
 }
 
 /// First bodies as closed polygons that reach out of the window.

@@ -141,13 +141,16 @@ pub fn write<S: Space>(dir: &Path, s: &Simulation<S>) -> Result<(), ReportError>
 /// # Errors
 /// A file cannot be written.
 pub fn draw<S: Space>(dir: &Path, title: &str, s: &Simulation<S>) -> Result<(), ReportError> {
-    for scar in &s.scars {
+    for scar in s.scars.iter().filter(|c| c.deepest() > 0.0) {
         let rows = scar.along();
         let o = shape::outline(&rows);
         let mut depth = Chart::new(
-            format!("scar of {}: {:?}", scar.name, o.form),
-            Axis::new("x", "m"),
-            Axis::new("depth", "m"),
+            match o.form {
+                Form::None => format!("Wear scar of {}", scar.name),
+                form => format!("Wear scar of {}, {form:?}-shaped", scar.name),
+            },
+            Axis::new("position x", "m"),
+            Axis::new("−depth", "m"),
         );
         depth.subtitle = Some(title.to_owned());
         // Downwards, as it lies.
@@ -161,15 +164,15 @@ pub fn draw<S: Space>(dir: &Path, title: &str, s: &Simulation<S>) -> Result<(), 
                 .vertices()
                 .map(|(v, d)| (v.at[0], v.at[1] - shape.sign() * d));
             let mut chart = Chart::new(
-                format!("profile of {}", scar.name),
-                Axis::new("x", "m"),
-                Axis::new("z", "m"),
+                format!("Profile of {}", scar.name),
+                Axis::new("position x", "m"),
+                Axis::new("height z", "m"),
             );
             chart.subtitle = Some(title.to_owned());
             charts.push(
                 chart
-                    .with(Series::new("at first", first).style(Style::Dashed))
-                    .with(Series::new("now", now.collect())),
+                    .with(Series::new("before wear", first).style(Style::Dashed))
+                    .with(Series::new("worn", now.collect())),
             );
         }
         let path = dir.join(format!("{}.png", file_name(&scar.name)));

@@ -169,6 +169,18 @@ impl Canvas {
         }
     }
 
+    /// Writes rows of opaque pixels, so many across, over the surface from its left top corner.
+    pub fn write(&mut self, across: usize, pixels: &[Rgb]) {
+        let width = self.pixmap.width() as usize;
+        let rows = self.pixmap.data_mut().chunks_exact_mut(4 * width);
+        for (to, from) in rows.zip(pixels.chunks_exact(across.max(1))) {
+            for (to, from) in to.chunks_exact_mut(4).zip(from) {
+                to[..3].copy_from_slice(from);
+                to[3] = 255;
+            }
+        }
+    }
+
     /// Fills a rectangle given by its left, top, width and height.
     pub fn rect(&mut self, [left, top, width, height]: [f32; 4], colour: Rgb) {
         if let Some(rect) = Rect::from_xywh(left, top, width, height) {

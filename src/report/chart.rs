@@ -7,10 +7,10 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use super::axis::{Axis, Scale};
-use super::canvas::{Canvas, INK, ReportError, Rgb, SOFT_INK, WHITE};
+use super::canvas::{Canvas, INK, ReportError, Rgb, SOFT_INK};
 use super::curve::{PALETTE, draw_series, gradient, thinned};
 use super::font::{Anchor, TextStyle as Text, text_width};
-use super::legend::Legend;
+use super::legend::{Legend, Rows};
 
 /// How a series is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,6 +38,9 @@ pub struct Series {
     pub colour: Option<(u8, u8, u8)>,
     /// Line or markers.
     pub style: Style,
+    /// Lower and upper end of the interval at each point, in the unit of the
+    /// vertical axis; empty for none. An interval that is not finite is left out.
+    pub intervals: Vec<(f64, f64)>,
 }
 
 impl Series {
@@ -48,6 +51,18 @@ impl Series {
             points,
             ..Self::default()
         }
+    }
+
+    /// The same series with an interval at each point, as an error bar.
+    pub fn intervals(mut self, intervals: Vec<(f64, f64)>) -> Self {
+        self.intervals = intervals;
+        self
+    }
+
+    /// The same series in a colour: red, green, blue.
+    pub fn coloured(mut self, red: u8, green: u8, blue: u8) -> Self {
+        self.colour = Some((red, green, blue));
+        self
     }
 
     /// The same series in another style.
@@ -77,9 +92,15 @@ pub struct Chart {
     /// Colours the series along a gradient from first to last, with a bar of
     /// that gradient as legend: for cycles laid over one another.
     pub colour_by_order: bool,
-    /// Width and height in pixels; text and lines follow the width.
+    /// Width and height in pixels; text and lines follow the width of the page.
     pub size_px: (u32, u32),
 }
+
+/// Width of a page in units of layout. Text is 28 of them: 9 pt where the page is
+/// printed 16 cm wide.
+pub(super) const PAGE: f32 = 1400.0;
+/// Size of text in units of layout.
+pub(super) const TEXT: f32 = 28.0;
 
 /// Runs of points in pixels of the plot; a gap starts a new run.
 pub(super) type Runs = Vec<Vec<[f32; 2]>>;
@@ -91,6 +112,33 @@ pub(super) struct Plot {
     pub top: i32,
     pub width: i32,
     pub height: i32,
+}
+
+impl Plot {
+    /// Where a point lies, in pixels of the plot.
+    fn place(&self, x: &Scale, y: &Scale, p: (f64, f64)) -> [f32; 2] {
+        let across = |scale: &Scale, value: f64, length: i32| {
+            let (a, b) = scale.range;
+            ((scale.shown(value) - a) / (b - a) * f64::from(length)).clamp(-1e6, 1e6)
+        };
+        let (h, v) = (across(x, p.0, self.width), across(y, p.1, self.height));
+        [h as f32, (f64::from(self.height) - v) as f32]
+    }
+}
+
+/// Text in lines that fit a width, broken at spaces.
+pub(super) fn wrapped(text: &str, size: f32, room: f32) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line} {word}"), size) <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 impl Chart {
@@ -115,67 +163,104 @@ impl Chart {
         self
     }
 
-    /// Draws the chart to a PNG file.
-    pub fn draw(&self, path: &Path) -> Result<(), ReportError> {
-        self.page()?.save(path)
+    /// The same chart with one more curve, unless it is zero all along or has no
+    /// point that can be shown.
+    pub fn with_unless_zero(self, series: Series) -> Self {
+        let shown = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite() && p.1 != 0.0;
+        if series.points.iter().any(shown) {
+            self.with(series)
+        } else {
+            self
+        }
     }
 
-    /// Draws the chart.
-    pub(super) fn page(&self) -> Result<Canvas, ReportError> {
+    /// Whether there is a point to show.
+    pub fn has_data(&self) -> bool {
+        self.series
+            .iter()
+            .any(|s| s.points.iter().any(|p| self.shows(p)))
+    }
+
+    /// Whether a point can be shown on both axes.
+    fn shows(&self, p: &(f64, f64)) -> bool {
+        let on = |axis: &Axis, v: f64| v.is_finite() && (!axis.log || v > 0.0);
+        on(&self.x, p.0) && on(&self.y, p.1)
+    }
+
+    /// Draws the chart to a PNG file; nothing where there is nothing to show.
+    pub fn draw(&self, path: &Path) -> Result<(), ReportError> {
+        if !self.has_data() {
+            return Ok(());
+        }
+        self.page(self.size_px.0)?.save(path)
+    }
+
+    /// Values along the vertical axis that must be seen: points and intervals.
+    fn heights(&self) -> impl Iterator<Item = f64> + '_ {
+        let points = self.series.iter().flat_map(|s| &s.points);
+        let ends = self.series.iter().flat_map(|s| {
+            let with = s.points.iter().zip(&s.intervals);
+            with.filter(|(p, i)| self.shows(p) && i.0.is_finite() && i.1.is_finite())
+                .flat_map(|(_, i)| [i.0, i.1])
+        });
+        points.filter(|p| self.shows(p)).map(|p| p.1).chain(ends)
+    }
+
+    /// Draws the chart as part of a page of a width in pixels, which sets the size
+    /// of text and lines.
+    pub(super) fn page(&self, page_width: u32) -> Result<Canvas, ReportError> {
         let (width, height) = self.size_px;
         if width.min(height) < 200 {
             return Err(ReportError::Size { width, height });
         }
         let mut page = Canvas::new(width, height)?;
-        let u = (width as f32 / 1400.0).min(height as f32 / 800.0);
-        let em = 27.0 * u;
+        let u = page_width as f32 / PAGE;
+        let em = TEXT * u;
+        let (wide, high) = (width as f32, height as f32);
 
-        let all = || self.series.iter().flat_map(|s| &s.points);
-        // A point counts for the ranges only when both its values can be shown.
-        let whole = |p: &&(f64, f64)| {
-            let shows = |axis: &Axis, v: f64| v.is_finite() && (!axis.log || v > 0.0);
-            shows(&self.x, p.0) && shows(&self.y, p.1)
-        };
-        let ticks_y = ((height as f32 / (120.0 * u)) as usize).clamp(3, 9);
-        let xs = all().filter(whole).map(|p| p.0);
-        let ys = all().filter(whole).map(|p| p.1);
-        let x = Scale::fit(&self.x, xs, self.x_range, 7)?;
-        let y = Scale::fit(&self.y, ys, self.y_range, ticks_y)?;
-        let empty = !all().any(|p| whole(&p));
+        let points = || self.series.iter().flat_map(|s| &s.points);
+        let ticks_x = ((wide / em - 5.0) / 5.0) as usize;
+        let ticks_y = ((high / em - 7.0) / 2.6) as usize;
+        let xs = points().filter(|p| self.shows(p)).map(|p| p.0);
+        let x = Scale::fit(&self.x, xs, self.x_range, ticks_x.clamp(2, 8))?;
+        let y = Scale::fit(&self.y, self.heights(), self.y_range, ticks_y.clamp(2, 8))?;
 
         let widest = |scale: &Scale| {
             let widths = scale.ticks.iter().map(|t| text_width(&t.1, em));
             widths.fold(0.0, f32::max)
         };
-        let header = [!self.title.is_empty(), self.subtitle.is_some()];
-        let top = 34.0 * u
-            + if header[0] { 44.0 * u } else { 0.0 }
-            + if header[1] { 34.0 * u } else { 0.0 };
         let left = widest(&y) + 88.0 * u;
         let right = (widest(&x) / 2.0 + 12.0 * u).max(36.0 * u);
+        let top = self.header(wide - left - 16.0 * u, u).1;
+        let foot = 116.0 * u;
         let mut plot = Plot {
             left: left as i32,
             top: top as i32,
-            width: ((width as f32 - left - right) as i32).max(20),
-            height: ((height as f32 - top - 112.0 * u) as i32).max(20),
+            width: ((wide - left - right) as i32).max(20),
+            height: ((high - top - foot) as i32).max(20),
         };
 
-        // The legend goes where no curve passes, else beside the plot.
-        let legend = Legend::of(self, u);
+        // The legend goes where no curve passes, else in rows over the plot.
         let mut curves = self.curves(&x, &y, &plot);
-        let mut corner = legend
+        let legend = Legend::of(self, u);
+        let mut ink = curves.clone();
+        ink.push(self.bars(&x, &y, &plot));
+        let corner = legend
             .as_ref()
-            .and_then(|l| l.free_place(&curves, &plot, u));
-        if let (Some(legend), None) = (&legend, corner) {
-            let room = (legend.width + 28.0 * u).min(plot.width as f32 / 2.0);
-            plot.width -= room as i32;
+            .and_then(|l| l.free_place(&ink, &plot, u));
+        let mut rows = None;
+        if legend.is_some() && corner.is_none() {
+            let laid = Rows::of(self, plot.width as f32, u);
+            let room = (laid.height as i32).min(plot.height / 2);
+            (plot.top, plot.height) = (plot.top + room, plot.height - room);
             curves = self.curves(&x, &y, &plot);
-            corner = Some([(plot.left + plot.width) as f32 + 24.0 * u, top]);
+            rows = Some(laid);
         }
 
         grid(&mut page, &plot, &x, &y, u)?;
         let mut field = Canvas::clear(plot.width as u32, plot.height as u32)?;
         for (i, (series, runs)) in self.series.iter().zip(&curves).enumerate() {
+            self.draw_intervals(&mut field, i, &x, &y, &plot, u);
             draw_series(&mut field, runs, series.style, self.colour(i), i, u);
         }
         page.lay(&field, plot.left, plot.top);
@@ -183,17 +268,62 @@ impl Chart {
         if let (Some(legend), Some(corner)) = (&legend, corner) {
             legend.draw(self, &mut page, corner, u);
         }
-        if empty {
-            let centre = [
-                plot.left as f32 + plot.width as f32 / 2.0,
-                plot.top as f32 + plot.height as f32 / 2.0,
-            ];
-            let style = Text::new(1.5 * em, SOFT_INK)
-                .anchored(Anchor::Middle)
-                .halo(WHITE);
-            page.text("no data", centre, &style);
+        if let Some(rows) = &rows {
+            rows.draw(self, &mut page, [plot.left as f32, top], u);
         }
         Ok(page)
+    }
+
+    /// Lines of the heading with their sizes, in a width; and the height of all.
+    fn header(&self, room: f32, u: f32) -> (Vec<(String, f32, bool)>, f32) {
+        let mut lines = Vec::new();
+        if !self.title.is_empty() {
+            for line in wrapped(&self.title, 31.0 * u, room) {
+                lines.push((line, 31.0 * u, true));
+            }
+        }
+        for text in self.subtitle.iter().filter(|t| !t.is_empty()) {
+            for line in wrapped(text, TEXT * u, room) {
+                lines.push((line, TEXT * u, false));
+            }
+        }
+        let height = 34.0 * u + lines.len() as f32 * 40.0 * u;
+        (lines, height)
+    }
+
+    /// Error bars of a series from low to high, in pixels of the plot.
+    fn bars_of(&self, series: &Series, x: &Scale, y: &Scale, plot: &Plot) -> Runs {
+        let with = series.points.iter().zip(&series.intervals);
+        let bars = with.map(|(p, (low, high))| {
+            vec![plot.place(x, y, (p.0, *low)), plot.place(x, y, (p.0, *high))]
+        });
+        bars.filter(|b| b.iter().flatten().all(|v| v.is_finite()))
+            .collect()
+    }
+
+    fn bars(&self, x: &Scale, y: &Scale, plot: &Plot) -> Runs {
+        let all = self.series.iter();
+        all.flat_map(|s| self.bars_of(s, x, y, plot)).collect()
+    }
+
+    /// Draws the error bars of a series, with caps.
+    fn draw_intervals(
+        &self,
+        field: &mut Canvas,
+        series: usize,
+        x: &Scale,
+        y: &Scale,
+        plot: &Plot,
+        u: f32,
+    ) {
+        let colour = self.colour(series);
+        for bar in self.bars_of(&self.series[series], x, y, plot) {
+            field.stroke(&bar, false, 2.4 * u, colour, None);
+            for [at, end] in bar {
+                let cap = [[at - 10.0 * u, end], [at + 10.0 * u, end]];
+                field.stroke(&cap, false, 2.4 * u, colour, None);
+            }
+        }
     }
 
     pub(super) fn colour(&self, index: usize) -> Rgb {
@@ -208,14 +338,7 @@ impl Chart {
 
     /// Every series in pixels of the plot, thinned to what the pixels can show.
     fn curves(&self, x: &Scale, y: &Scale, plot: &Plot) -> Vec<Runs> {
-        let across = |scale: &Scale, value: f64, length: i32| {
-            let (a, b) = scale.range;
-            ((scale.shown(value) - a) / (b - a) * f64::from(length)).clamp(-1e6, 1e6)
-        };
-        let place = |&(px, py): &(f64, f64)| {
-            let (h, v) = (across(x, px, plot.width), across(y, py, plot.height));
-            [h as f32, (f64::from(plot.height) - v) as f32]
-        };
+        let place = |p: &(f64, f64)| plot.place(x, y, *p);
         self.series
             .iter()
             .map(|s| {
@@ -241,25 +364,18 @@ impl Chart {
 
     /// Heading, tick labels and axis names.
     fn write(&self, page: &mut Canvas, plot: &Plot, x: &Scale, y: &Scale, u: f32) {
-        let em = 27.0 * u;
+        let em = TEXT * u;
         let (left, top) = (plot.left as f32, plot.top as f32);
         let (width, height) = (plot.width as f32, plot.height as f32);
         let bottom = top + height;
-        let under = if self.subtitle.is_some() {
-            34.0 * u
-        } else {
-            0.0
-        };
         let room = page.pixmap.width() as f32 - 16.0 * u - left;
-        let heading = |text: &str, size: f32| size * (room / text_width(text, size)).min(1.0);
-        page.text(
-            &self.title,
-            [left, top - 22.0 * u - under],
-            &Text::new(heading(&self.title, 31.0 * u), INK).bold(),
-        );
-        if let Some(subtitle) = &self.subtitle {
-            let size = heading(subtitle, 24.0 * u);
-            page.text(subtitle, [left, top - 20.0 * u], &Text::new(size, SOFT_INK));
+        for (k, (line, size, bold)) in self.header(room, u).0.iter().enumerate() {
+            let size = size * (room / text_width(line, *size)).min(1.0);
+            let style = match bold {
+                true => Text::new(size, INK).bold(),
+                false => Text::new(size, SOFT_INK),
+            };
+            page.text(line, [left, 44.0 * u + k as f32 * 40.0 * u], &style);
         }
         let on =
             |scale: &Scale, v: f64| ((v - scale.range.0) / (scale.range.1 - scale.range.0)) as f32;
@@ -275,16 +391,23 @@ impl Chart {
             let at = [left - 0.5 * em, bottom - height * on(y, *v) + 0.34 * em];
             page.text(label, at, &Text::new(em, INK).anchored(Anchor::End));
         }
+        // A long name may reach beyond the plot before it is set smaller.
         let fit = |text: &str, room: f32| {
-            let size = 29.0 * u;
+            let size = 30.0 * u;
             size * (room / text_width(text, size)).min(1.0)
         };
-        let name = Text::new(fit(&x.label, width), INK).anchored(Anchor::Middle);
-        page.text(&x.label, [left + width / 2.0, bottom + 84.0 * u], &name);
-        let name = Text::new(fit(&y.label, height), INK)
+        let name = Text::new(fit(&x.label, width + left), INK).anchored(Anchor::Middle);
+        let half = text_width(&x.label, name.size) / 2.0;
+        let end = page.pixmap.width() as f32 - 10.0 * u - half;
+        let at = (left + width / 2.0).min(end).max(half);
+        page.text(&x.label, [at, bottom + 88.0 * u], &name);
+        let high = page.pixmap.height() as f32;
+        let name = Text::new(fit(&y.label, high - 20.0 * u), INK)
             .anchored(Anchor::Middle)
             .upwards();
-        page.text(&y.label, [42.0 * u, top + height / 2.0], &name);
+        let half = text_width(&y.label, name.size) / 2.0;
+        let at = (top + height / 2.0).max(half + 8.0 * u).min((high - half - 8.0 * u).max(half));
+        page.text(&y.label, [42.0 * u, at], &name);
     }
 }
 
@@ -323,6 +446,16 @@ fn grid(page: &mut Canvas, plot: &Plot, x: &Scale, y: &Scale, u: f32) -> Result<
         }
         for (t, _) in &y.ticks {
             for (from, to) in [(x0, x0 + tx), (x1, x1 - tx)] {
+                area.draw(&PathElement::new(vec![(from, *t), (to, *t)], dark))?;
+            }
+        }
+        for t in &x.minor {
+            for (from, to) in [(y0, y0 + 0.5 * ty), (y1, y1 - 0.5 * ty)] {
+                area.draw(&PathElement::new(vec![(*t, from), (*t, to)], dark))?;
+            }
+        }
+        for t in &y.minor {
+            for (from, to) in [(x0, x0 + 0.5 * tx), (x1, x1 - 0.5 * tx)] {
                 area.draw(&PathElement::new(vec![(from, *t), (to, *t)], dark))?;
             }
         }
@@ -384,20 +517,26 @@ mod tests {
                 chart.size_px = (420, 300);
                 let path = file(name);
                 chart.draw(&path).unwrap();
-                assert_eq!(png_size(&path), (420, 300));
-                std::fs::remove_file(path).unwrap();
+                // Nothing to show leaves no file.
+                let empty = ["empty", "nothing-finite"].contains(&name);
+                assert_eq!(path.exists(), !empty, "{name}");
+                if !empty {
+                    assert_eq!(png_size(&path), (420, 300));
+                    std::fs::remove_file(path).unwrap();
+                }
             }
         }
     }
 
     #[test]
     fn errors_name_what_to_change() {
-        let error = chart().draw(Path::new("no-such-folder/a.png")).unwrap_err();
+        let drawn = chart().with(Series::new("a", vec![(0.0, 1.0)]));
+        let error = drawn.draw(Path::new("no-such-folder/a.png")).unwrap_err();
         assert!(
             error.to_string().contains("no-such-folder/a.png"),
             "{error}"
         );
-        let mut upside_down = chart();
+        let mut upside_down = drawn;
         upside_down.x_range = Some((1.0, 0.0));
         let error = upside_down.draw(&file("range")).unwrap_err();
         assert!(error.to_string().contains("displacement δ"), "{error}");

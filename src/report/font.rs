@@ -89,14 +89,68 @@ fn glyph(character: char) -> Option<(usize, GlyphId)> {
         .or_else(|| faces.first().map(|face| (0, face.glyph_id(character))))
 }
 
-/// Glyphs of a line with their pen positions, and the width of it, in pixels.
-fn set_line(text: &str, size: f32) -> (Vec<(usize, GlyphId, f32)>, f32) {
+/// A glyph of a line.
+struct Set {
+    face: usize,
+    id: GlyphId,
+    /// Where it begins, and its em size, pixels.
+    pen: f32,
+    size: f32,
+    /// How far it stands below the line, pixels.
+    drop: f32,
+}
+
+/// Where a character stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Level {
+    Line,
+    Below,
+    Above,
+}
+
+/// Characters of a line with their levels. Below stand one or two letters or digits after a single letter and `_`, as in
+/// `v_x`; other underscores belong to names. Raised digits are those of the line, set smaller: the faces do not have
+/// them all.
+fn levels(text: &str) -> Vec<(char, Level)> {
+    let all: Vec<char> = text.chars().collect();
+    let word = |k: usize| all.get(k).is_some_and(|c| c.is_alphanumeric() || *c == '_');
+    let mut out = Vec::with_capacity(all.len());
+    let mut k = 0;
+    while k < all.len() {
+        let symbol = k > 0 && all[k - 1].is_alphabetic() && !(k > 1 && word(k - 2));
+        let rest = k + 1..all.len();
+        let long = rest.take_while(|i| all[*i].is_alphanumeric()).count();
+        if all[k] == '_' && symbol && (1..=2).contains(&long) && !word(k + 1 + long) {
+            out.extend(all[k + 1..=k + long].iter().map(|c| (*c, Level::Below)));
+            k += long + 1;
+            continue;
+        }
+        out.push(match "⁰¹²³⁴⁵⁶⁷⁸⁹⁻".chars().position(|c| c == all[k]) {
+            Some(10) => ('−', Level::Above),
+            Some(digit) => (char::from(b'0' + digit as u8), Level::Above),
+            None => (all[k], Level::Line),
+        });
+        k += 1;
+    }
+    out
+}
+
+/// Glyphs of a line with their places, and the width of it, in pixels.
+fn set_line(text: &str, size: f32) -> (Vec<Set>, f32) {
     let mut pen = 0.0;
     let mut previous = None;
     let mut glyphs = Vec::with_capacity(text.len());
-    for (face_index, id) in text.chars().filter_map(glyph) {
+    for (character, level) in levels(text) {
+        let Some((face_index, id)) = glyph(character) else {
+            continue;
+        };
         let Some(face) = faces().get(face_index) else {
             continue;
+        };
+        let (size, drop) = match level {
+            Level::Line => (size, 0.0),
+            Level::Below => (0.72 * size, 0.2 * size),
+            Level::Above => (0.68 * size, -0.36 * size),
         };
         let scale = size / face.units_per_em().unwrap_or(1000.0);
         if let Some((before_face, before)) = previous
@@ -104,7 +158,13 @@ fn set_line(text: &str, size: f32) -> (Vec<(usize, GlyphId, f32)>, f32) {
         {
             pen += scale * face.kern_unscaled(before, id);
         }
-        glyphs.push((face_index, id, pen));
+        glyphs.push(Set {
+            face: face_index,
+            id,
+            pen,
+            size,
+            drop,
+        });
         pen += scale * face.h_advance_unscaled(id);
         previous = Some((face_index, id));
     }
@@ -125,16 +185,16 @@ pub(super) fn text_path(text: &str, style: &TextStyle) -> Option<Path> {
         Anchor::End => -width,
     };
     let mut builder = PathBuilder::new();
-    for (face_index, id, pen) in glyphs {
-        let Some(face) = faces().get(face_index) else {
+    for set in glyphs {
+        let Some(face) = faces().get(set.face) else {
             continue;
         };
-        let Some(outline) = face.outline(id) else {
+        let Some(outline) = face.outline(set.id) else {
             continue;
         };
-        let scale = style.size / face.units_per_em().unwrap_or(1000.0);
+        let scale = set.size / face.units_per_em().unwrap_or(1000.0);
         let place = |p: ab_glyph::Point| {
-            let (x, y) = (start + pen + scale * p.x, -scale * p.y);
+            let (x, y) = (start + set.pen + scale * p.x, set.drop - scale * p.y);
             if style.upwards { (y, -x) } else { (x, y) }
         };
         let mut last = None;
@@ -179,10 +239,29 @@ mod tests {
 
     #[test]
     fn every_symbol_of_the_axes_has_a_glyph() {
-        for c in "δµφμσθ→·×−⁰¹²³⁴⁵⁶⁷⁸⁹⁻°≈≤½".chars() {
+        for c in "δµφμσθτεωξ→·×−⁰¹²³⁴⁵⁶⁷⁸⁹⁻°≈≤½".chars() {
             let (_, id) = glyph(c).unwrap();
             assert_ne!(id.0, 0, "no glyph for {c}");
         }
+    }
+
+    #[test]
+    fn symbols_have_subscripts_and_names_keep_their_underscores() {
+        let shown = |text: &str| -> String {
+            let mark = |(c, level): (char, Level)| match level {
+                Level::Line => c.to_string(),
+                Level::Below => format!("<{c}>"),
+                Level::Above => format!("^{c}"),
+            };
+            levels(text).into_iter().map(mark).collect()
+        };
+        assert_eq!(shown("force F_x (N)"), "force F<x> (N)");
+        assert_eq!(shown("σ_yy, across"), "σ<y><y>, across");
+        assert_eq!(shown("2×10⁻¹⁶ m²"), "2×10^−^1^6 m^2");
+        for name in ["damage_ratio", "my_x", "a_long", "v_", "_x", "a_b_c"] {
+            assert_eq!(shown(name), name);
+        }
+        assert!(text_width("v_x", 20.0) < text_width("vx", 20.0));
     }
 
     #[test]

@@ -5,11 +5,11 @@ use std::path::Path;
 use tiny_skia::PathBuilder;
 
 use super::canvas::{Canvas, INK, ReportError, Rgb, SOFT_INK, mix};
+use super::chart::{PAGE, TEXT};
 use super::font::{Anchor, TextStyle, text_width};
 use super::furniture::{self, caption_lines, centroid, push_bar};
-use super::paint::{self, Paint, Scale};
-use super::solid::{self, Solid};
-use super::sphere::paint_sphere;
+use super::paint::{self, DAMAGED, Paint, SOUND, Scale};
+use super::scene::{Place, Scene};
 
 /// A first body (rail, wheel), or a grain with corners.
 #[derive(Clone, Debug, Default)]
@@ -99,16 +99,14 @@ pub struct Frame<'a> {
     pub links: &'a [Link],
     /// Loads and motions.
     pub arrows: &'a [Arrow],
-    /// What the values of the grains mean, where they are painted by one.
+    /// What the values of the grains or of the bonds mean, where they are painted by one.
     pub scale: Option<Scale>,
-    /// Grains in space, drawn in order over the disks.
-    pub solids: &'a [Solid],
+    /// What is shown in space, in place of bodies and disks.
+    pub scene: Option<&'a Scene>,
     /// Width of the picture in pixels; the height follows from the window.
     pub width_px: u32,
 }
 
-pub(super) const SOUND: Rgb = [150, 0, 12];
-pub(super) const DAMAGED: Rgb = [255, 112, 20];
 pub(super) const BROKEN: Rgb = [20, 92, 224];
 pub(super) const CHAIN: Rgb = [112, 16, 120];
 pub(super) const PLAIN: Rgb = [128, 133, 140];
@@ -146,7 +144,7 @@ impl Frame<'_> {
             let (width, height) = (self.width_px, self.width_px);
             return Err(ReportError::Size { width, height });
         }
-        let u = self.width_px as f32 / 1400.0;
+        let u = self.width_px as f32 / PAGE;
         let side = (24.0 * u).round();
         let field_width = self.width_px as f32 - 2.0 * side;
         let (dx, dy) = (xmax - xmin, ymax - ymin);
@@ -160,39 +158,50 @@ impl Frame<'_> {
         };
 
         let room = self.width_px as f32 - 2.0 * side;
-        let lines = caption_lines(&self.caption, 24.0 * u, room);
+        let lines = caption_lines(&self.caption, TEXT * u, room);
         let title = if self.title.is_empty() { 0.0 } else { 42.0 * u };
-        let top = (title + lines.len() as f32 * 33.0 * u + 24.0 * u).round();
-        let height = top + field_height + 84.0 * u;
+        let top = (title + lines.len() as f32 * 38.0 * u + 24.0 * u).round();
+        // Under the field: the colour bar and the scale bar, then what links mean.
+        let bar = if self.scale.is_some() { 96.0 * u } else { 0.0 };
+        let line = if self.scale.is_none() || !self.links.is_empty() { 62.0 * u } else { 0.0 };
+        let height = top + field_height + bar + line + 12.0 * u;
         let mut page = Canvas::new(self.width_px, height.round() as u32)?;
         let mut field = Canvas::new(field_width as u32, field_height as u32)?;
 
+        if let Some(scene) = self.scene {
+            let place = Place {
+                corner: [map.left, map.top],
+                scale,
+            };
+            scene.paint(&mut field, &place, u);
+        }
         self.draw_bodies(&mut field, &map, u);
         self.draw_disks(&mut field, &map, u);
-        self.draw_solids(&mut field, &map, u);
         self.draw_links(&mut field, &map, u);
         self.draw_labels(&mut field, &map, u);
         page.paste(&field, side as usize, top as usize);
         let edge = [side, top, field_width, field_height];
         page.frame(edge, 1.5 * u, STEEL_EDGE);
 
-        let size = 31.0 * u * (room / text_width(&self.title, 31.0 * u)).min(1.0);
+        let size = 32.0 * u * (room / text_width(&self.title, 32.0 * u)).min(1.0);
         page.text(
             &self.title,
             [side, 44.0 * u],
             &TextStyle::new(size, INK).bold(),
         );
         for (i, line) in lines.iter().enumerate() {
-            let y = title + (33.0 * (i as f32 + 1.0) + 1.0) * u;
-            page.text(line, [side, y], &TextStyle::new(24.0 * u, SOFT_INK));
+            let y = title + (38.0 * (i as f32 + 1.0) - 1.0) * u;
+            page.text(line, [side, y], &TextStyle::new(TEXT * u, SOFT_INK));
         }
-        let foot = [side, top + field_height + 46.0 * u];
-        match &self.scale {
-            Some(scale) => paint::scale(&mut page, scale, foot, u),
-            None => furniture::legend(&mut page, self.links, foot, u),
+        let under = top + field_height;
+        if let Some(scale) = &self.scale {
+            paint::scale(&mut page, scale, [side, under + 40.0 * u], u)?;
         }
+        let foot = under + bar + 38.0 * u;
+        furniture::legend(&mut page, self.links, [side, foot], u);
         let right = side + field_width;
-        furniture::scale_bar(&mut page, [right, top + field_height + 46.0 * u], scale, u);
+        let row = if self.scale.is_some() { under + 40.0 * u } else { foot };
+        furniture::scale_bar(&mut page, [right, row], scale, u);
         page.save(path)
     }
 
@@ -227,26 +236,6 @@ impl Frame<'_> {
         }
         if let Some(path) = ticks.finish() {
             field.fill_path(&path, STEEL_EDGE);
-        }
-    }
-
-    /// Grains in space, each over those before it.
-    fn draw_solids(&self, field: &mut Canvas, map: &Map, u: f32) {
-        for solid in self.solids {
-            match solid {
-                Solid::Sphere(disk) => {
-                    if let Some((at, radius)) = pixels(disk, field, map) {
-                        paint_sphere(field, at, radius, disk.paint.colour(disk.shade));
-                    }
-                }
-                Solid::Faces(faces) => {
-                    for face in faces {
-                        let corners = visible(&face.points, field, map);
-                        let base = Paint::Grey.colour(face.shade);
-                        solid::paint(field, &corners, face.light, base, 0.8 * u);
-                    }
-                }
-            }
         }
     }
 
@@ -310,7 +299,7 @@ impl Frame<'_> {
     }
 
     fn draw_labels(&self, field: &mut Canvas, map: &Map, u: f32) {
-        let name = TextStyle::new(26.0 * u, INK)
+        let name = TextStyle::new(TEXT * u, INK)
             .anchored(Anchor::Middle)
             .bold();
         for body in self.bodies.iter().filter(|b| !b.label.is_empty()) {
@@ -372,7 +361,8 @@ fn visible(points: &[[f64; 2]], field: &Canvas, map: &Map) -> Vec<[f32; 2]> {
 mod tests {
     use super::*;
     use crate::report::canvas::png_size;
-    use crate::report::solid::Face;
+    use crate::report::scene::{Faces, Sphere};
+    use crate::report::view::View;
 
     const UM: f64 = 1e-6;
 
@@ -386,7 +376,7 @@ mod tests {
             links,
             arrows: &[],
             scale: None,
-            solids: &[],
+            scene: None,
             width_px: 400,
         }
     }
@@ -424,7 +414,7 @@ mod tests {
             // The middle of the field: title and caption above, legend below.
             let (side, middle) = (7, picture.width() / 2);
             let scale = f64::from(picture.width() - 2 * side) / (100.0 * UM);
-            let below = (20.0 * UM * scale) as u32 + (84.0 * 400.0 / 1400.0) as u32;
+            let below = (20.0 * UM * scale) as u32 + (74.0 * 400.0 / 1400.0) as u32;
             let row = picture.height() - below;
             let columns = (row - 3..=row + 3).map(|y| picture.pixel(middle, y).unwrap());
             let darkest =
@@ -449,16 +439,24 @@ mod tests {
         }];
         let mut odd = frame(&hollow, &bad, &[]);
         drawn(&odd, "odd");
-        let solids = [
-            Solid::Sphere(bad[0]),
-            Solid::Faces(vec![Face {
-                points: Vec::new(),
-                shade: 0.0,
-                light: 1.0,
-            }]),
-        ];
-        odd.solids = &solids;
-        drawn(&odd, "solids");
+        let faces = |polygons| Faces {
+            polygons,
+            paint: Paint::Grey,
+            first: true,
+        };
+        let corner = [f64::NAN, 0.0, 1.0];
+        let scene = Scene {
+            view: View::new(0.6, 0.4),
+            spheres: vec![Sphere {
+                centre: corner,
+                radius: 1.0,
+                paint: Paint::Grey,
+                first: false,
+            }],
+            faces: vec![faces(vec![Vec::new()]), faces(vec![vec![corner; 3]])],
+        };
+        odd.scene = Some(&scene);
+        drawn(&odd, "space");
         odd.window = [0.0, 1e-6, 0.0, 1.0];
         let tall = drawn(&odd, "tall");
         assert!(tall.height() < 2 * tall.width());

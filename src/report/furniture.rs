@@ -3,20 +3,18 @@
 use tiny_skia::PathBuilder;
 
 use super::canvas::{Canvas, INK, WHITE, mix};
+use super::chart::TEXT;
 use super::font::{Anchor, TextStyle, text_width};
-use super::frame::{BROKEN, CHAIN, DAMAGED, Link, LinkState, PLAIN, SOUND};
+use super::frame::{BROKEN, CHAIN, Link, LinkState, PLAIN};
+use super::paint::{DAMAGED, SOUND};
 
 /// Names the colours of the links that are present, from a point on the
 /// middle of the line.
 pub(super) fn legend(page: &mut Canvas, links: &[Link], [left, middle]: [f32; 2], u: f32) {
-    let em = 23.0 * u;
+    let em = TEXT * u;
     let has = |of: fn(&LinkState) -> bool| links.iter().any(|l| of(&l.state));
     let damaged = has(|s| matches!(s, LinkState::Intact { damage } if *damage > 0.0));
-    let bond = if damaged {
-        "intact bond (sound to damaged)"
-    } else {
-        "intact bond"
-    };
+    let bond = "intact bond";
     let last = if damaged { DAMAGED } else { SOUND };
     let entries = [
         (
@@ -37,7 +35,12 @@ pub(super) fn legend(page: &mut Canvas, links: &[Link], [left, middle]: [f32; 2]
             [CHAIN; 2],
             7.0,
         ),
-        (has(|s| *s == LinkState::Plain), "contact", [PLAIN; 2], 3.0),
+        (
+            has(|s| *s == LinkState::Plain),
+            "contact force (width)",
+            [PLAIN; 2],
+            3.0,
+        ),
     ];
     let mut x = left;
     for (_, label, ends, thick) in entries.into_iter().filter(|e| e.0) {
@@ -64,8 +67,8 @@ pub(super) fn scale_bar(page: &mut Canvas, [right, middle]: [f32; 2], scale: f64
     for x in [left, right - thick] {
         page.rect([x, middle - 8.0 * u, thick, 16.0 * u], INK);
     }
-    let style = TextStyle::new(23.0 * u, INK).anchored(Anchor::End);
-    page.text(&label, [left - 14.0 * u, middle + 0.34 * 23.0 * u], &style);
+    let style = TextStyle::new(TEXT * u, INK).anchored(Anchor::End);
+    page.text(&label, [left - 14.0 * u, middle + 0.34 * TEXT * u], &style);
 }
 
 /// The longest of 1, 2, 5 times a power of ten within a length in metres.
@@ -103,7 +106,7 @@ pub(super) fn arrow(field: &mut Canvas, from: [f32; 2], to: [f32; 2], label: &st
     field.stroke(&tip, true, 4.0 * u, WHITE, None);
     field.stroke(&[from, neck], false, 4.5 * u, INK, None);
     field.polygon(&tip, INK);
-    let em = 25.0 * u;
+    let em = TEXT * u;
     // Beside a steep arrow, behind the tail of a flat one.
     let (at, anchor) = if y.abs() > x.abs() {
         (

@@ -1,7 +1,7 @@
-//! The legend of a chart, and the place for it where no curve passes.
+//! The legend of a chart: a box where no curve passes, or rows above the plot.
 
 use super::canvas::{Canvas, INK, Rgb, WHITE};
-use super::chart::{Chart, Plot, Runs, Style};
+use super::chart::{Chart, Plot, Runs, Style, TEXT};
 use super::curve::{draw_series, gradient};
 use super::font::{Anchor, TextStyle, text_width};
 
@@ -14,14 +14,14 @@ pub(super) struct Legend {
 
 /// Length of the gradient bar, line height and length of a line sample.
 const BAR: f32 = 190.0;
-const LINE: f32 = 38.0;
-const SAMPLE: f32 = 64.0;
+const LINE: f32 = 40.0;
+const SAMPLE: f32 = 56.0;
 const PAD: f32 = 14.0;
 
 impl Legend {
     /// The legend a chart needs, if any; `u` is the scale of the picture.
     pub fn of(chart: &Chart, u: f32) -> Option<Self> {
-        let em = 25.0 * u;
+        let em = TEXT * u;
         let labels = labels(chart);
         let (first, last) = (labels.first()?, labels.last()?);
         Some(if chart.colour_by_order && labels.len() > 1 {
@@ -72,14 +72,22 @@ impl Legend {
             }
         }
         let (far_x, far_y) = (width - self.width - gap, height - self.height - gap);
-        let places = [
+        // The corners, then along the edges, then anywhere.
+        let (half_x, half_y) = ((width - self.width) / 2.0, (height - self.height) / 2.0);
+        let mut places = vec![
             [far_x, gap],
             [gap, gap],
             [far_x, far_y],
             [gap, far_y],
-            [(width - self.width) / 2.0, gap],
-            [(width - self.width) / 2.0, far_y],
+            [half_x, gap],
+            [half_x, far_y],
+            [far_x, half_y],
+            [gap, half_y],
         ];
+        for row in [0.25, 0.5, 0.75] {
+            let columns = [0.1, 0.3, 0.5, 0.7, 0.9].iter();
+            places.extend(columns.map(|c| [gap + c * (far_x - gap), gap + row * (far_y - gap)]));
+        }
         let free = |[x, y]: &[f32; 2]| {
             let margin = 10.0 * u;
             let from = |v: f32| ((v - margin) / cell).max(0.0) as usize;
@@ -94,7 +102,7 @@ impl Legend {
 
     /// Draws the legend with its left top corner at a pixel of the picture.
     pub fn draw(&self, chart: &Chart, page: &mut Canvas, [left, top]: [f32; 2], u: f32) {
-        let em = 25.0 * u;
+        let em = TEXT * u;
         let edge: Rgb = [200, 204, 210];
         page.rect([left, top, self.width, self.height], WHITE);
         page.frame([left, top, self.width, self.height], 1.3 * u, edge);
@@ -117,24 +125,81 @@ impl Legend {
         }
         for (rank, (index, label)) in labels.iter().enumerate() {
             let middle = top + (0.6 * PAD + (rank as f32 + 0.5) * LINE) * u;
-            let from = left + PAD * u;
-            let to = from + SAMPLE * u;
-            let style = chart.series[*index].style;
-            let colour = chart.colour(*index);
-            let centre = [(from + to) / 2.0, middle];
-            if style != Style::Markers {
-                let plain = if style == Style::Dashed {
-                    style
-                } else {
-                    Style::Line
-                };
-                let sample = vec![vec![[from, middle], [to, middle]]];
-                draw_series(page, &sample, plain, colour, *index, u);
+            entry(chart, page, (*index, label), [left + PAD * u, middle], u);
+        }
+    }
+}
+
+/// A sample of a series and its label, from a point on the middle of the line.
+fn entry(
+    chart: &Chart,
+    page: &mut Canvas,
+    (index, label): (usize, &str),
+    [from, middle]: [f32; 2],
+    u: f32,
+) {
+    let em = TEXT * u;
+    let to = from + SAMPLE * u;
+    let style = chart.series[index].style;
+    let colour = chart.colour(index);
+    let centre = [(from + to) / 2.0, middle];
+    if style != Style::Markers {
+        let plain = if style == Style::Dashed {
+            style
+        } else {
+            Style::Line
+        };
+        let sample = vec![vec![[from, middle], [to, middle]]];
+        draw_series(page, &sample, plain, colour, index, u);
+    }
+    if matches!(style, Style::Markers | Style::LineMarkers) {
+        draw_series(page, &[vec![centre]], Style::Markers, colour, index, u);
+    }
+    let ink = TextStyle::new(em, INK);
+    page.text(label, [to + PAD * u, middle + 0.34 * em], &ink);
+}
+
+/// The legend as rows above a plot, where the plot has no room for a box.
+pub(super) struct Rows {
+    /// Height of all rows, pixels.
+    pub height: f32,
+    /// Index of each series, and where its entry begins.
+    entries: Vec<(usize, [f32; 2])>,
+}
+
+impl Rows {
+    /// Lays the entries out in a width in pixels; `u` is the scale of the picture.
+    pub fn of(chart: &Chart, width: f32, u: f32) -> Self {
+        if chart.colour_by_order {
+            return Self {
+                height: (LINE + 3.0 * PAD) * u,
+                entries: Vec::new(),
+            };
+        }
+        let (mut x, mut row, mut entries) = (0.0, 0.0, Vec::new());
+        for (index, label) in labels(chart) {
+            let long = text_width(label, TEXT * u) + (SAMPLE + PAD) * u;
+            if x > 0.0 && x + long > width {
+                (x, row) = (0.0, row + 1.0);
             }
-            if matches!(style, Style::Markers | Style::LineMarkers) {
-                draw_series(page, &[vec![centre]], Style::Markers, colour, *index, u);
+            entries.push((index, [x, (row + 0.4) * LINE * u]));
+            x += long + 2.0 * PAD * u;
+        }
+        let height = ((row + 1.0) * LINE + 0.5 * PAD) * u;
+        Self { height, entries }
+    }
+
+    /// Draws the rows from a corner of the picture.
+    pub fn draw(&self, chart: &Chart, page: &mut Canvas, [left, top]: [f32; 2], u: f32) {
+        if chart.colour_by_order {
+            if let Some(legend) = Legend::of(chart, u) {
+                legend.draw(chart, page, [left, top], u);
             }
-            page.text(label, [to + PAD * u, middle + 0.34 * em], &ink);
+            return;
+        }
+        for (index, [x, y]) in &self.entries {
+            let label = &chart.series[*index].label;
+            entry(chart, page, (*index, label), [left + x, top + y], u);
         }
     }
 }

@@ -1,6 +1,8 @@
 //! What the colour of a grain says.
 
-use super::canvas::{Canvas, INK, Rgb, mix};
+use super::axis::Axis;
+use super::canvas::{Canvas, INK, ReportError, Rgb, mix};
+use super::chart::TEXT;
 use super::font::{Anchor, TextStyle, text_width};
 use serde::{Deserialize, Serialize};
 
@@ -22,13 +24,17 @@ pub enum Paint {
     Value(f64),
 }
 
-/// What the colours of [`Paint::Value`] mean.
+/// What the colours of [`Paint::Value`], or of bonds, mean.
 #[derive(Clone, Debug)]
 pub struct Scale {
     /// The quantity.
     pub label: String,
+    /// SI unit without prefix, empty for a pure number.
+    pub unit: String,
     /// Its value at 1; what lies above is drawn as that.
     pub top: f64,
+    /// Whether it is the damage of the bonds between grains, and not a value of the grains.
+    pub bonds: bool,
 }
 
 const GREY: [Rgb; 2] = [[238, 238, 236], [150, 151, 152]];
@@ -43,12 +49,15 @@ const SANDS: [Rgb; 4] = [
 const TIED: [Rgb; 2] = [[200, 60, 48], [222, 164, 62]];
 const LOOSE: Rgb = [58, 104, 176];
 const OUT: Rgb = [168, 200, 226];
+/// Bonds, sound and damaged.
+pub(super) const SOUND: Rgb = [150, 0, 12];
+pub(super) const DAMAGED: Rgb = [255, 112, 20];
 const VALUES: [Rgb; 5] = [
-    [240, 238, 230],
+    [242, 240, 232],
     [254, 204, 110],
     [240, 104, 44],
-    [160, 20, 70],
-    [40, 6, 56],
+    [168, 24, 76],
+    [66, 14, 84],
 ];
 
 impl Paint {
@@ -73,28 +82,48 @@ fn value(v: f64) -> Rgb {
     mix(VALUES[k], VALUES[k + 1], place - k as f64)
 }
 
-/// The colours of a scale with its ends and its name, from a point on the middle of the line.
-pub(super) fn scale(page: &mut Canvas, scale: &Scale, [left, middle]: [f32; 2], u: f32) {
-    let em = 23.0 * u;
-    let ends = ["0".to_owned(), format!("{} or more", scale.top)];
-    let low = left + text_width(&ends[0], em) + 14.0 * u;
-    let (length, thick) = ((220.0 * u).round(), 20.0 * u);
+/// A colour bar with its ticks and its name, from a point on the middle of the bar; the ticks stand below.
+pub(super) fn scale(
+    page: &mut Canvas,
+    scale: &Scale,
+    [left, middle]: [f32; 2],
+    u: f32,
+) -> Result<(), ReportError> {
+    let em = 0.9 * TEXT * u;
+    let axis = Axis::new(scale.label.clone(), scale.unit.clone());
+    let fitted = super::axis::Scale::fit(&axis, [].into_iter(), Some((0.0, scale.top)), 3)?;
+    let (length, thick) = ((360.0 * u).round(), (22.0 * u).round());
+    let (left, top) = ((left + 0.5 * em).round(), (middle - thick / 2.0).round());
     for i in 0..length as i32 {
-        let colour = value(f64::from(i) / f64::from(length));
-        page.rect([low + i as f32, middle - thick / 2.0, 1.0, thick], colour);
+        let share = f64::from(i) / f64::from(length);
+        let colour = match scale.bonds {
+            true => mix(SOUND, DAMAGED, share),
+            false => value(share),
+        };
+        page.rect([left + i as f32, top, 1.0, thick], colour);
     }
+    page.frame([left, top, length, thick], 1.3 * u, INK);
     let style = TextStyle::new(em, INK);
-    let base = middle + 0.34 * em;
-    page.text(
-        &ends[0],
-        [low - 14.0 * u, base],
-        &style.anchored(Anchor::End),
-    );
-    page.text(
-        &format!("{}: {}", ends[1], scale.label),
-        [low + length + 14.0 * u, base],
-        &TextStyle::new(em, INK),
-    );
+    for (at, label) in &fitted.ticks {
+        let x = left + length * ((at - fitted.range.0) / (fitted.range.1 - fitted.range.0)) as f32;
+        page.rect([x - 0.8 * u, top + thick, 1.6 * u, 7.0 * u], INK);
+        let base = top + thick + 7.0 * u + em;
+        page.text(label, [x, base], &style.anchored(Anchor::Middle));
+    }
+    let name = TextStyle::new(TEXT * u, INK);
+    let room = page.pixmap.width() as f32 - left - length - 60.0 * u;
+    let size = name.size * (room / text_width(&fitted.label, name.size)).min(1.0);
+    let at = [left + length + 24.0 * u, middle + 0.34 * size];
+    page.text(&fitted.label, at, &TextStyle::new(size, INK));
+    Ok(())
+}
+
+/// The least of 1, 1.5, 2, 3, 5, 7 times a power of ten not below a value: where a colour bar ends.
+pub fn round_top(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0];
+    let least = steps.iter().find(|s| **s * power >= value * (1.0 - 1e-9));
+    least.copied().unwrap_or(10.0) * power
 }
 
 #[cfg(test)]
@@ -103,6 +132,13 @@ mod tests {
 
     fn light(c: Rgb) -> u32 {
         c.iter().map(|x| u32::from(*x)).sum()
+    }
+
+    #[test]
+    fn colour_bars_end_at_round_values() {
+        assert_eq!(round_top(0.2), 0.2);
+        assert!((round_top(0.0131) / 0.015 - 1.0).abs() < 1e-12);
+        assert!((round_top(880.0) / 1000.0 - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -2,13 +2,16 @@
 
 use super::compare::{Comparison, OutputError, Row};
 use super::output::{Output, Wanted};
+use super::knobs::{Knob, Level, Sense};
 use super::setting::Setting;
 use super::study::Study;
-use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels};
+use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels, quantity};
 use std::path::Path;
 
 const GREY: (u8, u8, u8) = (120, 120, 120);
 const RED: (u8, u8, u8) = (190, 30, 45);
+/// So many settings have an entry of their own in the legend; more are told apart by what they change.
+const NAMED: usize = 8;
 /// One colour a group of settings, in the order of their first appearance.
 const COLOURS: [(u8, u8, u8); 8] = [
     (0, 114, 178),
@@ -51,10 +54,10 @@ fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
     let (Wanted::Relative(w) | Wanted::Absolute(w)) = output.wanted;
     let factor = if relative { 100.0 } else { 1.0 };
     let unit = if relative { "%" } else { "" };
-    let y = Axis::new(format!("error of {}", output.name), unit).log();
+    let name = output.name.replace('_', " ");
+    let y = Axis::new(format!("error of {name}"), unit).log();
     let x = Axis::new("processor time of a run", "s").log();
-    let mut chart = Chart::new(title, x, y);
-    chart.size_px = (1400, 850);
+    let mut chart = Chart::new(format!("{title}: {name}"), x, y);
     let reference = Setting::reference(&study.knobs);
     let good: Vec<(&Row, &OutputError)> = found
         .rows
@@ -95,8 +98,9 @@ fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
     line.colour = Some(GREY);
     chart = chart.with(line);
     let mut groups: Vec<(String, Vec<(&Row, &OutputError)>)> = Vec::new();
+    let each = found.rows.len() <= NAMED;
     for &(row, e) in others() {
-        let name = group(study, row);
+        let name = if each { named(&study.knobs, &row.setting) } else { group(study, row) };
         match groups.iter_mut().find(|g| g.0 == name) {
             Some(g) => g.1.push((row, e)),
             None => groups.push((name, vec![(row, e)])),
@@ -104,19 +108,21 @@ fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
     }
     for (k, (name, rows)) in groups.iter().enumerate() {
         let colour = Some(COLOURS[k % COLOURS.len()]);
-        for (row, e) in rows {
-            let half = e.error.half_width.unwrap_or(0.0);
-            if half > 0.0 {
-                let ends = [(e.error.mean.abs() - half).max(0.0), e.at_most];
-                let mut bar = Series::new("", ends.map(|s| (row.seconds, lifted(s))).into());
-                bar.colour = colour;
-                chart = chart.with(bar);
-            }
-        }
         let points = rows
             .iter()
             .map(|(r, e)| (r.seconds, lifted(e.error.mean.abs())));
-        let mut marks = Series::new(name.clone(), points.collect()).style(Style::Markers);
+        let bars = rows.iter().map(|(_, e)| {
+            let half = e.error.half_width.unwrap_or(0.0);
+            if half > 0.0 {
+                let low = lifted((e.error.mean.abs() - half).max(0.0));
+                (low, lifted(e.at_most))
+            } else {
+                (f64::NAN, f64::NAN)
+            }
+        });
+        let mut marks = Series::new(name.clone(), points.collect())
+            .style(Style::Markers)
+            .intervals(bars.collect());
         marks.colour = colour;
         chart = chart.with(marks);
     }
@@ -125,7 +131,7 @@ fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
         .find(|(r, e)| r.setting == reference && output.exact.is_none() && e.bound.is_finite());
     if let Some((r, e)) = mine {
         let mut mark = Series::new(
-            "reference, its own error",
+            format!("own error of the reference: {}", named(&study.knobs, &r.setting)),
             vec![(r.seconds, lifted(e.bound))],
         )
         .style(Style::Markers);
@@ -149,11 +155,57 @@ fn subtitle(study: &Study, output: &Output, found: &Comparison, o: usize) -> Str
     format!("{against}, {seeds}")
 }
 
-/// What a setting is shown as: the knob it changes.
+/// A setting by the values of all knobs that vary: what stands in the case may change, a figure says what was run.
+fn named(knobs: &[Knob], setting: &Setting) -> String {
+    let varied = knobs.iter().zip(&setting.0).filter(|(k, _)| k.levels.len() > 1);
+    let parts: Vec<String> = varied
+        .map(|(knob, level)| {
+            let name = knob.name.rsplit('.').next().unwrap_or_default();
+            format!("{} {}", name.replace('_', " "), value(knob, &knob.levels[*level]))
+        })
+        .collect();
+    parts.join(", ")
+}
+
+fn value(knob: &Knob, level: &Level) -> String {
+    match (knob.sense, level.number) {
+        (Sense::Step, Some(x)) => quantity(x, "s", 2),
+        (Sense::Tolerance, Some(x)) => quantity(x, "", 1),
+        _ => level.label.clone(),
+    }
+}
+
+/// What a setting is shown as among many: the case's own by its values, the others by the knob they change.
 fn group(study: &Study, row: &Row) -> String {
     match row.setting.changed(&study.knobs).as_slice() {
-        [] => "the case's own".into(),
+        [] => format!("as in the case: {}", named(&study.knobs, &row.setting)),
         [k] => format!("other {}", study.knobs[*k].name),
         _ => "several changed".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_named_by_their_values_whatever_the_case_has() {
+        let level = |x: f64| Level {
+            label: format!("{x:e}"),
+            sets: Vec::new(),
+            number: Some(x),
+        };
+        let knob = |name: &str, sense, own| Knob {
+            name: name.to_owned(),
+            sense,
+            levels: vec![level(5e-5), level(1e-4)],
+            own,
+            reference: 0,
+        };
+        for own in [0, 1] {
+            let knobs = [knob("time.step", Sense::Step, own), knob("solver.tolerance", Sense::Tolerance, own)];
+            let name = named(&knobs, &Setting(vec![0, 1]));
+            assert_eq!(name, "step 50 µs, tolerance 1×10⁻⁴");
+        }
     }
 }

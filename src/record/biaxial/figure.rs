@@ -21,23 +21,21 @@ pub fn draw(path: &Path, title: &str, table: &Table, start: f64) -> Result<(), R
         pairs.skip(first).collect()
     };
     let chart = |heading: &str, y: &str| {
-        Chart::new(heading, Axis::new("axial strain", ""), Axis::new(y, ""))
+        let mut chart = Chart::new(heading, Axis::new("axial strain ε_1", ""), Axis::new(y, ""));
+        chart.subtitle = Some(title.to_owned());
+        chart
     };
-    let mut ratio = chart("stress ratio", "q/p = sin phi")
-        .with(Series::new("from the walls", against("q_over_p")))
-        .with(Series::new("from the contacts", against("sin_phi")).style(Style::Dashed));
-    ratio.subtitle = Some(title.to_owned());
-    let mut volume = chart("volumetric strain", "expansion")
+    let ratio = chart("Stress ratio", "q/p = sin φ")
+        .with(Series::new("q/p from the walls", against("q_over_p")))
+        .with(Series::new("sin φ from the contacts", against("sin_phi")).style(Style::Dashed));
+    let volume = chart("Volumetric strain, expansion positive", "volumetric strain ε_v")
         .with(Series::new(String::new(), against("volumetric_strain")));
-    volume.subtitle = Some("positive in expansion".into());
-    let mut neighbours = chart("coordination", "contacts a grain")
+    let neighbours = chart("Coordination, contacts that carry force", "coordination number Z")
         .with(Series::new("all grains", against("coordination")))
         .with(
             Series::new("without rattlers", against("coordination_carried")).style(Style::Dashed),
         );
-    neighbours.subtitle = Some("contacts that carry force".into());
-    let mut compacity = chart("compacity", "volume of grains / volume")
+    let compacity = chart("Solid fraction", "solid fraction φ")
         .with(Series::new(String::new(), against("compacity")));
-    compacity.subtitle = Some("between the walls".into());
     draw_panels(&[ratio, volume, neighbours, compacity], 2, path)
 }

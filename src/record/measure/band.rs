@@ -135,19 +135,22 @@ impl<S: Space> Measure<S> for Band<S> {
     }
 
     fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError> {
-        let chart = |part: &str, unit: &'static str, factor: f64| {
+        let chart = |part: &str, name: &str, unit: &'static str, factor: f64| {
             let points = super::since(table, &format!("{}_{part}", self.name), 0.0);
             let points = points.into_iter().map(|(t, v)| (t, factor * v)).collect();
             let mut chart = Chart::new(
-                format!("{part} of the shear band `{}`", self.name),
-                Axis::new("time", "s"),
-                Axis::new(part, unit),
+                format!("Shear band {}", self.name),
+                Axis::new("time t", "s"),
+                Axis::new(name, unit),
             )
             .with(Series::new(String::new(), points));
             chart.subtitle = Some(title.to_owned());
             chart
         };
-        let charts = [chart("angle", "deg", 180.0 / PI), chart("width", "m", 1.0)];
+        let charts = [
+            chart("angle", "angle with x", "deg", 180.0 / PI),
+            chart("width", "width", "m", 1.0),
+        ];
         draw_panels(&charts, 2, &dir.join(format!("{}.png", self.name)))
     }
 }

@@ -57,11 +57,11 @@ impl<S: Space> Measure<S> for Mass {
     fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError> {
         let unit = if S::D == 2 { "kg/m" } else { "kg" };
         let mut chart = Chart::new(
-            format!("mass `{}` against time", self.name),
-            Axis::new("time", "s"),
-            Axis::new("mass", unit),
+            format!("Mass, {}", self.name),
+            Axis::new("time t", "s"),
+            Axis::new("mass m", unit),
         )
-        .with(Series::new(String::new(), since(table, &self.name, 0.0)));
+        .with_unless_zero(Series::new(String::new(), since(table, &self.name, 0.0)));
         chart.subtitle = Some(title.to_owned());
         chart.draw(&dir.join(format!("{}.png", self.name)))
     }

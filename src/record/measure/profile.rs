@@ -163,7 +163,7 @@ impl<S: Space> Measure<S> for Profile<S> {
             let reason = e.to_string();
             return Err(ReportError::Write { path, reason });
         }
-        let axis = ["x", "y", "z"][self.axis];
+        let axis = ["position x", "position y", "position z"][self.axis];
         let series = |k: usize| -> Vec<(f64, f64)> {
             let points = rows.iter().map(|r| (r[0], r[k]));
             points.filter(|p| p.1.is_finite()).collect()
@@ -173,21 +173,21 @@ impl<S: Space> Measure<S> for Profile<S> {
             chart.subtitle = Some(title.to_owned());
             chart
         };
-        let mut velocity = chart("velocity", "m/s", "velocity");
-        for (k, a) in ["along x", "along y", "along z"]
+        let mut velocity = chart("Velocity", "m/s", "mean velocity v");
+        for (k, a) in ["v_x", "v_y", "v_z"]
             .iter()
             .enumerate()
             .take(S::D)
         {
             velocity = velocity.with(Series::new(*a, series(2 + k)).style(Style::LineMarkers));
         }
-        let solid = chart("solid fraction", "", "solid fraction")
+        let solid = chart("Solid fraction", "", "solid fraction φ")
             .with(Series::new(String::new(), series(1)).style(Style::LineMarkers));
-        let spin = chart("spin", "rad/s", "spin")
+        let spin = chart("Rotation", "rad/s", "mean angular velocity ω")
             .with(Series::new(String::new(), series(2 + S::D)).style(Style::LineMarkers));
         draw_panels(
             &[velocity, solid, spin],
-            3,
+            2,
             &dir.join(format!("{}.png", self.name)),
         )
     }

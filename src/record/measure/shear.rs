@@ -136,18 +136,18 @@ impl<S: Space> Measure<S> for Shear {
     }
 
     fn draw(&self, dir: &Path, title: &str, table: &Table) -> Result<(), ReportError> {
-        let chart = |part: &str, heading: &str, unit: &'static str| {
+        let chart = |part: &str, heading: &str, name: &str, unit: &'static str| {
             let points = since(table, &self.column(part), 0.0);
-            let mut chart = Chart::new(heading, Axis::new("time", "s"), Axis::new(part, unit))
-                .with(Series::new(String::new(), points));
+            let mut chart = Chart::new(heading, Axis::new("time t", "s"), Axis::new(name, unit))
+                .with_unless_zero(Series::new(String::new(), points));
             chart.subtitle = Some(title.to_owned());
             chart
         };
         let panels = [
-            chart("mu", "shear stress over normal stress", ""),
-            chart("phi", "solid fraction", ""),
-            chart("I", "inertial number", ""),
-            chart("p", "normal stress", "Pa"),
+            chart("mu", "Effective friction", "friction coefficient µ = τ/p", ""),
+            chart("phi", "Solid fraction", "solid fraction φ", ""),
+            chart("I", "Inertial number", "inertial number I", ""),
+            chart("p", "Pressure", "normal stress p", "Pa"),
         ];
         draw_panels(&panels, 2, &dir.join(format!("{}.png", self.name)))
     }

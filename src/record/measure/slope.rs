@@ -83,9 +83,9 @@ impl<S: Space> Measure<S> for Slope {
             .map(|(t, a)| (t, a.to_degrees()))
             .collect();
         let mut chart = Chart::new(
-            format!("angle `{}` against time", self.name),
-            Axis::new("time", "s"),
-            Axis::new("angle", "deg"),
+            format!("Angle of the surface, {}", self.name),
+            Axis::new("time t", "s"),
+            Axis::new("angle θ", "deg"),
         )
         .with(Series::new(String::new(), degrees));
         chart.subtitle = Some(title.to_owned());

@@ -5,10 +5,11 @@ use super::{RunError, unwritable};
 use std::path::Path;
 
 /// Figures at the end of a run, by name. Those of measures and scars have the names of a case, and stay.
-const FIGURES: [&str; 7] = [
+const FIGURES: [&str; 8] = [
     "damage_ratio.png",
     "fretting_loops.png",
     "friction_coefficient.png",
+    "force_displacement.png",
     "energy.png",
     "circuit.png",
     "jump.png",

@@ -148,11 +148,17 @@ impl<S: Dimensional> Recorder<'_, S> {
     fn draw(&self) -> Result<(), RunError> {
         let start = self.loaded.case.biaxial.as_ref().map_or(0.0, |t| t.start);
         if self.loaded.case.output.figures {
+            let cycles = self.cycles.as_ref().map(|c| &c.0);
+            // Its loops show the test itself.
+            let test = self.loaded.case.friction.as_ref();
+            let test = test.filter(|_| cycles.is_some_and(Cycles::oscillates));
+            let test = test.map(|t| (t.body.as_str(), t.along));
             figures::draw(
                 &self.out,
                 &self.loaded.case.name,
                 &self.table,
-                self.cycles.as_ref().map(|c| &c.0),
+                cycles,
+                &figures::drives(&self.simulation, test),
                 S::D,
             )?;
             if let Some(c) = &self.summary.circuit {

@@ -2,7 +2,7 @@
 
 use super::{Recorder, RunError};
 use crate::record::picture::Subject;
-use crate::report::noted;
+use crate::report::{noted, quantity};
 use crate::scene::build::Dimensional;
 
 /// Names of pictures: `frames/NAME_STEP.png`.
@@ -14,7 +14,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         if self.loaded.case.output.frames == 0 {
             return Ok(());
         }
-        let mut caption = vec![format!("t = {:.4e} s", self.simulation.time)];
+        let mut caption = vec![format!("t = {}", quantity(self.simulation.time, "s", 4))];
         if let Some(phase) = self.simulation.control.begun().last() {
             caption.push(phase.name.clone());
         }
@@ -25,7 +25,7 @@ impl<S: Dimensional> Recorder<'_, S> {
                 cycles.total()
             ));
             if let Some(c) = cycles.list.last() {
-                caption.push(format!("friction {:.3}", c.friction_coefficient));
+                caption.push(format!("friction coefficient {:.3}", c.friction_coefficient));
             }
         }
         if self.simulation.network.bonds_made() > 0 {

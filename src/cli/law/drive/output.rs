@@ -25,8 +25,8 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
     if !carries && rows.iter().any(|r| r.tension_strength > 0.0) {
         let chart = Chart::new(
             title,
-            Axis::new("gap", "m"),
-            Axis::new("attraction over the area", "Pa"),
+            Axis::new("gap g", "m"),
+            Axis::new("attraction / area", "Pa"),
         )
         .with(Series::new(
             "attraction",
@@ -37,10 +37,10 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
     if !carries {
         let chart = Chart::new(
             title,
-            Axis::new("sliding distance", "m"),
-            Axis::new("friction coefficient", ""),
+            Axis::new("sliding distance s", "m"),
+            Axis::new("friction coefficient µ", ""),
         )
-        .with(Series::new("mu", points(&Row::opening, &|r| r.friction)));
+        .with(Series::new("", points(&Row::opening, &|r| r.friction)));
         return chart.draw(file).map_err(fail);
     }
     // Signed along the first direction that opens, so that cycles are loops.
@@ -48,8 +48,8 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
     let signed = |r: &Row| sign(r) * r.opening();
     Chart::new(
         title.clone(),
-        Axis::new("opening", "m"),
-        Axis::new("traction", "Pa"),
+        Axis::new("opening δ", "m"),
+        Axis::new("traction T", "Pa"),
     )
     .with(Series::new(
         "traction along the opening",
@@ -59,8 +59,8 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
     .map_err(fail)?;
     let mut name = file.file_stem().unwrap_or_default().to_os_string();
     name.push("_damage.png");
-    Chart::new(title, Axis::new("opening", "m"), Axis::new("damage", ""))
-        .with(Series::new("D", points(&signed, &|r| r.damage)))
+    Chart::new(title, Axis::new("opening δ", "m"), Axis::new("damage D", ""))
+        .with(Series::new("", points(&signed, &|r| r.damage)))
         .draw(&file.with_file_name(name))
         .map_err(fail)
 }

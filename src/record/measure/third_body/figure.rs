@@ -3,7 +3,7 @@
 
 use super::cells::{Block, Cell, MECHANISMS};
 use super::tables::powers;
-use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels};
+use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels, quantity};
 use std::path::Path;
 
 /// What a figure shows.
@@ -28,9 +28,6 @@ pub(super) struct Figure<'a> {
     pub dimension: usize,
 }
 
-/// Size of a panel in pixels.
-const PANEL: (u32, u32) = (1100, 760);
-
 /// From early to late.
 const TIMES: [(u8, u8, u8); 4] = [(250, 176, 80), (226, 92, 70), (160, 30, 100), (50, 16, 96)];
 
@@ -42,21 +39,12 @@ fn shade(k: usize, count: usize) -> (u8, u8, u8) {
     (mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }
 
-/// A time with what its neighbours need to be told apart.
-fn moment(t: f64) -> String {
-    format!("{}", (t * 1e4).round() / 1e4)
-}
-
 impl Figure<'_> {
     fn chart(&self, heading: &str, name: &str, unit: &str) -> Chart {
-        let upwards = format!(
-            "depth over thickness, {} to {}",
-            self.between.0, self.between.1
-        );
+        let upwards = format!("y/e, {} to {}", self.between.0, self.between.1);
         let mut chart = Chart::new(heading, Axis::new(name, unit), Axis::new(upwards, ""));
         chart.subtitle = Some(self.title.to_owned());
         chart.y_range = Some((0.0, 1.0));
-        chart.size_px = PANEL;
         chart
     }
 
@@ -70,7 +58,8 @@ impl Figure<'_> {
     /// One quantity, a line for each slice of time.
     fn in_time(&self, mut chart: Chart, value: impl Fn(&Cell) -> f64 + Copy) -> Chart {
         for (k, block) in self.slices.iter().enumerate() {
-            let label = format!("{} to {} s", moment(block.time[0]), moment(block.time[1]));
+            let [from, to] = block.time.map(|t| quantity(t, "s", 3));
+            let label = format!("{from} to {to}");
             let mut series =
                 Series::new(label, Self::points(block, value)).style(Style::LineMarkers);
             series.colour = Some(shade(k, self.slices.len()));
@@ -92,33 +81,30 @@ impl Figure<'_> {
     }
 
     fn velocity(&self) -> Chart {
-        let name = format!("velocity over that of the {}", self.between.1);
-        let chart = self.chart("velocity", &name, "");
+        let name = format!("velocity v/V, V of the {}", self.between.1);
+        let chart = self.chart("Velocity profile", &name, "");
         // The mean depth of the mass of a bin is where its mean velocity is.
         let mut chart = self.in_time(chart, Cell::carried);
         for (series, block) in chart.series.iter_mut().zip(self.slices) {
             series.points = block.profile().into_iter().map(|(y, w)| (w, y)).collect();
         }
-        let mut straight = Series::new("no slip, straight", vec![(0.0, 0.0), (1.0, 1.0)]);
+        let mut straight = Series::new("Couette flow", vec![(0.0, 0.0), (1.0, 1.0)]);
         straight.colour = Some((150, 154, 160));
         chart.with(straight.style(Style::Dashed))
     }
 
     fn stress(&self) -> Chart {
         let names = [
-            "normal, across",
-            "normal, along",
-            "shear",
-            "normal, lateral",
+            "σ_yy, across",
+            "σ_xx, along",
+            "τ_xy, shear",
+            "σ_zz, lateral",
         ];
         let shown = if self.dimension == 3 { 4 } else { 3 };
         let lines = names.iter().enumerate().take(shown);
         let lines = lines.map(|(k, name)| (*name, Self::points(self.whole, |c| c.stress()[k])));
-        let chart = self.chart(
-            "stress (compression positive), mean over time",
-            "stress",
-            "Pa",
-        );
+        let name = "stress, compression positive";
+        let chart = self.chart("Stress, mean over time", name, "Pa");
         self.beside(chart, lines)
     }
 
@@ -130,11 +116,8 @@ impl Figure<'_> {
                 Self::points(self.whole, |c| powers(c, self.whole)[k]),
             )
         });
-        let chart = self.chart(
-            "dissipated power by volume, mean over time",
-            "power",
-            "W/m^3",
-        );
+        let name = "dissipated power by volume";
+        let chart = self.chart("Dissipated power, mean over time", name, "W/m^3");
         let peak = |points: &[(f64, f64)]| points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
         let lines: Vec<(&str, Vec<(f64, f64)>)> = lines.collect();
         let top = lines.iter().map(|l| peak(&l.1)).fold(0.0, f64::max);
@@ -144,9 +127,8 @@ impl Figure<'_> {
     }
 
     fn history(&self, heading: &str, name: &str, unit: &str) -> Chart {
-        let mut chart = Chart::new(heading, Axis::new("time", "s"), Axis::new(name, unit));
+        let mut chart = Chart::new(heading, Axis::new("time t", "s"), Axis::new(name, unit));
         chart.subtitle = Some(self.title.to_owned());
-        chart.size_px = PANEL;
         chart
     }
 
@@ -155,28 +137,30 @@ impl Figure<'_> {
     /// # Errors
     /// The file cannot be written.
     pub fn draw(&self, path: &Path) -> Result<(), ReportError> {
-        let kelvin = "granular temperature";
         let mut charts = vec![
             self.velocity(),
             self.in_time(
-                self.chart("solid fraction", "solid fraction", ""),
+                self.chart("Solid fraction", "solid fraction φ", ""),
                 Cell::solid,
             ),
             self.stress(),
-            self.in_time(self.chart(kelvin, kelvin, "m^2/s^2"), |c| c.heat / c.mass),
             self.in_time(
-                self.chart("coordination", "contacts that carry force, of a grain", ""),
+                self.chart("Granular temperature", "granular temperature T", "m^2/s^2"),
+                |c| c.heat / c.mass,
+            ),
+            self.in_time(
+                self.chart("Coordination", "coordination number Z", ""),
                 |c| c.contacts / c.grains,
             ),
             self.power(),
         ];
         let tied = self.whole.bins().iter().any(|c| c.bonds + c.broken > 0.0);
         if tied {
-            let chart = self.chart("damage", "bonds broken over bonds made", "");
+            let chart = self.chart("Damage", "broken bonds / bonds made", "");
             charts.push(self.in_time(chart, Cell::damage));
         }
         charts.push(
-            self.history("thickness", "thickness", "m")
+            self.history("Thickness of the third body", "thickness e", "m")
                 .with(Series::new(String::new(), self.thickness.clone())),
         );
         let lines = |mut chart: Chart, labels: [&str; 2], points: &[Vec<(f64, f64)>; 2]| {
@@ -186,19 +170,19 @@ impl Figure<'_> {
             chart
         };
         if tied {
-            let chart = self.history("clusters", "grains of a cluster", "");
+            let chart = self.history("Clusters of bonded grains", "grains in a cluster", "");
             charts.push(lines(chart, ["mean by mass", "largest"], &self.clusters));
         } else {
-            let chart = self.history("force chains", "share in force chains", "");
+            let chart = self.history("Force chains", "share in force chains", "");
             charts.push(lines(
                 chart,
                 ["of the grains", "of the force"],
                 &self.chains,
             ));
-            let name = "shear of the interior over the sliding";
-            let chart = self.history("interior, 10 % to 90 %", name, "");
+            let name = "shear of the interior / sliding";
+            let chart = self.history("Interior, 10 % to 90 % of e", name, "");
             charts.push(chart.with(Series::new(String::new(), self.shear.clone())));
         }
-        draw_panels(&charts, 3, path)
+        draw_panels(&charts, 2, path)
     }
 }

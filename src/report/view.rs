@@ -1,8 +1,4 @@
-//! Spheres seen along an axis: three-dimensional grains as disks of a frame.
-
-use super::canvas::{Canvas, Rgb};
-use super::frame::Disk;
-use super::paint::Paint;
+//! The direction from which a frame in space is seen.
 
 /// Direction of an orthographic view.
 #[derive(Clone, Copy, Debug)]
@@ -32,39 +28,6 @@ impl View {
         let dot = |a: &[f64; 3]| a[0] * point[0] + a[1] * point[1] + a[2] * point[2];
         ([dot(&self.right), dot(&self.up)], dot(&self.towards))
     }
-}
-
-/// The disk that shows one sphere, and its distance towards the viewer.
-/// Centre and radius in metres, and what its colour says.
-pub fn sphere_disk(centre: [f64; 3], radius: f64, paint: Paint, view: &View) -> (Disk, f64) {
-    let (centre, depth) = view.project(centre);
-    let disk = Disk {
-        centre,
-        radius,
-        angle: 0.0,
-        shade: SPHERE,
-        paint,
-    };
-    (disk, depth)
-}
-
-/// Shade of the nearest sphere.
-const SPHERE: f64 = 0.3;
-
-/// Paints one lit sphere, centre and radius in pixels.
-pub(super) fn paint_sphere(field: &mut Canvas, at: [f32; 2], radius: f32, base: Rgb) {
-    // Light from the left above, in front of the picture; unit length.
-    const LIGHT: [f32; 3] = [-0.45, -0.6, 0.661];
-    let base = base.map(f32::from);
-    field.disk(at, radius, |[dx, dy], _| {
-        let (nx, ny) = (dx / radius, dy / radius);
-        let nz = (1.0 - nx * nx - ny * ny).max(0.0).sqrt();
-        let facing = (LIGHT[0] * nx + LIGHT[1] * ny + LIGHT[2] * nz).max(0.0);
-        // The rim falls off as well, so that like spheres stand apart.
-        let light = (0.42 + 0.62 * facing) * (0.62 + 0.38 * nz.sqrt());
-        let gleam = 50.0 * facing.powi(24);
-        base.map(|c| (light * c + gleam).min(255.0))
-    });
 }
 
 #[cfg(test)]
