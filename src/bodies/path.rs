@@ -99,7 +99,8 @@ impl Path {
                 if let Some(point) = f.last_point(self.since, t) {
                     self.sum_up(f, point);
                 }
-                self.way[0] + (self.way[1] + f.integral(self.since, t))
+                let rest = self.way[1] + f.integral(self.since, t);
+                self.way[0] + rest
             }
             _ => 0.0,
         }

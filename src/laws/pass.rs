@@ -165,7 +165,10 @@ impl Passes {
     ) -> Result<(), LawError> {
         self.bonded.resize(laws.len(), false);
         for (index, law) in laws.iter().enumerate() {
-            let due = !self.bonded[index] && law.bonding_time().is_some_and(|t| info.time >= t);
+            // Times are sums of steps: half a step is on neither side of one.
+            let reached = |now: f64, time: f64| now > time - 0.5 * info.h;
+            let due =
+                !self.bonded[index] && law.bonding_time().is_some_and(|t| reached(info.time, t));
             self.bonded[index] |= due;
             let remembers = law.variables_of_contacts() > 0;
             if !due && !remembers && law.healing.is_none() {
@@ -183,7 +186,7 @@ impl Passes {
                 let intact = contact.memory().is_some_and(held);
                 let healed = law
                     .healing
-                    .is_some_and(|time| contact.pressed > 0.0 && contact.pressed >= time);
+                    .is_some_and(|time| contact.pressed > 0.0 && reached(contact.pressed, time));
                 let bonds = !intact && !contact.sharp && !contact.beyond && (due || healed);
                 // A bond that only pulls fills its gap; one that pushes too yields until the gap is closed. An overlap is
                 // filled by both: the bond is at rest where it is made.

@@ -284,12 +284,12 @@ impl Canvas {
     /// plotters is some ten times as fast as that of tiny-skia.
     pub fn save(&self, path: &Path) -> Result<(), ReportError> {
         match notice::current() {
-            Some(text) => notice::banded(self, &text)?.write(path),
-            None => self.write(path),
+            Some(text) => notice::banded(self, &text)?.write_file(path),
+            None => self.write_file(path),
         }
     }
 
-    fn write(&self, path: &Path) -> Result<(), ReportError> {
+    fn write_file(&self, path: &Path) -> Result<(), ReportError> {
         let size = (self.pixmap.width(), self.pixmap.height());
         let pixels = self.pixmap.data().as_chunks::<4>().0.iter();
         let rgb: Vec<u8> = pixels.flat_map(|p| [p[0], p[1], p[2]]).collect();

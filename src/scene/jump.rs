@@ -172,6 +172,6 @@ fn period(case: &Case) -> Option<f64> {
     let test = case.friction.as_ref()?;
     let body = case.bodies.iter().find(|b| b.name == test.body)?;
     let dofs = body.ordered(case.dimension as usize);
-    let function = dofs.get(test.along).and_then(|d| d.function());
+    let function = dofs.get(test.along).and_then(Dof::function);
     test.period.or(function.and_then(TimeFunction::period))
 }

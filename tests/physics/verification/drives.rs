@@ -15,11 +15,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const H: f64 = 1e-3;
 
 fn text(dimension: usize, lines: &str) -> String {
+    let interfaces = match lines.contains("interfaces:") {
+        true => "",
+        false => "interfaces: [],",
+    };
     format!(
         r#"(
     name: "drives", dimension: {dimension},
     solver: (tolerance: 1e-13, norm: Velocity, max_iterations: 100000, test_every: 1),
     materials: {{"glass": "glass_bead"}},
+    {interfaces}
     {lines}
 )"#
     )
@@ -506,7 +511,7 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
             "{told}"
         );
         assert!(summary.text().contains("COARSE DRIVE"));
-        let path = file(&case(frequency).source.text().to_owned());
+        let path = file(case(frequency).source.text());
         let mut check = std::process::Command::new(env!("CARGO_BIN_EXE_fretwork"));
         let output = check
             .current_dir(env!("CARGO_MANIFEST_DIR"))
