@@ -9,6 +9,8 @@ mod command_line;
 mod geometry;
 #[path = "bad_input/limits.rs"]
 mod limits;
+#[path = "bad_input/magnitudes.rs"]
+mod magnitudes;
 #[path = "bad_input/mutations.rs"]
 mod mutations;
 #[path = "bad_input/names.rs"]
