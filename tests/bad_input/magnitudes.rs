@@ -95,3 +95,18 @@ fn motion_that_is_lost_later_is_reported() {
         "{summary}"
     );
 }
+
+#[test]
+fn steps_whose_square_vanishes_or_overflows() {
+    for (step, end) in [
+        ("1e-320", "1e-319"),
+        ("1e-160", "1e-159"),
+        ("1e155", "1e156"),
+    ] {
+        let time = format!("step: ‸{step}, end: {end}");
+        refused(
+            &solid("step: 1e-3, end: 0.002", &time),
+            &["the square of a step", "beyond what can be computed with"],
+        );
+    }
+}

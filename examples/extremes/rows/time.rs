@@ -2,8 +2,7 @@
 
 use crate::bench::Cause::{self, Late, Refused, Unconverged};
 use crate::bench::{
-    Group, HELD, Row, Sketch, ball, floor, go, grains, held_though, overlap, place, refused, told,
-    up, watch,
+    Group, HELD, Row, Sketch, ball, floor, go, grains, overlap, place, refused, told, up, watch,
 };
 use fretwork::geometry::space::{Plane, Solid, VectorLike};
 use fretwork::scene::build::Dimensional;

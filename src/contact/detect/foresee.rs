@@ -40,6 +40,37 @@ enum Stage {
     Report,
 }
 
+/// Whether no two bodies can move fast relative to each other in the step: then there is nothing to foresee. Cheap.
+pub fn is_calm<S: Space>(
+    network: &mut Network<S>,
+    shapes: &Shapes<S>,
+    bodies: &Bodies<S>,
+    velocities: impl Iterator<Item = (S::Vector, S::Spin)>,
+    h: f64,
+) -> bool {
+    if !network.extents.fits(shapes, bodies) {
+        network.extents = Extents::new(shapes, bodies);
+    }
+    if !network.widened.is_empty() || network.turning.iter().any(|w| *w > 0.0) {
+        return false;
+    }
+    let levers = &network.extents.levers;
+    let (mut fastest, mut turning) = (0.0f64, 0.0f64);
+    for ((v, w), lever) in velocities.zip(levers) {
+        fastest = fastest.max(v.dot(&v));
+        if *lever > 0.0 {
+            turning = turning.max(lever * lever * w.dot(&w));
+        }
+    }
+    // Below what asks for a wider list, and for a look at pairs. A surface that turns is not calm.
+    let still = shapes.surfaces.iter().all(|s| {
+        let b = s.body as usize;
+        let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
+        s.shape.keeps_place(&spin)
+    });
+    still && 2.0 * h * (fastest.sqrt() + turning.sqrt()) <= network.fast.min(network.alert)
+}
+
 /// Adds the contacts of the step that the free velocities close, and that detection at its start did not see.
 pub fn foresee<S: Space>(
     network: &mut Network<S>,
