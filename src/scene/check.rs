@@ -35,6 +35,14 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
         return Err(Fault::new("time.theta", format!("got {}", case.time.theta))
             .expected("a number between 0.5 and 1"));
     }
+    let square = case.time.step * case.time.step;
+    if !square.is_normal() {
+        let message = format!(
+            "the square of a step of {:e} s is beyond what can be computed with; check its unit",
+            case.time.step
+        );
+        return Err(Fault::new("time.step", message));
+    }
     if case.time.end / case.time.step > 1e12 {
         return Err(Fault::new(
             "time.step",

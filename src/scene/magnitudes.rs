@@ -63,7 +63,7 @@ pub(super) fn check<S: Space>(
         }
     }
     let heaviest = bodies.mass.iter().copied().fold(0.0, f64::max);
-    let gravity = s.gravity.norm();
+    let gravity = (0..S::D).fold(0.0f64, |g, k| g.max(s.gravity[k].abs()));
     let fall = 0.5 * heaviest * (gravity * end) * (gravity * end);
     if !(gravity.is_finite() && fall.is_finite()) {
         let message = format!(

@@ -19,6 +19,10 @@ impl<S: Space> Simulation<S> {
             h: self.scheme.h,
         };
         let (network, bodies) = (&mut self.network, &self.bodies);
+        let all = free.iter().copied();
+        if detect::is_calm(network, &self.shapes, bodies, all, motion.h) {
+            return;
+        }
         detect::foresee(network, &self.shapes, bodies, &self.table, &motion);
     }
 
@@ -42,13 +46,17 @@ impl<S: Space> Simulation<S> {
             }
             self.couple(start, free, info, report)?;
             let velocities = self.bodies.velocity.iter().copied();
-            let velocities: Vec<_> = velocities.zip(self.bodies.spin.iter().copied()).collect();
+            let velocities = velocities.zip(self.bodies.spin.iter().copied());
+            let (network, bodies) = (&mut self.network, &self.bodies);
+            if detect::is_calm(network, &self.shapes, bodies, velocities.clone(), info.h) {
+                return Ok(());
+            }
+            let velocities: Vec<_> = velocities.collect();
             let motion = Motion {
                 velocities: &velocities,
                 time: self.time,
                 h: info.h,
             };
-            let (network, bodies) = (&mut self.network, &self.bodies);
             if solves == MOST_SOLVES {
                 detect::report_passing(network, &self.shapes, bodies, &self.table, &motion);
                 return Ok(());

@@ -61,8 +61,8 @@ impl Ran {
         let warning = haste.warning().unwrap_or_default();
         let causes = [
             (haste.late, Cause::Late),
-            (haste.unwatched_steps, Cause::Jumped),
-            (haste.passed, Cause::Plunged),
+            (haste.unwatched_steps, Cause::Unwatched),
+            (haste.passed, Cause::Passed),
         ];
         let causes = causes.into_iter().filter(|(times, _)| *times > 0);
         told.extend(causes.map(|(_, cause)| (cause, warning.clone())));

@@ -21,6 +21,8 @@ pub struct Sketch {
     pub theta: f64,
     /// Along the last axis, downwards (m/s^2).
     pub gravity: f64,
+    /// The contact law of all interfaces.
+    pub contact: &'static str,
     /// Friction of the only interface.
     pub mu: f64,
     /// Further words of the interface, with a comma at the end.
@@ -47,6 +49,7 @@ impl Default for Sketch {
             step: 1e-3,
             theta: 0.5,
             gravity: G,
+            contact: "coulomb",
             mu: 0.3,
             interface: "",
             parameters: String::new(),
@@ -117,9 +120,9 @@ impl Sketch {
             for b in *a..materials.len() {
                 let _ = writeln!(
                     interfaces,
-                    "(name: \"i{a}{b}\", between: (\"m{a}\", \"m{b}\"), contact: \"coulomb\", {} \
+                    "(name: \"i{a}{b}\", between: (\"m{a}\", \"m{b}\"), contact: \"{}\", {} \
                      parameters: (contact: {{\"mu\": {:?}}}{})),",
-                    self.interface, self.mu, self.parameters,
+                    self.contact, self.interface, self.mu, self.parameters,
                 );
             }
         }

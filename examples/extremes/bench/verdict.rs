@@ -5,10 +5,10 @@
 pub enum Cause {
     /// `TOO FAST`: contacts were first seen overlapping.
     Late,
-    /// `TOO FAST`: a body moved farther than its own length in a step.
-    Jumped,
-    /// `TOO FAST`: corners near a profile or facets moved more than a quarter of their body in a step.
-    Plunged,
+    /// `TOO FAST`: a body moved so far in a step that not all in its way was looked at.
+    Unwatched,
+    /// `TOO FAST`: two bodies went into or through each other within a step.
+    Passed,
     /// `NOT CONVERGED`.
     Unconverged,
     /// The scene was refused, in a sentence that holds these words.
@@ -21,9 +21,7 @@ impl Cause {
     /// What its sentence must hold: what to change.
     fn proposal(self) -> &'static str {
         match self {
-            Self::Late | Self::Jumped | Self::Plunged => {
-                "take a smaller time.step or a larger detection.alert"
-            }
+            Self::Late | Self::Unwatched | Self::Passed => "take a smaller time.step",
             Self::Unconverged => "take a smaller time.step, raise solver.max_iterations",
             Self::Refused(words) => words,
             Self::Stopped => "",

@@ -1,9 +1,8 @@
 //! Steps from tiny to senseless, functions of time that jump, and a million steps.
 
-use super::super::bench::Cause::{self, Jumped, Late, Refused, Unconverged};
+use super::super::bench::Cause::{self, Late, Refused, Unconverged};
 use super::super::bench::{
-    Group, HELD, Row, Sketch, ball, floor, go, grains, held_though, overlap, place, refused, told,
-    up, watch,
+    Group, HELD, Row, Sketch, ball, floor, go, grains, overlap, place, refused, told, up, watch,
 };
 use fretwork::geometry::space::{Plane, Solid, VectorLike};
 use fretwork::scene::build::Dimensional;
@@ -90,8 +89,8 @@ fn steps<S: Dimensional>() -> Vec<Row> {
         (1e-4, HELD),
         (1e-3, HELD),
         (1e-2, told(coarse)),
-        (0.1, told(&[Late, Jumped])),
-        (1.0, told(&[Late, Jumped])),
+        (0.1, told(&[Late])),
+        (1.0, told(&[Late])),
     ]
     .map(falling)
     .into()
@@ -157,7 +156,7 @@ fn jumps<S: Dimensional>() -> Vec<Row> {
             1.0,
             "Displacement(Table([(0.0, 0.0), (0.05, 0.0), (0.0500001, 1.0), (1.0, 1.0)]))",
             steady,
-            held_though(&[Jumped]),
+            HELD,
         ),
     ]
     .map(lid)

@@ -40,6 +40,37 @@ enum Stage {
     Report,
 }
 
+/// Whether no two bodies can move fast relative to each other in the step: then there is nothing to foresee. Cheap.
+pub fn is_calm<S: Space>(
+    network: &mut Network<S>,
+    shapes: &Shapes<S>,
+    bodies: &Bodies<S>,
+    velocities: impl Iterator<Item = (S::Vector, S::Spin)>,
+    h: f64,
+) -> bool {
+    if !network.extents.fits(shapes, bodies) {
+        network.extents = Extents::new(shapes, bodies);
+    }
+    if !network.widened.is_empty() || network.turning.iter().any(|w| *w > 0.0) {
+        return false;
+    }
+    let levers = &network.extents.levers;
+    let (mut fastest, mut turning) = (0.0f64, 0.0f64);
+    for ((v, w), lever) in velocities.zip(levers) {
+        fastest = fastest.max(v.dot(&v));
+        if *lever > 0.0 {
+            turning = turning.max(lever * lever * w.dot(&w));
+        }
+    }
+    // Below what asks for a wider list, and for a look at pairs. A surface that turns is not calm.
+    let still = shapes.surfaces.iter().all(|s| {
+        let b = s.body as usize;
+        let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
+        s.shape.keeps_place(&spin)
+    });
+    still && 2.0 * h * (fastest.sqrt() + turning.sqrt()) <= network.fast.min(network.alert)
+}
+
 /// Adds the contacts of the step that the free velocities close, and that detection at its start did not see.
 pub fn foresee<S: Space>(
     network: &mut Network<S>,
@@ -49,7 +80,15 @@ pub fn foresee<S: Space>(
     motion: &Motion<S>,
 ) {
     let travels = widen(network, shapes, bodies, laws, motion);
-    let found = look(network, shapes, bodies, laws, motion, &travels, Stage::Before);
+    let found = look(
+        network,
+        shapes,
+        bodies,
+        laws,
+        motion,
+        &travels,
+        Stage::Before,
+    );
     network.take_in(found);
 }
 
@@ -63,7 +102,15 @@ pub fn overlooked<S: Space>(
     motion: &Motion<S>,
 ) -> Vec<Contact<S>> {
     let travels = widen(network, shapes, bodies, laws, motion);
-    let found = look(network, shapes, bodies, laws, motion, &travels, Stage::After);
+    let found = look(
+        network,
+        shapes,
+        bodies,
+        laws,
+        motion,
+        &travels,
+        Stage::After,
+    );
     network.haste.repeated_solves += u64::from(!found.is_empty());
     found
 }
@@ -77,7 +124,15 @@ pub fn report_passing<S: Space>(
     motion: &Motion<S>,
 ) {
     let travels = widen(network, shapes, bodies, laws, motion);
-    look(network, shapes, bodies, laws, motion, &travels, Stage::Report);
+    look(
+        network,
+        shapes,
+        bodies,
+        laws,
+        motion,
+        &travels,
+        Stage::Report,
+    );
 }
 
 /// How far each body moves in the step, with a neighbour list that looks as far as the fast ones go.
@@ -91,36 +146,47 @@ fn widen<S: Space>(
     if !network.extents.fits(shapes, bodies) {
         network.extents = Extents::new(shapes, bodies);
     }
-    let travels = network
-        .extents
-        .travels(bodies, motion.velocities, motion.h);
+    let travels = network.extents.travels(bodies, motion.velocities, motion.h);
     let half = 0.5 * network.alert;
     let need = |travel: &f64| (travel - half).max(0.0);
-    let most = travels.iter().map(need).fold(0.0, f64::max);
+    let farthest = travels.iter().copied().fold(0.0, f64::max);
     let widest = network.widened.iter().copied().fold(0.0, f64::max);
-    if most == 0.0 && widest == 0.0 && !surfaces_turn_faster(network, shapes, motion) {
+    let turn_faster = surfaces_turn_faster(network, shapes, motion);
+    if farthest <= half && widest == 0.0 && !turn_faster {
         return travels;
     }
-    if most < 0.25 * widest {
-        // Nothing is fast any more.
+    // Some room for all, so that a body that has just become fast does not ask for a new list.
+    let room = network.alert;
+    let wide = |travel: &f64| (HEADROOM * need(travel)).max(room);
+    if farthest < 0.5 * half || 4.0 * wide(&farthest) < widest {
         network.widened.clear();
         network.forget_neighbours();
-        if most == 0.0 {
+        if farthest <= half {
             return travels;
         }
     }
     let seen = |b: usize| network.widened.get(b).copied().unwrap_or(0.0);
     let short = |b: usize| need(&travels[b]) > seen(b);
-    let must = network.seen_at.is_empty()
-        || surfaces_turn_faster(network, shapes, motion)
-        || (0..bodies.len()).any(short);
+    let must = network.seen_at.is_empty() || turn_faster || (0..bodies.len()).any(short);
     if must {
-        let wide = travels.iter().map(|t| HEADROOM * need(t));
-        network.widened = wide.collect();
+        network.widened = if farthest > half {
+            travels.iter().map(wide).collect()
+        } else {
+            Vec::new()
+        };
         let centres = centres(shapes, bodies);
         limit(network, shapes, &centres);
-        rebuild(network, shapes, bodies, laws, &centres, motion.velocities, motion.h);
-        let beyond = |b: &usize| need(&travels[*b]) > network.widened[*b];
+        rebuild(
+            network,
+            shapes,
+            bodies,
+            laws,
+            &centres,
+            motion.velocities,
+            motion.h,
+        );
+        let looked = |b: usize| network.widened.get(b).copied().unwrap_or(0.0);
+        let beyond = |b: &usize| need(&travels[*b]) > looked(*b);
         let farthest = (0..bodies.len())
             .filter(beyond)
             .max_by(|a, b| travels[*a].total_cmp(&travels[*b]));
@@ -165,7 +231,10 @@ fn limit<S: Space>(network: &mut Network<S>, shapes: &Shapes<S>, centres: &[S::V
     // Halved a few times it is nothing.
     for _ in 0..64 {
         let widened = &network.widened;
-        let wide: Vec<f64> = bodies.iter().map(|(b, r)| r + widened[*b as usize]).collect();
+        let wide: Vec<f64> = bodies
+            .iter()
+            .map(|(b, r)| r + widened[*b as usize])
+            .collect();
         if look_at(&wide) <= most {
             return;
         }
@@ -224,7 +293,7 @@ fn look<S: Space>(
         let Some(margin) = margin(network, names, &pair, stage) else {
             continue;
         };
-        let course = sweep.course(&pair, margin);
+        let course = sweep.course(&pair, margin.deepest);
         if course == Course::Clear {
             continue;
         }
@@ -233,13 +302,28 @@ fn look<S: Space>(
             continue;
         }
         let [one, other] = pair.materials();
-        if let (Course::Meets(s), Some(law)) = (course, laws.get(one, other)) {
+        let known = found.len();
+        if let (Course::Meets(s), Some(law)) =
+            (sweep.course(&pair, margin.begins), laws.get(one, other))
+        {
             sweep.contacts(&pair, s, law, &mut found);
+        }
+        if found.len() == known && stage == Stage::After {
+            // It cannot be followed, or not be held where it meets.
+            network.haste.pass(motion.time, bodies, pair.bodies());
         }
     }
     network.candidates = candidates;
     network.extents = extents;
     found
+}
+
+/// How deep a pair may go into each other (m).
+struct Margin {
+    /// Before something is done about it.
+    deepest: f64,
+    /// From where on it is held.
+    begins: f64,
 }
 
 /// How deep a pair may go into each other; none where it is not to be looked at.
@@ -248,7 +332,7 @@ fn margin<S: Space>(
     names: (u32, u32),
     pair: &Pair<S>,
     stage: Stage,
-) -> Option<f64> {
+) -> Option<Margin> {
     let contacts = &network.contacts;
     let first = contacts.partition_point(|c| c.key.pair() < names);
     let of_pair = contacts[first..]
@@ -265,13 +349,14 @@ fn margin<S: Space>(
             overlap = overlap.max(-contact.gap);
         }
     }
-    match stage {
-        Stage::Before if any => None,
-        Stage::Before => Some(TOLERATED * network.fast),
-        Stage::After if any => Some(network.fast + overlap),
-        Stage::After => Some(TOLERATED * network.fast),
-        Stage::Report => Some(PASSED * pair.half_thickness + overlap),
-    }
+    let begins = TOLERATED * network.fast + overlap;
+    let deepest = match stage {
+        Stage::Before if any => return None,
+        Stage::After if any => network.fast + overlap,
+        Stage::Before | Stage::After => begins,
+        Stage::Report => PASSED * pair.half_thickness + overlap,
+    };
+    Some(Margin { deepest, begins })
 }
 
 impl<S: Space> Network<S> {

@@ -7,7 +7,7 @@ mod pieces;
 mod sweep;
 
 pub use extents::{Extents, fast_motion};
-pub use foresee::{Motion, foresee, overlooked, report_passing};
+pub use foresee::{Motion, foresee, is_calm, overlooked, report_passing};
 
 use super::network::{Contact, Key, Network};
 use crate::bodies::Bodies;

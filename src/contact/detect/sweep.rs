@@ -268,15 +268,14 @@ impl<'a, S: Space> Sweep<'a, S> {
         if let Shape::Surface(surface) = &pair.shapes[1] {
             let origin = other.centre;
             let place = S::unrotate(&other.rotation, &(one.centre - origin));
+            // Of a plane the gap closes along its normal alone.
+            let normal = surface.shape.flat().map(|n| S::rotate(&other.rotation, &n));
             // First whether it is near at all: surfaces are looked at within a short reach alone.
             let near = |range: f64| surface.shape.near(&place, bound + range);
             let short = self.alert.max(pair.half_thickness);
             for range in [range, short] {
                 if !near(range) {
-                    return Probe {
-                        gap: range,
-                        normal: None,
-                    };
+                    return Probe { gap: range, normal };
                 }
             }
         } else {
@@ -291,18 +290,16 @@ impl<'a, S: Space> Sweep<'a, S> {
             Shape::Surface(_) => self.alert,
             _ => f64::INFINITY,
         };
-        self.meetings(pair, &[one, other], reach, &mut met);
+        let poses = [one, other];
+        self.meetings(pair, &poses, reach, &mut met);
+        let [_, other] = &poses;
         let nearest = met.iter().min_by(|m, n| m.gap.total_cmp(&n.gap));
-        match nearest {
-            Some(m) => Probe {
-                gap: m.gap,
-                normal: (!matches!(pair.shapes[1], Shape::Surface(_))).then_some(m.normal),
-            },
-            None => Probe {
-                gap: self.alert,
-                normal: None,
-            },
-        }
+        let normal = match &pair.shapes[1] {
+            Shape::Surface(s) => s.shape.flat().map(|n| S::rotate(&other.rotation, &n)),
+            _ => nearest.map(|m| m.normal),
+        };
+        let gap = nearest.map_or(self.alert, |m| m.gap);
+        Probe { gap, normal }
     }
 
     /// Where a pair is near in these poses; points are seen from the centres of the two bodies.
@@ -403,9 +400,8 @@ impl<'a, S: Space> Sweep<'a, S> {
             _ => sizes[0] * sizes[1] / (sizes[0] + sizes[1]),
         };
         for m in met {
-            let velocity = v + S::sweep(&w, &m.on_candidate)
-                - v_other
-                - S::sweep(&w_other, &m.on_antagonist);
+            let velocity =
+                v + S::sweep(&w, &m.on_candidate) - v_other - S::sweep(&w_other, &m.on_antagonist);
             // What the two go on the way there.
             let way = (-s * self.h * m.normal.dot(&velocity)).max(0.0);
             out.push(Contact {

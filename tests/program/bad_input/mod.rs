@@ -6,6 +6,7 @@ mod command_line;
 mod files;
 mod geometry;
 mod limits;
+mod magnitudes;
 mod mutations;
 mod names;
 mod numbers;

@@ -1,0 +1,256 @@
+//! Bodies that move farther in a step than they are thick: they meet what is in their way, or the run says that they may not
+//! have, when and which.
+
+use super::bench::{G, Sketch, ball, floor, grains, place};
+use fretwork::geometry::space::{Plane, Solid, Space, VectorLike};
+use fretwork::scene::build::Dimensional;
+use fretwork::step::Simulation;
+
+fn still() -> Sketch {
+    Sketch {
+        gravity: 0.0,
+        detection: [5e-4, 3e-3],
+        ..Sketch::default()
+    }
+}
+
+fn built<S: Dimensional>(sketch: &Sketch) -> Simulation<S> {
+    sketch.build::<S>().unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn go<S: Space>(s: &mut Simulation<S>, steps: usize) {
+    for _ in 0..steps {
+        s.step().unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+fn momentum<S: Space>(s: &Simulation<S>) -> S::Vector {
+    let bodies = s.bodies.grains();
+    bodies.fold(S::Vector::null(), |p, b| {
+        p + s.bodies.velocity[b] * s.bodies.mass[b]
+    })
+}
+
+/// No warning: nothing was passed through, nothing was seen late.
+fn silent<S: Space>(s: &Simulation<S>) {
+    assert_eq!(s.network.haste.warning(), None);
+}
+
+/// A blade of half the grains' thickness is driven by ten times its thickness a step along a row of grains.
+#[test]
+fn a_driven_blade_takes_along_what_it_meets() {
+    let row: Vec<String> = (0..10)
+        .map(|k| ball(&format!("[{}, 0.0]", 0.05 + 0.1 * f64::from(k)), 0.01))
+        .collect();
+    let mut s = built::<Plane>(&Sketch {
+        bodies: "(name: \"blade\", material: \"m0\", shapes: [Polygon(points: [(-0.005,-0.1),(0.005,-0.1),(0.005,0.1),(-0.005,0.1)])], \
+                 position: [-0.1, 0.0], dofs: (x: Velocity(Constant(100.0)))),"
+            .to_owned(),
+        grains: grains("m0", &row),
+        ..still()
+    });
+    let blade = s.bodies.driven[0].body as usize;
+    for _ in 0..20 {
+        go(&mut s, 1);
+        let side = s.bodies.position[blade].x + 0.005;
+        for b in s.bodies.grains() {
+            let near = s.bodies.position[b].x - 0.01;
+            assert!(near > side - 1e-3, "{near} {side}");
+        }
+    }
+    silent(&s);
+}
+
+/// A capsule of 5 mm moves across its thickness by 200 mm a step, on to a row of grains at rest.
+#[test]
+fn a_thin_capsule_does_not_fall_through_a_row_of_grains() {
+    let row: Vec<String> = (0..9)
+        .map(|k| ball(&format!("[{}, 0.0]", -0.4 + 0.1 * f64::from(k)), 0.01))
+        .collect();
+    let mut s = built::<Plane>(&Sketch {
+        grains: format!(
+            "Clusters(material: \"m0\", grains: [(at: [0.0, 0.53], shapes: [Capsule(from: (-0.5, 0.0), to: (0.5, 0.0), \
+             radius: 0.005)], velocity: [0.0, -200.0])]), {}",
+            grains("m0", &row)
+        ),
+        ..still()
+    });
+    let before = momentum(&s);
+    for _ in 0..20 {
+        go(&mut s, 1);
+        let plate = s.bodies.position[0].y;
+        for b in 1..10 {
+            let up = s.bodies.position[b].y;
+            assert!(up + 0.015 < plate + 2e-3, "{up} {plate}");
+        }
+    }
+    let after = momentum(&s);
+    assert!((after - before).norm() < 1e-9 * before.norm());
+    silent(&s);
+}
+
+/// A rod that turns by 0.3 rad a step: its ends go fifteen of its thicknesses. Driven, and free.
+#[test]
+fn a_spinning_rod_hits_the_grain_in_its_way() {
+    let far = 0.4;
+    let angle = 0.45f64;
+    let target = ball(
+        &format!("[{}, {}]", far * angle.cos(), far * angle.sin()),
+        0.01,
+    );
+    let rod = "Capsule(from: (-0.5, 0.0), to: (0.5, 0.0), radius: 0.01)";
+    let paddle = Sketch {
+        bodies: format!(
+            "(name: \"paddle\", material: \"m0\", shapes: [{rod}], dofs: (rz: Velocity(Constant(300.0)))),"
+        ),
+        grains: grains("m0", &[target.clone()]),
+        ..still()
+    };
+    let mut s = built::<Plane>(&paddle);
+    go(&mut s, 3);
+    let v = s.bodies.velocity[0];
+    // Pushed in the sense of the rotation, no faster than where it was touched.
+    let along = -v.x * angle.sin() + v.y * angle.cos();
+    assert!(along > 1.0 && along < 1.5 * 300.0 * 0.5, "{v:?}");
+    silent(&s);
+
+    let mut s = built::<Plane>(&Sketch {
+        bodies: String::new(),
+        grains: format!(
+            "Clusters(material: \"m0\", grains: [(at: [0.0, 0.0], shapes: [{rod}], spin: [300.0])]), {}",
+            grains("m0", &[target])
+        ),
+        ..still()
+    });
+    let before = momentum(&s);
+    go(&mut s, 3);
+    assert!(s.bodies.velocity[1].norm() > 1.0);
+    assert!(s.bodies.spin[0][0] < 299.0);
+    let scale = s.bodies.mass[1] * s.bodies.velocity[1].norm();
+    assert!((momentum(&s) - before).norm() < 1e-9 * scale);
+}
+
+/// Head on at ten radii a step: without restitution they stay together; with e the lighter part of the velocity is
+/// exchanged, v1 = (1 - e) v/2 and v2 = (1 + e) v/2.
+fn head_on<S: Dimensional>() {
+    for (contact, e) in [("coulomb", 0.0), ("newton-restitution", 0.8)] {
+        let expected = [50.0 * (1.0 - e), 50.0 * (1.0 + e)];
+        let moving = format!(
+            "(at: {}, radius: 0.01, velocity: {})",
+            place::<S>(0.0, 0.0, 0.0),
+            place::<S>(100.0, 0.0, 0.0)
+        );
+        let mut s = built::<S>(&Sketch {
+            contact,
+            mu: 0.0,
+            grains: grains("m0", &[moving, ball(&place::<S>(0.55, 0.0, 0.0), 0.01)]),
+            ..still()
+        });
+        let before = momentum(&s);
+        go(&mut s, 20);
+        assert!((momentum(&s) - before).norm() < 1e-12 * before.norm());
+        for (b, v) in expected.into_iter().enumerate() {
+            assert!(
+                (s.bodies.velocity[b][0] - v).abs() < 1e-6,
+                "e = {e}: {:?}",
+                s.bodies.velocity
+            );
+        }
+        assert!(s.bodies.position[1][0] - s.bodies.position[0][0] > 0.0199);
+        silent(&s);
+    }
+}
+
+#[test]
+fn fast_balls_meet_head_on() {
+    head_on::<Plane>();
+    head_on::<Solid>();
+}
+
+/// Two balls that pass beside each other keep their velocities to the last bit, however near the line of their centres is to
+/// the motion at the start.
+#[test]
+fn fast_balls_that_miss_each_other_do_not_meet() {
+    for (x, aside) in [(0.1, 0.0201), (0.05, 0.03), (0.4, 0.021), (0.021, 0.0205)] {
+        let moving = "(at: [0.0, 0.0, 0.0], radius: 0.01, velocity: [200.0, 0.0, 0.0])".to_owned();
+        let mut s = built::<Solid>(&Sketch {
+            grains: grains("m0", &[moving, ball(&format!("[{x}, {aside}, 0.0]"), 0.01)]),
+            ..still()
+        });
+        go(&mut s, 5);
+        assert_eq!(s.bodies.velocity[0].x, 200.0, "{x} {aside}");
+        assert_eq!(s.bodies.velocity[1], nalgebra::Vector3::zeros());
+        silent(&s);
+    }
+}
+
+/// Thrown at ten radii a step at a plane, a height field and a wall thinner than the sphere.
+#[test]
+fn a_fast_sphere_stays_in_front_of_a_wall() {
+    let flat = "HeightField(points: (3, 3), spacing: (1.0, 1.0), heights: [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])";
+    let plate = "Box(size: (2.0, 2.0, 0.01))";
+    let thrown = "(at: [0.9, 0.9, 0.73], radius: 0.01, velocity: [13.0, 7.0, -100.0])".to_owned();
+    for (shape, at, top) in [
+        ("HalfSpace(normal: [0.0, 0.0, 1.0])", "[0.0, 0.0, 0.0]", 0.0),
+        (flat, "[0.0, 0.0, 0.0]", 0.0),
+        (plate, "[1.0, 1.0, 0.0]", 0.005),
+    ] {
+        let sketch = Sketch {
+            bodies: format!(
+                "(name: \"wall\", material: \"m0\", shapes: [{shape}], position: {at}),"
+            ),
+            grains: grains("m0", std::slice::from_ref(&thrown)),
+            ..still()
+        };
+        let mut s = match sketch.build::<Solid>() {
+            Ok(s) => s,
+            Err(e) => panic!("{e}"),
+        };
+        go(&mut s, 20);
+        let z = s.bodies.position[0].z;
+        assert!((z - top - 0.01).abs() < 1e-6, "{shape}: {z}");
+        silent(&s);
+    }
+}
+
+/// A bond is made within the alert distance alone, and nothing pulls at a distance, however fast two grains come together.
+#[test]
+fn speed_makes_no_bonds() {
+    let moving = "(at: [0.0, 0.0], radius: 0.01, velocity: [30.0, 0.0])".to_owned();
+    let mut s = built::<Plane>(&Sketch {
+        interface: "cohesion: \"elastic-bond\",",
+        parameters: ", cohesion: {\"k_n\": 1e9, \"k_t\": 1e9}".to_owned(),
+        grains: grains("m0", &[moving, ball("[0.045, 0.0]", 0.01)]),
+        ..still()
+    });
+    let before = momentum(&s);
+    go(&mut s, 3);
+    assert!(s.network.haste.foreseen > 0);
+    assert_eq!(s.network.bonds_made(), 0);
+    assert!((s.bodies.velocity[1].x - 15.0).abs() < 1e-6);
+    assert!((momentum(&s) - before).norm() < 1e-12 * before.norm());
+}
+
+/// Where nothing is fast nothing is done: no contact is made ahead, no step is solved twice.
+#[test]
+fn slow_scenes_do_without() {
+    let stack: Vec<String> = (0..5)
+        .map(|k| {
+            ball(
+                &place::<Plane>(0.0, 0.0, 0.0101 + 0.0201 * f64::from(k)),
+                0.01,
+            )
+        })
+        .collect();
+    let mut s = built::<Plane>(&Sketch {
+        gravity: G,
+        step: 1e-4,
+        bodies: floor::<Plane>(),
+        grains: grains("m0", &stack),
+        ..still()
+    });
+    go(&mut s, 500);
+    let haste = &s.network.haste;
+    assert_eq!((haste.foreseen, haste.repeated_solves), (0, 0));
+    silent(&s);
+}
