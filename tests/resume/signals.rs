@@ -7,12 +7,13 @@ use std::path::Path;
 use std::process::{Child, Output, Stdio};
 use std::time::{Duration, Instant};
 
-const SETS: [&str; 5] = [
+const SETS: [&str; 6] = [
     "time.step=1e-4",
     "solver.tolerance=1e-4",
     "time.end=0.056",
     "output.checkpoint=Steps(70)",
     "output.frames=2",
+    "output.every=1",
 ];
 
 const JOB: Job<'static> = Job {

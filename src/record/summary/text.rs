@@ -215,7 +215,7 @@ impl Summary {
             quantity(e.external_work, unit),
             number(self.energy_residual_relative, 2)
         );
-        lines.add("work done on it", text);
+        lines.add("external work", text);
     }
 
     /// What the case asked for besides.
