@@ -85,7 +85,7 @@ fn warnings_come_first_then_friction_damage_wear_energies() {
         "damage",
         "wear of rail",
         "wear of wheel",
-        "dissipated",
+        "\n  dissipated",
         "external work",
     ];
     let places: Vec<usize> = order.iter().map(|w| place(&text, w)).collect();
