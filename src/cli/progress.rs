@@ -90,7 +90,8 @@ impl Display {
     /// At the end.
     pub fn finish(&self) {
         if let Some(bar) = &self.bar {
-            bar.finish();
+            // Where the run ended early it stays there.
+            bar.abandon();
         }
     }
 }

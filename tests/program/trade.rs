@@ -402,6 +402,21 @@ fn failed_runs_are_marked_and_kept_off_the_frontier() {
     );
 }
 
+/// A command in a process group of its own.
+fn in_a_group(mut command: Command) -> Command {
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    command
+}
+
+/// Command lines of the processes that name a folder; none where the system does not list them as Linux does.
+fn running(folder: &str) -> Vec<String> {
+    let list = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let lines = list.filter_map(|p| std::fs::read(p.path().join("cmdline")).ok());
+    let lines = lines.map(|l| String::from_utf8_lossy(&l).replace('\0', " "));
+    lines.filter(|l| l.contains(folder)).collect()
+}
+
 #[test]
 fn ends_with_the_budget_and_goes_on_after_an_interruption() {
     let folder = Folder::new("budget");
@@ -452,20 +467,33 @@ fn ends_with_the_budget_and_goes_on_after_an_interruption() {
         "--budget",
         "10m",
     ];
-    let mut child = command(&common)
-        .stdout(std::process::Stdio::piped())
-        .stderr(std::process::Stdio::null())
+    let child = in_a_group(command(&common))
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::piped())
         .spawn()
         .unwrap_or_else(|e| panic!("{e}"));
     std::thread::sleep(Duration::from_secs(5));
+    // As Ctrl-C on a terminal does: the study and the runs that it started.
     let killed = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
+        .args(["-INT", "--", &format!("-{}", child.id())])
         .status();
     assert!(killed.is_ok_and(|s| s.success()));
     let started = Instant::now();
-    let code = child.wait().unwrap_or_else(|e| panic!("{e}")).code();
+    let ended = child.wait_with_output().unwrap_or_else(|e| panic!("{e}"));
     assert!(started.elapsed() < Duration::from_secs(20));
-    assert_eq!(code, Some(1));
+    assert_eq!(ended.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&ended.stderr);
+    let (_, again) = said
+        .split_once("to go on from there:\n")
+        .unwrap_or_default();
+    assert!(again.contains(" trade ") && again.contains(&out), "{said}");
+    assert_eq!(running(&out), Vec::<String>::new(), "runs that were left");
+    // What the signal ended is not kept as a run that failed.
+    let runs = std::fs::read_dir(Path::new(&out).join("runs")).unwrap_or_else(|e| panic!("{e}"));
+    for run in runs.flatten() {
+        let kept = std::fs::read_to_string(run.path().join("run.json")).unwrap_or_default();
+        assert!(!kept.contains("interrupted"), "{kept}");
+    }
     let text = std::fs::read_to_string(Path::new(&out).join("trade.json")).unwrap_or_default();
     let left: Value = serde_json::from_str(&text).unwrap_or_default();
     assert_eq!(left["complete"], false, "{text}");

@@ -72,6 +72,10 @@ impl<S: Dimensional> Recorder<'_, S> {
         summary.scars = scars::outcome(s);
         summary.measures = self.measures.outcome(&self.table);
         summary.measure_units = self.measures.units();
+        let found = &summary.measures;
+        summary
+            .measure_units
+            .retain(|name, _| found.contains_key(name));
         summary.findings = self.measures.verdict(&self.table);
         summary.jump = self.jumps.as_ref().map(|j| j.outcome(s, self.worn));
         // Wear goes on over the cycles that were jumped over.

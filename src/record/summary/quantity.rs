@@ -24,7 +24,7 @@ pub(super) fn number(value: f64, digits: i32) -> String {
         .split_once('e')
         .and_then(|(_, e)| e.parse().ok())
         .unwrap_or(0);
-    if (-3..5).contains(&power) {
+    if (-4..5).contains(&power) {
         format!("{value:.*}", (digits - 1 - power).max(0) as usize)
     } else {
         rounded

@@ -78,7 +78,7 @@ impl Summary {
         let over = match (fretting, cycle.complete) {
             (true, true) => format!("in cycle {}, the last complete one", cycle.cycle),
             (false, true) => "over the second half".to_owned(),
-            (_, false) => "so far, before the end of what counts".to_owned(),
+            (_, false) => "over the part that ran of what counts".to_owned(),
         };
         let known = &self.uncertainty.friction_coefficient;
         let mean = match (known.value, known.scatter, &known.method) {
@@ -215,7 +215,7 @@ impl Summary {
             quantity(e.external_work, unit),
             number(self.energy_residual_relative, 2)
         );
-        lines.add("work done on it", text);
+        lines.add("external work", text);
     }
 
     /// What the case asked for besides.

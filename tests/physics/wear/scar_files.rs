@@ -151,16 +151,16 @@ fn the_specific_wear_rate_is_that_of_the_law() {
     assert!((rate / 1e-8 - 1.0).abs() < 1e-3, "{rate}");
     // 2000 N/m over 0.7 m/s for 0.6 s.
     assert!(
-        (of(&wear["load_path"]) / 840.0 - 1.0).abs() < 1e-3,
+        (of(&wear["load_path"]) / 840.0 - 1.0).abs() < 3e-3,
         "{wear}"
     );
-    assert!((of(&bodies[0]["volume"]) / of(&summary["scars"][0]["volume"]) - 1.0).abs() < 1e-12);
+    assert!((of(&bodies[0]["volume"]) / of(&summary["scars"][0]["volume"]) - 1.0).abs() < 1e-10);
     let rows = rows(&out.read("scar_rail.csv"));
     let deepest = rows.iter().map(|r| r[3]).fold(0.0, f64::max);
-    assert!((of(&bodies[0]["depth_max"]) / deepest - 1.0).abs() < 1e-12);
+    assert!((of(&bodies[0]["depth_max"]) / deepest - 1.0).abs() < 1e-10);
     // All three vertices are worn: their mean, each for its part of the length, is over 1.1 m.
     assert!(rows.iter().all(|r| r[3] > 0.0));
-    assert!((of(&bodies[0]["depth_mean"]) * 1.1 / of(&bodies[0]["volume"]) - 1.0).abs() < 1e-12);
+    assert!((of(&bodies[0]["depth_mean"]) * 1.1 / of(&bodies[0]["volume"]) - 1.0).abs() < 1e-10);
     let printed = String::from_utf8_lossy(&done.stdout);
     assert!(
         printed.contains("wear of rail") && printed.contains(" mm3/(N m)"),
