@@ -7,7 +7,9 @@ impl<S: Space> Simulation<S> {
     /// Takes a grain out for good: it stands still, touches nothing, and its bonds tear. The kinetic energy that it
     /// had is an entry of the energy ledger.
     pub fn take_out(&mut self, body: usize) {
-        self.energy.carried += self.bodies.energy_of(body);
+        let energy = self.bodies.energy_of(body);
+        self.energy.carried += energy;
+        self.energy.kinetic -= energy;
         self.bodies.take_out(body);
         self.network.forget_neighbours();
     }

@@ -226,6 +226,7 @@ fn a_file_without_shapes_is_refused_with_a_sentence() {
             points: vec![0.05, 0.02, 0.0, 0.1, 0.02, 0.0],
             cells: vec![vec![0], vec![1]],
             data,
+            ..Part::default()
         };
         let parts = [grains, Part::default(), Part::default()];
         results.append_views(0.5, &parts).unwrap();

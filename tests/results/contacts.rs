@@ -94,8 +94,8 @@ fn vectors(contacts: &Contacts, name: &str, dimension: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The forces of the contacts of the driven body, number 1 of its case, add up to what the statistics say it receives.
-fn forces_add_up(case: &str, body: &str, dimension: usize, sets: &[&str]) {
+/// The forces of the contacts of a driven body of this identity add up to what the statistics say it receives.
+fn forces_add_up(case: &str, (body, id): (&str, i64), dimension: usize, sets: &[&str]) {
     let out = folder(&format!("forces-{dimension}"));
     let mut args = vec!["--set", "output.frames=0", "--set", "output.figures=false"];
     for set in sets {
@@ -115,7 +115,7 @@ fn forces_add_up(case: &str, body: &str, dimension: usize, sets: &[&str]) {
         let mut sum = 0.0;
         let mut size = 0.0;
         for (force, [one, other]) in forces.iter().zip(&bodies) {
-            let sign = f64::from(i8::from(*one == 1) - i8::from(*other == 1));
+            let sign = f64::from(i8::from(*one == id) - i8::from(*other == id));
             sum += sign * force[a];
             size += (sign * force[a]).abs();
             touching += u32::from(sign != 0.0 && force[a] != 0.0);
@@ -161,12 +161,14 @@ fn forces_add_up(case: &str, body: &str, dimension: usize, sets: &[&str]) {
 
 #[test]
 fn forces_of_contacts_add_up_to_those_on_a_body_in_the_plane() {
-    forces_add_up("verification/energy", "top", 2, &["time.end=0.02"]);
+    // First bodies come after the 40 grains.
+    forces_add_up("verification/energy", ("top", 41), 2, &["time.end=0.02"]);
 }
 
 #[test]
 fn forces_of_contacts_add_up_to_those_on_a_body_in_space() {
-    forces_add_up("shear_cell_3d", "lid", 3, &["time.end=0.02"]);
+    // First bodies come after the 480 grains.
+    forces_add_up("shear_cell_3d", ("lid", 481), 3, &["time.end=0.02"]);
 }
 
 /// A sphere thrown at v = 1 m/s slides until 2 v/(7 mu g) = 0.097 s and then rolls; friction takes m v^2/7.
