@@ -29,7 +29,7 @@ pub enum LawCommand {
     New(new::NewArgs),
     /// Drive one contact along a path and see what the laws answer
     #[command(after_help = drive::EXAMPLES)]
-    Drive(drive::DriveArgs),
+    Drive(Box<drive::DriveArgs>),
     /// Test what a law promises: energy, dissipation, frame, step, bits, bad numbers
     #[command(after_help = certify::EXAMPLES)]
     Certify(certify::CertifyArgs),

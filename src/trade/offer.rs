@@ -119,7 +119,7 @@ impl Offer {
     fn names(&self) -> Vec<String> {
         let mut names = Vec::new();
         flatten(&self.summary, "", &mut names);
-        names.retain(|n| self.lack(&[n.clone()]).is_none());
+        names.retain(|n| self.lack(std::slice::from_ref(n)).is_none());
         names.extend(self.measures.iter().map(|m| format!("measures.{m}")));
         names
     }

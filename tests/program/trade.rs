@@ -552,7 +552,7 @@ fn wrong_input_is_answered_with_the_nearest_name() {
         (&["--budget", "soon"], "is no time"),
         (&["--budget", "NaN"], "is no time"),
         (&["--unconverged", "NaN"], "is no share"),
-        (&["--residual", "-1"], "is no share"),
+        (&["--residual=-1"], "is no share"),
         (&["--output", "energy.fracture=NaN%"], "a number above zero"),
         (&["--output", "energy.fracture=100%"], "less than 100 %"),
         (

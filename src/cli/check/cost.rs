@@ -30,6 +30,8 @@ struct Timed {
 #[derive(Clone, Debug, Default)]
 pub struct Trial {
     timed: Vec<Timed>,
+    /// How long the step at work had taken when the time was up (s, by the clock); 0 where none was.
+    pending: f64,
     /// Why a step failed.
     failure: Option<String>,
 }
@@ -68,6 +70,7 @@ impl Trial {
         };
         let mut out = Self::default();
         let begun = Instant::now();
+        let mut last = begun;
         if let Err(e) = std::thread::Builder::new().spawn(work) {
             out.failure = Some(format!("there is no thread to time steps on ({e})"));
             return out;
@@ -75,7 +78,10 @@ impl Trial {
         loop {
             let left = WATCHED.saturating_sub(begun.elapsed());
             match receiver.recv_timeout(left) {
-                Ok(Ok(step)) => out.timed.push(step),
+                Ok(Ok(step)) => {
+                    out.timed.push(step);
+                    last = Instant::now();
+                }
                 Ok(Err(e)) => {
                     let step = out.timed.len() + 1;
                     out.failure = Some(format!(
@@ -83,7 +89,11 @@ impl Trial {
                     ));
                     break;
                 }
-                Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => break,
+                Err(RecvTimeoutError::Timeout) => {
+                    out.pending = last.elapsed().as_secs_f64();
+                    break;
+                }
+                Err(RecvTimeoutError::Disconnected) => break,
             }
         }
         out
@@ -92,6 +102,21 @@ impl Trial {
     /// The steps that count: the first ones make lists and start from nothing.
     fn used(&self) -> &[Timed] {
         &self.timed[self.timed.len() / 2..]
+    }
+
+    /// Seconds a step. A step at work that has taken far longer than the others counts with what it took so far.
+    fn step(&self) -> f64 {
+        let (mean, n) = (self.mean(|t| t.seconds), self.used().len() as f64);
+        if self.stuck() {
+            (mean * n + self.pending) / (n + 1.0)
+        } else {
+            mean
+        }
+    }
+
+    /// Whether the step at work takes far longer than the others did.
+    fn stuck(&self) -> bool {
+        self.pending > 10.0 * self.mean(|t| t.seconds).max(1e-3)
     }
 
     fn mean(&self, f: impl Fn(&Timed) -> f64) -> f64 {
@@ -117,7 +142,7 @@ impl Trial {
                 most: f64::INFINITY,
             });
         }
-        let whole = self.mean(|t| t.seconds) * steps as f64;
+        let whole = self.step() * steps as f64;
         Some(RunTime {
             about: Some(whole),
             least: whole / FACTOR,
@@ -136,8 +161,8 @@ impl Trial {
         let Some(about) = time.about else {
             return format!(
                 "more than {}: the first step alone takes longer than {}",
-                seconds(time.least),
-                seconds(WATCHED.as_secs_f64())
+                amount(time.least),
+                amount(WATCHED.as_secs_f64())
             );
         };
         let loose = if self.growth(grains, dimension) > 1.5 {
@@ -146,18 +171,32 @@ impl Trial {
         } else {
             String::new()
         };
+        let stuck = if self.stuck() {
+            format!(", then one of more than {}", amount(self.pending))
+        } else {
+            String::new()
+        };
         format!(
-            "about {} on one thread, between {} and {}: {} steps timed, the last {} of {:.1e} s each with {:.0} contacts and {:.0} iterations{loose}; \
+            "about {} on one thread, between {} and {}: {} steps timed, the last {} of {:.1e} s each with {:.0} contacts and {:.0} iterations{stuck}{loose}; \
              pictures and files are not counted",
-            seconds(about),
-            seconds(time.least),
-            seconds(time.most),
+            amount(about),
+            amount(time.least),
+            amount(time.most),
             self.timed.len(),
             self.used().len(),
             self.mean(|t| t.seconds),
             self.mean(|t| t.contacts as f64),
             self.mean(|t| f64::from(t.iterations))
         )
+    }
+}
+
+/// A time for people.
+fn amount(s: f64) -> String {
+    if s < 1e-3 {
+        "less than 1 ms".to_owned()
+    } else {
+        seconds(s)
     }
 }
 
@@ -175,7 +214,7 @@ mod tests {
         // The first, dear step does not count.
         let trial = Trial {
             timed: vec![step(1.0), step(2e-3), step(4e-3), step(4e-3)],
-            failure: None,
+            ..Trial::default()
         };
         let text = trial.text(10_000, 100, 2);
         let begins = "about 40.0 s on one thread, between 13.3 s and 120 s";
@@ -188,6 +227,16 @@ mod tests {
         assert!(
             loose.contains("and 20 min") && loose.contains("some 2000 contacts"),
             "{loose}"
+        );
+        // A step that does not come back counts: (2 x 4 ms + 1 s)/3 each.
+        let stuck = Trial {
+            pending: 1.0,
+            ..trial.clone()
+        };
+        let stuck = stuck.text(10_000, 100, 2);
+        assert!(
+            stuck.starts_with("about 56 min") && stuck.contains("then one of more than 1.0 s"),
+            "{stuck}"
         );
         let none = Trial::default().text(1000, 1, 3);
         assert!(none.starts_with("more than 167 s"), "{none}");

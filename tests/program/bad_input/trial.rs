@@ -72,6 +72,14 @@ static int32_t prepare(const fw_batch *b, fw_message *m) {
     static int calls;
     for (volatile int on = ++calls > 20000; on;) {}
 #endif
+#ifdef FAILS
+    static int asked;
+    if (++asked > 200) return FW_ERROR;
+#endif
+#ifdef HANGS
+    static int asked;
+    for (volatile int on = ++asked > 200; on;) {}
+#endif
 #ifdef SPILLS
     b->out_friction[b->n] = 1.0;
 #endif
@@ -143,7 +151,8 @@ impl Trial {
         self.compile_bad_law(name, flags, "GOOD");
     }
 
-    /// The same with a fault: it `LOOPS` for ever in prepare, or `SPILLS` behind a column.
+    /// The same with a fault: in prepare it `LOOPS` for ever after 20,000 calls, `HANGS` after 200, `FAILS` after 200, or
+    /// `SPILLS` behind a column.
     pub fn compile_bad_law(&self, name: &str, flags: &str, fault: &str) {
         use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
         let source = self.write("law.c", LAW);

@@ -185,3 +185,31 @@ fn a_law_that_does_not_come_back() {
     let again = run(&trial, &[&more[..], &["--resume"]].concat());
     says(&again, 1, &["has not come back from prepare"]);
 }
+
+/// The trial steps of `check`: a law that fails in one is told, one that does not come back holds nothing up.
+#[test]
+fn check_times_steps_of_laws_that_fail_and_hang() {
+    for (fault, says) in [
+        ("FAILS", "of a trial FAILED, and a run will too"),
+        ("SPILLS", "step 1 of a trial FAILED"),
+        ("HANGS", "then one of more than"),
+    ] {
+        let (trial, case) = own(fault);
+        let long = std::fs::read_to_string(&case).unwrap();
+        trial.write("case.ron", long.replace("end: 0.002", "end: 20.0"));
+        let folder = trial.path("");
+        // The watch over laws would end it with code 1 much later.
+        let words = [
+            "check",
+            "case.ron",
+            "--plugin-path",
+            folder.to_str().unwrap(),
+        ];
+        let output = trial.call(&words);
+        let text = String::from_utf8_lossy(&output.stdout);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{fault}: {said}");
+        let line = text.lines().find(|l| l.trim().starts_with("run time"));
+        assert!(line.is_some_and(|l| l.contains(says)), "{fault}: {text}");
+    }
+}

@@ -51,7 +51,7 @@ fn of_case(case: &Path, args: &DriveArgs) -> Result<(Bench, String), Failure> {
     };
     let Some(place) = names().position(|n| n == name) else {
         let near =
-            nearest(name, names()).map_or(String::new(), |n| format!("; did you mean `{n}`?"));
+            nearest(name, names()).map_or(".".to_owned(), |n| format!("; did you mean `{n}`?"));
         return Err(Failure::Usage(format!(
             "--interface {name}: {} has no interface of this name{near} It has {all}",
             case.display()
