@@ -7,6 +7,8 @@ mod circuit;
 mod command_line;
 #[path = "bad_input/geometry.rs"]
 mod geometry;
+#[path = "bad_input/hostile_laws.rs"]
+mod hostile_laws;
 #[path = "bad_input/limits.rs"]
 mod limits;
 #[path = "bad_input/mutations.rs"]
