@@ -1,6 +1,6 @@
 //! A law certified in a process of its own: one that crashes, ends the program or hangs costs a line of its certificate.
 
-use super::{Certificate, Event, Line, certify, certify_telling};
+use super::{Certificate, Event, Line, border, certify, certify_telling};
 use crate::laws::child::{self, End};
 use crate::laws::{Kind, LawError, Loaded, Plugin, SearchPath, built_in};
 use serde::{Deserialize, Serialize};
@@ -118,6 +118,7 @@ pub fn certify_asked() -> Result<(), String> {
             &law.parameters,
             partner.as_ref(),
             &path,
+            &border::CHECKS,
             &mut tell,
         )
     });

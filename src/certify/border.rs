@@ -16,6 +16,9 @@ pub const CHECKS: [(&str, Check); 7] = [
     ("bad numbers", bad_numbers),
 ];
 
+/// Those that hang on parameters; the others are of the code alone.
+pub const OF_PARAMETERS: [(&str, Check); 2] = [CHECKS[1], CHECKS[6]];
+
 /// Moves a batch along walks, one a contact, some of them used more than once; the bits of all answers.
 fn together(
     bench: &mut Bench,

@@ -81,6 +81,7 @@ impl Slot {
 }
 
 /// Whom this thread calls, and what, while a call goes on. It takes no lock and no memory.
+#[cfg(unix)]
 pub(super) fn inside() -> Option<(&'static str, &'static str)> {
     let mine = MINE.try_with(|slot| *slot).ok()?;
     let called = mine.turns.load(Ordering::Relaxed) % 2 == 1;

@@ -17,6 +17,9 @@ static double length(double a, double b, double c) { return sqrt(a * a + b * b +
 #if defined(WRONG_HIDDEN)
 static double memory;
 #endif
+#if defined(WRONG_SCRATCH)
+static double scratch[1 << 16];
+#endif
 #if defined(WRONG_THREADS)
 static atomic_int threads;
 static _Thread_local int me = -1;
@@ -59,9 +62,25 @@ static int32_t fail(fw_message *m, size_t k) {
 
 static int32_t prepare(const fw_batch *b, fw_message *m) {
     const double *p = b->parameters;
+#if defined(WRONG_SCRATCH)
+    for (size_t k = 0; k < b->n; k++) scratch[k] = b->opening_n[k];
+#elif defined(WRONG_INPUT)
+    ((double *)b->opening_n)[0] += 1e-20;
+#elif defined(WRONG_STATE)
+    ((double *)b->state[0])[0] += 1e-20;
+#elif defined(WRONG_PARAMETER)
+    ((double *)b->parameters)[K] *= 1.0 + 1e-15;
+#elif defined(WRONG_BEFORE)
+    b->out_traction_n[-1] = 0.0;
+#elif defined(WRONG_FAR)
+    b->out_traction_n[b->n + 300] = 0.0;
+#endif
     for (size_t k = 0; k < b->n; k++) {
         double t2 = b->opening_t2 ? b->opening_t2[k] : 0.0;
         double n = b->opening_n[k], t1 = b->opening_t1[k];
+#if defined(WRONG_SCRATCH)
+        n = scratch[k];
+#endif
         double u = length(n, t1, t2), s = (1.0 - b->damage[k]) * p[K] * shape(p, u);
 #if defined(WRONG_BATCH)
         s *= 1.0 + 1e-9 * (double)k;
@@ -101,6 +120,8 @@ static int32_t energy(const fw_batch *b, fw_message *m) {
         b->out_energy[k] = (1.0 - b->damage[k]) * stored(b->parameters, u);
 #if defined(WRONG_DISSIPATION)
         b->out_energy[k] *= 1.5;
+#elif defined(WRONG_STORED)
+        b->out_energy[k] *= 1.005;
 #endif
         if (bad(b->out_energy[k])) return fail(m, k);
     }
@@ -131,6 +152,8 @@ static double declared(const double *p, double angle) {
     (void)angle;
 #if defined(WRONG_ENERGY)
     return 1.1 * p[ENERGY];
+#elif defined(WRONG_ENERGY_BY_HALF_A_PERCENT)
+    return 1.005 * p[ENERGY];
 #elif defined(WRONG_SECANT) || defined(WRONG_STEP)
     (void)p;
     return NAN;

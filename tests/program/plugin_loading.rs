@@ -338,3 +338,110 @@ fn the_shipped_laws_are_found_and_agree_with_their_names() {
         );
     }
 }
+
+/// What is linked into the program is what its libraries hold.
+#[test]
+fn built_in_laws_are_those_of_the_libraries() {
+    use fretwork::laws::built_in;
+    let path = SearchPath::new(&[]);
+    let libraries = path.available();
+    assert_eq!(built_in::names().count(), libraries.len());
+    for (kind, name, file) in libraries {
+        let library = Plugin::open(&file).unwrap();
+        let built_in = built_in::open(kind, &name).unwrap().unwrap();
+        assert!(built_in.built_in && !library.built_in);
+        assert_eq!(built_in.path, std::env::current_exe().unwrap());
+        let facts = |p: &Plugin| {
+            let texts = [&p.name, &p.version, &p.doc, &p.reference].map(String::clone);
+            let calls = (p.commits(), p.initialises());
+            (p.kind, texts, p.flags, p.degradation, calls)
+        };
+        assert_eq!(facts(&built_in), facts(&library));
+        assert_eq!(built_in.parameters, library.parameters, "{name}");
+        assert_eq!(built_in.variables, library.variables, "{name}");
+    }
+}
+
+/// The program alone, copied elsewhere, without anything in its environment: shipped laws and materials are found, a case
+/// runs to the bits of a run in the checkout, and a library on the path takes no shipped law's place.
+#[test]
+fn the_program_alone_runs_a_case() {
+    let folder = Folder::new("alone");
+    let program = folder.0.join("fretwork");
+    let built = env!("CARGO_BIN_EXE_fretwork");
+    std::fs::copy(built, &program).unwrap();
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/bond_mode_1.ron");
+    std::fs::copy(case, folder.0.join("case.ron")).unwrap();
+    let call = |program: &Path, words: &[&str]| {
+        let output = Command::new(program)
+            .args(words)
+            .current_dir(&folder.0)
+            .env_clear()
+            .output()
+            .unwrap();
+        let out = String::from_utf8_lossy(&output.stdout).into_owned();
+        let err = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), out, err)
+    };
+    let rows = |program: &Path, out: &str| {
+        let set = ["--set", "time.end=2e-7", "--set", "output.every=1"];
+        let words = [&["run", "case.ron", "--json", "--out", out][..], &set].concat();
+        let (code, said, err) = call(program, &words);
+        assert_eq!(code, Some(0), "{err}");
+        let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
+        let rows = std::fs::read_to_string(folder.0.join(out).join("statistics.csv")).unwrap();
+        assert!(rows.lines().count() > 5, "{rows}");
+        (summary["plugins"].clone(), rows)
+    };
+    let (alone, here) = (rows(&program, "alone"), rows(Path::new(built), "here"));
+    assert_eq!(alone.1, here.1);
+    let sum = alone.0[0]["sha256"].clone();
+    for (alone, here) in alone
+        .0
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(here.0.as_array().unwrap())
+    {
+        assert!(
+            alone["path"].as_str().unwrap().starts_with("built into "),
+            "{alone}"
+        );
+        assert!(
+            !here["path"].as_str().unwrap().starts_with("built into "),
+            "{here}"
+        );
+        // That of the program, one for all.
+        assert_eq!(
+            (&alone["sha256"], &alone["certified"]),
+            (&sum, &true.into())
+        );
+        assert_ne!(here["sha256"], sum);
+    }
+
+    let (code, listed, _) = call(&program, &["law", "list"]);
+    assert_eq!(code, Some(0));
+    let marked = listed.lines().filter(|l| l.ends_with("(built in)")).count();
+    assert_eq!((listed.lines().count(), marked), (37, 37), "{listed}");
+    let (_, shown, _) = call(&program, &["law", "show", "archard"]);
+    assert!(shown.contains("built into") && shown.contains("the SHA-256 is the program's"));
+
+    // A library of that name on the path would be another law.
+    let elsewhere = folder.0.join("elsewhere");
+    std::fs::create_dir_all(&elsewhere).unwrap();
+    let file = elsewhere.join(search::file_name(Kind::Damage, "mac"));
+    std::fs::write(file, "not a library").unwrap();
+    let words = ["law", "show", "damage/mac", "--plugin-path", "elsewhere"];
+    let (_, shown, _) = call(&program, &words);
+    assert!(shown.contains("built into"), "{shown}");
+
+    // What is not there is said with where it was looked for.
+    for set in ["interfaces.grain.damage=mak", "materials.grain=glas_bead"] {
+        let (code, _, err) = call(&program, &["run", "case.ron", "--set", set]);
+        assert_eq!(code, Some(2), "{err}");
+        assert!(
+            err.contains("the program itself") && err.contains("did you mean"),
+            "{err}"
+        );
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::super::Failure;
 use super::super::output::inform;
-use crate::laws::Kind;
+use crate::laws::{Kind, built_in};
 use crate::laws::search::{file_name, name_is_valid};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
@@ -99,6 +99,11 @@ pub fn new(args: &NewArgs) -> Result<(), Failure> {
         return usage(format!(
             "`{}` is no name for a law; use a-z, 0-9 and -, a letter first, at most 60",
             args.name
+        ));
+    }
+    if built_in::names().any(|law| law == (kind, name.as_str())) {
+        return usage(format!(
+            "`{name}` is a shipped {kind} law, which is found before any other; choose another name"
         ));
     }
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from(&name));

@@ -1,6 +1,6 @@
 //! What a run is stamped with: its laws, and the density of its first bodies.
 
-use crate::certify::{Certificate, certify, certify_apart};
+use crate::certify::{Certificate, certify_apart, certify_parameters};
 use crate::laws::{Interface, Kind, LawError, Loaded as Law, Plugin, SearchPath};
 use crate::record::summary::PluginStamp;
 use crate::scene::build::Loaded;
@@ -77,11 +77,16 @@ impl Known {
         if let Some((_, certified)) = self.found.iter().find(|(k, _)| *k == key) {
             return *certified;
         }
-        // What is not the program's own may end the process in which it is tested, or spoil its memory.
+        // What is not the program's own may end the process in which it is tested, or spoil its memory. What is, is
+        // certified whole by the project's tests.
         let own = |p: &Plugin| self.path.is_own(p);
         let trusted = own(&law.plugin) && partner.is_none_or(|p| own(&p.plugin));
         type Test = fn(&Plugin, &[f64], Option<&Law>, &SearchPath) -> Result<Certificate, LawError>;
-        let test: Test = if trusted { certify } else { certify_apart };
+        let test: Test = if trusted {
+            certify_parameters
+        } else {
+            certify_apart
+        };
         let made = test(&law.plugin, &law.parameters, partner, &self.path);
         let certified = made.is_ok_and(|c| c.certified());
         self.found.push((key, certified));

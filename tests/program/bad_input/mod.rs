@@ -5,6 +5,7 @@ mod circuit;
 mod command_line;
 mod files;
 mod geometry;
+mod hostile_laws;
 mod limits;
 mod magnitudes;
 mod mutations;

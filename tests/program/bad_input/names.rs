@@ -99,7 +99,8 @@ fn a_missing_material_file() {
         &with(PLANE, r#""grain": "stone""#, r#""grain": ‸"stonne""#),
         &[
             "no file `stonne.ron`",
-            "expected one of laws, stone",
+            "expected one of laws, stone,",
+            "materials, the program itself",
             "did you mean `stone`?",
         ],
     );

@@ -65,12 +65,43 @@ pub const SOLID: &str = r#"(
 
 /// A friction law in C.
 const LAW: &str = r#"
+#include <stdlib.h>
+#include <unistd.h>
 #include "fretwork.h"
+#ifdef HANGS_WHEN_LOADED
+__attribute__((constructor)) static void loaded(void) { for (volatile int on = 1; on;) {} }
+#endif
+#ifdef EXITS_WHEN_LOADED
+__attribute__((constructor)) static void loaded(void) { exit(0); }
+#endif
+#ifdef CRASHES_WHEN_LOADED
+__attribute__((constructor)) static void loaded(void) { *(volatile int *)8 = 1; }
+#endif
+#ifdef PRINTS_WHEN_LOADED
+#include <stdio.h>
+__attribute__((constructor)) static void loaded(void) { printf("loaded, without an end of the line"); fflush(stdout); }
+#endif
 static int32_t prepare(const fw_batch *b, fw_message *m) {
     (void)m;
-#ifdef LOOPS
     static int calls;
-    for (volatile int on = ++calls > 20000; on;) {}
+    ++calls;
+#ifdef LOOPS
+    for (volatile int on = calls > 3000; on;) {}
+#endif
+#ifdef EXITS
+    if (calls > 1000) exit(0);
+#endif
+#ifdef EXITS_AT_ONCE
+    if (calls > 1000) _exit(0);
+#endif
+#ifdef CRASHES
+    if (calls > 1000) *(volatile int *)8 = 1;
+#endif
+#ifdef DIVIDES
+    if (calls > 1000) { volatile int none = 0; calls /= none; }
+#endif
+#ifdef ABORTS
+    if (calls > 1000) abort();
 #endif
 #ifdef FAILS
     static int asked;
@@ -83,7 +114,15 @@ static int32_t prepare(const fw_batch *b, fw_message *m) {
 #ifdef SPILLS
     b->out_friction[b->n] = 1.0;
 #endif
-    for (size_t k = 0; k < b->n; k++) b->out_friction[k] = b->parameters[0];
+    for (size_t k = 0; k < b->n; k++) {
+        b->out_friction[k] = b->parameters[0];
+#ifdef BOUNCES
+        b->out_restitution_n[k] = BOUNCES;
+#endif
+#ifdef DRIVES
+        b->out_friction[k] = -0.1;
+#endif
+    }
     return FW_OK;
 }
 static const fw_field parameters[] = {{"mu", "", "friction coefficient", 0.3, 0.0, 10.0, 0}};
@@ -93,7 +132,12 @@ static const fw_plugin table = {
     .doc = "a test", .reference = "none", .n_parameters = 1, .parameters = parameters,
     .prepare = prepare,
 };
-const fw_plugin *fretwork_plugin(void) { return &table; }
+const fw_plugin *fretwork_plugin(void) {
+#ifdef HANGS_WHEN_ASKED
+    for (volatile int on = 1; on;) {}
+#endif
+    return &table;
+}
 "#;
 
 const STONE: &str = r#"(doc: "stone", density: (value: 2600.0, unit: "kg/m^3", source: "quartz"))"#;
@@ -151,15 +195,14 @@ impl Trial {
         self.compile_bad_law(name, flags, "GOOD");
     }
 
-    /// The same with a fault: in prepare it `LOOPS` for ever after 20,000 calls, `HANGS` after 200, `FAILS` after 200, or
-    /// `SPILLS` behind a column.
+    /// The same with a fault, a word that the text asks for: it `LOOPS` for ever in prepare, say, or `SPILLS` behind a column.
     pub fn compile_bad_law(&self, name: &str, flags: &str, fault: &str) {
         use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
         let source = self.write("law.c", LAW);
         let file = name.replace('-', "_");
         let library = self.path(&format!("{DLL_PREFIX}fretwork_contact_{file}{DLL_SUFFIX}"));
         let compiled = Command::new("cc")
-            .args(["-std=c99", "-Wall", "-Werror", "-shared", "-fPIC", "-I"])
+            .args(["-std=gnu99", "-Wall", "-Werror", "-shared", "-fPIC", "-I"])
             .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/plugins/abi/include"))
             .args([format!("-DNAME=\"{name}\""), format!("-DFLAGS={flags}")])
             .arg(format!("-D{fault}"))

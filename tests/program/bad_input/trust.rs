@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::Output;
 
 /// A trial whose case uses the law `own` in its folder.
-fn own(fault: &str) -> (Trial, PathBuf) {
+pub fn own(fault: &str) -> (Trial, PathBuf) {
     let trial = Trial::new();
     trial.compile_bad_law("own", "0", fault);
     let case = with(PLANE, r#"contact: "coulomb""#, r#"contact: "own""#);
@@ -15,14 +15,14 @@ fn own(fault: &str) -> (Trial, PathBuf) {
     (trial, case)
 }
 
-fn run(trial: &Trial, more: &[&str]) -> Output {
+pub fn run(trial: &Trial, more: &[&str]) -> Output {
     let folder = trial.path("");
     let mut words = vec!["run", "case.ron", "--plugin-path", folder.to_str().unwrap()];
     words.extend_from_slice(more);
     trial.call(&words)
 }
 
-fn says(output: &Output, code: i32, words: &[&str]) {
+pub fn says(output: &Output, code: i32, words: &[&str]) {
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(code), "{said}");
     for word in words {

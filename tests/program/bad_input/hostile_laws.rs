@@ -1,0 +1,207 @@
+//! Laws that hang, exit or crash, while they are loaded or in a step, and laws that answer what cannot be.
+
+use super::trial::{Trial, refusal};
+use crate::trust::{own, run, says};
+use std::path::PathBuf;
+
+/// A run of 40,000 steps, more than the laws here last.
+const LONG: [&str; 4] = ["--set", "time.end=40.0", "--law-timeout", "5"];
+
+fn library(trial: &Trial) -> PathBuf {
+    let files = std::fs::read_dir(trial.path("")).unwrap().flatten();
+    let mut files = files.map(|f| f.path());
+    files
+        .find(|p| p.to_string_lossy().contains("contact_own"))
+        .unwrap()
+}
+
+#[test]
+fn a_library_that_hangs_when_it_is_loaded() {
+    for fault in ["HANGS_WHEN_LOADED", "HANGS_WHEN_ASKED"] {
+        let (trial, _) = own(fault);
+        let words = ["contact_own", "has not come back from loading for 0.5 s"];
+        refusal(&run(&trial, &["--law-timeout", "0.5"]), &words);
+        assert!(!trial.path("results").exists());
+        let file = library(&trial);
+        let file = file.to_str().unwrap();
+        for law in ["show", "certify"] {
+            let name = if law == "show" { "own" } else { file };
+            let call = [
+                "law",
+                law,
+                name,
+                "--plugin-path",
+                ".",
+                "--law-timeout",
+                "0.5",
+            ];
+            refusal(&trial.call(&call), &words);
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_library_that_exits_or_crashes_when_it_is_loaded() {
+    let (trial, _) = own("EXITS_WHEN_LOADED");
+    refusal(
+        &run(&trial, &[]),
+        &["contact_own", "in loading (it called exit)"],
+    );
+    let (trial, _) = own("CRASHES_WHEN_LOADED");
+    refusal(
+        &run(&trial, &[]),
+        &["contact_own", "crashed in loading (SIGSEGV"],
+    );
+    // The others are listed all the same.
+    let listed = trial.call(&["law", "list", "--plugin-path", "."]);
+    let listed = String::from_utf8_lossy(&listed.stdout).into_owned();
+    let line = |part: &str| listed.lines().find(|l| l.contains(part)).unwrap();
+    assert!(line(" own ").contains("unusable") && line(" own ").contains("SIGSEGV"));
+    assert!(line("coulomb ").contains("friction"), "{listed}");
+}
+
+/// Its pages are mapped and not there: the dynamic linker finds out by a signal.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_library_that_is_cut_short() {
+    let (trial, _) = own("GOOD");
+    let file = library(&trial);
+    let whole = std::fs::read(&file).unwrap();
+    for share in [1, 2, 5, 8] {
+        std::fs::write(&file, &whole[..whole.len() * share / 10]).unwrap();
+        refusal(&run(&trial, &[]), &["cannot use the plugin", "contact_own"]);
+    }
+    std::fs::write(&file, &whole).unwrap();
+    assert!(run(&trial, &[]).status.success());
+}
+
+#[test]
+fn a_library_that_prints_when_it_is_loaded() {
+    let (trial, _) = own("PRINTS_WHEN_LOADED");
+    assert!(run(&trial, &[]).status.success());
+}
+
+/// Rows and a summary that says why are there, and the run can be gone on with.
+fn stopped(trial: &Trial, why: &str) {
+    let out = |name: &str| trial.path(&format!("results/case/{name}"));
+    let summary = std::fs::read_to_string(out("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let steps = summary["steps"].as_u64().unwrap() as usize;
+    assert!((900..1100).contains(&steps), "{steps}");
+    let said = summary["stopped"].as_str().unwrap();
+    assert!(said.contains(why), "{said}");
+    let table = std::fs::read_to_string(out("statistics.csv")).unwrap();
+    assert_eq!(table.lines().count(), steps + 1);
+    let results = hdf5::H5File::open(out("results.h5")).unwrap();
+    let rows = results.dataset("/statistics/step").unwrap();
+    assert_eq!(rows.read_raw::<f64>().unwrap().len(), steps);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_law_that_ends_the_program_in_a_step() {
+    for (fault, why) in [
+        (
+            "EXITS",
+            "`own` ended the program in prepare (it called exit)",
+        ),
+        ("CRASHES", "`own` crashed in prepare (SIGSEGV"),
+        ("ABORTS", "`own` crashed in prepare (SIGABRT"),
+        #[cfg(target_arch = "x86_64")]
+        ("DIVIDES", "`own` crashed in prepare (SIGFPE"),
+    ] {
+        let (trial, _) = own(fault);
+        for threads in ["1", "2"] {
+            let more = [&LONG[..], &["--threads", threads]].concat();
+            says(
+                &run(&trial, &more),
+                1,
+                &[why, "a summary.json that says so"],
+            );
+            stopped(&trial, why);
+        }
+        let again = run(&trial, &[&LONG[..], &["--resume"]].concat());
+        says(&again, 1, &[why]);
+    }
+}
+
+/// Nothing in the process can see `_exit`. The folder does not say that the run is done, and it can be gone on with.
+#[cfg(unix)]
+#[test]
+fn a_law_that_ends_the_process_at_once() {
+    let (trial, _) = own("EXITS_AT_ONCE");
+    let output = run(&trial, &LONG);
+    assert_eq!(output.status.code(), Some(0));
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(!said.contains("results in"), "{said}");
+    assert!(!trial.path("results/case/summary.json").exists());
+    trial.compile_law("own", "0");
+    let refused = run(&trial, &[&LONG[..], &["--resume"]].concat());
+    refusal(
+        &refused,
+        &["the library of the contact law `own` is another one"],
+    );
+}
+
+#[test]
+fn answers_that_cannot_be() {
+    for (fault, words) in [
+        ("BOUNCES=2.0", ["2e0 as `out_restitution_n`", "[0, 1]"]),
+        ("BOUNCES=-3.0", ["-3e0 as `out_restitution_n`", "[0, 1]"]),
+        ("DRIVES", ["-1e-1 as `out_friction`", "[0, infinity)"]),
+    ] {
+        let (trial, _) = own(fault);
+        let output = run(&trial, &[]);
+        says(&output, 1, &words);
+        says(
+            &output,
+            1,
+            &[
+                "the contact law `own` gave",
+                "in Prepare at contact 0 of its batch",
+                "(interface `grains`, contact of bodies",
+            ],
+        );
+        // A law that is the same everywhere is asked once, for no contact.
+        trial.compile_bad_law("own", "FW_FLAG_CONSTANT", fault);
+        let output = run(&trial, &[]);
+        says(&output, 1, &words);
+        says(&output, 1, &["(interface `grains`)"]);
+    }
+}
+
+/// A crash, an exit or a hang costs a line of the certificate, and names the check.
+#[cfg(unix)]
+#[test]
+fn certificates_of_laws_that_end_the_process() {
+    for (fault, why) in [
+        (
+            "EXITS",
+            "`own` ended the program in prepare (it called exit), while `",
+        ),
+        ("CRASHES", "`own` crashed in prepare (SIGSEGV"),
+        (
+            "EXITS_AT_ONCE",
+            "it ended the process (exit code 0), while `",
+        ),
+        ("LOOPS", "`own` has not come back from prepare for 0.5 s"),
+    ] {
+        let (trial, _) = own(fault);
+        let call = [
+            "law",
+            "certify",
+            "own",
+            "--plugin-path",
+            ".",
+            "--law-timeout",
+            "0.5",
+        ];
+        let output = trial.call(&call);
+        says(&output, 1, &["not certified: contact law `own`"]);
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let line = said.lines().find(|l| l.contains("comes back")).unwrap();
+        assert!(line.contains("FAIL") && line.contains(why), "{said}");
+        assert!(line.contains("while `dissipation` was tested"), "{said}");
+    }
+}
