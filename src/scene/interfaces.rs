@@ -45,6 +45,13 @@ pub fn build(
     for (k, spec) in case.interfaces.iter().enumerate() {
         let here = format!("interfaces.{k}");
         let at = |f: Fault| source.locate(f.under(&here));
+        if case.interfaces[..k].iter().any(|i| i.name == spec.name) {
+            let message = format!(
+                "two interfaces are named `{}`; give each another name, phases and `--set` go by it",
+                spec.name
+            );
+            return Err(at(Fault::new("name", message)));
+        }
         let mut pair = [0u16; 2];
         for (side, name) in [&spec.between.0, &spec.between.1].into_iter().enumerate() {
             let found = materials.iter().position(|m| *m == name).ok_or_else(|| {

@@ -90,8 +90,8 @@ fn solids(bytes: &[u8]) -> Result<Vec<Vec<u8>>, String> {
     let held = (bytes.len() - HEADER) / TRIANGLE;
     if bytes.len() < whole(count) {
         return Err(format!(
-            "announces {count} triangles and ends before its last triangle: it holds {held}; it was cut short, copy \
-             or export it again"
+            "ends before its last triangle: it was cut short; copy or export it again (it announces {count} triangles \
+             and holds {held})"
         ));
     }
     if bytes.len() > whole(count) {

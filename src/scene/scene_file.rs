@@ -97,6 +97,9 @@ pub fn read(path: &Path, dimension: usize) -> Result<SceneFile, InputError> {
             ["body", _, "disk" | "sphere", rest @ ..] => out.balls.push(ball(rest)?),
             ["cluster", name, rest @ ..] => {
                 numbers(rest, 3)?;
+                if out.clusters.iter().any(|c| c.0 == *name) {
+                    return Err(fail(format!("two clusters are named `{name}`")));
+                }
                 out.clusters.push(((*name).to_owned(), Vec::new()));
             }
             ["cd", rest @ ..] => match out.clusters.last_mut() {

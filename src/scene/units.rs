@@ -81,10 +81,13 @@ pub fn convert(value: f64, given: &str, wanted: &str) -> Result<f64, UnitError> 
     if unit.dimension != schema.dimension || unit.angle != schema.angle {
         return Err(UnitError {
             message: format!(
-                "`{given}` ({}) does not measure the same as {} ({})",
+                "`{given}` ({}) does not measure the same as {}",
                 base(&unit),
-                named(wanted),
-                base(&schema)
+                if wanted.is_empty() {
+                    named(wanted)
+                } else {
+                    format!("{} ({})", named(wanted), base(&schema))
+                }
             ),
             expected: fitting(wanted),
             nearest: None,

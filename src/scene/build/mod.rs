@@ -420,7 +420,8 @@ impl<S: Dimensional> Builder<'_, S> {
         let at: Vec<String> = (0..S::D).map(|k| format!("{:e}", at[k])).collect();
         let looked = grid::most_pairs(&centres, &radii, reach, periodic);
         let message = format!(
-            "more than {most} pairs of grains are within reach of each other (up to {looked:.1e}), where grains that              touch make some 20 each: {} of them stand within {:.1e} m of ({}) m",
+            "more than {most} pairs of grains are within reach of each other (up to {looked:.1e}), where grains that \
+             touch make some 20 each: {} of them stand within {:.1e} m of ({}) m",
             crowd.count,
             crowd.size,
             at.join(", ")

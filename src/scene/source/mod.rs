@@ -243,18 +243,9 @@ impl Source {
 /// Values that may be spelt otherwise than ron takes them, each with all at the same place of the schema.
 const MOST_SPELLINGS: usize = 256;
 
-/// Whether ron went past the value that was spelt anew, or into it where it is a group.
-fn passes(source: &Source, error: &SpannedError, end: usize) -> bool {
-    let at = source.offset(&error.span.end);
-    if at >= end {
-        return true;
-    }
-    let group = source.tree.around(at);
-    group.is_some_and(|node| node.group().is_none() || node.span.start < at)
-        && !matches!(
-            error.code,
-            ron::Error::NoSuchEnumVariant { .. } | ron::Error::ExpectedIdentifier
-        )
+/// Whether ron went past a byte, behind any white space.
+fn passes(source: &Source, error: &SpannedError, byte: usize) -> bool {
+    source.offset(&error.span.end) > byte
 }
 
 /// Whether `one` was found further into the text than `other`.

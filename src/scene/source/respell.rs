@@ -35,8 +35,8 @@ enum Step {
 }
 
 impl Source {
-    /// The same text with the value at which ron stopped spelt otherwise, and the end of that value in it;
-    /// nothing where no other spelling could help.
+    /// The same text with the value at which ron stopped spelt otherwise, and the byte that ron must pass for that to
+    /// have been meant; nothing where no other spelling could help.
     pub(super) fn respelled(&self, error: &SpannedError) -> Option<(Source, usize)> {
         let node = self.stopped_at(error)?;
         let change = match (&error.code, &node.kind) {
@@ -46,9 +46,12 @@ impl Source {
             (RonError::ExpectedStructLike, Kind::Group(group)) => {
                 (group.shape == Shape::List).then_some(Change::Tuple)
             }
-            (RonError::ExpectedIdentifier | RonError::SuggestRawIdentifier(_), Kind::Number) => {
-                Some(Change::Constant)
-            }
+            (
+                RonError::ExpectedIdentifier
+                | RonError::SuggestRawIdentifier(_)
+                | RonError::NoSuchEnumVariant { .. },
+                Kind::Number,
+            ) => Some(Change::Constant),
             _ => None,
         }?;
         let mut alike = Vec::new();
@@ -61,14 +64,18 @@ impl Source {
             0
         };
         let before = alike.iter().filter(|s| s.start < node.span.start).count();
-        let end = node.span.end + added * (before + 1);
+        // The bracket of a group, all of a number.
+        let pass = match change {
+            Change::Constant => node.span.end + added * (before + 1) - 1,
+            Change::List | Change::Tuple => node.span.start,
+        };
         let mut other = self.clone();
         // From the last on, so that the places of the others stay.
         for span in alike.iter().rev() {
             other.write(span, change);
         }
         other.tree = Tree::of(&other.text);
-        Some((other, end))
+        Some((other, pass))
     }
 
     /// The value that begins where ron stopped.

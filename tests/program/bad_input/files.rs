@@ -74,13 +74,13 @@ fn a_file_that_is_missing_or_empty_is_told_at_the_line_that_names_it() {
     let file = trial.write("materials/stone.ron", " \n");
     let said = trial.refuses(&case, &[], &["stone.ron is empty"]);
     assert!(
-        said.starts_with(&format!("{}:7:17: ", case.display())),
+        said.starts_with(&format!("{}:7:26: ", case.display())),
         "{said}"
     );
     std::fs::remove_file(file).unwrap();
     let said = trial.refuses(&case, &[], &["there is no file `stone.ron` in materials/"]);
     assert!(
-        said.starts_with(&format!("{}:7:17: ", case.display())),
+        said.starts_with(&format!("{}:7:26: ", case.display())),
         "{said}"
     );
 }
@@ -201,7 +201,7 @@ fn an_stl_file_holds_what_it_announces() {
     fits(&stl(4, 4));
     let named = [b"solid".as_slice(), &stl(4, 4)[5..]].concat();
     fits(&named);
-    refuses(&stl(5, 4), &["announces 5 triangles", "it holds 4"]);
+    refuses(&stl(5, 4), &["announces 5 triangles and holds 4"]);
     refuses(
         &stl(3, 4),
         &["announces 3 triangles, and 50 bytes follow them, room for 1 more"],
@@ -293,7 +293,6 @@ fn a_table_says_each_thing_once() {
             "2:1",
             &["`1e400` of `radius` is no number"],
         ),
-        ("x,y,radius\n0.1,0.1,-0.0\n", "2:1", &["radius"]),
     ] {
         let file = trial.write("g.csv", table);
         let said = trial.refuses(&case, &[], words);
@@ -323,7 +322,7 @@ fn grains_in_one_place_are_refused_before_their_pairs_are_stored() {
     ];
     let said = trial.refuses(&case, &[], &words);
     assert!(
-        said.starts_with(&format!("{}:31:", case.display())),
+        said.starts_with(&format!("{}:29:", case.display())),
         "{said}"
     );
 }

@@ -219,3 +219,17 @@ fn two_phases_of_one_name() {
         &["a phase before it is called `press` too; give each another name"],
     );
 }
+
+#[test]
+fn two_interfaces_of_one_name() {
+    let two = with(
+        PLANE,
+        r#"{"grain": "stone"}"#,
+        r#"{"grain": "stone", "wall": "stone"}"#,
+    );
+    let second = "        (name: ‸\"grains\", between: (\"grain\", \"wall\"), contact: \"coulomb\"),\n    ],\n    bodies: [";
+    refused(
+        &with(&two, "    ],\n    bodies: [", second),
+        &["two interfaces are named `grains`"],
+    );
+}

