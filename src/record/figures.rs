@@ -264,11 +264,7 @@ fn energy(title: &str, table: &Table, dimension: usize) -> Chart {
     for ((name, label, colour, dashed), points) in all {
         let most = size(&points);
         if name == "residual" && largest > 0.0 && most <= ROUNDING * largest {
-            let share = if most > 0.0 {
-                format!("at most {}", quantity(most / largest, "", 1))
-            } else {
-                "none".to_owned()
-            };
+            let share = quantity(most / largest, "", 2);
             chart.subtitle = Some(format!("{title}; residual {share} of the largest entry"));
         }
         if most <= ROUNDING * largest {
@@ -366,7 +362,7 @@ mod tests {
         let labels: Vec<&str> = chart.series.iter().map(|s| s.label.as_str()).collect();
         assert_eq!(labels, ["external work W", "friction E_d", "position correction"]);
         let said = chart.subtitle.unwrap();
-        assert!(said.contains("at most 2×10⁻¹⁶"), "{said}");
+        assert!(said.contains("residual 1.5×10⁻¹⁶ of"), "{said}");
     }
 
     #[test]
