@@ -2,7 +2,7 @@
 
 use super::friction::{Cycle, Cycles};
 use super::statistics::Table;
-use crate::bodies::Dof;
+use crate::bodies::{Dof, TimeFunction};
 use crate::geometry::space::Space;
 use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels, quantity};
 use crate::step::Simulation;
@@ -27,8 +27,7 @@ pub fn drives<S: Space>(s: &Simulation<S>, test: Option<(&str, usize)>) -> Vec<D
     let mut out = Vec::new();
     for driven in &s.bodies.driven {
         for (axis, dof) in driven.dofs.iter().take(S::D).enumerate() {
-            let driven_here = !matches!(dof, Dof::Free | Dof::Fixed);
-            if driven_here && test != Some((driven.name.as_str(), axis)) {
+            if driven_along(dof) && test != Some((driven.name.as_str(), axis)) {
                 out.push(Drive {
                     body: driven.name.clone(),
                     axis,
@@ -37,6 +36,15 @@ pub fn drives<S: Space>(s: &Simulation<S>, test: Option<(&str, usize)>) -> Vec<D
         }
     }
     out
+}
+
+/// Whether a motion is imposed, or a force that changes: a constant load against its displacement shows but noise.
+fn driven_along(dof: &Dof) -> bool {
+    match dof {
+        Dof::Free | Dof::Fixed => false,
+        Dof::Velocity(_) | Dof::Displacement(_) | Dof::Stages(_) => true,
+        Dof::Force(f) | Dof::Pressure { value: f, .. } => !matches!(f, TimeFunction::Constant(_)),
+    }
 }
 
 /// Draws what the run has data for. A figure with nothing to show is left out.
@@ -185,7 +193,7 @@ fn friction(title: &str, table: &Table, cycles: &Cycles) -> Chart {
         complete.map(|c| (f64::from(c.cycle), f(c))).collect()
     };
     let peak = |c: &Cycle| c.tangential_amplitude / c.normal_force;
-    let x = Axis::new("cycle number N", "");
+    let x = Axis::new("cycle number N", "").whole();
     let mut chart = headed("Friction coefficient by cycle", title, x, mu)
         .with_unless_zero(
             Series::new("from forces", list(&|c| c.friction_coefficient)).style(Style::LineMarkers),
@@ -349,6 +357,16 @@ mod tests {
         let numbers: Vec<u32> = chosen(&many, 40).iter().map(|c| c.cycle).collect();
         assert_eq!((numbers.len(), numbers[0], numbers[39]), (40, 1, 1000));
         assert_eq!(chosen(&many[..1], 40).len(), 1);
+    }
+
+    #[test]
+    fn a_constant_load_is_no_motion_to_plot_against() {
+        use TimeFunction::{Constant, Table};
+        let rises = Table(vec![(0.0, 0.0), (1.0, -9.0)]);
+        assert!(driven_along(&Dof::Velocity(Constant(0.1))));
+        assert!(driven_along(&Dof::Force(rises)));
+        assert!(!driven_along(&Dof::Force(Constant(-9.0))));
+        assert!(!driven_along(&Dof::Fixed));
     }
 
     #[test]

@@ -158,7 +158,7 @@ pub fn draw(
         let alone = jump.points.iter().filter(|p| p.stands_for == 1);
         let mut chart = Chart::new(
             format!("{} by cycle", ["Damage", "Wear"][usize::from(!unit.is_empty())]),
-            Axis::new("cycle number N", ""),
+            Axis::new("cycle number N", "").whole(),
             Axis::new(what, unit),
         );
         chart.subtitle = Some(title.to_owned());
