@@ -264,7 +264,8 @@ fn end_walls_make_a_narrow_drum_steeper() {
 
 /// The picture of a scene as it stands: its pixels, red, green and blue.
 fn pictured(s: &Simulation<Solid>, loaded: &Loaded, name: &str) -> Vec<[u8; 3]> {
-    let path = std::env::temp_dir().join(format!("fretwork-scenes-{}-{name}.png", std::process::id()));
+    let path =
+        std::env::temp_dir().join(format!("fretwork-scenes-{}-{name}.png", std::process::id()));
     let camera = Camera::new(s, &loaded.case.output);
     let drawn = camera.draw(s, Subject::Scene, "", Vec::new(), &path);
     drawn.unwrap_or_else(|e| panic!("{e}"));

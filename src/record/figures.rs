@@ -199,8 +199,11 @@ fn friction(title: &str, table: &Table, cycles: &Cycles) -> Chart {
             Series::new("from forces", list(&|c| c.friction_coefficient)).style(Style::LineMarkers),
         )
         .with_unless_zero(
-            Series::new("from dissipated energy", list(&|c| c.friction_from_dissipation))
-                .style(Style::Markers),
+            Series::new(
+                "from dissipated energy",
+                list(&|c| c.friction_from_dissipation),
+            )
+            .style(Style::Markers),
         )
         .with_unless_zero(Series::new("peak Q*/P", list(&peak)).style(Style::Dashed));
     let all = chart.series.iter().flat_map(|s| &s.points).map(|p| p.1);
@@ -251,7 +254,12 @@ const ENTRIES: [Entry; 13] = [
     ("scheme", "time integration", (130, 130, 200), false),
     ("correction", "position correction", (200, 140, 0), true),
     ("elastic", "elastic energy of bonds", (0, 114, 178), true),
-    ("carried", "energy carried by removed bodies", (90, 150, 90), true),
+    (
+        "carried",
+        "energy carried by removed bodies",
+        (90, 150, 90),
+        true,
+    ),
     ("potential", "potential energy", (90, 90, 160), true),
     ("kinetic", "kinetic energy", (86, 160, 215), true),
     ("residual", "residual", (150, 150, 150), true),
@@ -322,7 +330,9 @@ mod tests {
             let gap = (a[0] - b[0]).hypot(a[1] - b[1]);
             assert!(gap < 1e-2, "{gap} with a row every {every} s");
             assert!((a[0] - 1.0).abs() < 5e-3 && a[1].abs() < 5e-3, "{a:?}");
-            let longest = points.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1]));
+            let longest = points
+                .windows(2)
+                .map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1]));
             assert!(longest.fold(0.0, f64::max) < 1.1 * std::f64::consts::TAU * every);
             // The first begins before the first row, from rest.
             assert_eq!(within(&columns, [0.0, 1.0])[0][0], 0.0);
@@ -371,14 +381,24 @@ mod tests {
 
     #[test]
     fn constant_zero_entries_are_left_out_and_rounding_is_said() {
-        let names = ["time", "external_work", "friction", "correction", "impact", "residual"];
+        let names = [
+            "time",
+            "external_work",
+            "friction",
+            "correction",
+            "impact",
+            "residual",
+        ];
         let rows = vec![
             0.0, 0.0, 0.0, 0.0, 0.0, 0.0, //
             1.0, 2.0, 1.5, -0.5, 0.0, 3e-16,
         ];
         let chart = energy("case", &table(&names, rows), 2);
         let labels: Vec<&str> = chart.series.iter().map(|s| s.label.as_str()).collect();
-        assert_eq!(labels, ["external work W", "friction E_d", "position correction"]);
+        assert_eq!(
+            labels,
+            ["external work W", "friction E_d", "position correction"]
+        );
         let said = chart.subtitle.unwrap();
         assert!(said.contains("residual 1.5×10⁻¹⁶ of"), "{said}");
     }
@@ -387,8 +407,20 @@ mod tests {
     fn what_has_nothing_to_show_leaves_no_file() {
         let dir = std::env::temp_dir().join(format!("fretwork-figures-{}", std::process::id()));
         std::fs::create_dir_all(&dir).unwrap();
-        let names = ["time", "external_work", "kinetic", "delta", "Q", "P", "mu", "lid_x", "lid_fx"];
-        let still: Vec<f64> = (0..5).flat_map(|k| [f64::from(k), 0., 0., 0., 0., 0., 0., 1., 7.]).collect();
+        let names = [
+            "time",
+            "external_work",
+            "kinetic",
+            "delta",
+            "Q",
+            "P",
+            "mu",
+            "lid_x",
+            "lid_fx",
+        ];
+        let still: Vec<f64> = (0..5)
+            .flat_map(|k| [f64::from(k), 0., 0., 0., 0., 0., 0., 1., 7.])
+            .collect();
         let lid = [Drive {
             body: "lid".to_owned(),
             axis: 0,

@@ -145,7 +145,9 @@ fn prefix(unit: &str, magnitude: i32) -> Option<(i32, &str, &'static str)> {
             _ => None,
         };
     }
-    let takes = ["m", "N", "Pa", "s", "J", "W", "Hz", "K", "N·m", "N*m", "V", "A"];
+    let takes = [
+        "m", "N", "Pa", "s", "J", "W", "Hz", "K", "N·m", "N*m", "V", "A",
+    ];
     if !takes.contains(&base) {
         return None;
     }
@@ -271,7 +273,8 @@ impl Scale {
         }
         if axis.log && b - a < 8.0 {
             let decades = a.floor() as i32..=b.floor() as i32;
-            let all = decades.flat_map(|e| (2..10).map(move |k| f64::from(e) + f64::from(k).log10()));
+            let all =
+                decades.flat_map(|e| (2..10).map(move |k| f64::from(e) + f64::from(k).log10()));
             scale.minor = all.filter(|v| (a..=b).contains(v)).collect();
         }
         Ok(scale)
@@ -379,7 +382,10 @@ mod tests {
                 let (shift, shown) = shown_unit(unit, magnitude(value));
                 assert!(!shown.contains('^') && !shown.contains('e'), "{shown}");
                 let left = value / 10f64.powi(shift);
-                assert!((0.02..1e5).contains(&left), "{value} {unit}: {left} {shown}");
+                assert!(
+                    (0.02..1e5).contains(&left),
+                    "{value} {unit}: {left} {shown}"
+                );
             }
         }
     }
@@ -412,7 +418,11 @@ mod tests {
         for (first, last) in [(1.0, 3.0), (1.0, 1.0), (1.0, 12.0), (1.0, 1000.0)] {
             let scale = Scale::fit(&axis, [first, last].into_iter(), None, 8).unwrap();
             assert!(!scale.ticks.is_empty() && scale.ticks.len() < 14);
-            assert!(scale.ticks.iter().all(|t| !t.1.contains('.')), "{:?}", scale.ticks);
+            assert!(
+                scale.ticks.iter().all(|t| !t.1.contains('.')),
+                "{:?}",
+                scale.ticks
+            );
         }
     }
 
