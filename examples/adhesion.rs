@@ -159,15 +159,19 @@ fn chart(title: &str, end: f64, without: &[Rolling], layers: &[Rolling]) -> Char
             bars.push((q - half, q + half));
         }
     }
-    let mut chart = Chart::new(title, Axis::new("creepage ξ", "%"), Axis::new("traction coefficient Q/P", ""))
-        .with(Series::new("without third body", points).style(Style::Markers))
-        .with(Series::new("brush, closed form", curve(&closed)))
-        .with(Series::new("Carter, half-plane", curve(&carter)).style(Style::Dashed))
-        .with(
-            Series::new("with third body", means)
-                .style(Style::LineMarkers)
-                .intervals(bars),
-        );
+    let mut chart = Chart::new(
+        title,
+        Axis::new("creepage ξ", "%"),
+        Axis::new("traction coefficient Q/P", ""),
+    )
+    .with(Series::new("without third body", points).style(Style::Markers))
+    .with(Series::new("brush, closed form", curve(&closed)))
+    .with(Series::new("Carter, half-plane", curve(&carter)).style(Style::Dashed))
+    .with(
+        Series::new("with third body", means)
+            .style(Style::LineMarkers)
+            .intervals(bars),
+    );
     chart.x_range = Some((0.0, end));
     chart.y_range = Some((-0.05, 0.45));
     chart

@@ -43,8 +43,10 @@ fn main() -> Result<(), Failure> {
             all.extend(SEEDS.map(|seed| (p, r, seed)));
         }
     }
-    let runs: Result<Vec<Outcome>, Failure> =
-        all.par_iter().map(|(p, r, seed)| one(*p, *r, *seed)).collect();
+    let runs: Result<Vec<Outcome>, Failure> = all
+        .par_iter()
+        .map(|(p, r, seed)| one(*p, *r, *seed))
+        .collect();
     let runs = runs?;
     println!(
         "| pressure | strength / pressure | regime, by seed | mu | broken | mean cluster | interior shear / V | slips / V |"
@@ -72,7 +74,9 @@ fn main() -> Result<(), Failure> {
         let floor = if y.log { 1.0 } else { f64::NEG_INFINITY };
         let mut chart = Chart::new(heading, x, y);
         let seeds = SEEDS.len();
-        chart.subtitle = Some(format!("Sheared layer of bonded grains, means and 95 % intervals of {seeds} seeds"));
+        chart.subtitle = Some(format!(
+            "Sheared layer of bonded grains, means and 95 % intervals of {seeds} seeds"
+        ));
         for p in PRESSURES {
             let (mut points, mut bars) = (Vec::new(), Vec::new());
             for group in runs.chunks(seeds).filter(|g| g[0].pressure == p) {
@@ -86,11 +90,9 @@ fn main() -> Result<(), Failure> {
         chart
     };
     let charts = [
-        chart(
-            "Friction",
-            Axis::new("friction coefficient µ", ""),
-            &|o| o.friction,
-        ),
+        chart("Friction", Axis::new("friction coefficient µ", ""), &|o| {
+            o.friction
+        }),
         chart(
             "Shear of the interior",
             Axis::new("[v(0.9 e) − v(0.1 e)]/V", ""),
@@ -132,7 +134,10 @@ fn one(pressure: f64, ratio: f64, seed: u64) -> Result<Outcome, Failure> {
     ];
     let loaded = load(&case, &sets)?;
     let built = loaded.build_in::<Plane>(&SearchPath::new(&[]))?;
-    let folder = format!("fretwork-regime-{}-{pressure}-{ratio}-{seed}", std::process::id());
+    let folder = format!(
+        "fretwork-regime-{}-{pressure}-{ratio}-{seed}",
+        std::process::id()
+    );
     let out = std::env::temp_dir().join(folder);
     let options = RunOptions {
         out: out.clone(),

@@ -2,7 +2,7 @@
 
 use super::friction::{Cycle, Cycles};
 use super::statistics::Table;
-use crate::bodies::Dof;
+use crate::bodies::{Dof, TimeFunction};
 use crate::geometry::space::Space;
 use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels, quantity};
 use crate::step::Simulation;
@@ -27,8 +27,7 @@ pub fn drives<S: Space>(s: &Simulation<S>, test: Option<(&str, usize)>) -> Vec<D
     let mut out = Vec::new();
     for driven in &s.bodies.driven {
         for (axis, dof) in driven.dofs.iter().take(S::D).enumerate() {
-            let driven_here = !matches!(dof, Dof::Free | Dof::Fixed);
-            if driven_here && test != Some((driven.name.as_str(), axis)) {
+            if driven_along(dof) && test != Some((driven.name.as_str(), axis)) {
                 out.push(Drive {
                     body: driven.name.clone(),
                     axis,
@@ -37,6 +36,15 @@ pub fn drives<S: Space>(s: &Simulation<S>, test: Option<(&str, usize)>) -> Vec<D
         }
     }
     out
+}
+
+/// Whether a motion is imposed, or a force that changes: a constant load against its displacement shows but noise.
+fn driven_along(dof: &Dof) -> bool {
+    match dof {
+        Dof::Free | Dof::Fixed => false,
+        Dof::Velocity(_) | Dof::Displacement(_) | Dof::Stages(_) => true,
+        Dof::Force(f) | Dof::Pressure { value: f, .. } => !matches!(f, TimeFunction::Constant(_)),
+    }
 }
 
 /// Draws what the run has data for. A figure with nothing to show is left out.
@@ -185,14 +193,17 @@ fn friction(title: &str, table: &Table, cycles: &Cycles) -> Chart {
         complete.map(|c| (f64::from(c.cycle), f(c))).collect()
     };
     let peak = |c: &Cycle| c.tangential_amplitude / c.normal_force;
-    let x = Axis::new("cycle number N", "");
+    let x = Axis::new("cycle number N", "").whole();
     let mut chart = headed("Friction coefficient by cycle", title, x, mu)
         .with_unless_zero(
             Series::new("from forces", list(&|c| c.friction_coefficient)).style(Style::LineMarkers),
         )
         .with_unless_zero(
-            Series::new("from dissipated energy", list(&|c| c.friction_from_dissipation))
-                .style(Style::Markers),
+            Series::new(
+                "from dissipated energy",
+                list(&|c| c.friction_from_dissipation),
+            )
+            .style(Style::Markers),
         )
         .with_unless_zero(Series::new("peak Q*/P", list(&peak)).style(Style::Dashed));
     let all = chart.series.iter().flat_map(|s| &s.points).map(|p| p.1);
@@ -243,7 +254,12 @@ const ENTRIES: [Entry; 13] = [
     ("scheme", "time integration", (130, 130, 200), false),
     ("correction", "position correction", (200, 140, 0), true),
     ("elastic", "elastic energy of bonds", (0, 114, 178), true),
-    ("carried", "energy carried by removed bodies", (90, 150, 90), true),
+    (
+        "carried",
+        "energy carried by removed bodies",
+        (90, 150, 90),
+        true,
+    ),
     ("potential", "potential energy", (90, 90, 160), true),
     ("kinetic", "kinetic energy", (86, 160, 215), true),
     ("residual", "residual", (150, 150, 150), true),
@@ -266,14 +282,14 @@ fn energy(title: &str, table: &Table, dimension: usize) -> Chart {
     for ((name, label, colour, dashed), points) in all {
         let most = size(&points);
         if name == "residual" && largest > 0.0 && most <= ROUNDING * largest {
-            let share = if most > 0.0 {
-                format!("at most {}", quantity(most / largest, "", 1))
-            } else {
-                "none".to_owned()
-            };
+            let share = quantity(most / largest, "", 2);
             chart.subtitle = Some(format!("{title}; residual {share} of the largest entry"));
         }
-        let least = if name == "residual" { ROUNDING } else { NEGLIGIBLE };
+        let least = if name == "residual" {
+            ROUNDING
+        } else {
+            NEGLIGIBLE
+        };
         if most <= least * largest {
             continue;
         }
@@ -321,7 +337,9 @@ mod tests {
             let gap = (a[0] - b[0]).hypot(a[1] - b[1]);
             assert!(gap < 1e-2, "{gap} with a row every {every} s");
             assert!((a[0] - 1.0).abs() < 5e-3 && a[1].abs() < 5e-3, "{a:?}");
-            let longest = points.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1]));
+            let longest = points
+                .windows(2)
+                .map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1]));
             assert!(longest.fold(0.0, f64::max) < 1.1 * std::f64::consts::TAU * every);
             // The first begins before the first row, from rest.
             assert_eq!(within(&columns, [0.0, 1.0])[0][0], 0.0);
@@ -359,25 +377,57 @@ mod tests {
     }
 
     #[test]
+    fn a_constant_load_is_no_motion_to_plot_against() {
+        use TimeFunction::{Constant, Table};
+        let rises = Table(vec![(0.0, 0.0), (1.0, -9.0)]);
+        assert!(driven_along(&Dof::Velocity(Constant(0.1))));
+        assert!(driven_along(&Dof::Force(rises)));
+        assert!(!driven_along(&Dof::Force(Constant(-9.0))));
+        assert!(!driven_along(&Dof::Fixed));
+    }
+
+    #[test]
     fn constant_zero_entries_are_left_out_and_rounding_is_said() {
-        let names = ["time", "external_work", "friction", "correction", "impact", "residual"];
+        let names = [
+            "time",
+            "external_work",
+            "friction",
+            "correction",
+            "impact",
+            "residual",
+        ];
         let rows = vec![
             0.0, 0.0, 0.0, 0.0, 0.0, 0.0, //
             1.0, 2.0, 1.5, -0.5, 0.0, 3e-16,
         ];
         let chart = energy("case", &table(&names, rows), 2);
         let labels: Vec<&str> = chart.series.iter().map(|s| s.label.as_str()).collect();
-        assert_eq!(labels, ["external work W", "friction E_d", "position correction"]);
+        assert_eq!(
+            labels,
+            ["external work W", "friction E_d", "position correction"]
+        );
         let said = chart.subtitle.unwrap();
-        assert!(said.contains("at most 2×10⁻¹⁶"), "{said}");
+        assert!(said.contains("residual 1.5×10⁻¹⁶ of"), "{said}");
     }
 
     #[test]
     fn what_has_nothing_to_show_leaves_no_file() {
         let dir = std::env::temp_dir().join(format!("fretwork-figures-{}", std::process::id()));
         std::fs::create_dir_all(&dir).unwrap();
-        let names = ["time", "external_work", "kinetic", "delta", "Q", "P", "mu", "lid_x", "lid_fx"];
-        let still: Vec<f64> = (0..5).flat_map(|k| [f64::from(k), 0., 0., 0., 0., 0., 0., 1., 7.]).collect();
+        let names = [
+            "time",
+            "external_work",
+            "kinetic",
+            "delta",
+            "Q",
+            "P",
+            "mu",
+            "lid_x",
+            "lid_fx",
+        ];
+        let still: Vec<f64> = (0..5)
+            .flat_map(|k| [f64::from(k), 0., 0., 0., 0., 0., 0., 1., 7.])
+            .collect();
         let lid = [Drive {
             body: "lid".to_owned(),
             axis: 0,

@@ -159,7 +159,10 @@ pub fn draw(
     type Value = fn(&Point) -> f64;
     let volume: Value = |p| p.wear_volume;
     let damage: Value = |p| p.mean_damage;
-    for (what, unit, value) in [("wear volume V", unit, volume), ("mean damage D", "", damage)] {
+    for (what, unit, value) in [
+        ("wear volume V", unit, volume),
+        ("mean damage D", "", damage),
+    ] {
         let at = |p: &Point| (f64::from(p.cycles), value(p));
         if jump.points.iter().all(|p| value(p) == 0.0) {
             continue;
@@ -167,8 +170,11 @@ pub fn draw(
         let all = jump.points.iter().map(at).collect();
         let alone = jump.points.iter().filter(|p| p.stands_for == 1);
         let mut chart = Chart::new(
-            format!("{} by cycle", ["Damage", "Wear"][usize::from(!unit.is_empty())]),
-            Axis::new("cycle number N", ""),
+            format!(
+                "{} by cycle",
+                ["Damage", "Wear"][usize::from(!unit.is_empty())]
+            ),
+            Axis::new("cycle number N", "").whole(),
             Axis::new(what, unit),
         );
         chart.subtitle = Some(title.to_owned());

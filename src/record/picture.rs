@@ -165,9 +165,8 @@ impl Camera {
             Subject::Painted(paints) => (paints, None),
             Subject::Values { values, label, top } => {
                 made = values.iter().map(|v| Paint::Value(v / top)).collect();
-                let label = format!("{label}, that or more");
                 let scale = Scale {
-                    label,
+                    label: label.to_owned(),
                     unit: String::new(),
                     top,
                     bonds: false,

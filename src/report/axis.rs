@@ -14,6 +14,8 @@ pub struct Axis {
     pub unit: String,
     /// Logarithmic scale: values that are not positive are left out.
     pub log: bool,
+    /// Ticks stand at whole numbers only: cycles, grains.
+    pub whole: bool,
 }
 
 impl Axis {
@@ -22,13 +24,19 @@ impl Axis {
         Self {
             name: name.into(),
             unit: unit.into(),
-            log: false,
+            ..Self::default()
         }
     }
 
     /// The same axis on a logarithmic scale.
     pub fn log(mut self) -> Self {
         self.log = true;
+        self
+    }
+
+    /// The same axis with ticks at whole numbers only.
+    pub fn whole(mut self) -> Self {
+        self.whole = true;
         self
     }
 
@@ -137,7 +145,9 @@ fn prefix(unit: &str, magnitude: i32) -> Option<(i32, &str, &'static str)> {
             _ => None,
         };
     }
-    let takes = ["m", "N", "Pa", "s", "J", "W", "Hz", "K", "N·m", "N*m", "V", "A"];
+    let takes = [
+        "m", "N", "Pa", "s", "J", "W", "Hz", "K", "N·m", "N*m", "V", "A",
+    ];
     if !takes.contains(&base) {
         return None;
     }
@@ -250,12 +260,21 @@ impl Scale {
         scale.range = (a, b);
         scale.ticks = if axis.log {
             decades(a, b, ticks)
+        } else if axis.whole && b - a < ticks as f64 {
+            round_ticks(a, b, (b - a).ceil() as usize)
         } else {
             round_ticks(a, b, ticks)
         };
+        if axis.whole && exponent == 0 {
+            scale.ticks.retain(|t| (t.0 - t.0.round()).abs() < 1e-9);
+            for (at, label) in &mut scale.ticks {
+                *label = number(at.round(), 0);
+            }
+        }
         if axis.log && b - a < 8.0 {
             let decades = a.floor() as i32..=b.floor() as i32;
-            let all = decades.flat_map(|e| (2..10).map(move |k| f64::from(e) + f64::from(k).log10()));
+            let all =
+                decades.flat_map(|e| (2..10).map(move |k| f64::from(e) + f64::from(k).log10()));
             scale.minor = all.filter(|v| (a..=b).contains(v)).collect();
         }
         Ok(scale)
@@ -363,7 +382,10 @@ mod tests {
                 let (shift, shown) = shown_unit(unit, magnitude(value));
                 assert!(!shown.contains('^') && !shown.contains('e'), "{shown}");
                 let left = value / 10f64.powi(shift);
-                assert!((0.02..1e5).contains(&left), "{value} {unit}: {left} {shown}");
+                assert!(
+                    (0.02..1e5).contains(&left),
+                    "{value} {unit}: {left} {shown}"
+                );
             }
         }
     }
@@ -388,6 +410,20 @@ mod tests {
         let log = Axis::new("t", "s").log();
         let scale = Scale::fit(&log, [1e-3, -1.0, 10.0].into_iter(), None, 6).unwrap();
         assert_eq!(scale.ticks[0].1, "10⁻³");
+    }
+
+    #[test]
+    fn whole_numbers_have_no_ticks_between_them() {
+        let axis = Axis::new("cycle number N", "").whole();
+        for (first, last) in [(1.0, 3.0), (1.0, 1.0), (1.0, 12.0), (1.0, 1000.0)] {
+            let scale = Scale::fit(&axis, [first, last].into_iter(), None, 8).unwrap();
+            assert!(!scale.ticks.is_empty() && scale.ticks.len() < 14);
+            assert!(
+                scale.ticks.iter().all(|t| !t.1.contains('.')),
+                "{:?}",
+                scale.ticks
+            );
+        }
     }
 
     #[test]

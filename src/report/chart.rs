@@ -245,9 +245,7 @@ impl Chart {
         let legend = Legend::of(self, u);
         let mut ink = curves.clone();
         ink.push(self.bars(&x, &y, &plot));
-        let corner = legend
-            .as_ref()
-            .and_then(|l| l.free_place(&ink, &plot, u));
+        let corner = legend.as_ref().and_then(|l| l.free_place(&ink, &plot, u));
         let mut rows = None;
         if legend.is_some() && corner.is_none() {
             let laid = Rows::of(self, plot.width as f32, u);
@@ -295,7 +293,10 @@ impl Chart {
     fn bars_of(&self, series: &Series, x: &Scale, y: &Scale, plot: &Plot) -> Runs {
         let with = series.points.iter().zip(&series.intervals);
         let bars = with.map(|(p, (low, high))| {
-            vec![plot.place(x, y, (p.0, *low)), plot.place(x, y, (p.0, *high))]
+            vec![
+                plot.place(x, y, (p.0, *low)),
+                plot.place(x, y, (p.0, *high)),
+            ]
         });
         bars.filter(|b| b.iter().flatten().all(|v| v.is_finite()))
             .collect()
@@ -406,7 +407,9 @@ impl Chart {
             .anchored(Anchor::Middle)
             .upwards();
         let half = text_width(&y.label, name.size) / 2.0;
-        let at = (top + height / 2.0).max(half + 8.0 * u).min((high - half - 8.0 * u).max(half));
+        let at = (top + height / 2.0)
+            .max(half + 8.0 * u)
+            .min((high - half - 8.0 * u).max(half));
         page.text(&y.label, [42.0 * u, at], &name);
     }
 }

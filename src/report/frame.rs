@@ -163,7 +163,11 @@ impl Frame<'_> {
         let top = (title + lines.len() as f32 * 38.0 * u + 24.0 * u).round();
         // Under the field: the colour bar and the scale bar, then what links mean.
         let bar = if self.scale.is_some() { 96.0 * u } else { 0.0 };
-        let line = if self.scale.is_none() || !self.links.is_empty() { 62.0 * u } else { 0.0 };
+        let line = if self.scale.is_none() || !self.links.is_empty() {
+            62.0 * u
+        } else {
+            0.0
+        };
         let height = top + field_height + bar + line + 12.0 * u;
         let mut page = Canvas::new(self.width_px, height.round() as u32)?;
         let mut field = Canvas::new(field_width as u32, field_height as u32)?;
@@ -200,7 +204,11 @@ impl Frame<'_> {
         let foot = under + bar + 38.0 * u;
         furniture::legend(&mut page, self.links, [side, foot], u);
         let right = side + field_width;
-        let row = if self.scale.is_some() { under + 40.0 * u } else { foot };
+        let row = if self.scale.is_some() {
+            under + 40.0 * u
+        } else {
+            foot
+        };
         furniture::scale_bar(&mut page, [right, row], scale, u);
         page.save(path)
     }

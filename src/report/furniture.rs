@@ -37,7 +37,7 @@ pub(super) fn legend(page: &mut Canvas, links: &[Link], [left, middle]: [f32; 2]
         ),
         (
             has(|s| *s == LinkState::Plain),
-            "contact force (width)",
+            "contact, width by its force",
             [PLAIN; 2],
             3.0,
         ),

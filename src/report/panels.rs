@@ -57,7 +57,8 @@ pub fn draw_panels(charts: &[Chart], columns: usize, path: &Path) -> Result<(), 
 /// Takes what all charts have as their second line off them, and gives it.
 fn common(charts: &mut [Chart]) -> String {
     let first = charts.first().and_then(|c| c.subtitle.clone());
-    let Some(first) = first.filter(|f| charts.iter().all(|c| c.subtitle.as_ref() == Some(f))) else {
+    let Some(first) = first.filter(|f| charts.iter().all(|c| c.subtitle.as_ref() == Some(f)))
+    else {
         return String::new();
     };
     charts.iter_mut().for_each(|c| c.subtitle = None);

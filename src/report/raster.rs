@@ -231,7 +231,12 @@ mod tests {
     const BLUE: Rgb = [0, 0, 200];
 
     fn square(z: f64) -> [Corner; 4] {
-        [[2.0, 2.0, z], [18.0, 2.0, z], [18.0, 18.0, z], [2.0, 18.0, z]]
+        [
+            [2.0, 2.0, z],
+            [18.0, 2.0, z],
+            [18.0, 18.0, z],
+            [2.0, 18.0, z],
+        ]
     }
 
     #[test]
@@ -263,8 +268,16 @@ mod tests {
         let after = r.colour[10 * 20 + 10];
         assert!(after[0] < before[0] && after[0] > before[0] / 2 && after[2] >= 50);
         // A slanted polygon has the depth of its plane at each pixel.
-        let slanted = [[0.0, 0.0, 0.0], [20.0, 0.0, 20.0], [20.0, 20.0, 20.0], [0.0, 20.0, 0.0]];
-        assert_eq!(plane(&slanted).map(|p| p.map(f64::round)), Some([1.0, 0.0, 0.0]));
+        let slanted = [
+            [0.0, 0.0, 0.0],
+            [20.0, 0.0, 20.0],
+            [20.0, 20.0, 20.0],
+            [0.0, 20.0, 0.0],
+        ];
+        assert_eq!(
+            plane(&slanted).map(|p| p.map(f64::round)),
+            Some([1.0, 0.0, 0.0])
+        );
     }
 
     #[test]

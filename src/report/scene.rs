@@ -91,7 +91,10 @@ impl Scene {
 
     /// Paints the field; `u` is the scale of the picture.
     pub(super) fn paint(&self, field: &mut Canvas, place: &Place, u: f32) {
-        let (width, height) = (field.pixmap.width() as usize, field.pixmap.height() as usize);
+        let (width, height) = (
+            field.pixmap.width() as usize,
+            field.pixmap.height() as usize,
+        );
         let fine = if width * height > LARGEST { 1 } else { FINE };
         let mut raster = Raster::new(width * fine, height * fine, WHITE);
         let scale = place.scale * fine as f64;
@@ -166,7 +169,9 @@ impl Scene {
     fn depths(&self) -> [f64; 2] {
         let spheres = self.spheres.iter().map(|s| s.centre);
         let corners = self.faces.iter().flat_map(|f| f.polygons.iter().flatten());
-        let all = spheres.chain(corners.copied()).map(|p| self.view.project(p).1);
+        let all = spheres
+            .chain(corners.copied())
+            .map(|p| self.view.project(p).1);
         let (low, high) = all
             .filter(|z| z.is_finite())
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| {
@@ -247,7 +252,9 @@ struct Edge {
 /// The edges of polygons, and the smooth part each polygon belongs to.
 fn joined(polygons: &[Vec<[f64; 3]>], normals: &[[f64; 3]]) -> (Vec<Edge>, Vec<usize>) {
     let all = || polygons.iter().flatten().flatten().copied();
-    let size = all().filter(|x| x.is_finite()).fold(0.0f64, |m, x| m.max(x.abs()));
+    let size = all()
+        .filter(|x| x.is_finite())
+        .fold(0.0f64, |m, x| m.max(x.abs()));
     let grain = 1e-7 * size.max(f64::MIN_POSITIVE);
     let key = |p: &[f64; 3]| p.map(|x| (x / grain).round() as i64);
     let mut parts: Vec<usize> = (0..polygons.len()).collect();

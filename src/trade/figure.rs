@@ -1,8 +1,8 @@
 //! The figure: error against cost, one panel an output.
 
 use super::compare::{Comparison, OutputError, Row};
-use super::output::{Output, Wanted};
 use super::knobs::{Knob, Level, Sense};
+use super::output::{Output, Wanted};
 use super::setting::Setting;
 use super::study::Study;
 use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels, quantity};
@@ -100,7 +100,11 @@ fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
     let mut groups: Vec<(String, Vec<(&Row, &OutputError)>)> = Vec::new();
     let each = found.rows.len() <= NAMED;
     for &(row, e) in others() {
-        let name = if each { named(&study.knobs, &row.setting) } else { group(study, row) };
+        let name = if each {
+            named(&study.knobs, &row.setting)
+        } else {
+            group(study, row)
+        };
         match groups.iter_mut().find(|g| g.0 == name) {
             Some(g) => g.1.push((row, e)),
             None => groups.push((name, vec![(row, e)])),
@@ -131,7 +135,10 @@ fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
         .find(|(r, e)| r.setting == reference && output.exact.is_none() && e.bound.is_finite());
     if let Some((r, e)) = mine {
         let mut mark = Series::new(
-            format!("own error of the reference: {}", named(&study.knobs, &r.setting)),
+            format!(
+                "own error of the reference: {}",
+                named(&study.knobs, &r.setting)
+            ),
             vec![(r.seconds, lifted(e.bound))],
         )
         .style(Style::Markers);
@@ -157,11 +164,18 @@ fn subtitle(study: &Study, output: &Output, found: &Comparison, o: usize) -> Str
 
 /// A setting by the values of all knobs that vary: what stands in the case may change, a figure says what was run.
 fn named(knobs: &[Knob], setting: &Setting) -> String {
-    let varied = knobs.iter().zip(&setting.0).filter(|(k, _)| k.levels.len() > 1);
+    let varied = knobs
+        .iter()
+        .zip(&setting.0)
+        .filter(|(k, _)| k.levels.len() > 1);
     let parts: Vec<String> = varied
         .map(|(knob, level)| {
             let name = knob.name.rsplit('.').next().unwrap_or_default();
-            format!("{} {}", name.replace('_', " "), value(knob, &knob.levels[*level]))
+            format!(
+                "{} {}",
+                name.replace('_', " "),
+                value(knob, &knob.levels[*level])
+            )
         })
         .collect();
     parts.join(", ")
@@ -203,7 +217,10 @@ mod tests {
             reference: 0,
         };
         for own in [0, 1] {
-            let knobs = [knob("time.step", Sense::Step, own), knob("solver.tolerance", Sense::Tolerance, own)];
+            let knobs = [
+                knob("time.step", Sense::Step, own),
+                knob("solver.tolerance", Sense::Tolerance, own),
+            ];
             let name = named(&knobs, &Setting(vec![0, 1]));
             assert_eq!(name, "step 50 µs, tolerance 1×10⁻⁴");
         }

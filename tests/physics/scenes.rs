@@ -3,6 +3,7 @@
 use fretwork::contact::detect::centre;
 use fretwork::geometry::space::{Plane, Solid};
 use fretwork::laws::SearchPath;
+use fretwork::record::picture::{Camera, Subject};
 use fretwork::record::{RunOptions, Summary, run};
 use fretwork::scene::build::{Built, Dimensional};
 use fretwork::scene::{Loaded, load};
@@ -259,6 +260,52 @@ fn end_walls_make_a_narrow_drum_steeper() {
     println!("{walls:.1} degrees between walls, {endless:.1} without");
     assert!((17.0..33.0).contains(&endless), "{endless}");
     assert!(walls > endless + 3.0, "{walls} and {endless}");
+}
+
+/// The picture of a scene as it stands: its pixels, red, green and blue.
+fn pictured(s: &Simulation<Solid>, loaded: &Loaded, name: &str) -> Vec<[u8; 3]> {
+    let path =
+        std::env::temp_dir().join(format!("fretwork-scenes-{}-{name}.png", std::process::id()));
+    let camera = Camera::new(s, &loaded.case.output);
+    let drawn = camera.draw(s, Subject::Scene, "", Vec::new(), &path);
+    drawn.unwrap_or_else(|e| panic!("{e}"));
+    let picture = tiny_skia::Pixmap::load_png(&path).unwrap_or_else(|e| panic!("{e}"));
+    let _ = std::fs::remove_file(path);
+    let pixels = picture.pixels().iter();
+    pixels.map(|p| [p.red(), p.green(), p.blue()]).collect()
+}
+
+/// A frame in space shows the drum about the grains, and colours those that move by their speed.
+#[test]
+fn frames_in_space_show_the_drum_and_the_speed() {
+    let sets = |more: &[&'static str]| -> Vec<&'static str> {
+        let few = ["grains.0.count=60", "output.width=400"];
+        [&few[..], more].concat()
+    };
+    let (loaded, built) = case_in::<Solid>("rotating_drum_3d", &sets(&[]));
+    let mut s = built.simulation;
+    let is = |p: &[u8; 3], colour: bool| {
+        let (low, high) = (p.iter().min().unwrap_or(&0), p.iter().max().unwrap_or(&0));
+        colour == (high - low > 60)
+    };
+    let share = |pixels: &[[u8; 3]], of: &dyn Fn(&[u8; 3]) -> bool| {
+        pixels.iter().filter(|p| of(p)).count() as f64 / pixels.len() as f64
+    };
+    let still = pictured(&s, &loaded, "still");
+    let filled = share(&still, &|p| *p != [255; 3]);
+    // A circle fills 0.79 of the square about it, the grains alone less than a tenth.
+    assert!((0.45..0.9).contains(&filled), "{filled}");
+    assert!(share(&still, &|p| is(p, true)) < 1e-3);
+    for _ in 0..10 {
+        s.step().unwrap_or_else(|e| panic!("{e}"));
+    }
+    let moving = pictured(&s, &loaded, "moving");
+    let coloured = share(&moving, &|p| is(p, true));
+    assert!(coloured > 0.01, "{coloured}");
+    // Without first bodies near, the ground is white.
+    let (loaded, built) = case_in::<Solid>("newton_cradle", &["output.width=400"]);
+    let cradle = pictured(&built.simulation, &loaded, "cradle");
+    assert!(share(&cradle, &|p| *p == [255; 3]) > 0.3);
 }
 
 type Vector = nalgebra::Vector2<f64>;

@@ -28,13 +28,17 @@ pub fn draw(path: &Path, title: &str, table: &Table, start: f64) -> Result<(), R
     let ratio = chart("Stress ratio", "q/p = sin φ")
         .with(Series::new("q/p from the walls", against("q_over_p")))
         .with(Series::new("sin φ from the contacts", against("sin_phi")).style(Style::Dashed));
-    let volume = chart("Volumetric strain, expansion positive", "volumetric strain ε_v")
-        .with(Series::new(String::new(), against("volumetric_strain")));
-    let neighbours = chart("Coordination, contacts that carry force", "coordination number Z")
-        .with(Series::new("all grains", against("coordination")))
-        .with(
-            Series::new("without rattlers", against("coordination_carried")).style(Style::Dashed),
-        );
+    let volume = chart(
+        "Volumetric strain, expansion positive",
+        "volumetric strain ε_v",
+    )
+    .with(Series::new(String::new(), against("volumetric_strain")));
+    let neighbours = chart(
+        "Coordination, contacts that carry force",
+        "coordination number Z",
+    )
+    .with(Series::new("all grains", against("coordination")))
+    .with(Series::new("without rattlers", against("coordination_carried")).style(Style::Dashed));
     let compacity = chart("Solid fraction", "solid fraction φ")
         .with(Series::new(String::new(), against("compacity")));
     draw_panels(&[ratio, volume, neighbours, compacity], 2, path)

@@ -174,11 +174,7 @@ impl<S: Space> Measure<S> for Profile<S> {
             chart
         };
         let mut velocity = chart("Velocity", "m/s", "mean velocity v");
-        for (k, a) in ["v_x", "v_y", "v_z"]
-            .iter()
-            .enumerate()
-            .take(S::D)
-        {
+        for (k, a) in ["v_x", "v_y", "v_z"].iter().enumerate().take(S::D) {
             velocity = velocity.with(Series::new(*a, series(2 + k)).style(Style::LineMarkers));
         }
         let solid = chart("Solid fraction", "", "solid fraction φ")

@@ -144,7 +144,12 @@ impl<S: Space> Measure<S> for Shear {
             chart
         };
         let panels = [
-            chart("mu", "Effective friction", "friction coefficient µ = τ/p", ""),
+            chart(
+                "mu",
+                "Effective friction",
+                "friction coefficient µ = τ/p",
+                "",
+            ),
             chart("phi", "Solid fraction", "solid fraction φ", ""),
             chart("I", "Inertial number", "inertial number I", ""),
             chart("p", "Pressure", "normal stress p", "Pa"),

@@ -21,7 +21,9 @@ pub(super) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<Scale>) {
         }
     };
     let balls = s.shapes.balls.iter().map(|b| b.body);
-    let of: Vec<u32> = balls.chain(s.shapes.pieces.iter().map(|p| p.body)).collect();
+    let of: Vec<u32> = balls
+        .chain(s.shapes.pieces.iter().map(|p| p.body))
+        .collect();
     let grain: Vec<bool> = of
         .iter()
         .map(|b| !is_first(s, *b) && !s.bodies.gone[*b as usize])

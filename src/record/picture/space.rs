@@ -109,7 +109,10 @@ fn placed<S: Space>(
     let world = |p: &S::Vector| {
         (s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &(surface.offset + *p))).padded()
     };
-    faces.iter().map(|f| f.iter().map(world).collect()).collect()
+    faces
+        .iter()
+        .map(|f| f.iter().map(world).collect())
+        .collect()
 }
 
 /// The open side of a plane; none of other surfaces.
@@ -154,7 +157,8 @@ fn room<S: Space>(s: &Simulation<S>, surfaces: &[&Carried<S>]) -> (Point, Point)
     let size = length(&sub(&bound.high, &bound.low));
     let (low, high) = (bound.low, bound.high);
     for side in surfaces.iter().filter_map(|f| solid_side(s, f)) {
-        let corners = (0..8).map(|k| [0, 1, 2].map(|i| if k >> i & 1 == 1 { high[i] } else { low[i] }));
+        let corners =
+            (0..8).map(|k| [0, 1, 2].map(|i| if k >> i & 1 == 1 { high[i] } else { low[i] }));
         let above = |p: &Point| side.offset - dot(&side.normal, p);
         let feet: Vec<Point> = corners
             .filter(|p| (0.0..FAR * size).contains(&above(p)))

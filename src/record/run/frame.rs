@@ -25,7 +25,10 @@ impl<S: Dimensional> Recorder<'_, S> {
                 cycles.total()
             ));
             if let Some(c) = cycles.list.last() {
-                caption.push(format!("friction coefficient {:.3}", c.friction_coefficient));
+                caption.push(format!(
+                    "friction coefficient {:.3}",
+                    c.friction_coefficient
+                ));
             }
         }
         if self.simulation.network.bonds_made() > 0 {

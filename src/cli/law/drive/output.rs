@@ -59,10 +59,14 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
     .map_err(fail)?;
     let mut name = file.file_stem().unwrap_or_default().to_os_string();
     name.push("_damage.png");
-    Chart::new(title, Axis::new("opening δ", "m"), Axis::new("damage D", ""))
-        .with(Series::new("", points(&signed, &|r| r.damage)))
-        .draw(&file.with_file_name(name))
-        .map_err(fail)
+    Chart::new(
+        title,
+        Axis::new("opening δ", "m"),
+        Axis::new("damage D", ""),
+    )
+    .with(Series::new("", points(&signed, &|r| r.damage)))
+    .draw(&file.with_file_name(name))
+    .map_err(fail)
 }
 
 /// Some twenty rows, and what the whole path came to.

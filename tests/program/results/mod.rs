@@ -1,10 +1,7 @@
 //! What a run leaves behind, through the program: the files of the contract and how they agree.
 
-#[path = "results/contacts.rs"]
 mod contacts;
-#[path = "results/ledger.rs"]
 mod ledger;
-#[path = "results/streams.rs"]
 mod streams;
 
 use serde_json::Value;
