@@ -108,7 +108,11 @@ fn a_law_that_writes_behind_its_columns() {
     says(
         &run(&trial, &[]),
         1,
-        &["the contact law `own` wrote behind the end of a column in Prepare"],
+        &[
+            "the contact law `own` wrote behind the end of a column in Prepare",
+            "interface `grains` has this law at",
+            "case.ron:13:22",
+        ],
     );
 }
 

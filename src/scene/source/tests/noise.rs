@@ -139,7 +139,8 @@ fn mutations_never_panic() {
         }
     }
     assert!(refused > rounds / 4);
-    let limit = Duration::from_secs(if cfg!(debug_assertions) { 60 } else { 2 });
+    // None of them takes long: quadratic ones would take minutes.
+    let limit = Duration::from_secs(60);
     assert!(begun.elapsed() < limit, "{:?}", begun.elapsed());
 }
 
