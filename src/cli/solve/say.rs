@@ -55,7 +55,7 @@ pub fn text(solved: &Solved, args: &SolveArgs) -> String {
         format!("{:.3e} of {:.1e}: {verdict}", best.error, args.tolerance),
     );
     line("", format!("error = {FORMULA}"));
-    if best.error <= args.tolerance && !best.converged {
+    if best.error <= args.tolerance && best.beside > args.tolerance {
         line(
             "",
             format!(
@@ -192,7 +192,7 @@ fn outcome(o: &Outcome, args: &SolveArgs) -> Value {
 /// Why a file is not solved.
 pub fn unsolved(solved: &Solved, args: &SolveArgs) -> String {
     let best = &solved.outcomes[0];
-    if best.error <= args.tolerance {
+    if best.error <= args.tolerance && best.beside > args.tolerance {
         return format!(
             "{}: the error is {:.3e}, but {:.1e} of what it does not hold: the problem may have no solution",
             solved.path.display(),
