@@ -5,7 +5,6 @@ mod refuse;
 use super::number::{not_negative, share};
 use super::output::{answer_json, inform, report};
 use super::{CaseArgs, Failure, again};
-use crate::geometry::space::Space;
 use crate::interrupt;
 use crate::scene::build::{Built, Dimensional};
 use crate::scene::methods::{Demands, Service};
@@ -24,7 +23,7 @@ use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 #[derive(Args, Debug)]
