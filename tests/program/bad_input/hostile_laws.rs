@@ -1,7 +1,7 @@
 //! Laws that hang, exit or crash, while they are loaded or in a step, and laws that answer what cannot be.
 
 use super::trial::{Trial, refusal};
-use crate::trust::{own, run, says};
+use super::trust::{own, run, says};
 use std::path::PathBuf;
 
 /// A run of 40,000 steps, more than the laws here last.
