@@ -481,7 +481,7 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
     };
     let (summary, rows) = ran(20.0);
     assert!(
-        summary.warnings.iter().all(|w| w.of != "COARSE DRIVE"),
+        summary.warnings.iter().all(|w| !w.contains("DRIVE")),
         "{:?}",
         summary.warnings
     );
@@ -502,15 +502,24 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
         seen += 1;
     }
     assert_eq!(seen, 100);
-    for (frequency, words) in [(100.0, "only 10.0 steps a period"), (1000.0, "ALIASES")] {
+    for (frequency, heading, words) in [
+        (100.0, "COARSE DRIVE", "only 10.0 steps a period"),
+        (1000.0, "ALIASED DRIVE", "ALIASES"),
+    ] {
         let (summary, _) = ran(frequency);
-        let told = summary.warnings.iter().find(|w| w.of == "COARSE DRIVE");
-        let told = &told.expect("a warning").text;
+        let told = summary.warnings.iter().find(|w| w.starts_with(heading));
+        let told = told.expect("a warning");
         assert!(
             told.contains("`pin` along x") && told.contains(words),
             "{told}"
         );
-        assert!(summary.text().contains("COARSE DRIVE"));
+        assert!(summary.text(false).contains(heading));
+        // A coarse path is a note; another frequency than the one asked for is a reason.
+        let aliased = heading == "ALIASED DRIVE";
+        assert_eq!(
+            summary.reasons.iter().any(|r| r.starts_with(heading)),
+            aliased
+        );
         let path = file(case(frequency).source.text());
         let mut check = std::process::Command::new(env!("CARGO_BIN_EXE_fretwork"));
         let output = check
