@@ -13,10 +13,12 @@ pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64) {
         let v = bodies.velocity[b];
         let from = bodies.position[b];
         bodies.position[b] += v * time;
-        if bodies.position[b] == from && v != S::Vector::null() {
-            // The way is less than the spacing of numbers here.
-            bodies.lost.resize(bodies.position.len(), 0.0);
-            bodies.lost[b] += v.norm() * time;
+        for k in 0..S::D {
+            if bodies.position[b][k] == from[k] && v[k] != 0.0 {
+                // The way is less than the spacing of numbers here.
+                bodies.lost.resize(bodies.position.len(), 0.0);
+                bodies.lost[b] += (v[k] * time).abs();
+            }
         }
         let w = bodies.spin[b];
         if w != S::Spin::null() {

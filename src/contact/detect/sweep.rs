@@ -416,7 +416,7 @@ impl<'a, S: Space> Sweep<'a, S> {
                 sharp: !m.facing,
                 broken: false,
                 slot: Contact::<S>::NO_MEMORY,
-                gap: m.gap.max(0.0) + way,
+                gap: m.gap + way,
                 normal: m.normal,
                 arms: [m.on_candidate, m.on_antagonist],
                 radius: if m.share > 0.0 { m.share } else { radius },

@@ -14,7 +14,7 @@ fn a_spin_whose_square_overflows() {
     refused(
         &solid(
             GRAIN,
-            "‸(at: [0.15, 0.15, 0.02], radius: 0.01, spin: [1e155, 1e155, 0.0])",
+            "‸(at: [0.15, 0.15, 0.02], radius: 0.01, spin: [1e160, 1e160, 0.0])",
         ),
         &["its kinetic energy at the start is inf J", "spin"],
     );
