@@ -123,7 +123,7 @@ impl PluginArgs {
                 } else {
                     "what was recorded up to the last flush is on disk"
                 };
-                let who = clean_lines(&who.to_string());
+                let who = clean_lines(who);
                 eprintln!(
                     "error: {who}; the program ends here; {left} (a longer wait: --law-timeout)"
                 );
