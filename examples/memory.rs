@@ -196,7 +196,7 @@ fn measure<S: Dimensional>(
     let mut s: Simulation<S> = {
         let mut source = Source::from_text(&path, case::<S>(grains, count, apart));
         for set in sets {
-            source.set(set)?;
+            source.set::<Case>(set)?;
         }
         let case: Case = source.parse()?;
         let loaded = Loaded { source, case, path };

@@ -6,10 +6,18 @@ use std::ops::Range;
 use super::tree::{Kind, Node, Shape};
 use super::{InputError, Source};
 
+/// A key that a map gives again.
+struct Repeated {
+    earlier: Range<usize>,
+    again: Range<usize>,
+    name: String,
+    map: Range<usize>,
+}
+
 impl Source {
     /// The first key of a map that was given before in the same map.
     pub(super) fn repeated_key(&self) -> Option<InputError> {
-        let mut found: Option<(Range<usize>, Range<usize>, String, Range<usize>)> = None;
+        let mut found: Option<Repeated> = None;
         let mut stack: Vec<&Node> = self.tree.root.iter().collect();
         while let Some(node) = stack.pop() {
             let Kind::Group(group) = &node.kind else {
@@ -24,14 +32,24 @@ impl Source {
                 let written = &self.text[key.clone()];
                 let name = ron::from_str::<String>(written).unwrap_or_else(|_| written.to_owned());
                 let earlier = known.insert(name.clone(), key);
-                let first = found.as_ref().is_none_or(|f| key.start < f.1.start);
+                let first = found.as_ref().is_none_or(|f| key.start < f.again.start);
                 if let Some(earlier) = earlier.filter(|_| first) {
-                    found = Some((earlier.clone(), key.clone(), name, node.span.clone()));
+                    found = Some(Repeated {
+                        earlier: earlier.clone(),
+                        again: key.clone(),
+                        name,
+                        map: node.span.clone(),
+                    });
                     break;
                 }
             }
         }
-        let (earlier, again, name, map) = found?;
+        let Repeated {
+            earlier,
+            again,
+            name,
+            map,
+        } = found?;
         let owner = self.path_to(&map);
         let place = owner.map_or_else(String::new, |path| format!(" in {path}"));
         let before = self.place_in_words(&earlier);
