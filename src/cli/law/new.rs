@@ -1,8 +1,8 @@
 //! `fretwork law new`: a law to fill in, that builds and is certified as it stands.
 
 use super::super::{Failure, say};
-use crate::laws::{Kind, built_in};
 use crate::laws::search::{file_name, name_is_valid};
+use crate::laws::{Kind, built_in};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 
