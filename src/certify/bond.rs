@@ -26,7 +26,8 @@ fn stored_energy(rig: &mut Rig) -> Result<Line, LawError> {
     if rig.kind != Kind::Cohesion {
         return Ok(Line::skip(NAME, "the energy is the cohesion's"));
     }
-    let reach = if rig.damages() { 0.9 } else { 1.0 } * rig.onset;
+    // The onset is known to a tenth of a decade.
+    let reach = if rig.damages() { 0.5 } else { 1.0 } * rig.onset;
     let (mut worst, mut tested) = (0.0f64, 0);
     for angle in [0.0, FRAC_PI_4, FRAC_PI_2] {
         let motions: Vec<Motion> = (0..=N)

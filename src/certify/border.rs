@@ -6,8 +6,10 @@ use crate::laws::LawError;
 use crate::laws::bench::{Answer, Bench, Motion, State};
 use std::sync::Barrier;
 
-pub const CHECKS: [(&str, Check); 7] = [
-    ("columns", columns),
+/// Made first: what fails it may spoil the memory of all that comes after.
+pub const FIRST: (&str, Check) = ("columns", columns);
+
+pub const CHECKS: [(&str, Check); 6] = [
     ("range", range),
     ("batch", batch),
     ("threads", threads),
@@ -17,7 +19,7 @@ pub const CHECKS: [(&str, Check); 7] = [
 ];
 
 /// Those that hang on parameters; the others are of the code alone.
-pub const OF_PARAMETERS: [(&str, Check); 2] = [CHECKS[1], CHECKS[6]];
+pub const OF_PARAMETERS: [(&str, Check); 2] = [CHECKS[0], CHECKS[5]];
 
 /// Moves a batch along walks, one a contact, some of them used more than once; the bits of all answers.
 fn together(
@@ -38,18 +40,20 @@ fn together(
 
 /// A law writes to its outputs and nowhere else, and gives one answer to one question.
 fn columns(rig: &mut Rig) -> Result<Line, LawError> {
-    let walks: Vec<Vec<Motion>> = (0..17).map(|k| rig.walk(60 + k, 20, 0.3)).collect();
-    let mut bench = rig.strict().guarded();
-    match together(&mut bench, &walks, 17, 0) {
-        Err(e @ LawError::Trespass { .. }) => Err(e),
+    const KEPT: &str = "writes to inputs, to the state before the step, up to 256 kB beside the columns; second answers that differ";
+    // The scale of the law is not known yet.
+    let onset = rig.onset;
+    for scale in [1e-9, 1e-7, 1e-5, 1e-3] {
+        rig.onset = scale;
+        let walks: Vec<Vec<Motion>> = (0..17).map(|k| rig.walk(60 + k, 8, 0.5)).collect();
+        let moved = together(&mut rig.strict().guarded(), &walks, 17, 0);
+        rig.onset = onset;
         // What else goes wrong is another check's.
-        _ => Ok(Line::judged(
-            "columns",
-            true,
-            0.0,
-            "writes to inputs, to the state before the step, up to 256 kB beside the columns; second answers that differ",
-        )),
+        if let Err(e @ LawError::Trespass { .. }) = moved {
+            return Err(e);
+        }
     }
+    Ok(Line::judged("columns", true, 0.0, KEPT))
 }
 
 /// What a law gives can be.
@@ -144,12 +148,12 @@ fn threads(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// Threads that differ when each has contacts of its own. Batches are large, so that calls take a while and overlap even
+/// Threads that differ when each has contacts of its own. Each makes every call over and over, so that calls overlap also
 /// where threads take turns on one processor.
 fn other_contacts(rig: &mut Rig) -> Result<u32, LawError> {
     const THREADS: usize = 4;
-    const N: usize = 2048;
-    let walks: Vec<Vec<Motion>> = (0..61).map(|k| rig.walk(200 + k, 12, 0.3)).collect();
+    const N: usize = 1024;
+    let walks: Vec<Vec<Motion>> = (0..61).map(|k| rig.walk(200 + k, 2, 0.3)).collect();
     let mut alone = Vec::new();
     for turn in 0..THREADS {
         alone.push(together(&mut rig.another(), &walks, N, turn)?);
@@ -159,12 +163,10 @@ fn other_contacts(rig: &mut Rig) -> Result<u32, LawError> {
     Ok(std::thread::scope(|scope| {
         let runs: Vec<_> = (0..THREADS)
             .map(|turn| {
-                let mut bench = rig.another();
+                let mut bench = rig.strict().repeating();
                 scope.spawn(move || {
                     start.wait();
-                    (0..3).all(|_| {
-                        together(&mut bench, walks, N, turn).is_ok_and(|bits| bits == alone[turn])
-                    })
+                    together(&mut bench, walks, N, turn).is_ok_and(|bits| bits == alone[turn])
                 })
             })
             .collect();

@@ -103,6 +103,13 @@ impl Bench {
         self
     }
 
+    /// Makes each call of a law over and over and compares the answers: for races between threads.
+    #[must_use]
+    pub fn repeating(mut self) -> Self {
+        self.passes.care = Care::Repeated;
+        self
+    }
+
     /// The law on it.
     pub fn law(&self) -> &Interface {
         &self.law

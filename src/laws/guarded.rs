@@ -2,6 +2,7 @@
 //! slow for a run; certificates are made with it.
 
 use fretwork_abi::FwBatch;
+use std::time::{Duration, Instant};
 
 /// Marks between columns, in values (4 kB).
 const GAP: usize = 512;
@@ -188,6 +189,55 @@ impl Guarded {
             near.name
         ))
     }
+}
+
+/// Makes a call over and over for a while, each time with the outputs as they were: its first answer, and whether another
+/// one differs.
+///
+/// # Safety
+/// As the ABI says of the batch, for a law of so many variables.
+pub(super) unsafe fn repeat<R>(
+    batch: &FwBatch,
+    variables: usize,
+    mut call: impl FnMut(&FwBatch) -> R,
+) -> (R, Option<String>) {
+    /// Several turns of a thread on a busy processor.
+    const WHILE: Duration = Duration::from_millis(25);
+    const TIMES: u32 = 2000;
+    let mut copy = *batch;
+    let mut columns: Vec<*mut f64> = outputs(&mut copy).into_iter().map(|o| *o.1).collect();
+    if !batch.state_next.is_null() {
+        // SAFETY: one column a variable.
+        columns.extend((0..variables).map(|v| unsafe { *batch.state_next.add(v) }));
+    }
+    columns.retain(|c| !c.is_null());
+    let bits = |columns: &[*mut f64]| -> Vec<u64> {
+        let all = columns.iter().flat_map(|c| {
+            // SAFETY: an output column of `n` values.
+            unsafe { std::slice::from_raw_parts(*c, batch.n) }
+        });
+        all.map(|x| x.to_bits()).collect()
+    };
+    let before = bits(&columns);
+    let answer = call(batch);
+    let first = bits(&columns);
+    let start = Instant::now();
+    let mut times = 0;
+    while times < TIMES && start.elapsed() < WHILE {
+        times += 1;
+        for (column, values) in columns.iter().zip(before.chunks(batch.n.max(1))) {
+            for (k, value) in values.iter().enumerate() {
+                // SAFETY: as above.
+                unsafe { *column.add(k) = f64::from_bits(*value) };
+            }
+        }
+        call(batch);
+        if bits(&columns) != first {
+            let what = "gave two answers to the same call while other threads called it";
+            return (answer, Some(what.to_owned()));
+        }
+    }
+    (answer, None)
 }
 
 /// The batch as bytes, to compare.

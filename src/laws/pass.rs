@@ -6,7 +6,7 @@
 use super::bonds::Held;
 use super::columns::{Columns, StepInfo};
 use super::gather::contact_area;
-use super::guarded::Guarded;
+use super::guarded::{self, Guarded};
 use super::interface::{Interface, Loaded};
 use super::library::{Call, LawError};
 use crate::contact::{Contact, Network};
@@ -113,6 +113,8 @@ pub(super) enum Care {
     Lenient,
     /// As in a run; and every call is made twice, where every wrong write is seen.
     Guarded(Box<Guarded>),
+    /// As in lenient care; and every call is made over and over.
+    Repeated,
 }
 
 /// What the passes carry from step to step.
@@ -390,6 +392,13 @@ impl Passes {
                 wrong = what;
                 called
             }
+            Care::Repeated => {
+                // SAFETY: as below.
+                let (called, what) =
+                    unsafe { guarded::repeat(batch, loaded.variables(), |b| plugin.call(call, b)) };
+                wrong = what;
+                called
+            }
             // SAFETY: columns of the batch have `n` values or are null, and live in `self`.
             _ => unsafe { plugin.call(call, batch) },
         });
@@ -422,7 +431,7 @@ impl Passes {
                 contact: Some(contact),
             });
         }
-        if matches!(self.care, Care::Lenient) {
+        if matches!(self.care, Care::Lenient | Care::Repeated) {
             return Ok(());
         }
         match self.columns.out.outside(plugin.kind, call) {
