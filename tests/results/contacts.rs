@@ -162,7 +162,7 @@ fn forces_add_up(case: &str, (body, id): (&str, i64), dimension: usize, sets: &[
 #[test]
 fn forces_of_contacts_add_up_to_those_on_a_body_in_the_plane() {
     // First bodies come after the 40 grains.
-    forces_add_up("verification/energy", ("top", 41), 2, &["time.end=0.02"]);
+    forces_add_up("verification/energy", ("top", 41), 2, &["time.end=0.06"]);
 }
 
 #[test]

@@ -78,7 +78,12 @@ fn adds_up(name: &str, case: &str, sets: &[&str], entries: &[&str]) {
         .chain(&["external_work", "residual"])
     {
         let last = summary["energy"][*name].as_f64().unwrap();
-        assert_eq!(last, columns[*name][rows - 1], "{name}");
+        // The reader of JSON is right to the last digit but one.
+        let row = columns[*name][rows - 1];
+        assert!(
+            (last - row).abs() <= 1e-15 * row.abs(),
+            "{name}: {last:e} {row:e}"
+        );
     }
     std::fs::remove_dir_all(out).ok();
 }
@@ -118,7 +123,7 @@ fn columns_add_up_with_an_implicit_scheme() {
         "theta",
         "verification/energy",
         &["time.theta=1", "time.end=0.02"],
-        &["scheme", "elastic", "external_work"],
+        &["scheme", "external_work"],
     );
 }
 
