@@ -73,9 +73,9 @@ impl Contacts {
             if dimension == 3 {
                 let p2 = self.column("force_tangential_2")[k];
                 let (n, t) = (&normal[k], &t1[k]);
-                for a in 0..3 {
+                for (a, f) in f.iter_mut().enumerate() {
                     let (b, c) = ((a + 1) % 3, (a + 2) % 3);
-                    f[a] += p2 * (n[b] * t[c] - n[c] * t[b]);
+                    *f += p2 * (n[b] * t[c] - n[c] * t[b]);
                 }
             }
             out.push(f);

@@ -54,19 +54,18 @@ fn adds_up(name: &str, case: &str, sets: &[&str], entries: &[&str]) {
     );
     let columns = table(&out.join("statistics.csv"));
     let rows = columns["time"].len();
-    for k in 0..rows {
-        let at = |name: &str| columns[name][k];
+    for (row, residual) in columns["residual"].iter().enumerate() {
+        let at = |name: &str| columns[name][row];
         let held: f64 = STORED_AND_SPENT.iter().map(|name| at(name)).sum();
         let sum = held - at("external_work") - at("initial_kinetic");
         let all = STORED_AND_SPENT
             .iter()
             .chain(&["external_work", "initial_kinetic"]);
         let scale = all.map(|name| at(name).abs()).fold(0.0, f64::max);
-        let off = (sum - at("residual")).abs();
+        let off = (sum - residual).abs();
         assert!(
             off <= 1e-14 * scale,
-            "{name}, row {k}: the columns give {sum:e}, the residual is {:e} (largest entry {scale:e})",
-            at("residual")
+            "{name}, row {row}: the columns give {sum:e}, the residual is {residual:e} (largest entry {scale:e})"
         );
     }
     for entry in entries {
