@@ -54,19 +54,18 @@ fn adds_up(name: &str, case: &str, sets: &[&str], entries: &[&str]) {
     );
     let columns = table(&out.join("statistics.csv"));
     let rows = columns["time"].len();
-    for k in 0..rows {
-        let at = |name: &str| columns[name][k];
+    for (row, residual) in columns["residual"].iter().enumerate() {
+        let at = |name: &str| columns[name][row];
         let held: f64 = STORED_AND_SPENT.iter().map(|name| at(name)).sum();
         let sum = held - at("external_work") - at("initial_kinetic");
         let all = STORED_AND_SPENT
             .iter()
             .chain(&["external_work", "initial_kinetic"]);
         let scale = all.map(|name| at(name).abs()).fold(0.0, f64::max);
-        let off = (sum - at("residual")).abs();
+        let off = (sum - residual).abs();
         assert!(
             off <= 1e-14 * scale,
-            "{name}, row {k}: the columns give {sum:e}, the residual is {:e} (largest entry {scale:e})",
-            at("residual")
+            "{name}, row {row}: the columns give {sum:e}, the residual is {residual:e} (largest entry {scale:e})"
         );
     }
     for entry in entries {
@@ -78,7 +77,12 @@ fn adds_up(name: &str, case: &str, sets: &[&str], entries: &[&str]) {
         .chain(&["external_work", "residual"])
     {
         let last = summary["energy"][*name].as_f64().unwrap();
-        assert_eq!(last, columns[*name][rows - 1], "{name}");
+        // The reader of JSON is right to the last digit but one.
+        let row = columns[*name][rows - 1];
+        assert!(
+            (last - row).abs() <= 1e-15 * row.abs(),
+            "{name}: {last:e} {row:e}"
+        );
     }
     std::fs::remove_dir_all(out).ok();
 }
@@ -118,7 +122,7 @@ fn columns_add_up_with_an_implicit_scheme() {
         "theta",
         "verification/energy",
         &["time.theta=1", "time.end=0.02"],
-        &["scheme", "elastic", "external_work"],
+        &["scheme", "external_work"],
     );
 }
 
