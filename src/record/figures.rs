@@ -226,7 +226,7 @@ fn forces(title: &str, table: &Table, drives: &[Drive], newton: &'static str) ->
         };
         let size = at.iter().fold(0.0f64, |m, x| m.max(x.abs()));
         let moved = at.iter().fold(0.0f64, |m, x| m.max((x - start).abs()));
-        if !(moved > 1e-9 * size) || force.iter().all(|f| *f == 0.0) {
+        if moved <= 1e-9 * size || moved.is_nan() || force.iter().all(|f| *f == 0.0) {
             continue;
         }
         let x = Axis::new(format!("displacement u_{a}"), "m");

@@ -212,7 +212,7 @@ fn plane(corners: &[Corner]) -> Option<[f64; 3]> {
         }
     }
     let size = n.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if !(n[2].abs() > 1e-6 * size) {
+    if n[2].abs() <= 1e-6 * size || !size.is_finite() {
         return None;
     }
     let (a, b) = (-n[0] / n[2], -n[1] / n[2]);

@@ -286,7 +286,7 @@ fn frames_in_space_show_the_drum_and_the_speed() {
     let mut s = built.simulation;
     let is = |p: &[u8; 3], colour: bool| {
         let (low, high) = (p.iter().min().unwrap_or(&0), p.iter().max().unwrap_or(&0));
-        colour == (high - low > 60)
+        colour == (high - low > 30)
     };
     let share = |pixels: &[[u8; 3]], of: &dyn Fn(&[u8; 3]) -> bool| {
         pixels.iter().filter(|p| of(p)).count() as f64 / pixels.len() as f64

@@ -37,7 +37,7 @@ pub(super) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<Scale>) {
         shown.sort_by(f64::total_cmp);
         let place = (WITHIN * shown.len().saturating_sub(1) as f64).ceil() as usize;
         let high = shown.get(place).copied().unwrap_or(0.0);
-        if !(high > 0.0) {
+        if high <= 0.0 {
             return (Vec::new(), None);
         }
         Scale {

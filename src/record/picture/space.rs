@@ -195,9 +195,9 @@ impl Default for Bound {
 impl Bound {
     fn take(&mut self, p: &Point, radius: f64) {
         if p.iter().all(|x| x.is_finite()) {
-            for k in 0..3 {
-                self.low[k] = self.low[k].min(p[k] - radius);
-                self.high[k] = self.high[k].max(p[k] + radius);
+            for (k, x) in p.iter().enumerate() {
+                self.low[k] = self.low[k].min(x - radius);
+                self.high[k] = self.high[k].max(x + radius);
             }
         }
     }

@@ -19,11 +19,10 @@ impl<S: Dimensional> Recorder<'_, S> {
             caption.push(phase.name.clone());
         }
         if let Some((cycles, _)) = &self.cycles {
-            caption.push(format!(
-                "cycle {} of {}",
-                cycles.number(self.simulation.time),
-                cycles.total()
-            ));
+            let number = cycles.number(self.simulation.time);
+            if number > 0 && cycles.oscillates() {
+                caption.push(format!("cycle {number} of {}", cycles.total()));
+            }
             if let Some(c) = cycles.list.last() {
                 caption.push(format!(
                     "friction coefficient {:.3}",
