@@ -1,6 +1,6 @@
 //! `fretwork law drive`: one contact on the bench.
 
-use super::super::number::{finite, not_negative, positive};
+use super::super::number::positive;
 use super::super::{Failure, PluginArgs, say, say_json};
 use super::{all_used, named, values};
 use crate::laws::bench::{Answer, Bench, Motion};
@@ -33,13 +33,13 @@ pub struct DriveArgs {
     #[arg(long, default_value = "I")]
     mode: String,
     /// Angle of the opening from the normal, degrees (mixed, cyclic, force)
-    #[arg(long, value_parser = finite)]
+    #[arg(long)]
     angle: Option<f64>,
     /// Largest opening (m), traction (force, Pa) or sliding distance at each velocity (slide, m)
-    #[arg(long, default_value_t = 1e-5, value_parser = positive)]
+    #[arg(long, default_value_t = 1e-5)]
     to: f64,
     /// Speed of the opening (m/s)
-    #[arg(long, default_value_t = 1e-3, value_parser = positive)]
+    #[arg(long, default_value_t = 1e-3)]
     rate: f64,
     /// Steps of the path, of a cycle, or of each velocity
     #[arg(long, default_value_t = 2000)]
@@ -51,7 +51,7 @@ pub struct DriveArgs {
     #[arg(long, value_delimiter = ',', value_parser = positive)]
     velocities: Vec<f64>,
     /// Compressive pressure (Pa); 1e6 in slide, else 0
-    #[arg(long, value_parser = not_negative)]
+    #[arg(long)]
     pressure: Option<f64>,
     /// A path from a CSV file with a heading: time,n,t1,t2 (s, m)
     #[arg(long)]
