@@ -5,7 +5,7 @@ mod output;
 mod path;
 mod table;
 
-use super::super::number::{finite, not_negative, positive};
+use super::super::number::positive;
 use super::super::output::{answer, answer_json, inform};
 use super::super::{Failure, PluginArgs};
 use clap::Args;
@@ -39,17 +39,17 @@ pub struct DriveArgs {
     #[arg(long, default_value = "I")]
     mode: String,
     /// Angle of the opening from the normal, degrees (mixed, cyclic, force)
-    #[arg(long, value_parser = finite)]
+    #[arg(long)]
     angle: Option<f64>,
     /// Largest opening (m), traction (force, Pa) or sliding distance at each velocity (slide, m); by default a fifth beyond
     /// where the bond breaks or the attraction ends (cyclic: beyond its peak; force: a tenth beyond its strength; slide: 1e-5)
-    #[arg(long, value_parser = positive)]
+    #[arg(long)]
     to: Option<f64>,
     /// Reduced radius of the contact r1 r2/(r1 + r2) (m); 1e-5, with --case the median of the interface's contacts
     #[arg(long, value_parser = positive)]
     radius: Option<f64>,
     /// Speed of the opening (m/s)
-    #[arg(long, default_value_t = 1e-3, value_parser = positive)]
+    #[arg(long, default_value_t = 1e-3)]
     rate: f64,
     /// Steps of the path, of a cycle, or of each velocity
     #[arg(long, default_value_t = 2000)]
@@ -61,7 +61,7 @@ pub struct DriveArgs {
     #[arg(long, value_delimiter = ',', value_parser = positive)]
     velocities: Vec<f64>,
     /// Compressive pressure (Pa); 1e6 in slide, else 0
-    #[arg(long, value_parser = not_negative)]
+    #[arg(long)]
     pressure: Option<f64>,
     /// A path from a CSV file with a heading: time,n,t1,t2 (s, m)
     #[arg(long)]

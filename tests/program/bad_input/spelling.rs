@@ -175,14 +175,9 @@ fn a_number_is_a_constant_function_of_time() {
 
 #[test]
 fn every_field_of_the_schema_can_be_set() {
-    for (set, pointer, value) in [("solver.tolerance=1e-3", "/solver/tolerance", 1e-3)] {
-        let found = summary(PLANE, &["--set", set]);
-        assert_eq!(
-            found.pointer(pointer).and_then(|v| v.as_f64()),
-            Some(value),
-            "{found:#}"
-        );
-    }
+    let found = summary(PLANE, &["--set", "solver.tolerance=1e-3"]);
+    let tolerance = found.pointer("/solver/tolerance");
+    assert_eq!(tolerance.and_then(|v| v.as_f64()), Some(1e-3), "{found:#}");
     let trial = Trial::new();
     let case = trial.write("case.ron", PLANE);
     for set in [
