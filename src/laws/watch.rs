@@ -168,6 +168,10 @@ pub fn watch(limit: Duration, stuck: impl FnOnce(&str, Saved) + Send + 'static) 
     });
     let looks = 20u32;
     std::thread::spawn(move || {
+        // What this thread keeps for itself is made now: a library that hangs while it is loaded holds the lock of the
+        // dynamic linker, which that takes.
+        let _ = saved.recv_timeout(Duration::from_millis(20));
+        eprint!("");
         let mut seen = vec![(0, 0); MOST];
         let (label, at) = loop {
             std::thread::sleep(limit / looks);
