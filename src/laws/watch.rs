@@ -175,6 +175,10 @@ pub fn watch(
     std::thread::Builder::new().spawn(rescuer)?;
     let looks = 20u32;
     let watcher = move || {
+        // What this thread keeps for itself is made now: a library that hangs while it is loaded holds the lock of the
+        // dynamic linker, which that takes.
+        let _ = saved.recv_timeout(Duration::from_millis(20));
+        let _ = std::io::Write::flush(&mut std::io::stderr().lock());
         let mut seen = vec![(0, 0); MOST];
         let (label, at) = loop {
             std::thread::sleep(limit / looks);
