@@ -175,12 +175,14 @@ impl<S: Space> Measure<S> for Profile<S> {
         };
         let mut velocity = chart("Velocity", "m/s", "mean velocity v");
         for (k, a) in ["v_x", "v_y", "v_z"].iter().enumerate().take(S::D) {
-            velocity = velocity.with(Series::new(*a, series(2 + k)).style(Style::LineMarkers));
+            velocity =
+                velocity.with_unless_zero(Series::new(*a, series(2 + k)).style(Style::LineMarkers));
         }
         let solid = chart("Solid fraction", "", "solid fraction φ")
-            .with(Series::new(String::new(), series(1)).style(Style::LineMarkers));
-        let spin = chart("Rotation", "rad/s", "mean angular velocity ω")
-            .with(Series::new(String::new(), series(2 + S::D)).style(Style::LineMarkers));
+            .with_unless_zero(Series::new(String::new(), series(1)).style(Style::LineMarkers));
+        let spin = chart("Rotation", "rad/s", "mean angular velocity ω").with_unless_zero(
+            Series::new(String::new(), series(2 + S::D)).style(Style::LineMarkers),
+        );
         draw_panels(
             &[velocity, solid, spin],
             2,

@@ -28,6 +28,10 @@ pub(super) struct Figure<'a> {
     pub dimension: usize,
 }
 
+/// Headings of the panels that name the slices of time.
+const VELOCITY: &str = "Velocity profile";
+const SOLID: &str = "Solid fraction";
+
 /// From early to late.
 const TIMES: [(u8, u8, u8); 4] = [(250, 176, 80), (226, 92, 70), (160, 30, 100), (50, 16, 96)];
 
@@ -37,6 +41,15 @@ fn shade(k: usize, count: usize) -> (u8, u8, u8) {
     let (a, b, t) = (TIMES[i], TIMES[i + 1], place - i as f64);
     let mix = |a: u8, b: u8| (f64::from(a) + t * (f64::from(b) - f64::from(a))).round() as u8;
     (mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+}
+
+/// A span of time, with the unit once where it is the same.
+fn span(times: [f64; 2]) -> String {
+    let [from, to] = times.map(|t| quantity(t, "s", 3));
+    match (from.split_once(' '), to.split_once(' ')) {
+        (Some((number, unit)), Some((_, other))) if unit == other => format!("{number} to {to}"),
+        _ => format!("{from} to {to}"),
+    }
 }
 
 impl Figure<'_> {
@@ -55,11 +68,19 @@ impl Figure<'_> {
             .collect()
     }
 
+    /// The first two panels name the slices of time for all.
+    fn labelled(chart: &Chart) -> bool {
+        [VELOCITY, SOLID].contains(&chart.title.as_str())
+    }
+
     /// One quantity, a line for each slice of time.
     fn in_time(&self, mut chart: Chart, value: impl Fn(&Cell) -> f64 + Copy) -> Chart {
         for (k, block) in self.slices.iter().enumerate() {
-            let [from, to] = block.time.map(|t| quantity(t, "s", 3));
-            let label = format!("{from} to {to}");
+            let label = if Self::labelled(&chart) {
+                span(block.time)
+            } else {
+                String::new()
+            };
             let mut series =
                 Series::new(label, Self::points(block, value)).style(Style::LineMarkers);
             series.colour = Some(shade(k, self.slices.len()));
@@ -82,7 +103,7 @@ impl Figure<'_> {
 
     fn velocity(&self) -> Chart {
         let name = format!("velocity v/V, V of the {}", self.between.1);
-        let chart = self.chart("Velocity profile", &name, "");
+        let chart = self.chart(VELOCITY, &name, "");
         // The mean depth of the mass of a bin is where its mean velocity is.
         let mut chart = self.in_time(chart, Cell::carried);
         for (series, block) in chart.series.iter_mut().zip(self.slices) {
@@ -139,10 +160,7 @@ impl Figure<'_> {
     pub fn draw(&self, path: &Path) -> Result<(), ReportError> {
         let mut charts = vec![
             self.velocity(),
-            self.in_time(
-                self.chart("Solid fraction", "solid fraction φ", ""),
-                Cell::solid,
-            ),
+            self.in_time(self.chart(SOLID, "solid fraction φ", ""), Cell::solid),
             self.stress(),
             self.in_time(
                 self.chart("Granular temperature", "granular temperature T", "m^2/s^2"),
@@ -184,5 +202,16 @@ impl Figure<'_> {
             charts.push(chart.with(Series::new(String::new(), self.shear.clone())));
         }
         draw_panels(&charts, 2, path)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spans_of_time_name_their_unit_once() {
+        assert_eq!(span([0.05, 0.0644]), "50.0 to 64.4 ms");
+        assert_eq!(span([0.5, 1.25]), "500 ms to 1.25 s");
     }
 }
