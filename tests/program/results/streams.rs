@@ -123,7 +123,7 @@ fn both_streams_full_or_read_by_nobody() {
 fn a_study_goes_on_without_its_streams() {
     let out = folder("trade-streams");
     let trade = format!(
-        "trade cases/verification/bond_mode_1.ron --out {} --output energy.fracture=10% --set time.step=4e-8 --vary time.step=4e-8,8e-8 --budget 10m",
+        "trade cases/verification/bond_mode_1.ron --out {} --output energy.elastic=10% --set time.end=7e-6 --set time.step=4e-8 --vary time.step=4e-8,8e-8 --budget 10m",
         out.display()
     );
     let open = code(&shell(&trade, ""));
