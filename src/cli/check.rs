@@ -125,7 +125,7 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
             ),
         );
     }
-    for pair in without_interface(case, &s.table) {
+    for pair in without_interface(case, s) {
         line("no interface", pair);
     }
     let [grain, contact] = memory(s);

@@ -112,7 +112,7 @@ fn go<S: Dimensional>(
             inform(&text);
         }
     };
-    for pair in without_interface(&loaded.case, &built.simulation.table) {
+    for pair in without_interface(&loaded.case, &built.simulation) {
         tell(format!("no interface: {pair}"));
     }
     let out = options.out.display();

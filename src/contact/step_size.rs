@@ -63,10 +63,17 @@ pub struct StepSizeDiagnostics {
 }
 
 impl StepSizeDiagnostics {
-    /// Notes a contact that is seen for the first time.
-    pub(super) fn meet<S: Space>(&mut self, contact: &Contact<S>, time: f64, bodies: &Bodies<S>) {
+    /// Notes a contact that is seen for the first time, of a pair that overlaps by `known` elsewhere already (m): a body that
+    /// rests in a surface a little too deep meets its next facet as deep, which is no matter of speed.
+    pub(super) fn meet<S: Space>(
+        &mut self,
+        contact: &Contact<S>,
+        known: f64,
+        time: f64,
+        bodies: &Bodies<S>,
+    ) {
         let depth = -contact.gap / contact.radius;
-        if depth > LATE {
+        if depth > LATE + known.max(0.0) / contact.radius {
             self.late += 1;
             self.deepest = self.deepest.max(depth);
             self.first_late

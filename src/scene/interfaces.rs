@@ -5,9 +5,11 @@ use super::material::{Given, InterfaceParameters, Shelf, Sourced};
 use super::source::{Fault, InputError, Source, nearest};
 use super::units;
 use crate::contact::detect::LawTable;
+use crate::geometry::space::Space;
 use crate::laws::{AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath};
+use crate::step::Simulation;
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The laws of a case and which materials they govern.
@@ -107,13 +109,29 @@ fn used(spec: &InterfaceSpec) -> impl Iterator<Item = (Kind, &str)> {
     std::iter::once((Kind::Contact, spec.contact.as_str())).chain(named)
 }
 
-/// Pairs of materials that pass through each other, since no interface is between them.
-pub fn without_interface(case: &Case, table: &LawTable) -> Vec<String> {
+/// Pairs of materials whose bodies pass through each other, since no interface is between them.
+pub fn without_interface<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<String> {
     let materials: Vec<&String> = case.materials.keys().collect();
+    let mut bodies = vec![BTreeSet::new(); materials.len()];
+    let balls = s.shapes.balls.iter().map(|b| (b.material, b.body));
+    let pieces = s.shapes.pieces.iter().map(|p| (p.material, p.body));
+    let surfaces = s.shapes.surfaces.iter().map(|f| (f.material, f.body));
+    for (material, body) in balls.chain(pieces).chain(surfaces) {
+        let of = &mut bodies[usize::from(material)];
+        // One other than itself is enough to meet.
+        if of.len() < 2 {
+            of.insert(body);
+        }
+    }
     let mut out = Vec::new();
     for (a, first) in materials.iter().enumerate() {
         for (b, second) in materials.iter().enumerate().skip(a) {
-            if table.get(a as u16, b as u16).is_none() {
+            let meet = if a == b {
+                bodies[a].len() > 1
+            } else {
+                !bodies[a].is_empty() && !bodies[b].is_empty()
+            };
+            if meet && s.table.get(a as u16, b as u16).is_none() {
                 out.push(format!(
                     "{first} and {second}: they do not touch each other"
                 ));

@@ -278,7 +278,11 @@ impl<'a, S: Space> Narrow<'a, S> {
                 found.broken = network.broken_pairs.contains(&found.key.pair());
                 // What overlaps from the start is the sample's.
                 if self.time > 0.0 {
-                    network.haste.meet(&found, self.time, self.bodies);
+                    let pair = found.key.pair();
+                    let before = network.old[..self.at].iter().rev();
+                    let same = before.take_while(|c| c.key.pair() == pair);
+                    let known = same.map(|c| -c.gap).fold(0.0, f64::max);
+                    network.haste.meet(&found, known, self.time, self.bodies);
                 }
             }
         }

@@ -31,7 +31,8 @@ pub(super) fn number(value: f64, digits: i32) -> String {
     }
 }
 
-/// A value in an SI unit: `2.300e-5`, `m` is `23.00 um`. Kilograms become grams, cubic metres mm3 or um3.
+/// A value in an SI unit: `2.300e-5`, `m` is `23.00 um`. Kilograms become grams, cubic metres mm3, so that volumes beside each
+/// other have one unit.
 pub(super) fn quantity(value: f64, unit: &str) -> String {
     if unit.is_empty() {
         return number(value, 4);
@@ -43,10 +44,10 @@ pub(super) fn quantity(value: f64, unit: &str) -> String {
     };
     let size = value.abs();
     if matches!(base, "m3" | "m^3") {
-        let (scale, name) = match size {
-            x if x >= 1e-2 => (1.0, "m3"),
-            x if x == 0.0 || x >= 1e-13 => (1e-9, "mm3"),
-            _ => (1e-18, "um3"),
+        let (scale, name) = if size >= 1e-2 {
+            (1.0, "m3")
+        } else {
+            (1e-9, "mm3")
         };
         return format!("{} {name}{rest}", number(value / scale, 4));
     }
@@ -85,7 +86,7 @@ mod tests {
         assert_eq!(quantity(5000.0, "s"), "5000 s");
         assert_eq!(quantity(0.0, "J"), "0 J");
         assert_eq!(quantity(3.2e-12, "m^3/m"), "0.003200 mm3/m");
-        assert_eq!(quantity(3.2e-15, "m3"), "3200 um3");
+        assert_eq!(quantity(3.2e-15, "m3"), "3.200e-6 mm3");
         assert_eq!(quantity(4.5e-9, "kg/s"), "4.500 ug/s");
         assert_eq!(quantity(0.25, "rad"), "0.2500 rad");
         assert_eq!(quantity(0.412_345, ""), "0.4123");

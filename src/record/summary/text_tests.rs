@@ -107,7 +107,7 @@ fn results_have_units_and_intervals_and_no_lists() {
     place(&text, "gross slip in cycle 50; mixed over all cycles");
     place(
         &text,
-        "30000 um3, 100.0 nm deep on average where worn, 300.0 nm at most; k = V/(P s) = 3.000e-6 mm3/(N m)",
+        "3.000e-5 mm3, 100.0 nm deep on average where worn, 300.0 nm at most; k = V/(P s) = 3.000e-6 mm3/(N m)",
     );
     place(&text, "measures               31 values: --verbose");
     place(&text, "friction 100.0 mJ");
