@@ -5,8 +5,11 @@ use crate::bodies::Bodies;
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// Overlap, in parts of a contact's radius, from which a contact was found late.
+/// Overlap, in parts of a contact's radius, from which a contact counts as found late.
 const LATE: f64 = 0.01;
+/// Overlap, in parts of a contact's radius, that no motion leaves which detection need not follow through the step: a body
+/// that slides by less over one facet may come that deep upon the next.
+const FOLLOWED: f64 = 0.05;
 
 /// When and between which bodies something was first seen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -112,6 +115,26 @@ impl StepSizeDiagnostics {
         })
     }
 
+    fn late_contacts(&self) -> Option<String> {
+        let first = self
+            .first_late
+            .as_ref()
+            .map_or(String::new(), Occurrence::text);
+        (self.late > 0).then(|| {
+            format!(
+                "{} contacts were first seen overlapping, by up to {:.2e} of the radius, {first}",
+                self.late, self.deepest
+            )
+        })
+    }
+
+    /// What is worth knowing and leaves the results as they are: contacts found late by less than the motion in a step that
+    /// need not be followed.
+    pub fn note(&self) -> Option<String> {
+        let late = self.late_contacts().filter(|_| self.deepest <= FOLLOWED);
+        late.map(|text| format!("{text}; a smaller time.step finds them sooner"))
+    }
+
     /// What to tell the user; none where every contact was seen in time.
     pub fn warning(&self) -> Option<String> {
         let first = |o: &Option<Occurrence>| o.as_ref().map_or(String::new(), Occurrence::text);
@@ -129,14 +152,7 @@ impl StepSizeDiagnostics {
                 first(&self.first_unwatched)
             )
         });
-        let late = (self.late > 0).then(|| {
-            format!(
-                "{} contacts were first seen overlapping, by up to {:.2e} of the radius, {}",
-                self.late,
-                self.deepest,
-                first(&self.first_late)
-            )
-        });
+        let late = self.late_contacts().filter(|_| self.deepest > FOLLOWED);
         let told: Vec<String> = [passed, unwatched, late].into_iter().flatten().collect();
         (!told.is_empty()).then(|| format!("{}; take a smaller time.step", told.join("; ")))
     }

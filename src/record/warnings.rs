@@ -269,9 +269,13 @@ fn notes(summary: &Summary) -> Vec<Warning> {
         .filter(|m| mu.scatter.is_none() && m.starts_with("none"));
     note(
         "NOT STEADY",
-        changes.map(|m| format!("friction has no interval, {m}; let it run longer (time.end)")),
+        changes.map(|m| {
+            let why = m.trim_start_matches("none: ");
+            format!("friction has no interval: {why}; let it run longer (time.end)")
+        }),
     );
     note("COARSE DRIVE", drives(summary, false));
+    note("LATE CONTACTS", summary.haste.note());
     let over = summary.solver.overlap_after;
     note(
         "OVERLAP",
@@ -310,6 +314,7 @@ mod tests {
             s.solver.uncoupled_steps = 1;
             s.solver.overlap_after = 0.5;
             s.haste.late = 3;
+            s.haste.deepest = 0.2;
             s.energy.kinetic = f64::NAN;
             s.energy_residual_relative = 1e-3;
             s.phases_missed = vec!["shear".to_owned()];

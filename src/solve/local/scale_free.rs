@@ -1,9 +1,11 @@
 //! A second figure beside the field's: the error in velocities, which no choice of units changes.
 //!
 //! The field's figure divides by max(|q|, |p|, |u|). Where W is far from 1 impulses dwarf velocities, and a figure of 1e-8
-//! may hide velocities that are all wrong. The scale-free error is [`Norm::Velocity`] of [`crate::solve::error`],
+//! may hide velocities that are all wrong. The scale-free error is [`Norm::Velocity`] of [`crate::solve::error`]:
 //!
-//!     |r| / max(|u|, |q|),   r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c| n))) / rho_c,   rho_c = 1 / lambda_max(W_cc):
+//! ```text
+//! |r| / max(|u|, |q|),   r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c| n))) / rho_c,   rho_c = 1 / lambda_max(W_cc)
+//! ```
 //!
 //! W times s with p over s, and q with u and p in another unit, give the same number.
 
