@@ -196,7 +196,21 @@ impl LawError {
             Self::Parameters { kind, name, .. }
             | Self::Failed { kind, name, .. }
             | Self::Overrun { kind, name, .. }
-            | Self::NotFinite { kind, name, .. } => Some((*kind, name)),
+            | Self::NotFinite { kind, name, .. }
+            | Self::OutOfRange { kind, name, .. }
+            | Self::Trespass { kind, name, .. } => Some((*kind, name)),
+            Self::At { source, .. } => source.law(),
+            Self::Unusable { .. }
+            | Self::Pinned { .. }
+            | Self::Unknown { .. }
+            | Self::Pairing { .. } => None,
+        }
+    }
+
+    /// The interface whose law failed.
+    pub fn interface(&self) -> Option<&str> {
+        match self {
+            Self::At { interface, .. } => Some(interface),
             _ => None,
         }
     }
