@@ -335,8 +335,12 @@ impl Plugin {
             path: path.to_owned(),
             reason,
         };
-        let bytes = std::fs::read(path).map_err(|e| refuse(format!("it cannot be read ({e})")))?;
-        let sha256 = hex(&Sha256::digest(&bytes));
+        let digest = || {
+            let bytes = std::fs::read(path);
+            let bytes = bytes.map_err(|e| refuse(format!("it cannot be read ({e})")))?;
+            Ok(hex(&Sha256::digest(&bytes)))
+        };
+        let sha256 = digest()?;
         if let Some(pin) = pin.filter(|p| !p.eq_ignore_ascii_case(&sha256)) {
             return Err(LawError::Pinned {
                 path: path.to_owned(),
@@ -345,6 +349,10 @@ impl Plugin {
             });
         }
         child::survives(path, &sha256).map_err(&refuse)?;
+        // The trial may have taken seconds.
+        if digest()? != sha256 {
+            return Err(refuse(child::CHANGED.to_owned()));
+        }
         let loading = watch::label(format!("the plugin {}", path.display()));
         let loading = watch::enter(loading, 5);
         // SAFETY: opening runs the library's initialisers: the user put it on the search path.
