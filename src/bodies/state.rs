@@ -85,6 +85,28 @@ impl<S: Space> Bodies<S> {
         self.id.len()
     }
 
+    /// Whether every column has a value for each body, and each driven body is one of them and has its paths.
+    pub fn is_complete(&self) -> bool {
+        let n = self.len();
+        let columns = [
+            self.position.len(),
+            self.rotation.len(),
+            self.velocity.len(),
+            self.spin.len(),
+            self.mass.len(),
+            self.inertia.len(),
+            self.length.len(),
+            self.inverse_mass.len(),
+            self.inverse_inertia.len(),
+            self.gone.len(),
+        ];
+        columns.iter().all(|rows| *rows == n)
+            && self.tensors.len() <= n
+            && self.lost.len() <= n
+            && self.paths.len() == self.driven.len()
+            && self.driven.iter().all(|d| (d.body as usize) < n)
+    }
+
     /// Whether there is no body.
     pub fn is_empty(&self) -> bool {
         self.id.is_empty()

@@ -17,8 +17,8 @@ const COMES_BACK: &str = "comes back";
 /// A law with parameters, as one process names it to another.
 #[derive(Serialize, Deserialize)]
 struct Named {
-    /// Its library; none where it is built in.
-    library: Option<PathBuf>,
+    /// Its library and the SHA-256 of that; none where it is built in.
+    library: Option<(PathBuf, String)>,
     kind: String,
     name: String,
     /// Values of the parameters, as bits: they must not be rounded.
@@ -28,7 +28,7 @@ struct Named {
 impl Named {
     fn of(plugin: &Plugin, parameters: &[f64]) -> Self {
         Self {
-            library: (!plugin.built_in).then(|| plugin.path.clone()),
+            library: (!plugin.built_in).then(|| (plugin.path.clone(), plugin.sha256.clone())),
             kind: plugin.kind.to_string(),
             name: plugin.name.clone(),
             parameters: parameters.iter().map(|x| x.to_bits()).collect(),
@@ -37,7 +37,7 @@ impl Named {
 
     fn open(self) -> Result<Loaded, LawError> {
         let plugin = match &self.library {
-            Some(path) => Plugin::open(path)?,
+            Some((path, sha256)) => Plugin::open_pinned(path, Some(sha256))?,
             None => {
                 let kind = Kind::ALL.into_iter().find(|k| k.word() == self.kind);
                 let found = kind.and_then(|k| built_in::open(k, &self.name));
@@ -87,9 +87,15 @@ pub fn certify_apart(
         if let Some(name) = piece["begins"].as_str() {
             name.clone_into(&mut begun);
         }
-        if let Ok(line) = serde_json::from_value::<Line>(piece["line"].take()) {
+        let line = piece.get_mut("line").map(serde_json::Value::take);
+        if let Some(Ok(line)) = line.map(serde_json::from_value::<Line>) {
             lines.push(line);
         }
+    }
+    if told.end == End::Done && lines.is_empty() {
+        return Err(refuse(
+            "the process that certifies it gave no line".to_owned(),
+        ));
     }
     if let End::Early(why) = told.end {
         let text = format!("{why}, while `{begun}` was tested; nothing after it was");

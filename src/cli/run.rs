@@ -164,7 +164,11 @@ fn place(loaded: &Loaded, origins: &[Origin], error: &RunError) -> Option<String
             let (kind, name) = source.law()?;
             let slot = kind.word();
             let interfaces = &loaded.case.interfaces;
-            let k = interfaces.iter().position(|i| i.law(kind) == Some(name))?;
+            // Several interfaces may have the same law.
+            let at_fault = source.interface();
+            let k = interfaces.iter().position(|i| {
+                i.law(kind) == Some(name) && at_fault.is_none_or(|wanted| wanted == i.name)
+            })?;
             let what = format!("interface `{}` has this law", interfaces[k].name);
             (format!("interfaces.{k}.{slot}"), what)
         }

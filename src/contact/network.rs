@@ -162,6 +162,15 @@ fn in_order<T: Serializer>(pairs: &HashSet<(u32, u32)>, to: T) -> Result<T::Ok, 
 }
 
 impl<S: Space> Network<S> {
+    /// Whether all bodies of its contacts and pairs are among this many.
+    pub(crate) fn names_bodies_below(&self, bodies: usize) -> bool {
+        let below = |i: u32, j: u32| (i.max(j) as usize) < bodies;
+        self.contacts
+            .iter()
+            .all(|c| below(c.bodies[0], c.bodies[1]))
+            && self.broken_pairs.iter().all(|(i, j)| below(*i, *j))
+    }
+
     /// Has the neighbour list made anew at the next step: what may touch has changed.
     pub fn forget_neighbours(&mut self) {
         self.seen_at.clear();

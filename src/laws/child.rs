@@ -2,10 +2,12 @@
 //!
 //! Only the program calls itself, never what else uses this library: [`enable`] says that there is one to call.
 
-use super::library::Plugin;
+use super::library::{LawError, Plugin};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
+use std::hash::BuildHasher;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -55,14 +57,33 @@ pub struct Told {
     pub end: End,
 }
 
-/// What is said between the two: lines that begin so, among whatever a law prints.
-const MARK: &str = "\u{1}fretwork ";
+/// What is asked: the question, and the token by which the answers are known.
+#[derive(Serialize, Deserialize)]
+struct Question {
+    token: u64,
+    question: Value,
+}
+
+/// In the called process: the token that it was given.
+static TOKEN: OnceLock<u64> = OnceLock::new();
+
+/// What answers begin with, among whatever a law prints. The token is another one at each call, so that nothing printed by a
+/// law passes for an answer.
+fn mark(token: u64) -> String {
+    format!("\u{1}fretwork {token:016x} ")
+}
+
+/// A number that cannot be foreseen: the standard library seeds its hash tables by the system's random numbers.
+fn new_token() -> u64 {
+    std::hash::RandomState::new().hash_one(std::process::id())
+}
 
 /// In the called process: says one piece.
 pub fn tell(piece: &Value) {
+    let mark = mark(TOKEN.get().copied().unwrap_or_default());
     let mut out = std::io::stdout().lock();
     // A law may have left a line unended.
-    let _ = writeln!(out, "\n{MARK}{piece}");
+    let _ = writeln!(out, "\n{mark}{piece}");
     let _ = out.flush();
 }
 
@@ -79,7 +100,9 @@ pub fn asked() -> Result<Value, String> {
     let mut text = String::new();
     let read = std::io::stdin().read_to_string(&mut text);
     read.map_err(|e| e.to_string())?;
-    serde_json::from_str(&text).map_err(|e| e.to_string())
+    let asked: Question = serde_json::from_str(&text).map_err(|e| e.to_string())?;
+    let _ = TOKEN.set(asked.token);
+    Ok(asked.question)
 }
 
 /// Calls the program with a hidden word, and hears it out.
@@ -97,9 +120,10 @@ pub fn ask(word: &str, question: &Value) -> Result<Told, String> {
         .stderr(Stdio::piped())
         .spawn()
         .map_err(cannot)?;
+    let token = new_token();
     let (send, heard) = mpsc::channel();
     if let Some(out) = child.stdout.take() {
-        std::thread::spawn(move || listen(out, &send));
+        std::thread::spawn(move || listen(out, token, &send));
     }
     let said = child
         .stderr
@@ -107,6 +131,7 @@ pub fn ask(word: &str, question: &Value) -> Result<Told, String> {
         .map(|err| std::thread::spawn(move || last_words(err)));
     if let Some(mut to) = child.stdin.take() {
         // One that ended already does not read it; how it ended is told below.
+        let question = json!({ "token": token, "question": question });
         let _ = to.write_all(question.to_string().as_bytes());
     }
     let mut pieces = Vec::new();
@@ -147,11 +172,12 @@ fn end(child: &mut Child, hung: bool) -> std::io::Result<ExitStatus> {
     child.wait()
 }
 
-fn listen(out: impl Read, send: &mpsc::Sender<Value>) {
+fn listen(out: impl Read, token: u64, send: &mpsc::Sender<Value>) {
+    let mark = mark(token);
     for line in BufReader::new(out).split(b'\n').map_while(Result::ok) {
         let line = String::from_utf8_lossy(&line);
         let piece = line
-            .strip_prefix(MARK)
+            .strip_prefix(mark.as_str())
             .and_then(|t| serde_json::from_str(t).ok());
         if let Some(piece) = piece
             && send.send(piece).is_err()
@@ -197,18 +223,25 @@ fn in_words(status: ExitStatus, said: &str) -> String {
     }
 }
 
-/// What was found of libraries, by SHA-256: nothing, or why they cannot be opened.
-static FOUND: Mutex<Option<HashMap<String, Option<String>>>> = Mutex::new(None);
-
-fn known(sha256: &str) -> Option<Option<String>> {
-    let found = FOUND.lock().unwrap_or_else(|e| e.into_inner());
-    found.as_ref()?.get(sha256).cloned()
+/// A library as it was when it was looked at.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+struct Library {
+    path: PathBuf,
+    sha256: String,
 }
 
-fn remember(sha256: &str, reason: Option<String>) {
+/// What was found of libraries: nothing, or why they cannot be opened. The same bytes elsewhere may load others beside them.
+static FOUND: Mutex<Option<HashMap<Library, Option<String>>>> = Mutex::new(None);
+
+fn known(library: &Library) -> Option<Option<String>> {
+    let found = FOUND.lock().unwrap_or_else(|e| e.into_inner());
+    found.as_ref()?.get(library).cloned()
+}
+
+fn remember(library: &Library, reason: Option<String>) {
     let mut found = FOUND.lock().unwrap_or_else(|e| e.into_inner());
     let all = found.get_or_insert_default();
-    all.insert(sha256.to_owned(), reason);
+    all.insert(library.clone(), reason);
 }
 
 /// Whether a library can be opened in another process and comes back.
@@ -216,12 +249,17 @@ pub(super) fn survives(path: &Path, sha256: &str) -> Result<(), String> {
     if !enabled() {
         return Ok(());
     }
-    if known(sha256).is_none() {
-        ask_after(&[(path.to_owned(), sha256.to_owned())]);
+    let library = Library {
+        path: path.to_owned(),
+        sha256: sha256.to_owned(),
+    };
+    if known(&library).is_none() {
+        ask_after(std::slice::from_ref(&library));
     }
-    match known(sha256).flatten() {
-        Some(reason) => Err(reason),
-        None => Ok(()),
+    match known(&library) {
+        Some(None) => Ok(()),
+        Some(Some(reason)) => Err(reason),
+        None => Err(UNANSWERED.to_owned()),
     }
 }
 
@@ -230,15 +268,18 @@ pub(super) fn try_out(libraries: &[(PathBuf, Option<&str>)]) {
     if !enabled() {
         return;
     }
-    let mut wanted: Vec<(PathBuf, String)> = Vec::new();
+    let mut wanted: Vec<Library> = Vec::new();
     for (path, pin) in libraries {
         let Ok(bytes) = std::fs::read(path) else {
             continue;
         };
-        let sha256 = super::built_in::hex(&Sha256::digest(&bytes));
-        let pinned = pin.is_none_or(|p| p.eq_ignore_ascii_case(&sha256));
-        if pinned && known(&sha256).is_none() && !wanted.iter().any(|w| w.1 == sha256) {
-            wanted.push((path.clone(), sha256));
+        let library = Library {
+            path: path.clone(),
+            sha256: super::built_in::hex(&Sha256::digest(&bytes)),
+        };
+        let pinned = pin.is_none_or(|p| p.eq_ignore_ascii_case(&library.sha256));
+        if pinned && known(&library).is_none() && !wanted.contains(&library) {
+            wanted.push(library);
         }
     }
     while !wanted.is_empty() {
@@ -247,53 +288,58 @@ pub(super) fn try_out(libraries: &[(PathBuf, Option<&str>)]) {
     }
 }
 
+const UNANSWERED: &str = "it was tried in a process of its own, which ended without a word on it; build or copy it again";
+
 /// Asks after libraries, and remembers what is told; how many of them it is known of, at least one.
-fn ask_after(libraries: &[(PathBuf, String)]) -> usize {
-    let paths: Vec<&Path> = libraries.iter().map(|l| l.0.as_path()).collect();
-    let question = serde_json::to_value(&paths).map_err(|e| e.to_string());
+fn ask_after(libraries: &[Library]) -> usize {
+    let question = serde_json::to_value(libraries).map_err(|e| e.to_string());
     let told = match question.and_then(|q| ask(TRY_LIBRARIES, &q)) {
         Ok(told) => told,
         Err(reason) => {
             let text = format!(
                 "it is tried in a process of its own first, and that cannot be made ({reason})"
             );
-            remember(&libraries[0].1, Some(text));
+            remember(&libraries[0], Some(text));
             return 1;
         }
     };
-    for ((_, sha256), piece) in libraries.iter().zip(&told.pieces) {
-        remember(sha256, piece.as_str().map(str::to_owned));
+    for (library, piece) in libraries.iter().zip(&told.pieces) {
+        remember(library, piece.as_str().map(str::to_owned));
     }
     let answered = told.pieces.len().min(libraries.len());
-    match (&told.end, libraries.get(answered)) {
-        (End::Early(why), Some((_, sha256))) => {
-            remember(
-                sha256,
-                Some(format!(
-                    "opening it ended a process that tried it: {why}; the file may be damaged or cut short: build or copy it again"
-                )),
-            );
-            answered + 1
-        }
-        (_, Some((_, sha256))) if answered == 0 => {
-            remember(sha256, None);
-            1
-        }
-        _ => answered,
-    }
+    let Some(library) = libraries.get(answered) else {
+        return answered;
+    };
+    let why = match &told.end {
+        End::Early(why) => format!(
+            "opening it ended a process that tried it: {why}; the file may be damaged or cut short: build or copy it again"
+        ),
+        // A library of which nothing was said was not opened.
+        End::Done => UNANSWERED.to_owned(),
+    };
+    remember(library, Some(why));
+    answered + 1
 }
 
-/// In the called process: opens the libraries it is asked after, one by one. Why one is refused is told where it is opened
-/// again: what counts here is that it comes back.
+/// In the called process: opens the libraries it is asked after, one by one, each only if it is the one that was looked at.
+/// Why one is refused is told where it is opened again: what counts here is that it comes back.
 ///
 /// # Errors
 /// The question cannot be read.
 pub fn try_libraries() -> Result<(), String> {
-    let paths: Vec<PathBuf> = serde_json::from_value(asked()?).map_err(|e| e.to_string())?;
-    for path in paths {
-        let _ = Plugin::open(&path);
-        tell(&Value::Null);
+    let libraries: Vec<Library> = serde_json::from_value(asked()?).map_err(|e| e.to_string())?;
+    for library in libraries {
+        tell(
+            &match Plugin::open_pinned(&library.path, Some(&library.sha256)) {
+                Err(LawError::Pinned { .. }) => json!(CHANGED),
+                _ => Value::Null,
+            },
+        );
     }
     tell_done();
     Ok(())
 }
+
+/// What is said of a library that is not the one any more that was looked at.
+pub(super) const CHANGED: &str =
+    "the file changed while it was being opened; wait until it is written and try again";

@@ -196,7 +196,21 @@ impl LawError {
             Self::Parameters { kind, name, .. }
             | Self::Failed { kind, name, .. }
             | Self::Overrun { kind, name, .. }
-            | Self::NotFinite { kind, name, .. } => Some((*kind, name)),
+            | Self::NotFinite { kind, name, .. }
+            | Self::OutOfRange { kind, name, .. }
+            | Self::Trespass { kind, name, .. } => Some((*kind, name)),
+            Self::At { source, .. } => source.law(),
+            Self::Unusable { .. }
+            | Self::Pinned { .. }
+            | Self::Unknown { .. }
+            | Self::Pairing { .. } => None,
+        }
+    }
+
+    /// The interface whose law failed.
+    pub fn interface(&self) -> Option<&str> {
+        match self {
+            Self::At { interface, .. } => Some(interface),
             _ => None,
         }
     }
@@ -321,8 +335,12 @@ impl Plugin {
             path: path.to_owned(),
             reason,
         };
-        let bytes = std::fs::read(path).map_err(|e| refuse(format!("it cannot be read ({e})")))?;
-        let sha256 = hex(&Sha256::digest(&bytes));
+        let digest = || {
+            let bytes = std::fs::read(path);
+            let bytes = bytes.map_err(|e| refuse(format!("it cannot be read ({e})")))?;
+            Ok(hex(&Sha256::digest(&bytes)))
+        };
+        let sha256 = digest()?;
         if let Some(pin) = pin.filter(|p| !p.eq_ignore_ascii_case(&sha256)) {
             return Err(LawError::Pinned {
                 path: path.to_owned(),
@@ -331,6 +349,10 @@ impl Plugin {
             });
         }
         child::survives(path, &sha256).map_err(&refuse)?;
+        // The trial may have taken seconds.
+        if digest()? != sha256 {
+            return Err(refuse(child::CHANGED.to_owned()));
+        }
         let loading = watch::label(format!("the plugin {}", path.display()));
         let loading = watch::enter(loading, 5);
         // SAFETY: opening runs the library's initialisers: the user put it on the search path.

@@ -9,6 +9,7 @@ use super::gather::contact_area;
 use super::guarded::{self, Guarded};
 use super::interface::{Interface, Loaded};
 use super::library::{Call, LawError};
+use super::range::Largest;
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
@@ -101,6 +102,8 @@ pub struct Passes {
     bonded: Vec<bool>,
     /// How laws are watched.
     pub(super) care: Care,
+    /// By which round-off of their answers is judged.
+    largest: Largest,
 }
 
 /// What is looked at when a law is called.
@@ -123,6 +126,7 @@ pub struct Carried {
     /// Pairs and what friction gave back there, in the order of the pairs; see [`Passes`].
     debts: Vec<((u32, u32), f64)>,
     bonded: Vec<bool>,
+    largest: Largest,
 }
 
 /// Friction and restitution of one contact.
@@ -145,6 +149,7 @@ impl Passes {
         Carried {
             debts,
             bonded: self.bonded.clone(),
+            largest: self.largest.clone(),
         }
     }
 
@@ -152,6 +157,7 @@ impl Passes {
     pub fn carry_on(&mut self, from: Carried) {
         self.debts = from.debts.into_iter().collect();
         self.bonded = from.bonded;
+        self.largest = from.largest;
     }
 
     /// Gives contacts the memory their laws need, and makes the bonds whose time has come: those of the
@@ -434,7 +440,11 @@ impl Passes {
         if matches!(self.care, Care::Lenient | Care::Repeated) {
             return Ok(());
         }
-        match self.columns.out.outside(plugin.kind, call) {
+        match self
+            .columns
+            .out
+            .settle(plugin.kind, call, &mut self.largest)
+        {
             None => Ok(()),
             Some(outside) => Err(LawError::OutOfRange {
                 kind: plugin.kind,

@@ -2,6 +2,7 @@
 
 use super::columns::Outputs;
 use super::library::{Call, Kind};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// What is accepted of a column.
@@ -16,29 +17,45 @@ pub enum Range {
 }
 
 impl Range {
-    /// Round-off is no error: what a law forms as a share may miss its end by some of it.
+    /// Round-off is no error: what a law forms as a share may miss its end by some of it, and what it forms as a difference
+    /// may fall below zero by some of what it is the difference of.
     const ROUND_OFF: f64 = 1e-12;
 
-    fn bounds(self) -> (f64, f64) {
+    /// The ends, and how far beyond them a value may lie by round-off, in a column whose largest value has been `largest`.
+    fn bounds(self, largest: f64) -> ([f64; 2], f64) {
         match self {
-            Self::NotNegative => (0.0, f64::INFINITY),
-            Self::Share => (-Self::ROUND_OFF, 1.0 + Self::ROUND_OFF),
-            Self::Signed => (-1.0 - Self::ROUND_OFF, 1.0 + Self::ROUND_OFF),
+            Self::NotNegative => ([0.0, f64::INFINITY], Self::ROUND_OFF * largest),
+            Self::Share => ([0.0, 1.0], Self::ROUND_OFF),
+            Self::Signed => ([-1.0, 1.0], Self::ROUND_OFF),
         }
     }
 
-    /// The first value of a column outside. Nearly always none: all are looked at, without a branch each, before it is
-    /// searched for.
-    fn first_outside(self, column: &[f64]) -> Option<usize> {
-        let (low, high) = self.bounds();
-        let outside = |x: &f64| (*x < low) | (*x > high);
-        if column.iter().fold(false, |any, x| any | outside(x)) {
-            column.iter().position(outside)
-        } else {
-            None
+    /// The first value of a column that is outside by more than round-off. The others are put on the end that they miss.
+    /// Nearly always there is none: all are looked at, without a branch each, before one is searched for.
+    fn settle(self, column: &mut [f64], largest: &mut f64) -> Option<usize> {
+        if self == Self::NotNegative {
+            *largest = column.iter().fold(*largest, |most, x| most.max(*x));
         }
+        let ([low, high], slack) = self.bounds(*largest);
+        let beyond = |x: f64, by: f64| (x < low - by) | (x > high + by);
+        if !column.iter().fold(false, |any, x| any | beyond(*x, 0.0)) {
+            return None;
+        }
+        let outside = column.iter().position(|x| beyond(*x, slack));
+        if outside.is_none() {
+            column.iter_mut().for_each(|x| *x = x.clamp(low, high));
+        }
+        outside
     }
 }
+
+/// The largest value that each column has had so far, by kind of law and place of the column: what round-off is measured by.
+/// One contact alone has no other to be compared with at the end of its life.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Largest([[f64; COLUMNS]; Kind::ALL.len()]);
+
+/// The most columns that a law writes in a call.
+const COLUMNS: usize = 8;
 
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -59,50 +76,85 @@ pub(super) struct Outside {
 }
 
 impl Outputs {
-    /// The first column in which a call of this kind gave a value that cannot be. Values are finite. Tractions, moments and
-    /// stored energies may have any sign; that damage falls is no error, as the host holds it up.
-    pub(super) fn outside(&self, kind: Kind, call: Call) -> Option<Outside> {
-        use Range::{NotNegative, Share, Signed};
-        type Column<'a> = (&'static str, &'a Vec<f64>, Range);
-        let strengths: [Column<'_>; 2] = [
-            ("out_tension_strength", &self.tension_strength, NotNegative),
-            ("out_shear_cohesion", &self.shear_cohesion, NotNegative),
-        ];
-        let written: &[Column<'_>] = match (kind, call) {
-            (Kind::Contact, Call::Prepare) => &[
-                ("out_friction", &self.friction, NotNegative),
-                ("out_restitution_n", &self.restitution_n, Share),
-                ("out_restitution_t", &self.restitution_t, Signed),
-                ("out_rolling", &self.rolling, NotNegative),
-                ("out_spinning", &self.spinning, NotNegative),
-                strengths[0],
-                strengths[1],
-            ],
-            (Kind::Cohesion, Call::Prepare) => &[
-                ("out_stiffness_n", &self.stiffness_n, NotNegative),
-                ("out_stiffness_t", &self.stiffness_t, NotNegative),
-                ("out_damping_n", &self.damping_n, NotNegative),
-                ("out_damping_t", &self.damping_t, NotNegative),
-                ("out_stiffness_twist", &self.stiffness_twist, NotNegative),
-                ("out_stiffness_bend", &self.stiffness_bend, NotNegative),
-                strengths[0],
-                strengths[1],
-            ],
-            (Kind::Damage | Kind::Cohesion, Call::Commit) => &[("out_damage", &self.damage, Share)],
-            (Kind::Wear, Call::Commit) => &[("out_volume", &self.volume, NotNegative)],
-            _ => &[],
-        };
-        let found = written.iter().find_map(|(column, values, range)| {
-            let contact = range.first_outside(values)?;
-            Some(Outside {
-                contact,
-                column,
-                value: values[contact],
-                range: *range,
-            })
-        });
-        found
+    /// The first column in which a call of this kind gave a value that cannot be; values beyond an end by round-off are put on
+    /// it. Values are finite. Tractions, moments and stored energies may have any sign; that damage falls is no error, as the
+    /// host holds it up.
+    pub(super) fn settle(
+        &mut self,
+        kind: Kind,
+        call: Call,
+        largest: &mut Largest,
+    ) -> Option<Outside> {
+        let largest = &mut largest.0[kind as usize];
+        let columns =
+            self.ranged(kind, call)
+                .into_iter()
+                .zip(largest)
+                .flat_map(|(column, largest)| {
+                    column.map(|(name, values, range)| (name, values, range, largest))
+                });
+        for (column, values, range, largest) in columns {
+            if let Some(contact) = range.settle(values, largest) {
+                return Some(Outside {
+                    contact,
+                    column,
+                    value: values[contact],
+                    range,
+                });
+            }
+        }
+        None
     }
+
+    /// The columns that a call writes and that have a range.
+    fn ranged(
+        &mut self,
+        kind: Kind,
+        call: Call,
+    ) -> [Option<(&'static str, &mut Vec<f64>, Range)>; COLUMNS] {
+        use Range::{NotNegative, Share, Signed};
+        let tension = Some((
+            "out_tension_strength",
+            &mut self.tension_strength,
+            NotNegative,
+        ));
+        let shear = Some(("out_shear_cohesion", &mut self.shear_cohesion, NotNegative));
+        match (kind, call) {
+            (Kind::Contact, Call::Prepare) => [
+                Some(("out_friction", &mut self.friction, NotNegative)),
+                Some(("out_restitution_n", &mut self.restitution_n, Share)),
+                Some(("out_restitution_t", &mut self.restitution_t, Signed)),
+                Some(("out_rolling", &mut self.rolling, NotNegative)),
+                Some(("out_spinning", &mut self.spinning, NotNegative)),
+                tension,
+                shear,
+                None,
+            ],
+            (Kind::Cohesion, Call::Prepare) => [
+                Some(("out_stiffness_n", &mut self.stiffness_n, NotNegative)),
+                Some(("out_stiffness_t", &mut self.stiffness_t, NotNegative)),
+                Some(("out_damping_n", &mut self.damping_n, NotNegative)),
+                Some(("out_damping_t", &mut self.damping_t, NotNegative)),
+                Some((
+                    "out_stiffness_twist",
+                    &mut self.stiffness_twist,
+                    NotNegative,
+                )),
+                Some(("out_stiffness_bend", &mut self.stiffness_bend, NotNegative)),
+                tension,
+                shear,
+            ],
+            (Kind::Damage | Kind::Cohesion, Call::Commit) => {
+                alone(("out_damage", &mut self.damage, Share))
+            }
+            (Kind::Wear, Call::Commit) => alone(("out_volume", &mut self.volume, NotNegative)),
+            _ => [const { None }; COLUMNS],
+        }
+    }
+}
+
+fn alone<T>(column: T) -> [Option<T>; COLUMNS] {
+    [Some(column), None, None, None, None, None, None, None]
 }
 
 #[cfg(test)]
@@ -111,11 +163,31 @@ mod tests {
 
     #[test]
     fn the_first_value_outside_is_found_and_round_off_is_not() {
-        let share = |column: &[f64]| Range::Share.first_outside(column);
+        let settle = |range: Range, column: &[f64]| range.settle(&mut column.to_vec(), &mut 0.0);
+        let share = |column: &[f64]| settle(Range::Share, column);
         assert_eq!(share(&[0.0, 1.0, -0.0, 1.0 + 1e-15]), None);
         assert_eq!(share(&[0.5, 2.0, -3.0]), Some(1));
         assert_eq!(share(&[0.5, 0.5, -3.0]), Some(2));
-        assert_eq!(Range::Signed.first_outside(&[-1.0, 1.0, -1.1]), Some(2));
-        assert_eq!(Range::NotNegative.first_outside(&[1e300, -1e-300]), Some(1));
+        assert_eq!(settle(Range::Signed, &[-1.0, 1.0, -1.1]), Some(2));
+        assert_eq!(settle(Range::NotNegative, &[1.0, -1e-11]), Some(1));
+        assert_eq!(settle(Range::NotNegative, &[0.0, -1e-300]), Some(1));
+    }
+
+    /// A strength times (1 - D) whose D is one number above 1.
+    #[test]
+    fn what_round_off_leaves_below_zero_is_zero() {
+        let left = 1e6 * (1.0 - (1.0 + f64::EPSILON));
+        assert!(left < 0.0);
+        let mut column = vec![1e6, left, 0.5];
+        assert_eq!(Range::NotNegative.settle(&mut column, &mut 0.0), None);
+        assert_eq!(column, [1e6, 0.0, 0.5]);
+        // A bond alone: what it was measures what it is.
+        let mut largest = 0.0;
+        for (value, found) in [(1e6, None), (left, None), (-1e-3, Some(0))] {
+            let mut column = vec![value];
+            assert_eq!(Range::NotNegative.settle(&mut column, &mut largest), found);
+            assert!(found.is_some() || column[0] >= 0.0);
+        }
+        assert_eq!(largest, 1e6);
     }
 }

@@ -167,7 +167,11 @@ pub fn watch(
 ) -> std::io::Result<()> {
     let (call, calls) = mpsc::sync_channel::<String>(1);
     let (done, saved) = mpsc::sync_channel(1);
+    let (begins, begun) = mpsc::channel();
+    let begins_too = begins.clone();
     let rescuer = move || {
+        let _ = begins_too.send(());
+        drop(begins_too);
         if let Ok(who) = calls.recv() {
             let _ = done.send(save(&who));
         }
@@ -180,6 +184,8 @@ pub fn watch(
         let _ = saved.recv_timeout(Duration::from_millis(20));
         let _ = std::io::Write::flush(&mut std::io::stderr().lock());
         let mut seen = vec![(0, 0); MOST];
+        let _ = begins.send(());
+        drop(begins);
         let (label, at) = loop {
             std::thread::sleep(limit / looks);
             // The last slot is of all threads that found no other.
@@ -207,5 +213,8 @@ pub fn watch(
         });
         stuck(&who, saved);
     };
-    std::thread::Builder::new().spawn(watcher).map(drop)
+    std::thread::Builder::new().spawn(watcher)?;
+    // On a busy machine a library could be loaded, and hang, before these threads have all that they need.
+    begun.iter().for_each(drop);
+    Ok(())
 }

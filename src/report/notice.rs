@@ -43,7 +43,7 @@ pub(super) fn banded(picture: &Canvas, text: &str) -> Result<Canvas, ReportError
 mod tests {
     use super::*;
     use crate::report::canvas::png_size;
-    use crate::report::{Axis, Chart};
+    use crate::report::{Axis, Chart, Series};
 
     #[test]
     fn a_notice_stands_above_the_picture_which_stays_as_it_is() {
@@ -68,7 +68,10 @@ mod tests {
             std::env::temp_dir().join(name)
         };
         let (plain, noted_file) = (file("plain"), file("noted"));
-        let chart = Chart::new("a", Axis::new("x", "m"), Axis::new("y", "m"));
+        let mut chart = Chart::new("a", Axis::new("x", "m"), Axis::new("y", "m"));
+        chart
+            .series
+            .push(Series::new("b", vec![(0.0, 0.0), (1.0, 1.0)]));
         noted(Some("NOT TRUSTWORTHY".to_owned()), || {
             chart.draw(&noted_file)
         })

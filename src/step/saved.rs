@@ -48,8 +48,10 @@ impl<S: Space> Saved<'_, S> {
     fn fits(&self, s: &Simulation<S>) -> bool {
         let parameters = self.contact_parameters.iter().map(Vec::len);
         self.bodies.len() == s.bodies.len()
+            && self.bodies.is_complete()
             && self.bodies.driven.len() == s.bodies.driven.len()
-            && self.bodies.paths.len() == s.bodies.driven.len()
+            && (self.bodies.driven.iter().zip(&s.bodies.driven)).all(|(a, b)| a.body == b.body)
+            && self.network.names_bodies_below(s.bodies.len())
             && self.received.len() == s.received.len()
             && self.scars.len() == s.scars.len()
             && self.network.memory.len() == s.network.memory.len()

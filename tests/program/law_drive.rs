@@ -198,7 +198,7 @@ fn bad_requests_are_refused() {
         ("mac --pressure -1", "must not be negative"),
         ("mac --path /nowhere.csv", "/nowhere.csv"),
         ("mac --set w=-1", "must lie in"),
-        ("mac --radius 0", "--radius must be positive"),
+        ("mac --radius 0", "a number above 0 is expected"),
         ("--interface x", "--case"),
         ("mac --case cases/silo.ron", "cannot be used with"),
         ("--case cases/none.ron --interface x", "none.ron"),

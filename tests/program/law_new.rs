@@ -71,7 +71,7 @@ fn follow(language: &str) {
             "damage" => " --set interfaces.grain.parameters.damage={}",
             _ => "",
         };
-        let run = format!("{run}{fitting} --set time.end=1e-6 --out out-{kind}");
+        let run = format!("{run}{fitting} --set time.end=1e-6 --out out-{kind} --verbose");
         let summary = place.done(&run);
         assert!(summary.contains(&format!("my-{kind}")), "{summary}");
     }

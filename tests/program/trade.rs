@@ -551,8 +551,11 @@ fn wrong_input_is_answered_with_the_nearest_name() {
         ),
         (&["--budget", "soon"], "is no time"),
         (&["--budget", "NaN"], "is no time"),
-        (&["--unconverged", "NaN"], "is no share"),
-        (&["--residual=-1"], "is no share"),
+        (
+            &["--unconverged", "NaN"],
+            "a number from 0 to 1 is expected",
+        ),
+        (&["--residual=-1"], "a number from 0 up is expected"),
         (&["--output", "energy.fracture=NaN%"], "a number above zero"),
         (&["--output", "energy.fracture=100%"], "less than 100 %"),
         (

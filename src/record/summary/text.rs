@@ -199,7 +199,9 @@ impl Summary {
             ("friction", e.friction),
             ("fracture", e.fracture),
             ("impact", e.impact),
-            ("viscous", e.viscous + e.adhesion + e.scheme),
+            ("viscous", e.viscous),
+            ("adhesion", e.adhesion),
+            ("time integration", e.scheme),
             ("position correction", e.correction),
             ("carried off", e.carried),
         ];

@@ -125,3 +125,28 @@ fn all_there_is_comes_on_request() {
     }
     assert!(!text.contains("cycle 25"), "{text}");
 }
+
+/// Each entry of the ledger under its own name: damping, cohesion without opening and the time scheme are not one thing.
+#[test]
+fn energies_are_named_one_by_one() {
+    let mut summary = fretting();
+    summary.energy.viscous = 1.0;
+    summary.energy.adhesion = 2.0;
+    summary.energy.scheme = 4.0;
+    let text = summary.text(false);
+    for entry in [
+        "friction 100.0 mJ",
+        "viscous 1.000 J",
+        "adhesion 2.000 J",
+        "time integration 4.000 J",
+    ] {
+        place(&text, entry);
+    }
+    summary.energy.viscous = 0.0;
+    summary.energy.adhesion = 0.0;
+    let text = summary.text(false);
+    assert!(
+        !text.contains("viscous") && !text.contains("adhesion"),
+        "{text}"
+    );
+}

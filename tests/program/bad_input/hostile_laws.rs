@@ -82,6 +82,25 @@ fn a_library_that_prints_when_it_is_loaded() {
     assert!(run(&trial, &[]).status.success());
 }
 
+/// What a library prints passes for no answer of the process that tries it.
+#[cfg(unix)]
+#[test]
+fn a_library_that_prints_what_the_program_tells_itself() {
+    let (trial, _) = own("SPOOFS");
+    assert!(run(&trial, &[]).status.success());
+    let certified = trial.call(&["law", "certify", "own", "--plugin-path", "."]);
+    let said = String::from_utf8_lossy(&certified.stderr);
+    assert_eq!(certified.status.code(), Some(0), "{said}");
+    let table = String::from_utf8_lossy(&certified.stdout);
+    assert!(table.contains("  certified"), "{table}");
+    let (trial, _) = own("SPOOFS_AND_EXITS");
+    refusal(
+        &run(&trial, &[]),
+        &["contact_own", "opening it ended a process that tried it"],
+    );
+    assert!(!trial.path("results").exists());
+}
+
 /// Rows and a summary that says why are there, and the run can be gone on with.
 fn stopped(trial: &Trial, why: &str) {
     let out = |name: &str| trial.path(&format!("results/case/{name}"));

@@ -81,6 +81,21 @@ __attribute__((constructor)) static void loaded(void) { *(volatile int *)8 = 1; 
 #include <stdio.h>
 __attribute__((constructor)) static void loaded(void) { printf("loaded, without an end of the line"); fflush(stdout); }
 #endif
+#if defined SPOOFS || defined SPOOFS_AND_EXITS
+#include <stdio.h>
+#include <unistd.h>
+__attribute__((constructor)) static void loaded(void) {
+    for (int k = 0; k < 2; k++) printf("\n\001fretwork null\n\001fretwork \"done\"\n");
+    fflush(stdout);
+#ifdef SPOOFS_AND_EXITS
+    _exit(0);
+#endif
+}
+#endif
+#ifdef SWAPS
+#include <stdio.h>
+__attribute__((constructor)) static void loaded(void) { rename("next", "libfretwork_contact_own.so"); }
+#endif
 static int32_t prepare(const fw_batch *b, fw_message *m) {
     (void)m;
     static int calls;
@@ -121,6 +136,9 @@ static int32_t prepare(const fw_batch *b, fw_message *m) {
 #endif
 #ifdef DRIVES
         b->out_friction[k] = -0.1;
+#endif
+#ifdef DRIVES_IF_ROUGH
+        if (b->parameters[0] > 0.35) b->out_friction[k] = -0.1;
 #endif
     }
     return FW_OK;

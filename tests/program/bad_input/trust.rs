@@ -116,6 +116,60 @@ fn a_law_that_writes_behind_its_columns() {
     );
 }
 
+/// Two interfaces have one law, which fails in the second: the error leads to that line.
+#[test]
+fn the_interface_that_failed_is_the_one_that_is_shown() {
+    let (trial, case) = own("DRIVES_IF_ROUGH");
+    let text = std::fs::read_to_string(&case).unwrap();
+    let text = with(
+        &text,
+        r#"{"grain": "stone"}"#,
+        r#"{"grain": "stone", "wall": "stone"}"#,
+    );
+    let text = with(
+        &text,
+        r#"(name: "floor", material: "grain""#,
+        r#"(name: "floor", material: "wall""#,
+    );
+    let walls = r#"        (name: "walls", between: ("grain", "wall"), contact: "own", parameters: (contact: {"mu": 0.4})),"#;
+    let first = with(
+        &text,
+        "interfaces: [\n",
+        &format!("interfaces: [\n{walls}\n"),
+    );
+    let last = with(
+        &text,
+        "    ],\n    bodies",
+        &format!("{walls}\n    ],\n    bodies"),
+    );
+    for (text, line) in [(first, 9), (last, 16)] {
+        trial.write("case.ron", text);
+        says(
+            &run(&trial, &["--out", &format!("out-{line}")]),
+            1,
+            &[
+                "as `out_friction`",
+                "(interface `walls`",
+                "interface `walls` has this law at",
+                &format!("case.ron:{line}:"),
+            ],
+        );
+    }
+}
+
+/// A library that is another one once it was tried is not opened.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_library_that_is_replaced_while_it_is_tried() {
+    let (trial, _) = own("SWAPS");
+    trial.write("next", "another library");
+    refusal(
+        &run(&trial, &[]),
+        &["contact_own", "changed while it was being opened"],
+    );
+    assert!(!trial.path("results").exists());
+}
+
 #[cfg(unix)]
 #[test]
 fn a_folder_farther_up_or_behind_a_link_that_anybody_may_write_to() {

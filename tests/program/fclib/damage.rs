@@ -7,30 +7,37 @@ use fretwork::solve::local::Reduction;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-/// The largest single allocation so far.
-static LARGEST: AtomicUsize = AtomicUsize::new(0);
+thread_local! {
+    /// The largest single allocation of this thread so far: other tests of this program run beside.
+    static LARGEST: Cell<usize> = const { Cell::new(0) };
+}
+
+fn asked_for(bytes: usize) {
+    // A thread that ends has no such variable any more.
+    let _ = LARGEST.try_with(|l| l.set(l.get().max(bytes)));
+}
 
 struct Watched;
 
 // SAFETY: every call goes to the system's allocator as it is.
 unsafe impl GlobalAlloc for Watched {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        LARGEST.fetch_max(layout.size(), Ordering::Relaxed);
+        asked_for(layout.size());
         // SAFETY: the caller's promises are passed on.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        LARGEST.fetch_max(layout.size(), Ordering::Relaxed);
+        asked_for(layout.size());
         // SAFETY: the caller's promises are passed on.
         unsafe { System.alloc_zeroed(layout) }
     }
 
     unsafe fn realloc(&self, at: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        LARGEST.fetch_max(size, Ordering::Relaxed);
+        asked_for(size);
         // SAFETY: the caller's promises are passed on.
         unsafe { System.realloc(at, layout, size) }
     }
@@ -103,12 +110,12 @@ fn damaged_files_are_refused_without_a_panic() {
     for round in 0..rounds {
         let bytes = damaged(&files[round % files.len()], &mut rng);
         std::fs::write(&path, &bytes).unwrap();
-        LARGEST.store(0, Ordering::Relaxed);
+        LARGEST.set(0);
         let start = Instant::now();
         let result = fclib::read(&path);
         fclib::read_solution(&path).ok();
         slowest = slowest.max(start.elapsed());
-        let largest = LARGEST.load(Ordering::Relaxed);
+        let largest = LARGEST.get();
         most = most.max(largest);
         let keep = || {
             let kept = path.with_extension("kept.hdf5");

@@ -109,6 +109,11 @@ impl Job<'_> {
     }
 }
 
+/// The file that a run writes before it takes the name of the results; a run that is killed may leave one.
+pub fn draft(out: &Path) -> Option<Vec<u8>> {
+    std::fs::read(out.join("results.h5.part")).ok()
+}
+
 /// The last whole frame of a folder.
 pub fn last_frame(out: &Path) -> Option<Frame> {
     let kept = Kept::open(&out.join("results.h5")).ok()?;

@@ -1,6 +1,6 @@
 //! What cannot go on says so in a sentence.
 
-use super::common::{Folder, Job, last_frame, said, same};
+use super::common::{Folder, Job, draft, last_frame, said, same};
 use fretwork::record::checkpoint::Kind;
 use std::path::Path;
 use std::process::Command;
@@ -34,11 +34,12 @@ fn frames(bytes: &[u8]) -> Vec<usize> {
 }
 
 fn refused(out: &Path, job: Job<'_>, code: i32, words: &[&str]) {
+    let before = draft(out);
     let told = said(&job.run(out, &["--resume"]), code);
     for word in words {
         assert!(told.contains(word), "`{word}` is not in: {told}");
     }
-    assert!(!out.join("results.h5.part").exists());
+    assert!(draft(out) == before, "a draft was written");
 }
 
 #[test]
@@ -235,6 +236,8 @@ fn a_folder_that_cannot_be_written_is_told() {
     let out = Folder::new("readonly");
     job().killed_after(&out.0, 2);
     let before = std::fs::read(out.0.join("results.h5")).unwrap();
+    // What the killed run was writing may still be there.
+    std::fs::remove_file(out.0.join("results.h5.part")).ok();
     std::fs::create_dir(out.0.join("results.h5.part")).unwrap();
     let told = said(&job().run(&out.0, &["--resume"]), 1);
     assert!(told.contains("cannot write"), "{told}");

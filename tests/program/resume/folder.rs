@@ -1,6 +1,6 @@
 //! What a folder holds beside a state: settings that change no number, files of older runs, summaries of others.
 
-use super::common::{Folder, Job, files, said, same};
+use super::common::{Folder, Job, draft, files, said, same};
 
 const SETS: [&str; 4] = [
     "time.end=0.004",
@@ -201,6 +201,7 @@ fn what_hangs_on_the_end_is_refused_a_later_one() {
     let out = Folder::new("later");
     job(&SETS).killed_after(&out.0, 2);
     let before = std::fs::read(out.0.join("results.h5")).unwrap();
+    let drafted = draft(&out.0);
     let told = said(&job(&LATER).run(&out.0, &["--resume"]), 2);
     for word in [
         "beyond its `time.end`",
@@ -210,7 +211,7 @@ fn what_hangs_on_the_end_is_refused_a_later_one() {
         assert!(told.contains(word), "{told}");
     }
     assert!(std::fs::read(out.0.join("results.h5")).unwrap() == before);
-    assert!(!out.0.join("results.h5.part").exists());
+    assert!(draft(&out.0) == drafted);
     job(&SETS).done(&out.0, &["--resume"]);
 }
 
