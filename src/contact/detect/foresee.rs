@@ -151,7 +151,7 @@ fn widen<S: Space>(
     let need = |travel: &f64| (travel - half).max(0.0);
     let farthest = travels.iter().copied().fold(0.0, f64::max);
     let widest = network.widened.iter().copied().fold(0.0, f64::max);
-    let turn_faster = surfaces_turn_faster(network, shapes, motion);
+    let turn_faster = surfaces_turn_faster(network, shapes, bodies, motion);
     if farthest <= half && widest == 0.0 && !turn_faster {
         return travels;
     }
@@ -161,7 +161,7 @@ fn widen<S: Space>(
     if farthest < 0.5 * half || 4.0 * wide(&farthest) < widest {
         network.widened.clear();
         network.forget_neighbours();
-        if farthest <= half {
+        if farthest <= half && !turn_faster {
             return travels;
         }
     }
@@ -203,16 +203,26 @@ fn widen<S: Space>(
 fn surfaces_turn_faster<S: Space>(
     network: &Network<S>,
     shapes: &Shapes<S>,
+    bodies: &Bodies<S>,
     motion: &Motion<S>,
 ) -> bool {
-    let surfaces = shapes.surfaces.iter().zip(&network.turning);
-    surfaces
-        .map(|(s, seen)| motion.velocities[s.body as usize].1.norm() > *seen)
-        .any(|faster| faster)
+    let mut surfaces = shapes.surfaces.iter().zip(&network.turning);
+    surfaces.any(|(surface, seen)| {
+        let b = surface.body as usize;
+        let spin = motion.velocities[b].1;
+        // One that turns in its place sweeps nothing.
+        spin.norm() > *seen
+            && !surface
+                .shape
+                .keeps_place(&S::unrotate_spin(&bodies.rotation[b], &spin))
+    })
 }
 
 /// Keeps the widened list within memory, and within a period.
 fn limit<S: Space>(network: &mut Network<S>, shapes: &Shapes<S>, centres: &[S::Vector]) {
+    if network.widened.is_empty() {
+        return;
+    }
     let periods = shapes.periodic.period.iter().take(S::D).flatten();
     let period = periods.copied().fold(f64::INFINITY, f64::min);
     for wide in &mut network.widened {
