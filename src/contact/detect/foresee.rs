@@ -2,6 +2,7 @@
 //! close, for pairs whose relative motion in the step is fast. Scenes without fast motion do no more here than look at speeds.
 
 use super::extents::Extents;
+use super::order::{Meeting, mark_later};
 use super::sweep::{Course, Pair, Sweep};
 use super::{LawTable, centres, rebuild};
 use crate::bodies::Bodies;
@@ -11,7 +12,7 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 
 /// Overlap, in parts of what is fast, from which a pair that has no contact gets one.
-const TOLERATED: f64 = 0.05;
+pub(super) const TOLERATED: f64 = 0.05;
 /// Part of the half thickness that a pair may go deeper into each other before it is reported.
 const PASSED: f64 = 0.25;
 /// The neighbour list looks this many times as far as the motion asks, so that it lasts while bodies become faster.
@@ -133,6 +134,38 @@ pub fn report_passing<S: Space>(
         &travels,
         Stage::Report,
     );
+}
+
+/// Reports the pairs that go into each other in a move at the velocities of the bodies before detection, which no step before
+/// has looked at.
+pub fn report_first_move<S: Space>(
+    network: &mut Network<S>,
+    shapes: &Shapes<S>,
+    bodies: &Bodies<S>,
+    laws: &LawTable,
+    time: f64,
+    length: f64,
+) {
+    let velocities = bodies.velocity.iter().copied();
+    let velocities: Vec<_> = velocities.zip(bodies.spin.iter().copied()).collect();
+    if network.seen_at.is_empty() {
+        let centres = centres(shapes, bodies);
+        rebuild(
+            network,
+            shapes,
+            bodies,
+            laws,
+            &centres,
+            &velocities,
+            length,
+        );
+    }
+    let motion = Motion {
+        velocities: &velocities,
+        time,
+        h: length,
+    };
+    report_passing(network, shapes, bodies, laws, &motion);
 }
 
 /// How far each body moves in the step, with a neighbour list that looks as far as the fast ones go.
@@ -264,6 +297,7 @@ fn look<S: Space>(
     stage: Stage,
 ) -> Vec<Contact<S>> {
     let mut found = Vec::new();
+    let mut meetings = Vec::new();
     let fast = network.fast;
     let farthest = travels.iter().copied().fold(0.0, f64::max);
     let turning = network.turning.iter().any(|w| *w > 0.0);
@@ -317,11 +351,21 @@ fn look<S: Space>(
             (sweep.course(&pair, margin.begins), laws.get(one, other))
         {
             sweep.contacts(&pair, s, law, &mut found);
+            meetings.push(Meeting {
+                names,
+                bodies: pair.bodies(),
+                at: s,
+                travel: pair.travel,
+                contacts: known..found.len(),
+            });
         }
         if found.len() == known && stage == Stage::After {
             // It cannot be followed, or not be held where it meets.
             network.haste.pass(motion.time, bodies, pair.bodies());
         }
+    }
+    if stage == Stage::Before {
+        mark_later(&mut found, &meetings, &sweep, &candidates, body, fast);
     }
     network.candidates = candidates;
     network.extents = extents;
@@ -380,6 +424,7 @@ impl<S: Space> Network<S> {
                 Ok(at) => {
                     let known = &mut self.contacts[at];
                     known.closing = true;
+                    known.later |= contact.later;
                     known.central = false;
                     known.gap = contact.gap;
                     known.normal = contact.normal;
