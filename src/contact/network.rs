@@ -81,6 +81,9 @@ pub struct Contact<S: Space> {
     /// It closes within this step, faster than detection at the start of the step can follow: its gap and normal are those
     /// of the instant at which it closes, and an impact is one of this step.
     pub closing: bool,
+    /// Of a closing one: an earlier impact of the same step changes the motion that it was foreseen from. Restitution does
+    /// not act on it in this step: it is only kept from closing, and bounces in the next.
+    pub later: bool,
     /// Beyond the alert distance at the start of the step: nothing but the constraint that it must not open below zero acts
     /// on it, no bond, no cohesion, no wear.
     pub beyond: bool,
@@ -149,7 +152,7 @@ pub struct Network<S: Space> {
     pub(super) turning: Vec<f64>,
     /// Half thicknesses and levers of what can touch.
     #[serde(skip)]
-    pub(super) extents: super::detect::Extents,
+    pub(crate) extents: super::detect::Extents,
     #[serde(skip)]
     pub(super) old: Vec<Contact<S>>,
 }

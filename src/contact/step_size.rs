@@ -53,6 +53,11 @@ pub struct StepSizeDiagnostics {
     pub passed: u64,
     /// The first of them.
     pub first_passed: Option<Occurrence>,
+    /// Impacts with restitution that followed another of the same body within a step: the two were kept apart in that step
+    /// and bounced in the next, which takes more energy than two impacts one after the other.
+    pub held_back: u64,
+    /// The first of them.
+    pub first_held_back: Option<Occurrence>,
     /// Steps in which a body moved so far that not all it may have met was looked at.
     pub unwatched_steps: u64,
     /// The first of them.
@@ -88,6 +93,13 @@ impl StepSizeDiagnostics {
     pub(super) fn pass<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, pair: [u32; 2]) {
         self.passed += 1;
         self.first_passed
+            .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
+    }
+
+    /// Notes two bodies whose impact follows another of the same step.
+    pub(crate) fn hold_back<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, pair: [u32; 2]) {
+        self.held_back += 1;
+        self.first_held_back
             .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
     }
 
@@ -145,6 +157,14 @@ impl StepSizeDiagnostics {
                 first(&self.first_passed)
             )
         });
+        let held_back = (self.held_back > 0).then(|| {
+            format!(
+                "{} times impacts with restitution followed each other within a step, {}; the later ones lost more energy \
+                 than their restitution says",
+                self.held_back,
+                first(&self.first_held_back)
+            )
+        });
         let unwatched = (self.unwatched_steps > 0).then(|| {
             format!(
                 "in {} steps a body moved so far that not all in its way was looked at, {}; it may have passed through others",
@@ -153,7 +173,10 @@ impl StepSizeDiagnostics {
             )
         });
         let late = self.late_contacts().filter(|_| self.deepest > FOLLOWED);
-        let told: Vec<String> = [passed, unwatched, late].into_iter().flatten().collect();
+        let told: Vec<String> = [passed, held_back, unwatched, late]
+            .into_iter()
+            .flatten()
+            .collect();
         (!told.is_empty()).then(|| format!("{}; take a smaller time.step", told.join("; ")))
     }
 }

@@ -98,6 +98,8 @@ pub struct Passes {
     pub(super) trials: Vec<(usize, usize, f64)>,
     /// Work that friction of a pair gave back and wear laws have not seen (J, negative).
     pub(super) debts: HashMap<(u32, u32), f64>,
+    /// Contacts of the last solve that close within the step and were kept from it although their law has restitution.
+    pub(crate) held_back: Vec<usize>,
     /// Interfaces whose bonds have been made.
     bonded: Vec<bool>,
     /// How laws are watched.
@@ -266,6 +268,7 @@ impl Passes {
         moments: &mut Vec<MomentForm<S>>,
     ) -> Result<(), LawError> {
         moments.clear();
+        self.held_back.clear();
         for (index, law) in laws.iter().enumerate() {
             // Intact bonds first: the cohesion law then takes the head of the same columns.
             let bonded = |c: &Contact<S>| network.bond(c).is_some_and(|b| b.intact());
@@ -307,7 +310,7 @@ impl Passes {
             for (k, at) in self.members.iter().enumerate() {
                 let friction = answer(&self.columns.out, if constant { 0 } else { k });
                 let area = contact_area(law, network, &network.contacts[*at]);
-                apply_friction(
+                let held_back = apply_friction(
                     &mut forms[*at],
                     &friction,
                     &network.contacts[*at],
@@ -316,6 +319,9 @@ impl Passes {
                     area,
                     info,
                 );
+                if held_back {
+                    self.held_back.push(*at);
+                }
                 if law.rotates() || friction.rolling > 0.0 || friction.spinning > 0.0 {
                     moments.push(MomentForm {
                         contact: *at as u32,
@@ -536,6 +542,7 @@ impl Passes {
     }
 }
 
+/// Whether the contact is one with restitution that is only kept from closing in this step.
 fn apply_friction<S: Space>(
     form: &mut ContactForm<S>,
     friction: &Friction,
@@ -545,7 +552,7 @@ fn apply_friction<S: Space>(
     before: &S::Vector,
     area: f64,
     info: &StepInfo,
-) {
+) -> bool {
     form.friction = friction.mu;
     form.tension = info.h * area * friction.tension;
     form.cohesion = info.h * area * friction.cohesion;
@@ -554,11 +561,15 @@ fn apply_friction<S: Space>(
     }
     // Newton's restitution: closed contacts bounce off the velocity they come with, and those that close within the step
     // and would else pass through; other open ones are free (a quasi-shock would take the approach away before the impact).
+    // What closes only by an impact of this step is kept from closing, and bounces in the next.
     let un = contact.normal.dot(before);
-    let impact = gap <= 0.0 || contact.closing && un < 0.0;
+    let first = contact.closing && !contact.later && un < 0.0;
+    let impact = gap <= 0.0 || first;
     if friction.e_n > 0.0 {
         if !impact {
-            form.shift_n = f64::INFINITY;
+            if !contact.closing {
+                form.shift_n = f64::INFINITY;
+            }
         } else if un < 0.0 {
             form.shift_n = friction.e_n * un;
         }
@@ -566,4 +577,5 @@ fn apply_friction<S: Space>(
     if impact && friction.e_t > 0.0 {
         form.shift_t = S::tangential(&contact.normal, before) * friction.e_t;
     }
+    friction.e_n > 0.0 && contact.closing && !impact
 }

@@ -4,13 +4,70 @@ use super::motion::Before;
 use super::{Simulation, StepError, StepReport};
 use crate::contact::Key;
 use crate::contact::detect::{self, Motion};
-use crate::geometry::space::Space;
+use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
 
 /// Solves of a step at most: each may send bodies into others that the one before did not.
 const MOST_SOLVES: usize = 6;
+/// Change of a surface's spin, in parts of it, from which it is a jump.
+const TURNS: f64 = 0.01;
 
 impl<S: Space> Simulation<S> {
+    /// Reports what bodies go through in the move before detection. The step before looked at the way of each body from
+    /// detection to detection at its last velocity: not at the first move of all, nor at what a jump of an imposed velocity
+    /// adds. `before` are velocities and spins of the driven bodies ahead of their jumps.
+    pub(super) fn watch_first_move(&mut self, before: &[(S::Vector, S::Spin)]) {
+        let length = (1.0 - self.scheme.theta) * self.scheme.h;
+        let (network, bodies) = (&mut self.network, &self.bodies);
+        if self.steps == 0 {
+            let velocities = bodies.velocity.iter().copied();
+            let velocities = velocities.zip(bodies.spin.iter().copied());
+            if detect::is_calm(network, &self.shapes, bodies, velocities, length) {
+                return;
+            }
+        } else if !self.velocities_jump(before, length) {
+            return;
+        }
+        detect::report_first_move(
+            &mut self.network,
+            &self.shapes,
+            &self.bodies,
+            &self.table,
+            self.time,
+            length,
+        );
+    }
+
+    /// Whether the jumps of imposed velocities move anything fast within a time (s).
+    fn velocities_jump(&self, before: &[(S::Vector, S::Spin)], time: f64) -> bool {
+        let bodies = &self.bodies;
+        let mut driven = bodies.driven.iter().zip(before);
+        driven.any(|(driven, (v, w))| {
+            let b = driven.body as usize;
+            let jump = (bodies.velocity[b] - *v).norm();
+            let turn = (bodies.spin[b] - *w).norm();
+            let lever = self.network.extents.lever(b);
+            let surfaces = self.shapes.surfaces.iter();
+            // How far a surface reaches is not known.
+            let sweeps = turn > TURNS * bodies.spin[b].norm().max(w.norm())
+                && surfaces
+                    .filter(|s| s.body as usize == b)
+                    .any(|s| !s.shape.keeps_place(&S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b])));
+            time * (jump + turn * lever) > self.network.fast || sweeps
+        })
+    }
+
+    /// Reports impacts with restitution that were only kept from closing, since others of the step came before them.
+    fn report_held_back(&mut self) {
+        for k in &self.passes.held_back {
+            if self.solved.sites[*k].solution.impulse != S::Vector::null() {
+                let pair = self.network.contacts[*k].bodies;
+                let haste = &mut self.network.haste;
+                haste.hold_back(self.time, &self.bodies, pair);
+            }
+        }
+    }
+
     /// Adds the contacts that the velocities without contacts would close in the step.
     pub(super) fn foresee(&mut self, free: &[(S::Vector, S::Spin)]) {
         let motion = Motion {
@@ -28,6 +85,18 @@ impl<S: Space> Simulation<S> {
 
     /// Solves the step, and again while its velocities send bodies into others that were not solved for.
     pub(super) fn solve(
+        &mut self,
+        start: &Before<S>,
+        free: &[(S::Vector, S::Spin)],
+        info: &StepInfo,
+        report: &mut StepReport,
+    ) -> Result<(), StepError> {
+        self.solve_with_all(start, free, info, report)?;
+        self.report_held_back();
+        Ok(())
+    }
+
+    fn solve_with_all(
         &mut self,
         start: &Before<S>,
         free: &[(S::Vector, S::Spin)],

@@ -198,7 +198,9 @@ impl<S: Space> Simulation<S> {
         };
         self.network.breaks.clear();
         self.network.joins.clear();
+        let driven = self.motion_of_driven();
         self.begin_motion();
+        self.watch_first_move(&driven);
         let mut start = Before::new(&self.bodies);
         let clock = Instant::now();
         motion::advance(&mut self.bodies, (1.0 - theta) * h);

@@ -25,6 +25,8 @@ pub struct Sketch {
     pub contact: &'static str,
     /// Friction of the only interface.
     pub mu: f64,
+    /// Normal restitution of the only interface, where its law has one.
+    pub restitution: Option<f64>,
     /// Further words of the interface, with a comma at the end.
     pub interface: &'static str,
     /// Further parameters of its laws, after a comma.
@@ -51,6 +53,7 @@ impl Default for Sketch {
             gravity: G,
             contact: "coulomb",
             mu: 0.3,
+            restitution: None,
             interface: "",
             parameters: String::new(),
             solver: "tolerance: 1e-10, max_iterations: 100000,".to_owned(),
@@ -118,10 +121,12 @@ impl Sketch {
         let mut interfaces = String::new();
         for a in &materials {
             for b in *a..materials.len() {
+                let restitution = self.restitution;
+                let restitution = restitution.map_or(String::new(), |e| format!(", \"restitution_n\": {e:?}"));
                 let _ = writeln!(
                     interfaces,
                     "(name: \"i{a}{b}\", between: (\"m{a}\", \"m{b}\"), contact: \"{}\", {} \
-                     parameters: (contact: {{\"mu\": {:?}}}{})),",
+                     parameters: (contact: {{\"mu\": {:?}{restitution}}}{})),",
                     self.contact, self.interface, self.mu, self.parameters,
                 );
             }

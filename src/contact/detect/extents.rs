@@ -39,6 +39,11 @@ impl Extents {
         }
     }
 
+    /// The farthest point of a body that moves when it turns (m).
+    pub(crate) fn lever(&self, body: usize) -> f64 {
+        self.levers.get(body).copied().unwrap_or(0.0)
+    }
+
     pub(super) fn fits<S: Space>(&self, shapes: &Shapes<S>, bodies: &Bodies<S>) -> bool {
         self.levers.len() == bodies.len() && self.pieces.len() == shapes.pieces.len()
     }

@@ -2,6 +2,7 @@
 //! close, for pairs whose relative motion in the step is fast. Scenes without fast motion do no more here than look at speeds.
 
 use super::extents::Extents;
+use super::order::{Meeting, mark_later};
 use super::sweep::{Course, Pair, Sweep};
 use super::{LawTable, centres, rebuild};
 use crate::bodies::Bodies;
@@ -11,7 +12,7 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 
 /// Overlap, in parts of what is fast, from which a pair that has no contact gets one.
-const TOLERATED: f64 = 0.05;
+pub(super) const TOLERATED: f64 = 0.05;
 /// Part of the half thickness that a pair may go deeper into each other before it is reported.
 const PASSED: f64 = 0.25;
 /// The neighbour list looks this many times as far as the motion asks, so that it lasts while bodies become faster.
@@ -135,6 +136,38 @@ pub fn report_passing<S: Space>(
     );
 }
 
+/// Reports the pairs that go into each other in a move at the velocities of the bodies before detection, which no step before
+/// has looked at.
+pub fn report_first_move<S: Space>(
+    network: &mut Network<S>,
+    shapes: &Shapes<S>,
+    bodies: &Bodies<S>,
+    laws: &LawTable,
+    time: f64,
+    length: f64,
+) {
+    let velocities = bodies.velocity.iter().copied();
+    let velocities: Vec<_> = velocities.zip(bodies.spin.iter().copied()).collect();
+    if network.seen_at.is_empty() {
+        let centres = centres(shapes, bodies);
+        rebuild(
+            network,
+            shapes,
+            bodies,
+            laws,
+            &centres,
+            &velocities,
+            length,
+        );
+    }
+    let motion = Motion {
+        velocities: &velocities,
+        time,
+        h: length,
+    };
+    report_passing(network, shapes, bodies, laws, &motion);
+}
+
 /// How far each body moves in the step, with a neighbour list that looks as far as the fast ones go.
 fn widen<S: Space>(
     network: &mut Network<S>,
@@ -151,7 +184,7 @@ fn widen<S: Space>(
     let need = |travel: &f64| (travel - half).max(0.0);
     let farthest = travels.iter().copied().fold(0.0, f64::max);
     let widest = network.widened.iter().copied().fold(0.0, f64::max);
-    let turn_faster = surfaces_turn_faster(network, shapes, motion);
+    let turn_faster = surfaces_turn_faster(network, shapes, bodies, motion);
     if farthest <= half && widest == 0.0 && !turn_faster {
         return travels;
     }
@@ -161,7 +194,7 @@ fn widen<S: Space>(
     if farthest < 0.5 * half || 4.0 * wide(&farthest) < widest {
         network.widened.clear();
         network.forget_neighbours();
-        if farthest <= half {
+        if farthest <= half && !turn_faster {
             return travels;
         }
     }
@@ -203,16 +236,26 @@ fn widen<S: Space>(
 fn surfaces_turn_faster<S: Space>(
     network: &Network<S>,
     shapes: &Shapes<S>,
+    bodies: &Bodies<S>,
     motion: &Motion<S>,
 ) -> bool {
-    let surfaces = shapes.surfaces.iter().zip(&network.turning);
-    surfaces
-        .map(|(s, seen)| motion.velocities[s.body as usize].1.norm() > *seen)
-        .any(|faster| faster)
+    let mut surfaces = shapes.surfaces.iter().zip(&network.turning);
+    surfaces.any(|(surface, seen)| {
+        let b = surface.body as usize;
+        let spin = motion.velocities[b].1;
+        // One that turns in its place sweeps nothing.
+        spin.norm() > *seen
+            && !surface
+                .shape
+                .keeps_place(&S::unrotate_spin(&bodies.rotation[b], &spin))
+    })
 }
 
 /// Keeps the widened list within memory, and within a period.
 fn limit<S: Space>(network: &mut Network<S>, shapes: &Shapes<S>, centres: &[S::Vector]) {
+    if network.widened.is_empty() {
+        return;
+    }
     let periods = shapes.periodic.period.iter().take(S::D).flatten();
     let period = periods.copied().fold(f64::INFINITY, f64::min);
     for wide in &mut network.widened {
@@ -254,6 +297,7 @@ fn look<S: Space>(
     stage: Stage,
 ) -> Vec<Contact<S>> {
     let mut found = Vec::new();
+    let mut meetings = Vec::new();
     let fast = network.fast;
     let farthest = travels.iter().copied().fold(0.0, f64::max);
     let turning = network.turning.iter().any(|w| *w > 0.0);
@@ -307,11 +351,21 @@ fn look<S: Space>(
             (sweep.course(&pair, margin.begins), laws.get(one, other))
         {
             sweep.contacts(&pair, s, law, &mut found);
+            meetings.push(Meeting {
+                names,
+                bodies: pair.bodies(),
+                at: s,
+                travel: pair.travel,
+                contacts: known..found.len(),
+            });
         }
         if found.len() == known && stage == Stage::After {
             // It cannot be followed, or not be held where it meets.
             network.haste.pass(motion.time, bodies, pair.bodies());
         }
+    }
+    if stage == Stage::Before {
+        mark_later(&mut found, &meetings, &sweep, &candidates, body, fast);
     }
     network.candidates = candidates;
     network.extents = extents;
@@ -370,6 +424,7 @@ impl<S: Space> Network<S> {
                 Ok(at) => {
                     let known = &mut self.contacts[at];
                     known.closing = true;
+                    known.later |= contact.later;
                     known.central = false;
                     known.gap = contact.gap;
                     known.normal = contact.normal;

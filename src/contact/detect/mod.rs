@@ -3,11 +3,12 @@
 mod extents;
 mod foresee;
 mod narrow;
+mod order;
 mod pieces;
 mod sweep;
 
 pub use extents::{Extents, fast_motion};
-pub use foresee::{Motion, foresee, is_calm, overlooked, report_passing};
+pub use foresee::{Motion, foresee, is_calm, overlooked, report_first_move, report_passing};
 
 use super::network::{Contact, Key, Network};
 use crate::bodies::Bodies;

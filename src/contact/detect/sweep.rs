@@ -427,6 +427,7 @@ impl<'a, S: Space> Sweep<'a, S> {
                 slides: false,
                 friction_work: 0.0,
                 closing: true,
+                later: false,
                 beyond: true,
             });
         }

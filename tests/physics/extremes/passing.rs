@@ -263,3 +263,144 @@ fn slow_scenes_do_without() {
     assert_eq!((haste.foreseen, haste.repeated_solves), (0, 0));
     silent(&s);
 }
+
+/// A plane that starts to turn under a ball that moves by 0.4 of the alert distance a step.
+#[test]
+fn a_surface_that_starts_to_turn_holds_a_slow_ball() {
+    let thrown = "(at: [0.0, 0.02], radius: 0.01, velocity: [0.0, -0.2])".to_owned();
+    let mut s = built::<Plane>(&Sketch {
+        bodies: "(name: \"floor\", material: \"m0\", shapes: [HalfSpace(normal: [0.0, 1.0])], \
+                 dofs: (rz: Velocity(Ramp(from: 0.0, to: 0.5, start: 0.01, end: 0.09)))),"
+            .to_owned(),
+        grains: grains("m0", &[thrown]),
+        ..still()
+    });
+    let floor = s.bodies.driven[0].body as usize;
+    for _ in 0..150 {
+        go(&mut s, 1);
+        let normal = Plane::rotate(&s.bodies.rotation[floor], &nalgebra::Vector2::y());
+        let height = normal.dot(&s.bodies.position[0]);
+        assert!(height > 0.01 - 5e-4, "{height}");
+    }
+    silent(&s);
+}
+
+/// A line that is at rest and turns by 0.4 rad a step at once meets the ball above its end.
+#[test]
+fn a_flap_that_starts_to_turn_hits_what_is_in_its_way() {
+    let mut s = built::<Plane>(&Sketch {
+        bodies: "(name: \"flap\", material: \"m0\", shapes: [Profile(points: [(-0.5, 0.0), (0.5, 0.0)], side: Below)], \
+                 dofs: (rz: Velocity(Ramp(from: 0.0, to: 400.0, start: 0.01, end: 0.011)))),"
+            .to_owned(),
+        grains: grains("m0", &[ball("[0.38, 0.1]", 0.01)]),
+        ..still()
+    });
+    go(&mut s, 14);
+    assert!(s.bodies.velocity[0].norm() > 1.0, "{:?}", s.bodies.velocity[0]);
+}
+
+fn passed<S: Space>(s: &Simulation<S>) {
+    let told = s.network.haste.warning().unwrap_or_default();
+    assert!(told.contains("into or through"), "{told}");
+}
+
+/// What bodies go through before the first detection, and by a jump of an imposed velocity, is reported.
+#[test]
+fn what_is_passed_before_detection_is_reported() {
+    let moving = "(at: [0.0, 0.0], radius: 0.01, velocity: [200.0, 0.0])".to_owned();
+    let mut s = built::<Plane>(&Sketch {
+        grains: grains("m0", &[moving, ball("[0.05, 0.0]", 0.01)]),
+        ..still()
+    });
+    go(&mut s, 1);
+    passed(&s);
+
+    let kicked = |x: f64| {
+        let mut s = built::<Plane>(&Sketch {
+            bodies: "(name: \"blade\", material: \"m0\", shapes: [Polygon(points: [(-0.005,-0.1),(0.005,-0.1),(0.005,0.1),(-0.005,0.1)])], \
+                     dofs: (x: Velocity(Table([(0.01, 0.0), (0.010000001, 100.0)])))),"
+                .to_owned(),
+            grains: grains("m0", &[ball(&format!("[{x}, 0.0]"), 0.01)]),
+            ..still()
+        });
+        go(&mut s, 15);
+        s
+    };
+    passed(&kicked(0.025));
+    // Beyond the half move it is met.
+    let s = kicked(0.08);
+    silent(&s);
+    assert!(s.bodies.velocity[0].x > 99.0, "{:?}", s.bodies.velocity[0]);
+}
+
+/// A ball at 200 m/s on to two at rest, with restitution.
+fn row_of_three(e: f64, step: f64, places: [f64; 2], steps: usize) -> Simulation<Plane> {
+    let moving = "(at: [0.0, 0.0], radius: 0.01, velocity: [200.0, 0.0])".to_owned();
+    let at = |x: f64| ball(&format!("[{x}, 0.0]"), 0.01);
+    let mut s = built::<Plane>(&Sketch {
+        mu: 0.0,
+        restitution: Some(e),
+        step,
+        grains: grains("m0", &[moving, at(places[0]), at(places[1])]),
+        ..still()
+    });
+    let before = momentum(&s);
+    let energy = s.bodies.kinetic_energy();
+    for _ in 0..steps {
+        go(&mut s, 1);
+        // None goes through another.
+        for pair in [0, 1] {
+            let apart = s.bodies.position[pair + 1].x - s.bodies.position[pair].x;
+            assert!(apart > 0.015, "{apart}");
+        }
+    }
+    assert!((momentum(&s) - before).norm() < 1e-12 * before.norm());
+    assert!(s.bodies.kinetic_energy() < energy * (1.0 + 1e-12));
+    s
+}
+
+/// One impact after another: v1 = (1 - e) v/2, then v2 = (1 - e)(1 + e) v/4 and v3 = (1 + e)^2 v/4. Where both come in one step
+/// the second waits for the next step, and the run says so.
+#[test]
+fn impacts_with_restitution_one_after_the_other() {
+    for e in [1.0, 0.8] {
+        let v = 200.0;
+        for (places, wait) in [([0.15, 0.25], 50), ([0.19, 0.36], 50)] {
+            let s = row_of_three(e, 1e-4, places, 30);
+            let known = [
+                0.5 * (1.0 - e) * v,
+                0.25 * (1.0 - e * e) * v,
+                0.25 * (1.0 + e).powi(2) * v,
+            ];
+            for (now, known) in s.bodies.velocity.iter().zip(known) {
+                assert!((now.x - known).abs() < 1e-6 * v, "{e} {now:?} {known}");
+            }
+            silent(&s);
+            let s = row_of_three(e, 1e-3, places, wait);
+            let haste = &s.network.haste;
+            assert!(haste.held_back > 0 && haste.passed == 0, "{haste:?}");
+            assert!(haste.warning().is_some());
+        }
+    }
+}
+
+/// Two balls thrown at a wall one behind the other: the rear one does not bounce off the wall through the front one.
+#[test]
+fn a_ball_does_not_bounce_through_another() {
+    let thrown = |x: f64| format!("(at: [{x}, 0.0], radius: 0.01, velocity: [150.0, 0.0])");
+    let mut s = built::<Plane>(&Sketch {
+        bodies: "(name: \"wall\", material: \"m0\", position: [1.0, 0.0], shapes: [HalfSpace(normal: [-1.0, 0.0])]),"
+            .to_owned(),
+        mu: 0.0,
+        restitution: Some(0.5),
+        grains: grains("m0", &[thrown(0.0), thrown(0.04)]),
+        ..still()
+    });
+    for _ in 0..20 {
+        go(&mut s, 1);
+        let [rear, front] = [0, 1].map(|b: usize| s.bodies.position[b].x);
+        assert!(front - rear > 0.015 && front < 0.991, "{rear} {front}");
+    }
+    let haste = &s.network.haste;
+    assert!(haste.held_back > 0 && haste.passed == 0, "{haste:?}");
+}
