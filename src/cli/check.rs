@@ -278,11 +278,13 @@ fn groups<S: Space>(
     let mass: f64 = masses.filter(|(_, grain)| **grain).map(|(m, _)| m).sum();
     if volume > 0.0 {
         let density = mass / volume;
-        let thickness = volume / 0.8 / area;
+        // Random packings of disks and of spheres, a little below their densest.
+        let solid = if S::D == 2 { 0.8 } else { 0.6 };
+        let thickness = volume / solid / area;
         let inertial = speed / thickness * 2.0 * largest * (density / pressure).sqrt();
         line(
             "layer",
-            format!("about {thickness:.2e} m thick at a solid fraction of 0.8"),
+            format!("about {thickness:.2e} m thick at a solid fraction of {solid}"),
         );
         line(
             "inertial number",

@@ -35,6 +35,7 @@ struct Cli {
 enum Command {
     /// Run a case to its end and record it
     #[command(
+        allow_negative_numbers = true,
         after_help = "Example:\n  fretwork run cases/wheel_rail_fretting.ron --out results/a --set interfaces.third_body.damage=mohr-coulomb-brittle"
     )]
     Run(run::RunArgs),
@@ -45,11 +46,13 @@ enum Command {
     Law(law::LawCommand),
     /// Solve contact problems of the field's shared collection (FCLIB files)
     #[command(
+        allow_negative_numbers = true,
         after_help = "Exit code: 0 solved, 1 not solved within the limits, 2 wrong input.\n\nExample:\n  fretwork solve tests/fclib/gfc3d_OneContact.hdf5 --tolerance 1e-10 --out solution.hdf5"
     )]
     Solve(solve::SolveArgs),
     /// What accuracy costs: vary step, tolerance, solver and more, and compare with the finest over seeds
     #[command(
+        allow_negative_numbers = true,
         after_help = "Exit code: 0 done, also where the budget ended it early (it says so), 1 no reference could be run, 2 wrong input.\n\nExample:\n  fretwork trade cases/wheel_rail_fretting.ron --output friction_coefficient=5% --knob step --knob tolerance --budget 30m\n\ndocs/trade.md says how errors are judged and what the search does not explore."
     )]
     Trade(trade::TradeArgs),
@@ -90,6 +93,9 @@ struct CaseArgs {
 /// How long a call of a law may take (s), unless the user says otherwise.
 const LAW_TIMEOUT: f64 = 60.0;
 
+/// The longest that a call of a law may take (s): some thirty years.
+const LONGEST: f64 = 1e9;
+
 /// Where plugins are looked for.
 #[derive(Args, Debug)]
 struct PluginArgs {
@@ -100,7 +106,7 @@ struct PluginArgs {
     #[arg(long)]
     trust_plugins: bool,
     /// Give up when a law has not come back from a call for so long; 0 for never
-    #[arg(long, value_name = "SECONDS", default_value_t = LAW_TIMEOUT)]
+    #[arg(long, value_name = "SECONDS", default_value_t = LAW_TIMEOUT, allow_negative_numbers = true)]
     law_timeout: f64,
 }
 
@@ -139,11 +145,12 @@ impl PluginArgs {
 
 /// How long a call of a law may take; none for ever.
 fn law_limit(seconds: f64) -> Result<Option<Duration>, Failure> {
-    let limit = Duration::try_from_secs_f64(seconds).map_err(|e| {
-        Failure::Usage(format!(
-            "--law-timeout {seconds}: {e}; give a time in seconds, 0 for none"
-        ))
-    })?;
+    if !(0.0..=LONGEST).contains(&seconds) {
+        return Err(Failure::Usage(format!(
+            "--law-timeout {seconds}: give a time in seconds from 0 to {LONGEST:e}, 0 for none"
+        )));
+    }
+    let limit = Duration::from_secs_f64(seconds);
     if !limit.is_zero() && limit < Duration::from_millis(100) {
         return Err(Failure::Usage(format!(
             "--law-timeout {seconds}: a call may take as long; give at least 0.1 s, or 0 for none"

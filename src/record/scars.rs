@@ -1,6 +1,7 @@
 //! Wear scars: columns of the statistics, what the summary says, `scar_NAME.csv` and `scar_NAME.png`.
 
 use super::statistics::Column;
+use super::summary::quantity::quantity;
 use crate::geometry::space::Space;
 use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels};
 use crate::step::Simulation;
@@ -56,10 +57,15 @@ impl ScarSummary {
             (Form::None, ..) | (_, None, _) | (_, _, None) => "no scar".to_owned(),
             (form, Some(from), Some(to)) => {
                 let [left, right] = self.sides;
+                let m = |x: f64| quantity(x, "m");
                 format!(
-                    "{form:?} from x = {from:.4e} to {to:.4e} m, deepest at x = {:.4e} m; middle {:.3e} m, sides {left:.3e} and \
-                     {right:.3e} m deep",
-                    self.deepest_at, self.middle
+                    "{form:?} from x = {} to {}, deepest at x = {}; middle {}, sides {} and {} deep",
+                    m(from),
+                    m(to),
+                    m(self.deepest_at),
+                    m(self.middle),
+                    m(left),
+                    m(right)
                 )
             }
         }

@@ -43,10 +43,12 @@ impl Scatter {
     pub fn method(&self) -> String {
         let n = self.count as f64;
         if !self.flow.steady {
-            return format!(
-                "none: {} still show a trend (Mann-Kendall, p = {:.2})",
-                self.over, self.flow.trend_probability
-            );
+            // Two digits of less than a hundredth would be zeros.
+            let p = match self.flow.trend_probability {
+                p if p < 0.01 => "p < 0.01".to_owned(),
+                p => format!("p = {p:.2}"),
+            };
+            return format!("none: {} still show a trend (Mann-Kendall, {p})", self.over);
         }
         let related = self.count >= CORRELATED && self.flow.correlation > 2.0 / n.sqrt();
         let related = if related {

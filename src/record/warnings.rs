@@ -203,7 +203,7 @@ fn uncoupled(summary: &Summary) -> Option<String> {
     let steps = summary.solver.uncoupled_steps;
     (steps > 0).then(|| {
         format!(
-            "{steps} of {} steps left damage and opening apart; raise coupling.max_iterations or take a smaller time.step",
+            "{steps} of {} steps left damage and opening apart; raise max_iterations of `coupling: Implicit(tolerance: ..., max_iterations: ...)` or take a smaller time.step",
             summary.steps
         )
     })

@@ -73,7 +73,7 @@ fn facing(case: &Case, (path, name): (&str, &str)) -> Result<(usize, f64), Fault
     let Some(body) = case.bodies.iter().find(|b| b.name == name) else {
         let all: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
         return Err(Fault::new(path, format!("there is no body `{name}`"))
-            .expected(format!("one of {}", all.join(", ")))
+            .expected_name(all.iter().copied(), "bodies")
             .nearest(nearest(name, all.iter().copied())));
     };
     flat(body).ok_or_else(|| {

@@ -223,7 +223,7 @@ fn friction(case: &Case, dimension: usize) -> Result<(), Fault> {
         let names: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
         return Err(
             Fault::new("friction.body", format!("there is no body `{}`", test.body))
-                .expected(format!("one of {}", names.join(", ")))
+                .expected_name(names.iter().copied(), "bodies")
                 .nearest(super::source::nearest(&test.body, names.iter().copied())),
         );
     }

@@ -133,7 +133,7 @@ fn body(case: &Case, path: &str, name: &str) -> Result<(), Fault> {
     }
     let names: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
     Err(Fault::new(path, format!("there is no body `{name}`"))
-        .expected(format!("one of {}", names.join(", ")))
+        .expected_name(names.iter().copied(), "bodies")
         .nearest(nearest(name, names.iter().copied())))
 }
 
@@ -149,7 +149,7 @@ fn tying(case: &Case, circuit: &CircuitSpec) -> Result<Vec<usize>, Fault> {
         let Some(at) = case.interfaces.iter().position(|i| i.name == *name) else {
             let known: Vec<&str> = case.interfaces.iter().map(|i| i.name.as_str()).collect();
             return Err(Fault::new(path, format!("there is no interface `{name}`"))
-                .expected(format!("one of {}", known.join(", ")))
+                .expected_name(known.iter().copied(), "interfaces")
                 .nearest(nearest(name, known.iter().copied())));
         };
         if case.interfaces[at].cohesion.is_none() {

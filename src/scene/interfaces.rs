@@ -133,7 +133,7 @@ pub fn without_interface<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<String
             };
             if meet && s.table.get(a as u16, b as u16).is_none() {
                 out.push(format!(
-                    "{first} and {second}: they do not touch each other"
+                    "{first} and {second}: they pass through each other"
                 ));
             }
         }

@@ -198,7 +198,7 @@ fn known(case: &Case, layer: &ThirdBodySpec) -> Result<(), Fault> {
             let all: Vec<&str> = names().collect();
             let fault = Fault::new(format!("between.{k}"), format!("there is no body `{name}`"));
             return Err(fault
-                .expected(format!("one of {}", all.join(", ")))
+                .expected_name(all, "bodies")
                 .nearest(nearest(name, names())));
         }
     }

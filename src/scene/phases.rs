@@ -312,9 +312,13 @@ fn known<'a>(
     if names.clone().any(|n| n == name) {
         return Ok(());
     }
-    let all: Vec<&str> = names.clone().collect();
+    let plural = if what == "body" {
+        "bodies"
+    } else {
+        "interfaces"
+    };
     Err(Fault::new(path, format!("there is no {what} `{name}`"))
-        .expected(format!("one of {}", all.join(", ")))
+        .expected_name(names.clone(), plural)
         .nearest(nearest(name, names)))
 }
 

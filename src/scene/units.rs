@@ -145,6 +145,7 @@ fn read(text: &str) -> Result<Unit, UnitError> {
     if plain.is_empty() || plain == "-" {
         plain = "1".to_owned();
     }
+    let plain = powers(&plain);
     let unknown = |name: &str| UnitError {
         message: if name == text {
             format!("`{name}` is no known unit")
@@ -161,8 +162,12 @@ fn read(text: &str) -> Result<Unit, UnitError> {
     };
     let quantity = runits::parse(&plain).map_err(|error| match error {
         ParseError::Unit(UnknownUnit::Unknown(name)) => unknown(&name),
-        ParseError::Unexpected(token) => refused(format!("{token} has no meaning here")),
-        other => refused(other.to_string()),
+        ParseError::DivideByZero => refused("it divides by zero".into()),
+        ParseError::UnexpectedEnd => refused("it ends too early".into()),
+        // The crate's own words are of its tokens.
+        _ => refused(
+            "write names of units with powers such as `m^2`, joined by spaces, `*` and `/`".into(),
+        ),
     })?;
     if quantity.value() != 1.0 {
         return Err(refused(
@@ -177,6 +182,24 @@ fn read(text: &str) -> Result<Unit, UnitError> {
         dimension: quantity.dimension(),
         angle: turns(&plain),
     })
+}
+
+/// Writes `mm3` as `mm^3`, as people and the program's own results do: a name with a 2 or 3 at its end is a power.
+fn powers(text: &str) -> String {
+    let mut out = String::with_capacity(text.len() + 2);
+    let mut rest = text.chars().peekable();
+    let mut name = false;
+    while let Some(c) = rest.next() {
+        let ends = rest
+            .peek()
+            .is_none_or(|next| !next.is_alphanumeric() && *next != '.' && *next != '_');
+        if name && ends && matches!(c, '2' | '3') {
+            out.push('^');
+        }
+        out.push(c);
+        name = c.is_alphabetic();
+    }
+    out
 }
 
 /// From the base units of the crate, which has grams, to those of the SI.
@@ -283,6 +306,9 @@ mod tests {
             (3e-13, "1/kPa", "1/Pa", 3e-16),
             (3e-5, "mm^3/J", "m^3/J", 3e-14),
             (3e-5, "mm^3/(N m)", "m^3/J", 3e-14),
+            (3e-5, "mm3/(N m)", "m^3/J", 3e-14),
+            (7.85, "g/cm3", "kg/m^3", 7850.0),
+            (1.3, "kJ/m2", "J/m^2", 1.3e3),
             (2.0, "mPa s", "Pa s", 2e-3),
             (5.0, "J s/m^2", "J s/m^2", 5.0),
             (5.0, "kg/s", "J s/m^2", 5.0),
@@ -399,6 +425,15 @@ mod tests {
             "\u{b0}",
         ] {
             assert!(known(good).is_ok(), "{good:?} is refused");
+        }
+    }
+
+    #[test]
+    fn what_is_no_unit_is_told_in_words_of_a_user() {
+        for bad in ["3 MPa", "MPa)", "m^", "m/0", "mm4/N", "m2.5", "(m", "m^2.5", "m^999"] {
+            let said = read(bad).err().map(|e| e.message).unwrap_or_default();
+            assert!(said.contains("unit"), "{bad}: {said}");
+            assert!(!said.contains("Number(") && !said.contains("token"), "{said}");
         }
     }
 

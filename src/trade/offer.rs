@@ -29,6 +29,7 @@ const NO_TEST: &str = "the case has no friction test (`friction`)";
 const NO_BONDS: &str = "no interface of the case makes bonds";
 const NO_DAMAGE: &str = "no interface of the case has bonds that are damaged";
 const NO_WEAR: &str = "no interface of the case has a wear law";
+const OF_THE_RUN: &str = "it tells how a run went, not what the case computes";
 const NO_CIRCUIT: &str = "the case has no circuit of grains (`circuit`)";
 
 impl Offer {
@@ -41,11 +42,13 @@ impl Offer {
         let damaged = bonded && s.laws.iter().any(Interface::damages);
         let wears = s.laws.iter().any(|l| l.wear.is_some());
         let circuit = case.circuit.is_some();
-        let needs: [(&[&str], bool, &str); 9] = [
+        let needs: [(&[&str], bool, &str); 10] = [
+            (&["haste", "uncertainty", "energy.scale"], false, OF_THE_RUN),
             (
                 &[
                     "friction_coefficient",
                     "friction_from_dissipation",
+                    "peak_friction",
                     "cycles",
                     "fretting",
                 ],

@@ -87,7 +87,7 @@ fn seen<S: Dimensional>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> 
     let loaded = opened(text).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<S>(&SearchPath::new(&[]));
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
-    let mut measures = Measures::<S>::new(&loaded.case.measures);
+    let mut measures = Measures::<S>::new(&loaded.case.measures, loaded.case.inertia_scaling);
     measures.begin(&mut s);
     change(&mut s);
     s.time += 1.0;

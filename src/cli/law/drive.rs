@@ -18,13 +18,13 @@ pub const EXAMPLES: &str = "Examples:
   fretwork law drive mac --mode force --to 2e5
   fretwork law drive rate-and-state --mode slide --velocities 1e-6,1e-5 --to 1e-4
   fretwork law drive mac --path my_path.csv        (columns time,n,t1,t2 or time,n,t)
-  fretwork law drive --case cases/cohesive_shear.ron --interface third_body --mode II --png bond.png";
+  fretwork law drive --case cases/wheel_rail_fretting.ron --interface third_body --mode II --png bond.png";
 
 #[derive(Args, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct DriveArgs {
     /// Laws to compose: a name fills every slot that has it; kind/name fills one
-    #[arg(required_unless_present = "case", conflicts_with = "case")]
+    #[arg(required_unless_present_any = ["case", "interface"], conflicts_with = "case")]
     laws: Vec<String>,
     /// Drive the laws of an interface of this case, with its parameters, on contacts of the size they have there
     #[arg(long, value_name = "FILE")]

@@ -60,8 +60,8 @@ pub fn outputs(args: &TradeArgs, offer: &Offer) -> Result<Vec<Output>, Failure> 
     Ok(outputs)
 }
 
-/// Refuses a budget in which not even the case's own setting runs once, by the lower end of what a short trial of the scene
-/// tells. A case that phases or jumps may end early is not judged.
+/// Refuses a budget in which not even the case's own setting runs once, by what a short trial of the scene tells: a study takes
+/// many runs, so that a budget of one is below any use. A case that phases or jumps may end early is not judged.
 pub fn budget(args: &TradeArgs, loaded: &Loaded, scene: Scene) -> Result<(), Failure> {
     let case = &loaded.case;
     let early = case.jump.is_some() || case.phases.last().is_some_and(|p| p.until.is_some());
@@ -84,7 +84,7 @@ fn budget_of<S: Space>(args: &TradeArgs, loaded: &Loaded, built: Built<S>) -> Re
         // A step that fails is told by the run that fails.
         return Ok(());
     };
-    if run.least <= budget {
+    if run.about.unwrap_or(run.least) <= budget {
         return Ok(());
     }
     // The case's own setting, a reference and two neighbours at half the step, over all seeds.

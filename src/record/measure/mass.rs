@@ -15,6 +15,7 @@ pub struct Mass {
     pub(super) axis: usize,
     pub(super) above: f64,
     pub(super) start: f64,
+    pub(super) inertia_scaling: f64,
 }
 
 impl<S: Space> Measure<S> for Mass {
@@ -30,7 +31,7 @@ impl<S: Space> Measure<S> for Mass {
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
         let all = grains(s);
         let above = all.iter().filter(|g| g.at[self.axis] > self.above);
-        vec![above.map(|g| g.mass).sum()]
+        vec![above.map(|g| g.mass).sum::<f64>() / self.inertia_scaling]
     }
 
     fn outcome(&self, table: &Table) -> Vec<(String, f64)> {

@@ -70,8 +70,8 @@ pub struct Measures<S: Space> {
 }
 
 impl<S: Space> Measures<S> {
-    /// From the words of the case.
-    pub fn new(specs: &[MeasureSpec]) -> Self {
+    /// From the words of the case, and its `inertia_scaling`, by which the bodies' masses are too large.
+    pub fn new(specs: &[MeasureSpec], inertia_scaling: f64) -> Self {
         let make = |spec: &MeasureSpec| -> Box<dyn Measure<S>> {
             match spec.clone() {
                 MeasureSpec::Mass {
@@ -84,6 +84,7 @@ impl<S: Space> Measures<S> {
                     axis,
                     above,
                     start,
+                    inertia_scaling,
                 }),
                 MeasureSpec::Slope {
                     name,
@@ -119,7 +120,9 @@ impl<S: Space> Measures<S> {
                     above,
                     strain: None,
                 }),
-                MeasureSpec::ThirdBody(spec) => Box::new(third_body::ThirdBody::<S>::new(spec)),
+                MeasureSpec::ThirdBody(spec) => {
+                    Box::new(third_body::ThirdBody::<S>::new(spec, inertia_scaling))
+                }
                 MeasureSpec::Shear {
                     name,
                     low,

@@ -209,7 +209,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let (cycles, start) = cycles.unzip();
         let spec = case.biaxial.as_ref();
         let biaxial = spec.and_then(|spec| Biaxial::new(spec, &simulation));
-        let measures = Measures::new(&case.measures);
+        let measures = Measures::new(&case.measures, case.inertia_scaling);
         let jumps = cycles
             .as_ref()
             .and_then(|(cycles, _)| Jumps::begin(case, cycles, &mut simulation));

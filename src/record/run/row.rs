@@ -77,7 +77,7 @@ pub fn statistics_columns<S: Dimensional>(case: &Case, s: &Simulation<S>) -> Vec
     let mut out = columns(s, friction, case.biaxial.is_some());
     out.extend(case.jump.is_some().then(Jumps::column));
     out.extend(Account::<S>::columns(case));
-    out.extend(Measures::<S>::new(&case.measures).columns());
+    out.extend(Measures::<S>::new(&case.measures, case.inertia_scaling).columns());
     out
 }
 

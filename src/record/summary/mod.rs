@@ -3,7 +3,7 @@
 mod circuit;
 mod details;
 mod estimate;
-mod quantity;
+pub(super) mod quantity;
 mod text;
 
 pub use self::circuit::{Base, CircuitSummary, Rates};

@@ -33,7 +33,7 @@ pub(super) fn number(value: f64, digits: i32) -> String {
 
 /// A value in an SI unit: `2.300e-5`, `m` is `23.00 um`. Kilograms become grams, cubic metres mm3, so that volumes beside each
 /// other have one unit.
-pub(super) fn quantity(value: f64, unit: &str) -> String {
+pub(in crate::record) fn quantity(value: f64, unit: &str) -> String {
     if unit.is_empty() {
         return number(value, 4);
     }

@@ -10,6 +10,9 @@ use std::fmt::Write as _;
 /// Most values of measures that are printed unasked.
 const MEASURES: usize = 8;
 
+/// Energies below this share of the largest are left out, as in the figure of the energy balance.
+const NEGLIGIBLE: f64 = 1e-3;
+
 /// Lines of label and text.
 #[derive(Default)]
 pub(super) struct Lines(String);
@@ -192,28 +195,51 @@ impl Summary {
         lines.all(self.circuit.iter().flat_map(|c| c.lines()));
     }
 
+    /// Where energy came from and where it went: external work + gravity + kinetic energy at the start = dissipated + stored.
     fn energies(&self, lines: &mut Lines) {
         let unit = self.unit("J", "J/m");
         let e = &self.energy;
+        let largest = e.entries().into_iter().map(|(_, _, x)| x.abs());
+        let largest = largest.fold(0.0, f64::max);
+        let shown = |x: f64| x.is_nan() || x.abs() > NEGLIGIBLE * largest;
         let parts = [
             ("friction", e.friction),
             ("fracture", e.fracture),
             ("impact", e.impact),
-            ("viscous", e.viscous),
+            ("damping of bonds", e.viscous),
             ("adhesion", e.adhesion),
             ("time integration", e.scheme),
             ("position correction", e.correction),
             ("carried off", e.carried),
         ];
-        let shown = parts.iter().filter(|(_, x)| *x != 0.0);
-        let shown: Vec<String> = shown
+        let parts = parts.iter().filter(|(_, x)| shown(*x));
+        let parts: Vec<String> = parts
             .map(|(name, x)| format!("{name} {}", quantity(*x, unit)))
             .collect();
-        if !shown.is_empty() {
-            lines.add("dissipated", shown.join(", "));
+        if !parts.is_empty() {
+            lines.add("dissipated", parts.join(", "));
         }
+        let mut stored = Vec::new();
+        if shown(e.kinetic) || shown(e.initial_kinetic) {
+            stored.push(format!(
+                "kinetic energy {}, {} at the start",
+                quantity(e.kinetic, unit),
+                quantity(e.initial_kinetic, unit)
+            ));
+        }
+        if shown(e.elastic) {
+            stored.push(format!("in bonds {}", quantity(e.elastic, unit)));
+        }
+        if !stored.is_empty() {
+            lines.add("stored", stored.join("; "));
+        }
+        let gravity = match e.potential {
+            x if !shown(x) => String::new(),
+            x if x < 0.0 => format!("; gravity gave {}", quantity(-x, unit)),
+            x => format!("; gravity took {}", quantity(x, unit)),
+        };
         let text = format!(
-            "{}; the ledger closes to {} of the largest energy",
+            "{}{gravity}; the ledger closes to {} of the largest energy",
             quantity(e.external_work, unit),
             number(self.energy_residual_relative, 2)
         );

@@ -126,27 +126,30 @@ fn all_there_is_comes_on_request() {
     assert!(!text.contains("cycle 25"), "{text}");
 }
 
-/// Each entry of the ledger under its own name: damping, cohesion without opening and the time scheme are not one thing.
 #[test]
-fn energies_are_named_one_by_one() {
+fn energies_are_named_as_in_the_ledger_and_balance() {
     let mut summary = fretting();
-    summary.energy.viscous = 1.0;
-    summary.energy.adhesion = 2.0;
-    summary.energy.scheme = 4.0;
+    // A fall: 12 J of work and 80 J of gravity, of which 5 J are kinetic and 3 J in bonds.
+    let e = &mut summary.energy;
+    *e = Default::default();
+    (e.external_work, e.potential, e.initial_kinetic) = (12.0, -80.0, 1.0);
+    (e.kinetic, e.elastic, e.friction, e.adhesion) = (5.0, 3.0, 60.0, 25.0);
+    (e.viscous, e.scheme) = (1e-3, 1e-3);
     let text = summary.text(false);
-    for entry in [
-        "friction 100.0 mJ",
-        "viscous 1.000 J",
-        "adhesion 2.000 J",
-        "time integration 4.000 J",
-    ] {
-        place(&text, entry);
-    }
-    summary.energy.viscous = 0.0;
-    summary.energy.adhesion = 0.0;
-    let text = summary.text(false);
-    assert!(
-        !text.contains("viscous") && !text.contains("adhesion"),
-        "{text}"
+    place(&text, "friction 60.00 J, adhesion 25.00 J\n");
+    place(
+        &text,
+        "kinetic energy 5.000 J, 1.000 J at the start; in bonds 3.000 J\n",
     );
+    place(&text, "12.00 J; gravity gave 80.00 J; the ledger");
+    assert!(!text.contains("damping of bonds") && !text.contains("time integration"));
+    // Damping and time integration are no longer one entry with adhesion; a rise takes energy.
+    let e = &mut summary.energy;
+    (e.viscous, e.scheme, e.potential) = (2.0, 4.0, 7.0);
+    let text = summary.text(false);
+    place(
+        &text,
+        "damping of bonds 2.000 J, adhesion 25.00 J, time integration 4.000 J\n",
+    );
+    place(&text, "gravity took 7.000 J");
 }

@@ -251,7 +251,7 @@ impl<S: Dimensional> Builder<'_, S> {
             let names: Vec<&str> = self.densities.keys().map(String::as_str).collect();
             self.source.locate(
                 Fault::new(path, format!("the case has no material `{name}`"))
-                    .expected(format!("one of {}", names.join(", ")))
+                    .expected_name(names.iter().copied(), "materials")
                     .nearest(super::source::nearest(name, names.iter().copied())),
             )
         })

@@ -134,7 +134,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let Some(cluster) = scene.clusters.iter().find(|c| c.0 == name) else {
             let message = format!("the scene has no cluster `{name}`");
             let fault = Fault::new(format!("{here}.name"), message)
-                .expected(format!("one of {}", names().collect::<Vec<_>>().join(", ")))
+                .expected_name(names(), "clusters in its scene file")
                 .nearest(source::nearest(name, names()));
             return Err(self.source.locate(fault));
         };

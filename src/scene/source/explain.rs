@@ -5,6 +5,7 @@ use std::ops::Range;
 use ron::error::{Error as RonError, Position, SpannedError};
 
 use super::set::{one_of, shorten};
+use super::respell::Step;
 use super::tree::{Kind, Node, Shape, join_path, plain};
 use super::{InputError, MAX_DEPTH, Source, nearest};
 
@@ -230,6 +231,13 @@ impl Source {
             if within && spare {
                 return self.wrong_type(node, "an integer");
             }
+            if matches!(code, RonError::ExpectedIdentifier) && self.is_time_function(node) {
+                let error = self.wrong_type(node, TIME_FUNCTION);
+                return match node.kind {
+                    Kind::Text => error.help("numbers here are in SI units, without a unit"),
+                    _ => error,
+                };
+            }
             if let Some(expected) = expected_type(code) {
                 return self.wrong_type(node, &expected);
             }
@@ -269,6 +277,18 @@ impl Source {
         }
     }
 
+    /// Whether a function of time stands where this value is.
+    fn is_time_function(&self, node: &Node) -> bool {
+        let way = self.way_to(&node.span);
+        // The list of `Axes([...])` is a step of its own.
+        way.iter().rev().take(2).any(|step| match step {
+            (Some("Velocity" | "Displacement" | "Force" | "Scaled" | "Axes"), _) => true,
+            (Some("Pressure"), Step::Field(name)) => name == "value",
+            (Some("Turned"), Step::Field(name)) => name == "angle",
+            _ => false,
+        })
+    }
+
     fn wrong_type(&self, node: &Node, expected: &str) -> InputError {
         let written = shorten(&self.text[node.span.clone()]);
         let found = match &node.kind {
@@ -304,6 +324,10 @@ impl Source {
         }
     }
 }
+
+/// How a function of time is written.
+const TIME_FUNCTION: &str =
+    "a number, or a function of time: `Constant(...)`, `Ramp(...)`, `Sine(...)`, `Table([...])`";
 
 /// What the type at this place is written as.
 fn expected_type(code: &RonError) -> Option<String> {

@@ -285,6 +285,17 @@ impl Fault {
         self
     }
 
+    /// Adds the names of `what` (in the plural) that the case has, or that it has none.
+    #[must_use]
+    pub fn expected_name<'a>(self, names: impl IntoIterator<Item = &'a str>, what: &str) -> Self {
+        let names: Vec<&str> = names.into_iter().collect();
+        if names.is_empty() {
+            self.expected(format!("a case with {what}: this one has none"))
+        } else {
+            self.expected(format!("one of {}", names.join(", ")))
+        }
+    }
+
     /// Adds the nearest valid name.
     #[must_use]
     pub fn nearest(mut self, name: Option<&str>) -> Self {

@@ -25,7 +25,7 @@ const CONSTANT: &str = "Constant(";
 
 /// A step from a value to one in it.
 #[derive(Debug, PartialEq, Eq)]
-enum Step {
+pub(super) enum Step {
     /// A field of this name.
     Field(String),
     /// A place in a tuple.
@@ -90,7 +90,7 @@ impl Source {
         })
     }
 
-    fn way_to(&self, span: &Range<usize>) -> Vec<(Option<&str>, Step)> {
+    pub(super) fn way_to(&self, span: &Range<usize>) -> Vec<(Option<&str>, Step)> {
         let mut way = Vec::new();
         let mut node = self.tree.root.as_ref();
         while let Some((current, group)) = node.and_then(|n| Some((n, n.group()?))) {

@@ -145,7 +145,12 @@ impl Source {
                 let root = self.tree.root.as_ref();
                 let levels = schema::levels::<T>(&self.text, root, &wanted.path);
                 let (at, before, after) = match missing.parent {
-                    Some(parent) => self.insertion(&wanted, parent, missing.depth, &levels)?,
+                    Some(parent) => self
+                        .insertion(&wanted, parent, missing.depth, &levels)
+                        .map_err(|error| match as_one_value::<T>(&wanted, &levels) {
+                            Some(set) => error.help(format!("write it as one value: --set '{set}'")),
+                            None => error,
+                        })?,
                     None => return Err(wanted.fail("the file holds no value to set this in")),
                 };
                 let new = if wanted.is_bare() {
@@ -385,6 +390,34 @@ fn replacement(
         wanted.complete()?
     };
     Ok((target.span.clone(), new))
+}
+
+/// `coupling=Implicit(tolerance: ..., max_iterations: 3)` of `coupling.max_iterations=3`: the key above the last as a whole, with
+/// the first of its kinds that has such a field.
+fn as_one_value<T: DeserializeOwned>(wanted: &Assignment<'_>, levels: &[Level]) -> Option<String> {
+    let (last, above) = wanted.path.split_last()?;
+    let Some(Level::Enum(variants)) = levels.get(above.len()) else {
+        return None;
+    };
+    let nested = |variant: &str| {
+        let opened: String = above.iter().map(|part| format!("({part}: ")).collect();
+        opened + variant + "()" + &")".repeat(above.len())
+    };
+    variants.iter().find_map(|variant| {
+        let text = nested(variant);
+        let tree = scan::scan(&text);
+        let levels = schema::levels::<T>(&text, tree.root.as_ref(), &wanted.path);
+        let Some(Level::Struct(fields)) = levels.get(above.len()) else {
+            return None;
+        };
+        let given = |field: &&'static str| match *field == last.as_str() {
+            true => format!("{field}: {}", wanted.value()),
+            false => format!("{field}: ..."),
+        };
+        let known = fields.contains(&last.as_str());
+        let all: Vec<String> = fields.iter().map(given).collect();
+        known.then(|| format!("{}={variant}({})", join_path(above), all.join(", ")))
+    })
 }
 
 /// `one of `a`, `b``.

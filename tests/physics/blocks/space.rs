@@ -193,16 +193,20 @@ fn neighbours_are_bonded_over_their_faces_and_nothing_else_is() {
 #[test]
 fn blocks_are_measured() {
     let name = || "m".to_owned();
-    let mut mass = Measures::new(&[MeasureSpec::Mass {
+    let mass = MeasureSpec::Mass {
         name: name(),
         axis: 2,
         above: 0.2,
         start: 0.0,
-    }]);
+    };
+    let mut scaled = Measures::new(std::slice::from_ref(&mass), 1e3);
+    let mut mass = Measures::new(&[mass], 1.0);
     let mut s = scene::<Solid>("block_wall", &WALL);
     let whole: f64 = s.bodies.mass[..22].iter().sum();
     // Centres of three of the five courses are above.
     assert!(close(mass.sample(&s)[0], 0.6 * whole, 1e-14));
+    // Of a case whose bodies are a thousand times too heavy: the mass as it is.
+    assert!(close(scaled.sample(&s)[0], 0.6e-3 * whole, 1e-14));
 
     let folder = std::env::temp_dir().join(format!("fretwork-blocks-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
@@ -215,7 +219,7 @@ fn blocks_are_measured() {
         turned: 0.0,
         start: 0.0,
     };
-    let mut profile = Measures::new(&[profile]);
+    let mut profile = Measures::new(&[profile], 1.0);
     step(&mut s);
     profile.sample(&s);
     let table = Table::create(&folder.join("t.csv"), Vec::new()).unwrap();
@@ -251,6 +255,6 @@ fn blocks_are_measured() {
     };
     // In three columns the highest of three, two and three blocks.
     let known = f64::atan((0.17 - 0.12) / (0.8 * 2.0 / 3.0));
-    let found = Measures::new(&[slope]).sample(&s)[0];
+    let found = Measures::new(&[slope], 1.0).sample(&s)[0];
     assert!((found - known).abs() < 1e-6, "{found} {known}");
 }

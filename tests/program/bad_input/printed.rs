@@ -59,11 +59,11 @@ fn a_run_tells_of_materials_that_pass_through_each_other() {
     for (command, words) in [
         (
             "check",
-            "no interface         grain and wall: they do not touch each other",
+            "no interface         grain and wall: they pass through each other",
         ),
         (
             "run",
-            "no interface: grain and wall: they do not touch each other",
+            "no interface: grain and wall: they pass through each other",
         ),
     ] {
         let output = trial.call(&[command, "case.ron"]);
@@ -100,15 +100,31 @@ fn numbers_of_the_command_line() {
         ("--output", "friction_coefficient=inf"),
         ("--seeds", "0"),
         ("--jobs", "-1"),
-        ("--law-timeout", "NaN"),
-        ("--law-timeout", "-1"),
-        ("--law-timeout", "1e400"),
     ] {
         refusal(
             &trial.call(&["trade", "case.ron", &format!("{option}={value}")]),
             &[option],
         );
     }
+    for value in ["NaN", "-1", "1e400"] {
+        let option = format!("--law-timeout={value}");
+        for arguments in [
+            &["trade", "case.ron", &option][..],
+            &["trade", "case.ron", "--law-timeout", value],
+            &["run", "case.ron", "--law-timeout", value],
+            &["law", "list", "--law-timeout", value],
+        ] {
+            refusal(
+                &trial.call(arguments),
+                &["--law-timeout", "give a time in seconds from 0"],
+            );
+        }
+    }
+    // A sign is no option: the sentence on the number comes.
+    refusal(
+        &trial.call(&["trade", "case.ron", "--residual", "-1"]),
+        &["--residual", "a number from 0"],
+    );
     for option in ["--to", "--rate", "--angle", "--pressure", "--velocities"] {
         for value in ["NaN", "inf", "-1", "1e400"] {
             refusal(

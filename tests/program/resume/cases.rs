@@ -92,7 +92,12 @@ fn the_circuit() {
 /// A profile that wears, and jumps over cycles.
 #[test]
 fn scars_and_jumps() {
-    let sets = ["output.checkpoint=Steps(300)", "output.frames=2"];
+    // A row of the statistics is begun before some checkpoints and ends after.
+    let sets = [
+        "output.checkpoint=Steps(300)",
+        "output.frames=2",
+        "output.every=40",
+    ];
     let job = Job {
         case: "fretting_wear_jump",
         sets: &sets,

@@ -39,6 +39,8 @@ pub struct ThirdBody<S: Space> {
     lost: Vec<f64>,
     history: History,
     clusters: Clusters,
+    /// Factor by which masses are larger than they are.
+    inertia_scaling: f64,
     /// When the last sample was taken, or the count began (s).
     seen: f64,
     /// Fastest sliding so far (m/s).
@@ -133,7 +135,7 @@ fn columns(dimension: usize) -> impl Iterator<Item = (&'static str, &'static str
 }
 
 impl<S: Space> ThirdBody<S> {
-    pub(super) fn new(spec: ThirdBodySpec) -> Self {
+    pub(super) fn new(spec: ThirdBodySpec, inertia_scaling: f64) -> Self {
         Self {
             spent: Dissipation::new(spec.bins, Vec::new()),
             seen: spec.start,
@@ -142,6 +144,7 @@ impl<S: Space> ThirdBody<S> {
             lost: Vec::new(),
             history: History::new(),
             clusters: Clusters::default(),
+            inertia_scaling,
             fastest: 0.0,
             rows: 0,
             row: vec![f64::NAN; columns(S::D).count()],
@@ -365,7 +368,7 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
         let path = dir.join(format!("{name}_energy.csv"));
         tables::energies(&path, &self.spent, &self.spec.between)?;
         let path = dir.join(format!("{name}_clusters.csv"));
-        tables::clusters(&path, &self.clusters, S::D)?;
+        tables::clusters(&path, &self.clusters, self.inertia_scaling, S::D)?;
         let column = |part: &str| since(table, &self.column(part), f64::NEG_INFINITY);
         figure::Figure {
             title,

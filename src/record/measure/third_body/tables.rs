@@ -132,13 +132,14 @@ pub(super) fn energies<S: Space>(
     write(path, &lines)
 }
 
-/// Writes how many clusters there are of each size, and their mass.
+/// Writes how many clusters there are of each size, and their mass without `inertia_scaling`.
 ///
 /// # Errors
 /// The file cannot be written.
 pub(super) fn clusters(
     path: &Path,
     clusters: &Clusters,
+    inertia_scaling: f64,
     dimension: usize,
 ) -> Result<(), ReportError> {
     let unit = if dimension == 2 { "kg/m" } else { "kg" };
@@ -151,7 +152,7 @@ pub(super) fn clusters(
         lines.push(vec![
             size.to_string(),
             count.to_string(),
-            format!("{mass:e}"),
+            format!("{:e}", mass / inertia_scaling),
         ]);
     }
     write(path, &lines)
@@ -163,4 +164,24 @@ fn write(path: &Path, lines: &[Vec<String>]) -> Result<(), ReportError> {
         path: path.to_owned(),
         reason: e.to_string(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The mass of the clusters is that of the material, whatever the inertia is scaled by.
+    #[test]
+    fn masses_are_without_the_scaling_of_inertia() {
+        let of = Clusters {
+            sizes: [(1, (4, 2e3)), (3, (1, 1e3))].into(),
+            ..Clusters::default()
+        };
+        let name = format!("fretwork-clusters-{}.csv", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        clusters(&path, &of, 1e6, 2).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        std::fs::remove_file(&path).ok();
+        assert_eq!(text, "grains,clusters,mass [kg/m]\n1,4,2e-3\n3,1,1e-3\n");
+    }
 }

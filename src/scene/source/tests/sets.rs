@@ -119,6 +119,14 @@ fn malformed_sets_are_refused() {
     assert!(refused("bodies.5=3").contains("`bodies` has 2 elements, and no `5`"));
     assert!(refused("seed.x.y=3").contains("`seed` is one value, which has no `x` to set"));
     assert!(refused("loading.frequency.x=3").contains("`loading.frequency` is `5.0`"));
+    let kinds = Source::from_text("c.ron", "()")
+        .set::<crate::scene::case::Case>("coupling.max_iterations=3")
+        .unwrap_err()
+        .compact();
+    assert!(
+        kinds.contains("--set 'coupling=Implicit(tolerance: ..., max_iterations: 3)'"),
+        "{kinds}"
+    );
     let broken = Source::from_text("b.ron", "(a: [1, 2)")
         .set::<Case>("a=1")
         .unwrap_err();
