@@ -1,6 +1,7 @@
 //! What a run leaves behind, through the program: the files of the contract and how they agree.
 
 mod contacts;
+mod documented;
 mod ledger;
 mod streams;
 

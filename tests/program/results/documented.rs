@@ -1,0 +1,76 @@
+//! Every column and every key that a run writes stands in docs/outputs.md.
+
+use fretwork::laws::SearchPath;
+use fretwork::record::{Summary, statistics_columns};
+use fretwork::scene::build::{Built, Dimensional, Loaded};
+use fretwork::scene::{Scene, load};
+use std::collections::BTreeSet;
+
+/// What stands between backticks in the page.
+fn documented() -> BTreeSet<String> {
+    let path = format!("{}/docs/outputs.md", env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(path).unwrap();
+    let words = page
+        .lines()
+        .flat_map(|line| line.split('`').skip(1).step_by(2));
+    words.map(str::to_owned).collect()
+}
+
+fn missing<S: Dimensional>(
+    loaded: &Loaded,
+    built: &Built<S>,
+    page: &BTreeSet<String>,
+) -> Vec<String> {
+    let case = &loaded.case;
+    // Names that a case chose stand in the page as BODY and NAME.
+    let bodies = case.bodies.iter().map(|b| (b.name.as_str(), "BODY"));
+    let measures = case.measures.iter().map(|m| (m.name(), "NAME"));
+    let chosen: Vec<(&str, &str)> = bodies.chain(measures).collect();
+    let known = |column: &str| {
+        let spelled = chosen.iter().flat_map(|(name, word)| {
+            let rest = column.strip_prefix(name);
+            rest.into_iter()
+                .flat_map(move |rest| [format!("{word}{rest}"), format!("{word}_*")])
+        });
+        page.contains(column) || spelled.into_iter().any(|c| page.contains(&c))
+    };
+    let columns = statistics_columns(case, &built.simulation);
+    let names = columns.into_iter().map(|c| c.name);
+    names.filter(|name| !known(name)).collect()
+}
+
+#[test]
+fn every_column_of_the_shipped_cases_is_documented() {
+    let page = documented();
+    for case in [
+        "wheel_rail_fretting",
+        "third_body_steady",
+        "fretting_wear_jump",
+        "plane_shear",
+        "fault_propagation",
+        "rotating_drum_3d",
+        "silo",
+        "biaxial",
+    ] {
+        let path = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
+        let loaded = load(path.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"));
+        let built = loaded.build(&SearchPath::new(&[]));
+        let missing = match built.unwrap_or_else(|e| panic!("{e}")) {
+            Scene::Plane(built) => missing(&loaded, &built, &page),
+            Scene::Solid(built) => missing(&loaded, &built, &page),
+        };
+        assert!(
+            missing.is_empty(),
+            "{case}: docs/outputs.md lacks {missing:?}"
+        );
+    }
+}
+
+#[test]
+fn every_key_of_the_summary_is_documented() {
+    let page = documented();
+    let summary = serde_json::to_value(Summary::default()).unwrap();
+    let keys = summary.as_object().unwrap().keys();
+    let missing: Vec<&String> = keys.filter(|key| !page.contains(*key)).collect();
+    assert!(missing.is_empty(), "docs/outputs.md lacks {missing:?}");
+}
