@@ -39,7 +39,8 @@ fn refused(out: &Path, job: Job<'_>, code: i32, words: &[&str]) {
     for word in words {
         assert!(told.contains(word), "`{word}` is not in: {told}");
     }
-    assert!(draft(out) == before, "a draft was written");
+    let left = draft(out);
+    assert!(left.is_none() || left == before, "a draft was left");
 }
 
 #[test]

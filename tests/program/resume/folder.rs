@@ -211,7 +211,8 @@ fn what_hangs_on_the_end_is_refused_a_later_one() {
         assert!(told.contains(word), "{told}");
     }
     assert!(std::fs::read(out.0.join("results.h5")).unwrap() == before);
-    assert!(draft(&out.0) == drafted);
+    let left = draft(&out.0);
+    assert!(left.is_none() || left == drafted, "a draft was left");
     job(&SETS).done(&out.0, &["--resume"]);
 }
 
