@@ -430,10 +430,15 @@ mod tests {
 
     #[test]
     fn what_is_no_unit_is_told_in_words_of_a_user() {
-        for bad in ["3 MPa", "MPa)", "m^", "m/0", "mm4/N", "m2.5", "(m", "m^2.5", "m^999"] {
+        for bad in [
+            "3 MPa", "MPa)", "m^", "m/0", "mm4/N", "m2.5", "(m", "m^2.5", "m^999",
+        ] {
             let said = read(bad).err().map(|e| e.message).unwrap_or_default();
             assert!(said.contains("unit"), "{bad}: {said}");
-            assert!(!said.contains("Number(") && !said.contains("token"), "{said}");
+            assert!(
+                !said.contains("Number(") && !said.contains("token"),
+                "{said}"
+            );
         }
     }
 

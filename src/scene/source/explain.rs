@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use ron::error::{Error as RonError, Position, SpannedError};
 
-use super::set::{one_of, shorten};
 use super::respell::Step;
+use super::set::{one_of, shorten};
 use super::tree::{Kind, Node, Shape, join_path, plain};
 use super::{InputError, MAX_DEPTH, Source, nearest};
 

@@ -148,7 +148,9 @@ impl Source {
                     Some(parent) => self
                         .insertion(&wanted, parent, missing.depth, &levels)
                         .map_err(|error| match as_one_value::<T>(&wanted, &levels) {
-                            Some(set) => error.help(format!("write it as one value: --set '{set}'")),
+                            Some(set) => {
+                                error.help(format!("write it as one value: --set '{set}'"))
+                            }
                             None => error,
                         })?,
                     None => return Err(wanted.fail("the file holds no value to set this in")),
