@@ -182,6 +182,7 @@ impl Camera {
             links = self.lines(simulation, subject);
             bodies = outlines(simulation, self.window);
             bodies.extend(pieces(simulation, self.window, paints));
+            bodies.extend(named_balls(simulation, self.window));
         }
         Frame {
             title: title.to_owned(),
@@ -262,6 +263,41 @@ fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Ve
 /// Whether a body is a first body.
 fn is_first<S: Space>(s: &Simulation<S>, body: u32) -> bool {
     s.bodies.driven.iter().any(|d| d.body == body)
+}
+
+/// The largest ball of each first body that is large in the window, as an outline that hides under its disk and bears the name.
+fn named_balls<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
+    const CORNERS: u32 = 256;
+    let least = 0.1 * (window[1] - window[0]).min(window[3] - window[2]);
+    let mut out = Vec::new();
+    for driven in &s.bodies.driven {
+        let surfaces = s.shapes.surfaces.iter().map(|f| f.body);
+        let labelled = surfaces.into_iter().any(|body| body == driven.body);
+        if labelled || s.bodies.gone[driven.body as usize] || driven.name.starts_with("wall_") {
+            continue;
+        }
+        let own = s.shapes.balls.iter().zip(balls(s));
+        let own = own.filter(|(ball, _)| ball.body == driven.body);
+        let largest = own.max_by(|a, b| a.1.1.total_cmp(&b.1.1));
+        let Some((_, (centre, radius))) = largest.filter(|(_, (_, r))| *r >= least) else {
+            continue;
+        };
+        let centre = s.shapes.periodic.wrapped(centre);
+        let corner = |k: u32| {
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(CORNERS);
+            [
+                centre[0] + radius * angle.cos(),
+                centre[1] + radius * angle.sin(),
+            ]
+        };
+        out.push(Outline {
+            points: (0..CORNERS).map(corner).collect(),
+            label: driven.name.clone(),
+            shade: None,
+            paint: Paint::Grey,
+        });
+    }
+    out
 }
 
 /// The images of a point that show in the window.
@@ -395,4 +431,27 @@ fn around(chain: &[[f64; 2]], far: f64) -> Vec<[f64; 2]> {
         [x + far, y],
     ]);
     polygon
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::Plane;
+    use crate::laws::SearchPath;
+
+    /// The cylinder of a fretting test is a ball and bears its name where it is large in the window; the flat has a surface.
+    #[test]
+    fn a_first_body_that_is_a_ball_is_named() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/fretting_scar.ron");
+        let loaded = crate::scene::load(std::path::Path::new(file), &[]).unwrap();
+        let built = loaded.build_in::<Plane>(&SearchPath::new(&[])).unwrap();
+        let s = &built.simulation;
+        let window = [-5e-3, 5e-3, -1e-3, 4e-3];
+        let named: Vec<String> = named_balls(s, window)
+            .into_iter()
+            .map(|o| o.label)
+            .collect();
+        assert_eq!(named, ["cylinder"]);
+        assert!(named_balls(s, [-1.0, 1.0, -1.0, 1.0]).is_empty());
+    }
 }

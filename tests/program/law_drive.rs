@@ -219,4 +219,20 @@ fn bad_requests_are_refused() {
         assert_eq!(code, Some(2), "{line}: {error}");
         assert!(error.contains(part), "{line}: {error}");
     }
+    // An interface is of a case: laws by name are of no use beside it.
+    let (_, _, error) = drive("--interface x");
+    assert!(!error.contains("<LAWS>"), "{error}");
+}
+
+/// The example of a case that the help shows.
+#[test]
+fn the_example_of_the_help_runs() {
+    let (_, help, _) = drive("--help");
+    let example = help
+        .lines()
+        .find_map(|l| l.trim().strip_prefix("fretwork law drive --case"))
+        .unwrap_or_else(|| panic!("{help}"));
+    let example = example.split(" --png").next().unwrap_or_default();
+    let (code, _, error) = drive(&format!("--case{example}"));
+    assert_eq!(code, Some(0), "{example}: {error}");
 }

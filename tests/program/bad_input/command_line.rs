@@ -118,3 +118,45 @@ fn check_refuses_what_run_refuses() {
     let place = place.rsplit('/').next().unwrap();
     refusal(&output, &[place, "expected a number between 0.5 and 1"]);
 }
+
+/// A study compares what the case computes, not how a run went, and no friction where nothing is rubbed.
+#[test]
+fn a_study_of_what_the_case_does_not_have() {
+    let trial = Trial::new();
+    trial.write("case.ron", PLANE);
+    for (output, words) in [
+        ("haste.first_late", "how a run went"),
+        ("uncertainty.wear.step", "how a run went"),
+        ("uncertainty.friction_coefficient.scatter", "how a run went"),
+        ("energy.scale", "how a run went"),
+        ("peak_friction", "no friction test"),
+    ] {
+        let said = refusal(
+            &trial.call(&["trade", "case.ron", "--output", output]),
+            &[output, words],
+        );
+        let listed = said.split("nothing to compare").nth(1).unwrap_or_default();
+        assert!(
+            !listed.contains("haste.")
+                && !listed.contains("uncertainty.")
+                && !listed.contains("peak_friction"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn a_body_that_is_asked_for_where_there_is_none() {
+    let trial = Trial::new();
+    let (bodies, rest) = PLANE.split_once("bodies: [").unwrap();
+    let (_, grains) = rest.split_once("grains: [").unwrap();
+    trial.write("case.ron", format!("{bodies}grains: [{grains}"));
+    let test = r#"friction=(body: "x", along: 0, normal: 1)"#;
+    refusal(
+        &trial.call(&["check", "case.ron", "--set", test]),
+        &[
+            "there is no body `x`",
+            "a case with bodies: this one has none",
+        ],
+    );
+}

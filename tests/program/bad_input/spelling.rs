@@ -273,3 +273,20 @@ fn text_after_a_case_and_marks_of_editors() {
         &["unknown field"],
     );
 }
+
+/// A function of time that is written as something else: what it may be is said, and no name.
+#[test]
+fn what_is_no_function_of_time() {
+    let sine = "Displacement(Sine(amplitude: 1e-4, frequency: 20.0))";
+    let expected = "expected a number, or a function of time: `Constant(...)`";
+    for (new, found) in [
+        (r#"Velocity(‸"0.1 m/s")"#, "SI units, without a unit"),
+        ("Velocity(‸[0.1, 0.2])", "found a list"),
+        ("Force(‸true)", ""),
+    ] {
+        refused(&with(PLANE, sine, new), &[expected, found]);
+    }
+    let servo = "Force(Table([(0.0, -1.0), (1.0, -2.0)]))";
+    let pressure = r#"Pressure(value: ‸"1 MPa")"#;
+    refused(&with(PLANE, servo, pressure), &[expected]);
+}
