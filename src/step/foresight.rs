@@ -50,9 +50,10 @@ impl<S: Space> Simulation<S> {
             let surfaces = self.shapes.surfaces.iter();
             // How far a surface reaches is not known.
             let sweeps = turn > TURNS * bodies.spin[b].norm().max(w.norm())
-                && surfaces
-                    .filter(|s| s.body as usize == b)
-                    .any(|s| !s.shape.keeps_place(&S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b])));
+                && surfaces.filter(|s| s.body as usize == b).any(|s| {
+                    !s.shape
+                        .keeps_place(&S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]))
+                });
             time * (jump + turn * lever) > self.network.fast || sweeps
         })
     }

@@ -122,7 +122,8 @@ impl Sketch {
         for a in &materials {
             for b in *a..materials.len() {
                 let restitution = self.restitution;
-                let restitution = restitution.map_or(String::new(), |e| format!(", \"restitution_n\": {e:?}"));
+                let restitution =
+                    restitution.map_or(String::new(), |e| format!(", \"restitution_n\": {e:?}"));
                 let _ = writeln!(
                     interfaces,
                     "(name: \"i{a}{b}\", between: (\"m{a}\", \"m{b}\"), contact: \"{}\", {} \

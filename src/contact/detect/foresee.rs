@@ -150,15 +150,7 @@ pub fn report_first_move<S: Space>(
     let velocities: Vec<_> = velocities.zip(bodies.spin.iter().copied()).collect();
     if network.seen_at.is_empty() {
         let centres = centres(shapes, bodies);
-        rebuild(
-            network,
-            shapes,
-            bodies,
-            laws,
-            &centres,
-            &velocities,
-            length,
-        );
+        rebuild(network, shapes, bodies, laws, &centres, &velocities, length);
     }
     let motion = Motion {
         velocities: &velocities,

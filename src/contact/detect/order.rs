@@ -40,9 +40,15 @@ pub(super) fn mark_later<S: Space>(
     // The first impact of each movable body, among meetings that come first.
     let mut first: BTreeMap<u32, f64> = BTreeMap::new();
     for meeting in order {
-        let after = |b: &u32| first.get(b).is_some_and(|s| (meeting.at - s) * meeting.travel > fast);
+        let after = |b: &u32| {
+            first
+                .get(b)
+                .is_some_and(|s| (meeting.at - s) * meeting.travel > fast)
+        };
         if meeting.bodies.iter().any(after) {
-            found[meeting.contacts.clone()].iter_mut().for_each(|c| c.later = true);
+            found[meeting.contacts.clone()]
+                .iter_mut()
+                .for_each(|c| c.later = true);
             continue;
         }
         for b in meeting.bodies {
@@ -74,7 +80,9 @@ pub(super) fn mark_later<S: Space>(
         if stopped.course(&pair, TOLERATED * fast) != Course::Clear {
             let blocked = if one > other { of[0] } else { of[1] };
             for meeting in meetings.iter().filter(|m| m.bodies.contains(&blocked)) {
-                found[meeting.contacts.clone()].iter_mut().for_each(|c| c.later = true);
+                found[meeting.contacts.clone()]
+                    .iter_mut()
+                    .for_each(|c| c.later = true);
             }
         }
     }

@@ -296,7 +296,11 @@ fn a_flap_that_starts_to_turn_hits_what_is_in_its_way() {
         ..still()
     });
     go(&mut s, 14);
-    assert!(s.bodies.velocity[0].norm() > 1.0, "{:?}", s.bodies.velocity[0]);
+    assert!(
+        s.bodies.velocity[0].norm() > 1.0,
+        "{:?}",
+        s.bodies.velocity[0]
+    );
 }
 
 fn passed<S: Space>(s: &Simulation<S>) {
