@@ -39,7 +39,7 @@ pub struct Bodies<S: Space> {
     /// Which bodies were taken away: they touch nothing and are not shown.
     pub gone: Vec<bool>,
     /// Motion of each body that rounding took away (m); empty while there is none.
-    pub lost: Vec<f64>,
+    pub lost: Vec<S::Vector>,
 }
 
 impl<S: Space> Default for Bodies<S> {

@@ -209,8 +209,13 @@ impl<S: Space> Network<S> {
     /// How many contacts there are: those within the alert distance or held, and of those made ahead because of speed the
     /// ones that carry an impulse.
     pub fn contact_count(&self) -> usize {
+        self.counted_contacts().count()
+    }
+
+    /// The contacts that [`Self::contact_count`] counts.
+    pub fn counted_contacts(&self) -> impl Iterator<Item = &Contact<S>> {
         let counts = |c: &&Contact<S>| !c.beyond || c.impulse != S::Vector::null();
-        self.contacts.iter().filter(counts).count()
+        self.contacts.iter().filter(counts)
     }
 
     /// The bond of a contact, broken or not.

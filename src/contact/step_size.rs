@@ -62,6 +62,9 @@ pub struct StepSizeDiagnostics {
     pub unwatched_steps: u64,
     /// The first of them.
     pub first_unwatched: Option<Occurrence>,
+    /// The start of the last of them (s).
+    #[serde(skip)]
+    last_unwatched: Option<f64>,
     /// When the motion of a body was first lost to rounding, and which.
     pub motion_lost: Option<Occurrence>,
     /// Contacts that were made ahead of the step in which they close.
@@ -105,6 +108,11 @@ impl StepSizeDiagnostics {
 
     /// Notes a body that moves farther in a step than others are looked for.
     pub(super) fn leave_unwatched<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, body: u32) {
+        // A step may be looked at several times.
+        if self.last_unwatched == Some(time) {
+            return;
+        }
+        self.last_unwatched = Some(time);
         self.unwatched_steps += 1;
         self.first_unwatched
             .get_or_insert_with(|| Occurrence::new(time, bodies, &[body]));

@@ -324,7 +324,7 @@ fn contacts<S: Space>(s: &Simulation<S>) -> Part {
         numbers: vec![Vec::new(); contact_numbers().len()],
         ..Part::default()
     };
-    for (k, contact) in s.network.contacts.iter().enumerate() {
+    for (k, contact) in s.network.counted_contacts().enumerate() {
         let (a, b) = picture::ends(s, contact);
         let at = s.shapes.periodic.wrapped(a);
         part.points.extend(at.padded());

@@ -62,7 +62,7 @@ impl<S: Space> Simulation<S> {
             return;
         }
         let least = LOST * self.network.alert;
-        let stuck = (0..self.bodies.lost.len()).find(|b| self.bodies.lost[*b] > least);
+        let stuck = (0..self.bodies.lost.len()).find(|b| self.bodies.lost[*b].norm() > least);
         if let Some(body) = stuck {
             let haste = &mut self.network.haste;
             haste.lose_motion(self.time, &self.bodies, body as u32);

@@ -16,8 +16,9 @@ pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64) {
         for k in 0..S::D {
             if bodies.position[b][k] == from[k] && v[k] != 0.0 {
                 // The way is less than the spacing of numbers here.
-                bodies.lost.resize(bodies.position.len(), 0.0);
-                bodies.lost[b] += (v[k] * time).abs();
+                // What goes to and fro is not missed.
+                bodies.lost.resize(bodies.position.len(), S::Vector::null());
+                bodies.lost[b][k] += v[k] * time;
             }
         }
         let w = bodies.spin[b];

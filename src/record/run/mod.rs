@@ -35,7 +35,7 @@ use super::strain::Strain;
 use super::summary::{SolverSummary, Summary};
 use super::views;
 use crate::bodies::TimeFunction;
-use crate::geometry::space::Space;
+use crate::geometry::space::{Space, VectorLike};
 use crate::interrupt;
 use crate::scene::build::{Built, Dimensional, Loaded};
 use crate::scene::sampling;
@@ -413,6 +413,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             .network
             .contacts
             .iter()
+            .filter(|c| c.impulse.norm() > 0.0)
             .map(|c| match c.bodies {
                 [i, _] if i == body => c.normal[axis],
                 [_, j] if j == body => -c.normal[axis],
