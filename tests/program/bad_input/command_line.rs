@@ -132,7 +132,14 @@ fn a_study_of_what_the_case_does_not_have() {
         ("peak_friction", "no friction test"),
     ] {
         let said = refusal(
-            &trial.call(&["trade", "case.ron", "--output", output]),
+            &trial.call(&[
+                "trade",
+                "case.ron",
+                "--set",
+                "friction=None",
+                "--output",
+                output,
+            ]),
             &[output, words],
         );
         let listed = said.split("nothing to compare").nth(1).unwrap_or_default();

@@ -282,7 +282,6 @@ fn what_is_no_function_of_time() {
     for (new, found) in [
         (r#"Velocity(‸"0.1 m/s")"#, "SI units, without a unit"),
         ("Velocity(‸[0.1, 0.2])", "found a list"),
-        ("Force(‸true)", ""),
     ] {
         refused(&with(PLANE, sine, new), &[expected, found]);
     }
