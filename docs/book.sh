@@ -9,7 +9,7 @@ if [ -z "$mdbook" ]; then
         cargo install mdbook --version 0.5.4 --locked --root target/tools --no-default-features --features search
     fi
 fi
-"$mdbook" build docs --dest-dir ../target/book
+"$mdbook" build docs --dest-dir "$PWD/target/book"
 # Pages link to cases as ../cases: they stand beside the book.
 mkdir -p target/cases
 cp -r cases/. target/cases
