@@ -219,7 +219,7 @@ fn every_field_of_the_schema_can_be_set() {
             &[
                 "`coupling` is one of several kinds",
                 "`Explicit`, `Implicit`",
-                "--set 'coupling=...'",
+                "--set 'coupling=Implicit(",
             ],
         ),
         (
