@@ -145,7 +145,7 @@ fn table(points: &[(f64, f64)], h: f64, moves: bool) -> Option<String> {
         ));
     }
     let steps = (points.last()?.0 - points.first()?.0) / h;
-    let brief = steps >= 1.0 && steps < SHORT * (1.0 - 1e-9) && pieces.iter().any(changes);
+    let brief = (1.0..SHORT * (1.0 - 1e-9)).contains(&steps) && pieces.iter().any(changes);
     brief.then(|| {
         format!("its table lasts only {steps:.3} steps; take a smaller time.step, or points further apart")
     })

@@ -110,7 +110,7 @@ fn a_spinning_rod_hits_the_grain_in_its_way() {
         bodies: format!(
             "(name: \"paddle\", material: \"m0\", shapes: [{rod}], dofs: (rz: Velocity(Constant(300.0)))),"
         ),
-        grains: grains("m0", &[target.clone()]),
+        grains: grains("m0", std::slice::from_ref(&target)),
         ..still()
     };
     let mut s = built::<Plane>(&paddle);
