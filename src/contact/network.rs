@@ -165,13 +165,11 @@ fn in_order<T: Serializer>(pairs: &HashSet<(u32, u32)>, to: T) -> Result<T::Ok, 
 }
 
 impl<S: Space> Network<S> {
-    /// Whether all bodies of its contacts and pairs are among this many.
+    /// Whether all bodies of its contacts are among this many. Broken pairs name what touches, not bodies, and are only
+    /// compared.
     pub(crate) fn names_bodies_below(&self, bodies: usize) -> bool {
-        let below = |i: u32, j: u32| (i.max(j) as usize) < bodies;
-        self.contacts
-            .iter()
-            .all(|c| below(c.bodies[0], c.bodies[1]))
-            && self.broken_pairs.iter().all(|(i, j)| below(*i, *j))
+        let below = |b: &u32| (*b as usize) < bodies;
+        self.contacts.iter().all(|c| c.bodies.iter().all(below))
     }
 
     /// Has the neighbour list made anew at the next step: what may touch has changed.
