@@ -167,6 +167,11 @@ impl Energy {
         ]
     }
 
+    /// Counts an energy (J) that comes and goes within a step for the scale of the balance, which rounds by it.
+    pub fn see(&mut self, energy: f64) {
+        self.scale = self.scale.max(energy.abs());
+    }
+
     /// Energy turned into heat and surfaces.
     pub fn dissipated(&self) -> f64 {
         self.fracture + self.friction + self.impact + self.adhesion + self.viscous + self.correction

@@ -52,6 +52,7 @@ impl<S: Space> Simulation<S> {
         self.bodies.set_off(self.time, h, theta);
         let after = self.energies_of_driven();
         let work: f64 = after.iter().zip(&before).map(|(a, b)| a - b).sum();
+        self.energy.see(work);
         if self.steps == 0 {
             self.energy.initial_kinetic += work;
         } else {
