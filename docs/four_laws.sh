@@ -5,7 +5,7 @@ set -e
 out=${1:-results/four_laws}
 run() {
     cargo run --release --quiet -- run cases/wheel_rail_fretting.ron --out "$out/$3" \
-        --set interfaces.third_body.cohesion="$1" --set interfaces.third_body.damage="$2" > "$out.$3.txt"
+        --set interfaces.third_body.cohesion="$1" --set interfaces.third_body.damage="$2" --verbose > "$out.$3.txt"
 }
 mkdir -p "$out"
 run mac mac mac
@@ -18,5 +18,5 @@ for pair in mac brittle linear exponential; do
 done
 for pair in mac brittle linear exponential; do
     echo "== $pair"
-    grep -E "cycle [123]|bonds  |dissipated" "$out.$pair.txt"
+    grep -E "^  (cycle [123] |damage |dissipated)" "$out.$pair.txt"
 done
