@@ -1,7 +1,7 @@
 //! The shipped laws linked into a program: the sources of the plugin crates compiled once more, with their tables
 //! but without the exported symbol, of which a program can hold one only.
 //!
-//! A law's source names the crate `fretwork_law`; here that is this crate, whose [`export!`](entry) keeps the table
+//! A law's source names the crate `fretwork_law`; here that is this crate, whose `export!` keeps the table
 //! where the wrapper's own macro exports an entry. So the sources need no condition, and nothing depends on how a
 //! linker treats symbols that are there twice.
 

@@ -1,4 +1,4 @@
-//! `results.h5`: one self-contained file, readable while it is written and after a crash, see [`store`].
+//! `results.h5`: one self-contained file, readable while it is written and after a crash, see `store`.
 //!
 //! ```text
 //! /            attributes: program, version, case, seed, dimension
