@@ -7,17 +7,12 @@
 // A terminal or pipe that takes no more must not end a run: all output goes through `cli::output`.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
-pub mod bodies;
-pub mod certify;
 pub mod cli;
-pub mod contact;
-pub mod geometry;
 pub mod interrupt;
-pub mod laws;
 pub mod record;
 pub mod report;
 pub mod scene;
-pub mod solve;
-pub mod step;
+pub mod shipped;
 pub mod trade;
-pub mod wear;
+
+pub use fretwork_core::{bodies, certify, contact, energy, geometry, laws, process, solve, step, wear};

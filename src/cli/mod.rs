@@ -12,10 +12,12 @@ mod run;
 mod solve;
 mod trade;
 
+use crate::certify::{CERTIFY_APART, certify_asked};
 use crate::laws::watch::{Saved, watch};
 use crate::laws::{LawError, SearchPath, child, ending};
 use crate::record::RunError;
 use crate::scene::InputError;
+use crate::shipped::built_in;
 use clap::{Args, Parser, Subcommand};
 use std::io::IsTerminal;
 use std::path::PathBuf;
@@ -60,7 +62,7 @@ enum Command {
     #[command(name = child::TRY_LIBRARIES, hide = true)]
     TryLibraries(ChildArgs),
     /// For the program itself: certifies a law in a process of its own
-    #[command(name = crate::certify::CERTIFY_APART, hide = true)]
+    #[command(name = CERTIFY_APART, hide = true)]
     CertifyApart(ChildArgs),
 }
 
@@ -134,7 +136,7 @@ impl PluginArgs {
         let limit = law_limit(self.law_timeout)?;
         child::enable(limit);
         watch_laws(limit)?;
-        let path = SearchPath::new(&self.plugin_path);
+        let path = SearchPath::new(&self.plugin_path).with_built_in(built_in());
         Ok(if self.trust_plugins {
             path.trusting()
         } else {
@@ -248,6 +250,6 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Solve(args) => solve::solve(&args),
         Command::Trade(args) => trade::trade(&args),
         Command::TryLibraries(args) => args.help(child::try_libraries),
-        Command::CertifyApart(args) => args.help(crate::certify::certify_asked),
+        Command::CertifyApart(args) => args.help(|| certify_asked(&built_in())),
     }
 }

@@ -12,7 +12,6 @@ pub mod fretting;
 pub mod friction;
 pub mod jump;
 pub mod layer;
-pub mod ledger;
 pub mod loops;
 pub mod measure;
 pub mod picture;

@@ -5,7 +5,7 @@ use super::source::{Fault, nearest};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::Interface;
 use crate::step::Simulation;
-use crate::wear::circuit::{Fate, Spec, Zone};
+use crate::process::circuit::{Fate, Spec, Zone};
 use serde::Deserialize;
 
 /// The account of grains between first bodies, contact and outside.

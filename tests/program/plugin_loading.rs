@@ -342,13 +342,13 @@ fn the_shipped_laws_are_found_and_agree_with_their_names() {
 /// What is linked into the program is what its libraries hold.
 #[test]
 fn built_in_laws_are_those_of_the_libraries() {
-    use fretwork::laws::built_in;
+    let linked_in = fretwork::shipped::built_in();
     let path = SearchPath::new(&[]);
     let libraries = path.available();
-    assert_eq!(built_in::names().count(), libraries.len());
+    assert_eq!(linked_in.names().count(), libraries.len());
     for (kind, name, file) in libraries {
         let library = Plugin::open(&file).unwrap();
-        let built_in = built_in::open(kind, &name).unwrap().unwrap();
+        let built_in = linked_in.open(kind, &name).unwrap().unwrap();
         assert!(built_in.built_in && !library.built_in);
         assert_eq!(built_in.path, std::env::current_exe().unwrap());
         let facts = |p: &Plugin| {

@@ -3,7 +3,8 @@
 use super::super::Failure;
 use super::super::output::inform;
 use crate::laws::search::{file_name, name_is_valid};
-use crate::laws::{Kind, built_in};
+use crate::laws::Kind;
+use crate::shipped::built_in;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 
@@ -101,7 +102,7 @@ pub fn new(args: &NewArgs) -> Result<(), Failure> {
             args.name
         ));
     }
-    if built_in::names().any(|law| law == (kind, name.as_str())) {
+    if built_in().names().any(|law| law == (kind, name.as_str())) {
         return usage(format!(
             "`{name}` is a shipped {kind} law, which is found before any other; choose another name"
         ));

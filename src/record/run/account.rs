@@ -12,7 +12,7 @@ use crate::scene::build::Dimensional;
 use crate::scene::case::Case;
 use crate::scene::circuit;
 use crate::step::Simulation;
-use crate::wear::circuit::Circuit;
+use crate::process::circuit::Circuit;
 use crate::wear::ledger::{Flows, Ledger, Place};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;

@@ -4,13 +4,14 @@ use crate::certify::{Certificate, certify_apart, certify_parameters};
 use crate::laws::{Interface, Kind, LawError, Loaded as Law, Plugin, SearchPath};
 use crate::record::summary::PluginStamp;
 use crate::scene::build::Loaded;
+use crate::shipped::built_in;
 
 /// The laws of a run, each once, and whether they keep their promises with its parameters: a damage law with the
 /// cohesion that it stands beside where that keeps its own, the others with plain shipped partners. So the law is blamed that
 /// is at fault, and none beside it.
 pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
     let mut known = Known {
-        path: SearchPath::new(&[]),
+        path: SearchPath::new(&[]).with_built_in(built_in()),
         found: Vec::new(),
     };
     let mut stamps: Vec<PluginStamp> = Vec::new();

@@ -13,7 +13,7 @@ use super::biaxial::Outcome;
 use super::fretting;
 use super::friction::Cycle;
 use super::jump::JumpSummary;
-use super::ledger::Energy;
+use crate::energy::Energy;
 use super::scars::ScarSummary;
 pub use super::solving::SolverSummary;
 use crate::contact::StepSizeDiagnostics;

@@ -5,7 +5,7 @@ use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::{circuit, load};
 use fretwork::step::Simulation;
-use fretwork::wear::circuit::Circuit;
+use fretwork::process::circuit::Circuit;
 use std::collections::HashSet;
 use std::path::Path;
 

@@ -5,7 +5,7 @@
 
 use crate::bodies::Bodies;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
-use crate::record::ledger::BodyWork;
+use crate::energy::BodyWork;
 
 /// Moves positions and orientations by `time` without forces.
 pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64) {

@@ -9,7 +9,7 @@ use crate::bodies::Bodies;
 use crate::contact::Network;
 use crate::geometry::space::Space;
 use crate::laws::pass::Carried;
-use crate::record::ledger::Energy;
+use crate::energy::Energy;
 use crate::solve::Habit;
 use crate::wear::{Scar, WornThrough};
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
 //! The tribological circuit of a run: ties, ejection zones, the mass ledger, and debris as it comes loose.
 
-use super::ledger::{Ledger, Place};
-use super::ties::Ties;
+use crate::wear::ledger::{Ledger, Place};
+use crate::wear::ties::Ties;
 use crate::bodies::Bodies;
 use crate::contact::Network;
 use crate::geometry::periodic::Periodic;

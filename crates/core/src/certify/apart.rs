@@ -2,7 +2,7 @@
 
 use super::{Certificate, Event, Line, border, certify, certify_telling};
 use crate::laws::child::{self, End};
-use crate::laws::{Kind, LawError, Loaded, Plugin, SearchPath, built_in};
+use crate::laws::{BuiltInLaws, Kind, LawError, Loaded, Plugin, SearchPath};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::path::PathBuf;
@@ -35,12 +35,12 @@ impl Named {
         }
     }
 
-    fn open(self) -> Result<Loaded, LawError> {
+    fn open(self, built_in: &BuiltInLaws) -> Result<Loaded, LawError> {
         let plugin = match &self.library {
             Some((path, sha256)) => Plugin::open_pinned(path, Some(sha256))?,
             None => {
                 let kind = Kind::ALL.into_iter().find(|k| k.word() == self.kind);
-                let found = kind.and_then(|k| built_in::open(k, &self.name));
+                let found = kind.and_then(|k| built_in.open(k, &self.name));
                 found.unwrap_or_else(|| {
                     Err(LawError::Unusable {
                         path: PathBuf::from(&self.name),
@@ -104,11 +104,11 @@ pub fn certify_apart(
     Ok(Certificate::of(plugin, lines))
 }
 
-/// In the called process: certifies the law it is asked after.
+/// In the called process: certifies the law it is asked after, which may be one that is linked into the program.
 ///
 /// # Errors
 /// The question cannot be read.
-pub fn certify_asked() -> Result<(), String> {
+pub fn certify_asked(built_in: &BuiltInLaws) -> Result<(), String> {
     let question = child::asked()?;
     let (named, partner): (Named, Option<Named>) =
         serde_json::from_value(question).map_err(|e| e.to_string())?;
@@ -116,9 +116,9 @@ pub fn certify_asked() -> Result<(), String> {
         Event::Begins(name) => child::tell(&json!({ "begins": name })),
         Event::Line(line) => child::tell(&json!({ "line": line })),
     };
-    let made = named.open().and_then(|law| {
-        let partner = partner.map(Named::open).transpose()?;
-        let path = SearchPath::new(&[]);
+    let made = named.open(built_in).and_then(|law| {
+        let partner = partner.map(|p| p.open(built_in)).transpose()?;
+        let path = SearchPath::new(&[]).with_built_in(built_in.clone());
         certify_telling(
             &law.plugin,
             &law.parameters,

@@ -1,7 +1,8 @@
 //! Where plugins are found: by kind and name, on a search path. A case cannot name a file.
 
+use super::built_in::BuiltInLaws;
 use super::library::{Kind, LawError, Plugin};
-use super::{built_in, child, trust};
+use super::{child, trust};
 use std::path::{Path, PathBuf};
 
 /// Environment variable with further folders.
@@ -13,6 +14,7 @@ pub struct SearchPath {
     folders: Vec<PathBuf>,
     /// How many of them are the program's own.
     shipped: usize,
+    built_in: BuiltInLaws,
     trusting: bool,
 }
 
@@ -52,7 +54,17 @@ impl SearchPath {
         Self {
             folders,
             shipped,
+            built_in: BuiltInLaws::default(),
             trusting: false,
+        }
+    }
+
+    /// The same path, with laws that are linked into the program.
+    #[must_use]
+    pub fn with_built_in(self, laws: BuiltInLaws) -> Self {
+        Self {
+            built_in: laws,
+            ..self
         }
     }
 
@@ -116,14 +128,14 @@ impl SearchPath {
             files.find(|p| p.is_file()).map(Place::Library)
         };
         let built_in = || {
-            let known = built_in::names().any(|law| law == (kind, name));
+            let known = self.built_in.names().any(|law| law == (kind, name));
             known.then_some(Place::BuiltIn)
         };
         library(own).or_else(built_in).or_else(|| library(others))
     }
 
     fn linked_in(&self, kind: Kind, name: &str, pin: Option<&str>) -> Result<Plugin, LawError> {
-        let found = built_in::open(kind, name);
+        let found = self.built_in.open(kind, name);
         let plugin = found.unwrap_or_else(|| Err(self.unknown(kind, name)))?;
         match pin.filter(|p| !p.eq_ignore_ascii_case(&plugin.sha256)) {
             Some(pin) => Err(LawError::Pinned {
@@ -203,7 +215,7 @@ impl SearchPath {
         };
         for (number, folder) in self.folders.iter().enumerate() {
             if number == self.shipped {
-                built_in::names().for_each(|(k, n)| add(k, n.to_owned(), Place::BuiltIn));
+                self.built_in.names().for_each(|(k, n)| add(k, n.to_owned(), Place::BuiltIn));
             }
             let Ok(entries) = std::fs::read_dir(folder) else {
                 continue;
@@ -216,7 +228,7 @@ impl SearchPath {
                 }
             }
         }
-        built_in::names().for_each(|(k, n)| add(k, n.to_owned(), Place::BuiltIn));
+        self.built_in.names().for_each(|(k, n)| add(k, n.to_owned(), Place::BuiltIn));
         out.sort();
         out
     }
@@ -235,7 +247,8 @@ impl SearchPath {
         let folder = |f: &PathBuf| f.display().to_string();
         let (own, others) = self.folders.split_at(self.shipped);
         let own = own.iter().filter(|f| f.is_dir()).map(folder);
-        let built_in = std::iter::once("the program itself".to_owned());
+        let any = self.built_in.names().next().is_some();
+        let built_in = any.then(|| "the program itself".to_owned());
         let places = own.chain(built_in).chain(others.iter().map(folder));
         places.collect::<Vec<_>>().join(", ")
     }

@@ -1,4 +1,5 @@
-//! The shipped laws that are linked into the program, for where their libraries are not beside it.
+//! Laws that are linked into the program, for where their libraries are not beside it. The program hands their tables over:
+//! the core knows none by name.
 
 use super::library::{Kind, LawError, Plugin};
 use fretwork_abi::FwPlugin;
@@ -6,7 +7,7 @@ use sha2::{Digest, Sha256};
 use std::ffi::CStr;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// A linked-in law.
 struct Entry {
@@ -20,12 +21,25 @@ unsafe impl Send for Entry {}
 // SAFETY: as above.
 unsafe impl Sync for Entry {}
 
-fn entries() -> &'static [Entry] {
-    static ENTRIES: OnceLock<Vec<Entry>> = OnceLock::new();
-    ENTRIES.get_or_init(|| {
-        let tables = fretwork_shipped::plugins().into_iter();
-        let known = tables.filter_map(|table| {
-            // SAFETY: the wrapper makes names of NUL-terminated static text.
+/// The laws linked into a program; none by default.
+#[derive(Clone, Default)]
+pub struct BuiltInLaws(Arc<[Entry]>);
+
+impl std::fmt::Debug for BuiltInLaws {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_list().entries(self.names()).finish()
+    }
+}
+
+impl BuiltInLaws {
+    /// The laws of these tables; one whose kind or name cannot be read is left out.
+    ///
+    /// # Safety
+    /// Each table must be one that `plugin_table!` of the crate `fretwork-law` made, of the version of the interface that this
+    /// program is built with: its pointers are followed.
+    pub unsafe fn from_tables(tables: impl IntoIterator<Item = &'static FwPlugin>) -> Self {
+        let known = tables.into_iter().filter_map(|table| {
+            // SAFETY: the caller promises tables of the wrapper, which makes names of NUL-terminated static text.
             let name = unsafe { CStr::from_ptr(table.name) };
             Some(Entry {
                 kind: Kind::from_code(table.kind)?,
@@ -33,24 +47,22 @@ fn entries() -> &'static [Entry] {
                 table,
             })
         });
-        known.collect()
-    })
-}
+        Self(known.collect())
+    }
 
-/// Kinds and names of all of them.
-pub fn names() -> impl Iterator<Item = (Kind, &'static str)> {
-    entries().iter().map(|e| (e.kind, e.name.as_str()))
-}
+    /// Kinds and names of all of them.
+    pub fn names(&self) -> impl Iterator<Item = (Kind, &str)> {
+        self.0.iter().map(|e| (e.kind, e.name.as_str()))
+    }
 
-/// The law of this kind and name, where it is linked in. Its path and SHA-256 are those of the program.
-pub fn open(kind: Kind, name: &str) -> Option<Result<Plugin, LawError>> {
-    let entry = entries()
-        .iter()
-        .find(|e| e.kind == kind && e.name == name)?;
-    Some(executable().and_then(|(path, sha256)| {
-        // SAFETY: a static table of the wrapper, of this version.
-        unsafe { Plugin::from_table(entry.table, path, sha256, true) }
-    }))
+    /// The law of this kind and name, where it is linked in. Its path and SHA-256 are those of the program.
+    pub fn open(&self, kind: Kind, name: &str) -> Option<Result<Plugin, LawError>> {
+        let entry = self.0.iter().find(|e| e.kind == kind && e.name == name)?;
+        Some(executable().and_then(|(path, sha256)| {
+            // SAFETY: a static table of the wrapper, of this version, see `from_tables`.
+            unsafe { Plugin::from_table(entry.table, path, sha256, true) }
+        }))
+    }
 }
 
 /// The program's own file and its SHA-256, read once.

@@ -18,6 +18,7 @@ pub mod search;
 mod trust;
 pub mod watch;
 
+pub use built_in::BuiltInLaws;
 pub use interface::{AreaRule, BondRule, Interface, Loaded};
 pub use library::{Call, Kind, LawError, Plugin};
 pub use pass::{Site, Totals, Turn, Velocities};

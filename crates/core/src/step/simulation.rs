@@ -13,7 +13,7 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
 use crate::laws::pass::Passes;
 use crate::laws::{Interface, LawError, Site, Totals};
-use crate::record::ledger::Energy;
+use crate::energy::Energy;
 use crate::solve::local::solver::Method;
 use crate::solve::{self, ContactForm, MomentForm, Problem};
 use crate::wear::{Scar, WornThrough};
@@ -79,7 +79,7 @@ pub struct Simulation<S: Space> {
     pub time: f64,
     /// Steps done.
     pub steps: u64,
-    /// Share of a penetration that a step takes back, 0 to 1; see [`crate::scene::case::SolverSpec`].
+    /// Share of a penetration that a step takes back, 0 to 1: `solver.correction` of a case.
     pub correction: f64,
     /// Overlap in parts of the smaller body's length beyond which bodies are moved apart; 0 for never. See
     /// [`super::projection`].

@@ -1,5 +1,4 @@
-//! Wear and the tribological circuit: what first bodies lose, the scars it leaves, and where it goes.
-pub mod circuit;
+//! Wear: what first bodies lose, the scars it leaves, and where the mass goes.
 pub mod jump;
 pub mod ledger;
 pub mod scar;

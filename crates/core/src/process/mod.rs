@@ -1,0 +1,2 @@
+//! What acts on a simulation between its steps.
+pub mod circuit;

@@ -1,0 +1,15 @@
+//! The shipped laws, linked into the program: it can stand alone.
+
+use crate::laws::BuiltInLaws;
+use std::sync::OnceLock;
+
+/// The shipped laws, for [`crate::laws::SearchPath::with_built_in`].
+pub fn built_in() -> BuiltInLaws {
+    static LAWS: OnceLock<BuiltInLaws> = OnceLock::new();
+    LAWS.get_or_init(|| {
+        let tables = fretwork_shipped::plugins();
+        // SAFETY: the crate compiles the shipped laws with `plugin_table!` of this workspace.
+        unsafe { BuiltInLaws::from_tables(tables) }
+    })
+    .clone()
+}
