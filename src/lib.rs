@@ -10,9 +10,9 @@
 pub mod cli;
 pub mod interrupt;
 pub mod record;
-pub mod report;
 pub mod scene;
 pub mod shipped;
 pub mod trade;
 
 pub use fretwork_core::{bodies, certify, contact, energy, geometry, laws, process, solve, step, wear};
+pub use fretwork_plot as report;

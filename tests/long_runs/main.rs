@@ -63,7 +63,12 @@ fn followed<S: Dimensional>(name: &str, text: &str, steps: u64) -> (Vec<usize>, 
         .set::<Case>(&format!("time.end={:e}", 1e-4 * steps as f64))
         .unwrap();
     let case: Case = source.parse().unwrap_or_else(|e| panic!("{e}"));
-    let loaded = Loaded { source, case, path };
+    let loaded = Loaded {
+        source,
+        case,
+        path,
+        records: None,
+    };
     let built = loaded.build_in::<S>(&SearchPath::new(&[]));
     let built = built.unwrap_or_else(|e| panic!("{e}"));
     let out = std::env::temp_dir().join(format!("fretwork-long-{}-{name}", std::process::id()));

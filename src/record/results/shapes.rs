@@ -12,49 +12,7 @@
 
 use super::reader::Reader;
 use super::store::{ResultsError, Store};
-
-/// A grain that is no lone ball.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ShapedBody {
-    /// Its identity.
-    pub id: u64,
-    /// Mass (kg; 2D kg/m).
-    pub mass: f64,
-    /// Density of its material (kg/m^3).
-    pub density: f64,
-    /// The length that makes its spin a velocity (m).
-    pub length: f64,
-    /// Moments of inertia in its own axes (kg m^2; 2D kg m), row by row; in the plane the first.
-    pub inertia: [f64; 9],
-}
-
-/// A ball of such a grain.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ShapedBall {
-    /// Identity of the grain.
-    pub body: u64,
-    /// Radius (m).
-    pub radius: f64,
-    /// Centre in the grain's frame (m).
-    pub offset: [f64; 3],
-}
-
-/// A convex piece of such a grain.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ShapedPiece {
-    /// Identity of the grain.
-    pub body: u64,
-    /// Radius of the rounding (m).
-    pub rounding: f64,
-    /// Radius of the ball of its volume (m).
-    pub size: f64,
-    /// Its centre in the grain's frame (m).
-    pub offset: [f64; 3],
-    /// Corners about its centre (m).
-    pub corners: Vec<[f64; 3]>,
-    /// Faces by their corners.
-    pub faces: Vec<Vec<u32>>,
-}
+pub use crate::scene::recorded::{ShapedBall, ShapedBody, ShapedPiece};
 
 /// All grains that are no lone balls, and what they are made of, in the order of the view of the grains.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,81 +1,10 @@
 //! Reads the grains of a state of `results.h5`, also of a run that was cut off or still goes on.
 
 use super::reader::Reader;
-use super::shapes::{Shaped, ShapedBall, ShapedBody, ShapedPiece};
+use super::shapes::Shaped;
+pub use crate::scene::recorded::{Grain, Motion, ShapedGrain, State, StateError};
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
-
-/// How a grain moves, in SI units; unused components are zero, the spin of a plane case is the first.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Motion {
-    /// Where its centre is, or that of its first part (m), within the period where there is one.
-    pub at: [f64; 3],
-    /// Orientation: the angle (rad) in the plane, a quaternion (w, x, y, z) in space; none where the file has none, which
-    /// is where all grains are lone balls.
-    pub rotation: Option<[f64; 4]>,
-    /// Velocity (m/s).
-    pub velocity: [f64; 3],
-    /// Angular velocity (rad/s).
-    pub spin: [f64; 3],
-}
-
-/// A ball of a state.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Grain {
-    /// Radius (m).
-    pub radius: f64,
-    /// How it moves.
-    pub motion: Motion,
-}
-
-/// A grain of a state that is no lone ball.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ShapedGrain {
-    /// Mass, inertia.
-    pub body: ShapedBody,
-    /// Its balls; the first is its first part where there is one,
-    pub balls: Vec<ShapedBall>,
-    /// and the first of its pieces where there is none.
-    pub pieces: Vec<ShapedPiece>,
-    /// How it moves.
-    pub motion: Motion,
-}
-
-/// The grains of one state; first bodies and grains that were taken out are left out.
-#[derive(Clone, Debug, Default)]
-pub struct State {
-    /// Number of the state, from 0.
-    pub frame: usize,
-    /// Its time (s).
-    pub time: f64,
-    /// The balls, in the order of the file.
-    pub grains: Vec<Grain>,
-    /// The other grains, in the order of the file.
-    pub shaped: Vec<ShapedGrain>,
-}
-
-/// Why a state cannot be read.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum StateError {
-    /// No file of results, or a damaged one.
-    #[error("cannot read {}: {reason}", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        reason: String,
-    },
-    /// A number that is too high.
-    #[error("{} has the states {states}, not number {asked}", path.display())]
-    NoFrame {
-        /// The file.
-        path: PathBuf,
-        /// Which it has.
-        states: String,
-        /// Which was asked for.
-        asked: usize,
-    },
-}
+use std::path::Path;
 
 /// Reads a state (the last one without a `frame`) for a case of a dimension.
 ///

@@ -1,0 +1,207 @@
+//! Grains of a state of another run: places, orientations, velocities, spins and shapes as its record holds them.
+
+use super::grains::Seed;
+use super::{Builder, Dimensional, Origin};
+use fretwork_core::geometry::convex::{Boundary, Core, Piece};
+use fretwork_core::geometry::shape::Ball;
+use fretwork_core::geometry::space::{MatrixLike, VectorLike};
+use crate::recorded::{Motion, ShapedBody, ShapedGrain, ShapedPiece, StateError};
+use crate::sample::spec::{FrameSpec, StateSpec};
+use crate::source::InputError;
+
+/// Grains that are no lone balls, of one of `grains`.
+pub(super) struct Others {
+    /// Its place in the list,
+    k: usize,
+    /// its material and the density of that (kg/m^3),
+    of: (u16, f64),
+    /// and its grains.
+    grains: Vec<ShapedGrain>,
+}
+
+impl<S: Dimensional> Builder<'_, S> {
+    /// Grains of a state of another run: the balls, and the others.
+    pub(super) fn grains_of_run(
+        &mut self,
+        k: usize,
+        spec: &StateSpec,
+    ) -> Result<(Vec<Seed<S>>, Others), InputError> {
+        let of = self.material(&format!("grains.{k}.material"), &spec.material)?;
+        let mut path = self.folder.join(&spec.results);
+        if path.is_dir() {
+            path.push("results.h5");
+        }
+        let frame = match spec.frame {
+            FrameSpec::Last => None,
+            FrameSpec::Number(n) => Some(n),
+        };
+        let Some(reader) = self.records else {
+            let message = "this program reads no results of other runs; hand the case a reader of them";
+            return Err(self.fail(format!("grains.{k}.results"), message.to_owned()));
+        };
+        let read = reader(&path, frame, S::D).map_err(|e| {
+            let place = match e {
+                StateError::NoFrame { .. } => "frame",
+                StateError::Unreadable { .. } => "results",
+            };
+            self.fail(format!("grains.{k}.{place}"), e.to_string())
+        })?;
+        let (balls, others) = (read.grains.len(), read.shaped.len());
+        let which = match others {
+            0 => String::new(),
+            n => format!(" ({balls} balls, {n} of other shapes)"),
+        };
+        self.samples.push(format!(
+            "grains.{k}: {} grains{which} of state {} of {}, {:e} s",
+            balls + others,
+            read.frame,
+            path.display(),
+            read.time
+        ));
+        let mut seeds = Vec::with_capacity(balls);
+        for grain in &read.grains {
+            let motion = &grain.motion;
+            let at = S::Vector::from_slice(&motion.at);
+            seeds.push(Seed {
+                rotation: self.rotation(k, motion)?,
+                velocity: S::Vector::from_slice(&motion.velocity),
+                spin: S::Spin::from_slice(&motion.spin),
+                ..Seed::still(at, grain.radius, of, Origin::Grain(k, None))
+            });
+        }
+        let grains = read.shaped;
+        Ok((seeds, Others { k, of, grains }))
+    }
+
+    fn rotation(&self, k: usize, motion: &Motion) -> Result<S::Rotation, InputError> {
+        let Some(numbers) = &motion.rotation else {
+            // The orientation of a ball changes nothing.
+            return Ok(S::upright());
+        };
+        S::rotation_from(numbers).ok_or_else(|| {
+            let message =
+                format!("the orientation {numbers:?} of a grain is none: the file is damaged");
+            self.fail(format!("grains.{k}.results"), message)
+        })
+    }
+
+    /// Adds grains that are no lone balls.
+    pub(super) fn shaped_grains(&mut self, others: Others) -> Result<(), InputError> {
+        let (k, of) = (others.k, others.of);
+        for grain in others.grains {
+            let rotation = self.rotation(k, &grain.motion)?;
+            let id = grain.body.id;
+            self.shaped_grain(grain, rotation, of).map_err(|what| {
+                let message = format!(
+                    "the shape of grain {id} cannot be taken: {what}; the file is damaged, run its case again"
+                );
+                self.fail(format!("grains.{k}.results"), message)
+            })?;
+            self.origins.push(Origin::Grain(k, None));
+        }
+        Ok(())
+    }
+
+    fn shaped_grain(
+        &mut self,
+        grain: ShapedGrain,
+        rotation: S::Rotation,
+        (material, density): (u16, f64),
+    ) -> Result<(), String> {
+        let motion = &grain.motion;
+        let first = match (grain.balls.first(), grain.pieces.first()) {
+            (Some(ball), _) => ball.offset,
+            (None, Some(piece)) => piece.offset,
+            (None, None) => [0.0; 3],
+        };
+        let first = S::Vector::from_slice(&first);
+        let at = S::Vector::from_slice(&motion.at) - S::rotate(&rotation, &first);
+        let body = self.weighing(&grain.body, at, density)?;
+        let b = body as usize;
+        self.bodies.rotation[b] = rotation;
+        self.bodies.velocity[b] = S::Vector::from_slice(&motion.velocity);
+        self.bodies.spin[b] = S::Spin::from_slice(&motion.spin);
+        for ball in grain.balls {
+            let offset = S::Vector::from_slice(&ball.offset);
+            if !(ball.radius.is_finite() && ball.radius > 0.0 && offset.is_finite()) {
+                return Err(format!("a ball of it has the radius {}", ball.radius));
+            }
+            self.shapes.balls.push(Ball {
+                body,
+                radius: ball.radius,
+                offset,
+                material,
+            });
+        }
+        for piece in grain.pieces {
+            self.shapes.pieces.push(recorded(piece, body, material)?);
+        }
+        Ok(())
+    }
+
+    /// A body of a mass and inertia; those of another density are scaled.
+    fn weighing(&mut self, of: &ShapedBody, at: S::Vector, density: f64) -> Result<u32, String> {
+        let n = S::Spin::N;
+        let entry = |i: usize, j: usize| of.inertia[3 * i + j];
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        let numbers = [of.mass, of.density, of.length];
+        let diagonal = (0..n).map(|i| entry(i, i));
+        if !numbers.into_iter().chain(diagonal).all(positive)
+            || !of.inertia.iter().all(|x| x.is_finite())
+            || !at.is_finite()
+        {
+            return Err("its place, mass or inertia is none".to_owned());
+        }
+        // One, to the bit, for the same material.
+        let ratio = density / of.density;
+        let (mass, length) = (of.mass * ratio, of.length);
+        let mut axes = [S::Spin::null(); 3];
+        for (i, axis) in axes.iter_mut().enumerate().take(n) {
+            axis[i] = 1.0;
+        }
+        let alike =
+            (0..n).all(|i| (0..n).all(|j| entry(i, j) == if i == j { entry(0, 0) } else { 0.0 }));
+        Ok(if alike {
+            self.bodies.add(at, mass, entry(0, 0) * ratio, length)
+        } else {
+            let mut inertia = S::Tensor::uniform(0.0);
+            for i in 0..n {
+                for j in 0..n {
+                    inertia = inertia + S::Tensor::dyad(&axes[i], &axes[j]).scaled(entry(i, j));
+                }
+            }
+            self.bodies
+                .add_shaped(at, mass, &inertia.scaled(ratio), length)
+        })
+    }
+}
+
+/// A piece of a body, as it was recorded.
+fn recorded<S: Dimensional>(
+    piece: ShapedPiece,
+    body: u32,
+    material: u16,
+) -> Result<Piece<S>, String> {
+    let corners = piece.corners.iter();
+    let corners: Vec<S::Vector> = corners.map(|c| S::Vector::from_slice(c)).collect();
+    let farthest = corners.iter().map(VectorLike::norm).fold(0.0, f64::max);
+    let core = S::Core::bounded_by(Boundary {
+        corners,
+        faces: piece.faces,
+    })?;
+    let offset = S::Vector::from_slice(&piece.offset);
+    let size = piece.size;
+    let known = piece.rounding.is_finite() && piece.rounding >= 0.0 && offset.is_finite();
+    if !(known && size.is_finite() && size > 0.0 && farthest.is_finite()) {
+        return Err("a piece of it has no size".to_owned());
+    }
+    Ok(Piece {
+        body,
+        core,
+        offset,
+        rounding: piece.rounding,
+        bound: farthest + piece.rounding,
+        size,
+        material,
+    })
+}

@@ -1,0 +1,108 @@
+//! Voussoirs of an arch.
+
+use super::polygons::Block;
+use super::{Builder, Dimensional};
+use fretwork_core::geometry::space::{MatrixLike, VectorLike};
+use crate::case::{Edges, GrainSpec};
+use crate::source::InputError;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Thinner blocks than this makes are a slip of the keyboard, and as many of them are neighbours as their number is high.
+const MOST_BLOCKS: usize = 10_000;
+
+impl<S: Dimensional> Builder<'_, S> {
+    /// The blocks between the radial joints of an arch, from right to left; none for other grains.
+    pub(super) fn arch(&self, here: &str, spec: &GrainSpec) -> Result<Vec<Block<S>>, InputError> {
+        let GrainSpec::Arch {
+            blocks,
+            radius,
+            thickness,
+            centre,
+            span,
+            edges,
+            ..
+        } = spec
+        else {
+            return Ok(Vec::new());
+        };
+        let centre = self.vector(&format!("{here}.centre"), centre)?;
+        self.radius(&format!("{here}.radius"), *radius)?;
+        if !(*thickness > 0.0 && *thickness < 2.0 * radius) {
+            let message = format!(
+                "must be positive and below twice the radius ({:e} m), got {thickness}",
+                2.0 * radius
+            );
+            return Err(self.fail(format!("{here}.thickness"), message));
+        }
+        if !(2..=MOST_BLOCKS).contains(blocks) {
+            let message = format!("an arch has 2 to {MOST_BLOCKS} blocks, got {blocks}");
+            return Err(self.fail(format!("{here}.blocks"), message));
+        }
+        if !(*span > 0.0 && *span <= PI) {
+            let message = format!("must be positive and at most pi (half a circle), got {span}");
+            return Err(self.fail(format!("{here}.span"), message));
+        }
+        let (inner, outer) = (radius - 0.5 * thickness, radius + 0.5 * thickness);
+        let step = span / *blocks as f64;
+        let mut out = Vec::with_capacity(*blocks);
+        for k in 0..*blocks {
+            let joint = |k: usize| FRAC_PI_2 - 0.5 * span + step * k as f64;
+            let (from, to) = (joint(k), joint(k + 1));
+            let corner = |r: f64, angle: f64| (r * angle.cos(), r * angle.sin());
+            let corners = [
+                corner(inner, from),
+                corner(outer, from),
+                corner(outer, to),
+                corner(inner, to),
+            ];
+            let part = self.polygon(here, &corners, 0.0)?;
+            let (at, volume, inertia) = match edges {
+                Edges::Straight => (part.centre, part.volume, part.inertia),
+                Edges::Curved => {
+                    let (at, volume, inertia) = ring_piece(inner, outer, from, to);
+                    (
+                        S::Vector::from_slice(&at),
+                        volume,
+                        S::Tensor::uniform(inertia),
+                    )
+                }
+            };
+            out.push(Block {
+                at: centre + at,
+                volume,
+                inertia,
+                offset: part.centre - at,
+                part,
+                velocity: S::Vector::null(),
+                spin: S::Spin::null(),
+            });
+        }
+        Ok(out)
+    }
+}
+
+/// Centre of mass, area and polar moment about it of a piece of a ring between two angles.
+fn ring_piece(inner: f64, outer: f64, from: f64, to: f64) -> ([f64; 2], f64, f64) {
+    let (angle, middle) = (to - from, 0.5 * (from + to));
+    let area = 0.5 * angle * (outer * outer - inner * inner);
+    let half = 0.5 * angle;
+    let first = 2.0 / 3.0 * (outer.powi(3) - inner.powi(3)) * half.sin();
+    let r = first / area;
+    let polar = 0.25 * angle * (outer.powi(4) - inner.powi(4)) - area * r * r;
+    ([r * middle.cos(), r * middle.sin()], area, polar)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_half_rings_make_a_ring() {
+        let (centre, area, polar) = ring_piece(1.0, 2.0, 0.0, PI);
+        assert!((area - 1.5 * PI).abs() < 1e-14);
+        // 4 (R^3 - r^3)/(3 pi (R^2 - r^2)) above the diameter.
+        assert!((centre[1] - 28.0 / (9.0 * PI)).abs() < 1e-14 && centre[0].abs() < 1e-15);
+        let about = polar + area * centre[1] * centre[1];
+        assert!((2.0 * about - 0.5 * PI * 15.0).abs() < 1e-13);
+    }
+}

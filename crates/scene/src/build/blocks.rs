@@ -1,0 +1,275 @@
+//! Samples of blocks that fit each other: Voronoi cells, and walls in running bond.
+
+use super::polygons::Block;
+use super::{Builder, Dimensional};
+use fretwork_core::geometry::convex::Part;
+use fretwork_core::geometry::convex::polyhedron::Polyhedron;
+use fretwork_core::geometry::space::VectorLike;
+use crate::sample::deposit::Corners;
+use crate::sample::spec::{BlockWallSpec, VoronoiSpec};
+use crate::sample::voronoi::{self, SHORTEST};
+use crate::sample::voronoi_space::{self, Failure};
+use crate::source::{Fault, InputError};
+use nalgebra::{Vector2, Vector3};
+
+/// More blocks than a run of days can follow are a slip of the keyboard.
+const MOST_BLOCKS: usize = 100_000;
+/// Lloyd's rounds change nothing that is seen after some hundred.
+const MOST_ROUNDS: usize = 1_000;
+/// Cells times rounds that are made in some seconds, in the plane and in space. Making the cells without a round counts as one.
+const MOST_WORK: [f64; 2] = [1e6, 5e4];
+
+impl<S: Dimensional> Builder<'_, S> {
+    /// Voronoi cells of a box.
+    pub(super) fn voronoi(
+        &mut self,
+        k: usize,
+        spec: &VoronoiSpec,
+    ) -> Result<Vec<Block<S>>, InputError> {
+        let here = format!("grains.{k}");
+        let low = self.corner(&format!("{here}.low"), &spec.low)?;
+        let high = self.corner(&format!("{here}.high"), &spec.high)?;
+        if (0..S::D).any(|k| high[k] <= low[k]) {
+            let message = format!(
+                "each number must be greater than that of `low`: the region has no {}",
+                if S::D == 2 { "area" } else { "volume" }
+            );
+            return Err(self.fail(format!("{here}.high"), message));
+        }
+        let corners = Corners { low, high };
+        let size = self.length(&format!("{here}.size"), spec.size)?;
+        let cells = corners.volume() / size.powi(S::D as i32);
+        if cells > MOST_BLOCKS as f64 {
+            let message = format!("the region would hold {cells:.3e} cells of this size");
+            let fault = Fault::new(format!("{here}.size"), message);
+            let advice = format!("larger cells, at most {MOST_BLOCKS}");
+            return Err(self.source.locate(fault.expected(advice)));
+        }
+        if spec.rounds > MOST_ROUNDS {
+            let message = format!("at most {MOST_ROUNDS} rounds, got {}", spec.rounds);
+            return Err(self.fail(format!("{here}.rounds"), message));
+        }
+        let most = MOST_WORK[S::D - 2];
+        if cells * (spec.rounds + 1) as f64 > most {
+            let message = format!(
+                "{} rounds over {cells:.3e} cells take too long: cells times rounds, and one more, may be {most:e} at \
+                 most in {} dimensions",
+                spec.rounds,
+                S::D
+            );
+            return Err(self.fail(format!("{here}.rounds"), message));
+        }
+        self.not_negative(&format!("{here}.gap"), spec.gap)?;
+        self.not_negative(&format!("{here}.rounding"), spec.rounding)?;
+        for (axis, name) in ["x", "y", "z"].iter().enumerate().take(S::D) {
+            if let Some(period) = self.shapes.periodic.period[axis]
+                && high[axis] - low[axis] > period * (1.0 + 1e-9)
+            {
+                let message =
+                    format!("the region is wider than the period `periodic.{name}` ({period:e} m)");
+                return Err(self.fail(format!("{here}.high"), message));
+            }
+        }
+        let seed = self.case.seed.wrapping_add(k as u64);
+        let (out, note) = if S::D == 2 {
+            self.cells_in_the_plane(&here, spec, &corners, seed)?
+        } else {
+            self.cells_in_space(&here, spec, &corners, seed)?
+        };
+        self.samples
+            .push(format!("{here}: {} Voronoi cells{note}", out.len()));
+        Ok(out)
+    }
+
+    /// Cells of a rectangle, and what was done to them.
+    fn cells_in_the_plane(
+        &self,
+        here: &str,
+        spec: &VoronoiSpec,
+        corners: &Corners<S::Vector>,
+        seed: u64,
+    ) -> Result<(Vec<Block<S>>, String), InputError> {
+        let corners = Corners {
+            low: Vector2::new(corners.low[0], corners.low[1]),
+            high: Vector2::new(corners.high[0], corners.high[1]),
+        };
+        let (size, periodic) = (spec.size, &self.shapes.periodic);
+        let made = voronoi::tiling(&corners, periodic, size, spec.rounds, seed);
+        let made = made.ok_or_else(|| self.no_room(here, size))?;
+        let mut out = Vec::with_capacity(made.cells.len());
+        let band = 0.5 * spec.gap + spec.rounding;
+        for cell in &made.cells {
+            let inner = if band > 0.0 {
+                voronoi::inset(cell, band, SHORTEST * size)
+            } else {
+                Some(cell.clone())
+            };
+            let inner = inner.ok_or_else(|| self.nothing_left(here, spec))?;
+            let corners: Vec<(f64, f64)> = inner.iter().map(|p| (p.x, p.y)).collect();
+            // A side that was taken out can turn its neighbours by too much.
+            let part = self.polygon(here, &corners, spec.rounding).map_err(|_| {
+                let message = "a cell with several very short sides lost its shape; take another `seed`, or some `rounds`";
+                self.fail(here, message)
+            })?;
+            out.push(Block::of(part));
+        }
+        let note = match made.merged {
+            0 => String::new(),
+            n => format!(
+                "; {} sides shorter than {:e} m were taken out",
+                n.div_ceil(2),
+                SHORTEST * size
+            ),
+        };
+        Ok((out, note))
+    }
+
+    /// Cells of a box, and what was done to them.
+    fn cells_in_space(
+        &self,
+        here: &str,
+        spec: &VoronoiSpec,
+        corners: &Corners<S::Vector>,
+        seed: u64,
+    ) -> Result<(Vec<Block<S>>, String), InputError> {
+        let [low, high] = [corners.low, corners.high].map(|c| Vector3::from(c.padded()));
+        let (size, periodic) = (spec.size, &self.shapes.periodic);
+        let corners = Corners { low, high };
+        let made = voronoi_space::tiling(&corners, periodic, size, spec.rounds, seed);
+        let short = || {
+            let message = "cells keep edges shorter than a thousandth of their size; take another `seed`, or other `rounds`";
+            self.fail(here, message)
+        };
+        let made = made.map_err(|e| match e {
+            Failure::Thin => self.no_room(here, size),
+            Failure::Short => short(),
+        })?;
+        let mut out = Vec::with_capacity(made.cells.len());
+        let band = 0.5 * spec.gap + spec.rounding;
+        for cell in made.cells {
+            let (points, faces) = if band > 0.0 {
+                voronoi_space::inset(&cell, band).ok_or_else(|| self.nothing_left(here, spec))?
+            } else {
+                (cell.points, cell.faces)
+            };
+            let core = Polyhedron::from_faces(points, faces).map_err(|_| short())?;
+            out.push(Block::of(self.polyhedron(here, &core, spec.rounding)?));
+        }
+        let note = match made.moved {
+            0 => String::new(),
+            n => format!(
+                "; sites were moved {n} times, away from edges shorter than {:e} m",
+                SHORTEST * size
+            ),
+        };
+        Ok((out, note))
+    }
+
+    fn no_room(&self, here: &str, size: f64) -> InputError {
+        let message = format!(
+            "cells of {size:e} m find no room: the region must be wider and higher{} than half of that",
+            if S::D == 2 { "" } else { " and deeper" }
+        );
+        self.fail(format!("{here}.size"), message)
+    }
+
+    fn nothing_left(&self, here: &str, spec: &VoronoiSpec) -> InputError {
+        let (band, side) = (
+            0.5 * spec.gap + spec.rounding,
+            if S::D == 2 { "side" } else { "face" },
+        );
+        let message = format!(
+            "half the gap and the rounding take {band:e} m off each {side}, which leaves nothing of the thinnest cell; make them smaller, or the cells more alike with more `rounds`"
+        );
+        let field = if spec.rounding > 0.0 {
+            "rounding"
+        } else {
+            "gap"
+        };
+        self.fail(format!("{here}.{field}"), message)
+    }
+
+    /// A wall in running bond, course by course from the ground, from left to right.
+    pub(super) fn block_wall(
+        &self,
+        here: &str,
+        spec: &BlockWallSpec,
+    ) -> Result<Vec<Block<S>>, InputError> {
+        let at = self.vector(&format!("{here}.at"), &spec.at)?;
+        let wide = self.length(&format!("{here}.block.0"), spec.block.0)?;
+        let high = self.length(&format!("{here}.block.1"), spec.block.1)?;
+        if spec.thickness.is_some() != (S::D == 3) {
+            let message = "the wall has a `thickness` in three dimensions, and in three alone";
+            return Err(self.fail(here, message));
+        }
+        let thick = spec.thickness.unwrap_or(1.0);
+        let thick = self.length(&format!("{here}.thickness"), thick)?;
+        let gap = self.not_negative(&format!("{here}.gap"), spec.gap)?;
+        if gap >= wide {
+            let message = format!("must be smaller than a block ({wide:e} m), got {gap:e}");
+            return Err(self.fail(format!("{here}.gap"), message));
+        }
+        for (name, count) in [("rows", spec.rows), ("columns", spec.columns)] {
+            if count == 0 {
+                return Err(self.fail(format!("{here}.{name}"), "a wall has at least one"));
+            }
+        }
+        let blocks = spec.rows.saturating_mul(spec.columns.saturating_add(1));
+        if blocks > MOST_BLOCKS {
+            let message = format!("{blocks} blocks are too many");
+            let fault = Fault::new(format!("{here}.rows"), message);
+            return Err(self
+                .source
+                .locate(fault.expected(format!("at most {MOST_BLOCKS}"))));
+        }
+        let half = 0.5 * (wide - gap);
+        let mut out = Vec::with_capacity(blocks);
+        for row in 0..spec.rows {
+            let low = row as f64 * (high + gap);
+            let widths: Vec<f64> = if row % 2 == 0 {
+                vec![wide; spec.columns]
+            } else {
+                let inner = vec![wide; spec.columns - 1];
+                [vec![half], inner, vec![half]].concat()
+            };
+            let mut left = 0.0;
+            for width in widths {
+                let mut block = Block::of(self.brick(here, width, thick, high)?);
+                let middle = [left + 0.5 * width, 0.5 * thick, low + 0.5 * high];
+                let middle = if S::D == 2 {
+                    vec![middle[0], middle[2]]
+                } else {
+                    middle.to_vec()
+                };
+                block.at = at + S::Vector::from_slice(&middle);
+                out.push(block);
+                left += width + gap;
+            }
+        }
+        Ok(out)
+    }
+
+    /// A block of a wall about its centre.
+    fn brick(&self, here: &str, width: f64, thick: f64, high: f64) -> Result<Part<S>, InputError> {
+        if S::D == 3 {
+            return self.polyhedron(here, &Polyhedron::cuboid([width, thick, high]), 0.0);
+        }
+        let (x, y) = (0.5 * width, 0.5 * high);
+        self.polygon(here, &[(-x, -y), (x, -y), (x, y), (-x, y)], 0.0)
+    }
+
+    fn length(&self, path: &str, length: f64) -> Result<f64, InputError> {
+        if length.is_finite() && length > 0.0 {
+            return Ok(length);
+        }
+        let message = format!("a length must be positive, got {length}");
+        Err(self.fail(path, message))
+    }
+
+    fn not_negative(&self, path: &str, length: f64) -> Result<f64, InputError> {
+        if length.is_finite() && length >= 0.0 {
+            return Ok(length);
+        }
+        Err(self.fail(path, format!("must not be negative, got {length}")))
+    }
+}

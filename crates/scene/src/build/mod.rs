@@ -1,0 +1,476 @@
+//! From a case to a scene that steps.
+
+mod another_run;
+mod arch;
+mod blocks;
+mod first_body;
+mod grains;
+mod polygons;
+mod polyhedra;
+mod samples;
+mod surface;
+mod union;
+mod wear;
+
+pub use surface::Dimensional;
+
+use super::case::Case;
+use super::interfaces;
+use super::material::{Material, Shelf};
+use super::methods::{Demands, Service};
+use super::recorded::RecordReader;
+use super::scene_file::{self, SceneFile};
+use super::source::{Fault, InputError, Source};
+use fretwork_core::bodies::Bodies;
+use fretwork_core::contact::detect::{LawTable, centre};
+use fretwork_core::geometry::grid;
+use fretwork_core::geometry::periodic::Periodic;
+use fretwork_core::geometry::shape::Shapes;
+use fretwork_core::geometry::space::{Plane, Solid, Space, VectorLike};
+use fretwork_core::laws::{Interface, SearchPath};
+use fretwork_core::solve;
+use fretwork_core::step::{Scheme, Simulation};
+use fretwork_core::wear::Scar;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// A case that was read: the text, what it says, and where it stands.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The text, `--set` applied.
+    pub source: Source,
+    /// What it says.
+    pub case: Case,
+    /// Its file.
+    pub path: PathBuf,
+    /// What reads grains of the results of other runs; none where such cases are refused.
+    pub records: Option<RecordReader>,
+}
+
+/// A scene of either dimension.
+#[derive(Debug)]
+pub enum Scene {
+    /// Two dimensions.
+    Plane(Box<Built<Plane>>),
+    /// Three dimensions.
+    Solid(Box<Built<Solid>>),
+}
+
+/// A scene ready to step.
+#[derive(Debug)]
+pub struct Built<S: Space> {
+    /// The stepper.
+    pub simulation: Simulation<S>,
+    /// Material files read: name and text.
+    pub materials: Vec<(String, String)>,
+    /// Densities of the materials, with the scaling of inertia (kg/m^3).
+    pub densities: Vec<f64>,
+    /// The body under test and the names of the driven bodies, in their order.
+    pub names: Vec<String>,
+    /// What samples that were made at random, or read, turned out to be: one line each.
+    pub samples: Vec<String>,
+    /// Where the case writes each body, by the identity of the body.
+    pub origins: Vec<Origin>,
+}
+
+/// Reads a case and applies `--set`s.
+///
+/// # Errors
+/// At file, line and column.
+pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
+    let mut source = Source::read(path)?;
+    for set in sets {
+        source.set::<Case>(set)?;
+    }
+    let case: Case = source.parse()?;
+    super::check::numbers(&case).map_err(|f| source.locate(f))?;
+    Ok(Loaded {
+        source,
+        case,
+        path: path.to_owned(),
+        records: None,
+    })
+}
+
+impl Loaded {
+    /// The same case, where grains of other runs are read by `reader`.
+    #[must_use]
+    pub fn reading_records(self, reader: RecordReader) -> Self {
+        Self {
+            records: Some(reader),
+            ..self
+        }
+    }
+
+    /// Builds the scene.
+    ///
+    /// # Errors
+    /// At file, line and column.
+    pub fn build(&self, path: &SearchPath) -> Result<Scene, InputError> {
+        if self.case.dimension == 2 {
+            Ok(Scene::Plane(Box::new(self.build_in::<Plane>(path)?)))
+        } else {
+            Ok(Scene::Solid(Box::new(self.build_in::<Solid>(path)?)))
+        }
+    }
+
+    /// Builds the scene in a dimension that must be the case's.
+    ///
+    /// # Errors
+    /// At file, line and column.
+    pub fn build_in<S: Dimensional>(&self, path: &SearchPath) -> Result<Built<S>, InputError> {
+        let shelf = Shelf::beside(&self.path);
+        let (densities, mut materials) = self.materials(&shelf)?;
+        let laws = interfaces::build(&self.case, &self.source, &shelf, path)?;
+        materials.extend(laws.files);
+        let mut builder = Builder::<S> {
+            case: &self.case,
+            source: &self.source,
+            records: self.records,
+            folder: self.path.parent().map(Path::to_owned).unwrap_or_default(),
+            densities: densities
+                .into_iter()
+                .map(|(n, (k, d))| (n, (k, d * self.case.inertia_scaling)))
+                .collect(),
+            files: BTreeMap::new(),
+            origins: Vec::new(),
+            samples: Vec::new(),
+            scars: Vec::new(),
+            bodies: Bodies::default(),
+            shapes: Shapes {
+                balls: Vec::new(),
+                pieces: Vec::new(),
+                surfaces: Vec::new(),
+                periodic: Periodic {
+                    period: [
+                        self.case.periodic.x,
+                        self.case.periodic.y,
+                        self.case.periodic.z,
+                    ],
+                },
+            },
+        };
+        builder.grains()?;
+        builder.first_bodies()?;
+        builder.refuse_idle_wear()?;
+        let names = builder
+            .bodies
+            .driven
+            .iter()
+            .map(|d| d.name.clone())
+            .collect();
+        let samples = std::mem::take(&mut builder.samples);
+        let origins = builder.origins.clone();
+        let mut densities = vec![0.0; builder.densities.len()];
+        for (k, density) in builder.densities.values() {
+            densities[usize::from(*k)] = *density;
+        }
+        let simulation = builder.finish(laws.interfaces, laws.table)?;
+        Ok(Built {
+            simulation,
+            materials,
+            densities,
+            names,
+            samples,
+            origins,
+        })
+    }
+
+    /// Density of a material of the case (kg/m^3), without any scaling of inertia.
+    pub fn density(&self, name: &str) -> Option<f64> {
+        let (densities, _) = self.materials(&Shelf::beside(&self.path)).ok()?;
+        densities.get(name).map(|d| d.1)
+    }
+
+    /// Densities by material, and the texts of the files.
+    #[allow(clippy::type_complexity)]
+    fn materials(
+        &self,
+        shelf: &Shelf,
+    ) -> Result<(BTreeMap<String, (u16, f64)>, Vec<(String, String)>), InputError> {
+        let (mut densities, mut texts) = (BTreeMap::new(), Vec::new());
+        for (k, (name, file)) in self.case.materials.iter().enumerate() {
+            let here = format!("materials.{name}");
+            let source = shelf.read(file).map_err(|e| match e {
+                Err(error) => self.source.named_at(&here, error),
+                Ok(missing) => self.source.locate(
+                    Fault::new(
+                        format!("materials.{name}"),
+                        format!("there is no file `{file}.ron` in {}", missing.looked),
+                    )
+                    .expected(format!("one of {}", missing.available))
+                    .nearest(missing.nearest.as_deref()),
+                ),
+            })?;
+            let material: Material = source.parse()?;
+            let density = material.density().map_err(|f| source.locate(f))?;
+            densities.insert(name.clone(), (k as u16, density));
+            if !texts.iter().any(|t: &(String, String)| t.0 == *file) {
+                texts.push((file.clone(), source.text().to_owned()));
+            }
+        }
+        Ok((densities, texts))
+    }
+}
+
+/// Pairs of grains that a skin may make neighbours, see [`Builder::refuse_wide_skin`].
+const MOST_PAIRS: f64 = 2e8;
+/// Pairs of grains at the start, see [`Builder::refuse_piles`]: of any case, and for each grain.
+const MOST_PAIRS_AT_ALL: usize = 2_000_000;
+const MOST_PAIRS_A_GRAIN: usize = 100;
+
+struct Builder<'a, S: Space> {
+    records: Option<RecordReader>,
+    case: &'a Case,
+    source: &'a Source,
+    folder: PathBuf,
+    densities: BTreeMap<String, (u16, f64)>,
+    files: BTreeMap<String, SceneFile>,
+    bodies: Bodies<S>,
+    shapes: Shapes<S>,
+    /// Where the case writes each body: the place in `grains`, in that list, or in `bodies`.
+    origins: Vec<Origin>,
+    /// See [`Built::samples`].
+    samples: Vec<String>,
+    /// Surfaces that wear.
+    scars: Vec<Scar<S>>,
+}
+
+/// The place of a body in the case.
+#[derive(Clone, Copy, Debug)]
+pub enum Origin {
+    /// Of one of `grains`, and which of its list where it has one.
+    Grain(usize, Option<usize>),
+    /// One of `bodies`.
+    Body(usize),
+}
+
+impl Origin {
+    /// Its dotted path.
+    pub fn path(self) -> String {
+        match self {
+            Self::Grain(k, None) => format!("grains.{k}"),
+            Self::Grain(k, Some(g)) => format!("grains.{k}.grains.{g}"),
+            Self::Body(k) => format!("bodies.{k}"),
+        }
+    }
+}
+
+impl<S: Dimensional> Builder<'_, S> {
+    fn fail(&self, path: impl Into<String>, message: impl Into<String>) -> InputError {
+        self.source.locate(Fault::new(path, message))
+    }
+
+    fn material(&self, path: &str, name: &str) -> Result<(u16, f64), InputError> {
+        self.densities.get(name).copied().ok_or_else(|| {
+            let names: Vec<&str> = self.densities.keys().map(String::as_str).collect();
+            self.source.locate(
+                Fault::new(path, format!("the case has no material `{name}`"))
+                    .expected_name(names.iter().copied(), "materials")
+                    .nearest(super::source::nearest(name, names.iter().copied())),
+            )
+        })
+    }
+
+    fn vector(&self, path: &str, values: &[f64]) -> Result<S::Vector, InputError> {
+        if values.is_empty() {
+            return Ok(S::Vector::null());
+        }
+        if values.len() != S::D {
+            let message = format!(
+                "{} components in a case of dimension {}",
+                values.len(),
+                S::D
+            );
+            return Err(self
+                .source
+                .locate(Fault::new(path, message).expected(format!("{} numbers", S::D))));
+        }
+        if values.iter().any(|x| !x.is_finite()) {
+            return Err(self.fail(path, "the components must be finite numbers"));
+        }
+        Ok(S::Vector::from_slice(values))
+    }
+
+    fn radius(&self, path: &str, radius: f64) -> Result<f64, InputError> {
+        if radius.is_finite() && radius > 0.0 {
+            return Ok(radius);
+        }
+        Err(self.source.locate(Fault::new(
+            path,
+            format!("a radius must be positive, got {radius}"),
+        )))
+    }
+
+    fn scene_file(&mut self, here: &str, file: &str) -> Result<SceneFile, InputError> {
+        if let Some(scene) = self.files.get(file) {
+            return Ok(scene.clone());
+        }
+        let read = scene_file::read(&self.folder.join(file), S::D);
+        let scene = read.map_err(|e| self.source.named_at(&format!("{here}.file"), e))?;
+        self.files.insert(file.to_owned(), scene.clone());
+        Ok(scene)
+    }
+
+    fn finish(self, laws: Vec<Interface>, table: LawTable) -> Result<Simulation<S>, InputError> {
+        let case = self.case;
+        let smallest = self.radii().fold(f64::INFINITY, f64::min);
+        let smallest = if smallest.is_finite() { smallest } else { 1.0 };
+        let alert = case.detection.alert.unwrap_or(0.05 * smallest);
+        let skin = case.detection.skin.unwrap_or(0.3 * smallest);
+        let largest = self.radii().fold(0.0, f64::max);
+        if largest > 0.0 && alert > 10.0 * largest {
+            let message = format!(
+                "an alert distance of {alert} m is more than ten times the largest radius ({largest} m): all would be \
+                 contacts; the default is 0.05 of the smallest"
+            );
+            return Err(self.fail("detection.alert", message));
+        }
+        self.refuse_wide_skin(alert, skin, largest)?;
+        self.refuse_piles(alert, skin, &table)?;
+        let gravity = self.vector("gravity", &case.gravity)?;
+        self.refuse_small_period(alert + skin)?;
+        let (source, mut simulation) = (
+            self.source,
+            Simulation::new(self.bodies, self.shapes, laws, table, alert, skin),
+        );
+        let service = Demands::of(&simulation).service(case.solver.method);
+        if let Service::Refuses(reason) = service {
+            return Err(self.source.locate(Fault::new("solver.method", reason)));
+        }
+        simulation.gravity = gravity;
+        for scar in self.scars {
+            simulation.follow_wear(scar);
+        }
+        super::phases::install(case, &mut simulation).map_err(|f| source.locate(f))?;
+        simulation.correction = case.solver.correction;
+        simulation.projection = case.solver.projection;
+        simulation.coupling = case.coupling;
+        simulation.scheme = Scheme {
+            h: case.time.step,
+            theta: case.time.theta,
+        };
+        simulation.solver = solve::Options {
+            tolerance: case.solver.tolerance,
+            norm: case.solver.norm,
+            max_iterations: case.solver.max_iterations,
+            test_every: case.solver.test_every,
+            relaxation: case.solver.relaxation,
+            accelerated: true,
+            method: case.solver.method,
+            parallel: false,
+        };
+        super::magnitudes::check(&simulation, &self.origins, case.time.end)
+            .map_err(|f| source.locate(f))?;
+        super::check::overlaps(&mut simulation, smallest, &self.origins)
+            .map_err(|f| source.locate(f))?;
+        simulation.set_in_motion();
+        Ok(simulation)
+    }
+
+    /// Radii of all balls, and of the balls that hold the pieces (m).
+    fn radii(&self) -> impl Iterator<Item = f64> + '_ {
+        let pieces = self.shapes.pieces.iter().map(|p| p.bound);
+        self.shapes.balls.iter().map(|b| b.radius).chain(pieces)
+    }
+
+    /// A skin beyond the grains' size makes neighbours of grains that never meet; the list must still fit into memory.
+    fn refuse_wide_skin(&self, alert: f64, skin: f64, largest: f64) -> Result<(), InputError> {
+        if self.case.detection.skin.is_none() || skin <= largest {
+            return Ok(());
+        }
+        let of = |body: u32| self.bodies.position[body as usize];
+        let balls = self.shapes.balls.iter().map(|b| of(b.body));
+        let centres: Vec<S::Vector> = balls
+            .chain(self.shapes.pieces.iter().map(|p| of(p.body)))
+            .collect();
+        let radii: Vec<f64> = self.radii().collect();
+        let pairs = grid::most_pairs(&centres, &radii, alert + skin, &self.shapes.periodic);
+        if pairs <= MOST_PAIRS {
+            return Ok(());
+        }
+        let message = format!(
+            "a skin of {skin:e} m makes {pairs:.1e} pairs to look at, of {MOST_PAIRS:e} at most; make it smaller than \
+             the largest radius ({largest:e} m), the default is 0.3 of the smallest"
+        );
+        Err(self.fail("detection.skin", message))
+    }
+
+    /// Grains that stand in each other, such as all at one place, make more pairs than memory holds: refused before
+    /// any pair is stored. Grains that only touch have some twenty neighbours each, whatever their sizes.
+    fn refuse_piles(&self, alert: f64, skin: f64, table: &LawTable) -> Result<(), InputError> {
+        let balls = &self.shapes.balls;
+        let owner = |at: u32| match balls.get(at as usize) {
+            Some(ball) => (ball.body, ball.material),
+            None => {
+                let piece = &self.shapes.pieces[at as usize - balls.len()];
+                (piece.body, piece.material)
+            }
+        };
+        let mut centres: Vec<S::Vector> = balls.iter().map(|b| centre(b, &self.bodies)).collect();
+        centres.extend(self.shapes.pieces.iter().map(|p| {
+            let b = p.body as usize;
+            self.bodies.position[b] + S::rotate(&self.bodies.rotation[b], &p.offset)
+        }));
+        let radii: Vec<f64> = self.radii().collect();
+        // A wide skin that the case asks for has a limit of its own.
+        let reach = alert
+            + if self.case.detection.skin.is_some() {
+                0.0
+            } else {
+                skin
+            };
+        let most = MOST_PAIRS_AT_ALL + MOST_PAIRS_A_GRAIN * centres.len();
+        let still = self.bodies.still();
+        let keep = |a: u32, b: u32| {
+            let ((i, m), (j, n)) = (owner(a), owner(b));
+            i != j && !(still[i as usize] && still[j as usize]) && table.get(m, n).is_some()
+        };
+        let periodic = &self.shapes.periodic;
+        let Some(crowd) = grid::more_than(&centres, &radii, reach, periodic, most, keep) else {
+            return Ok(());
+        };
+        let (body, _) = owner(crowd.ball);
+        let at = centres[crowd.ball as usize];
+        let at: Vec<String> = (0..S::D).map(|k| format!("{:e}", at[k])).collect();
+        let looked = grid::most_pairs(&centres, &radii, reach, periodic);
+        let message = format!(
+            "more than {most} pairs of grains are within reach of each other (up to {looked:.1e}), where grains that \
+             touch make some 20 each: {} of them stand within {:.1e} m of ({}) m",
+            crowd.count,
+            crowd.size,
+            at.join(", ")
+        );
+        let origin = self
+            .origins
+            .get(body as usize)
+            .map_or_else(|| "grains".to_owned(), |o| o.path());
+        let fault = Fault::new(origin, message).expected(
+            "grains beside each other: look for places that are there twice, radii in another unit, or too large a \
+             `detection.alert`",
+        );
+        Err(self.source.locate(fault))
+    }
+
+    /// Two balls must not touch each other twice around a period.
+    fn refuse_small_period(&self, reach: f64) -> Result<(), InputError> {
+        let widest = self.radii().fold(0.0, f64::max);
+        for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
+            let period = self.shapes.periodic.period[k];
+            if period.is_some_and(|p| 2.0 * (2.0 * widest + reach) > p) && reach > 2.0 * widest {
+                let message = format!(
+                    "with the skin, grains see each other {reach:e} m apart, which reaches twice around the period `periodic.{name}`; make it smaller"
+                );
+                return Err(self.fail("detection.alert".to_owned(), message));
+            }
+            if period.is_some_and(|p| p < 8.0 * widest) {
+                let message = format!(
+                    "the period must be at least 4 diameters of the largest grain ({:e} m)",
+                    8.0 * widest
+                );
+                return Err(self.fail(format!("periodic.{name}"), message));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,174 @@
+//! Convex polygons: grains and parts of first bodies.
+
+use super::{Builder, Dimensional, Origin};
+use fretwork_core::bodies::tensor;
+use fretwork_core::geometry::convex::Part;
+use fretwork_core::geometry::convex::polygon::{Polygon, PolygonError};
+use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
+use crate::case::{Coordinates, GrainSpec, OnePolygon};
+use crate::source::InputError;
+use nalgebra::Vector2;
+
+/// More sides than a picture shows are a slip of the keyboard.
+const MOST_SIDES: usize = 10_000;
+
+/// A grain of one piece: its centre of mass (m), mass and moment of inertia at unit density.
+pub(super) struct Block<S: Space> {
+    pub at: S::Vector,
+    pub volume: f64,
+    pub inertia: S::Tensor,
+    pub part: Part<S>,
+    /// Where the part's centre stands from the block's centre of mass (m).
+    pub offset: S::Vector,
+    pub velocity: S::Vector,
+    pub spin: S::Spin,
+}
+
+impl<S: Space> Block<S> {
+    /// A part at rest where it stands.
+    pub fn of(part: Part<S>) -> Self {
+        Self {
+            at: part.centre,
+            volume: part.volume,
+            inertia: part.inertia,
+            offset: S::Vector::null(),
+            velocity: S::Vector::null(),
+            spin: S::Spin::null(),
+            part,
+        }
+    }
+}
+
+impl<S: Dimensional> Builder<'_, S> {
+    /// The grains that are polygons.
+    pub(super) fn polygons(&mut self) -> Result<(), InputError> {
+        for (k, spec) in self.case.grains.iter().enumerate() {
+            let here = format!("grains.{k}");
+            match spec {
+                GrainSpec::Polygons { material, grains } => {
+                    let of = self.material(&format!("{here}.material"), material)?;
+                    for (g, grain) in grains.iter().enumerate() {
+                        let block = self.one_polygon(&format!("{here}.grains.{g}"), grain)?;
+                        self.add_block(block, of, Origin::Grain(k, Some(g)));
+                    }
+                }
+                GrainSpec::Arch { material, .. } => {
+                    let of = self.material(&format!("{here}.material"), material)?;
+                    for block in self.arch(&here, spec)? {
+                        self.add_block(block, of, Origin::Grain(k, None));
+                    }
+                }
+                GrainSpec::Voronoi(spec) => {
+                    let of = self.material(&format!("{here}.material"), &spec.material)?;
+                    for block in self.voronoi(k, spec)? {
+                        self.add_block(block, of, Origin::Grain(k, None));
+                    }
+                }
+                GrainSpec::BlockWall(spec) => {
+                    let of = self.material(&format!("{here}.material"), &spec.material)?;
+                    for block in self.block_wall(&here, spec)? {
+                        self.add_block(block, of, Origin::Grain(k, None));
+                    }
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn add_block(
+        &mut self,
+        block: Block<S>,
+        (material, density): (u16, f64),
+        origin: Origin,
+    ) {
+        let length = (tensor::mean::<S>(&block.inertia) / block.volume).sqrt();
+        let (mass, inertia) = (density * block.volume, block.inertia.scaled(density));
+        let body = self.bodies.add_shaped(block.at, mass, &inertia, length);
+        self.bodies.velocity[body as usize] = block.velocity;
+        self.bodies.spin[body as usize] = block.spin;
+        self.origins.push(origin);
+        let piece = block.part.carried(body, block.offset, material);
+        self.shapes.pieces.push(piece);
+    }
+
+    fn one_polygon(&self, here: &str, grain: &OnePolygon) -> Result<Block<S>, InputError> {
+        let at = self.vector(&format!("{here}.at"), &grain.at)?;
+        let velocity = self.vector(&format!("{here}.velocity"), &grain.velocity)?;
+        let spin = self.spin(&format!("{here}.spin"), &grain.spin)?;
+        if !grain.angle.is_finite() {
+            return Err(self.fail(format!("{here}.angle"), "must be a finite number"));
+        }
+        let points: Vec<(f64, f64)> = match grain.regular {
+            Some(_) if !grain.points.is_empty() => {
+                return Err(self.fail(here, "has both `points` and `regular`; give one of them"));
+            }
+            Some((sides, radius)) => {
+                let path = format!("{here}.regular");
+                if !(3..=MOST_SIDES).contains(&sides) {
+                    let message =
+                        format!("a regular polygon has 3 to {MOST_SIDES} sides, got {sides}");
+                    return Err(self.fail(path, message));
+                }
+                self.radius(&path, radius)?;
+                let polygon = Polygon::regular(sides, radius);
+                polygon.points().iter().map(|p| (p.x, p.y)).collect()
+            }
+            None => grain.points.clone(),
+        };
+        let (s, c) = grain.angle.sin_cos();
+        let turned: Vec<(f64, f64)> = points
+            .iter()
+            .map(|(x, y)| (c * x - s * y, s * x + c * y))
+            .collect();
+        let part = self.polygon(here, &turned, grain.rounding)?;
+        let block = Block::of(part);
+        Ok(Block {
+            at: at + block.at,
+            velocity,
+            spin,
+            ..block
+        })
+    }
+
+    /// A convex part from its corners (m).
+    pub(super) fn polygon(
+        &self,
+        here: &str,
+        points: &[(f64, f64)],
+        rounding: f64,
+    ) -> Result<Part<S>, InputError> {
+        if !(rounding.is_finite() && rounding >= 0.0) {
+            let message = format!("must not be negative, got {rounding}");
+            return Err(self.fail(format!("{here}.rounding"), message));
+        }
+        if S::D == 3 {
+            let message = "polygons and arches need two dimensions; use polyhedra in three";
+            return Err(self.fail(here, message));
+        }
+        let points = points.iter().map(|p| Vector2::new(p.0, p.1)).collect();
+        let bad = |e: PolygonError| self.fail(format!("{here}.points"), e.to_string());
+        let polygon = Polygon::new(points).map_err(bad)?;
+        S::polygon(&polygon, rounding).map_err(|e| self.fail(here, e))
+    }
+
+    /// A capsule.
+    pub(super) fn capsule(
+        &self,
+        here: &str,
+        from: &Coordinates,
+        to: &Coordinates,
+        radius: f64,
+    ) -> Result<Part<S>, InputError> {
+        self.radius(&format!("{here}.radius"), radius)?;
+        let from = self.vector(&format!("{here}.from"), &from.0)?;
+        let to = self.vector(&format!("{here}.to"), &to.0)?;
+        let length = (to - from).norm();
+        if !(length.is_finite() && length > 0.0) {
+            let message =
+                "the ends of a capsule must be two different points; for a disk use Balls";
+            return Err(self.fail(here, message));
+        }
+        Ok(S::capsule(&from, &to, radius))
+    }
+}

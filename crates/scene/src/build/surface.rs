@@ -1,0 +1,339 @@
+//! Surfaces of first bodies.
+
+use super::Builder;
+use fretwork_core::geometry::convex::Part;
+use fretwork_core::geometry::convex::polygon::Polygon;
+use fretwork_core::geometry::convex::polyhedron::Polyhedron;
+use fretwork_core::geometry::crossing;
+use fretwork_core::geometry::drum::Drum;
+use fretwork_core::geometry::height_field::HeightField;
+use fretwork_core::geometry::mesh::Mesh;
+use fretwork_core::geometry::polyline::{Polyline, ProfileError};
+use fretwork_core::geometry::shape::{HalfSpace, Surface};
+use fretwork_core::geometry::space::{Plane, Solid, Space, VectorLike};
+use crate::case::{ShapeSpec, Side};
+use crate::source::InputError;
+use crate::{profile, profile_file, standard};
+use nalgebra::Vector2;
+
+/// Points of a random surface, at most,
+const MOST_POINTS: usize = 1_000_000;
+/// and points times waves of a rough profile, which its making takes time for.
+const MOST_TERMS: f64 = 2e8;
+
+/// Shapes that exist in one dimension only.
+pub trait Dimensional: Space {
+    /// A profile of points, left to right.
+    ///
+    /// # Errors
+    /// Why it is none, or that the dimension has no profiles.
+    fn profile(
+        points: Vec<(f64, f64)>,
+        side: Side,
+        period: Option<f64>,
+    ) -> Result<Box<dyn Surface<Self>>, String>;
+    /// A height field.
+    ///
+    /// # Errors
+    /// Why it is none, or that the dimension has no height fields.
+    fn height_field(
+        points: (usize, usize),
+        spacing: (f64, f64),
+        heights: Vec<f64>,
+        periodic: [bool; 2],
+    ) -> Result<Box<dyn Surface<Self>>, String>;
+    /// A surface of triangles.
+    ///
+    /// # Errors
+    /// That the dimension has none.
+    fn mesh(mesh: Mesh) -> Result<Box<dyn Surface<Self>>, String>;
+    /// A polygon of a body.
+    ///
+    /// # Errors
+    /// That the dimension has none.
+    fn polygon(core: &Polygon, rounding: f64) -> Result<Part<Self>, String>;
+    /// A polyhedron of a body.
+    ///
+    /// # Errors
+    /// That the dimension has none.
+    fn polyhedron(core: &Polyhedron, rounding: f64) -> Result<Part<Self>, String>;
+    /// All that is within a radius of a segment.
+    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> Part<Self>;
+}
+
+impl Dimensional for Plane {
+    fn profile(
+        points: Vec<(f64, f64)>,
+        side: Side,
+        period: Option<f64>,
+    ) -> Result<Box<dyn Surface<Self>>, String> {
+        let mut points: Vec<Vector2<f64>> = points
+            .into_iter()
+            .map(|(x, y)| Vector2::new(x, y))
+            .collect();
+        if let Some((a, b, at)) = crossing::first(&points) {
+            return Err(ProfileError::Crosses(a, b, at.x, at.y).to_string());
+        }
+        if let Some(k) = points.windows(2).position(|w| w[1].x < w[0].x) {
+            return Err(format!(
+                "the points of a profile must go from left to right, and point {} at x = {:e} m is left of the one before, at {:e} m",
+                k + 1,
+                points[k + 1].x,
+                points[k].x
+            ));
+        }
+        if side == Side::Above {
+            points.reverse();
+        }
+        Ok(Box::new(
+            Polyline::new(points, period).map_err(|e| e.to_string())?,
+        ))
+    }
+    fn height_field(
+        _: (usize, usize),
+        _: (f64, f64),
+        _: Vec<f64>,
+        _: [bool; 2],
+    ) -> Result<Box<dyn Surface<Self>>, String> {
+        Err("a height field needs three dimensions; use a Profile or RoughProfile in two".into())
+    }
+    fn mesh(_: Mesh) -> Result<Box<dyn Surface<Self>>, String> {
+        Err("a mesh needs three dimensions; use a Profile in two".into())
+    }
+    fn polygon(core: &Polygon, rounding: f64) -> Result<Part<Self>, String> {
+        Ok(core.part(rounding))
+    }
+    fn polyhedron(_: &Polyhedron, _: f64) -> Result<Part<Self>, String> {
+        Err("polyhedra and boxes need three dimensions; use polygons in two".into())
+    }
+    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> Part<Self> {
+        Polygon::segment(*from, *to).part(radius)
+    }
+}
+
+impl Dimensional for Solid {
+    fn profile(
+        _: Vec<(f64, f64)>,
+        _: Side,
+        _: Option<f64>,
+    ) -> Result<Box<dyn Surface<Self>>, String> {
+        Err("a profile needs two dimensions; use a HeightField in three".into())
+    }
+    fn height_field(
+        points: (usize, usize),
+        spacing: (f64, f64),
+        heights: Vec<f64>,
+        periodic: [bool; 2],
+    ) -> Result<Box<dyn Surface<Self>>, String> {
+        let field = HeightField::new(
+            points.0,
+            points.1,
+            [spacing.0, spacing.1],
+            heights,
+            periodic,
+        );
+        Ok(Box::new(field.map_err(|e| e.to_string())?))
+    }
+    fn mesh(mesh: Mesh) -> Result<Box<dyn Surface<Self>>, String> {
+        Ok(Box::new(mesh))
+    }
+    fn polygon(_: &Polygon, _: f64) -> Result<Part<Self>, String> {
+        Err("polygons and arches need two dimensions; use polyhedra in three".into())
+    }
+    fn polyhedron(core: &Polyhedron, rounding: f64) -> Result<Part<Self>, String> {
+        Ok(core.part(rounding))
+    }
+    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> Part<Self> {
+        Polyhedron::segment(*from, *to).part(radius)
+    }
+}
+
+/// A surface and its offset in the frame of its body.
+pub(super) type Placed<S> = (<S as Space>::Vector, Box<dyn Surface<S>>);
+
+impl<S: Dimensional> Builder<'_, S> {
+    pub(super) fn surface(&self, here: &str, shape: &ShapeSpec) -> Result<Placed<S>, InputError> {
+        let period = self.shapes.periodic.period[0];
+        let null = S::Vector::null();
+        let bad = |message: String| self.fail(here, message);
+        match shape {
+            ShapeSpec::HalfSpace { normal, at } => {
+                let n = self.vector(&format!("{here}.normal"), normal)?;
+                if n.norm() == 0.0 {
+                    return Err(self.fail(format!("{here}.normal"), "a normal must not be null"));
+                }
+                let at = self.vector(&format!("{here}.at"), at)?;
+                let shown = period.map_or(1.0, |p| 0.5 * p);
+                Ok((
+                    at,
+                    Box::new(HalfSpace {
+                        normal: n * (1.0 / n.norm()),
+                        shown,
+                    }),
+                ))
+            }
+            ShapeSpec::Drum { radius, axis } => {
+                let radius = self.radius(&format!("{here}.radius"), *radius)?;
+                if *axis > 2 {
+                    let message = format!("axis {axis} does not exist; use 0, 1 or 2");
+                    return Err(self.fail(format!("{here}.axis"), message));
+                }
+                Ok((null, Box::new(Drum::new(radius, *axis))))
+            }
+            ShapeSpec::Profile { points, file, side } => {
+                let points = match (points.is_empty(), file) {
+                    (true, Some(file)) => profile_file::read(&self.folder.join(file))
+                        .map_err(|e| self.source.named_at(&format!("{here}.file"), e))?,
+                    (false, None) | (true, None) => points.clone(),
+                    (false, Some(_)) => {
+                        let message = "a profile is given by `points` or by a `file`, not by both";
+                        return Err(self.fail(format!("{here}.file"), message));
+                    }
+                };
+                Ok((null, self.chain(here, points, *side)?))
+            }
+            ShapeSpec::StandardProfile {
+                name,
+                spacing,
+                from,
+                to,
+                inclination,
+                side,
+            } => {
+                let cut = standard::Cut {
+                    spacing: *spacing,
+                    from: *from,
+                    to: *to,
+                    inclination: *inclination,
+                };
+                let points = standard::points(*name, &cut)
+                    .map_err(|(field, why)| self.fail(format!("{here}.{field}"), why))?;
+                let side = side.unwrap_or(standard::side(*name));
+                Ok((null, self.chain(here, points, side)?))
+            }
+            ShapeSpec::RoughProfile {
+                points,
+                rms,
+                hurst,
+                longest,
+                shortest,
+                height,
+                side,
+            } => {
+                let Some(period) = period else {
+                    return Err(bad("a rough profile needs a periodic x".into()));
+                };
+                let valid = *points >= 3
+                    && *rms >= 0.0
+                    && *shortest > 0.0
+                    && longest.is_none_or(|l| l > 0.0)
+                    && rms.is_finite()
+                    && hurst.is_finite();
+                if !valid {
+                    return Err(bad(
+                        "a rough profile needs at least 3 points, rms >= 0, shortest > 0 and longest > 0".into(),
+                    ));
+                }
+                let longest = longest.unwrap_or(period);
+                self.few_terms(here, *points, period, (longest, *shortest))?;
+                // Rail and wheel must not be each other's image.
+                let salt = here
+                    .bytes()
+                    .fold(17u64, |h, b| h.wrapping_mul(31).wrapping_add(u64::from(b)));
+                let z = profile::rough(
+                    *points,
+                    period,
+                    *rms,
+                    *hurst,
+                    longest,
+                    *shortest,
+                    self.case.seed ^ salt,
+                );
+                let x = |k: usize| period * k as f64 / *points as f64;
+                let mut chain: Vec<(f64, f64)> = z
+                    .iter()
+                    .enumerate()
+                    .map(|(k, z)| (x(k), height + z))
+                    .collect();
+                chain.push((period, chain[0].1));
+                Ok((null, S::profile(chain, *side, Some(period)).map_err(bad)?))
+            }
+            ShapeSpec::HeightField {
+                points,
+                spacing,
+                heights,
+                rms,
+            } => {
+                let count = points.0.saturating_mul(points.1);
+                if count > 10_000_000 {
+                    return Err(bad("a height field has at most 10,000,000 points".into()));
+                }
+                let heights = match rms {
+                    Some(rms) => profile::noise(count, *rms, self.case.seed ^ 0x5eed),
+                    None => heights.clone(),
+                };
+                let p = self.shapes.periodic.period;
+                let fits = |axis: usize, n: usize, s: f64| {
+                    p[axis].is_some_and(|p| (n as f64 * s / p - 1.0).abs() < 1e-9)
+                };
+                let periodic = [fits(0, points.0, spacing.0), fits(1, points.1, spacing.1)];
+                Ok((
+                    null,
+                    S::height_field(*points, *spacing, heights, periodic).map_err(bad)?,
+                ))
+            }
+            ShapeSpec::Mesh { file, scale, at } => {
+                let at = self.vector(&format!("{here}.at"), at)?;
+                let (points, triangles) = self.mesh_file(here, file, *scale)?;
+                let mesh = Mesh::new(points, triangles);
+                let mesh = mesh.map_err(|e| self.fail(format!("{here}.file"), e.to_string()))?;
+                Ok((at, S::mesh(mesh).map_err(bad)?))
+            }
+            ShapeSpec::Balls(_)
+            | ShapeSpec::Cluster { .. }
+            | ShapeSpec::Plate { .. }
+            | ShapeSpec::Polygon { .. }
+            | ShapeSpec::Polyhedron { .. }
+            | ShapeSpec::Box { .. }
+            | ShapeSpec::Capsule { .. } => Err(bad("this shape is not a surface".into())),
+        }
+    }
+
+    /// Refuses a rough profile that would take long to make.
+    fn few_terms(
+        &self,
+        here: &str,
+        points: usize,
+        period: f64,
+        (longest, shortest): (f64, f64),
+    ) -> Result<(), InputError> {
+        if points > MOST_POINTS {
+            let message = format!("a rough profile has at most {MOST_POINTS} points, got {points}");
+            return Err(self.fail(format!("{here}.points"), message));
+        }
+        let waves = profile::waves(points, period, longest, shortest);
+        let count = (waves.end() - waves.start()) as f64 + 1.0;
+        if points as f64 * count > MOST_TERMS {
+            let message = format!(
+                "{points} points with {count} waves take too long to make: points times waves may be {MOST_TERMS:e} at \
+                 most; take fewer points, or a larger `shortest`"
+            );
+            return Err(self.fail(format!("{here}.points"), message));
+        }
+        Ok(())
+    }
+
+    /// A profile by its points; one that spans the period repeats.
+    fn chain(
+        &self,
+        here: &str,
+        points: Vec<(f64, f64)>,
+        side: Side,
+    ) -> Result<Box<dyn Surface<S>>, InputError> {
+        let spans = |p: &f64| {
+            points.len() > 1 && ((points[points.len() - 1].0 - points[0].0) / p - 1.0).abs() < 1e-9
+        };
+        let period = self.shapes.periodic.period[0].filter(spans);
+        S::profile(points, side, period).map_err(|why| self.fail(here, why))
+    }
+}

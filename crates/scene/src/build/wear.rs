@@ -1,0 +1,147 @@
+//! Surfaces that wear: which, and that something can wear them.
+
+use super::{Builder, Dimensional};
+use crate::case::{BodySpec, InterfaceSpec};
+use crate::source::InputError;
+use fretwork_core::wear::Scar;
+
+impl<S: Dimensional> Builder<'_, S> {
+    /// Makes the scars of a body whose surfaces begin at a place of the list.
+    pub(super) fn wears(
+        &mut self,
+        here: &str,
+        spec: &BodySpec,
+        first: usize,
+    ) -> Result<(), InputError> {
+        let Some(wears) = &spec.wears else {
+            return Ok(());
+        };
+        let here = format!("{here}.wears");
+        if !(wears.thickness.is_finite() && wears.thickness > 0.0) {
+            let message = format!("a thickness must be positive, got {}", wears.thickness);
+            return Err(self.fail(format!("{here}.thickness"), message));
+        }
+        if wears.every == 0 {
+            return Err(self.fail(format!("{here}.every"), "must be at least 1"));
+        }
+        let before = self.scars.len();
+        for surface in first..self.shapes.surfaces.len() {
+            let name = match self.scars.len() - before {
+                0 => spec.name.clone(),
+                k => format!("{}_{}", spec.name, k + 1),
+            };
+            let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+            if !name.chars().all(plain) || self.scars.iter().any(|s| s.name == name) {
+                let message = format!(
+                    "the name `{name}` of a body that wears names columns and files: it must be of its own, of letters, digits, `-` and `_`"
+                );
+                return Err(self.fail(here, message));
+            }
+            let carried = &self.shapes.surfaces[surface];
+            let scar = Scar::new(name, surface, carried, wears.thickness, wears.every);
+            let outline = carried.shape.outline();
+            let upright = |w: &[S::Vector]| S::D == 2 && w[0][0] == w[1][0];
+            let at = outline
+                .iter()
+                .find_map(|line| line.windows(2).position(upright));
+            if let (Some(k), Some(_)) = (at, &scar) {
+                let message = format!(
+                    "the profile stands upright between points {k} and {}, where it cannot recede; tilt it, or leave `wears` out",
+                    k + 1
+                );
+                return Err(self.fail(here, message));
+            }
+            self.scars.extend(scar);
+        }
+        if self.scars.len() == before {
+            let which = if S::D == 2 {
+                "a Profile, RoughProfile or StandardProfile"
+            } else {
+                "a HeightField"
+            };
+            let message = format!(
+                "no shape of the body `{}` can wear; give it {which}, or leave `wears` out",
+                spec.name
+            );
+            return Err(self.fail(here, message));
+        }
+        Ok(())
+    }
+
+    /// Refuses surfaces that wear and that nothing can wear off.
+    pub(super) fn refuse_idle_wear(&self) -> Result<(), InputError> {
+        for (k, body) in self.case.bodies.iter().enumerate() {
+            if body.wears.is_none() {
+                continue;
+            }
+            let of = |i: &&InterfaceSpec| {
+                i.wear.is_some() && (i.between.0 == body.material || i.between.1 == body.material)
+            };
+            let laws: Vec<&InterfaceSpec> = self.case.interfaces.iter().filter(of).collect();
+            let wrong = if laws.is_empty() {
+                Some(format!(
+                    "no interface of the material `{}` has a wear law, so nothing wears the body `{}` off; give one `wear`, or leave `wears` out",
+                    body.material, body.name
+                ))
+            } else if laws.iter().all(|i| !self.slips(body, i)) {
+                Some(format!(
+                    "nothing slips on the body `{}`: it and all bodies that its wear laws pair it with are fixed along it; let one move, or leave `wears` out",
+                    body.name
+                ))
+            } else {
+                None
+            };
+            if let Some(message) = wrong {
+                return Err(self.fail(format!("bodies.{k}.wears"), message));
+            }
+        }
+        for (k, law) in self.case.interfaces.iter().enumerate() {
+            let by_friction = matches!(law.wear.as_deref(), Some("dissipated-energy" | "t-gamma"));
+            let smooth = law.contact == "frictionless"
+                || law
+                    .parameters
+                    .contact
+                    .get("mu")
+                    .is_some_and(|mu| mu.value == 0.0);
+            let worn = |m: &String| {
+                let mut bodies = self.case.bodies.iter();
+                bodies.any(|b| b.wears.is_some() && b.material == *m)
+            };
+            if by_friction && smooth && (worn(&law.between.0) || worn(&law.between.1)) {
+                let message = format!(
+                    "the wear law `{}` takes its volume from the work of friction, and the contact law `{}` leaves none; give it friction, or take `archard`",
+                    law.wear.as_deref().unwrap_or_default(),
+                    law.contact
+                );
+                return Err(self.fail(format!("interfaces.{k}.wear"), message));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a body and one that an interface pairs it with can move along each other: unless all are held in all
+    /// degrees of freedom, at all times.
+    fn slips(&self, body: &BodySpec, law: &InterfaceSpec) -> bool {
+        let other = if law.between.0 == body.material {
+            &law.between.1
+        } else {
+            &law.between.0
+        };
+        let held = |b: &BodySpec| {
+            let drives = crate::phases::drives_of(self.case, b);
+            drives.iter().all(|d| d.1 == fretwork_core::bodies::Dof::Fixed)
+        };
+        let grains = self.shapes.balls.len() + self.shapes.pieces.len();
+        let carried = |b: u32| self.bodies.driven.iter().any(|d| d.body == b);
+        let loose = self.shapes.balls.iter().any(|b| !carried(b.body))
+            || self.shapes.pieces.iter().any(|p| !carried(p.body));
+        grains > 0
+            && (loose
+                || !held(body)
+                || self
+                    .case
+                    .bodies
+                    .iter()
+                    .any(|b| b.material == *other && !held(b)))
+    }
+}

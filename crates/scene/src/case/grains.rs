@@ -1,0 +1,201 @@
+//! Grains of a case.
+
+use super::shapes::ShapeSpec;
+use crate::sample::spec::{BlockWallSpec, CsvSpec, DepositSpec, StateSpec, VoronoiSpec};
+use serde::Deserialize;
+
+/// Grains.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum GrainSpec {
+    /// One by one.
+    List {
+        /// Material.
+        material: String,
+        /// Balls.
+        grains: Vec<OneGrain>,
+    },
+    /// A hexagonal (2D) or cubic (3D) lattice, radii drawn uniformly between two, shuffled by the seed;
+    /// no overlaps. Fills the box from its low corner up.
+    Lattice {
+        /// Material.
+        material: String,
+        /// How many at most.
+        count: usize,
+        /// Smallest and largest radius (m).
+        radius: (f64, f64),
+        /// Low corner of the box (m).
+        low: Vec<f64>,
+        /// High corner of the box (m).
+        high: Vec<f64>,
+    },
+    /// Convex polygons, one by one (2D).
+    Polygons {
+        /// Material.
+        material: String,
+        /// Polygons.
+        grains: Vec<OnePolygon>,
+    },
+    /// Convex polyhedra, one by one (3D).
+    Polyhedra {
+        /// Material.
+        material: String,
+        /// Polyhedra.
+        grains: Vec<OnePolyhedron>,
+    },
+    /// Rigid unions of balls and convex shapes, one by one.
+    Clusters {
+        /// Material.
+        material: String,
+        /// Clusters.
+        grains: Vec<OneCluster>,
+    },
+    /// Voussoirs of an arch with radial joints, from right to left (2D).
+    Arch {
+        /// Material.
+        material: String,
+        /// How many.
+        blocks: usize,
+        /// Radius of the centre line (m).
+        radius: f64,
+        /// Thickness (m).
+        thickness: f64,
+        /// Centre of the circle (m).
+        #[serde(default)]
+        centre: Vec<f64>,
+        /// Angle of the whole arch (rad), symmetric about the vertical; half a circle by default.
+        #[serde(default = "half_circle")]
+        span: f64,
+        /// Whether blocks weigh as pieces of the ring, or have straight edges between their joints.
+        #[serde(default)]
+        edges: Edges,
+    },
+    /// Voronoi cells that fill a box (2D).
+    Voronoi(VoronoiSpec),
+    /// A wall of blocks in running bond (2D).
+    BlockWall(BlockWallSpec),
+    /// The free balls of a scene file, and its fixed walls as half-spaces of material `walls`.
+    Scene {
+        /// Path relative to the case.
+        file: String,
+        /// Material of the grains.
+        material: String,
+        /// Material of the walls.
+        #[serde(default)]
+        walls: Option<String>,
+    },
+    /// A loose random deposit in a box.
+    Deposit(DepositSpec),
+    /// The grains of a table.
+    Csv(CsvSpec),
+    /// The grains of a state of another run.
+    State(StateSpec),
+}
+
+/// One grain.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OneGrain {
+    /// Centre (m).
+    pub at: Vec<f64>,
+    /// Radius (m).
+    pub radius: f64,
+    /// Velocity (m/s).
+    #[serde(default)]
+    pub velocity: Vec<f64>,
+    /// Angular velocity (rad/s): one number in 2D, three in 3D.
+    #[serde(default)]
+    pub spin: Vec<f64>,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn half_circle() -> f64 {
+    std::f64::consts::PI
+}
+
+/// The edges of a voussoir between its joints.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum Edges {
+    /// Arcs: mass and centre are those of a piece of the ring. It touches at its joints alone.
+    #[default]
+    Curved,
+    /// Chords.
+    Straight,
+}
+
+/// One polygon: its corners, or a regular one.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OnePolygon {
+    /// Where the origin of its corners stands (m).
+    pub at: Vec<f64>,
+    /// Corners (m), against the clock.
+    #[serde(default)]
+    pub points: Vec<(f64, f64)>,
+    /// Sides and circumscribed radius (m) of a regular polygon, in place of points.
+    #[serde(default)]
+    pub regular: Option<(usize, f64)>,
+    /// Radius of the rounding about it (m).
+    #[serde(default)]
+    pub rounding: f64,
+    /// Angle by which the corners are turned about their origin (rad).
+    #[serde(default)]
+    pub angle: f64,
+    /// Velocity of its centre of mass (m/s).
+    #[serde(default)]
+    pub velocity: Vec<f64>,
+    /// Angular velocity (rad/s).
+    #[serde(default)]
+    pub spin: Vec<f64>,
+}
+
+/// One polyhedron: a cuboid, the hull of its corners, or that of a mesh.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OnePolyhedron {
+    /// Where the origin of its corners stands (m); the centre of a cuboid.
+    pub at: Vec<f64>,
+    /// Corners (m), in any order.
+    #[serde(default)]
+    pub points: Vec<(f64, f64, f64)>,
+    /// Lengths of the edges of a cuboid (m), in place of points.
+    #[serde(default)]
+    pub size: Option<(f64, f64, f64)>,
+    /// An STL or OBJ file beside the case whose hull it is, in place of points.
+    #[serde(default)]
+    pub file: Option<String>,
+    /// By what the lengths of the file are multiplied.
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// Rotation vector (rad) by which the corners are turned about their origin.
+    #[serde(default)]
+    pub turned: Vec<f64>,
+    /// Radius of the rounding about it (m).
+    #[serde(default)]
+    pub rounding: f64,
+    /// Velocity of its centre of mass (m/s).
+    #[serde(default)]
+    pub velocity: Vec<f64>,
+    /// Angular velocity (rad/s).
+    #[serde(default)]
+    pub spin: Vec<f64>,
+}
+
+/// One rigid union.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OneCluster {
+    /// Where the origin of its shapes stands (m).
+    pub at: Vec<f64>,
+    /// Balls and convex shapes; where they overlap they weigh twice.
+    pub shapes: Vec<ShapeSpec>,
+    /// Velocity of its centre of mass (m/s).
+    #[serde(default)]
+    pub velocity: Vec<f64>,
+    /// Angular velocity (rad/s).
+    #[serde(default)]
+    pub spin: Vec<f64>,
+}

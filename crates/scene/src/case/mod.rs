@@ -1,0 +1,418 @@
+//! A case file: what the user writes.
+
+mod grains;
+mod shapes;
+mod wear;
+
+pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
+pub use shapes::{Coordinates, ShapeSpec, Side, StandardName};
+pub use wear::WearSpec;
+
+use super::circuit::CircuitSpec;
+use super::jump::JumpSpec;
+use super::material::Given;
+use super::measures::MeasureSpec;
+use super::phases::PhaseSpec;
+use fretwork_core::bodies::Dof;
+use fretwork_core::laws::{BondRule, Kind};
+use fretwork_core::solve::error::Norm;
+use fretwork_core::solve::local::solver::Method;
+use fretwork_core::step::control::GravityDrive;
+use fretwork_core::step::coupling::Coupling;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// A case, as RON. Every number can be changed with `--set key.path=value`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Case {
+    /// Title.
+    pub name: String,
+    /// What it shows, and where its numbers come from.
+    #[serde(default)]
+    pub doc: String,
+    /// 2 or 3.
+    pub dimension: u32,
+    /// Seed of everything random.
+    #[serde(default)]
+    pub seed: u64,
+    /// Step and end.
+    pub time: TimeSpec,
+    /// Acceleration of gravity (m/s^2), one number an axis.
+    #[serde(default)]
+    pub gravity: Vec<f64>,
+    /// How gravity changes in time.
+    #[serde(default)]
+    pub gravity_drive: Option<GravityDrive>,
+    /// Phases of the run, one after another.
+    #[serde(default)]
+    pub phases: Vec<PhaseSpec>,
+    /// Factor on all densities, for quasi-static runs without gravity: inertia is scaled so that steps
+    /// resolve the motion, not the sound (da Cruz et al. 2005: results do not depend on it while the
+    /// inertial number stays below 1e-3). Reported densities and wear are unscaled.
+    #[serde(default = "one")]
+    pub inertia_scaling: f64,
+    /// `Explicit` (the default), or `Implicit(tolerance: 1e-6, max_iterations: 50)`: the step is solved
+    /// again until its damage is the one that its openings give.
+    #[serde(default)]
+    pub coupling: Coupling,
+    /// Length of the periodic cell along an axis (m).
+    #[serde(default)]
+    pub periodic: PeriodicSpec,
+    /// Detection.
+    #[serde(default)]
+    pub detection: DetectionSpec,
+    /// The solver.
+    #[serde(default)]
+    pub solver: SolverSpec,
+    /// Name in this case, and name of the file in `materials/`.
+    pub materials: BTreeMap<String, String>,
+    /// Interface laws between materials.
+    pub interfaces: Vec<InterfaceSpec>,
+    /// SHA-256 that libraries of laws must have, in hexadecimal, by `kind/name`; a law without one may be any.
+    #[serde(default)]
+    pub pins: BTreeMap<String, String>,
+    /// First bodies.
+    #[serde(default)]
+    pub bodies: Vec<BodySpec>,
+    /// Grains.
+    #[serde(default)]
+    pub grains: Vec<GrainSpec>,
+    /// What is measured as a friction test.
+    #[serde(default)]
+    pub friction: Option<FrictionSpec>,
+    /// What is measured as a biaxial test.
+    #[serde(default)]
+    pub biaxial: Option<BiaxialSpec>,
+    /// The account of grains between first bodies, contact and outside.
+    #[serde(default)]
+    pub circuit: Option<CircuitSpec>,
+    /// Jumps over the cycles of the friction test; none by default.
+    #[serde(default)]
+    pub jump: Option<JumpSpec>,
+    /// Other quantities that are measured.
+    #[serde(default)]
+    pub measures: Vec<MeasureSpec>,
+    /// What is written, and how often.
+    #[serde(default)]
+    pub output: OutputSpec,
+}
+
+/// Time step and end of the run.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TimeSpec {
+    /// h (s).
+    pub step: f64,
+    /// End (s).
+    pub end: f64,
+    /// Theta of the scheme, 1/2 to 1.
+    #[serde(default = "half")]
+    pub theta: f64,
+}
+
+fn half() -> f64 {
+    0.5
+}
+
+/// Periodic lengths (m).
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PeriodicSpec {
+    /// Along x.
+    pub x: Option<f64>,
+    /// Along y.
+    pub y: Option<f64>,
+    /// Along z.
+    pub z: Option<f64>,
+}
+
+/// Detection distances (m); by default a fraction of the smallest radius.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DetectionSpec {
+    /// Pairs nearer than this are contacts.
+    pub alert: Option<f64>,
+    /// How much farther the neighbour list looks.
+    pub skin: Option<f64>,
+}
+
+/// Options of the solver.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SolverSpec {
+    /// The method: `Auto`, `Nlgs`, `Anderson`, `Pg`, `Cpg`, `Pcpg`, `Apgd`, `Newton`, `Interior`; see
+    /// `docs/solvers.md`.
+    pub method: Method,
+    /// Error to reach.
+    pub tolerance: f64,
+    /// How the error is measured: `Balance` or `Velocity`, see [`fretwork_core::solve::error`].
+    pub norm: Norm,
+    /// Sweeps at most in a step.
+    pub max_iterations: u32,
+    /// Sweeps between convergence tests.
+    pub test_every: u32,
+    /// Over-relaxation, 1 to below 2: how much farther than its own solution a contact goes in a sweep.
+    pub relaxation: f64,
+    /// Share of a penetration that a step takes back, 0 to 1. Rigid contacts under a slowly changing load creep into
+    /// each other by the solver's tolerance; 0.1 bounds that to ten steps' worth. Its work is an entry of the ledger.
+    pub correction: f64,
+    /// Overlap in parts of the smaller body's length (a grain's radius) beyond which bodies are moved apart, without
+    /// a change of velocity; 0 (the default) for never. See [`fretwork_core::step::projection`].
+    pub projection: f64,
+}
+
+impl Default for SolverSpec {
+    fn default() -> Self {
+        Self {
+            method: Method::Auto,
+            tolerance: 1e-4,
+            norm: Norm::Balance,
+            max_iterations: 10_000,
+            test_every: 10,
+            relaxation: 1.45,
+            correction: 0.0,
+            projection: 0.0,
+        }
+    }
+}
+
+/// The law between two materials: four slots, each a plugin's name.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InterfaceSpec {
+    /// Name.
+    pub name: String,
+    /// The two materials, by their names in this case.
+    pub between: (String, String),
+    /// File in `materials/` with parameters of laws.
+    #[serde(default)]
+    pub parameters_from: Option<String>,
+    /// Contact law.
+    pub contact: String,
+    /// Cohesion law.
+    #[serde(default)]
+    pub cohesion: Option<String>,
+    /// Damage law.
+    #[serde(default)]
+    pub damage: Option<String>,
+    /// Wear law.
+    #[serde(default)]
+    pub wear: Option<String>,
+    /// Parameters given here win over those of the file.
+    #[serde(default)]
+    pub parameters: SlotValues,
+    /// When bonds are made.
+    #[serde(default)]
+    pub bonds: BondRule,
+    /// Time under compression after which a contact bonds, also again after its bond broke (s).
+    #[serde(default)]
+    pub healing: Option<f64>,
+    /// Factor of the contact's area, see `AreaRule`.
+    #[serde(default = "one")]
+    pub area_factor: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+impl InterfaceSpec {
+    /// The law in a slot.
+    pub fn law(&self, kind: Kind) -> Option<&str> {
+        match kind {
+            Kind::Contact => Some(&self.contact),
+            Kind::Cohesion => self.cohesion.as_deref(),
+            Kind::Damage => self.damage.as_deref(),
+            Kind::Wear => self.wear.as_deref(),
+        }
+    }
+}
+
+/// Values by slot and parameter: numbers in the unit of the law, or `(value: 5, unit: "um")`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SlotValues {
+    /// Of the contact law.
+    pub contact: BTreeMap<String, Given>,
+    /// Of the cohesion law.
+    pub cohesion: BTreeMap<String, Given>,
+    /// Of the damage law.
+    pub damage: BTreeMap<String, Given>,
+    /// Of the wear law.
+    pub wear: BTreeMap<String, Given>,
+}
+
+/// A first body.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodySpec {
+    /// Name.
+    pub name: String,
+    /// Material, by its name in this case.
+    pub material: String,
+    /// What it is made of.
+    pub shapes: Vec<ShapeSpec>,
+    /// Position of its frame (m); the origin by default.
+    #[serde(default)]
+    pub position: Vec<f64>,
+    /// Mass (kg; kg/m in 2D). From density and balls where not given.
+    #[serde(default)]
+    pub mass: Option<f64>,
+    /// Moment of inertia (kg m^2; per metre in 2D).
+    #[serde(default)]
+    pub inertia: Option<f64>,
+    /// When the body is taken away (s); never by default.
+    #[serde(default)]
+    pub vanishes: Option<f64>,
+    /// Whether and how far its profiles and height fields follow their wear; not by default.
+    #[serde(default)]
+    pub wears: Option<WearSpec>,
+    /// Degrees of freedom; fixed where not given.
+    #[serde(default)]
+    pub dofs: DofSpec,
+}
+
+/// Degrees of freedom of a first body.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DofSpec {
+    /// Translation along x.
+    pub x: Dof,
+    /// Translation along y.
+    pub y: Dof,
+    /// Translation along z (3D).
+    pub z: Dof,
+    /// Rotation about x (3D).
+    pub rx: Dof,
+    /// Rotation about y (3D).
+    pub ry: Dof,
+    /// Rotation about z (the only one in 2D).
+    pub rz: Dof,
+}
+
+impl Default for DofSpec {
+    fn default() -> Self {
+        let fixed = || Dof::Fixed;
+        Self {
+            x: fixed(),
+            y: fixed(),
+            z: fixed(),
+            rx: fixed(),
+            ry: fixed(),
+            rz: fixed(),
+        }
+    }
+}
+
+/// A friction test: the body that rubs, along which axis, pressed along which.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FrictionSpec {
+    /// Name of the body.
+    pub body: String,
+    /// Axis of sliding: 0, 1 or 2.
+    #[serde(default)]
+    pub along: usize,
+    /// Axis of the normal load.
+    #[serde(default = "axis_y")]
+    pub normal: usize,
+    /// When the motion starts to count (s).
+    #[serde(default)]
+    pub start: f64,
+    /// Length of a cycle (s); by default the period of the body's sine.
+    #[serde(default)]
+    pub period: Option<f64>,
+}
+
+fn axis_y() -> usize {
+    1
+}
+
+/// A biaxial test of the grains between four flat walls (2D).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BiaxialSpec {
+    /// The walls on the low and the high side, along which the sample is sheared: names of bodies.
+    pub axial: (String, String),
+    /// The walls on the low and the high side of the other axis.
+    pub lateral: (String, String),
+    /// When the sample is confined and at rest: strains count from here (s).
+    #[serde(default)]
+    pub start: f64,
+}
+
+/// What is written.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct OutputSpec {
+    /// Pictures over the run.
+    pub frames: u32,
+    /// Recorded states in `results.h5` over the run.
+    pub views: u32,
+    /// Steps between two rows of the statistics.
+    pub every: u64,
+    /// Draw the figures at the end.
+    pub figures: bool,
+    /// Width of a frame (pixels).
+    pub width: u32,
+    /// What frames show (m): xmin, xmax, ymin, ymax (2D); what there is by default.
+    pub window: Option<[f64; 4]>,
+    /// Thickness (m) of layers along the last axis that frames tell apart by colour.
+    pub layers: Option<f64>,
+    /// The local shear that is darkest in pictures of it; recorded and drawn where given.
+    pub shear: Option<f64>,
+    /// Steps between two that are written as FCLIB problems, `fclib/step-N.hdf5`; 0 for none.
+    pub fclib: u64,
+    /// When checkpoints are written, from which `--resume` goes on.
+    pub checkpoint: Checkpoint,
+}
+
+/// When checkpoints are written.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+pub enum Checkpoint {
+    /// Every so many seconds of wall time; less often where they would take more than a twentieth of the time.
+    Seconds(f64),
+    /// Every so many steps.
+    Steps(u64),
+    /// Never.
+    Never,
+}
+
+impl Default for OutputSpec {
+    fn default() -> Self {
+        Self {
+            frames: 12,
+            views: 20,
+            every: 1,
+            figures: true,
+            width: 1400,
+            window: None,
+            layers: None,
+            shear: None,
+            fclib: 0,
+            checkpoint: Checkpoint::Seconds(30.0),
+        }
+    }
+}
+
+impl BodySpec {
+    /// The degrees of freedom in the order of the dimension.
+    pub fn ordered(&self, dimension: usize) -> Vec<Dof> {
+        let d = self.dofs.clone();
+        if dimension == 2 {
+            vec![d.x, d.y, d.rz]
+        } else {
+            vec![d.x, d.y, d.z, d.rx, d.ry, d.rz]
+        }
+    }
+
+    /// Names of the degrees of freedom, as [`BodySpec::ordered`].
+    pub fn names(dimension: usize) -> &'static [&'static str] {
+        if dimension == 2 {
+            &["x", "y", "rz"]
+        } else {
+            &["x", "y", "z", "rx", "ry", "rz"]
+        }
+    }
+}

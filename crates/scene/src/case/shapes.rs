@@ -1,0 +1,214 @@
+//! What first bodies are made of.
+
+use serde::Deserialize;
+
+/// On which side of a profile the solid is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum Side {
+    /// Solid below, open above: a rail.
+    Below,
+    /// Solid above, open below: a wheel.
+    Above,
+}
+
+/// A profile of a standard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum StandardName {
+    /// Wheel, EN 13715: S1002, flange 28 mm high and 32.5 mm thick.
+    S1002,
+    /// Rail head, EN 13674-1: 60E1, formerly UIC 60.
+    Rail60E1,
+}
+
+/// A part of a first body.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum ShapeSpec {
+    /// Solid behind a plane; `at` is a point of it (m), `normal` points to the open side.
+    HalfSpace {
+        /// Outward normal.
+        normal: Vec<f64>,
+        /// A point of the plane.
+        #[serde(default)]
+        at: Vec<f64>,
+    },
+    /// A profile by its points, left to right (2D).
+    Profile {
+        /// Points (m).
+        #[serde(default)]
+        points: Vec<(f64, f64)>,
+        /// A table of them with the columns `x` and `z`, in place of `points`: a path relative to the case.
+        #[serde(default)]
+        file: Option<String>,
+        /// Where the solid is.
+        side: Side,
+    },
+    /// The profile of a standard (2D), see [`crate::standard`].
+    StandardProfile {
+        /// Which.
+        name: StandardName,
+        /// Longest segment (m).
+        #[serde(default = "half_millimetre")]
+        spacing: f64,
+        /// Where it begins and ends along the standard's own lateral axis (m); all of it by default.
+        #[serde(default)]
+        from: Option<f64>,
+        /// Its other end (m).
+        #[serde(default)]
+        to: Option<f64>,
+        /// n of an inclination 1:n (rail); upright by default.
+        #[serde(default)]
+        inclination: Option<f64>,
+        /// Where the solid is; of a wheel above, of a rail below by default.
+        #[serde(default)]
+        side: Option<Side>,
+    },
+    /// A self-affine rough profile over the period of x (2D): random phases, spectrum |q|^(-1-2H).
+    RoughProfile {
+        /// Points along the period.
+        points: usize,
+        /// Root-mean-square height (m).
+        rms: f64,
+        /// Hurst exponent.
+        #[serde(default = "hurst")]
+        hurst: f64,
+        /// Longest wavelength (m); the period by default.
+        #[serde(default)]
+        longest: Option<f64>,
+        /// Shortest wavelength (m).
+        shortest: f64,
+        /// Mean height (m).
+        #[serde(default)]
+        height: f64,
+        /// Where the solid is.
+        side: Side,
+    },
+    /// A convex polygon with rounded corners (2D).
+    Polygon {
+        /// Corners (m), against the clock.
+        points: Vec<(f64, f64)>,
+        /// Radius of the rounding about it (m).
+        #[serde(default)]
+        rounding: f64,
+    },
+    /// All that is within a radius of a segment.
+    Capsule {
+        /// One end of the segment (m).
+        from: Coordinates,
+        /// The other end (m).
+        to: Coordinates,
+        /// Radius (m).
+        radius: f64,
+    },
+    /// A convex polyhedron with rounded edges (3D).
+    Polyhedron {
+        /// Corners (m), in any order.
+        points: Vec<(f64, f64, f64)>,
+        /// Radius of the rounding about it (m).
+        #[serde(default)]
+        rounding: f64,
+    },
+    /// A cuboid with rounded edges (3D).
+    Box {
+        /// Lengths of its edges (m).
+        size: (f64, f64, f64),
+        /// Its centre (m).
+        #[serde(default)]
+        at: Vec<f64>,
+        /// Rotation vector (rad) by which it is turned about its centre.
+        #[serde(default)]
+        turned: Vec<f64>,
+        /// Radius of the rounding about it (m).
+        #[serde(default)]
+        rounding: f64,
+    },
+    /// A surface of triangles from an STL or OBJ file (3D), solid behind them.
+    Mesh {
+        /// Path relative to the case.
+        file: String,
+        /// By what the lengths of the file are multiplied.
+        #[serde(default = "one")]
+        scale: f64,
+        /// Where the origin of the file stands (m).
+        #[serde(default)]
+        at: Vec<f64>,
+    },
+    /// Balls fixed to the body: (position relative to the body's frame, radius).
+    Balls(Vec<(Vec<f64>, f64)>),
+    /// A level plate of balls in rings about the z axis, with a round hole (3D): the balls touch z = 0 from below.
+    Plate {
+        /// Radius of the plate (m).
+        radius: f64,
+        /// Diameter of the hole (m).
+        hole: f64,
+        /// Radius of the balls (m).
+        balls: f64,
+    },
+    /// The inside of a cylinder about the body's origin, solid outside: a drum.
+    Drum {
+        /// Radius (m).
+        radius: f64,
+        /// Axis of the cylinder in 3D: 0, 1 or 2.
+        #[serde(default)]
+        axis: usize,
+    },
+    /// The cluster of this name in a scene file.
+    Cluster {
+        /// Path relative to the case.
+        file: String,
+        /// Name in the file.
+        name: String,
+    },
+    /// Heights over a regular grid (3D), solid below; periodic where the cell is.
+    HeightField {
+        /// Points along x and y.
+        points: (usize, usize),
+        /// Spacing (m).
+        spacing: (f64, f64),
+        /// Heights (m), row by row; or none with `rms`.
+        #[serde(default)]
+        heights: Vec<f64>,
+        /// Root-mean-square of random heights (m).
+        #[serde(default)]
+        rms: Option<f64>,
+    },
+}
+
+fn half_millimetre() -> f64 {
+    5e-4
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// A place by its coordinates, (x, y) or (x, y, z).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coordinates(pub Vec<f64>);
+
+impl<'de> Deserialize<'de> for Coordinates {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Numbers;
+        impl<'de> serde::de::Visitor<'de> for Numbers {
+            type Value = Coordinates;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("coordinates, (x, y) or (x, y, z)")
+            }
+            fn visit_seq<A: serde::de::SeqAccess<'de>>(
+                self,
+                mut from: A,
+            ) -> Result<Coordinates, A::Error> {
+                let mut out = Vec::new();
+                while let Some(x) = from.next_element()? {
+                    out.push(x);
+                }
+                Ok(Coordinates(out))
+            }
+        }
+        deserializer.deserialize_any(Numbers)
+    }
+}
+
+fn hurst() -> f64 {
+    0.8
+}

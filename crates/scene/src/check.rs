@@ -1,0 +1,306 @@
+//! What a case must satisfy before it runs.
+
+use super::build::Origin;
+use super::case::{BodySpec, Case, Checkpoint};
+use super::source::Fault;
+use fretwork_core::bodies::Dof;
+use fretwork_core::contact::detect::detect;
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::Simulation;
+use fretwork_core::step::coupling::Coupling;
+
+/// Numbers that make no sense.
+///
+/// # Errors
+/// The first one found, with its path.
+pub fn numbers(case: &Case) -> Result<(), Fault> {
+    let positive = |path: &str, x: f64| {
+        if x.is_finite() && x > 0.0 {
+            Ok(())
+        } else {
+            Err(Fault::new(path, format!("must be positive, got {x}")))
+        }
+    };
+    if case.dimension != 2 && case.dimension != 3 {
+        return Err(Fault::new(
+            "dimension",
+            format!("dimension {} is not possible", case.dimension),
+        )
+        .expected("2 or 3"));
+    }
+    let dimension = case.dimension as usize;
+    positive("time.step", case.time.step)?;
+    positive("time.end", case.time.end)?;
+    if !(0.5..=1.0).contains(&case.time.theta) {
+        return Err(Fault::new("time.theta", format!("got {}", case.time.theta))
+            .expected("a number between 0.5 and 1"));
+    }
+    let square = case.time.step * case.time.step;
+    if !square.is_normal() {
+        let message = format!(
+            "the square of a step of {:e} s is beyond what can be computed with; check its unit",
+            case.time.step
+        );
+        return Err(Fault::new("time.step", message));
+    }
+    if case.time.end / case.time.step > 1e12 {
+        return Err(Fault::new(
+            "time.step",
+            "the run would take more than 1e12 steps; use a larger step or an earlier end",
+        ));
+    }
+    if case.time.step > case.time.end {
+        let message = format!(
+            "a step of {} s is longer than the run of {} s",
+            case.time.step, case.time.end
+        );
+        return Err(Fault::new("time.step", message));
+    }
+    if case.output.every == 0 {
+        let message = "must be at least 1: steps between two rows of the statistics";
+        return Err(Fault::new("output.every", message));
+    }
+    match case.output.checkpoint {
+        Checkpoint::Steps(0) => {
+            let message = "must be at least 1: steps between two checkpoints; use Never for none";
+            return Err(Fault::new("output.checkpoint", message));
+        }
+        Checkpoint::Seconds(s) if !(s.is_finite() && s >= 0.0) => {
+            let message = format!("seconds between two checkpoints must not be negative, got {s}");
+            return Err(Fault::new("output.checkpoint", message));
+        }
+        _ => {}
+    }
+    positive("inertia_scaling", case.inertia_scaling)?;
+    if let Coupling::Implicit {
+        tolerance,
+        max_iterations,
+    } = case.coupling
+    {
+        positive("coupling.tolerance", tolerance)?;
+        if max_iterations == 0 {
+            return Err(Fault::new("coupling.max_iterations", "must be at least 1"));
+        }
+    }
+    let s = &case.solver;
+    if !(s.tolerance.is_finite() && s.tolerance >= 0.0) {
+        return Err(Fault::new(
+            "solver.tolerance",
+            format!("must not be negative, got {}", s.tolerance),
+        ));
+    }
+    if !(0.0..=1.0).contains(&s.correction) {
+        return Err(
+            Fault::new("solver.correction", format!("got {}", s.correction))
+                .expected("a number between 0 and 1"),
+        );
+    }
+    if !(0.0..1.0).contains(&s.projection) {
+        return Err(
+            Fault::new("solver.projection", format!("got {}", s.projection)).expected(
+                "0 (never) or the part of a radius beyond which an overlap is taken out, below 1",
+            ),
+        );
+    }
+    if !(1.0..2.0).contains(&s.relaxation) {
+        return Err(
+            Fault::new("solver.relaxation", format!("got {}", s.relaxation))
+                .expected("a number from 1 (none) to below 2"),
+        );
+    }
+    if s.test_every == 0 {
+        return Err(Fault::new("solver.test_every", "must be at least 1"));
+    }
+    let weighs = case.gravity_drive.is_some() || case.gravity.iter().any(|g| *g != 0.0);
+    if case.inertia_scaling != 1.0 && weighs {
+        return Err(Fault::new(
+            "inertia_scaling",
+            "scales weights with the masses; switch gravity off, or leave the scaling out",
+        ));
+    }
+    if s.max_iterations == 0 {
+        return Err(Fault::new("solver.max_iterations", "must be at least 1"));
+    }
+    for (name, period) in [
+        ("x", case.periodic.x),
+        ("y", case.periodic.y),
+        ("z", case.periodic.z),
+    ] {
+        if let Some(period) = period {
+            positive(&format!("periodic.{name}"), period)?;
+        }
+    }
+    if case.periodic.z.is_some() && dimension == 2 {
+        return Err(Fault::new("periodic.z", "there is no z in two dimensions"));
+    }
+    for (name, distance) in [
+        ("alert", case.detection.alert),
+        ("skin", case.detection.skin),
+    ] {
+        if let Some(distance) = distance {
+            positive(&format!("detection.{name}"), distance)?;
+        }
+    }
+    if case.materials.is_empty() {
+        return Err(Fault::new(
+            "materials",
+            "a case needs at least one material",
+        ));
+    }
+    for (k, body) in case.bodies.iter().enumerate() {
+        body_numbers(body, dimension).map_err(|f| f.under(&format!("bodies.{k}")))?;
+        if case.bodies[..k].iter().any(|b| b.name == body.name) {
+            return Err(Fault::new(
+                format!("bodies.{k}.name"),
+                format!("two bodies are named `{}`", body.name),
+            ));
+        }
+    }
+    if let Some(w) = case.output.window
+        && !(w.iter().all(|x| x.is_finite()) && w[0] < w[1] && w[2] < w[3])
+    {
+        let message = "a window is (xmin, xmax, ymin, ymax) with xmin < xmax and ymin < ymax";
+        return Err(Fault::new("output.window", message));
+    }
+    if let Some(layers) = case.output.layers {
+        positive("output.layers", layers)?;
+    }
+    if let Some(shear) = case.output.shear {
+        positive("output.shear", shear)?;
+    }
+    if case.output.frames > 0 && !(200..=16_384).contains(&case.output.width) {
+        let message = format!("a frame cannot be {} pixels wide", case.output.width);
+        return Err(Fault::new("output.width", message).expected("200 to 16384 pixels"));
+    }
+    super::biaxial::check(case)?;
+    super::phases::gravity_drive(case.gravity_drive.as_ref(), dimension)?;
+    super::phases::check(case)?;
+    super::measures::check(case)?;
+    friction(case, dimension)?;
+    super::jump::check(case)?;
+    super::circuit::check(case)
+}
+
+fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), Fault> {
+    for (name, value) in [
+        ("mass", body.mass),
+        ("inertia", body.inertia),
+        ("vanishes", body.vanishes),
+    ] {
+        if let Some(value) = value
+            && !(value.is_finite() && value > 0.0)
+        {
+            return Err(Fault::new(name, format!("must be positive, got {value}")));
+        }
+    }
+    if dimension == 2 {
+        let d = &body.dofs;
+        for (name, dof) in [("z", &d.z), ("rx", &d.rx), ("ry", &d.ry)] {
+            if *dof != Dof::Fixed {
+                return Err(Fault::new(
+                    format!("dofs.{name}"),
+                    format!("there is no {name} in two dimensions"),
+                )
+                .expected("x, y or rz"));
+            }
+        }
+    }
+    let dofs = body.ordered(dimension);
+    for (name, dof) in BodySpec::names(dimension).iter().zip(&dofs) {
+        if let Some((below, fault)) = dof.fault() {
+            let path = format!("dofs.{name}.{below}");
+            return Err(Fault::new(path.trim_end_matches('.'), fault));
+        }
+    }
+    Ok(())
+}
+
+fn friction(case: &Case, dimension: usize) -> Result<(), Fault> {
+    let Some(test) = &case.friction else {
+        return Ok(());
+    };
+    if !case.bodies.iter().any(|b| b.name == test.body) {
+        let names: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
+        return Err(
+            Fault::new("friction.body", format!("there is no body `{}`", test.body))
+                .expected_name(names.iter().copied(), "bodies")
+                .nearest(super::source::nearest(&test.body, names.iter().copied())),
+        );
+    }
+    for (name, axis) in [("along", test.along), ("normal", test.normal)] {
+        if axis >= dimension {
+            return Err(Fault::new(
+                format!("friction.{name}"),
+                format!("axis {axis} does not exist"),
+            )
+            .expected(format!("a number below {dimension}")));
+        }
+    }
+    if !test.start.is_finite() {
+        return Err(Fault::new(
+            "friction.start",
+            format!("must be finite, got {}", test.start),
+        ));
+    }
+    if test.along == test.normal {
+        return Err(Fault::new("friction.normal", "must differ from `along`"));
+    }
+    if test.period.is_some_and(|p| !(p.is_finite() && p > 0.0)) {
+        return Err(Fault::new("friction.period", "must be positive"));
+    }
+    Ok(())
+}
+
+/// Grains that overlap at the start: more than 1 % of the smallest radius is refused, less is the
+/// rounding of a sample that was settled elsewhere.
+///
+/// # Errors
+/// The worst pair.
+pub(super) fn overlaps<S: Space>(
+    simulation: &mut Simulation<S>,
+    smallest: f64,
+    origins: &[Origin],
+) -> Result<(), Fault> {
+    let s = simulation;
+    detect(&mut s.network, &s.shapes, &s.bodies, &s.table, 0.0, 0.0);
+    let worst = s
+        .network
+        .contacts
+        .iter()
+        .min_by(|a, b| a.gap.total_cmp(&b.gap));
+    let Some(worst) = worst.filter(|c| c.gap < -0.01 * smallest) else {
+        return Ok(());
+    };
+    let name = |body: u32| {
+        let driven = s.bodies.driven.iter().find(|d| d.body == body);
+        let at = s.bodies.position[body as usize];
+        match driven {
+            Some(d) => format!("the body `{}`", d.name),
+            None => format!(
+                "the grain at {:?} m",
+                (0..S::D)
+                    .map(|k| fretwork_core::geometry::space::VectorLike::padded(&at)[k])
+                    .collect::<Vec<_>>()
+            ),
+        }
+    };
+    let message = format!(
+        "{} and {} overlap by {:.3e} m at the start; move them apart or make them smaller",
+        name(worst.bodies[0]),
+        name(worst.bodies[1]),
+        -worst.gap
+    );
+    // The place of the grain that was written last, or of the body where no grain is in it.
+    let at = worst.bodies.iter().max_by_key(|b| {
+        let driven = s.bodies.driven.iter().any(|d| d.body == **b);
+        let place = match origins.get(**b as usize) {
+            Some(Origin::Grain(k, g)) => (*k, g.unwrap_or(0)),
+            Some(Origin::Body(k)) => (*k, 0),
+            None => (0, 0),
+        };
+        (!driven, place)
+    });
+    let origin = at.and_then(|b| origins.get(*b as usize));
+    let path = origin.map_or_else(|| "grains".to_owned(), |o| o.path());
+    Err(Fault::new(path, message))
+}

@@ -1,0 +1,233 @@
+//! The words of a case about the tribological circuit: which bonds tie grains to first bodies, where grains leave.
+
+use super::case::Case;
+use super::source::{Fault, nearest};
+use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::laws::Interface;
+use fretwork_core::step::Simulation;
+use fretwork_core::process::circuit::{Fate, Spec, Zone};
+use serde::Deserialize;
+
+/// The account of grains between first bodies, contact and outside.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CircuitSpec {
+    /// First bodies that grains can belong to, by name: a grain does while a path of unbroken bonds ties it to one.
+    pub bases: Vec<String>,
+    /// Interfaces whose bonds tie; by default all that make bonds.
+    #[serde(default)]
+    pub bonds: Option<Vec<String>>,
+    /// When the account begins (s); the bonds that tie must be made by then.
+    #[serde(default)]
+    pub start: f64,
+    /// Steps between two updates of the account.
+    #[serde(default = "ten")]
+    pub every: u64,
+    /// Where grains are outside the contact.
+    #[serde(default)]
+    pub zones: Vec<ZoneSpec>,
+}
+
+fn ten() -> u64 {
+    10
+}
+
+/// A region where grains are ejected.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ZoneSpec {
+    /// Its name.
+    pub name: String,
+    /// Lowest corner (m); `-inf` where it is open.
+    pub low: Vec<f64>,
+    /// Highest corner (m); `inf` where it is open.
+    pub high: Vec<f64>,
+    /// The body with which it moves; its corners are then relative to that body's position.
+    #[serde(default)]
+    pub carried_by: Option<String>,
+    /// A grain that stays for so long (s) is lost and taken out of the scene, 0 for at once; without it grains stay
+    /// ejected and may come back.
+    #[serde(default)]
+    pub lost_after: Option<f64>,
+}
+
+/// Refuses a circuit that means nothing.
+///
+/// # Errors
+/// The first fault, with its path.
+pub(super) fn check(case: &Case) -> Result<(), Fault> {
+    let Some(circuit) = &case.circuit else {
+        return Ok(());
+    };
+    if circuit.bases.is_empty() {
+        let message = "a circuit needs a first body that grains can belong to; name one in `bases`";
+        return Err(Fault::new("circuit.bases", message));
+    }
+    for (k, base) in circuit.bases.iter().enumerate() {
+        let path = format!("circuit.bases.{k}");
+        body(case, &path, base)?;
+        if circuit.bases[..k].contains(base) {
+            return Err(Fault::new(path, format!("`{base}` is named twice")));
+        }
+    }
+    let ties = tying(case, circuit)?;
+    for (k, base) in circuit.bases.iter().enumerate() {
+        let material = case
+            .bodies
+            .iter()
+            .find(|b| b.name == *base)
+            .map(|b| &b.material);
+        let bonds = ties.iter().any(|i| {
+            let between = &case.interfaces[*i].between;
+            Some(&between.0) == material || Some(&between.1) == material
+        });
+        if !bonds {
+            let names: Vec<&str> = ties
+                .iter()
+                .map(|i| case.interfaces[*i].name.as_str())
+                .collect();
+            let message = format!(
+                "no interface that ties ({}) is with the material of `{base}`, so no grain can belong to it; bond \
+                 grains to it, or leave it out",
+                names.join(", ")
+            );
+            return Err(Fault::new(format!("circuit.bases.{k}"), message));
+        }
+    }
+    if !(circuit.start.is_finite() && circuit.start >= 0.0 && circuit.start < case.time.end) {
+        let message = format!(
+            "the account must begin within the run, got {}",
+            circuit.start
+        );
+        return Err(Fault::new("circuit.start", message)
+            .expected(format!("a time from 0 to below {}", case.time.end)));
+    }
+    if circuit.every == 0 {
+        return Err(Fault::new("circuit.every", "must be at least 1"));
+    }
+    for (k, zone) in circuit.zones.iter().enumerate() {
+        self::zone(case, zone).map_err(|f| f.under(&format!("circuit.zones.{k}")))?;
+        for other in &circuit.zones[..k] {
+            if other.name == zone.name {
+                let message = format!("two zones are named `{}`", zone.name);
+                return Err(Fault::new(format!("circuit.zones.{k}.name"), message));
+            }
+            let overlap = other.carried_by == zone.carried_by
+                && (0..zone.low.len())
+                    .all(|a| other.low[a] < zone.high[a] && zone.low[a] < other.high[a]);
+            if overlap {
+                let message = format!(
+                    "`{}` overlaps `{}`: a grain there would be in both; move one",
+                    zone.name, other.name
+                );
+                return Err(Fault::new(format!("circuit.zones.{k}"), message));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn body(case: &Case, path: &str, name: &str) -> Result<(), Fault> {
+    if case.bodies.iter().any(|b| b.name == name) {
+        return Ok(());
+    }
+    let names: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
+    Err(Fault::new(path, format!("there is no body `{name}`"))
+        .expected_name(names.iter().copied(), "bodies")
+        .nearest(nearest(name, names.iter().copied())))
+}
+
+/// Interfaces whose bonds tie, by index.
+fn tying(case: &Case, circuit: &CircuitSpec) -> Result<Vec<usize>, Fault> {
+    let all = || (0..case.interfaces.len()).filter(|i| case.interfaces[*i].cohesion.is_some());
+    let Some(names) = &circuit.bonds else {
+        return Ok(all().collect());
+    };
+    let mut out = Vec::new();
+    for (k, name) in names.iter().enumerate() {
+        let path = format!("circuit.bonds.{k}");
+        let Some(at) = case.interfaces.iter().position(|i| i.name == *name) else {
+            let known: Vec<&str> = case.interfaces.iter().map(|i| i.name.as_str()).collect();
+            return Err(Fault::new(path, format!("there is no interface `{name}`"))
+                .expected_name(known.iter().copied(), "interfaces")
+                .nearest(nearest(name, known.iter().copied())));
+        };
+        if case.interfaces[at].cohesion.is_none() {
+            let message = format!("the interface `{name}` has no cohesion law, it makes no bonds");
+            return Err(Fault::new(path, message));
+        }
+        out.push(at);
+    }
+    Ok(out)
+}
+
+fn zone(case: &Case, zone: &ZoneSpec) -> Result<(), Fault> {
+    let dimension = case.dimension as usize;
+    for (field, corner) in [("low", &zone.low), ("high", &zone.high)] {
+        if corner.len() != dimension || corner.iter().any(|x| x.is_nan()) {
+            let message = format!("a corner has {dimension} numbers in this case, got {corner:?}");
+            return Err(Fault::new(field, message).expected("numbers, -inf or inf"));
+        }
+    }
+    let periods = [case.periodic.x, case.periodic.y, case.periodic.z];
+    for (a, (low, high)) in zone.low.iter().zip(&zone.high).enumerate() {
+        let width = high - low;
+        if let Some(period) = periods[a].filter(|p| width.is_finite() && width > *p) {
+            let message = format!(
+                "a zone of {width} m along axis {a} is wider than the period of {period} m"
+            );
+            return Err(Fault::new("high", message));
+        }
+        if periods[a].is_some() && low.is_finite() != high.is_finite() {
+            let message = format!(
+                "along axis {a}, which is periodic, what lies beyond one side is everything, got {low} to {high}; give \
+                 both sides, or leave both open"
+            );
+            return Err(Fault::new(
+                if low.is_finite() { "high" } else { "low" },
+                message,
+            ));
+        }
+        if low >= high {
+            let message = format!("must be above {low} along axis {a}, got {high}");
+            return Err(Fault::new("high", message));
+        }
+    }
+    if let Some(name) = &zone.carried_by {
+        body(case, "carried_by", name)?;
+    }
+    match zone.lost_after {
+        Some(time) if !(time.is_finite() && time >= 0.0) => {
+            let message = format!("a time must not be negative, got {time}");
+            Err(Fault::new("lost_after", message))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// What a circuit is made of, in the scene of the case, which was checked.
+pub fn install<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Spec<S>> {
+    let circuit = case.circuit.as_ref()?;
+    let index = |name: &String| {
+        s.bodies
+            .driven
+            .iter()
+            .find(|d| d.name == *name)
+            .map(|d| d.body)
+    };
+    let ties = tying(case, circuit).unwrap_or_default();
+    let opens = |i: &usize| s.laws.get(*i).is_some_and(Interface::opens);
+    let zones = circuit.zones.iter().map(|z| Zone {
+        name: z.name.clone(),
+        low: S::Vector::from_slice(&z.low),
+        high: S::Vector::from_slice(&z.high),
+        carrier: z.carried_by.as_ref().and_then(index),
+        fate: z.lost_after.map_or(Fate::Stays, Fate::LostAfter),
+    });
+    Some(Spec {
+        bases: circuit.bases.iter().filter_map(index).collect(),
+        interfaces: ties.into_iter().filter(opens).map(|i| i as u16).collect(),
+        zones: zones.collect(),
+        scaling: case.inertia_scaling,
+    })
+}

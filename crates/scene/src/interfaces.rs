@@ -1,0 +1,380 @@
+//! From the case's words to interface laws: plugins found, parameters resolved and checked.
+
+use super::case::{Case, InterfaceSpec};
+use super::material::{Given, InterfaceParameters, Shelf, Sourced};
+use super::source::{Fault, InputError, Source, nearest};
+use super::units;
+use fretwork_core::contact::detect::LawTable;
+use fretwork_core::geometry::space::Space;
+use fretwork_core::laws::{AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath};
+use fretwork_core::step::Simulation;
+use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// The laws of a case and which materials they govern.
+pub struct Laws {
+    /// Interfaces, in the case's order.
+    pub interfaces: Vec<Interface>,
+    /// By materials, in the order of the case's map.
+    pub table: LawTable,
+    /// Texts of the parameter files read.
+    pub files: Vec<(String, String)>,
+}
+
+/// Builds the laws.
+///
+/// # Errors
+/// Unknown names, values out of range, slots that do not fit: at their place in the case.
+pub fn build(
+    case: &Case,
+    source: &Source,
+    shelf: &Shelf,
+    path: &SearchPath,
+) -> Result<Laws, InputError> {
+    let materials: Vec<&String> = case.materials.keys().collect();
+    let mut out = Laws {
+        interfaces: Vec::new(),
+        table: LawTable::new(materials.len()),
+        files: Vec::new(),
+    };
+    pins(case).map_err(|f| source.locate(f))?;
+    let wanted = case.interfaces.iter().flat_map(used);
+    path.try_out(wanted.map(|(kind, name)| {
+        let pin = case.pins.get(&format!("{kind}/{name}"));
+        (kind, name, pin.map(String::as_str))
+    }));
+    for (k, spec) in case.interfaces.iter().enumerate() {
+        let here = format!("interfaces.{k}");
+        let at = |f: Fault| source.locate(f.under(&here));
+        if case.interfaces[..k].iter().any(|i| i.name == spec.name) {
+            let message = format!(
+                "two interfaces are named `{}`; give each another name, phases and `--set` go by it",
+                spec.name
+            );
+            return Err(at(Fault::new("name", message)));
+        }
+        let mut pair = [0u16; 2];
+        for (side, name) in [&spec.between.0, &spec.between.1].into_iter().enumerate() {
+            let found = materials.iter().position(|m| *m == name).ok_or_else(|| {
+                at(Fault::new(
+                    format!("between.{side}"),
+                    format!("the case has no material `{name}`"),
+                )
+                .expected(format!(
+                    "one of {}",
+                    case.materials
+                        .keys()
+                        .cloned()
+                        .collect::<Vec<_>>()
+                        .join(", ")
+                ))
+                .nearest(nearest(name, case.materials.keys().map(String::as_str))))
+            })?;
+            pair[side] = found as u16;
+        }
+        if out.table.get(pair[0], pair[1]).is_some() {
+            return Err(at(Fault::new(
+                "between",
+                "this pair of materials has an interface already",
+            )));
+        }
+        if spec.healing.is_some_and(|t| !(t.is_finite() && t >= 0.0)) {
+            return Err(at(Fault::new("healing", "must be a time, not negative")));
+        }
+        if !(spec.area_factor.is_finite() && spec.area_factor > 0.0) {
+            return Err(at(Fault::new("area_factor", "must be positive")));
+        }
+        let (parameters, file) = read_parameters(spec, shelf, &mut out.files, source, &here, &at)?;
+        let interface = compose(case, spec, &parameters, path).map_err(|wrong| match &file {
+            Some(file) if wrong.in_file => file.locate(wrong.fault),
+            _ => at(wrong.fault),
+        })?;
+        out.table.set(pair[0], pair[1], k as u16);
+        out.interfaces.push(interface);
+    }
+    Ok(out)
+}
+
+/// The laws that an interface names.
+fn used(spec: &InterfaceSpec) -> impl Iterator<Item = (Kind, &str)> {
+    let optional = [
+        (Kind::Cohesion, &spec.cohesion),
+        (Kind::Damage, &spec.damage),
+        (Kind::Wear, &spec.wear),
+    ];
+    let named = optional
+        .into_iter()
+        .filter_map(|(kind, name)| Some((kind, name.as_deref()?)));
+    std::iter::once((Kind::Contact, spec.contact.as_str())).chain(named)
+}
+
+/// Pairs of materials whose bodies pass through each other, since no interface is between them.
+pub fn without_interface<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<String> {
+    let materials: Vec<&String> = case.materials.keys().collect();
+    let mut bodies = vec![BTreeSet::new(); materials.len()];
+    let balls = s.shapes.balls.iter().map(|b| (b.material, b.body));
+    let pieces = s.shapes.pieces.iter().map(|p| (p.material, p.body));
+    let surfaces = s.shapes.surfaces.iter().map(|f| (f.material, f.body));
+    for (material, body) in balls.chain(pieces).chain(surfaces) {
+        let of = &mut bodies[usize::from(material)];
+        // One other than itself is enough to meet.
+        if of.len() < 2 {
+            of.insert(body);
+        }
+    }
+    let mut out = Vec::new();
+    for (a, first) in materials.iter().enumerate() {
+        for (b, second) in materials.iter().enumerate().skip(a) {
+            let meet = if a == b {
+                bodies[a].len() > 1
+            } else {
+                !bodies[a].is_empty() && !bodies[b].is_empty()
+            };
+            if meet && s.table.get(a as u16, b as u16).is_none() {
+                out.push(format!(
+                    "{first} and {second}: they pass through each other"
+                ));
+            }
+        }
+    }
+    out
+}
+
+/// Refuses pins that are none, or of laws that the case does not use.
+fn pins(case: &Case) -> Result<(), Fault> {
+    let wanted = case.interfaces.iter().flat_map(used);
+    let used: Vec<String> = wanted
+        .map(|(kind, name)| format!("{kind}/{name}"))
+        .collect();
+    for (law, pin) in &case.pins {
+        let path = format!("pins.{law}");
+        if !used.contains(law) {
+            let message = format!("no interface uses the law `{law}` that is pinned");
+            return Err(Fault::new(path, message)
+                .expected(format!("one of {}", used.join(", ")))
+                .nearest(nearest(law, used.iter().map(String::as_str))));
+        }
+        if pin.len() != 64 || !pin.chars().all(|c| c.is_ascii_hexdigit()) {
+            let message = format!("a pin is a SHA-256 of 64 hexadecimal digits, got `{pin}`");
+            return Err(
+                Fault::new(path, message).expected("what `fretwork law show` prints as sha256")
+            );
+        }
+    }
+    Ok(())
+}
+
+fn read_parameters(
+    spec: &InterfaceSpec,
+    shelf: &Shelf,
+    files: &mut Vec<(String, String)>,
+    source: &Source,
+    here: &str,
+    at: &impl Fn(Fault) -> InputError,
+) -> Result<(InterfaceParameters, Option<Source>), InputError> {
+    let Some(name) = &spec.parameters_from else {
+        return Ok((InterfaceParameters::default(), None));
+    };
+    let file = shelf.read(name).map_err(|e| match e {
+        Err(error) => source.named_at(&format!("{here}.parameters_from"), error),
+        Ok(missing) => at(Fault::new(
+            "parameters_from",
+            format!("there is no file `{name}.ron` in {}", missing.looked),
+        )
+        .expected(format!("one of {}", missing.available))
+        .nearest(missing.nearest.as_deref())),
+    })?;
+    let parsed: InterfaceParameters = file.parse()?;
+    parsed.units().map_err(|fault| file.locate(fault))?;
+    if !files.iter().any(|f| f.0 == *name) {
+        files.push((name.clone(), file.text().to_owned()));
+    }
+    Ok((parsed, Some(file)))
+}
+
+/// What does not fit, in the case or in its parameter file.
+struct Wrong {
+    fault: Fault,
+    in_file: bool,
+}
+
+impl From<Fault> for Wrong {
+    fn from(fault: Fault) -> Self {
+        Self {
+            fault,
+            in_file: false,
+        }
+    }
+}
+
+type ByLaw = BTreeMap<String, BTreeMap<String, Sourced>>;
+
+fn compose(
+    case: &Case,
+    spec: &InterfaceSpec,
+    file: &InterfaceParameters,
+    path: &SearchPath,
+) -> Result<Interface, Wrong> {
+    let load = |kind: Kind, name: &str, file: &ByLaw, own: &BTreeMap<String, Given>| {
+        load(case, kind, name, file.get(name), own, path)
+    };
+    let (p, own) = (file, &spec.parameters);
+    let optional = |kind, name: &Option<String>, file: &ByLaw, own| {
+        name.as_ref().map(|n| load(kind, n, file, own)).transpose()
+    };
+    if let BondRule::At(time) = spec.bonds
+        && !(time.is_finite() && time >= 0.0)
+    {
+        return Err(Fault::new(
+            "bonds",
+            "the time at which bonds are made must not be negative",
+        )
+        .into());
+    }
+    for (slot, law, given) in [
+        ("cohesion", &spec.cohesion, &own.cohesion),
+        ("damage", &spec.damage, &own.damage),
+        ("wear", &spec.wear, &own.wear),
+    ] {
+        if let (None, Some(name)) = (law, given.keys().next()) {
+            let fault = Fault::new(
+                format!("parameters.{slot}.{name}"),
+                format!("`{name}` is a parameter of the {slot} law, and there is no {slot} law"),
+            );
+            return Err(fault
+                .expected(format!(
+                    "`{slot}: \"NAME\"` in the interface, or no `{name}`"
+                ))
+                .into());
+        }
+    }
+    let interface = Interface {
+        name: spec.name.clone(),
+        contact: load(Kind::Contact, &spec.contact, &p.contact, &own.contact)?,
+        cohesion: optional(Kind::Cohesion, &spec.cohesion, &p.cohesion, &own.cohesion)?,
+        damage: optional(Kind::Damage, &spec.damage, &p.damage, &own.damage)?,
+        wear: optional(Kind::Wear, &spec.wear, &p.wear, &own.wear)?,
+        bonds: spec.bonds,
+        healing: spec.healing,
+        area: AreaRule {
+            factor: spec.area_factor,
+        },
+    };
+    interface
+        .compose()
+        .map_err(|e| Fault::new("damage", e.to_string()).into())
+}
+
+fn load(
+    case: &Case,
+    kind: Kind,
+    name: &str,
+    file: Option<&BTreeMap<String, Sourced>>,
+    own: &BTreeMap<String, Given>,
+    path: &SearchPath,
+) -> Result<Loaded, Wrong> {
+    let slot = kind.word();
+    let key = format!("{kind}/{name}");
+    let pin = case.pins.get(&key).map(String::as_str);
+    let plugin = path.find_pinned(kind, name, pin).map_err(|e| match &e {
+        LawError::Unknown {
+            available,
+            nearest,
+            looked,
+            ..
+        } => Fault::new(
+            slot,
+            format!("there is no {kind} law named `{name}` in {looked}"),
+        )
+        .expected(format!("one of {available}"))
+        .nearest(nearest.as_deref()),
+        LawError::Pinned { .. } => Fault::new(format!("pins.{key}"), e.to_string()),
+        other => Fault::new(slot, other.to_string()),
+    })?;
+    for (flag, only, dimension) in [(FLAG_2D_ONLY, "two", 2), (FLAG_3D_ONLY, "three", 3)] {
+        if plugin.flags & flag != 0 && case.dimension != dimension {
+            let message = format!(
+                "the {kind} law `{name}` is for {only} dimensions only, the case has {}",
+                case.dimension
+            );
+            return Err(Fault::new(slot, message).into());
+        }
+    }
+    // Value, unit, path, and whether it is written in the case.
+    type Number<'a> = (f64, &'a str, String, bool);
+    let given: BTreeMap<&str, Number<'_>> = file
+        .iter()
+        .flat_map(|m| m.iter())
+        .map(|(n, s)| {
+            let at = format!("{slot}.{name}.{n}");
+            (n.as_str(), (s.value, s.unit.as_str(), at, false))
+        })
+        .chain(own.iter().map(|(n, g)| {
+            let unit = g.unit.as_deref().unwrap_or_default();
+            (
+                n.as_str(),
+                (g.value, unit, format!("parameters.{slot}.{n}"), true),
+            )
+        }))
+        .collect();
+    let mut values: BTreeMap<&str, f64> = BTreeMap::new();
+    let names = || plugin.parameters.iter().map(|p| p.name.as_str());
+    for (parameter, (number, unit, at, in_case)) in &given {
+        let own_number = *in_case && unit.is_empty();
+        let at_value = if own_number {
+            at.clone()
+        } else {
+            format!("{at}.value")
+        };
+        let wrong = |fault: Fault| Wrong {
+            fault,
+            in_file: !in_case,
+        };
+        let Some(field) = plugin.parameters.iter().find(|p| p.name == *parameter) else {
+            return Err(wrong(
+                Fault::new(
+                    at_value,
+                    format!("the {kind} law `{name}` has no parameter `{parameter}`"),
+                )
+                .expected(format!("one of {}", names().collect::<Vec<_>>().join(", ")))
+                .nearest(nearest(parameter, names())),
+            ));
+        };
+        let value = units::convert(*number, unit, &field.unit).map_err(|e| {
+            let mut fault = e.at(format!("{at}.unit"));
+            fault.message = format!(
+                "`{parameter}` of the {kind} law `{name}`: {}",
+                fault.message
+            );
+            wrong(fault)
+        })?;
+        values.insert(parameter, value);
+        if !value.is_finite() || !(field.minimum..=field.maximum).contains(&value) {
+            let range = format!(
+                "a value between {:e} and {:e} {}",
+                field.minimum, field.maximum, field.unit
+            );
+            return Err(wrong(
+                Fault::new(
+                    at_value,
+                    format!("`{parameter}` of the {kind} law `{name}` is {value}"),
+                )
+                .expected(range.trim_end()),
+            ));
+        }
+    }
+    let parameters: Vec<f64> = plugin
+        .parameters
+        .iter()
+        .map(|f| values.get(f.name.as_str()).copied().unwrap_or(f.default))
+        .collect();
+    plugin
+        .validate(&parameters)
+        .map_err(|e| Fault::new(slot, e.to_string()))?;
+    Ok(Loaded {
+        plugin: Arc::<Plugin>::new(plugin),
+        parameters,
+        first_variable: 0,
+    })
+}

@@ -1,0 +1,177 @@
+//! The words of a case about jumps over cycles.
+
+use super::case::{BodySpec, Case};
+use super::source::Fault;
+use fretwork_core::bodies::{Dof, TimeFunction};
+use serde::{Deserialize, Serialize};
+
+/// Jumps over the cycles of a friction test: some computed cycles stand for many, see [`fretwork_core::wear::jump`].
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct JumpSpec {
+    /// Cycles that are computed one by one before the first jump.
+    pub after: u32,
+    /// Cycles that one computed cycle stands for, at most.
+    pub at_most: u32,
+    /// Error of a jump that the length of the next one aims at: of what it adds, in parts of it, and of what it
+    /// misplaces, in parts of the scar after `cycles`; of the scar at hand without `cycles`.
+    pub tolerance: f64,
+    /// Cycles computed one by one after each jump, against which it is checked.
+    pub control: u32,
+    /// How much the damage of a bond may grow in a jump.
+    pub growth: f64,
+    /// Cycles after which the run ends, those jumped over included; by default it ends at `time.end`.
+    pub cycles: Option<u32>,
+}
+
+impl Default for JumpSpec {
+    fn default() -> Self {
+        Self {
+            after: 3,
+            at_most: 50,
+            tolerance: 0.02,
+            control: 1,
+            growth: 0.1,
+            cycles: None,
+        }
+    }
+}
+
+/// Most cycles of a jump, or of its control.
+const MOST: u32 = 100_000;
+
+/// Refuses jumps that mean nothing.
+///
+/// # Errors
+/// The first fault, with its path.
+pub(super) fn check(case: &Case) -> Result<(), Fault> {
+    let Some(jump) = &case.jump else {
+        return Ok(());
+    };
+    let fault = |path: &str, message: &str| Err(Fault::new(path, message));
+    let Some(test) = &case.friction else {
+        let message = "a jump goes over cycles, and without `friction` there are none; name the body that rubs in \
+                       `friction`, or leave `jump` out";
+        return fault("jump", message);
+    };
+    if period(case).is_none() {
+        let message = format!(
+            "a jump needs cycles, and the motion of `{}` along its axis has no period; drive it by a Sine, or give \
+             friction.period",
+            test.body
+        );
+        return Err(Fault::new("jump", message));
+    }
+    repeats(case, jump)?;
+    let wears = case.bodies.iter().any(|b| b.wears.is_some());
+    let damages = case.interfaces.iter().any(|i| i.damage.is_some());
+    if !wears && !damages {
+        let message = "nothing here changes from cycle to cycle that a jump could carry on: no body `wears` and no \
+                       interface has a damage law; give one of them, or leave `jump` out";
+        return fault("jump", message);
+    }
+    if case.circuit.is_some() {
+        let message = "a circuit counts grains as they come loose, one by one, and a jump would pass over them; leave \
+                       one of the two out";
+        return fault("jump", message);
+    }
+    for (name, count) in [("at_most", jump.at_most), ("control", jump.control)] {
+        if count == 0 {
+            return fault(&format!("jump.{name}"), "must be at least 1");
+        }
+        if count > MOST {
+            let message = format!("{count} is too many; at most {MOST}");
+            return Err(Fault::new(format!("jump.{name}"), message));
+        }
+    }
+    if jump.after == 0 {
+        let message = "must be at least 1: a jump is checked against the cycle before it";
+        return fault("jump.after", message);
+    }
+    if jump.cycles == Some(0) {
+        return fault("jump.cycles", "must be at least 1");
+    }
+    for (name, value) in [("tolerance", jump.tolerance), ("growth", jump.growth)] {
+        if !(value.is_finite() && value > 0.0) {
+            let message = format!("must be positive, got {value}");
+            return Err(Fault::new(format!("jump.{name}"), message));
+        }
+    }
+    let steps = period(case).unwrap_or(0.0) / case.time.step;
+    if (steps - steps.round()).abs() > 1e-3 || steps < 1.5 {
+        let message = format!(
+            "a cycle takes {steps} steps, and a jump would not begin and end with one; let time.step divide the cycle"
+        );
+        return Err(Fault::new("jump", message));
+    }
+    Ok(())
+}
+
+/// Refuses what does not come again with every cycle: a jump passes over cycles, and time does not go on in it.
+fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), Fault> {
+    let (Some(test), Some(cycle)) = (&case.friction, period(case)) else {
+        return Ok(());
+    };
+    if !case.phases.is_empty() {
+        let message = "phases go by the time that is computed, and a jump passes over cycles; make a case of the phase that \
+                       jumps (grains of the last state by `State`), or leave `jump` out";
+        return Err(Fault::new("phases", message));
+    }
+    if case.gravity_drive.is_some() {
+        let message = "gravity that changes does not come again with every cycle; leave `gravity_drive` or `jump` out";
+        return Err(Fault::new("gravity_drive", message));
+    }
+    let begins = test.start + f64::from(jump.after) * cycle;
+    for body in &case.bodies {
+        let names = BodySpec::names(case.dimension as usize);
+        for (k, dof) in body.ordered(case.dimension as usize).iter().enumerate() {
+            if let Some(why) = restless(dof, k < case.dimension as usize, cycle, begins) {
+                let path = format!("bodies.{}.dofs.{}", body.name, names[k]);
+                let message = format!(
+                    "a jump passes over whole cycles of {cycle:e} s from {begins:e} s on, so all that drives must come again with each, \
+                     but {why}; let it rest from then on, give it a period that divides the cycle, or leave `jump` out"
+                );
+                return Err(Fault::new(path, message));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Why a drive does not come again with every cycle from a time on, if it does not.
+fn restless(dof: &Dof, translates: bool, cycle: f64, begins: f64) -> Option<String> {
+    if let Dof::Stages(_) = dof {
+        return Some("its drives follow one another in time".into());
+    }
+    match dof.function()? {
+        TimeFunction::Constant(v) => (translates && *v != 0.0 && matches!(dof, Dof::Velocity(_)))
+            .then(|| "it goes on in one direction".into()),
+        TimeFunction::Ramp { end, .. } if *end > begins => {
+            Some(format!("its ramp lasts until {end:e} s"))
+        }
+        TimeFunction::Table(points) if points.last().is_some_and(|p| p.0 > begins) => {
+            Some("its table goes on after it".into())
+        }
+        TimeFunction::Sine {
+            frequency, start, ..
+        } => {
+            let turns = frequency * cycle;
+            let whole = (turns - turns.round()).abs() < 1e-6 * turns.max(1.0);
+            if *start > begins {
+                Some(format!("its sine begins at {start:e} s"))
+            } else {
+                (!whole).then(|| format!("its sine turns {turns} times in a cycle"))
+            }
+        }
+        TimeFunction::Ramp { .. } | TimeFunction::Table(_) => None,
+    }
+}
+
+/// Length of a cycle of the friction test (s).
+fn period(case: &Case) -> Option<f64> {
+    let test = case.friction.as_ref()?;
+    let body = case.bodies.iter().find(|b| b.name == test.body)?;
+    let dofs = body.ordered(case.dimension as usize);
+    let function = dofs.get(test.along).and_then(Dof::function);
+    test.period.or(function.and_then(TimeFunction::period))
+}

@@ -1,0 +1,35 @@
+//! Cases and materials: read, checked, and made into a scene that steps.
+//!
+//! [`load`] reads a case file, [`Loaded::build`] makes of it a simulation of the layer below, `fretwork-core`. This layer knows
+//! nothing of results and pictures.
+
+#![warn(missing_docs)]
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
+pub mod biaxial;
+pub mod bond_sites;
+pub mod build;
+pub mod case;
+pub mod check;
+pub mod circuit;
+pub mod interfaces;
+pub mod jump;
+mod magnitudes;
+pub mod material;
+pub mod measures;
+pub mod mesh_file;
+pub mod methods;
+pub mod phases;
+pub mod profile;
+pub mod profile_file;
+pub mod recorded;
+pub mod sample;
+pub mod sampling;
+pub mod scene_file;
+pub mod shipped_materials;
+pub mod source;
+pub mod standard;
+pub mod units;
+
+pub use build::{Built, Loaded, Scene, load};
+pub use source::InputError;

@@ -1,0 +1,81 @@
+//! Numbers that are each possible and together are beyond what double precision holds: masses that vanish, energies that
+//! overflow, motions that rounding takes away.
+
+use super::build::Origin;
+use super::source::Fault;
+use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::step::Simulation;
+
+/// Motion lost over the run, in parts of the alert distance, from which a case is refused.
+const LOST: f64 = 2e-5;
+
+/// Bodies whose mass, energy or motion the numbers cannot hold.
+///
+/// # Errors
+/// The first one, at its place in the case.
+pub(super) fn check<S: Space>(
+    s: &Simulation<S>,
+    origins: &[Origin],
+    end: f64,
+) -> Result<(), Fault> {
+    let bodies = &s.bodies;
+    let h = s.scheme.h;
+    for b in 0..bodies.len() {
+        let refuse = |message: String| {
+            let path = origins.get(b).map_or("grains".to_owned(), |o| o.path());
+            Err(Fault::new(path, message))
+        };
+        let (mass, inertia) = (bodies.mass[b], bodies.inertia[b]);
+        if !(mass.is_normal() && mass > 0.0 && (1.0 / mass).is_normal()) {
+            return refuse(format!(
+                "a mass of {mass:e} kg is beyond what can be computed with; check its size and density, and their units"
+            ));
+        }
+        if inertia != 0.0 && !(inertia.is_normal() && inertia > 0.0 && (1.0 / inertia).is_normal())
+        {
+            return refuse(format!(
+                "a moment of inertia of {inertia:e} kg m2 is beyond what can be computed with; check its size and \
+                 density, and their units"
+            ));
+        }
+        let energy = bodies.energy_of(b);
+        if !energy.is_finite() {
+            return refuse(format!(
+                "its kinetic energy at the start is {energy} J: velocity {:?} m/s, spin {:?} rad/s; check their units",
+                &bodies.velocity[b].padded()[..S::D],
+                &bodies.spin[b].padded()[..S::Spin::N]
+            ));
+        }
+        let (x, v) = (&bodies.position[b], &bodies.velocity[b]);
+        let fastest = (0..S::D).max_by(|i, j| v[*i].abs().total_cmp(&v[*j].abs()));
+        if let Some(k) = fastest
+            && v[k] != 0.0
+            && x[k] + v[k] * (s.scheme.theta * h) == x[k]
+            && v[k].abs() * end > LOST * s.network.alert
+        {
+            return refuse(format!(
+                "at {:e} m from the origin numbers are {:.1e} m apart, and it moves {:.1e} m in a step: it would never \
+                 move; put the origin nearer to the scene, or take a larger time.step",
+                x[k].abs(),
+                spacing(x[k]),
+                v[k].abs() * h
+            ));
+        }
+    }
+    let heaviest = bodies.mass.iter().copied().fold(0.0, f64::max);
+    let gravity = (0..S::D).fold(0.0f64, |g, k| g.max(s.gravity[k].abs()));
+    let fall = 0.5 * heaviest * (gravity * end) * (gravity * end);
+    if !(gravity.is_finite() && fall.is_finite()) {
+        let message = format!(
+            "under {gravity:e} m/s2 a fall over the run ends with an energy of {fall} J, which cannot be computed with"
+        );
+        return Err(Fault::new("gravity", message));
+    }
+    Ok(())
+}
+
+/// The distance from a number to the next one of larger size.
+fn spacing(x: f64) -> f64 {
+    let x = x.abs();
+    x.next_up() - x
+}

@@ -1,0 +1,119 @@
+//! Which methods can solve a case, before it runs.
+
+use fretwork_core::geometry::space::Space;
+use fretwork_core::laws::demand::{Asked, Demand};
+use fretwork_core::solve::choose::refusal;
+use fretwork_core::solve::local::solver::Method;
+use fretwork_core::step::Simulation;
+
+/// Whether a method serves a case.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Service {
+    /// It does.
+    Serves,
+    /// A step may refuse it: which interface may ask for what.
+    May(String),
+    /// It does not: the interface that asks for it, and why.
+    Refuses(String),
+}
+
+/// What the interfaces of a scene ask for; none where a law's trial failed, which a step will tell of.
+pub struct Demands(Vec<(String, Option<Demand>)>);
+
+impl Demands {
+    /// Asks the laws.
+    pub fn of<S: Space>(simulation: &Simulation<S>) -> Self {
+        let shapes = &simulation.shapes;
+        let pieces = shapes.pieces.iter().map(|p| p.size);
+        let radii = shapes.balls.iter().map(|b| b.radius).chain(pieces);
+        let (low, high) = radii.fold((f64::INFINITY, 0.0f64), |(l, h), r| (l.min(r), h.max(r)));
+        // Two of the smallest; the largest against a flat body.
+        let radii = if high > 0.0 {
+            [0.5 * low, high]
+        } else {
+            [1e-3, 1.0]
+        };
+        let ask = |law: &fretwork_core::laws::Interface| {
+            let demand = law.demand(S::D as u32, &radii).ok();
+            (law.name.clone(), demand)
+        };
+        Self(simulation.laws.iter().map(ask).collect())
+    }
+
+    /// Interfaces by name and what they ask for.
+    pub fn each(&self) -> impl Iterator<Item = (&str, Option<&Demand>)> {
+        self.0.iter().map(|(name, d)| (name.as_str(), d.as_ref()))
+    }
+
+    /// Whether a method serves them.
+    pub fn service(&self, method: Method) -> Service {
+        let mut may = None;
+        for (name, demand) in &self.0 {
+            // The reason of a refusal, and how surely it will come.
+            let (asked, reason) = match demand {
+                Some(demand) => {
+                    let (rotation, cohesion) = (demand.rotation, demand.cohesion);
+                    let turns = refusal(method, true, false).map_or(Asked::Never, |_| rotation);
+                    let pulls = refusal(method, false, true).map_or(Asked::Never, |_| cohesion);
+                    let most = turns.max(pulls);
+                    (most, refusal(method, most == turns, most == pulls))
+                }
+                None => (Asked::Unseen, refusal(method, true, true)),
+            };
+            let Some(reason) = reason else { continue };
+            match asked {
+                Asked::Never => {}
+                Asked::Always => {
+                    return Service::Refuses(format!("interface `{name}`: {reason}"));
+                }
+                Asked::Sometimes => {
+                    may = Some(format!(
+                        "may be refused, interface `{name}` asks for it in some contacts: {reason}"
+                    ));
+                }
+                Asked::Unseen => {
+                    may = may.or(Some(format!(
+                        "may be refused, the laws of interface `{name}` decide at run time and did not ask for it in trials: {reason}"
+                    )));
+                }
+            }
+        }
+        may.map_or(Service::Serves, Service::May)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn service(rotation: Asked, cohesion: Asked, method: Method) -> Service {
+        let demand = Demand {
+            rotation,
+            cohesion,
+            ..Demand::default()
+        };
+        Demands(vec![("a".into(), Some(demand))]).service(method)
+    }
+
+    #[test]
+    fn refuses_what_is_certain_and_warns_of_the_rest() {
+        use Asked::{Always, Never, Sometimes, Unseen};
+        for method in Method::ALL.iter().copied() {
+            assert_eq!(service(Never, Never, method), Service::Serves);
+            let other = !matches!(method, Method::Newton | Method::Interior);
+            assert_eq!(service(Always, Always, method) == Service::Serves, other);
+        }
+        assert_eq!(service(Never, Always, Method::Newton), Service::Serves);
+        let text = |s: Service| match s {
+            Service::Serves => String::new(),
+            Service::May(t) | Service::Refuses(t) => t,
+        };
+        assert!(text(service(Sometimes, Never, Method::Newton)).contains("some contacts"));
+        assert!(text(service(Unseen, Never, Method::Newton)).contains("trials"));
+        let both = service(Unseen, Always, Method::Interior);
+        assert!(matches!(both, Service::Refuses(t) if t.contains("cohesion")));
+        let failed = Demands(vec![("a".into(), None)]);
+        assert!(matches!(failed.service(Method::Newton), Service::May(_)));
+        assert_eq!(failed.service(Method::Pg), Service::Serves);
+    }
+}

@@ -1,0 +1,411 @@
+//! Phases of a case: a list of what changes and until when, checked and made ready for the stepper.
+
+use super::case::{BodySpec, Case};
+use super::source::{Fault, nearest};
+use fretwork_core::bodies::Dof;
+use fretwork_core::bodies::pressure::Servo;
+use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::step::Simulation;
+use fretwork_core::step::control::{Changes, GravityDrive, Phase, Until};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// A phase. What it does not name stays as it is.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PhaseSpec {
+    /// Name.
+    pub name: String,
+    /// When it ends; only the last may have none, and lasts to the end of the run.
+    #[serde(default)]
+    pub until: Option<Until>,
+    /// Drives of bodies, by their names. Functions run on the time since the phase began.
+    #[serde(default)]
+    pub drives: BTreeMap<String, Redriven>,
+    /// Gravity (m/s^2), one number an axis; ends any drive of gravity before.
+    #[serde(default)]
+    pub gravity: Option<Vec<f64>>,
+    /// How gravity changes, on the time since the phase began.
+    #[serde(default)]
+    pub gravity_drive: Option<GravityDrive>,
+    /// Friction coefficients: the parameter `mu` of the contact laws of interfaces, by their names.
+    #[serde(default)]
+    pub friction: BTreeMap<String, f64>,
+    /// Bodies that are taken away.
+    #[serde(default)]
+    pub open: Vec<String>,
+    /// Tolerance of the solver.
+    #[serde(default)]
+    pub tolerance: Option<f64>,
+    /// When it ends the run goes back, until this was done so many times.
+    #[serde(default)]
+    pub repeat: Option<Repeat>,
+}
+
+/// A group of phases that is done several times, one after another: taps, cycles.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Repeat {
+    /// Name of the first phase of the group; the phase itself by default.
+    #[serde(default)]
+    pub from: Option<String>,
+    /// How many times the group is done in all.
+    pub times: u32,
+}
+
+/// The degrees of freedom of a body that get another drive.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Redriven {
+    /// Translation along x.
+    pub x: Option<Dof>,
+    /// Translation along y.
+    pub y: Option<Dof>,
+    /// Translation along z (3D).
+    pub z: Option<Dof>,
+    /// Rotation about x (3D).
+    pub rx: Option<Dof>,
+    /// Rotation about y (3D).
+    pub ry: Option<Dof>,
+    /// Rotation about z (the only one in 2D).
+    pub rz: Option<Dof>,
+}
+
+impl Redriven {
+    /// The drives given, with their names and their places in the order of the dimension.
+    fn given(&self, dimension: usize) -> impl Iterator<Item = (&'static str, Option<usize>, &Dof)> {
+        let all = [
+            ("x", &self.x),
+            ("y", &self.y),
+            ("z", &self.z),
+            ("rx", &self.rx),
+            ("ry", &self.ry),
+            ("rz", &self.rz),
+        ];
+        let names = BodySpec::names(dimension);
+        all.into_iter().filter_map(|(name, dof)| {
+            let place = names.iter().position(|n| *n == name);
+            dof.as_ref().map(|d| (name, place, d))
+        })
+    }
+}
+
+/// All drives that a body ever has on its degrees of freedom: its own, then those of phases.
+pub fn drives_of(case: &Case, body: &BodySpec) -> Vec<(usize, Dof)> {
+    let dimension = case.dimension as usize;
+    let own = body.ordered(dimension).into_iter().enumerate();
+    let phases = case.phases.iter().filter_map(|p| p.drives.get(&body.name));
+    own.chain(phases.flat_map(|r| {
+        r.given(dimension)
+            .filter_map(|(_, place, dof)| Some((place?, dof.clone())))
+    }))
+    .collect()
+}
+
+/// Refuses phases whose numbers or names make no sense.
+///
+/// # Errors
+/// The first fault, with its path.
+pub(super) fn check(case: &Case) -> Result<(), Fault> {
+    for (k, phase) in case.phases.iter().enumerate() {
+        let last = k + 1 == case.phases.len();
+        let name = &phase.name;
+        if case.phases[..k].iter().any(|p| p.name == *name) {
+            let message = format!(
+                "a phase before it is called `{name}` too; give each another name, `repeat` and `--set` go by it"
+            );
+            return Err(Fault::new(format!("phases.{k}.name"), message));
+        }
+        one(case, phase, last)
+            .and_then(|()| repeat(case, k))
+            .map_err(|f| f.under(&format!("phases.{k}")))?;
+    }
+    let all: u64 = groups(case)
+        .map(|(group, times)| group.len() as u64 * u64::from(times))
+        .sum();
+    if all > MOST {
+        let message = format!("{all} phases with their repeats; a run has at most {MOST}");
+        return Err(Fault::new("phases", message));
+    }
+    Ok(())
+}
+
+/// Most phases of a run, repeats counted.
+const MOST: u64 = 1_000_000;
+
+/// Refuses a repeat that goes nowhere.
+fn repeat(case: &Case, k: usize) -> Result<(), Fault> {
+    let Some(spec) = &case.phases[k].repeat else {
+        return Ok(());
+    };
+    if spec.times == 0 {
+        let message = "a group of phases is done at least once";
+        return Err(Fault::new("repeat.times", message).expected("a number from 1"));
+    }
+    if case.phases[k].until.is_none() {
+        let message = format!("`{}` is repeated, so it needs `until`", case.phases[k].name);
+        return Err(Fault::new("repeat", message));
+    }
+    let Some(from) = &spec.from else {
+        return Ok(());
+    };
+    let before = case.phases[..=k].iter().map(|p| p.name.as_str());
+    known("repeat.from", "phase up to here named", from, before)?;
+    let first = first(case, k);
+    if case.phases[first..k].iter().any(|p| p.repeat.is_some()) {
+        let message =
+            format!("the group from `{from}` holds another repeat; one group cannot hold another");
+        return Err(Fault::new("repeat.from", message));
+    }
+    Ok(())
+}
+
+/// Where the group that ends with a phase begins.
+fn first(case: &Case, k: usize) -> usize {
+    let from = case.phases[k].repeat.as_ref().and_then(|r| r.from.as_ref());
+    let place = |name: &String| case.phases[..=k].iter().rposition(|p| p.name == *name);
+    from.and_then(place).unwrap_or(k)
+}
+
+/// Groups of phases in their order, and how many times each is done.
+fn groups(case: &Case) -> impl Iterator<Item = (std::ops::Range<usize>, u32)> + '_ {
+    let mut groups: Vec<(std::ops::Range<usize>, u32)> = Vec::new();
+    for (k, phase) in case.phases.iter().enumerate() {
+        let first = first(case, k);
+        groups.truncate(groups.len() - (k - first).min(groups.len()));
+        groups.push((first..k + 1, phase.repeat.as_ref().map_or(1, |r| r.times)));
+    }
+    groups.into_iter()
+}
+
+fn one(case: &Case, phase: &PhaseSpec, last: bool) -> Result<(), Fault> {
+    match &phase.until {
+        None if !last => {
+            let message = format!(
+                "another phase follows `{}`, so it needs `until`",
+                phase.name
+            );
+            return Err(Fault::new("", message)
+                .expected("Time(s), After(s), Steps(n) or AtRest(share, held)"));
+        }
+        Some(until) => ends(until, weighs(case)).map_err(|m| Fault::new("until", m))?,
+        None => {}
+    }
+    let dimension = case.dimension as usize;
+    for (name, redriven) in &phase.drives {
+        let path = format!("drives.{name}");
+        known(
+            &path,
+            "body",
+            name,
+            case.bodies.iter().map(|b| b.name.as_str()),
+        )?;
+        for (dof, place, drive) in redriven.given(dimension) {
+            if place.is_none() {
+                let message = format!("there is no {dof} in two dimensions");
+                return Err(Fault::new(format!("{path}.{dof}"), message).expected("x, y or rz"));
+            }
+            if let Some((below, fault)) = drive.fault() {
+                let at = format!("{path}.{dof}.{below}");
+                return Err(Fault::new(at.trim_end_matches('.'), fault));
+            }
+        }
+    }
+    for name in &phase.open {
+        known(
+            "open",
+            "body",
+            name,
+            case.bodies.iter().map(|b| b.name.as_str()),
+        )?;
+    }
+    for name in phase.friction.keys() {
+        let names = case.interfaces.iter().map(|i| i.name.as_str());
+        known(&format!("friction.{name}"), "interface", name, names)?;
+    }
+    if let Some(g) = &phase.gravity
+        && (g.len() != dimension || g.iter().any(|x| !x.is_finite()))
+    {
+        let message = "gravity needs one finite number an axis";
+        return Err(Fault::new("gravity", message).expected(format!("{dimension} numbers")));
+    }
+    gravity_drive(phase.gravity_drive.as_ref(), dimension)?;
+    if (phase.gravity.is_some() || phase.gravity_drive.is_some()) && case.inertia_scaling != 1.0 {
+        let message =
+            "a phase with gravity cannot have scaled inertia; leave `inertia_scaling` out";
+        return Err(Fault::new("", message));
+    }
+    match phase.tolerance {
+        Some(t) if !(t.is_finite() && t >= 0.0) => Err(Fault::new(
+            "tolerance",
+            format!("must not be negative, got {t}"),
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a drive of gravity that cannot be followed.
+///
+/// # Errors
+/// The fault, below `gravity_drive`.
+pub(super) fn gravity_drive(drive: Option<&GravityDrive>, dimension: usize) -> Result<(), Fault> {
+    match drive.and_then(|d| d.fault(dimension)) {
+        Some((below, message)) => {
+            let path = format!("gravity_drive.{below}");
+            Err(Fault::new(path.trim_end_matches('.'), message))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Whether there is gravity at some time.
+fn weighs(case: &Case) -> bool {
+    let some = |g: &[f64]| g.iter().any(|x| *x != 0.0);
+    let phases = || case.phases.iter();
+    some(&case.gravity)
+        || case.gravity_drive.is_some()
+        || phases().any(|p| p.gravity_drive.is_some() || p.gravity.as_deref().is_some_and(some))
+}
+
+fn ends(until: &Until, weighs: bool) -> Result<(), String> {
+    let positive = |what: &str, x: f64| {
+        if x.is_finite() && x > 0.0 {
+            Ok(())
+        } else {
+            Err(format!("{what} must be positive, got {x}"))
+        }
+    };
+    match until {
+        Until::Time(t) => positive("a time", *t),
+        Until::After(t) => positive("a duration", *t),
+        Until::Steps(n) => positive("the number of steps", *n as f64),
+        Until::AtRest {
+            share,
+            energy,
+            held,
+            at_most,
+        } => {
+            positive("`held`", *held)?;
+            share.map_or(Ok(()), |s| positive("`share`", s))?;
+            energy.map_or(Ok(()), |e| positive("`energy`", e))?;
+            at_most.map_or(Ok(()), |t| positive("`at_most`", t))?;
+            if share.is_none() && energy.is_none() {
+                return Err("rest needs a measure: `share` of m g d, or an `energy` (J)".into());
+            }
+            if share.is_some() && !weighs {
+                return Err(
+                    "without gravity there is no m g d; give an `energy` (J) in place of a `share`"
+                        .into(),
+                );
+            }
+            Ok(())
+        }
+    }
+}
+
+fn known<'a>(
+    path: &str,
+    what: &str,
+    name: &str,
+    names: impl Iterator<Item = &'a str> + Clone,
+) -> Result<(), Fault> {
+    if names.clone().any(|n| n == name) {
+        return Ok(());
+    }
+    let plural = if what == "body" {
+        "bodies"
+    } else {
+        "interfaces"
+    };
+    Err(Fault::new(path, format!("there is no {what} `{name}`"))
+        .expected_name(names.clone(), plural)
+        .nearest(nearest(name, names)))
+}
+
+/// Hands gravity, servos, gates and phases of a checked case to its simulation.
+///
+/// # Errors
+/// A pressure without an area, or friction that a law does not take: with its path.
+pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<(), Fault> {
+    s.control.gravity = s.gravity;
+    s.control.gravity_drive.clone_from(&case.gravity_drive);
+    for (k, body) in case.bodies.iter().enumerate() {
+        let Some(place) = place(s, &body.name) else {
+            continue;
+        };
+        for (dof, drive) in body.ordered(S::D).iter().enumerate() {
+            let name = BodySpec::names(S::D)[dof];
+            let servos = Servo::of(&s.bodies, &s.shapes, place, dof, drive)
+                .map_err(|m| Fault::new(format!("bodies.{k}.dofs.{name}"), m))?;
+            s.control.servos.extend(servos);
+        }
+        if let Some(time) = body.vanishes {
+            s.control.gates.push((place, time));
+        }
+    }
+    let mut phases = Vec::new();
+    for (k, spec) in case.phases.iter().enumerate() {
+        phases.push(Phase {
+            name: spec.name.clone(),
+            until: spec.until.clone(),
+            changes: changes(spec, s).map_err(|f| f.under(&format!("phases.{k}")))?,
+            recurs: false,
+        });
+    }
+    for (group, times) in groups(case) {
+        for round in 1..=times {
+            let recurs = round < times;
+            let once = phases[group.clone()].iter().cloned();
+            s.control.phases.extend(once.map(|p| Phase { recurs, ..p }));
+        }
+    }
+    s.measure_areas();
+    Ok(())
+}
+
+fn place<S: Space>(s: &Simulation<S>, name: &str) -> Option<usize> {
+    s.bodies.driven.iter().position(|d| d.name == name)
+}
+
+fn changes<S: Space>(spec: &PhaseSpec, s: &Simulation<S>) -> Result<Changes<S>, Fault> {
+    let mut drives = Vec::new();
+    for (name, redriven) in &spec.drives {
+        for (dof, k, drive) in redriven.given(S::D) {
+            let (Some(place), Some(k)) = (place(s, name), k) else {
+                continue;
+            };
+            Servo::of(&s.bodies, &s.shapes, place, k, drive)
+                .map_err(|m| Fault::new(format!("drives.{name}.{dof}"), m))?;
+            drives.push((place, k, drive.clone()));
+        }
+    }
+    let mut contact = Vec::new();
+    for (name, mu) in &spec.friction {
+        let path = format!("friction.{name}");
+        let Some(k) = s.laws.iter().position(|l| l.name == *name) else {
+            continue;
+        };
+        let law = &s.laws[k].contact;
+        let Some(p) = law.plugin.parameters.iter().position(|p| p.name == "mu") else {
+            let message = format!(
+                "the contact law `{}` has no parameter `mu` to change",
+                law.plugin.name
+            );
+            return Err(Fault::new(path, message).expected("an interface whose law has `mu`"));
+        };
+        let mut values = law.parameters.clone();
+        values[p] = *mu;
+        law.plugin
+            .validate(&values)
+            .map_err(|e| Fault::new(path, e.to_string()))?;
+        contact.push((k, p, *mu));
+    }
+    Ok(Changes {
+        drives,
+        gravity: spec.gravity.as_deref().map(S::Vector::from_slice),
+        gravity_drive: spec.gravity_drive.clone(),
+        contact,
+        open: spec.open.iter().filter_map(|n| place(s, n)).collect(),
+        tolerance: spec.tolerance,
+    })
+}

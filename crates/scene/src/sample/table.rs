@@ -1,0 +1,273 @@
+//! Tables of numbers in CSV: a header with the names of the columns, then one row a line.
+
+use crate::source::{InputError, nearest, read_text};
+use csv::{ReaderBuilder, StringRecord, Trim};
+use std::ops::Range;
+use std::path::Path;
+
+/// A table that was read.
+#[derive(Clone, Debug)]
+pub struct Table {
+    name: String,
+    text: String,
+    header: Vec<String>,
+    rows: Vec<(Range<usize>, Vec<f64>)>,
+}
+
+impl Table {
+    /// Reads a table of columns that must be there and columns that may. Lines that begin with `#` are comments.
+    ///
+    /// # Errors
+    /// The line that is wrong: a column that is missing, unknown or there twice, a row of another length, a value
+    /// that is no finite number.
+    pub fn read(path: &Path, required: &[&str], optional: &[&str]) -> Result<Self, InputError> {
+        let text = read_text(path)?;
+        let name = path.display().to_string();
+        Self::parse(name, text, required, optional, false)
+    }
+
+    /// The same for columns of lengths, which may have their unit behind the name, `z [mm]`; values are in metres.
+    ///
+    /// # Errors
+    /// As [`Table::read`], or a unit that is no length.
+    pub fn read_lengths(
+        path: &Path,
+        required: &[&str],
+        optional: &[&str],
+    ) -> Result<Self, InputError> {
+        let text = read_text(path)?;
+        let name = path.display().to_string();
+        Self::parse(name, text, required, optional, true)
+    }
+
+    fn parse(
+        name: String,
+        mut text: String,
+        required: &[&str],
+        optional: &[&str],
+        lengths: bool,
+    ) -> Result<Self, InputError> {
+        let mut metres: Vec<f64> = Vec::new();
+        if text.starts_with('\u{feff}') {
+            text.drain(..'\u{feff}'.len_utf8());
+        }
+        let mut reader = ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(Trim::All)
+            .comment(Some(b'#'))
+            .from_reader(text.as_bytes());
+        let mut table = Self {
+            name,
+            text: String::new(),
+            header: Vec::new(),
+            rows: Vec::new(),
+        };
+        let mut record = StringRecord::new();
+        loop {
+            let more = reader.read_record(&mut record);
+            let span = line_before(&text, reader.position().byte() as usize);
+            let fail = |message| InputError::at(&table.name, &text, span.clone(), message);
+            if !more.map_err(|e| fail(format!("this is no CSV: {e}")))? {
+                break;
+            }
+            if table.header.is_empty() {
+                let mut header: Vec<String> = record.iter().map(str::to_owned).collect();
+                if lengths {
+                    for name in &mut header {
+                        let (short, metre) = length(name).map_err(|m| {
+                            fail(m).expected(
+                                "`m`, `mm`, `um` or `nm` in brackets, or no unit for metres",
+                            )
+                        })?;
+                        *name = short;
+                        metres.push(metre);
+                    }
+                }
+                check_header(&header, required, optional).map_err(|(message, near)| {
+                    let columns = [required, optional].concat().join(", ");
+                    fail(message)
+                        .expected(format!("columns of the names {columns}"))
+                        .did_you_mean(near.as_deref())
+                })?;
+                table.header = header;
+                continue;
+            }
+            if record.len() != table.header.len() {
+                return Err(fail(format!(
+                    "this line has {} values and the header {} columns",
+                    record.len(),
+                    table.header.len()
+                )));
+            }
+            let mut row = Vec::with_capacity(record.len());
+            for (word, column) in record.iter().zip(&table.header) {
+                match word.parse().ok().filter(|x: &f64| x.is_finite()) {
+                    Some(x) => {
+                        let metre = metres.get(row.len()).copied().unwrap_or(1.0);
+                        row.push(x * metre);
+                    }
+                    None => {
+                        return Err(
+                            fail(format!("the value `{word}` of `{column}` is no number"))
+                                .expected("a finite number"),
+                        );
+                    }
+                }
+            }
+            table.rows.push((span, row));
+        }
+        table.text = text;
+        if table.rows.is_empty() {
+            let message = "there is no row of numbers below the header";
+            return Err(InputError::about(&table.name, message));
+        }
+        Ok(table)
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there is no row; never, of a table that was read.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// The place of a column.
+    pub fn column(&self, name: &str) -> Option<usize> {
+        self.header.iter().position(|h| h == name)
+    }
+
+    /// A value; 0 of a column that is not there.
+    pub fn value(&self, row: usize, column: Option<usize>) -> f64 {
+        column.map_or(0.0, |c| self.rows[row].1[c])
+    }
+
+    /// An error at a row.
+    pub fn fail(&self, row: usize, message: impl Into<String>) -> InputError {
+        let span = self.rows[row].0.clone();
+        InputError::at(&self.name, &self.text, span, message)
+    }
+}
+
+/// A name without its unit, and the unit in metres.
+fn length(name: &str) -> Result<(String, f64), String> {
+    let Some((short, unit)) = name.split_once('[') else {
+        return Ok((name.to_owned(), 1.0));
+    };
+    let metre = match unit.trim_end_matches(']').trim() {
+        "m" => 1.0,
+        "mm" => 1e-3,
+        "um" | "\u{b5}m" | "\u{3bc}m" => 1e-6,
+        "nm" => 1e-9,
+        other => return Err(format!("`{other}` is no unit of length")),
+    };
+    Ok((short.trim().to_owned(), metre))
+}
+
+fn check_header(
+    header: &[String],
+    required: &[&str],
+    optional: &[&str],
+) -> Result<(), (String, Option<String>)> {
+    if let [one] = header
+        && let Some(mark) = [';', '\t', ' '].into_iter().find(|m| one.contains(*m))
+    {
+        let message = format!("columns are separated by commas, not by {mark:?}");
+        return Err((message, None));
+    }
+    let known = || required.iter().chain(optional).copied();
+    for (k, name) in header.iter().enumerate() {
+        if header[..k].contains(name) {
+            return Err((format!("the column `{name}` is there twice"), None));
+        }
+        if !known().any(|n| n == name) {
+            let message = if name.parse::<f64>().is_ok() {
+                "the first line must name the columns".to_owned()
+            } else {
+                format!("there is no use for a column `{name}`")
+            };
+            return Err((message, nearest(name, known()).map(str::to_owned)));
+        }
+    }
+    match required.iter().find(|r| !header.iter().any(|h| h == *r)) {
+        Some(missing) => Err((format!("the column `{missing}` is missing"), None)),
+        None => Ok(()),
+    }
+}
+
+/// The bytes of the line that ends before a place.
+fn line_before(text: &str, end: usize) -> Range<usize> {
+    let before = text[..end.min(text.len())].trim_end_matches(['\r', '\n']);
+    let start = before.rfind('\n').map_or(0, |k| k + 1);
+    start..before.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Table, InputError> {
+        Table::parse(
+            "t.csv".into(),
+            text.into(),
+            &["x", "radius"],
+            &["spin"],
+            false,
+        )
+    }
+
+    #[test]
+    fn lengths_may_have_a_unit() {
+        let read = |text: &str| Table::parse("t.csv".into(), text.into(), &["x", "z"], &[], true);
+        let table = read("x [mm], z\n2,3\n").unwrap_or_else(|e| panic!("{e}"));
+        let (x, z) = (table.column("x"), table.column("z"));
+        assert_eq!((table.value(0, x), table.value(0, z)), (2e-3, 3.0));
+        let error = read("x [kg],z\n1,2\n")
+            .err()
+            .unwrap_or_else(|| panic!("passed"));
+        assert!(
+            error.message().contains("`kg` is no unit of length"),
+            "{error}"
+        );
+        assert_eq!(error.position(), Some((1, 1)));
+    }
+
+    #[test]
+    fn columns_are_found_in_any_order() {
+        let table = read("# from a sieve\nradius, x\r\n1e-3, 2\r\n\n# more\n2e-3,-3\n");
+        let table = table.unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(table.len(), 2);
+        let (x, radius) = (table.column("x"), table.column("radius"));
+        assert_eq!((table.value(1, x), table.value(1, radius)), (-3.0, 2e-3));
+        assert_eq!(table.value(0, table.column("spin")), 0.0);
+        assert_eq!(table.fail(1, "").position(), Some((6, 1)));
+    }
+
+    #[test]
+    fn bad_tables_are_refused_at_their_line() {
+        for (text, line, says) in [
+            (
+                "x,radius\n1,2\n1,two\n",
+                3,
+                "`two` of `radius` is no number",
+            ),
+            ("x,radius\n1,2\n\n# c\n1,NaN\n", 5, "`NaN` of `radius`"),
+            ("x,radius\n1,2,3\n", 2, "3 values and the header 2 columns"),
+            ("x,radius,radus\n1,2,3\n", 1, "no use for a column `radus`"),
+            ("x,x,radius\n1,2,3\n", 1, "`x` is there twice"),
+            ("x\n1\n", 1, "`radius` is missing"),
+            ("x;radius\n1;2\n", 1, "separated by commas"),
+            ("1,2\n1,2\n", 1, "must name the columns"),
+            ("x,radius\n", 0, "no row of numbers"),
+        ] {
+            let error = read(text)
+                .err()
+                .unwrap_or_else(|| panic!("{text:?} passed"));
+            assert!(error.message().contains(says), "{error}");
+            assert_eq!(error.position().map_or(0, |p| p.0), line, "{error}");
+        }
+    }
+}

@@ -1,0 +1,481 @@
+//! Voronoi cells that fill a box in space: polyhedra that fit each other face to face.
+//!
+//! A cell is the box cut by the planes midway to the other sites, the nearest first, until no other is near enough to
+//! reach it: farther than twice the farthest corner (Rycroft, Chaos 19 (2009) 041111, cuts cells the same way). Three
+//! planes meet in a corner. With its cell they name it, and its place is computed from the name: all cells about it
+//! have the same. Taking out short edges would bend faces, so sites whose cells have one are moved a little instead.
+
+use super::cutting::{Corner, centre, cut, ordered, sides_of};
+use super::deposit::{Corners, deposit};
+use super::sizes::Sizes;
+use super::voronoi::SHORTEST;
+use fretwork_core::geometry::convex::polyhedron::normal;
+use fretwork_core::geometry::periodic::Periodic;
+use fretwork_core::geometry::space::Solid;
+use nalgebra::{Matrix3, Vector3};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+type V = Vector3<f64>;
+
+/// How far a site is moved whose cell has a short edge, as part of the cell size,
+const NUDGE: f64 = 0.02;
+/// and how often before that is given up: each time leaves some fifth of the short edges.
+const NUDGES: usize = 100;
+
+/// A cell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cell {
+    /// Corners (m).
+    pub points: Vec<V>,
+    /// Faces, against the clock seen from outside.
+    pub faces: Vec<Vec<u32>>,
+    /// The cell beyond each face; none beyond a wall.
+    pub beyond: Vec<Option<u32>>,
+}
+
+/// The cells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tiling {
+    /// In an order in which neighbours in space are near. Across a period cells go beyond the box.
+    pub cells: Vec<Cell>,
+    /// How often a site was moved.
+    pub moved: usize,
+}
+
+/// Why there is no tiling.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// The box is thinner than half a cell.
+    Thin,
+    /// Short edges stay, wherever sites are moved.
+    Short,
+}
+
+/// Fills a box with some volume/size³ cells, around each period that it spans.
+///
+/// # Errors
+/// Sites find no room, or their cells keep edges shorter than [`SHORTEST`] of the size.
+pub fn tiling(
+    corners: &Corners<V>,
+    periodic: &Periodic,
+    size: f64,
+    rounds: usize,
+    seed: u64,
+) -> Result<Tiling, Failure> {
+    let count = (corners.volume() / size.powi(3)).round().max(1.0) as usize;
+    let wide = corners.high - corners.low;
+    let around = [0, 1, 2].map(|k| periodic.period[k].filter(|p| wide[k] >= p * (1.0 - 1e-9)));
+    let apart = Sizes::power((0.25 * size, 0.25 * size), 0.0);
+    let periods = Periodic { period: around };
+    let thrown = deposit::<Solid>(count, &apart, corners, &periods, seed);
+    if thrown.grains.len() < count {
+        return Err(Failure::Thin);
+    }
+    let region = Region {
+        corners: *corners,
+        around,
+        size,
+    };
+    let mut sites: Vec<V> = thrown.grains.iter().map(|g| g.0).collect();
+    for _ in 0..rounds {
+        let moves: Vec<V> = region.cut_all(&sites).iter().map(|c| centre(c)).collect();
+        for (site, way) in sites.iter_mut().zip(moves) {
+            *site = region.wrapped(*site + way);
+        }
+    }
+    // Neighbours in space become neighbours in memory.
+    sites.sort_by_cached_key(|p| [p.z, p.y, p.x].map(|x| (x / (2.0 * size)).floor() as i64));
+    let mut rng = Pcg64::seed_from_u64(seed);
+    let mut moved = 0;
+    let mut cut = region.cut_all(&sites);
+    let to_move = |cut: &[Vec<Corner<Side>>], i: usize| region.is_to_move(i, &cut[i]);
+    let mut short: Vec<bool> = (0..sites.len()).map(|i| to_move(&cut, i)).collect();
+    for _ in 0..NUDGES {
+        let restless: Vec<usize> = (0..sites.len()).filter(|i| short[*i]).collect();
+        if restless.is_empty() {
+            let cells = cut.iter().enumerate();
+            let cells = cells.map(|(i, corners)| region.finished(&sites, i, corners));
+            let cells: Option<Vec<Cell>> = cells.collect();
+            let tiling = cells.map(|cells| Tiling { cells, moved });
+            return tiling.ok_or(Failure::Short);
+        }
+        moved += restless.len();
+        let left: Vec<V> = restless.iter().map(|i| sites[*i]).collect();
+        for i in &restless {
+            let way = V::from_fn(|_, _| rng.random_range(-1.0..1.0)) * (NUDGE * size);
+            sites[*i] = region.wrapped(sites[*i] + way);
+        }
+        for i in region.cut_again(&sites, &restless, &left, &mut cut) {
+            short[i] = to_move(&cut, i);
+        }
+    }
+    Err(Failure::Short)
+}
+
+/// The part of a cell that is `distance` (m) or more from its faces; none where nothing is left.
+pub fn inset(cell: &Cell, distance: f64) -> Option<(Vec<V>, Vec<Vec<u32>>)> {
+    let normals: Vec<V> = cell.faces.iter().map(|f| normal(&cell.points, f)).collect();
+    let mut sides: Vec<Vec<usize>> = vec![Vec::new(); cell.points.len()];
+    for (f, face) in cell.faces.iter().enumerate() {
+        face.iter().for_each(|c| sides[*c as usize].push(f));
+    }
+    let corners = cell.points.iter().zip(sides);
+    let corners = corners.map(|(at, s)| Some((*at, <[usize; 3]>::try_from(s).ok()?)));
+    let mut corners: Vec<Corner<usize>> = corners
+        .map(|c| c.map(|(at, sides)| Corner { at, sides }))
+        .collect::<Option<_>>()?;
+    for (f, face) in cell.faces.iter().enumerate() {
+        let height = cell.points[face[0] as usize].dot(&normals[f]) - distance;
+        cut(&mut corners, f, &normals[f], height);
+    }
+    let left = |f: &usize| corners.iter().any(|c| c.sides.contains(f));
+    let faces = (0..normals.len()).filter(left);
+    let faces = faces.map(|f| ordered(&corners, f, &normals[f])).collect();
+    let points: Vec<V> = corners.iter().map(|c| c.at).collect();
+    (points.len() > 3).then_some((points, faces))
+}
+
+/// Which plane bounds a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+enum Side {
+    /// Midway to a site, which stands so many periods away from its place.
+    Site(u32, [i8; 3]),
+    /// A wall: its axis, and whether it is the high one.
+    Wall(usize, bool),
+}
+
+/// A site, and how many periods away from its place its image stands.
+type Image = (u32, [i8; 3]);
+
+/// Sites and images by the cubes that they are in, from a low corner on. Where most cubes would be empty, so many of
+/// them as two to the power of `merged` along each axis count as one.
+struct Cubes {
+    merged: u32,
+    low: [i64; 3],
+    counts: [usize; 3],
+    starts: Vec<u32>,
+    images: Vec<Image>,
+}
+
+impl Cubes {
+    /// From images and their cubes.
+    fn new(placed: &[([i64; 3], Image)]) -> Self {
+        let (mut low, mut high) = ([i64::MAX; 3], [i64::MIN; 3]);
+        if placed.is_empty() {
+            (low, high) = ([0; 3], [0; 3]);
+        }
+        for (cube, _) in placed {
+            for k in 0..3 {
+                (low[k], high[k]) = (low[k].min(cube[k]), high[k].max(cube[k]));
+            }
+        }
+        let (mut merged, mut counts) = (0, [0; 3]);
+        for shift in 0..64 {
+            merged = shift;
+            counts = [0, 1, 2]
+                .map(|k| (high[k] >> shift).abs_diff(low[k] >> shift) as usize)
+                .map(|n| n.saturating_add(1));
+            let all: f64 = counts.iter().map(|n| *n as f64).product();
+            if all <= 8.0 * placed.len() as f64 + 64.0 {
+                break;
+            }
+        }
+        let low = low.map(|c| c >> merged);
+        let mut out = Self {
+            merged,
+            low,
+            counts,
+            starts: vec![0; counts.iter().product::<usize>() + 1],
+            images: vec![(0, [0; 3]); placed.len()],
+        };
+        let place = |out: &Self, cube: &[i64; 3]| {
+            let [x, y, z] = [0, 1, 2].map(|k| ((cube[k] >> merged) - low[k]) as usize);
+            (z * out.counts[1] + y) * out.counts[0] + x
+        };
+        for (cube, _) in placed {
+            let at = place(&out, cube);
+            out.starts[at + 1] += 1;
+        }
+        for k in 1..out.starts.len() {
+            out.starts[k] += out.starts[k - 1];
+        }
+        let mut next = out.starts.clone();
+        for (cube, image) in placed {
+            let at = place(&out, cube);
+            out.images[next[at] as usize] = *image;
+            next[at] += 1;
+        }
+        out
+    }
+
+    /// All in the cubes from one to another.
+    fn between(&self, from: [i64; 3], to: [i64; 3], mut found: impl FnMut(Image)) {
+        let range = |k: usize| {
+            let place = |cube: i64| (cube >> self.merged).saturating_sub(self.low[k]);
+            let most = self.counts[k] as i64;
+            let end = place(to[k]).saturating_add(1).clamp(0, most);
+            place(from[k]).clamp(0, most) as usize..end as usize
+        };
+        let along = range(0);
+        for z in range(2) {
+            for y in range(1) {
+                // Cubes along x stand side by side.
+                let row = (z * self.counts[1] + y) * self.counts[0];
+                let [first, last] = [along.start, along.end].map(|x| self.starts[row + x] as usize);
+                self.images[first..last.max(first)]
+                    .iter()
+                    .for_each(|image| found(*image));
+            }
+        }
+    }
+}
+
+/// Twice the distance of the farthest corner from the site: sites beyond do not cut the cell.
+fn farthest(corners: &[Corner<Side>]) -> f64 {
+    2.0 * corners.iter().map(|c| c.at.norm()).fold(0.0, f64::max)
+}
+
+/// What is filled.
+struct Region {
+    corners: Corners<V>,
+    around: [Option<f64>; 3],
+    size: f64,
+}
+
+impl Region {
+    /// A place, in the box across periods, and otherwise no nearer to walls than a twentieth of a cell.
+    fn wrapped(&self, mut at: V) -> V {
+        for k in 0..3 {
+            let (low, high) = (self.corners.low[k], self.corners.high[k]);
+            at[k] = match self.around[k] {
+                Some(period) => low + (at[k] - low).rem_euclid(period),
+                None => at[k].clamp(low + 0.05 * self.size, high - 0.05 * self.size),
+            };
+        }
+        at
+    }
+
+    fn shift(&self, periods: [i8; 3]) -> V {
+        V::from_fn(|k, _| self.around[k].map_or(0.0, |p| p * f64::from(periods[k])))
+    }
+
+    /// The sites and their images, by cubes as wide as a cell.
+    fn cubes(&self, sites: &[V]) -> Cubes {
+        let images = |k: usize| -> &[i8] {
+            if self.around[k].is_some() {
+                &[-1, 0, 1]
+            } else {
+                &[0]
+            }
+        };
+        let mut placed = Vec::new();
+        for (i, site) in sites.iter().enumerate() {
+            for &x in images(0) {
+                for &y in images(1) {
+                    for &z in images(2) {
+                        let cube = self.cube(&(site + self.shift([x, y, z])));
+                        placed.push((cube, (i as u32, [x, y, z])));
+                    }
+                }
+            }
+        }
+        Cubes::new(&placed)
+    }
+
+    fn cube(&self, at: &V) -> [i64; 3] {
+        [0, 1, 2].map(|k| (at[k] / self.size).floor() as i64)
+    }
+
+    /// The corners of the cells, from their sites.
+    fn cut_all(&self, sites: &[V]) -> Vec<Vec<Corner<Side>>> {
+        let cubes = self.cubes(sites);
+        (0..sites.len())
+            .map(|i| self.cell(sites, &cubes, i))
+            .collect()
+    }
+
+    /// Brings the corners up to date after some sites moved from where they were: those of cells near enough to notice.
+    /// A site farther away than twice the farthest corner of a cell never cut it, and never will. Gives the cells.
+    fn cut_again(
+        &self,
+        sites: &[V],
+        moved: &[usize],
+        left: &[V],
+        cut: &mut [Vec<Corner<Side>>],
+    ) -> Vec<usize> {
+        const MARGIN: f64 = 1.0 + 1e-6;
+        let cubes = self.cubes(sites);
+        let limits: Vec<f64> = cut.iter().map(|c| MARGIN * farthest(c)).collect();
+        let reach = limits.iter().copied().fold(0.0, f64::max);
+        let mut touched = vec![false; sites.len()];
+        moved.iter().for_each(|i| touched[*i] = true);
+        for place in left.iter().chain(moved.iter().map(|i| &sites[*i])) {
+            self.near(&cubes, place, reach, |(j, periods)| {
+                let j = j as usize;
+                let far = (sites[j] + self.shift(periods) - place).norm();
+                touched[j] |= far <= limits[j];
+            });
+        }
+        let touched: Vec<usize> = (0..sites.len()).filter(|i| touched[*i]).collect();
+        for i in &touched {
+            cut[*i] = self.cell(sites, &cubes, *i);
+        }
+        touched
+    }
+
+    /// All in the cubes that come within a distance of a place.
+    fn near(&self, cubes: &Cubes, place: &V, reach: f64, found: impl FnMut(Image)) {
+        let [low, high] = [-reach, reach].map(|r| self.cube(&(place + V::repeat(r))));
+        cubes.between(low, high, found);
+    }
+
+    /// The corners of a cell, from its site.
+    fn cell(&self, sites: &[V], cubes: &Cubes, i: usize) -> Vec<Corner<Side>> {
+        let own = sites[i];
+        let mut corners = self.whole(i, &own);
+        let (mut done, mut reach) = (0.0, 2.0 * self.size);
+        loop {
+            let mut near = Vec::new();
+            self.near(cubes, &own, reach, |(j, periods)| {
+                let way = sites[j as usize] + self.shift(periods) - own;
+                let far = way.norm();
+                // Its own images bound the box that it starts with.
+                if j as usize != i && far > done && far <= reach {
+                    near.push((far, j, periods, way));
+                }
+            });
+            near.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+            let mut limit = farthest(&corners);
+            for (far, j, periods, way) in near {
+                if far > limit {
+                    break;
+                }
+                let side = Side::Site(j, periods);
+                if cut(&mut corners, side, &(way / far), 0.5 * far) {
+                    limit = farthest(&corners);
+                }
+            }
+            if limit <= reach {
+                return corners;
+            }
+            (done, reach) = (reach, 2.0 * reach);
+        }
+    }
+
+    /// The corners of the box, from a site; half a period away across a period.
+    fn whole(&self, i: usize, own: &V) -> Vec<Corner<Side>> {
+        let side = |k: usize, high: bool| match self.around[k] {
+            Some(period) => {
+                let mut periods = [0; 3];
+                periods[k] = if high { 1 } else { -1 };
+                let place = 0.5 * period * f64::from(periods[k]);
+                (Side::Site(i as u32, periods), place)
+            }
+            None => {
+                let walls = [self.corners.low[k], self.corners.high[k]];
+                (Side::Wall(k, high), walls[usize::from(high)] - own[k])
+            }
+        };
+        (0..8)
+            .map(|c| {
+                let of = [0, 1, 2].map(|k| side(k, c >> k & 1 == 1));
+                Corner {
+                    at: V::from(of.map(|s| s.1)),
+                    sides: of.map(|s| s.0),
+                }
+            })
+            .collect()
+    }
+
+    /// Whether a cell has a short edge, of which its site is the first.
+    fn is_to_move(&self, i: usize, corners: &[Corner<Side>]) -> bool {
+        let first = |s: &Side| match s {
+            Side::Site(j, _) => i <= *j as usize,
+            Side::Wall(..) => true,
+        };
+        corners.iter().enumerate().any(|(k, c)| {
+            corners[..k].iter().any(|d| {
+                (c.at - d.at).norm() < SHORTEST * self.size
+                    && c.edge(d).is_some_and(|sides| sides.iter().all(first))
+            })
+        })
+    }
+
+    /// A cell where it stands. None where a corner's place, computed from its name, is another.
+    fn finished(&self, sites: &[V], i: usize, corners: &[Corner<Side>]) -> Option<Cell> {
+        let own = sites[i];
+        let points: Option<Vec<V>> = corners
+            .iter()
+            .map(|c| {
+                let at = self.place(sites, i, &c.sides)?;
+                ((at - own - c.at).norm() < 0.01 * SHORTEST * self.size).then_some(at)
+            })
+            .collect();
+        let sides = sides_of(corners);
+        let outward = |side: &Side| match side {
+            Side::Site(j, periods) => (sites[*j as usize] + self.shift(*periods) - own).normalize(),
+            Side::Wall(k, high) => V::ith(*k, if *high { 1.0 } else { -1.0 }),
+        };
+        Some(Cell {
+            points: points?,
+            faces: sides
+                .iter()
+                .map(|s| ordered(corners, *s, &outward(s)))
+                .collect(),
+            beyond: sides
+                .iter()
+                .map(|s| match s {
+                    Side::Site(j, _) => Some(*j),
+                    Side::Wall(..) => None,
+                })
+                .collect(),
+        })
+    }
+
+    /// Where the planes of a corner meet, computed alike for all cells about it.
+    fn place(&self, sites: &[V], i: usize, sides: &[Side; 3]) -> Option<V> {
+        let mut name = [Side::Site(i as u32, [0; 3]), sides[0], sides[1], sides[2]];
+        name.sort_unstable();
+        // Seen from its first site, of which there is one.
+        let Side::Site(first, base) = name[0] else {
+            return None;
+        };
+        let origin = sites[first as usize];
+        let (mut rows, mut heights) = (Matrix3::zeros(), V::zeros());
+        for (row, side) in name[1..].iter().enumerate() {
+            match side {
+                Side::Site(j, periods) => {
+                    let periods = [0, 1, 2].map(|k| periods[k] - base[k]);
+                    let way = sites[*j as usize] + self.shift(periods) - origin;
+                    let far = way.norm();
+                    rows.set_row(row, &(way / far).transpose());
+                    heights[row] = 0.5 * far;
+                }
+                Side::Wall(k, high) => {
+                    rows[(row, *k)] = 1.0;
+                    heights[row] = self.wall(*k, *high) - origin[*k];
+                }
+            }
+        }
+        let mut at = origin + rows.try_inverse()? * heights;
+        for side in &name {
+            if let Side::Wall(k, high) = side {
+                at[*k] = self.wall(*k, *high);
+            }
+        }
+        Some(at + self.shift(base))
+    }
+
+    fn wall(&self, axis: usize, high: bool) -> f64 {
+        if high {
+            self.corners.high[axis]
+        } else {
+            self.corners.low[axis]
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "voronoi_space_tests.rs"]
+mod tests;

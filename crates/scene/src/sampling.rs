@@ -1,0 +1,203 @@
+//! Functions of time that change faster than the step can follow.
+//!
+//! Imposed motion is on its path at the end of every step, but what lies between two ends is a straight line, and
+//! forces are taken at one point of the step.
+
+use super::case::{BodySpec, Case};
+use super::phases::drives_of;
+use fretwork_core::bodies::{Dof, TimeFunction};
+use fretwork_core::step::control::GravityDrive;
+
+/// Steps a period below which a sine is followed coarsely: the straight lines between 20 ends miss the path by
+/// (pi/20)^2/2, 1.2 % of the amplitude.
+const COARSE: f64 = 20.0;
+/// Steps a period below which a sine shows as one of another frequency (Nyquist).
+const ALIAS: f64 = 2.0;
+/// Steps that a ramp or a table should last.
+const SHORT: f64 = 5.0;
+
+/// A function of time that the step of a case does not resolve.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnresolvedDrive {
+    /// What it drives, what is wrong and what to change.
+    pub text: String,
+    /// Whether the steps see another frequency.
+    pub aliased: bool,
+}
+
+/// What the steps of a case cannot follow, each with what to change: bodies, then phases, then gravity.
+pub fn unresolved(case: &Case) -> Vec<UnresolvedDrive> {
+    let dimension = case.dimension as usize;
+    let h = case.time.step;
+    let mut found: Vec<UnresolvedDrive> = Vec::new();
+    let mut say = |of: String, function: &TimeFunction, moves: bool| {
+        if let Some(what) = fault(function, h, moves) {
+            let drive = UnresolvedDrive {
+                text: format!("{of}: {what}"),
+                aliased: aliased(function, h),
+            };
+            if !found.contains(&drive) {
+                found.push(drive);
+            }
+        }
+    };
+    for body in &case.bodies {
+        let names = BodySpec::names(dimension);
+        for (k, dof) in drives_of(case, body) {
+            for drive in dof.drives() {
+                if let Some(function) = drive.function() {
+                    let moves = matches!(drive, Dof::Displacement(_));
+                    say(
+                        format!("`{}` along {}", body.name, names[k]),
+                        function,
+                        moves,
+                    );
+                }
+            }
+        }
+    }
+    let phases = case.phases.iter().filter_map(|p| p.gravity_drive.as_ref());
+    for gravity in case.gravity_drive.iter().chain(phases) {
+        let functions: &[TimeFunction] = match gravity {
+            GravityDrive::Turned { angle, .. } => std::slice::from_ref(angle),
+            GravityDrive::Scaled(f) => std::slice::from_ref(f),
+            GravityDrive::Axes(list) => list,
+        };
+        for function in functions {
+            say("gravity".to_owned(), function, false);
+        }
+    }
+    found
+}
+
+/// Whether a function in steps of `h` shows as one of another frequency.
+fn aliased(function: &TimeFunction, h: f64) -> bool {
+    match function {
+        TimeFunction::Sine {
+            amplitude,
+            frequency,
+            ..
+        } => *amplitude != 0.0 && 1.0 / (frequency * h) <= ALIAS,
+        _ => false,
+    }
+}
+
+/// What is wrong with a function in steps of `h`; `moves` where it is a displacement.
+fn fault(function: &TimeFunction, h: f64, moves: bool) -> Option<String> {
+    match function {
+        TimeFunction::Constant(_) => None,
+        TimeFunction::Sine {
+            amplitude,
+            frequency,
+            ..
+        } => {
+            let steps = 1.0 / (frequency * h);
+            let most = 1.0 / (COARSE * frequency);
+            if *amplitude == 0.0 || steps.is_nan() || steps >= COARSE * (1.0 - 1e-9) {
+                None
+            } else if steps <= ALIAS {
+                Some(format!(
+                    "the sine of {frequency} Hz has {steps:.3} steps a period and ALIASES: ends of steps see another \
+                     motion, or none; take time.step = {most:.2e} s or less, or a lower frequency"
+                ))
+            } else {
+                Some(format!(
+                    "the sine of {frequency} Hz has only {steps:.1} steps a period; take time.step = {most:.2e} s or \
+                     less ({COARSE} steps a period), or a lower frequency"
+                ))
+            }
+        }
+        TimeFunction::Ramp {
+            from,
+            to,
+            start,
+            end,
+        } => {
+            let steps = (end - start) / h;
+            (from != to && steps < SHORT * (1.0 - 1e-9)).then(|| {
+                format!(
+                    "the ramp from {start:e} to {end:e} s lasts only {steps:.3} steps; take a smaller time.step, or a \
+                     ramp of {:.2e} s or more",
+                    SHORT * h
+                )
+            })
+        }
+        TimeFunction::Table(points) => table(points, h, moves),
+    }
+}
+
+fn table(points: &[(f64, f64)], h: f64, moves: bool) -> Option<String> {
+    let changes = |w: &&[(f64, f64)]| w[0].1 != w[1].1;
+    let short = |w: &[(f64, f64)]| w[1].0 - w[0].0 < h * (1.0 - 1e-9);
+    let pieces: Vec<&[(f64, f64)]> = points.windows(2).collect();
+    // What follows on another short piece is detail that is lost; a lone one is a jump, which a table is to be given
+    // as. A displacement that jumps has a velocity that only the step gives.
+    let lost = |k: usize| {
+        let beside = k > 0 && short(pieces[k - 1]) && changes(&pieces[k - 1]);
+        short(pieces[k]) && changes(&pieces[k]) && (moves || beside)
+    };
+    if let Some(k) = (0..pieces.len()).find(|k| lost(*k)) {
+        let (from, to) = (pieces[k][0].0, pieces[k][1].0);
+        let steps = (to - from) / h;
+        return Some(format!(
+            "its table changes from {from:e} to {to:e} s, within {steps:.3} of a step; take a smaller time.step, or \
+             points that are steps apart"
+        ));
+    }
+    let steps = (points.last()?.0 - points.first()?.0) / h;
+    let brief = (1.0..SHORT * (1.0 - 1e-9)).contains(&steps) && pieces.iter().any(changes);
+    brief.then(|| {
+        format!("its table lasts only {steps:.3} steps; take a smaller time.step, or points further apart")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sine(frequency: f64) -> TimeFunction {
+        TimeFunction::Sine {
+            amplitude: 1e-3,
+            frequency,
+            phase: 0.0,
+            offset: 0.0,
+            start: 0.0,
+        }
+    }
+
+    #[test]
+    fn sines_are_judged_by_their_steps_a_period() {
+        let said = |f: f64| fault(&sine(f), 1e-3, true);
+        assert_eq!((said(50.0), said(0.0)), (None, None));
+        for (frequency, word) in [
+            (60.0, "only 16.7 steps a period"),
+            (499.0, "only 2.0 steps a period"),
+            (500.0, "ALIASES"),
+            (1000.0, "1.000 steps a period and ALIASES"),
+        ] {
+            let text = said(frequency).unwrap_or_default();
+            assert!(
+                text.contains(word) && text.contains("time.step = "),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn ramps_and_tables_are_judged_by_their_steps() {
+        let ramp = |end| TimeFunction::Ramp {
+            from: 0.0,
+            to: 1.0,
+            start: 1.0,
+            end,
+        };
+        assert_eq!(fault(&ramp(1.005), 1e-3, true), None);
+        assert!(fault(&ramp(1.004), 1e-3, true).is_some());
+        // A jump of a force or a velocity, of a displacement, and a pulse within a step.
+        let jump = TimeFunction::Table(vec![(0.0, 0.0), (0.5, 0.0), (0.500_01, 1.0)]);
+        assert_eq!(fault(&jump, 1e-3, false), None);
+        assert!(fault(&jump, 1e-3, true).is_some());
+        let pulse = TimeFunction::Table(vec![(0.5, 0.0), (0.500_01, 1.0), (0.500_02, 0.0)]);
+        assert!(fault(&pulse, 1e-3, false).is_some());
+    }
+}

@@ -1,0 +1,54 @@
+//! The shipped material files, kept in the program for where they are not beside a case.
+
+/// Names and texts of `materials/*.ron`.
+pub const FILES: [(&str, &str); 7] = [
+    (
+        "benchmark_grain",
+        include_str!("../../../materials/benchmark_grain.ron"),
+    ),
+    ("glass_bead", include_str!("../../../materials/glass_bead.ron")),
+    ("magnetite", include_str!("../../../materials/magnetite.ron")),
+    (
+        "oxide_third_body",
+        include_str!("../../../materials/oxide_third_body.ron"),
+    ),
+    (
+        "rail_steel_r260",
+        include_str!("../../../materials/rail_steel_r260.ron"),
+    ),
+    (
+        "verification_grain",
+        include_str!("../../../materials/verification_grain.ron"),
+    ),
+    (
+        "wheel_steel_er7",
+        include_str!("../../../materials/wheel_steel_er7.ron"),
+    ),
+];
+
+/// The text of one.
+pub fn text(name: &str) -> Option<&'static str> {
+    FILES.iter().find(|f| f.0 == name).map(|f| f.1)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn all_shipped_files_are_kept() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../materials");
+        let mut names: Vec<String> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|e| {
+                e.unwrap()
+                    .path()
+                    .file_stem()
+                    .unwrap()
+                    .to_str()
+                    .unwrap()
+                    .to_owned()
+            })
+            .collect();
+        names.sort();
+        assert_eq!(names, super::FILES.map(|f| f.0));
+    }
+}
