@@ -199,7 +199,12 @@ fn measure<S: Dimensional>(
             source.set::<Case>(set)?;
         }
         let case: Case = source.parse()?;
-        let loaded = Loaded { source, case, path };
+        let loaded = Loaded {
+            source,
+            case,
+            path,
+            records: None,
+        };
         loaded.build_in::<S>(&SearchPath::new(&[]))?.simulation
     };
     for _ in 0..STEPS {

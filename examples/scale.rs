@@ -211,7 +211,12 @@ fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("cases/layer.ron");
     let source = Source::from_text(&path, layer::<S>(count));
     let case: Case = source.parse()?;
-    let loaded = Loaded { source, case, path };
+    let loaded = Loaded {
+        source,
+        case,
+        path,
+        records: None,
+    };
     let mut s = loaded.build_in::<S>(&SearchPath::new(&[]))?.simulation;
     settle(&mut s)?;
     // As many steps as give some ten million updates of a contact.
