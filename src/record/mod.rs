@@ -1,34 +1,12 @@
-//! What a run leaves behind: ledgers, statistics, pictures, the results file, the summary.
-pub mod biaxial;
-pub mod checkpoint;
-pub mod choice;
-pub mod circuit;
-pub mod code;
-pub mod coordination;
-pub mod fclib;
-pub mod figures;
-pub mod first_bodies;
-pub mod fretting;
-pub mod friction;
-pub mod jump;
-pub mod layer;
-pub mod loops;
-pub mod measure;
-pub mod picture;
-pub mod results;
+//! What a run leaves behind, and the run itself: analysis of [`fretwork_observe`], files of [`fretwork_store`], pictures of
+//! [`fretwork_plot`].
 pub mod run;
-pub mod scars;
-pub mod scatter;
-pub mod series;
-pub mod shapes;
-pub mod solving;
-pub mod statistics;
-pub mod steady;
-pub mod strain;
-pub mod stress;
-pub mod summary;
-pub mod views;
-pub mod warnings;
+
+pub use fretwork_observe::{
+    biaxial, choice, code, coordination, first_bodies, fretting, friction, jump, layer, loops, measure, output, placement, scars, scatter, solving, statistics, steady, strain, stress,
+};
+pub use fretwork_plot::{figures, picture};
+pub use fretwork_store::{checkpoint, fclib, results, series, shapes, summary, views, warnings};
 
 pub use run::{Progress, RunError, RunOptions, go_on, run, statistics_columns, stopped};
 pub use summary::Summary;

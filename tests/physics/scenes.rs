@@ -434,3 +434,18 @@ fn as_many_balls_leave_a_cradle_as_come() {
     let far = speeds.iter().zip(known).map(|(v, k)| (v - k).abs());
     assert!(far.fold(0.0, f64::max) < 1e-12, "{speeds:?}");
 }
+
+/// The cylinder of a fretting test is a ball and bears its name where it is large in the window; the flat has a surface.
+#[test]
+fn a_first_body_that_is_a_ball_is_named() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/fretting_scar.ron");
+    let loaded = fretwork::scene::load(std::path::Path::new(file), &[]).unwrap();
+    let built = loaded
+        .build_in::<fretwork::geometry::space::Plane>(&SearchPath::new(&[]))
+        .unwrap();
+    let s = &built.simulation;
+    let named = fretwork::record::picture::named_balls(s, [-5e-3, 5e-3, -1e-3, 4e-3]);
+    let named: Vec<String> = named.into_iter().map(|o| o.label).collect();
+    assert_eq!(named, ["cylinder"]);
+    assert!(fretwork::record::picture::named_balls(s, [-1.0, 1.0, -1.0, 1.0]).is_empty());
+}

@@ -1,7 +1,7 @@
 //! Curves in pixels: colours, thinning, lines and markers.
 
 use super::canvas::{Canvas, Rgb, WHITE, mix};
-use super::chart::Style;
+use fretwork_observe::chart::Style;
 
 /// Told apart by readers who do not see all colours (Okabe and Ito).
 pub(super) const PALETTE: [Rgb; 7] = [

@@ -1,7 +1,8 @@
 //! The legend of a chart: a box where no curve passes, or rows above the plot.
 
 use super::canvas::{Canvas, INK, Rgb, WHITE};
-use super::chart::{Chart, Plot, Runs, Style, TEXT};
+use super::chart::{Plot, Runs, Sheet, TEXT};
+use fretwork_observe::chart::{Chart, Style};
 use super::curve::{draw_series, gradient};
 use super::font::{Anchor, TextStyle, text_width};
 
@@ -141,7 +142,7 @@ fn entry(
     let em = TEXT * u;
     let to = from + SAMPLE * u;
     let style = chart.series[index].style;
-    let colour = chart.colour(index);
+    let colour = Sheet(chart).colour(index);
     let centre = [(from + to) / 2.0, middle];
     if style != Style::Markers {
         let plain = if style == Style::Dashed {
@@ -206,7 +207,7 @@ impl Rows {
 
 /// Rank and label of the series that ask for an entry.
 fn labels(chart: &Chart) -> Vec<(usize, &str)> {
-    let entry = |(i, s): (usize, &'_ super::chart::Series)| (!s.label.is_empty()).then_some(i);
+    let entry = |(i, s): (usize, &'_ fretwork_observe::chart::Series)| (!s.label.is_empty()).then_some(i);
     let ranks = chart.series.iter().enumerate().filter_map(entry);
     ranks.map(|i| (i, chart.series[i].label.as_str())).collect()
 }

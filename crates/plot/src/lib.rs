@@ -1,5 +1,5 @@
-//! Charts and pictures as PNG files: axes with units, curves, disks, polygons and spheres. It knows nothing of physics: who
-//! calls it says what is drawn where.
+//! Charts and pictures as PNG files: axes with units, curves, disks, polygons and spheres; the [`picture`] of a simulation and
+//! the [`figures`] of a run.
 
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -8,6 +8,7 @@ mod axis;
 mod canvas;
 mod chart;
 mod curve;
+pub mod figures;
 mod font;
 mod frame;
 mod furniture;
@@ -15,13 +16,14 @@ mod legend;
 mod notice;
 mod paint;
 mod panels;
+pub mod picture;
 mod raster;
 mod scene;
 mod view;
 
-pub use axis::{Axis, quantity};
 pub use canvas::ReportError;
-pub use chart::{Chart, Series, Style};
+pub use chart::DrawChart;
+pub use fretwork_observe::chart::{Axis, Chart, Series, Style, quantity};
 pub use frame::{Arrow, Disk, Frame, Link, LinkState, Outline};
 pub use notice::noted;
 pub use paint::{Paint, Scale, round_top};

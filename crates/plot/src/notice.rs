@@ -43,7 +43,8 @@ pub(super) fn banded(picture: &Canvas, text: &str) -> Result<Canvas, ReportError
 mod tests {
     use super::*;
     use crate::canvas::png_size;
-    use crate::{Axis, Chart, Series};
+    use crate::DrawChart;
+    use fretwork_observe::chart::{Axis, Chart, Series};
 
     #[test]
     fn a_notice_stands_above_the_picture_which_stays_as_it_is() {

@@ -1,6 +1,6 @@
 //! What the colour of a grain says.
 
-use super::axis::Axis;
+use fretwork_observe::chart::Axis;
 use super::canvas::{Canvas, INK, ReportError, Rgb, mix};
 use super::chart::TEXT;
 use super::font::{Anchor, TextStyle, text_width};

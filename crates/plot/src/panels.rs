@@ -1,7 +1,8 @@
 //! Several charts on one page.
 
 use super::canvas::{Canvas, INK, ReportError};
-use super::chart::{Chart, PAGE, wrapped};
+use super::chart::{DrawChart, PAGE, Sheet, wrapped};
+use fretwork_observe::chart::Chart;
 use super::font::TextStyle;
 use std::path::Path;
 
@@ -46,7 +47,7 @@ pub fn draw_panels(charts: &[Chart], columns: usize, path: &Path) -> Result<(), 
         chart.title = format!("({letter}) {}", chart.title);
         let (row, column) = (k / columns, k % columns);
         page.paste(
-            &chart.page(WIDTH)?,
+            &Sheet(chart).page(WIDTH)?,
             column * panel as usize,
             top as usize + row * high as usize,
         );
@@ -69,7 +70,7 @@ fn common(charts: &mut [Chart]) -> String {
 mod tests {
     use super::*;
     use crate::canvas::png_size;
-    use crate::{Axis, Series};
+    use fretwork_observe::chart::{Axis, Series};
 
     fn chart(points: Vec<(f64, f64)>) -> Chart {
         let mut chart = Chart::new("heading", Axis::new("time", "s"), Axis::new("force", "N"));

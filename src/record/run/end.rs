@@ -3,13 +3,15 @@
 use super::error::unreadable;
 use super::{Recorder, RunError, unwritable};
 use crate::geometry::space::Space;
-use crate::record::biaxial::{self, Outcome};
+use crate::record::biaxial::Outcome;
 use crate::record::checkpoint::Kind;
 pub(super) use crate::record::checkpoint::LAST;
 use crate::record::friction::{Cycle, Cycles};
 use crate::record::summary::{Summary, Uncertainty, Wear};
-use crate::record::{circuit, figures, first_bodies, fretting, jump, scars};
-use crate::report::noted;
+use crate::record::figures::{self, biaxial, circuit, jump};
+use crate::record::output::Output;
+use crate::record::{first_bodies, fretting, scars};
+use crate::report::{draw_panels, noted};
 use crate::scene::build::Dimensional;
 use std::path::Path;
 
@@ -134,7 +136,7 @@ impl<S: Dimensional> Recorder<'_, S> {
     fn files(&mut self) -> Result<(), RunError> {
         let table = self.table.flush();
         let table = table.map_err(|e| unwritable(&self.out.join("statistics.csv"), &e));
-        let scars = scars::write(&self.out, &self.simulation).map_err(RunError::from);
+        let scars = self.write(&scars::tables(&self.simulation));
         let results = self.end_results();
         table.and(results).and(scars).and(self.draw())
     }
@@ -146,6 +148,21 @@ impl<S: Dimensional> Recorder<'_, S> {
             self.results.keep(number, &bytes);
         }
         Ok(self.results.finish(&self.out)?)
+    }
+
+    /// Writes and draws what observers ask for.
+    fn write(&self, outputs: &[Output]) -> Result<(), RunError> {
+        outputs.iter().try_for_each(|output| match output {
+            Output::Text { file, text } => {
+                let path = self.out.join(file);
+                std::fs::write(&path, text).map_err(|e| unwritable(&path, &e))
+            }
+            Output::Charts {
+                file,
+                charts,
+                columns,
+            } => Ok(draw_panels(charts, *columns, &self.out.join(file))?),
+        })
     }
 
     /// Draws the figures.
@@ -172,9 +189,9 @@ impl<S: Dimensional> Recorder<'_, S> {
             if let Some(j) = &self.summary.jump {
                 jump::draw(&self.out, &self.loaded.case.name, j, S::D)?;
             }
-            self.measures
-                .draw(&self.out, &self.loaded.case.name, &self.table)?;
-            scars::draw(&self.out, &self.loaded.case.name, &self.simulation)?;
+            let title = &self.loaded.case.name;
+            self.write(&self.measures.outputs(title, &self.table))?;
+            figures::scars::draw(&self.out, &self.loaded.case.name, &self.simulation)?;
             if self.biaxial.is_some() {
                 let title = &self.loaded.case.name;
                 biaxial::draw(&self.out.join("biaxial.png"), title, &self.table, start)?;

@@ -1,0 +1,231 @@
+//! A biaxial test: stresses, strains, compacity and coordination of the grains between four flat walls.
+//!
+//! Stresses and the axial strain are positive in compression, the volumetric strain in expansion. In two
+//! dimensions forces are per metre of depth, so that a force over a length is a pressure.
+
+mod outcome;
+
+pub use outcome::Outcome;
+
+use super::coordination::{Coordination, coordination};
+use super::statistics::Column;
+use super::stress::{love_weber, plane_invariants};
+use fretwork_core::geometry::space::Space;
+use fretwork_scene::case::BiaxialSpec;
+use fretwork_core::step::Simulation;
+
+/// A flat wall square to an axis.
+#[derive(Clone, Copy, Debug)]
+struct Wall {
+    /// Place among the driven bodies.
+    place: usize,
+    /// Index of the body.
+    body: usize,
+    /// Where its face stands in its frame, along the axis (m).
+    offset: f64,
+}
+
+/// Follows the test.
+#[derive(Clone, Debug)]
+pub struct Biaxial {
+    /// The axis of loading and the other one.
+    axes: [usize; 2],
+    /// Low and high wall of each.
+    walls: [[Wall; 2]; 2],
+    /// When strains start to count (s).
+    start: f64,
+    /// Lengths along the two axes at the start (m).
+    reference: [f64; 2],
+    solid: f64,
+}
+
+/// The test at the end of a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct State {
+    /// Axial and lateral stress, from the walls (Pa).
+    pub walls: [f64; 2],
+    /// Mean of the two (Pa).
+    pub pressure_walls: f64,
+    /// Mean Love-Weber stress of the contacts (Pa).
+    pub pressure_contacts: f64,
+    /// Deviator over mean pressure, (axial - lateral)/(axial + lateral), from the walls.
+    pub deviator_ratio: f64,
+    /// Sine of the mobilised friction angle, from the principal stresses of the contacts.
+    pub sin_phi: f64,
+    /// Shortening of the axial length over that at the start.
+    pub axial_strain: f64,
+    /// Growth of the volume over that at the start.
+    pub volumetric_strain: f64,
+    /// Volume of the grains over that between the walls.
+    pub compacity: f64,
+    /// Contacts a grain.
+    pub coordination: Coordination,
+}
+
+impl Biaxial {
+    /// Finds the walls, whose names and shapes [`fretwork_scene::biaxial`] has checked.
+    pub fn new<S: Space>(spec: &BiaxialSpec, s: &Simulation<S>) -> Option<Self> {
+        let axial = axis_of(s, &spec.axial.0)?;
+        let axes = [axial, 1 - axial.min(1)];
+        let wall = |name: &str, axis: usize| {
+            let place = s.bodies.driven.iter().position(|d| d.name == name)?;
+            let body = s.bodies.driven[place].body;
+            let face = s.shapes.surfaces.iter().find(|f| f.body == body)?;
+            Some(Wall {
+                place,
+                body: body as usize,
+                offset: face.offset[axis],
+            })
+        };
+        let pair = |names: &(String, String), axis: usize| {
+            Some([wall(&names.0, axis)?, wall(&names.1, axis)?])
+        };
+        let balls = s.shapes.balls.iter().map(|b| (b.body, b.radius));
+        let pieces = s.shapes.pieces.iter().map(|p| (p.body, p.size));
+        let grains = balls
+            .chain(pieces)
+            .filter(|(body, _)| !s.bodies.driven.iter().any(|d| d.body == *body));
+        let mut test = Self {
+            axes,
+            walls: [pair(&spec.axial, axes[0])?, pair(&spec.lateral, axes[1])?],
+            start: spec.start,
+            reference: [1.0; 2],
+            solid: grains.map(|(_, radius)| S::ball_volume(radius)).sum(),
+        };
+        test.reference = test.lengths(s);
+        Some(test)
+    }
+
+    /// Distances between the faces along the two axes (m).
+    fn lengths<S: Space>(&self, s: &Simulation<S>) -> [f64; 2] {
+        [0, 1].map(|k| {
+            let [low, high] =
+                self.walls[k].map(|w| s.bodies.position[w.body][self.axes[k]] + w.offset);
+            high - low
+        })
+    }
+
+    /// Whether the test has begun.
+    fn begun<S: Space>(&self, s: &Simulation<S>) -> bool {
+        s.time > self.start + 0.5 * s.scheme.h
+    }
+
+    /// Takes in the last step.
+    pub fn follow<S: Space>(&mut self, s: &Simulation<S>) {
+        if !self.begun(s) {
+            self.reference = self.lengths(s);
+        }
+    }
+
+    /// Lengths from which strains count (m).
+    pub fn reference(&self) -> [f64; 2] {
+        self.reference
+    }
+
+    /// Has strains count from other lengths (m).
+    pub fn refer_to(&mut self, reference: [f64; 2]) {
+        self.reference = reference;
+    }
+
+    /// Volume of the grains (m^3; m^2 in 2D).
+    pub fn solid(&self) -> f64 {
+        self.solid
+    }
+
+    /// Mean mass of a grain (kg; kg/m in 2D), inertia scaled as in the run.
+    pub fn grain_mass<S: Space>(&self, s: &Simulation<S>) -> f64 {
+        let masses = || s.bodies.grains().map(|b| s.bodies.mass[b]);
+        masses().sum::<f64>() / masses().count().max(1) as f64
+    }
+
+    /// What the last step gives.
+    pub fn state<S: Space>(&self, s: &Simulation<S>) -> State {
+        let lengths = self.lengths(s);
+        let volume = lengths[0] * lengths[1];
+        // Grains push the low wall down the axis and the high wall up; at rest by as much.
+        let walls = [0, 1].map(|k| {
+            let [low, high] = self.walls[k].map(|w| s.received[w.place].0[self.axes[k]]);
+            0.5 * (high - low) / (s.scheme.h * lengths[1 - k])
+        });
+        let (pressure_contacts, sin_phi) = plane_invariants(&love_weber(s, volume));
+        let sum = walls[0] + walls[1];
+        let [l0, l1] = [0, 1].map(|k| lengths[k] / self.reference[k]);
+        State {
+            walls,
+            pressure_walls: 0.5 * sum,
+            pressure_contacts,
+            deviator_ratio: if sum > 0.0 {
+                (walls[0] - walls[1]) / sum
+            } else {
+                0.0
+            },
+            sin_phi,
+            axial_strain: 1.0 - l0,
+            volumetric_strain: l0 * l1 - 1.0,
+            compacity: self.solid / volume,
+            coordination: coordination(s),
+        }
+    }
+
+    /// Columns of the statistics.
+    pub fn columns() -> Vec<Column> {
+        let c = Column::new;
+        vec![
+            c("sigma_axial", "Pa", "axial stress, from the walls"),
+            c("sigma_lateral", "Pa", "lateral stress, from the walls"),
+            c("p_walls", "Pa", "mean of the two"),
+            c("p_contacts", "Pa", "mean Love-Weber stress of the contacts"),
+            c("q_over_p", "", "(axial - lateral)/(axial + lateral)"),
+            c("sin_phi", "", "the same from principal Love-Weber stresses"),
+            c("axial_strain", "", "shortening since the start of the test"),
+            c(
+                "volumetric_strain",
+                "",
+                "expansion since the start of the test",
+            ),
+            c(
+                "compacity",
+                "",
+                "volume of grains over that between the walls",
+            ),
+            c("coordination", "", "contacts that carry force, a grain"),
+            c("coordination_carried", "", "the same without rattlers"),
+            c("rattlers", "", "share of grains that carry nothing"),
+        ]
+    }
+}
+
+impl State {
+    /// Values of [`Biaxial::columns`].
+    pub fn row(&self) -> Vec<f64> {
+        let z = &self.coordination;
+        vec![
+            self.walls[0],
+            self.walls[1],
+            self.pressure_walls,
+            self.pressure_contacts,
+            self.deviator_ratio,
+            self.sin_phi,
+            self.axial_strain,
+            self.volumetric_strain,
+            self.compacity,
+            z.mean,
+            z.carried,
+            z.rattlers,
+        ]
+    }
+}
+
+/// The axis that the face of a wall is square to.
+fn axis_of<S: Space>(s: &Simulation<S>, name: &str) -> Option<usize> {
+    let body = s.bodies.driven.iter().find(|d| d.name == name)?.body;
+    let face = s.shapes.surfaces.iter().find(|f| f.body == body)?;
+    let outline = face.shape.outline();
+    let (a, b) = (outline.first()?.first()?, outline.first()?.last()?);
+    let along = *b - *a;
+    Some(if along[0].abs() > along[1].abs() {
+        1
+    } else {
+        0
+    })
+}

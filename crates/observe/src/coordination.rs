@@ -1,0 +1,102 @@
+//! How many neighbours carry a grain.
+
+use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::step::Simulation;
+
+/// A contact counts where its normal force is above this part of the mean: what is below is the solver's
+/// tolerance, not a force.
+const FAINT: f64 = 1e-3;
+
+/// Coordination of the free grains.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Coordination {
+    /// Mean number of contacts that carry force, over all grains; one with a wall counts once.
+    pub mean: f64,
+    /// The same over the grains and contacts that are left when rattlers are taken out.
+    pub carried: f64,
+    /// Share of rattlers: grains with fewer than two such contacts, which nothing can hold in balance, and
+    /// those that become so when others are taken out.
+    pub rattlers: f64,
+}
+
+/// Counts the contacts of the last step.
+pub fn coordination<S: Space>(s: &Simulation<S>) -> Coordination {
+    count_pairs(&s.bodies.grain_flags(), &bearing(s))
+}
+
+/// Number of contacts of each body that carry force in the last step, as they count in a coordination.
+pub fn degrees<S: Space>(s: &Simulation<S>) -> Vec<u32> {
+    let mut degree = vec![0; s.bodies.len()];
+    for body in bearing(s).into_iter().flatten() {
+        degree[body as usize] += 1;
+    }
+    degree
+}
+
+/// Bodies of the contacts that carry force.
+fn bearing<S: Space>(s: &Simulation<S>) -> Vec<[u32; 2]> {
+    let force = |c: &fretwork_core::contact::Contact<S>| c.normal.dot(&c.impulse);
+    let carrying = s.network.contacts.iter().filter(|c| force(c) > 0.0);
+    let (sum, count) = carrying.fold((0.0, 0), |(f, n), c| (f + force(c), n + 1));
+    let least = FAINT * sum / f64::from(count.max(1));
+    let pairs = s.network.contacts.iter().filter(|c| force(c) > least);
+    pairs.map(|c| c.bodies).collect()
+}
+
+fn count_pairs(free: &[bool], pairs: &[[u32; 2]]) -> Coordination {
+    let mut held = free.to_vec();
+    let mut first = None;
+    loop {
+        let mut degree = vec![0u32; free.len()];
+        for pair in pairs {
+            let [a, b] = pair.map(|b| b as usize);
+            // A wall holds, a rattler does not.
+            if (held[a] || !free[a]) && (held[b] || !free[b]) {
+                degree[a] += 1;
+                degree[b] += 1;
+            }
+        }
+        let mean = |of: &[bool]| {
+            let members = || degree.iter().zip(of).filter(|(_, m)| **m).map(|(d, _)| *d);
+            f64::from(members().sum::<u32>()) / members().count().max(1) as f64
+        };
+        let all = *first.get_or_insert_with(|| mean(free));
+        let left: Vec<bool> = held
+            .iter()
+            .zip(&degree)
+            .map(|(h, d)| *h && *d >= 2)
+            .collect();
+        if left == held {
+            let count = |of: &[bool]| of.iter().filter(|m| **m).count() as f64;
+            let grains = count(free).max(1.0);
+            return Coordination {
+                mean: all,
+                carried: mean(&held),
+                rattlers: 1.0 - count(&held) / grains,
+            };
+        }
+        held = left;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rattlers_are_taken_out_one_after_another() {
+        // A triangle of grains on a wall (body 0), a chain of two hanging on it, one grain alone.
+        let free = [false, true, true, true, true, true, true];
+        let pairs = [[1, 2], [2, 3], [1, 3], [1, 0], [3, 4], [4, 5]];
+        let z = count_pairs(&free, &pairs);
+        assert!((z.mean - 11.0 / 6.0).abs() < 1e-12);
+        assert!((z.carried - 7.0 / 3.0).abs() < 1e-12);
+        assert!((z.rattlers - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn no_contacts_no_neighbours() {
+        let z = count_pairs(&[true, true], &[]);
+        assert_eq!((z.mean, z.carried, z.rattlers), (0.0, 0.0, 1.0));
+    }
+}

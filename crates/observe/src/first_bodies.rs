@@ -1,0 +1,72 @@
+//! Wear of the first bodies, each by itself.
+
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::Simulation;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What a first body lost by the wear law.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BodyWear {
+    /// Its name.
+    pub body: String,
+    /// Volume (m^3; m^3/m in 2D).
+    pub volume: f64,
+    /// Mean depth over what was worn (m); null where no surface of it follows its wear.
+    pub depth_mean: Option<f64>,
+    /// Largest depth (m); likewise.
+    pub depth_max: Option<f64>,
+    /// Specific wear rate k = V/(P s) (m^3/(N m), in the plane too, where volume and force are both per metre of depth); null
+    /// without a friction test.
+    pub specific_rate: Option<f64>,
+}
+
+/// What each first body lost: volume, depths of its scars, and the specific wear rate over `load_path`, the integral of P |ds|
+/// (N m; N in 2D), where there is one.
+pub fn wear<S: Space>(s: &Simulation<S>, load_path: Option<f64>) -> Vec<BodyWear> {
+    let mut bodies: BTreeMap<u32, Worn> = BTreeMap::new();
+    for (surface, volume) in &s.network.worn {
+        if let Some(carried) = s.shapes.surfaces.get(*surface) {
+            bodies.entry(carried.body).or_default().volume += volume;
+        }
+    }
+    for scar in s.scars.iter().filter(|scar| scar.volume() > 0.0) {
+        let Some(carried) = s.shapes.surfaces.get(scar.surface) else {
+            continue;
+        };
+        let worn = bodies.entry(carried.body).or_default();
+        worn.scarred = true;
+        worn.depth = worn.depth.max(scar.deepest());
+        for (vertex, depth) in scar.vertices().filter(|(_, depth)| *depth > 0.0) {
+            worn.area += vertex.tributary;
+            worn.put += vertex.tributary * depth;
+        }
+    }
+    let summary = |(body, worn): (u32, Worn)| BodyWear {
+        body: name(s, body),
+        volume: worn.volume,
+        depth_mean: (worn.area > 0.0).then(|| worn.put / worn.area),
+        depth_max: worn.scarred.then_some(worn.depth),
+        specific_rate: load_path.filter(|p| *p > 0.0).map(|p| worn.volume / p),
+    };
+    bodies.into_iter().map(summary).collect()
+}
+
+/// Sums over the surfaces of a body.
+#[derive(Default)]
+struct Worn {
+    volume: f64,
+    /// What its scars took (m^3; m^3/m), and of what area (m^2; m) it is.
+    put: f64,
+    area: f64,
+    depth: f64,
+    scarred: bool,
+}
+
+fn name<S: Space>(s: &Simulation<S>, body: u32) -> String {
+    let driven = s.bodies.driven.iter().find(|d| d.body == body);
+    driven.map_or_else(
+        || format!("body {}", s.bodies.id[body as usize]),
+        |d| d.name.clone(),
+    )
+}

@@ -1,0 +1,332 @@
+//! A friction test: loops Q-delta, friction coefficient cycle by cycle, from forces and from heat.
+
+use super::fretting::Regime;
+use super::layer::Balance;
+use super::loops::Loop;
+use super::scatter::{self, Scatter};
+use super::steady::BLOCKS;
+use serde::{Deserialize, Serialize};
+
+/// What one step of the test measured.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sample {
+    /// Time at the end of the step (s).
+    pub time: f64,
+    /// Tangential force that moves the body, the mean over the step (N; N/m in 2D).
+    pub q: f64,
+    /// Normal force, positive in compression.
+    pub p: f64,
+    /// Sliding over the step (m), signed.
+    pub slide: f64,
+    /// Work of the tangential drive over the step (J).
+    pub work: f64,
+}
+
+/// One cycle, or the part of the run that counts.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Cycle {
+    /// Number, from 1.
+    pub cycle: u32,
+    /// Whether it was run to its end.
+    pub complete: bool,
+    /// Work of the tangential force over the cycle, E_d (J; J/m in 2D).
+    pub work: f64,
+    /// Mean normal force (N; N/m).
+    pub normal_force: f64,
+    /// Largest tangential force (N; N/m).
+    pub tangential_amplitude: f64,
+    /// Length of the path (m).
+    pub path: f64,
+    /// integral Q d delta / integral P |d delta|: the friction coefficient from forces; 0 where the body was
+    /// not pressed.
+    pub friction_coefficient: f64,
+    /// (heat + change of stored energy - other work) / integral P |d delta|: from the energy ledger, the
+    /// other work from the driven bodies' paths, see [`super::layer`].
+    pub friction_from_dissipation: f64,
+    /// Bonds broken in it.
+    pub broken: u64,
+    /// Damage ratio at its end.
+    pub damage_ratio: f64,
+    /// A = E_d / (4 Q delta).
+    pub energy_ratio: f64,
+    /// Half the stroke, delta* (m).
+    pub amplitude: f64,
+    /// Half the opening of the loop at Q = 0 (m).
+    pub sliding: f64,
+    /// Share of the stroke that is not sliding: 1 - sliding/amplitude.
+    pub stick_ratio: f64,
+    /// Mean of |Q|/P where the motion turns.
+    pub reversal_ratio: f64,
+    /// Partial or gross slip, by the energy ratio.
+    pub regime: Regime,
+    /// Volume worn off first bodies (m^3; m^3/m in 2D).
+    pub wear_volume: f64,
+    /// Cycles that it stands for beside itself, see [`fretwork_core::wear::jump`]: wear and damage are of all, the rest is of
+    /// one.
+    pub jumped: u32,
+}
+
+/// Follows the cycles of a test.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Cycles {
+    start: f64,
+    period: Option<f64>,
+    end: f64,
+    /// Cycles so far, the current one last.
+    pub list: Vec<Cycle>,
+    pressure_path: f64,
+    pressure_time: f64,
+    time: f64,
+    position: f64,
+    lowest: f64,
+    highest: f64,
+    before: Option<State>,
+    shape: Loop,
+    place: f64,
+    /// Without a period: integrals of Q d delta and P |d delta| over parts of equal time.
+    blocks: Vec<(f64, f64)>,
+}
+
+/// What is cumulated over a run, at an end of a step.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct State {
+    /// Energies.
+    pub balance: Balance,
+    /// Bonds broken.
+    pub broken: u64,
+    /// Volume worn off first bodies (m^3; m^3/m in 2D).
+    pub worn: f64,
+}
+
+impl Cycle {
+    /// Largest |Q| over the mean P; none where the body was not pressed.
+    pub fn peak_ratio(&self) -> Option<f64> {
+        (self.normal_force > 0.0).then(|| self.tangential_amplitude / self.normal_force)
+    }
+}
+
+impl Cycles {
+    /// Cycles of length `period` from `start` on; without a period the second half of what remains
+    /// until `end` is one cycle.
+    pub fn new(start: f64, period: Option<f64>, end: f64) -> Self {
+        let start = if period.is_some() {
+            start
+        } else {
+            0.5 * (start + end)
+        };
+        Self {
+            start,
+            period,
+            end,
+            list: Vec::new(),
+            pressure_path: 0.0,
+            pressure_time: 0.0,
+            time: 0.0,
+            position: 0.0,
+            lowest: 0.0,
+            highest: 0.0,
+            before: None,
+            shape: Loop::default(),
+            place: 0.0,
+            blocks: vec![(0.0, 0.0); if period.is_some() { 0 } else { BLOCKS }],
+        }
+    }
+
+    /// How the friction coefficient scatters over the later cycles; without a period over the blocks that are done.
+    pub fn scatter(&self) -> Option<Scatter> {
+        if self.oscillates() {
+            return scatter::over_cycles(&self.list, |c| c.friction_coefficient);
+        }
+        let width = (self.end - self.start) / BLOCKS as f64;
+        let done = (self.time / width + 1e-6).floor() as usize;
+        scatter::over_blocks(&self.blocks[..done.min(self.blocks.len())])
+    }
+
+    /// Number of the cycle at a time, from 1; 0 before the start.
+    pub fn number(&self, time: f64) -> u32 {
+        if time <= self.start {
+            return 0;
+        }
+        match self.period {
+            // A step that ends on the border belongs to the cycle it closes.
+            Some(period) => ((time - self.start) / period - 1e-9).floor().max(0.0) as u32 + 1,
+            None => 1,
+        }
+    }
+
+    /// Share of its cycle that is done at a time; 1 at its end.
+    pub fn share(&self, time: f64) -> f64 {
+        let before = f64::from(self.number(time).saturating_sub(1));
+        let cycles = |period: f64| (time - self.start) / period - before;
+        let share = self.period.map_or(0.0, cycles).max(0.0);
+        if share > 1.0 - 1e-6 { 1.0 } else { share }
+    }
+
+    /// When a cycle begins and ends (s); none without cycles.
+    pub fn span(&self, number: u32) -> Option<[f64; 2]> {
+        let begun = self.start + f64::from(number.saturating_sub(1)) * self.period?;
+        Some([begun, begun + self.period?])
+    }
+
+    /// Length of a cycle (s); none without cycles.
+    pub fn period(&self) -> Option<f64> {
+        self.period
+    }
+
+    /// Whether the motion goes to and fro.
+    pub fn oscillates(&self) -> bool {
+        self.period.is_some()
+    }
+
+    /// Goes on to a later end (s).
+    pub fn lengthen(&mut self, end: f64) {
+        self.end = end;
+    }
+
+    /// How many cycles the run has in all.
+    pub fn total(&self) -> u32 {
+        self.number(self.end)
+    }
+
+    /// Adds a step: what was cumulated at its start and at its end, and the damage ratio.
+    pub fn add(&mut self, sample: &Sample, h: f64, before: State, after: State, damage: f64) {
+        let number = self.number(sample.time);
+        if number == 0 {
+            return;
+        }
+        if self.list.last().is_none_or(|c| c.cycle != number) {
+            if let Some(last) = self.list.last_mut() {
+                last.complete = true;
+            }
+            self.list.push(Cycle {
+                cycle: number,
+                ..Cycle::default()
+            });
+            (self.pressure_path, self.pressure_time, self.time) = (0.0, 0.0, 0.0);
+            (self.position, self.lowest, self.highest) = (0.0, 0.0, 0.0);
+            self.before = Some(before);
+            self.shape.next_cycle();
+        }
+        let (Some(cycle), Some(start)) = (self.list.last_mut(), self.before) else {
+            return;
+        };
+        self.pressure_path += sample.p * sample.slide.abs();
+        self.pressure_time += sample.p * h;
+        if self.period.is_none() {
+            // The step belongs to the block that its middle lies in.
+            let share = (self.time + 0.5 * h) / (self.end - self.start);
+            let block = (share * BLOCKS as f64) as usize;
+            if let Some(block) = self.blocks.get_mut(block) {
+                block.0 += sample.work;
+                block.1 += sample.p * sample.slide.abs();
+            }
+        }
+        self.time += h;
+        self.position += sample.slide;
+        self.lowest = self.lowest.min(self.position);
+        self.highest = self.highest.max(self.position);
+        cycle.path += sample.slide.abs();
+        cycle.work += sample.work;
+        cycle.tangential_amplitude = cycle.tangential_amplitude.max(sample.q.abs());
+        cycle.normal_force = self.pressure_time / self.time;
+        self.place += sample.slide;
+        self.shape.add(self.place, sample.q, sample.p);
+        let (now, then) = (&after.balance, &start.balance);
+        let heat = (now.taken - then.taken) - (now.other - then.other);
+        let over = |x: f64, y: f64| if y > 0.0 { x / y } else { 0.0 };
+        cycle.friction_coefficient = over(cycle.work, self.pressure_path);
+        cycle.friction_from_dissipation = over(heat, self.pressure_path);
+        cycle.broken = after.broken - start.broken;
+        cycle.wear_volume = after.worn - start.worn;
+        cycle.damage_ratio = damage;
+        let amplitude = 0.5 * (self.highest - self.lowest);
+        cycle.energy_ratio = over(cycle.work, 4.0 * cycle.tangential_amplitude * amplitude);
+        cycle.amplitude = amplitude;
+        cycle.sliding = self.shape.aperture();
+        cycle.stick_ratio = if amplitude > 0.0 {
+            1.0 - cycle.sliding / amplitude
+        } else {
+            0.0
+        };
+        cycle.reversal_ratio = self.shape.reversal();
+        cycle.regime = Regime::of(cycle.energy_ratio);
+        let end = self
+            .period
+            .map_or(self.end, |p| self.start + f64::from(number) * p);
+        cycle.complete = sample.time >= end - 1e-6 * h;
+    }
+
+    /// The last complete cycle, or the last.
+    pub fn last(&self) -> Option<&Cycle> {
+        self.list
+            .iter()
+            .rev()
+            .find(|c| c.complete)
+            .or(self.list.last())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two cycles of a sine at friction `mu`, the lid lifted and lowered with the stroke; `measured` is
+    /// what the force reads over what it is.
+    fn loops(mu: f64, lift: f64, measured: f64) -> Cycles {
+        let (p, a, f, h) = (1e3, 5e-5, 10.0, 1e-5);
+        let omega = std::f64::consts::TAU * f;
+        let mut cycles = Cycles::new(0.0, Some(1.0 / f), 0.2);
+        let (mut balance, mut t) = (Balance::default(), 0.0);
+        while t < 0.2 - 0.5 * h {
+            let v = a * omega * (omega * (t + 0.5 * h)).cos();
+            // On slopes of `lift` the force gains what the normal force loses.
+            let q = mu * p * v.signum() + lift * p;
+            let before = balance;
+            balance.taken += mu * p * v.abs() * h;
+            balance.other -= p * lift * v * h;
+            t += h;
+            let sample = Sample {
+                time: t,
+                q: measured * q,
+                p,
+                slide: v * h,
+                work: measured * q * v * h,
+            };
+            let [before, after] = [before, balance].map(|balance| State {
+                balance,
+                ..State::default()
+            });
+            cycles.add(&sample, h, before, after, 0.0);
+        }
+        assert_eq!(cycles.list.len(), 2);
+        cycles
+    }
+
+    #[test]
+    fn a_coulomb_loop_has_the_friction_put_in() {
+        let mu = 0.4;
+        for c in &loops(mu, 0.0, 1.0).list {
+            assert!((c.friction_coefficient / mu - 1.0).abs() < 1e-9 && c.complete);
+            assert!((c.friction_from_dissipation / mu - 1.0).abs() < 1e-9);
+            // A rectangular loop: E_d = 4 mu P delta.
+            assert!((c.work / (4.0 * mu * 1e3 * 5e-5) - 1.0).abs() < 1e-6);
+            assert!((c.energy_ratio - 1.0).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn a_lid_that_climbs_and_falls_has_the_same_friction() {
+        for c in &loops(0.4, 0.2, 1.0).list {
+            assert!((c.friction_coefficient / 0.4 - 1.0).abs() < 1e-6);
+            assert!((c.friction_from_dissipation / 0.4 - 1.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_wrong_force_does_not_reach_the_friction_from_heat() {
+        for c in &loops(0.4, 0.0, 2.0).list {
+            assert!((c.friction_coefficient / 0.8 - 1.0).abs() < 1e-9);
+            assert!((c.friction_from_dissipation / 0.4 - 1.0).abs() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! The energy balance of what lies between the driven bodies, from contact forces and the bodies' paths.
+//!
+//! The driven bodies give the rest, through their contacts,
+//! -sum (h p . v_theta + moment . w_theta): that is dissipated in contacts or kept by the other bodies.
+//! Nothing here uses the ledger's external work, so the two sides check each other.
+
+use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::step::Simulation;
+use serde::{Deserialize, Serialize};
+
+/// Energies since the start (J; J/m in 2D).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Balance {
+    /// Dissipated in all contacts, and kept (kinetic, potential, elastic) by what is not driven.
+    pub taken: f64,
+    /// Work of the driven bodies on their contacts, the tangential drive of the test apart.
+    pub other: f64,
+}
+
+/// Follows the balance.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct Layer<S: Space> {
+    /// Velocities of the driven bodies at the end of the last step that was followed.
+    velocity: Vec<(S::Vector, S::Spin)>,
+    /// Potential energy and dissipation by the scheme of the driven bodies, which the ledger holds too.
+    apart: f64,
+    other: f64,
+}
+
+impl<S: Space> Layer<S> {
+    /// From the state at hand on.
+    pub fn new(s: &Simulation<S>) -> Self {
+        Self {
+            velocity: velocities(s),
+            apart: 0.0,
+            other: 0.0,
+        }
+    }
+
+    /// Velocity of a driven body over the last step, v_theta.
+    pub fn velocity(s: &Simulation<S>, place: usize) -> S::Vector {
+        let theta = s.scheme.theta;
+        let now = s.bodies.velocity[s.bodies.driven[place].body as usize];
+        s.started[place].0 * (1.0 - theta) + now * theta
+    }
+
+    /// Takes in the last step. `test` is the driven body and the axis whose work is kept apart.
+    pub fn follow(&mut self, s: &Simulation<S>, test: (usize, usize)) {
+        let (h, theta) = (s.scheme.h, s.scheme.theta);
+        let now = velocities(s);
+        let steps = s.started.iter().zip(&now).zip(&s.received);
+        for (d, (((v0, w0), (v1, w1)), (impulse, moment))) in steps.enumerate() {
+            let b = s.bodies.driven[d].body as usize;
+            let (v, w) = (
+                *v0 * (1.0 - theta) + *v1 * theta,
+                *w0 * (1.0 - theta) + *w1 * theta,
+            );
+            self.other -= impulse.dot(&v) + moment.dot(&w);
+            if d == test.0 {
+                self.other += impulse[test.1] * v[test.1];
+            }
+            let (dv, dw) = (*v1 - *v0, *w1 - *w0);
+            self.apart -= h * s.bodies.mass[b] * s.gravity.dot(&v);
+            self.apart += (theta - 0.5)
+                * (s.bodies.mass[b] * dv.dot(&dv) + dw.dot(&s.bodies.angular_momentum(b, &dw)));
+        }
+        self.velocity = now;
+    }
+
+    /// The balance at the end of the last step that was followed.
+    pub fn balance(&self, s: &Simulation<S>) -> Balance {
+        let e = &s.energy;
+        let driven = s.bodies.driven.iter().zip(&self.velocity);
+        let kinetic: f64 = driven
+            .map(|(driven, (v, w))| {
+                let b = driven.body as usize;
+                0.5 * (s.bodies.mass[b] * v.dot(v) + w.dot(&s.bodies.angular_momentum(b, w)))
+            })
+            .sum();
+        let kept = e.kinetic - kinetic + e.potential + e.elastic + e.carried;
+        Balance {
+            // What a projection gave against loads passed no contact.
+            taken: e.dissipated() + e.scheme + kept + s.lifted - self.apart,
+            other: self.other,
+        }
+    }
+}
+
+fn velocities<S: Space>(s: &Simulation<S>) -> Vec<(S::Vector, S::Spin)> {
+    let of = |body: u32| {
+        (
+            s.bodies.velocity[body as usize],
+            s.bodies.spin[body as usize],
+        )
+    };
+    s.bodies.driven.iter().map(|d| of(d.body)).collect()
+}

@@ -1,0 +1,32 @@
+//! Everything that looks at a run of Fretwork, as rows, tables and charts: the friction test and its cycles, fretting, biaxial
+//! tests, third bodies, wear scars, and the quantities that a case asks for.
+//!
+//! It reads the simulation of `fretwork-core` and the words of the case of `fretwork-scene`. Charts are data here
+//! ([`chart`], [`output`]): who writes and draws them is above.
+
+#![warn(missing_docs)]
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
+pub mod biaxial;
+pub mod chart;
+pub mod choice;
+pub mod code;
+pub mod coordination;
+pub mod first_bodies;
+pub mod fretting;
+pub mod friction;
+pub mod jump;
+pub mod layer;
+pub mod loops;
+pub mod measure;
+pub mod output;
+pub mod placement;
+pub mod quantity;
+pub mod scars;
+pub mod scatter;
+pub mod solving;
+pub mod statistics;
+pub mod steady;
+pub mod strain;
+pub mod stress;
+pub mod warning;

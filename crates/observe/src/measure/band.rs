@@ -1,0 +1,187 @@
+//! A shear band: its angle and its width, from the grains in a box whose local shear passes a threshold.
+//!
+//! Row by row in height, two mean diameters high, the band stands at the median place of these grains and is twice
+//! as wide as their quartiles are apart, which is the width where they fill it evenly; a few stray grains do not
+//! count. A straight line through the rows gives the angle; across that line the width is the rows' mean.
+
+use super::{Measure, grains, line};
+use fretwork_core::geometry::space::Space;
+use crate::code::{self, CodeError};
+use crate::statistics::{Column, Table};
+use crate::strain::Strain;
+use crate::chart::{Axis, Chart, Series};
+use crate::output::Output;
+use fretwork_core::step::Simulation;
+use std::f64::consts::PI;
+
+/// See [`fretwork_scene::measures::MeasureSpec::Band`].
+#[derive(Clone, Debug)]
+pub struct Band<S: Space> {
+    pub(super) name: String,
+    pub(super) low: S::Vector,
+    pub(super) high: S::Vector,
+    pub(super) above: f64,
+    pub(super) strain: Option<Strain<S>>,
+}
+
+/// Fewest grains of a row, and fewest rows of a band.
+const FEWEST: (usize, usize) = (4, 3);
+
+/// Angle from the x axis, 0 to pi, and width of the band that points (x, height) make.
+fn shape(points: &[(f64, f64)], low: f64, row: f64) -> Option<(f64, f64)> {
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for (x, z) in points {
+        let k = ((z - low) / row) as usize;
+        if rows.len() <= k {
+            rows.resize(k + 1, Vec::new());
+        }
+        rows[k].push(*x);
+    }
+    let (mut centres, mut width) = (Vec::new(), 0.0);
+    for (k, row_k) in rows
+        .iter_mut()
+        .enumerate()
+        .filter(|r| r.1.len() >= FEWEST.0)
+    {
+        row_k.sort_by(f64::total_cmp);
+        let n = row_k.len() as f64;
+        // The quartiles of n even draws are nearer by this than those of what they are drawn from.
+        let few = (n + 1.0) / (n - 1.0);
+        width += 2.0 * few * (quantile(row_k, 0.75) - quantile(row_k, 0.25));
+        centres.push((low + (k as f64 + 0.5) * row, quantile(row_k, 0.5)));
+    }
+    if centres.len() < FEWEST.1 {
+        return None;
+    }
+    // x against height: a band may stand upright.
+    let lean = line(centres.iter().copied())?;
+    let angle = 1f64.atan2(lean).rem_euclid(PI);
+    Some((angle, width / centres.len() as f64 * angle.sin()))
+}
+
+/// Between the values, which are sorted and not none.
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let place = share * (sorted.len() - 1) as f64;
+    let k = place as usize;
+    let next = sorted[(k + 1).min(sorted.len() - 1)];
+    sorted[k] + (place - k as f64) * (next - sorted[k])
+}
+
+impl<S: Space> Measure<S> for Band<S> {
+    fn begin(&mut self, s: &Simulation<S>) {
+        self.strain = Some(Strain::new(s));
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        let name = |part: &str| format!("{}_{part}", self.name);
+        vec![
+            Column::new(
+                name("angle"),
+                "rad",
+                "angle of a shear band with the x axis",
+            ),
+            Column::new(name("width"), "m", "width across a shear band"),
+            Column::new(name("grains"), "", "grains of a shear band"),
+        ]
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        let Some(strain) = &self.strain else {
+            return vec![f64::NAN, f64::NAN, 0.0];
+        };
+        let up = S::D - 1;
+        let grain = s.bodies.grain_flags();
+        let balls = s.shapes.balls.iter().zip(strain.shear(s));
+        let sheared = balls
+            .filter(|(b, shear)| grain[b.body as usize] && *shear >= self.above)
+            .map(|(b, _)| {
+                s.shapes
+                    .periodic
+                    .wrapped(fretwork_core::contact::detect::centre(b, &s.bodies))
+            })
+            .filter(|x| (0..S::D).all(|k| (self.low[k]..self.high[k]).contains(&x[k])));
+        let points: Vec<(f64, f64)> = sheared.map(|x| (x[0], x[up])).collect();
+        let all = grains(s);
+        let sum: f64 = all.iter().map(|g| 2.0 * g.radius).sum();
+        let (angle, width) = shape(&points, self.low[up], 2.0 * sum / all.len() as f64)
+            .unwrap_or((f64::NAN, f64::NAN));
+        vec![angle, width, points.len() as f64]
+    }
+
+    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
+        // A band grows: what counts is its last state.
+        let last = |part: &str| {
+            let column = format!("{}_{part}", self.name);
+            let value = table
+                .column(&column)
+                .last()
+                .copied()
+                .filter(|v| v.is_finite());
+            value.map(|v| (column, v))
+        };
+        ["angle", "width", "grains"]
+            .into_iter()
+            .filter_map(last)
+            .collect()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        code::encode(&self.strain)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        self.strain = code::decode(from)?;
+        Ok(())
+    }
+
+    fn outputs(&self, title: &str, table: &Table) -> Vec<Output> {
+        let chart = |part: &str, name: &str, unit: &'static str, factor: f64| {
+            let points = super::since(table, &format!("{}_{part}", self.name), 0.0);
+            let points = points.into_iter().map(|(t, v)| (t, factor * v)).collect();
+            let mut chart = Chart::new(
+                format!("Shear band {}", self.name),
+                Axis::new("time t", "s"),
+                Axis::new(name, unit),
+            )
+            .with(Series::new(String::new(), points));
+            chart.subtitle = Some(title.to_owned());
+            chart
+        };
+        let charts = [
+            chart("angle", "angle with x", "deg", 180.0 / PI),
+            chart("width", "width", "m", 1.0),
+        ];
+        vec![Output::charts(format!("{}.png", self.name), charts, 2)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points that fill a band of known angle and width, and some that stray.
+    #[test]
+    fn a_band_has_its_angle_and_width() {
+        for degrees in [35.0f64, 60.0, 90.0, 120.0] {
+            let (angle, width) = (degrees.to_radians(), 0.02);
+            let mut points = Vec::new();
+            for k in 0..40 {
+                for j in 0..25 {
+                    let z = 0.08 * (f64::from(k) + 0.5) / 40.0;
+                    let along = width / angle.sin() * ((f64::from(j) + 0.5) / 25.0 - 0.5);
+                    points.push((z / angle.tan() + along, z));
+                }
+            }
+            points.extend((0..20).map(|k| (0.3, 0.004 * f64::from(k))));
+            let (a, w) = shape(&points, 0.0, 0.008).unwrap();
+            assert!(
+                (a - angle).abs() < 0.02,
+                "{} in place of {degrees}",
+                a.to_degrees()
+            );
+            // The rows are as high as a third of the width: a leaning band is a little wider in them.
+            assert!((w / width - 1.0).abs() < 0.12, "{w} at {degrees}");
+        }
+        assert!(shape(&[(0.0, 0.0); 9], 0.0, 1.0).is_none());
+    }
+}

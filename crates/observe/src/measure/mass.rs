@@ -1,0 +1,69 @@
+//! Mass above a level: what a silo still holds.
+
+use super::{Measure, grains, line, since};
+use fretwork_core::geometry::space::Space;
+use crate::code::CodeError;
+use crate::statistics::{Column, Table};
+use crate::chart::{Axis, Chart, Series};
+use crate::output::Output;
+use fretwork_core::step::Simulation;
+
+/// See [`fretwork_scene::measures::MeasureSpec::Mass`].
+#[derive(Clone, Debug)]
+pub struct Mass {
+    pub(super) name: String,
+    pub(super) axis: usize,
+    pub(super) above: f64,
+    pub(super) start: f64,
+    pub(super) inertia_scaling: f64,
+}
+
+impl<S: Space> Measure<S> for Mass {
+    fn columns(&self) -> Vec<Column> {
+        let unit = if S::D == 2 { "kg/m" } else { "kg" };
+        vec![Column::new(
+            self.name.clone(),
+            unit,
+            "mass of the grains above a level",
+        )]
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        let all = grains(s);
+        let above = all.iter().filter(|g| g.at[self.axis] > self.above);
+        vec![above.map(|g| g.mass).sum::<f64>() / self.inertia_scaling]
+    }
+
+    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
+        let points = since(table, &self.name, self.start);
+        let rate = line(points.iter().copied());
+        rate.map(|r| (format!("{}_rate", self.name), r))
+            .into_iter()
+            .collect()
+    }
+
+    fn units(&self) -> Vec<(String, &'static str)> {
+        let unit = if S::D == 2 { "kg/(m s)" } else { "kg/s" };
+        vec![(format!("{}_rate", self.name), unit)]
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        Ok(Vec::new())
+    }
+
+    fn restore(&mut self, _: &[u8]) -> Result<(), CodeError> {
+        Ok(())
+    }
+
+    fn outputs(&self, title: &str, table: &Table) -> Vec<Output> {
+        let unit = if S::D == 2 { "kg/m" } else { "kg" };
+        let mut chart = Chart::new(
+            format!("Mass, {}", self.name),
+            Axis::new("time t", "s"),
+            Axis::new("mass m", unit),
+        )
+        .with_unless_zero(Series::new(String::new(), since(table, &self.name, 0.0)));
+        chart.subtitle = Some(title.to_owned());
+        vec![Output::charts(format!("{}.png", self.name), [chart], 1)]
+    }
+}

@@ -1,0 +1,187 @@
+//! Profiles: solid fraction, velocity and spin in the slices of a box, as means over time.
+//!
+//! A grain counts in the slice of its centre, with its mass where velocities are averaged.
+
+use super::{Measure, grains};
+use fretwork_core::geometry::space::{Space, VectorLike};
+use crate::code::{self, CodeError};
+use crate::statistics::{Column, Table};
+use crate::chart::{Axis, Chart, Series, Style};
+use crate::output::Output;
+use fretwork_core::step::Simulation;
+use serde::{Deserialize, Serialize};
+
+/// See [`fretwork_scene::measures::MeasureSpec::Profile`].
+#[derive(Clone, Debug)]
+pub struct Profile<S: Space> {
+    name: String,
+    axis: usize,
+    low: S::Vector,
+    high: S::Vector,
+    turned: f64,
+    start: f64,
+    samples: u64,
+    slices: Vec<Slice<S>>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+struct Slice<S: Space> {
+    mass: f64,
+    volume: f64,
+    momentum: S::Vector,
+    /// Mass times the spin: about z in 2D, its norm in 3D.
+    spin: f64,
+}
+
+impl<S: Space> Profile<S> {
+    pub(super) fn new(
+        name: String,
+        axis: usize,
+        low: &[f64],
+        high: &[f64],
+        bins: usize,
+        turned: f64,
+        start: f64,
+    ) -> Self {
+        let empty = Slice {
+            mass: 0.0,
+            volume: 0.0,
+            momentum: S::Vector::null(),
+            spin: 0.0,
+        };
+        Self {
+            name,
+            axis,
+            low: S::Vector::from_slice(low),
+            high: S::Vector::from_slice(high),
+            turned,
+            start,
+            samples: 0,
+            slices: vec![empty; bins],
+        }
+    }
+
+    /// A vector in the axes of the box.
+    fn turned(&self, v: &S::Vector) -> S::Vector {
+        let (sin, cos) = self.turned.sin_cos();
+        let mut out = *v;
+        (out[0], out[1]) = (cos * v[0] + sin * v[1], cos * v[1] - sin * v[0]);
+        out
+    }
+
+    /// Place, solid fraction, velocity and spin, slice by slice; velocities are not a number where no grain was.
+    fn rows(&self) -> Vec<Vec<f64>> {
+        let wide = (self.high[self.axis] - self.low[self.axis]) / self.slices.len() as f64;
+        let section: f64 = (0..S::D)
+            .filter(|k| *k != self.axis)
+            .map(|k| self.high[k] - self.low[k])
+            .product();
+        let rows = self.slices.iter().enumerate().map(|(k, slice)| {
+            let whole = wide * section * self.samples.max(1) as f64;
+            let mut row = vec![
+                self.low[self.axis] + (k as f64 + 0.5) * wide,
+                slice.volume / whole,
+            ];
+            row.extend((0..S::D).map(|k| slice.momentum[k] / slice.mass));
+            row.push(slice.spin / slice.mass);
+            row
+        });
+        rows.collect()
+    }
+
+    fn header(&self) -> Vec<String> {
+        let axes = ["x", "y", "z"];
+        let mut out = vec![
+            format!("{} [m]", axes[self.axis]),
+            "solid_fraction".to_owned(),
+        ];
+        out.extend(
+            axes.iter()
+                .take(S::D)
+                .map(|a| format!("velocity_{a} [m/s]")),
+        );
+        out.push("spin [rad/s]".to_owned());
+        out
+    }
+}
+
+impl<S: Space> Measure<S> for Profile<S> {
+    fn columns(&self) -> Vec<Column> {
+        Vec::new()
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        if s.time < self.start {
+            return Vec::new();
+        }
+        self.samples += 1;
+        let bins = self.slices.len() as f64;
+        for g in grains(s) {
+            let x = self.turned(&g.at);
+            if !(0..S::D).all(|k| (self.low[k]..self.high[k]).contains(&x[k])) {
+                continue;
+            }
+            let (low, high) = (self.low[self.axis], self.high[self.axis]);
+            let place = ((x[self.axis] - low) / (high - low) * bins) as usize;
+            let velocity = self.turned(&s.bodies.velocity[g.body]);
+            let Some(slice) = self.slices.get_mut(place) else {
+                continue;
+            };
+            let mass = g.mass;
+            let spin = &s.bodies.spin[g.body];
+            slice.mass += mass;
+            slice.volume += S::ball_volume(g.radius);
+            slice.momentum += velocity * mass;
+            slice.spin += mass * if S::D == 2 { spin[0] } else { spin.norm() };
+        }
+        Vec::new()
+    }
+
+    fn outcome(&self, _: &Table) -> Vec<(String, f64)> {
+        Vec::new()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        code::encode(&(self.samples, &self.slices))
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        (self.samples, self.slices) = code::decode(from)?;
+        Ok(())
+    }
+
+    fn outputs(&self, title: &str, _: &Table) -> Vec<Output> {
+        let rows = self.rows();
+        let mut text = self.header().join(",") + "\n";
+        for row in &rows {
+            let numbers: Vec<String> = row.iter().map(|x| format!("{x:e}")).collect();
+            text += &(numbers.join(",") + "\n");
+        }
+        let axis = ["position x", "position y", "position z"][self.axis];
+        let series = |k: usize| -> Vec<(f64, f64)> {
+            let points = rows.iter().map(|r| (r[0], r[k]));
+            points.filter(|p| p.1.is_finite()).collect()
+        };
+        let chart = |heading: &str, unit: &'static str, y: &str| {
+            let mut chart = Chart::new(heading, Axis::new(axis, "m"), Axis::new(y, unit));
+            chart.subtitle = Some(title.to_owned());
+            chart
+        };
+        let mut velocity = chart("Velocity", "m/s", "mean velocity v");
+        for (k, a) in ["v_x", "v_y", "v_z"].iter().enumerate().take(S::D) {
+            velocity =
+                velocity.with_unless_zero(Series::new(*a, series(2 + k)).style(Style::LineMarkers));
+        }
+        let solid = chart("Solid fraction", "", "solid fraction φ")
+            .with_unless_zero(Series::new(String::new(), series(1)).style(Style::LineMarkers));
+        let spin = chart("Rotation", "rad/s", "mean angular velocity ω").with_unless_zero(
+            Series::new(String::new(), series(2 + S::D)).style(Style::LineMarkers),
+        );
+        let file = format!("{}.csv", self.name);
+        vec![
+            Output::Text { file, text },
+            Output::charts(format!("{}.png", self.name), [velocity, solid, spin], 2),
+        ]
+    }
+}

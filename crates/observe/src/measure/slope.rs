@@ -1,0 +1,94 @@
+//! The angle of a free surface: a straight line through the tops of the grains, column by column.
+
+use super::{Measure, grains, line, mean, since};
+use fretwork_core::geometry::space::{Space, VectorLike};
+use crate::code::CodeError;
+use crate::statistics::{Column, Table};
+use crate::chart::{Axis, Chart, Series};
+use crate::output::Output;
+use fretwork_core::step::Simulation;
+
+/// See [`fretwork_scene::measures::MeasureSpec::Slope`].
+#[derive(Clone, Debug)]
+pub struct Slope {
+    pub(super) name: String,
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) start: f64,
+}
+
+impl<S: Space> Measure<S> for Slope {
+    fn columns(&self) -> Vec<Column> {
+        vec![Column::new(
+            self.name.clone(),
+            "rad",
+            "angle of the free surface",
+        )]
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        // A grain in flight is no surface.
+        let mut touched = vec![false; s.bodies.len()];
+        for contact in &s.network.contacts {
+            if contact.impulse != S::Vector::null() {
+                contact
+                    .bodies
+                    .iter()
+                    .for_each(|b| touched[*b as usize] = true);
+            }
+        }
+        let wide = self.to - self.from;
+        let all = grains(s);
+        let sum: f64 = all.iter().map(|g| 2.0 * g.radius).sum();
+        // Columns of two diameters.
+        let width = 2.0 * sum / all.len().max(1) as f64;
+        let columns = if width > 0.0 {
+            (wide / width).floor().clamp(2.0, 1e6) as usize
+        } else {
+            2
+        };
+        let mut tops = vec![None::<f64>; columns];
+        for g in &all {
+            let k = ((g.at[0] - self.from) / wide * columns as f64).floor();
+            if touched[g.body] && k >= 0.0 && (k as usize) < columns {
+                let top = g.at[S::D - 1] + g.rise(s);
+                let old = &mut tops[k as usize];
+                *old = Some(old.map_or(top, |o| o.max(top)));
+            }
+        }
+        let points = tops
+            .iter()
+            .enumerate()
+            .filter_map(|(k, top)| Some(((k as f64 + 0.5) / columns as f64 * wide, (*top)?)));
+        vec![line(points).map_or(f64::NAN, f64::atan)]
+    }
+
+    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
+        let mean = mean(&since(table, &self.name, self.start));
+        mean.map(|m| (self.name.clone(), m)).into_iter().collect()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        Ok(Vec::new())
+    }
+
+    fn restore(&mut self, _: &[u8]) -> Result<(), CodeError> {
+        Ok(())
+    }
+
+    fn outputs(&self, title: &str, table: &Table) -> Vec<Output> {
+        let degrees = since(table, &self.name, 0.0);
+        let degrees = degrees
+            .into_iter()
+            .map(|(t, a)| (t, a.to_degrees()))
+            .collect();
+        let mut chart = Chart::new(
+            format!("Angle of the surface, {}", self.name),
+            Axis::new("time t", "s"),
+            Axis::new("angle θ", "deg"),
+        )
+        .with(Series::new(String::new(), degrees));
+        chart.subtitle = Some(title.to_owned());
+        vec![Output::charts(format!("{}.png", self.name), [chart], 1)]
+    }
+}

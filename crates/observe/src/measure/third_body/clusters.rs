@@ -1,0 +1,109 @@
+//! Clusters: grains that intact bonds tie together, two or more.
+
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::Simulation;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Sets that grow together.
+#[derive(Clone, Debug)]
+pub(super) struct Sets {
+    parent: Vec<u32>,
+}
+
+impl Sets {
+    /// So many, each alone.
+    pub fn new(count: usize) -> Self {
+        Self {
+            parent: (0..count as u32).collect(),
+        }
+    }
+
+    /// The name of a member's set.
+    pub fn of(&mut self, member: usize) -> usize {
+        let mut k = member;
+        while self.parent[k] as usize != k {
+            self.parent[k] = self.parent[self.parent[k] as usize];
+            k = self.parent[k] as usize;
+        }
+        k
+    }
+
+    /// Makes the sets of two members one, which keeps the lower name: it does not depend on the order.
+    pub fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.of(a), self.of(b));
+        self.parent[a.max(b)] = a.min(b) as u32;
+    }
+}
+
+/// The clusters at an instant.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Clusters {
+    /// Number of sets of two grains or more.
+    pub count: usize,
+    /// Number of grains of the largest; 1 where nothing is tied.
+    pub largest: usize,
+    /// Mean size by mass, sum m n / sum m over all grains, each with the size n of its set: 1 where nothing is tied.
+    pub mean: f64,
+    /// Number of sets and their mass by size (kg; kg/m in 2D), single grains included.
+    pub sizes: BTreeMap<usize, (usize, f64)>,
+}
+
+/// Finds the clusters of the free grains.
+pub(super) fn clusters<S: Space>(s: &Simulation<S>, grain: &[bool]) -> Clusters {
+    let n = &s.network;
+    let tied = n
+        .contacts
+        .iter()
+        .filter(|c| c.memory().is_some() && n.bond(c).is_some_and(fretwork_core::contact::Bond::intact));
+    count(&s.bodies.mass, grain, tied.map(|c| c.bodies))
+}
+
+fn count(mass: &[f64], grain: &[bool], ties: impl Iterator<Item = [u32; 2]>) -> Clusters {
+    let mut sets = Sets::new(mass.len());
+    for [a, b] in ties.map(|t| t.map(|b| b as usize)) {
+        if grain[a] && grain[b] {
+            sets.join(a, b);
+        }
+    }
+    let mut members = vec![(0usize, 0.0); mass.len()];
+    for b in (0..mass.len()).filter(|b| grain[*b]) {
+        let set = &mut members[sets.of(b)];
+        *set = (set.0 + 1, set.1 + mass[b]);
+    }
+    let mut out = Clusters::default();
+    let (mut total, mut weighted) = (0.0, 0.0);
+    for (size, mass) in members.into_iter().filter(|m| m.0 > 0) {
+        out.count += usize::from(size > 1);
+        out.largest = out.largest.max(size);
+        total += mass;
+        weighted += mass * size as f64;
+        let entry = out.sizes.entry(size).or_default();
+        *entry = (entry.0 + 1, entry.1 + mass);
+    }
+    out.mean = if total > 0.0 { weighted / total } else { 0.0 };
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clusters_are_counted() {
+        // Body 0 is a wall to which two grains are tied: it ties them not to each other.
+        let grain = [false, true, true, true, true, true, true, true];
+        let mass = [100.0, 1.0, 1.0, 2.0, 1.0, 1.0, 1.0, 3.0];
+        let ties = [[1, 2], [3, 2], [0, 1], [0, 4], [5, 6]];
+        let c = count(&mass, &grain, ties.into_iter());
+        assert_eq!((c.count, c.largest), (2, 3));
+        // {1, 2, 3} of 4 kg, {4} of 1, {5, 6} of 2, {7} of 3.
+        assert!((c.mean - (4.0 * 3.0 + 1.0 + 2.0 * 2.0 + 3.0) / 10.0).abs() < 1e-15);
+        assert_eq!(
+            c.sizes,
+            [(1, (2, 4.0)), (2, (1, 2.0)), (3, (1, 4.0))].into()
+        );
+        let none = count(&mass, &grain, std::iter::empty());
+        assert_eq!((none.count, none.largest, none.mean), (0, 1, 1.0));
+    }
+}

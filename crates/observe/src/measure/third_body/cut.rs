@@ -1,0 +1,87 @@
+//! How much of a grain lies below a depth.
+//!
+//! Exact for disks (circular segments) and balls (spherical segments). A convex polygon is clipped; its area counts in
+//! proportion to its outline, in which roundings are polygons too. A polyhedron counts as the ball of its volume.
+
+use super::gap::Gap;
+use fretwork_core::geometry::convex::Core;
+use fretwork_core::geometry::space::Space;
+use crate::measure::Grain;
+use crate::measure::shear::below;
+use fretwork_core::step::Simulation;
+
+/// Shares a grain's volume out over the cells of the gap.
+pub(super) fn share<S: Space>(
+    s: &Simulation<S>,
+    gap: &Gap,
+    grain: &Grain<'_, S>,
+    take: impl FnMut(usize, f64),
+) {
+    let depth = gap.depth(&grain.at);
+    match grain.piece.filter(|_| S::D == 2) {
+        None => {
+            let (r, whole) = (grain.radius, S::ball_volume(grain.radius));
+            let cut = |d: f64| below(S::D, r, d - depth) / whole;
+            gap.share(depth - r, depth + r, cut, take);
+        }
+        Some(piece) => {
+            let core = piece.core.turned(&s.bodies.rotation[grain.body]);
+            let corners = core.outline(piece.rounding).concat();
+            let along = 1 - gap.across;
+            let place = |c: &S::Vector| [c[along], depth + gap.side * c[gap.across]];
+            let corners: Vec<[f64; 2]> = corners.iter().map(place).collect();
+            let low = corners.iter().map(|c| c[1]).fold(f64::INFINITY, f64::min);
+            let high = corners
+                .iter()
+                .map(|c| c[1])
+                .fold(f64::NEG_INFINITY, f64::max);
+            let whole = area_below(&corners, f64::INFINITY);
+            gap.share(low, high, |d| area_below(&corners, d) / whole, take);
+        }
+    }
+}
+
+/// Area of the part of a convex polygon below a height.
+fn area_below(corners: &[[f64; 2]], height: f64) -> f64 {
+    let mut kept: Vec<[f64; 2]> = Vec::with_capacity(corners.len() + 2);
+    for (k, b) in corners.iter().enumerate() {
+        let a = &corners[(k + corners.len() - 1) % corners.len()];
+        if (a[1] <= height) != (b[1] <= height) {
+            let t = (height - a[1]) / (b[1] - a[1]);
+            kept.push([a[0] + t * (b[0] - a[0]), height]);
+        }
+        if b[1] <= height {
+            kept.push(*b);
+        }
+    }
+    let Some(o) = kept.first().copied() else {
+        return 0.0;
+    };
+    let triangles = kept.windows(2).map(|p| {
+        let [a, b] = [p[0], p[1]].map(|c| [c[0] - o[0], c[1] - o[1]]);
+        0.5 * (a[0] * b[1] - a[1] * b[0])
+    });
+    triangles.sum::<f64>().abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_square_on_its_corner_is_cut_by_triangles() {
+        let square = [[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]];
+        for (height, area) in [
+            (-1.5, 0.0),
+            (-0.5, 0.25),
+            (0.0, 1.0),
+            (0.5, 1.75),
+            (2.0, 2.0),
+        ] {
+            assert!(
+                (area_below(&square, height) - area).abs() < 1e-15,
+                "{height}"
+            );
+        }
+    }
+}

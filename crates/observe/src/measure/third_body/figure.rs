@@ -1,0 +1,213 @@
+//! The figure of a third body: profiles with the depth upwards, slice of time by slice of time where one quantity
+//! fills a panel, over all of the time where several do.
+
+use super::cells::{Block, Cell, MECHANISMS};
+use super::tables::powers;
+use crate::chart::{Axis, Chart, Series, Style, quantity};
+
+/// What a figure shows.
+pub(super) struct Figure<'a> {
+    /// Title of the case.
+    pub title: &'a str,
+    /// All of the time.
+    pub whole: &'a Block,
+    /// Its slices.
+    pub slices: &'a [Block],
+    /// The first bodies.
+    pub between: &'a (String, String),
+    /// (time, thickness).
+    pub thickness: Vec<(f64, f64)>,
+    /// (time, mean cluster by mass), (time, largest), where bonds tie grains.
+    pub clusters: [Vec<(f64, f64)>; 2],
+    /// (time, share of the grains), (time, share of the force) of force chains.
+    pub chains: [Vec<(f64, f64)>; 2],
+    /// (time, shear of the interior over the sliding).
+    pub shear: Vec<(f64, f64)>,
+    /// 2 or 3.
+    pub dimension: usize,
+}
+
+/// Headings of the panels that name the slices of time.
+const VELOCITY: &str = "Velocity profile";
+const SOLID: &str = "Solid fraction";
+
+/// From early to late.
+const TIMES: [(u8, u8, u8); 4] = [(250, 176, 80), (226, 92, 70), (160, 30, 100), (50, 16, 96)];
+
+fn shade(k: usize, count: usize) -> (u8, u8, u8) {
+    let place = k as f64 / (count.max(2) - 1) as f64 * (TIMES.len() - 1) as f64;
+    let i = (place as usize).min(TIMES.len() - 2);
+    let (a, b, t) = (TIMES[i], TIMES[i + 1], place - i as f64);
+    let mix = |a: u8, b: u8| (f64::from(a) + t * (f64::from(b) - f64::from(a))).round() as u8;
+    (mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+}
+
+/// A span of time, with the unit once where it is the same.
+fn span(times: [f64; 2]) -> String {
+    let [from, to] = times.map(|t| quantity(t, "s", 3));
+    match (from.split_once(' '), to.split_once(' ')) {
+        (Some((number, unit)), Some((_, other))) if unit == other => format!("{number} to {to}"),
+        _ => format!("{from} to {to}"),
+    }
+}
+
+impl Figure<'_> {
+    fn chart(&self, heading: &str, name: &str, unit: &str) -> Chart {
+        let upwards = format!("y/e, {} to {}", self.between.0, self.between.1);
+        let mut chart = Chart::new(heading, Axis::new(name, unit), Axis::new(upwards, ""));
+        chart.subtitle = Some(self.title.to_owned());
+        chart.y_range = Some((0.0, 1.0));
+        chart
+    }
+
+    fn points(block: &Block, value: impl Fn(&Cell) -> f64) -> Vec<(f64, f64)> {
+        let n = block.bins().len() as f64;
+        let bins = block.bins().iter().enumerate();
+        bins.map(|(k, c)| (value(c), (k as f64 + 0.5) / n))
+            .collect()
+    }
+
+    /// The first two panels name the slices of time for all.
+    fn labelled(chart: &Chart) -> bool {
+        [VELOCITY, SOLID].contains(&chart.title.as_str())
+    }
+
+    /// One quantity, a line for each slice of time.
+    fn in_time(&self, mut chart: Chart, value: impl Fn(&Cell) -> f64 + Copy) -> Chart {
+        for (k, block) in self.slices.iter().enumerate() {
+            let label = if Self::labelled(&chart) {
+                span(block.time)
+            } else {
+                String::new()
+            };
+            let mut series =
+                Series::new(label, Self::points(block, value)).style(Style::LineMarkers);
+            series.colour = Some(shade(k, self.slices.len()));
+            chart = chart.with(series);
+        }
+        chart
+    }
+
+    /// Several quantities over all of the time.
+    fn beside<'a>(
+        &self,
+        mut chart: Chart,
+        values: impl Iterator<Item = (&'a str, Vec<(f64, f64)>)>,
+    ) -> Chart {
+        for (label, points) in values {
+            chart = chart.with(Series::new(label, points).style(Style::LineMarkers));
+        }
+        chart
+    }
+
+    fn velocity(&self) -> Chart {
+        let name = format!("velocity v/V, V of the {}", self.between.1);
+        let chart = self.chart(VELOCITY, &name, "");
+        // The mean depth of the mass of a bin is where its mean velocity is.
+        let mut chart = self.in_time(chart, Cell::carried);
+        for (series, block) in chart.series.iter_mut().zip(self.slices) {
+            series.points = block.profile().into_iter().map(|(y, w)| (w, y)).collect();
+        }
+        let mut straight = Series::new("Couette flow", vec![(0.0, 0.0), (1.0, 1.0)]);
+        straight.colour = Some((150, 154, 160));
+        chart.with(straight.style(Style::Dashed))
+    }
+
+    fn stress(&self) -> Chart {
+        let names = [
+            "σ_yy, across",
+            "σ_xx, along",
+            "τ_xy, shear",
+            "σ_zz, lateral",
+        ];
+        let shown = if self.dimension == 3 { 4 } else { 3 };
+        let lines = names.iter().enumerate().take(shown);
+        let lines = lines.map(|(k, name)| (*name, Self::points(self.whole, |c| c.stress()[k])));
+        let name = "stress, compression positive";
+        let chart = self.chart("Stress, mean over time", name, "Pa");
+        self.beside(chart, lines)
+    }
+
+    fn power(&self) -> Chart {
+        let all = MECHANISMS.iter().enumerate();
+        let lines = all.map(|(k, name)| {
+            (
+                *name,
+                Self::points(self.whole, |c| powers(c, self.whole)[k]),
+            )
+        });
+        let name = "dissipated power by volume";
+        let chart = self.chart("Dissipated power, mean over time", name, "W/m^3");
+        let peak = |points: &[(f64, f64)]| points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
+        let lines: Vec<(&str, Vec<(f64, f64)>)> = lines.collect();
+        let top = lines.iter().map(|l| peak(&l.1)).fold(0.0, f64::max);
+        // What would lie on the axis is left to the table.
+        let lines = lines.into_iter().filter(|l| peak(&l.1) > 5e-3 * top);
+        self.beside(chart, lines)
+    }
+
+    fn history(&self, heading: &str, name: &str, unit: &str) -> Chart {
+        let mut chart = Chart::new(heading, Axis::new("time t", "s"), Axis::new(name, unit));
+        chart.subtitle = Some(self.title.to_owned());
+        chart
+    }
+
+    /// The panels of the figure.
+    pub fn charts(&self) -> Vec<Chart> {
+        let mut charts = vec![
+            self.velocity(),
+            self.in_time(self.chart(SOLID, "solid fraction φ", ""), Cell::solid),
+            self.stress(),
+            self.in_time(
+                self.chart("Granular temperature", "granular temperature T", "m^2/s^2"),
+                |c| c.heat / c.mass,
+            ),
+            self.in_time(
+                self.chart("Coordination", "coordination number Z", ""),
+                |c| c.contacts / c.grains,
+            ),
+            self.power(),
+        ];
+        let tied = self.whole.bins().iter().any(|c| c.bonds + c.broken > 0.0);
+        if tied {
+            let chart = self.chart("Damage", "broken bonds / bonds made", "");
+            charts.push(self.in_time(chart, Cell::damage));
+        }
+        charts.push(
+            self.history("Thickness of the third body", "thickness e", "m")
+                .with(Series::new(String::new(), self.thickness.clone())),
+        );
+        let lines = |mut chart: Chart, labels: [&str; 2], points: &[Vec<(f64, f64)>; 2]| {
+            for (label, points) in labels.into_iter().zip(points) {
+                chart = chart.with(Series::new(label, points.clone()));
+            }
+            chart
+        };
+        if tied {
+            let chart = self.history("Clusters of bonded grains", "grains in a cluster", "");
+            charts.push(lines(chart, ["mean by mass", "largest"], &self.clusters));
+        } else {
+            let chart = self.history("Force chains", "share in force chains", "");
+            charts.push(lines(
+                chart,
+                ["of the grains", "of the force"],
+                &self.chains,
+            ));
+            let name = "shear of the interior / sliding";
+            let chart = self.history("Interior, 10 % to 90 % of e", name, "");
+            charts.push(chart.with(Series::new(String::new(), self.shear.clone())));
+        }
+        charts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spans_of_time_name_their_unit_once() {
+        assert_eq!(span([0.05, 0.0644]), "50.0 to 64.4 ms");
+        assert_eq!(span([0.5, 1.25]), "500 ms to 1.25 s");
+    }
+}

@@ -1,0 +1,333 @@
+//! Where a third body lies: between the faces of two first bodies, and the bins across it.
+//!
+//! The face of a first body stands at the mean height of what of it looks at the layer, by its projection: of rough
+//! profiles and surfaces the mean line, of carried balls that of their caps (pi/4 of the radius for disks, 2/3 for
+//! spheres), of carried convex pieces their highest corner.
+
+use fretwork_core::geometry::convex::Core;
+use fretwork_core::geometry::space::{Space, VectorLike};
+use crate::measure::Grain;
+use fretwork_scene::measures::Extent;
+use fretwork_core::step::Simulation;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// The layer at an instant. Depths run from the first body's face to the second's.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Gap {
+    /// Axis across it.
+    pub across: usize,
+    /// Where depth is zero, along `across` (m).
+    pub foot: f64,
+    /// 1 where depth grows with the coordinate, -1 where it falls.
+    pub side: f64,
+    /// Its thickness (m).
+    pub thickness: f64,
+    /// Area of a section (m^2; m in 2D).
+    pub section: f64,
+    /// Number of bins.
+    pub bins: usize,
+}
+
+impl Gap {
+    /// Depth of a point (m).
+    pub fn depth<V: VectorLike>(&self, at: &V) -> f64 {
+        self.side * (at[self.across] - self.foot)
+    }
+
+    /// Volume of a bin (m^3; m^2 in 2D).
+    pub fn bin_volume(&self) -> f64 {
+        self.section * self.thickness / self.bins as f64
+    }
+
+    /// The cell of a depth: 0 before the first face, 1 to `bins`, one more beyond the second.
+    pub fn cell(&self, depth: f64) -> usize {
+        let place = (depth / self.thickness * self.bins as f64).floor();
+        // What is not a number is nowhere.
+        (place.max(-1.0) + 1.0).min(self.bins as f64 + 1.0) as usize
+    }
+
+    /// The bin of a depth, from 1; what lies beyond a face counts in the bin there.
+    pub fn bin(&self, depth: f64) -> usize {
+        self.cell(depth).clamp(1, self.bins)
+    }
+
+    /// Depth at which a cell ends (m).
+    pub fn end(&self, cell: usize) -> f64 {
+        self.thickness * cell as f64 / self.bins as f64
+    }
+
+    /// Shares out what reaches from one depth to another, with `below` the share of it below a depth.
+    pub fn share(
+        &self,
+        low: f64,
+        high: f64,
+        below: impl Fn(f64) -> f64,
+        mut take: impl FnMut(usize, f64),
+    ) {
+        let (first, last) = (self.cell(low), self.cell(high));
+        let mut so_far = 0.0;
+        for cell in first..last {
+            let now = below(self.end(cell));
+            take(cell, now - so_far);
+            so_far = now;
+        }
+        take(last, 1.0 - so_far);
+    }
+}
+
+/// Finds the gap, step by step.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Faces {
+    /// Places of the two first bodies among the driven ones.
+    pub places: [usize; 2],
+    /// How far the faces stand from the origins of their bodies, along `across` (m).
+    offsets: [f64; 2],
+    /// Ends of the grains at the last look, where they bound the layer: lowest and highest coordinate (m).
+    grains: Option<[f64; 2]>,
+    gap: Gap,
+}
+
+impl Faces {
+    /// From the state at hand; none where a body is missing.
+    pub fn new<S: Space>(
+        s: &Simulation<S>,
+        names: [&str; 2],
+        across: usize,
+        bins: usize,
+    ) -> Option<Self> {
+        let place = |name: &str| s.bodies.driven.iter().position(|d| d.name == name);
+        let places = [place(names[0])?, place(names[1])?];
+        let middle = places.map(|p| face(s, s.bodies.driven[p].body, across, 0.0));
+        let side = if middle[1] < middle[0] { -1.0 } else { 1.0 };
+        Some(Self {
+            places,
+            offsets: [0.0; 2],
+            grains: None,
+            gap: Gap {
+                across,
+                side,
+                bins,
+                ..Gap::default()
+            },
+        })
+    }
+
+    /// Index of one of the bodies.
+    pub fn body<S: Space>(&self, s: &Simulation<S>, k: usize) -> usize {
+        s.bodies.driven[self.places[k]].body as usize
+    }
+
+    /// Looks at the surfaces of the bodies, or at the grains where these bound the layer.
+    pub fn look<S: Space>(&mut self, s: &Simulation<S>, extent: Extent, all: &[Grain<'_, S>]) {
+        let gap = &mut self.gap;
+        let across = gap.across;
+        for (k, towards) in [(0, gap.side), (1, -gap.side)] {
+            let body = s.bodies.driven[self.places[k]].body;
+            let here = s.bodies.position[body as usize][across];
+            self.offsets[k] = face(s, body, across, towards) - here;
+        }
+        self.grains = (extent == Extent::Grains).then(|| ends(all, across));
+        gap.section = section(s, across, all);
+    }
+
+    /// The layer now, with surfaces or grains as at the last look.
+    pub fn gap<S: Space>(&self, s: &Simulation<S>) -> Gap {
+        let at = |k: usize| s.bodies.position[self.body(s, k)][self.gap.across] + self.offsets[k];
+        let ends = match self.grains {
+            Some([low, high]) if self.gap.side > 0.0 => [low, high],
+            Some([low, high]) => [high, low],
+            None => [at(0), at(1)],
+        };
+        Gap {
+            foot: ends[0],
+            // A layer of no thickness has no profile; its bins stay in order.
+            thickness: (self.gap.side * (ends[1] - ends[0])).max(f64::MIN_POSITIVE),
+            ..self.gap
+        }
+    }
+
+    /// Velocity of the first body's face, and of the second's relative to it.
+    pub fn sliding<S: Space>(&self, s: &Simulation<S>) -> (S::Vector, S::Vector) {
+        self.sliding_at::<S>(|k| {
+            let b = self.body(s, k);
+            (s.bodies.velocity[b], s.bodies.spin[b])
+        })
+    }
+
+    /// The same as [`Self::sliding`] over the last step, at v_theta.
+    pub fn sliding_over_step<S: Space>(&self, s: &Simulation<S>) -> S::Vector {
+        let theta = s.scheme.theta;
+        let (_, before) = self.sliding_at::<S>(|k| s.started[self.places[k]]);
+        before * (1.0 - theta) + self.sliding(s).1 * theta
+    }
+
+    fn sliding_at<S: Space>(
+        &self,
+        motion: impl Fn(usize) -> (S::Vector, S::Spin),
+    ) -> (S::Vector, S::Vector) {
+        let of = |k: usize| {
+            let (velocity, spin) = motion(k);
+            let mut arm = S::Vector::null();
+            arm[self.gap.across] = self.offsets[k];
+            velocity + S::sweep(&spin, &arm)
+        };
+        (of(0), of(1) - of(0))
+    }
+}
+
+/// Mean coordinate of what of a body looks along an axis to one side, or of all of it where `towards` is 0 (m).
+fn face<S: Space>(s: &Simulation<S>, body: u32, across: usize, towards: f64) -> f64 {
+    let (mut sum, mut weight) = (0.0, 0.0);
+    let mut add = |w: f64, height: f64| {
+        sum += w * height;
+        weight += w;
+    };
+    for carried in s.shapes.surfaces.iter().filter(|c| c.body == body) {
+        let b = body as usize;
+        let world = |p: &S::Vector| {
+            s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &(carried.offset + *p))
+        };
+        let mut parts = Vec::new();
+        for chain in carried.shape.outline() {
+            let points: Vec<S::Vector> = chain.iter().map(world).collect();
+            if S::D == 2 {
+                parts.extend(points.windows(2).map(|p| projection(p, across)));
+            } else {
+                parts.push(projection(&points, across));
+            }
+        }
+        // Sheets of triangles may be listed the other way round.
+        let looks = |sign: f64| parts.iter().any(|p| sign * towards * p.0 > 0.0);
+        let sign = if looks(1.0) { 1.0 } else { -1.0 };
+        for (area, height) in parts {
+            let seen = if towards == 0.0 {
+                area.abs()
+            } else {
+                (sign * towards * area).max(0.0)
+            };
+            add(seen, height);
+        }
+    }
+    for ball in s.shapes.balls.iter().filter(|b| b.body == body) {
+        let centre = fretwork_core::contact::detect::centre(ball, &s.bodies)[across];
+        let (area, cap) = if S::D == 2 {
+            (2.0 * ball.radius, PI / 4.0)
+        } else {
+            (PI * ball.radius * ball.radius, 2.0 / 3.0)
+        };
+        add(area, centre + towards * cap * ball.radius);
+    }
+    for piece in s.shapes.pieces.iter().filter(|p| p.body == body) {
+        let centre = crate::placement::piece_centre(s, piece)[across];
+        let core = piece.core.turned(&s.bodies.rotation[body as usize]);
+        let corners = core.outline(piece.rounding).concat();
+        let reach = corners.iter().map(|c| towards * c[across]);
+        let reach = reach.fold(0.0, f64::max);
+        add(2.0 * piece.size, centre + towards * reach);
+    }
+    if weight > 0.0 {
+        sum / weight
+    } else {
+        s.bodies.position[body as usize][across]
+    }
+}
+
+/// Area that a part of an outline shows along an axis, positive where it looks to the positive side, and its mean
+/// coordinate (m). In the plane a segment with the solid on its right, in space a polygon about its outward normal.
+fn projection<V: VectorLike>(points: &[V], across: usize) -> (f64, f64) {
+    let mean = points.iter().map(|p| p[across]).sum::<f64>() / points.len().max(1) as f64;
+    let (i, j) = match (V::N, across) {
+        (2, 0) => (1, 0),
+        (2, _) => (0, 1),
+        (_, k) => ((k + 1) % 3, (k + 2) % 3),
+    };
+    if V::N == 2 {
+        let along = points[points.len() - 1][i] - points[0][i];
+        return (if across == 0 { -along } else { along }, mean);
+    }
+    let next = points.iter().cycle().skip(1);
+    let cross = points
+        .iter()
+        .zip(next)
+        .map(|(a, b)| a[i] * b[j] - b[i] * a[j]);
+    (0.5 * cross.sum::<f64>(), mean)
+}
+
+/// Heights with 1 % of the grains' mass below the lowest and above the highest points of them (m).
+fn ends<S: Space>(all: &[Grain<'_, S>], across: usize) -> [f64; 2] {
+    let total: f64 = all.iter().map(|g| g.mass).sum();
+    let end = |sign: f64| {
+        let reach = |g: &Grain<'_, S>| (sign * g.at[across] - g.radius, g.mass);
+        let mut sorted: Vec<(f64, f64)> = all.iter().map(reach).collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut mass = 0.0;
+        let found = sorted.iter().find(|g| {
+            mass += g.1;
+            mass > 0.01 * total
+        });
+        sign * found.map_or(0.0, |g| g.0)
+    };
+    [end(1.0), end(-1.0)]
+}
+
+/// Area of a section across the layer: the cell's along its periods, else as far as grains reach (m^2; m in 2D).
+fn section<S: Space>(s: &Simulation<S>, across: usize, all: &[Grain<'_, S>]) -> f64 {
+    let axes = (0..S::D).filter(|k| *k != across);
+    let length = |k: usize| {
+        s.shapes.periodic.period[k].unwrap_or_else(|| {
+            let low = all.iter().map(|g| g.at[k] - g.radius);
+            let high = all.iter().map(|g| g.at[k] + g.radius);
+            let length = high.fold(f64::NEG_INFINITY, f64::max) - low.fold(f64::INFINITY, f64::min);
+            if length.is_finite() { length } else { 1.0 }
+        })
+    };
+    axes.map(length).product()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gap(bins: usize) -> Gap {
+        Gap {
+            across: 1,
+            foot: 0.5,
+            side: 1.0,
+            thickness: 2.0,
+            section: 3.0,
+            bins,
+        }
+    }
+
+    #[test]
+    fn what_is_shared_out_adds_up() {
+        let gap = gap(4);
+        let line = |low: f64, high: f64| move |d: f64| (d - low) / (high - low);
+        let mut parts = vec![0.0; 6];
+        gap.share(-0.25, 2.25, line(-0.25, 2.25), |k, share| parts[k] += share);
+        for (part, exact) in parts.iter().zip([0.1, 0.2, 0.2, 0.2, 0.2, 0.1]) {
+            assert!((part - exact).abs() < 1e-15, "{parts:?}");
+        }
+        let mut one = Vec::new();
+        gap.share(0.6, 0.9, line(0.6, 0.9), |k, share| one.push((k, share)));
+        assert_eq!(one, [(2, 1.0)]);
+        assert_eq!(
+            (gap.cell(-1.0), gap.cell(9.0), gap.bin(-1.0), gap.bin(9.0)),
+            (0, 5, 1, 4)
+        );
+    }
+
+    #[test]
+    fn a_segment_with_the_solid_below_looks_up() {
+        use nalgebra::{Vector2, Vector3};
+        let (a, b) = (Vector2::new(0.0, 1.0), Vector2::new(3.0, 2.0));
+        assert_eq!(projection(&[a, b], 1), (3.0, 1.5));
+        assert_eq!(projection(&[b, a], 1), (-3.0, 1.5));
+        // Walking down, the right is towards smaller x.
+        assert_eq!(projection(&[b, a], 0).0, 1.0);
+        let v = |x: f64, y: f64| Vector3::new(x, y, 5.0);
+        let square = [v(0.0, 0.0), v(2.0, 0.0), v(2.0, 2.0), v(0.0, 2.0)];
+        assert_eq!(projection(&square, 2), (4.0, 5.0));
+    }
+}

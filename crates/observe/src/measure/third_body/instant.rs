@@ -1,0 +1,287 @@
+//! The layer at an instant: its cells, and what is said of it in a row of the statistics.
+
+use super::cells::Cell;
+use super::chains::{Pair, chains};
+use super::clusters::{Clusters, clusters};
+use super::cut;
+use super::gap::{Faces, Gap};
+use fretwork_core::geometry::space::{Space, VectorLike};
+use crate::coordination::degrees;
+use crate::measure::Grain;
+use crate::stress::each_moment;
+use fretwork_core::step::Simulation;
+use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::FRAC_PI_2;
+
+/// What force chains are, in numbers.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ChainNumbers {
+    /// Share of the grains that are in chains.
+    pub grains: f64,
+    /// Share of the normal force between grains that their links carry.
+    pub force: f64,
+    /// Mean number of grains of a chain; 0 without.
+    pub length: f64,
+    /// Mean angle of their links from the normal of the layer towards the sliding (rad); not a number without.
+    pub angle: f64,
+}
+
+/// The layer at an instant.
+#[derive(Clone, Debug)]
+pub(super) struct Instant {
+    /// Where it lies.
+    pub gap: Gap,
+    /// See [`super::cells::Block::cells`].
+    pub cells: Vec<Cell>,
+    /// Velocity of the second body's face relative to the first's, along the sliding (m/s).
+    pub sliding: f64,
+    /// Contacts that carry force, mean over the bodies that are grains.
+    pub coordination: f64,
+    /// Clusters.
+    pub clusters: Clusters,
+    /// Chains.
+    pub chains: ChainNumbers,
+}
+
+/// Share of a grain in a cell.
+struct Share {
+    grain: u32,
+    cell: u32,
+    share: f64,
+}
+
+impl Instant {
+    /// Looks at the layer. `lost` is the number of bonds of each body that broke.
+    pub fn new<S: Space>(
+        s: &Simulation<S>,
+        faces: &Faces,
+        all: &[Grain<'_, S>],
+        along: usize,
+        lost: &[f64],
+    ) -> Self {
+        let gap = faces.gap(s);
+        let (floor, slide) = faces.sliding(s);
+        let flags = s.bodies.grain_flags();
+        let mut cells = vec![Cell::default(); gap.bins + 2];
+        cells[1..=gap.bins]
+            .iter_mut()
+            .for_each(|c| c.space = gap.bin_volume());
+        let mut shares = Vec::with_capacity(3 * all.len());
+        for (k, grain) in all.iter().enumerate() {
+            cut::share(s, &gap, grain, |cell, share| {
+                if share > 0.0 {
+                    let (grain, cell) = (k as u32, cell as u32);
+                    shares.push(Share { grain, cell, share });
+                }
+            });
+        }
+        let degree = degrees(s);
+        let held = held(s);
+        let mut means = vec![(0.0, 0.0, S::Vector::null()); cells.len()];
+        for Share { grain, cell, share } in &shares {
+            let (grain, cell) = (&all[*grain as usize], *cell as usize);
+            let (b, mass) = (grain.body, share * grain.mass);
+            let velocity = s.bodies.velocity[b] - floor;
+            let depth = gap.depth(&grain.at) / gap.thickness;
+            let mean = &mut means[cell];
+            *mean = (
+                mean.0 + mass,
+                mean.1 + mass * depth,
+                mean.2 + velocity * mass,
+            );
+            let (v, slide) = (velocity[along], slide[along]);
+            let spin = &s.bodies.spin[b];
+            let c = &mut cells[cell];
+            c.volume += share * S::ball_volume(grain.radius);
+            c.mass += mass;
+            c.height += mass * depth;
+            c.momentum += mass * v;
+            c.drive += mass * v * slide;
+            c.square += mass * slide * slide;
+            c.spin += mass * if S::D == 2 { spin[0] } else { spin.norm() };
+            c.grains += share;
+            c.contacts += share * f64::from(degree[b]);
+            c.bonds += share * held[b];
+            c.broken += share * lost[b];
+        }
+        temperature(s, &gap, &floor, all, &shares, &means, &mut cells);
+        stress(s, &gap, along, &mut cells);
+        let free = || flags.iter().zip(&degree).filter(|(free, _)| **free);
+        let contacts: f64 = free().map(|(_, d)| f64::from(*d)).sum();
+        Self {
+            coordination: contacts / free().count().max(1) as f64,
+            sliding: slide[along],
+            clusters: clusters(s, &flags),
+            chains: chain_numbers(s, &gap, along, &flags),
+            gap,
+            cells,
+        }
+    }
+
+    /// Sum over the bins between the faces.
+    pub fn whole(&self) -> Cell {
+        let mut sum = Cell::default();
+        self.cells[1..=self.gap.bins].iter().for_each(|c| sum += c);
+        sum
+    }
+}
+
+/// Mass times |v - <v>(y)|^2/D, with <v>(y) on straight lines between the mean places and velocities of the bins: a
+/// field that is affine has none.
+fn temperature<S: Space>(
+    s: &Simulation<S>,
+    gap: &Gap,
+    floor: &S::Vector,
+    all: &[Grain<'_, S>],
+    shares: &[Share],
+    means: &[(f64, f64, S::Vector)],
+    cells: &mut [Cell],
+) {
+    let full = means[1..=gap.bins].iter().filter(|m| m.0 > 0.0);
+    let points: Vec<(f64, S::Vector)> = full.map(|m| (m.1 / m.0, m.2 * (1.0 / m.0))).collect();
+    for Share { grain, cell, share } in shares {
+        let (grain, cell) = (&all[*grain as usize], *cell as usize);
+        if !(1..=gap.bins).contains(&cell) {
+            continue;
+        }
+        let depth = gap.depth(&grain.at) / gap.thickness;
+        let v = s.bodies.velocity[grain.body] - *floor - mean_at(&points, depth);
+        cells[cell].heat += share * grain.mass * v.dot(&v) / S::D as f64;
+    }
+}
+
+/// On the straight line between the points beside a place, or through the last two.
+fn mean_at<V: VectorLike>(points: &[(f64, V)], place: f64) -> V {
+    if points.len() < 2 {
+        return points.first().map_or(V::null(), |p| p.1);
+    }
+    let k = points.partition_point(|p| p.0 < place);
+    let k = k.clamp(1, points.len() - 1);
+    let (a, b) = (&points[k - 1], &points[k]);
+    if b.0 <= a.0 {
+        return a.1;
+    }
+    // Thin bins at a wall may hold the same grains, their means nearly the same place: no far reach from there.
+    let ratio = ((place - a.0) / (b.0 - a.0)).clamp(-1.0, 2.0);
+    a.1 + (b.1 - a.1) * ratio
+}
+
+/// Bonds that hold, of each body.
+fn held<S: Space>(s: &Simulation<S>) -> Vec<f64> {
+    let mut held = vec![0.0; s.bodies.len()];
+    let n = &s.network;
+    for contact in n.contacts.iter().filter(|c| c.memory().is_some()) {
+        if n.bond(contact).is_some_and(fretwork_core::contact::Bond::intact) {
+            contact.bodies.iter().for_each(|b| held[*b as usize] += 1.0);
+        }
+    }
+    held
+}
+
+/// Love and Weber's stress, each branch shared out by its lengths in the bins.
+fn stress<S: Space>(s: &Simulation<S>, gap: &Gap, along: usize, cells: &mut [Cell]) {
+    let across = gap.across;
+    let lateral = (0..S::D).find(|k| *k != across && *k != along);
+    each_moment(s, |body, force, branch| {
+        let from = gap.depth(&s.bodies.position[body]);
+        let to = from + gap.side * branch[across];
+        let moment = [
+            force[across] * branch[across],
+            force[along] * branch[along],
+            // What the side of the second body pulls that of the first along.
+            -gap.side * force[along] * branch[across],
+            lateral.map_or(0.0, |k| force[k] * branch[k]),
+        ];
+        let (low, high) = (from.min(to), from.max(to));
+        let below = |d: f64| (d - low) / (high - low);
+        gap.share(low, high, below, |cell, share| {
+            let sums = cells[cell].moment.iter_mut().zip(moment);
+            sums.for_each(|(sum, m)| *sum += share * m);
+        });
+    });
+}
+
+/// The links of force chains, as sorted pairs of bodies.
+pub(super) fn links<S: Space>(s: &Simulation<S>) -> Vec<[u32; 2]> {
+    let (loads, pairs) = loads(s, &s.bodies.grain_flags());
+    let found = chains(&loads, S::D == 2, &pairs);
+    // Pairs are sorted.
+    let ends = found.links.iter().map(|k| pairs[*k].ends);
+    ends.map(|e| e.map(|b| b as u32)).collect()
+}
+
+fn chain_numbers<S: Space>(
+    s: &Simulation<S>,
+    gap: &Gap,
+    along: usize,
+    grain: &[bool],
+) -> ChainNumbers {
+    let (loads, pairs) = loads(s, grain);
+    let found = chains(&loads, S::D == 2, &pairs);
+    let grains = grain.iter().filter(|g| **g).count().max(1) as f64;
+    let all: f64 = pairs.iter().map(|p| p.force).sum();
+    let (mut force, mut sin, mut cos) = (0.0, 0.0, 0.0);
+    for pair in found.links.iter().map(|k| &pairs[*k]) {
+        force += pair.force;
+        // A link has no sense: its angle counts twice, so that half a turn is none.
+        let angle = 2.0 * pair.branch[along].atan2(gap.side * pair.branch[gap.across]);
+        sin += angle.sin();
+        cos += angle.cos();
+    }
+    let mean = 0.5 * sin.atan2(cos);
+    ChainNumbers {
+        grains: found.grains as f64 / grains,
+        force: if all > 0.0 { force / all } else { 0.0 },
+        length: found.grains as f64 / found.count.max(1) as f64,
+        angle: if found.count > 0 {
+            mean.clamp(-FRAC_PI_2, FRAC_PI_2)
+        } else {
+            f64::NAN
+        },
+    }
+}
+
+/// Stresses of the bodies that are grains, and the pairs of them that press on each other.
+fn loads<S: Space>(s: &Simulation<S>, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
+    let mut volume = vec![0.0; s.bodies.len()];
+    for ball in &s.shapes.balls {
+        volume[ball.body as usize] += S::ball_volume(ball.radius);
+    }
+    for piece in &s.shapes.pieces {
+        volume[piece.body as usize] += S::ball_volume(piece.size);
+    }
+    let mut loads = vec![Matrix3::zeros(); s.bodies.len()];
+    each_moment(s, |body, force, branch| {
+        let (f, l) = (
+            Vector3::from(force.padded()),
+            Vector3::from(branch.padded()),
+        );
+        let moment = f * l.transpose();
+        loads[body] += (moment + moment.transpose()) * (0.5 / volume[body]);
+    });
+    let mut pressed: Vec<([u32; 2], f64)> = Vec::new();
+    for contact in &s.network.contacts {
+        let force = contact.normal.dot(&contact.impulse);
+        let [a, b] = contact.bodies;
+        if force > 0.0 && grain[a as usize] && grain[b as usize] {
+            pressed.push(([a.min(b), a.max(b)], force));
+        }
+    }
+    pressed.sort_by_key(|p| p.0);
+    let mut pairs: Vec<Pair> = Vec::with_capacity(pressed.len());
+    for (ends, force) in pressed {
+        let ends = ends.map(|b| b as usize);
+        if let Some(last) = pairs.last_mut().filter(|p| p.ends == ends) {
+            last.force += force;
+            continue;
+        }
+        let [a, b] = ends.map(|b| s.bodies.position[b]);
+        let branch = Vector3::from(s.shapes.periodic.shortest(b - a).padded());
+        pairs.push(Pair {
+            ends,
+            branch,
+            force,
+        });
+    }
+    (loads, pairs)
+}

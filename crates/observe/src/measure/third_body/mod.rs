@@ -1,0 +1,393 @@
+//! The third body: profiles across its thickness and in time, clusters, force chains, flow regime, and where energy
+//! is dissipated. Definitions and criteria are in `docs/third_body.md`.
+
+mod cells;
+mod chains;
+mod clusters;
+mod cut;
+mod figure;
+mod gap;
+mod instant;
+mod regime;
+mod spent;
+mod tables;
+
+use super::{Measure, grains, mean, since};
+use fretwork_core::geometry::space::Space;
+use crate::code::{self, CodeError};
+use crate::statistics::{Column, Table};
+use crate::output::Output;
+use fretwork_scene::measures::ThirdBodySpec;
+use fretwork_core::step::Simulation;
+use cells::{Block, History, MECHANISMS};
+use clusters::Clusters;
+use gap::Faces;
+use instant::Instant;
+use regime::{Flow, Regime, flow};
+use serde::{Deserialize, Serialize};
+use spent::{Dissipation, Place};
+
+/// See [`fretwork_scene::measures::MeasureSpec::ThirdBody`].
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct ThirdBody<S: Space> {
+    spec: ThirdBodySpec,
+    faces: Option<Faces>,
+    spent: Dissipation<S>,
+    /// Bonds of each body that broke.
+    lost: Vec<f64>,
+    history: History,
+    clusters: Clusters,
+    /// Factor by which masses are larger than they are.
+    inertia_scaling: f64,
+    /// When the last sample was taken, or the count began (s).
+    seen: f64,
+    /// Fastest sliding so far (m/s).
+    fastest: f64,
+    /// Rows so far, and what stands in them until the next look.
+    rows: usize,
+    row: Vec<f64>,
+}
+
+/// Sliding below this share of the fastest so far is a turning point: no regime is told there.
+const TURNING: f64 = 1e-2;
+
+/// Name, unit and meaning of the columns; `stress_lateral` is one in space only.
+const COLUMNS: [(&str, &str, &str); 20] = [
+    ("thickness", "m", "thickness of the third body"),
+    ("solid_fraction", "", "solid fraction between the faces"),
+    (
+        "coordination",
+        "",
+        "contacts that carry force, mean over the grains",
+    ),
+    (
+        "temperature",
+        "m^2/s^2",
+        "granular temperature between the faces",
+    ),
+    (
+        "stress_across",
+        "Pa",
+        "normal stress across the layer, positive in compression",
+    ),
+    (
+        "stress_along",
+        "Pa",
+        "normal stress along the sliding, positive in compression",
+    ),
+    (
+        "stress_shear",
+        "Pa",
+        "shear stress: what the side of the second body pulls that of the first along",
+    ),
+    (
+        "stress_lateral",
+        "Pa",
+        "normal stress across the sliding in the layer, positive in compression",
+    ),
+    (
+        "sliding",
+        "m/s",
+        "velocity of the second body's face relative to the first's",
+    ),
+    (
+        "slip_first",
+        "m/s",
+        "velocity of the grains at the first body relative to it",
+    ),
+    (
+        "slip_second",
+        "m/s",
+        "velocity of the second body relative to the grains at it",
+    ),
+    ("clusters", "", "clusters of two bonded grains or more"),
+    ("cluster_mean", "", "grains of a cluster, mean by mass"),
+    ("cluster_largest", "", "grains of the largest cluster"),
+    ("chains", "", "share of the grains that are in force chains"),
+    (
+        "chain_force",
+        "",
+        "share of the normal force between grains that chains carry",
+    ),
+    ("chain_length", "", "grains of a force chain, mean"),
+    (
+        "chain_angle",
+        "rad",
+        "mean angle of chains from the normal towards the sliding",
+    ),
+    (
+        "interior_shear",
+        "",
+        "difference of velocity between 10 % and 90 % of the thickness over the sliding",
+    ),
+    (
+        "regime",
+        "",
+        "0 none, 1 Couette, 2 agglomerated, 3 plug with wall slip, 4 mixed",
+    ),
+];
+
+fn columns(dimension: usize) -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
+    let shown = move |c: &(&str, &str, &str)| dimension == 3 || c.0 != "stress_lateral";
+    COLUMNS.into_iter().filter(shown)
+}
+
+impl<S: Space> ThirdBody<S> {
+    pub(super) fn new(spec: ThirdBodySpec, inertia_scaling: f64) -> Self {
+        Self {
+            spent: Dissipation::new(spec.bins, Vec::new()),
+            seen: spec.start,
+            spec,
+            faces: None,
+            lost: Vec::new(),
+            history: History::new(),
+            clusters: Clusters::default(),
+            inertia_scaling,
+            fastest: 0.0,
+            rows: 0,
+            row: vec![f64::NAN; columns(S::D).count()],
+        }
+    }
+
+    fn column(&self, part: &str) -> String {
+        format!("{}_{part}", self.spec.name)
+    }
+
+    /// Whether the next step ends after the start: it is the first that counts, as in a friction test.
+    fn due(&self, s: &Simulation<S>) -> bool {
+        s.time + s.scheme.h > self.spec.start
+    }
+
+    /// The flow at the end, over the last complete cycle of the friction test or the second half of the time, the mean size of
+    /// the clusters by mass there, and which of the two it is.
+    fn flow(&self, table: &Table) -> (Option<Flow>, f64, String) {
+        let all = self.history.whole().time;
+        let cycle = table.last_cycle().filter(|(_, start)| *start >= all[0]);
+        let (over, start) = match cycle {
+            Some((number, start)) => (format!("from cycle {number} on"), start),
+            None => ("over the second half".to_owned(), 0.5 * (all[0] + all[1])),
+        };
+        let late = self.history.since(start);
+        let cluster = late.cluster / late.samples.max(1) as f64;
+        (flow(&late.profile()), cluster, over)
+    }
+
+    fn row(&mut self, now: &Instant) -> Vec<f64> {
+        let whole = now.whole();
+        let block = Block {
+            cells: now.cells.clone(),
+            ..Block::default()
+        };
+        let full = || block.bins().iter().filter(|c| c.mass > 0.0);
+        let velocity = |c: Option<&cells::Cell>| c.map_or(f64::NAN, cells::Cell::velocity);
+        let [first, last] = [velocity(full().next()), velocity(full().next_back())];
+        self.fastest = self.fastest.max(now.sliding.abs());
+        let slides = now.sliding.abs() > TURNING * self.fastest;
+        let flow = flow(&block.profile()).filter(|_| slides);
+        let stress = whole.stress();
+        let mut row = vec![
+            now.gap.thickness,
+            whole.solid(),
+            now.coordination,
+            whole.heat / whole.mass,
+        ];
+        row.extend_from_slice(&stress[..if S::D == 3 { 4 } else { 3 }]);
+        row.extend([
+            now.sliding,
+            first,
+            now.sliding - last,
+            now.clusters.count as f64,
+            now.clusters.mean,
+            now.clusters.largest as f64,
+            now.chains.grains,
+            now.chains.force,
+            now.chains.length,
+            now.chains.angle,
+            flow.map_or(f64::NAN, |f| f.interior),
+            Regime::of(flow.as_ref(), now.clusters.mean) as i32 as f64,
+        ]);
+        row
+    }
+}
+
+impl<S: Space> Measure<S> for ThirdBody<S> {
+    fn begin(&mut self, s: &Simulation<S>) {
+        if self.faces.is_some() {
+            return;
+        }
+        let (one, other) = &self.spec.between;
+        self.faces = Faces::new(s, [one, other], self.spec.across, self.spec.bins);
+        if let Some(faces) = &mut self.faces {
+            faces.look(s, self.spec.extent, &grains(s));
+        }
+        self.spent = Dissipation::new(self.spec.bins, s.bodies.grain_flags());
+        if self.faces.is_some() && self.due(s) {
+            self.spent.begin(s);
+        }
+        self.lost = vec![0.0; s.bodies.len()];
+        self.seen = self.seen.max(s.time);
+    }
+
+    fn follows(&self) -> bool {
+        true
+    }
+
+    fn follow(&mut self, s: &Simulation<S>) {
+        for body in s.network.breaks.iter().flat_map(|b| b.bodies) {
+            self.lost[body as usize] += 1.0;
+        }
+        let Some(faces) = &self.faces else { return };
+        if self.spent.counts() {
+            self.spent.follow(s, faces, &faces.gap(s), self.spec.along);
+        } else if self.due(s) {
+            self.spent.begin(s);
+            self.seen = s.time;
+        }
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        let column = |(part, unit, doc)| Column::new(self.column(part), unit, doc);
+        columns(S::D).map(column).collect()
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        self.rows += 1;
+        let looks = (self.rows - 1).is_multiple_of(self.spec.every);
+        let Some(faces) = self.faces.as_mut().filter(|_| looks) else {
+            return self.row.clone();
+        };
+        let all = grains(s);
+        faces.look(s, self.spec.extent, &all);
+        let mut now = Instant::new(s, faces, &all, self.spec.along, &self.lost);
+        self.row = self.row(&now);
+        if self.spent.counts() && s.time > self.seen {
+            // What resists a sliding to and fro keeps its sign.
+            let sign = now.sliding.signum();
+            now.cells.iter_mut().for_each(|c| c.moment[2] *= sign);
+            for (cell, energy) in now.cells[1..].iter_mut().zip(self.spent.take()) {
+                cell.energy = energy;
+            }
+            self.history.add(Block {
+                time: [self.seen, s.time],
+                samples: 1,
+                thickness: now.gap.thickness,
+                cluster: now.clusters.mean,
+                cells: now.cells,
+            });
+            self.seen = s.time;
+        }
+        self.clusters = now.clusters;
+        self.row.clone()
+    }
+
+    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
+        let mut out: Vec<(String, f64)> = Vec::new();
+        let means = columns(S::D).filter(|c| {
+            !(c.0 == "sliding"
+                || c.0.starts_with("slip")
+                || c.0 == "interior_shear"
+                || c.0 == "regime")
+        });
+        for (part, ..) in means {
+            let column = self.column(part);
+            let value = mean(&since(table, &column, self.spec.start));
+            out.extend(value.map(|v| (column, v)));
+        }
+        let (flow, cluster, _) = self.flow(table);
+        let regime = Regime::of(flow.as_ref(), cluster);
+        out.push((self.column("regime"), regime as i32 as f64));
+        if let Some(flow) = flow {
+            out.extend([
+                (self.column("interior_shear"), flow.interior),
+                (self.column("straightness"), flow.straight),
+                (self.column("slip_first_share"), flow.slip_first),
+                (self.column("slip_second_share"), flow.slip_second),
+            ]);
+        }
+        let total = self.spent.total();
+        out.push((self.column("dissipated"), total));
+        for (k, mechanism) in MECHANISMS.iter().enumerate() {
+            let sum = self.spent.places.iter().map(|p| p[k]).sum();
+            out.push((self.column(&format!("dissipated_{mechanism}")), sum));
+        }
+        let load = self.spent.load;
+        if let Some(mu) = self.spent.friction() {
+            out.push((self.column("mu_from_forces"), self.spent.work / load));
+            out.push((self.column("mu_from_dissipation"), mu));
+            // Kept by the grains and their bonds, or given by the bodies otherwise than by sliding.
+            out.push((self.column("mu_kept"), mu - total / load));
+        }
+        for (place, energies) in Place::ALL.iter().zip(&self.spent.places) {
+            let sum: f64 = energies.iter().sum();
+            if *energies == spent::Energies::default() {
+                continue;
+            }
+            let name = place.name(&self.spec.between);
+            if total != 0.0 {
+                out.push((self.column(&format!("share_{name}")), sum / total));
+            }
+            if load > 0.0 {
+                out.push((self.column(&format!("mu_{name}")), sum / load));
+            }
+        }
+        out
+    }
+
+    fn units(&self) -> Vec<(String, &'static str)> {
+        let unit = if S::D == 2 { "J/m" } else { "J" };
+        let parts = MECHANISMS.iter().map(|m| format!("dissipated_{m}"));
+        let names = parts.chain(["dissipated".to_owned()]);
+        names.map(|name| (self.column(&name), unit)).collect()
+    }
+
+    fn verdict(&self, table: &Table) -> Vec<(String, String)> {
+        let (flow, cluster, over) = self.flow(table);
+        let said = Regime::of(flow.as_ref(), cluster).said(flow.as_ref(), cluster);
+        vec![(self.column("regime"), format!("{said}; {over}"))]
+    }
+
+    fn chains(&self, s: &Simulation<S>) -> Option<Vec<[u32; 2]>> {
+        Some(instant::links(s))
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        code::encode(self)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        *self = code::decode(from)?;
+        Ok(())
+    }
+
+    fn outputs(&self, title: &str, table: &Table) -> Vec<Output> {
+        let name = &self.spec.name;
+        let (whole, slices) = (self.history.whole(), self.history.slices(self.spec.slices));
+        let text = |part: &str, text: String| Output::Text {
+            file: format!("{name}{part}.csv"),
+            text,
+        };
+        let mut outputs = vec![
+            text("", tables::profiles(&whole, &slices, S::D)),
+            text("_energy", tables::energies(&self.spent, &self.spec.between)),
+            text(
+                "_clusters",
+                tables::clusters(&self.clusters, self.inertia_scaling, S::D),
+            ),
+        ];
+        let column = |part: &str| since(table, &self.column(part), f64::NEG_INFINITY);
+        let figure = figure::Figure {
+            title,
+            whole: &whole,
+            slices: &slices,
+            between: &self.spec.between,
+            thickness: column("thickness"),
+            clusters: [column("cluster_mean"), column("cluster_largest")],
+            chains: [column("chains"), column("chain_force")],
+            shear: column("interior_shear"),
+            dimension: S::D,
+        };
+        outputs.push(Output::charts(format!("{name}.png"), figure.charts(), 2));
+        outputs
+    }
+}

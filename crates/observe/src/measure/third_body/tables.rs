@@ -1,0 +1,165 @@
+//! The files of a third body: profiles by slice of time, energies by place, sizes of clusters.
+
+use super::cells::{Block, Cell, MECHANISMS};
+use super::clusters::Clusters;
+use super::spent::{Dissipation, Place};
+use fretwork_core::geometry::space::Space;
+
+/// Columns of the profiles, in the order of [`row`].
+const PROFILE: [&str; 22] = [
+    "slice",
+    "from [s]",
+    "to [s]",
+    "depth_over_thickness",
+    "depth [m]",
+    "mass_depth_over_thickness",
+    "velocity [m/s]",
+    "velocity_over_sliding",
+    "spin [rad/s]",
+    "solid_fraction",
+    "coordination",
+    "temperature [m^2/s^2]",
+    "stress_across [Pa]",
+    "stress_along [Pa]",
+    "stress_shear [Pa]",
+    "stress_lateral [Pa]",
+    "damage_ratio",
+    "friction [W/m^3]",
+    "impact [W/m^3]",
+    "fracture [W/m^3]",
+    "viscous [W/m^3]",
+    "correction [W/m^3]",
+];
+
+/// Powers of a cell by volume and mechanism (W/m^3), of a block of so many samples.
+pub(super) fn powers(cell: &Cell, block: &Block) -> [f64; MECHANISMS.len()] {
+    let volume = cell.space / block.samples.max(1) as f64;
+    cell.energy.map(|e| e / (volume * block.duration()))
+}
+
+fn row(slice: usize, k: usize, cell: &Cell, block: &Block) -> Vec<f64> {
+    let place = (k as f64 + 0.5) / block.bins().len() as f64;
+    let stress = cell.stress();
+    let mut row = vec![
+        slice as f64,
+        block.time[0],
+        block.time[1],
+        place,
+        place * block.mean_thickness(),
+        cell.depth(),
+        cell.velocity(),
+        cell.carried(),
+        cell.spin / cell.mass,
+        cell.solid(),
+        cell.contacts / cell.grains,
+        cell.heat / cell.mass,
+        stress[0],
+        stress[1],
+        stress[2],
+        stress[3],
+        cell.damage(),
+    ];
+    row.extend(powers(cell, block));
+    row
+}
+
+/// The profiles: slice 0 is all of the time, the others follow; a value that nothing gives is `NaN`.
+pub(super) fn profiles(
+    whole: &Block,
+    slices: &[Block],
+    dimension: usize,
+) -> String {
+    // Across, along and their shear are all of a stress in the plane.
+    let lateral = |k: &usize| dimension == 3 || *k != 15;
+    let header = (0..PROFILE.len())
+        .filter(lateral)
+        .map(|k| PROFILE[k].to_owned());
+    let mut lines = vec![header.collect::<Vec<_>>()];
+    for (slice, block) in std::iter::once(whole).chain(slices).enumerate() {
+        for (k, cell) in block.bins().iter().enumerate() {
+            let row = row(slice, k, cell, block);
+            let kept = (0..row.len()).filter(lateral);
+            lines.push(kept.map(|i| format!("{:e}", row[i])).collect());
+        }
+    }
+    joined(&lines)
+}
+
+/// The energies by place and by bin, each with its share of all.
+pub(super) fn energies<S: Space>(
+    spent: &Dissipation<S>,
+    between: &(String, String),
+) -> String {
+    let unit = if S::D == 2 { "J/m" } else { "J" };
+    let mut header = vec!["place".to_owned()];
+    header.extend(
+        MECHANISMS
+            .iter()
+            .chain(&["total"])
+            .map(|m| format!("{m} [{unit}]")),
+    );
+    header.push("share".to_owned());
+    let mut lines = vec![header];
+    let total = spent.total();
+    let mut add = |name: String, energies: &[f64]| {
+        let sum: f64 = energies.iter().sum();
+        let share = if total == 0.0 { 0.0 } else { sum / total };
+        let mut line = vec![name];
+        line.extend(
+            energies
+                .iter()
+                .chain(&[sum, share])
+                .map(|e| format!("{e:e}")),
+        );
+        lines.push(line);
+    };
+    for (place, energies) in Place::ALL.iter().zip(&spent.places) {
+        add(place.name(between), energies);
+    }
+    for (k, energies) in spent.bins.iter().enumerate() {
+        add(format!("bin_{}", k + 1), energies);
+    }
+    joined(&lines)
+}
+
+/// How many clusters there are of each size, and their mass without `inertia_scaling`.
+pub(super) fn clusters(
+    clusters: &Clusters,
+    inertia_scaling: f64,
+    dimension: usize,
+) -> String {
+    let unit = if dimension == 2 { "kg/m" } else { "kg" };
+    let mut lines = vec![vec![
+        "grains".to_owned(),
+        "clusters".to_owned(),
+        format!("mass [{unit}]"),
+    ]];
+    for (size, (count, mass)) in &clusters.sizes {
+        lines.push(vec![
+            size.to_string(),
+            count.to_string(),
+            format!("{:e}", mass / inertia_scaling),
+        ]);
+    }
+    joined(&lines)
+}
+
+fn joined(lines: &[Vec<String>]) -> String {
+    lines.iter().map(|l| l.join(",") + "\n").collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The mass of the clusters is that of the material, whatever the inertia is scaled by.
+    #[test]
+    fn masses_are_without_the_scaling_of_inertia() {
+        let of = Clusters {
+            sizes: [(1, (4, 2e3)), (3, (1, 1e3))].into(),
+            ..Clusters::default()
+        };
+        let text = clusters(&of, 1e6, 2);
+        assert_eq!(text, "grains,clusters,mass [kg/m]\n1,4,2e-3\n3,1,1e-3\n");
+    }
+}

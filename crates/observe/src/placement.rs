@@ -1,0 +1,85 @@
+//! Where the shapes and contacts of a simulation are.
+
+use fretwork_core::contact::{Contact, Key};
+use fretwork_core::geometry::convex::{Core, Piece};
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::Simulation;
+
+/// Where the centre of a piece stands (m).
+pub fn piece_centre<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> S::Vector {
+    let b = piece.body as usize;
+    s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &piece.offset)
+}
+
+/// The corners of a piece (m): one line around it in the plane, its faces in space.
+pub fn piece_outline<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> Vec<Vec<S::Vector>> {
+    let rotation = &s.bodies.rotation[piece.body as usize];
+    let faces = piece.core.turned(rotation).outline(piece.rounding);
+    let centre = s.shapes.periodic.wrapped(piece_centre(s, piece));
+    let moved = |face: Vec<S::Vector>| face.iter().map(|c| *c + centre).collect();
+    faces.into_iter().map(moved).collect()
+}
+
+/// Whether a body is a first body.
+pub fn is_first<S: Space>(s: &Simulation<S>, body: u32) -> bool {
+    s.bodies.driven.iter().any(|d| d.body == body)
+}
+
+/// The state of the bond of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BondState {
+    /// There is no bond, and was none.
+    None,
+    /// It holds.
+    Intact {
+        /// Its damage, 0 to 1.
+        damage: f64,
+    },
+    /// It broke.
+    Broken,
+}
+
+/// The state of the bond of a contact.
+pub fn bond_state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> BondState {
+    match s.network.bond(contact) {
+        Some(bond) if bond.intact() => BondState::Intact {
+            damage: bond.damage,
+        },
+        _ if contact.broken => BondState::Broken,
+        _ => BondState::None,
+    }
+}
+
+/// The two ends of a contact: the candidate's centre, and the antagonist's centre or the foot on a
+/// surface.
+pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
+    let key = &contact.key;
+    let (Some(candidate), 0) = (key.ball(), key.antagonist & Key::PIECE) else {
+        return ends_of_piece(s, contact);
+    };
+    let ball = &s.shapes.balls[candidate];
+    let a = fretwork_core::contact::detect::centre(ball, &s.bodies);
+    let length = match key.surface() {
+        Some(_) => ball.radius + contact.gap,
+        None => {
+            let other = &s.shapes.balls[key.antagonist as usize];
+            ball.radius + other.radius + contact.gap
+        }
+    };
+    (a, a - contact.normal * length)
+}
+
+/// The same where a piece is in it: by way of the contact point, which is the end at a first body.
+fn ends_of_piece<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
+    let centre = s.bodies.position[contact.bodies[0] as usize];
+    let at = centre + contact.arms[0];
+    let foot = at - contact.normal * contact.gap;
+    let [first, other] = contact.bodies.map(|b| is_first(s, b));
+    let a = if first { at } else { centre };
+    let b = if other || contact.key.surface().is_some() {
+        foot
+    } else {
+        foot - contact.arms[1]
+    };
+    (a, b)
+}

@@ -1,0 +1,148 @@
+//! Wear scars: columns of the statistics, what the summary says and `scar_NAME.csv`.
+
+use super::statistics::Column;
+use super::output::Output;
+use super::quantity::quantity;
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::Simulation;
+use fretwork_core::wear::{Form, Scar, shape};
+use serde::Serialize;
+
+/// One scar in the summary (SI).
+#[derive(Clone, Debug, Serialize)]
+pub struct ScarSummary {
+    /// Body, with a number where several of its surfaces wear.
+    pub body: String,
+    /// Volume worn off (m^3; m^3/m).
+    pub volume: f64,
+    /// Largest depth (m).
+    pub depth: f64,
+    /// Where it is along x, in the body's frame (m).
+    pub deepest_at: f64,
+    /// `U`, `W` or `None`; see [`fretwork_core::wear::shape`].
+    pub form: Form,
+    /// Where the scar begins and ends along x (m); null where there is none.
+    pub from: Option<f64>,
+    /// Its other end (m).
+    pub to: Option<f64>,
+    /// Depth of its middle (m).
+    pub middle: f64,
+    /// Depth of its deepest slice on the left and on the right (m).
+    pub sides: [f64; 2],
+    /// Depth at which it is worn through (m).
+    pub thickness: f64,
+}
+
+impl ScarSummary {
+    fn of<S: Space>(scar: &Scar<S>) -> Self {
+        let o = shape::outline(&scar.along());
+        Self {
+            body: scar.name.clone(),
+            volume: scar.volume(),
+            depth: scar.deepest(),
+            deepest_at: scar.deepest_at()[0],
+            form: o.form,
+            from: o.from.is_finite().then_some(o.from),
+            to: o.to.is_finite().then_some(o.to),
+            middle: o.middle,
+            sides: o.sides,
+            thickness: scar.thickness,
+        }
+    }
+
+    /// Its form and extent in words; volume and depths stand with the wear of its body.
+    pub fn outline(&self) -> String {
+        match (self.form, self.from, self.to) {
+            (Form::None, ..) | (_, None, _) | (_, _, None) => "no scar".to_owned(),
+            (form, Some(from), Some(to)) => {
+                let [left, right] = self.sides;
+                let m = |x: f64| quantity(x, "m");
+                format!(
+                    "{form:?} from x = {} to {}, deepest at x = {}; middle {}, sides {} and {} deep",
+                    m(from),
+                    m(to),
+                    m(self.deepest_at),
+                    m(self.middle),
+                    m(left),
+                    m(right)
+                )
+            }
+        }
+    }
+}
+
+/// What the summary says of the scars.
+pub fn outcome<S: Space>(s: &Simulation<S>) -> Vec<ScarSummary> {
+    s.scars.iter().map(ScarSummary::of).collect()
+}
+
+/// Columns of the statistics.
+pub fn columns<S: Space>(s: &Simulation<S>) -> Vec<Column> {
+    let volume = if S::D == 2 { "m^3/m" } else { "m^3" };
+    let two = |scar: &Scar<S>| {
+        [
+            Column::new(
+                format!("{}_worn", scar.name),
+                volume,
+                "volume worn off the body",
+            ),
+            Column::new(
+                format!("{}_depth", scar.name),
+                "m",
+                "largest depth of its scar",
+            ),
+        ]
+    };
+    s.scars.iter().flat_map(two).collect()
+}
+
+/// Values of [`columns`].
+pub fn row<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = f64> + '_ {
+    s.scars.iter().flat_map(|c| [c.volume(), c.deepest()])
+}
+
+/// The scar as a table: places in the body's frame, height now and at first, depth (m). A run reads it again as the
+/// `file` of a `Profile`.
+pub fn table<S: Space>(s: &Simulation<S>, scar: &Scar<S>) -> String {
+    let across = if S::D == 2 { "x [m]" } else { "x [m],y [m]" };
+    let mut text = format!("{across},z [m],z_first [m],depth [m]\n");
+    let Some(shape) = s.shapes.surfaces[scar.surface].shape.receding() else {
+        return text;
+    };
+    let mut rows: Vec<(S::Vector, f64)> = scar.vertices().map(|(v, d)| (v.at, d)).collect();
+    let repeated = rows.first().map(|r| r.1);
+    rows.extend(shape.end().zip(repeated));
+    // From left to right, whichever way the chain goes.
+    if S::D == 2 && shape.sign() < 0.0 {
+        rows.reverse();
+    }
+    for (at, depth) in rows {
+        let first = at[S::D - 1];
+        let places = (0..S::D - 1).map(|k| at[k]);
+        let heights = [first - shape.sign() * depth, first, depth];
+        let numbers: Vec<String> = places.chain(heights).map(|x| format!("{x:e}")).collect();
+        text += &(numbers.join(",") + "\n");
+    }
+    text
+}
+
+/// The tables of all scars, `scar_NAME.csv`.
+pub fn tables<S: Space>(s: &Simulation<S>) -> Vec<Output> {
+    let file = |scar: &Scar<S>| Output::Text {
+        file: format!("{}.csv", file_name(&scar.name)),
+        text: table(s, scar),
+    };
+    s.scars.iter().map(file).collect()
+}
+
+/// Names of files take letters, digits, `-` and `_` of the name of a body.
+pub fn file_name(name: &str) -> String {
+    let plain = |c: char| {
+        if c.is_alphanumeric() || c == '-' {
+            c
+        } else {
+            '_'
+        }
+    };
+    format!("scar_{}", name.chars().map(plain).collect::<String>())
+}

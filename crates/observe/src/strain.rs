@@ -1,0 +1,154 @@
+//! Local shear strain of the grains since a moment, from how their neighbours of that moment moved.
+//!
+//! The deformation gradient F of a grain is the one that carries the vectors X to its neighbours into those of now, x,
+//! with the least sum of squares |x - F X|^2 (M. L. Falk, J. S. Langer, Phys. Rev. E 57 (1998) 7192). Its largest and
+//! smallest stretches a and b, singular values of F, give the shear g = (a - b)/sqrt(a b): the amount of simple shear
+//! that has the same ratio of stretches, whatever its size. Rotation and dilation do not count.
+
+use fretwork_core::contact::detect::centre;
+use fretwork_core::geometry::grid::pairs;
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::Simulation;
+use nalgebra::{DMatrix, Matrix3};
+use serde::{Deserialize, Serialize};
+
+/// A neighbour: its place among the grains' balls, and the vector to it at the moment that counts (m).
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Neighbour<V> {
+    ball: u32,
+    vector: V,
+    /// What the periodic cell adds to a difference of positions (m).
+    image: V,
+}
+
+/// The neighbours of each ball at a moment.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct Strain<S: Space> {
+    around: Vec<Vec<Neighbour<S::Vector>>>,
+}
+
+impl<S: Space> Strain<S> {
+    /// Counts from the state at hand. Neighbours of a grain are those less than a mean diameter apart, surface to
+    /// surface: two shells, so that one neighbour alone does not decide.
+    pub fn new(s: &Simulation<S>) -> Self {
+        let balls = &s.shapes.balls;
+        let centres: Vec<S::Vector> = balls.iter().map(|b| centre(b, &s.bodies)).collect();
+        let radii: Vec<f64> = balls.iter().map(|b| b.radius).collect();
+        let grain = s.bodies.grain_flags();
+        let counts = |b: u32| grain[balls[b as usize].body as usize];
+        let grains = balls.iter().filter(|b| grain[b.body as usize]);
+        let (sum, n) = grains.fold((0.0, 0.0), |(sum, n), b| (sum + 2.0 * b.radius, n + 1.0));
+        let reach = if n > 0.0 { sum / n } else { 0.0 };
+        let periodic = &s.shapes.periodic;
+        let mut around = vec![Vec::new(); balls.len()];
+        for (a, b) in pairs(&centres, &radii, reach, periodic, |a, b| {
+            counts(a) && counts(b)
+        }) {
+            let apart = centres[b as usize] - centres[a as usize];
+            let vector = periodic.shortest(apart);
+            let image = vector - apart;
+            let one = |ball, sign: f64| Neighbour {
+                ball,
+                vector: vector * sign,
+                image: image * sign,
+            };
+            around[a as usize].push(one(b, 1.0));
+            around[b as usize].push(one(a, -1.0));
+        }
+        Self { around }
+    }
+
+    /// The shear of each ball since then; not a number for balls of first bodies and where neighbours span no space.
+    pub fn shear(&self, s: &Simulation<S>) -> Vec<f64> {
+        let now: Vec<S::Vector> = s
+            .shapes
+            .balls
+            .iter()
+            .map(|b| centre(b, &s.bodies))
+            .collect();
+        let all = self.around.iter().enumerate();
+        let of = |(a, around): (usize, &Vec<Neighbour<S::Vector>>)| {
+            let pairs = around
+                .iter()
+                .map(|n| (n.vector, now[n.ball as usize] - now[a] + n.image));
+            shear::<S>(pairs)
+        };
+        all.map(of).collect()
+    }
+}
+
+/// The shear of the gradient that carries the first of each pair of vectors into the second.
+fn shear<S: Space>(pairs: impl Iterator<Item = (S::Vector, S::Vector)>) -> f64 {
+    let (mut moment, mut moved) = (Matrix3::zeros(), Matrix3::zeros());
+    for (before, after) in pairs {
+        for i in 0..S::D {
+            for j in 0..S::D {
+                moment[(i, j)] += before[i] * before[j];
+                moved[(i, j)] += after[i] * before[j];
+            }
+        }
+    }
+    let square = |m: &Matrix3<f64>| DMatrix::from_fn(S::D, S::D, |i, j| m[(i, j)]);
+    let (moment, moved) = (square(&moment), square(&moved));
+    // Neighbours on a line give no gradient across it.
+    let spread = moment.clone().symmetric_eigenvalues();
+    if spread.min() <= 1e-3 * spread.max() {
+        return f64::NAN;
+    }
+    let Some(inverse) = moment.try_inverse() else {
+        return f64::NAN;
+    };
+    let stretches = (moved * inverse).singular_values();
+    let (a, b) = (stretches.max(), stretches.min());
+    if b > 0.0 {
+        (a - b) / (a * b).sqrt()
+    } else {
+        f64::INFINITY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fretwork_core::geometry::space::{Plane, Solid};
+    use nalgebra::{Matrix2, Rotation2, Rotation3, Vector2, Vector3};
+
+    /// A simple shear, turned and widened, has its own amount, small or large, and a rotation alone has none.
+    #[test]
+    fn simple_shear_has_its_amount() {
+        let star: Vec<Vector2<f64>> = (0..7)
+            .map(|k| {
+                let (sin, cos) = (0.9 * f64::from(k)).sin_cos();
+                Vector2::new(cos, sin) * (1.0 + 0.1 * f64::from(k))
+            })
+            .collect();
+        for amount in [0.0, 1e-3, 0.4, 3.0] {
+            let turn = Rotation2::new(0.7).matrix() * 1.2;
+            let f = turn * Matrix2::new(1.0, amount, 0.0, 1.0);
+            let got = shear::<Plane>(star.iter().map(|x| (*x, f * x)));
+            assert!((got - amount).abs() < 1e-9, "{got} in place of {amount}");
+        }
+        let ball: Vec<Vector3<f64>> = (0..20)
+            .map(|k| {
+                let t = f64::from(k);
+                Vector3::new(
+                    (1.3 * t).sin(),
+                    (2.1 * t).cos(),
+                    (0.7 * t).sin() * (1.9 * t).cos(),
+                )
+            })
+            .collect();
+        let turn = Rotation3::from_euler_angles(0.3, -1.0, 2.0).matrix() * 0.8;
+        let f = turn * Matrix3::new(1.0, 0.0, 0.6, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+        let got = shear::<Solid>(ball.iter().map(|x| (*x, f * x)));
+        assert!((got - 0.6).abs() < 1e-9, "{got}");
+    }
+
+    #[test]
+    fn neighbours_on_a_line_give_nothing() {
+        let line = [1.0, -1.0, 2.0].map(|x| Vector2::new(x, 0.5 * x));
+        assert!(shear::<Plane>(line.iter().map(|x| (*x, *x))).is_nan());
+        assert!(shear::<Plane>(std::iter::empty()).is_nan());
+    }
+}

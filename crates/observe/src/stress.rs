@@ -1,0 +1,76 @@
+//! The stress that contacts carry, after Love and Weber.
+
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::Simulation;
+
+/// The internal moment tensor of the free grains, sum f (x) l over their contacts, over a volume: the
+/// Love-Weber stress (Pa), positive in compression; row: axis of the force, column: axis of the branch.
+///
+/// f is the mean force of the last step, l goes from a grain's centre to the contact: to the wall's face, or
+/// to the middle of the gap to another grain. At rest the stress is what the walls feel.
+pub fn love_weber<S: Space>(s: &Simulation<S>, volume: f64) -> [[f64; 3]; 3] {
+    let mut moment = [[0.0; 3]; 3];
+    each_moment(s, |_, force, branch| {
+        for (a, row) in moment.iter_mut().enumerate().take(S::D) {
+            for (b, value) in row.iter_mut().enumerate().take(S::D) {
+                *value += force[a] * branch[b] / volume;
+            }
+        }
+    });
+    moment
+}
+
+/// Gives, for each free grain at each of its contacts, its body, the mean force of the last step (N; N/m in 2D) and
+/// the branch (m), the signs such that the product is positive in compression.
+pub fn each_moment<S: Space>(
+    s: &Simulation<S>,
+    mut take: impl FnMut(usize, &S::Vector, &S::Vector),
+) {
+    let free = s.bodies.grain_flags();
+    for contact in &s.network.contacts {
+        let members = contact.bodies.map(|b| free[b as usize]);
+        let share = if members == [true, true] { 0.5 } else { 1.0 };
+        for (side, sign) in [(0, -1.0), (1, 1.0)] {
+            if !members[side] {
+                continue;
+            }
+            let arm = contact.arms[side] + contact.normal * (sign * share * contact.gap);
+            let force = contact.impulse * (sign / s.scheme.h);
+            take(contact.bodies[side] as usize, &force, &arm);
+        }
+    }
+}
+
+/// Mean pressure and sine of the mobilised friction angle, (s1 - s2)/(s1 + s2) with the principal stresses
+/// in the plane of the first two axes; the sine is zero without pressure.
+pub fn plane_invariants(stress: &[[f64; 3]; 3]) -> (f64, f64) {
+    let mean = 0.5 * (stress[0][0] + stress[1][1]);
+    let half = 0.5 * (stress[0][0] - stress[1][1]);
+    let shear = 0.5 * (stress[0][1] + stress[1][0]);
+    let sine = if mean > 0.0 {
+        half.hypot(shear) / mean
+    } else {
+        0.0
+    };
+    (mean, sine)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn invariants_do_not_depend_on_the_axes() {
+        // Principal stresses 3 and 1 Pa, turned by an angle: p = 2, sin phi = 1/2.
+        for angle in [0.0f64, 0.4, 1.1] {
+            let (s, c) = angle.sin_cos();
+            let mut turned = [[0.0; 3]; 3];
+            turned[0][0] = 3.0 * c * c + s * s;
+            turned[1][1] = 3.0 * s * s + c * c;
+            turned[0][1] = 2.0 * s * c;
+            turned[1][0] = 2.0 * s * c;
+            let (p, sine) = plane_invariants(&turned);
+            assert!((p - 2.0).abs() < 1e-12 && (sine - 0.5).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! The figure of a wear scar.
+
+use fretwork_core::geometry::space::Space;
+use fretwork_observe::scars::file_name;
+use fretwork_observe::chart::{Axis, Chart, Series, Style};
+use crate::{ReportError, draw_panels};
+use fretwork_core::step::Simulation;
+use fretwork_core::wear::{Form, shape};
+use std::path::Path;
+
+/// Draws the scars: the profile at first and now, and the depth; in space as means across the sliding.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn draw<S: Space>(dir: &Path, title: &str, s: &Simulation<S>) -> Result<(), ReportError> {
+    for scar in s.scars.iter().filter(|c| c.deepest() > 0.0) {
+        let rows = scar.along();
+        let o = shape::outline(&rows);
+        let mut depth = Chart::new(
+            match o.form {
+                Form::None => format!("Wear scar of {}", scar.name),
+                form => format!("Wear scar of {}, {form:?}-shaped", scar.name),
+            },
+            Axis::new("position x", "m"),
+            Axis::new("−depth", "m"),
+        );
+        depth.subtitle = Some(title.to_owned());
+        // Downwards, as it lies.
+        let points = rows.iter().map(|r| (r[0], -r[2])).collect();
+        let mut charts = vec![depth.with(Series::new(String::new(), points))];
+        if S::D == 2
+            && let Some(shape) = s.shapes.surfaces[scar.surface].shape.receding()
+        {
+            let first = scar.vertices().map(|(v, _)| (v.at[0], v.at[1])).collect();
+            let now = scar
+                .vertices()
+                .map(|(v, d)| (v.at[0], v.at[1] - shape.sign() * d));
+            let mut chart = Chart::new(
+                format!("Profile of {}", scar.name),
+                Axis::new("position x", "m"),
+                Axis::new("height z", "m"),
+            );
+            chart.subtitle = Some(title.to_owned());
+            charts.push(
+                chart
+                    .with(Series::new("before wear", first).style(Style::Dashed))
+                    .with(Series::new("worn", now.collect())),
+            );
+        }
+        let path = dir.join(format!("{}.png", file_name(&scar.name)));
+        draw_panels(&charts, charts.len(), &path)?;
+    }
+    Ok(())
+}

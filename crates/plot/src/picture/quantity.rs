@@ -1,0 +1,103 @@
+//! The quantity that colours the grains of a frame: their speed, or the damage of their bonds where there are bonds.
+
+use fretwork_observe::placement::is_first;
+use fretwork_core::contact::Key;
+use fretwork_core::geometry::space::{Space, VectorLike};
+use crate::{Paint, Scale, round_top};
+use fretwork_core::step::Simulation;
+
+/// The share of the grains whose speed is within the colour bar: a few that fly do not turn all others pale.
+const WITHIN: f64 = 0.98;
+
+/// Paints of the balls and then of the pieces, and what they mean; none where nothing moves. In the plane bonds are
+/// drawn one by one, and the scale is theirs.
+pub(super) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<Scale>) {
+    let values = match (s.network.bonds_made() > 0, S::D) {
+        (true, 2) => return (Vec::new(), Some(damage_scale(true))),
+        (true, _) => damage(s),
+        (false, _) => {
+            let speed = |b: usize| s.bodies.velocity[b].norm();
+            (0..s.bodies.len()).map(speed).collect()
+        }
+    };
+    let balls = s.shapes.balls.iter().map(|b| b.body);
+    let of: Vec<u32> = balls
+        .chain(s.shapes.pieces.iter().map(|p| p.body))
+        .collect();
+    let grain: Vec<bool> = of
+        .iter()
+        .map(|b| !is_first(s, *b) && !s.bodies.gone[*b as usize])
+        .collect();
+    let scale = if s.network.bonds_made() > 0 {
+        damage_scale(false)
+    } else {
+        let shown = of.iter().zip(&grain).filter(|(_, grain)| **grain);
+        let mut shown: Vec<f64> = shown.map(|(b, _)| values[*b as usize]).collect();
+        shown.retain(|v| v.is_finite());
+        shown.sort_by(f64::total_cmp);
+        let place = (WITHIN * shown.len().saturating_sub(1) as f64).ceil() as usize;
+        let high = shown.get(place).copied().unwrap_or(0.0);
+        if high <= 0.0 {
+            return (Vec::new(), None);
+        }
+        Scale {
+            label: "speed |v|".to_owned(),
+            unit: "m/s".to_owned(),
+            top: round_top(high),
+            bonds: false,
+        }
+    };
+    let paint = |(b, grain): (&u32, &bool)| match grain {
+        true => Paint::Value(values[*b as usize] / scale.top),
+        false => Paint::Grey,
+    };
+    (of.iter().zip(&grain).map(paint).collect(), Some(scale))
+}
+
+fn damage_scale(bonds: bool) -> Scale {
+    let label = if bonds {
+        "damage D of intact bonds"
+    } else {
+        "mean damage D of the bonds of a grain"
+    };
+    Scale {
+        label: label.to_owned(),
+        unit: String::new(),
+        top: 1.0,
+        bonds,
+    }
+}
+
+/// Mean damage of the bonds of each body, broken ones counting 1; not a number where it never had one.
+fn damage<S: Space>(s: &Simulation<S>) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); s.bodies.len()];
+    let mut add = |body: u32, damage: f64| {
+        let (sum, count) = &mut sums[body as usize];
+        (*sum, *count) = (*sum + damage, *count + 1.0);
+    };
+    for contact in &s.network.contacts {
+        if let Some(bond) = s.network.bond(contact).filter(|b| b.intact()) {
+            contact.bodies.iter().for_each(|b| add(*b, bond.damage));
+        }
+    }
+    for &(candidate, antagonist) in &s.network.broken_pairs {
+        for key in [candidate, antagonist] {
+            if let Some(body) = carrier(s, key) {
+                add(body, 1.0);
+            }
+        }
+    }
+    sums.into_iter().map(|(sum, n)| sum / n).collect()
+}
+
+/// The body of a ball, piece or surface, by its part of a key.
+fn carrier<S: Space>(s: &Simulation<S>, key: u32) -> Option<u32> {
+    let index = (key & !(Key::SURFACE | Key::PIECE)) as usize;
+    if key & Key::SURFACE != 0 {
+        s.shapes.surfaces.get(index).map(|f| f.body)
+    } else if key & Key::PIECE != 0 {
+        s.shapes.pieces.get(index).map(|p| p.body)
+    } else {
+        s.shapes.balls.get(index).map(|b| b.body)
+    }
+}

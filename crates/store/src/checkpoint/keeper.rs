@@ -1,0 +1,73 @@
+//! When checkpoints are written, and in which order.
+
+use super::{Frame, Identity, Kind};
+use fretwork_observe::code::{CodeError, encode};
+use fretwork_scene::case::Checkpoint;
+use std::time::{Duration, Instant};
+
+/// Checkpoints by the clock take at most one part in so many of a run's time.
+const SHARE: u32 = 20;
+
+/// Keeps a run's checkpoints.
+#[derive(Debug)]
+pub struct Keeper {
+    rule: Checkpoint,
+    identity: Vec<u8>,
+    /// Number of the next frame.
+    next: u64,
+    last: Instant,
+    cost: Duration,
+}
+
+impl Keeper {
+    /// Of a run of this identity, whose next frame has this number.
+    ///
+    /// # Errors
+    /// The identity cannot be put into bytes.
+    pub fn new(rule: Checkpoint, identity: &Identity, next: u64) -> Result<Self, CodeError> {
+        Ok(Self {
+            rule,
+            identity: encode(identity)?,
+            next,
+            last: Instant::now(),
+            cost: Duration::ZERO,
+        })
+    }
+
+    /// Whether one is due after so many steps.
+    pub fn due(&self, steps: u64) -> bool {
+        match self.rule {
+            Checkpoint::Never => false,
+            Checkpoint::Steps(n) => steps.is_multiple_of(n),
+            Checkpoint::Seconds(every) => {
+                let past = self.last.elapsed();
+                past.as_secs_f64() >= every && past >= SHARE * self.cost
+            }
+        }
+    }
+
+    /// Name of what the run is of: stands in its summary.
+    pub fn name(&self) -> String {
+        Identity::name(&self.identity)
+    }
+
+    /// The next frame: its number, which says where it goes, and its bytes.
+    pub fn frame(&mut self, kind: Kind, state: Vec<u8>) -> (u64, Vec<u8>) {
+        let frame = Frame {
+            kind,
+            number: self.next,
+            format: Frame::FORMAT,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            identity: self.identity.clone(),
+            state,
+        };
+        self.next += 1;
+        (frame.number, frame.bytes())
+    }
+
+    /// Takes in that a checkpoint was written, begun at an instant.
+    pub fn written(&mut self, begun: Instant) {
+        self.last = Instant::now();
+        self.cost = begun.elapsed();
+    }
+}

@@ -1,0 +1,242 @@
+//! A matrix group: sizes, a code of its storage, and three arrays.
+//!
+//! `nz` >= 0: triplets, and then their number; -1: compressed columns; -2: compressed rows. In triplets
+//! `p` holds columns and `i` rows, as in CSparse and in every file of Siconos; the comment in `fclib.h` has
+//! them the other way round, and a file written by it is known by indices that fit only so.
+
+use super::FclibError;
+use super::source::Source;
+use fretwork_core::solve::local::Csr;
+
+/// A matrix as it stands in the file.
+pub struct Stored {
+    name: String,
+    rows: usize,
+    columns: usize,
+    nz: i64,
+    p: Vec<i64>,
+    i: Vec<i64>,
+    x: Vec<f64>,
+}
+
+/// What the two index arrays of triplets are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// p columns, i rows: CSparse.
+    Columns,
+    /// p rows, i columns: the comment in the header.
+    Rows,
+}
+
+impl Stored {
+    /// Reads the arrays; the sizes must be those that the vectors of the problem give.
+    ///
+    /// # Errors
+    /// A dataset is missing, damaged, or not of the sizes expected.
+    pub fn read(source: &Source, name: &str, expected: (usize, usize)) -> Result<Self, FclibError> {
+        if !source.has_group(name) {
+            let reason = "the layout demands this matrix";
+            return Err(FclibError::missing(source.path(), name, reason));
+        }
+        let at = |part: &str| format!("{name}/{part}");
+        let wrong =
+            |part: &str, reason: String| Err(FclibError::wrong(source.path(), &at(part), reason));
+        let (rows, columns) = expected;
+        for (part, what, size) in [("m", "rows", rows), ("n", "columns", columns)] {
+            let found = source.integer(&at(part))?;
+            if usize::try_from(found) != Ok(size) {
+                return wrong(
+                    part,
+                    format!("{found} {what}, but the vectors make it {size}"),
+                );
+            }
+        }
+        let nz = source.integer(&at("nz"))?;
+        if nz < -2 {
+            let reason = format!(
+                "is {nz}; it must be -1 (compressed columns), -2 (compressed rows), or the number of triplets"
+            );
+            return wrong("nz", reason);
+        }
+        let nzmax = source.integer(&at("nzmax"))?;
+        if nzmax < nz.max(0) {
+            let reason = format!("is {nzmax}; it must be the number of entries or more");
+            return wrong("nzmax", reason);
+        }
+        // No entry at all: some writers then leave the arrays out.
+        let arrays = ["p", "i", "x"].map(at);
+        let none = nz == 0 || (nz < 0 && nzmax == 0);
+        let there = |k: usize| !none || source.has(&arrays[k]);
+        let integers = |k: usize| {
+            if there(k) {
+                source.integers(&arrays[k])
+            } else {
+                Ok(Vec::new())
+            }
+        };
+        let (mut p, mut i) = (integers(0)?, integers(1)?);
+        let mut x = if there(2) {
+            source.reals(&arrays[2])?
+        } else {
+            Vec::new()
+        };
+        let lines = match nz {
+            -1 => columns,
+            _ => rows,
+        };
+        let count = if nz >= 0 {
+            if p.len() < nz as usize {
+                let reason = format!("{} column indices for {nz} triplets", p.len());
+                return wrong("p", reason);
+            }
+            p.truncate(nz as usize);
+            nz as usize
+        } else if none && p.is_empty() {
+            p = vec![0; lines + 1];
+            0
+        } else {
+            if p.len() != lines + 1 {
+                let reason = format!("{} pointers, but {} are expected", p.len(), lines + 1);
+                return wrong("p", reason);
+            }
+            if p[0] != 0 || p.windows(2).any(|w| w[1] < w[0]) {
+                return wrong(
+                    "p",
+                    "the pointers must begin with 0 and never fall".to_owned(),
+                );
+            }
+            p[lines] as usize
+        };
+        for (part, have) in [("i", i.len()), ("x", x.len())] {
+            if have < count {
+                return wrong(part, format!("{have} entries, but {count} are expected"));
+            }
+        }
+        i.truncate(count);
+        x.truncate(count);
+        let stored = Self {
+            name: name.to_owned(),
+            rows,
+            columns,
+            nz,
+            p,
+            i,
+            x,
+        };
+        Ok(stored)
+    }
+
+    /// The order its indices allow, where they allow only one.
+    ///
+    /// # Errors
+    /// They allow none: an index outside the matrix.
+    pub fn order(&self, source: &Source) -> Result<Option<Order>, FclibError> {
+        if self.nz < 0 {
+            return Ok(None);
+        }
+        let fits = |indices: &[i64], size: usize| {
+            indices
+                .iter()
+                .all(|k| usize::try_from(*k).is_ok_and(|k| k < size))
+        };
+        let columns = fits(&self.p, self.columns) && fits(&self.i, self.rows);
+        let rows = fits(&self.p, self.rows) && fits(&self.i, self.columns);
+        match (columns, rows) {
+            (true, true) => Ok(None),
+            (true, false) => Ok(Some(Order::Columns)),
+            (false, true) => Ok(Some(Order::Rows)),
+            (false, false) => Err(self.outside(source, Order::Columns)),
+        }
+    }
+
+    /// The matrix; what stands at one place twice is added.
+    ///
+    /// # Errors
+    /// An index is outside the matrix, or a sum is beyond the range of a double.
+    pub fn into_csr(self, source: &Source, order: Order) -> Result<Csr, FclibError> {
+        let (lines, ends) = if self.nz < 0 {
+            (&[][..], &self.p[..])
+        } else {
+            (&self.p[..], &[][..])
+        };
+        let mut line = 0;
+        let mut entries = Vec::with_capacity(self.x.len());
+        for (k, x) in self.x.iter().enumerate() {
+            let pair = match self.nz {
+                -1 | -2 => {
+                    while ends[line + 1] as usize <= k {
+                        line += 1;
+                    }
+                    if self.nz == -1 {
+                        (self.i[k], line as i64)
+                    } else {
+                        (line as i64, self.i[k])
+                    }
+                }
+                _ if order == Order::Columns => (self.i[k], lines[k]),
+                _ => (lines[k], self.i[k]),
+            };
+            match (usize::try_from(pair.0), usize::try_from(pair.1)) {
+                (Ok(r), Ok(c)) if r < self.rows && c < self.columns => {
+                    entries.push((r as u32, c as u32, *x));
+                }
+                _ => return Err(self.outside(source, order)),
+            }
+        }
+        let csr = Csr::from_triplets(self.rows, self.columns, &entries);
+        if csr.values.iter().all(|x| x.is_finite()) {
+            return Ok(csr);
+        }
+        let reason = "values at one place add up beyond the range of a double";
+        Err(FclibError::wrong(
+            source.path(),
+            &format!("{}/x", self.name),
+            reason,
+        ))
+    }
+
+    fn outside(&self, source: &Source, order: Order) -> FclibError {
+        let out = |indices: &[i64], size: usize| {
+            let wrong = |k: &&i64| usize::try_from(**k).map_or(true, |k| k >= size);
+            indices.iter().find(wrong).map(|k| (*k, size))
+        };
+        let (of_p, of_i) = match (self.nz, order) {
+            (-1, _) => (usize::MAX, self.rows),
+            (-2, _) => (usize::MAX, self.columns),
+            (_, Order::Columns) => (self.columns, self.rows),
+            (_, Order::Rows) => (self.rows, self.columns),
+        };
+        let at = |part: &str| format!("{}/{part}", self.name);
+        let (place, (index, size)) = match (out(&self.p, of_p), out(&self.i, of_i)) {
+            (Some(found), _) => (at("p"), found),
+            (_, Some(found)) => (at("i"), found),
+            _ => (at("i"), (-1, 0)),
+        };
+        let reason = format!(
+            "index {index} is outside the matrix of {} rows and {} columns: it must be 0 or more and below {size}",
+            self.rows, self.columns
+        );
+        FclibError::wrong(source.path(), &place, reason)
+    }
+}
+
+/// The order of the triplets of a whole file: one writer, one order.
+///
+/// # Errors
+/// An index is outside its matrix in either order, or two matrices contradict each other.
+pub fn order(source: &Source, matrices: &[&Stored]) -> Result<Order, FclibError> {
+    let mut known: Option<(Order, &str)> = None;
+    for matrix in matrices {
+        match (matrix.order(source)?, known) {
+            (Some(order), None) => known = Some((order, &matrix.name)),
+            (Some(order), Some((other, name))) if order != other => {
+                let reason = format!(
+                    "its indices fit only with rows and columns the other way round than in {name}"
+                );
+                return Err(FclibError::wrong(source.path(), &matrix.name, reason));
+            }
+            _ => {}
+        }
+    }
+    Ok(known.map_or(Order::Columns, |k| k.0))
+}

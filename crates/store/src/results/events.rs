@@ -1,0 +1,55 @@
+//! Tables of events: columns that grow by a value an event, held back until the file is flushed.
+
+use super::declare::MANY;
+use super::store::{Growing, ResultsError, Store};
+use fretwork_observe::statistics::Column;
+
+/// A table of events.
+#[derive(Debug, Default)]
+pub(super) struct Events {
+    columns: Vec<Growing>,
+    held: Vec<Vec<f64>>,
+}
+
+impl Events {
+    /// Declares the columns in a group; none make no group.
+    pub fn declare(
+        store: &mut Store,
+        group: &str,
+        columns: &[Column],
+    ) -> Result<Self, ResultsError> {
+        if columns.is_empty() {
+            return Ok(Self::default());
+        }
+        store.group(group)?;
+        let grown = columns.iter().map(|c| {
+            let path = format!("{group}/{}", c.name);
+            store.growing::<f64>(&path, 1, (c.unit, c.doc), MANY)
+        });
+        Ok(Self {
+            columns: grown.collect::<Result<_, _>>()?,
+            held: vec![Vec::new(); columns.len()],
+        })
+    }
+
+    /// Keeps an event until it is written.
+    pub fn hold(&mut self, row: &[f64]) {
+        for (column, value) in self.held.iter_mut().zip(row) {
+            column.push(*value);
+        }
+    }
+
+    /// Events held back.
+    pub fn rows(&self) -> usize {
+        self.held.first().map_or(0, Vec::len)
+    }
+
+    /// Writes what is held back.
+    pub fn write(&mut self, store: &mut Store) -> Result<(), ResultsError> {
+        for (column, values) in self.columns.iter().zip(&mut self.held) {
+            store.append(*column, values)?;
+            values.clear();
+        }
+        Ok(())
+    }
+}

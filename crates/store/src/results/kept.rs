@@ -1,0 +1,175 @@
+//! Reads back what `results.h5` keeps of a run that was stopped: its checkpoints, and its rows.
+
+use super::store::{Grown, ResultsError, Store};
+use super::{CHECKPOINTS, Results};
+use crate::fclib::guard;
+use hdf5::{H5File, H5Type};
+use std::path::{Path, PathBuf};
+
+/// Rows copied at a time.
+const BLOCK: usize = 1 << 16;
+
+/// The file of a run that was stopped.
+pub struct Kept {
+    path: PathBuf,
+    file: H5File,
+    names: Vec<String>,
+}
+
+impl std::fmt::Debug for Kept {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Kept")
+            .field("path", &self.path)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Kept {
+    /// Opens it.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub fn open(path: &Path) -> Result<Self, String> {
+        match std::fs::metadata(path) {
+            Ok(data) if data.is_file() => {}
+            Ok(_) => return Err("it is not a file".to_owned()),
+            Err(e) => return Err(e.to_string()),
+        }
+        let file = guard(|| H5File::options().best_effort_locking().open(path))
+            .map_err(|e| format!("it is not a file of results, or damaged ({e})"))?;
+        let names = guard(|| Ok(file.dataset_names()))?;
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            names,
+        })
+    }
+
+    /// Its path.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The bytes of its checkpoints, whole or not; what cannot be read is empty.
+    ///
+    /// # Errors
+    /// It has none: it is of an older version, or no file of results.
+    pub fn checkpoints(&self) -> Result<[Vec<u8>; 2], String> {
+        let names = CHECKPOINTS.map(|name| name.trim_start_matches('/'));
+        if !names
+            .iter()
+            .all(|name| self.names.iter().any(|n| n == name))
+        {
+            return Err(
+                "it has no checkpoints: it is of an older version, or no `results.h5` of `fretwork run`"
+                    .to_owned(),
+            );
+        }
+        let length = std::fs::metadata(&self.path).map_or(0, |m| m.len());
+        Ok(names.map(|name| {
+            let rows = self.shape(name).map_or(0, |s| s[0]);
+            // A declared size is a claim: nothing is allocated by it that the file could not hold.
+            if rows == 0 || rows as u64 > length {
+                return Vec::new();
+            }
+            guard(|| self.file.dataset(name)?.read_slice::<u8>(&[0], &[rows])).unwrap_or_default()
+        }))
+    }
+
+    fn shape(&self, name: &str) -> Result<Vec<usize>, String> {
+        let shape = guard(|| Ok(self.file.dataset(name)?.shape()))?;
+        match shape.len() {
+            1 | 2 => Ok(shape),
+            n => Err(format!("`{name}` has {n} axes")),
+        }
+    }
+
+    /// Copies so many rows of each growing dataset, of this CRC-32, to a store that declares the same.
+    ///
+    /// # Errors
+    /// The store cannot be written, or the rows are not there or others.
+    pub(super) fn copy(&self, rows: &[(u64, u32)], to: &mut Store) -> Result<(), ResultsError> {
+        let grown: Vec<Grown> = to.grown().to_vec();
+        let fault = |reason: String| ResultsError::unreadable(&self.path, reason);
+        if rows.len() != grown.len() {
+            return Err(fault("it has other columns than its case gives".to_owned()));
+        }
+        for (place, (grown, (rows, sum))) in grown.iter().zip(rows).enumerate() {
+            let name = grown.name();
+            let shape = self.shape(name).map_err(fault)?;
+            let width = shape.get(1).copied().unwrap_or(1);
+            let rows = usize::try_from(*rows).unwrap_or(usize::MAX);
+            if shape[0] < rows || width as u64 != grown.width {
+                return Err(fault(format!(
+                    "`{name}` has {} rows of {width}, and the checkpoint is after {rows} of {}",
+                    shape[0], grown.width
+                )));
+            }
+            for first in (0..rows).step_by(BLOCK) {
+                let count = BLOCK.min(rows - first);
+                let bytes = if grown.whole {
+                    let values = self.slice::<i64>(name, first, count, shape.get(1));
+                    values.map(|v| v.iter().flat_map(|x| x.to_le_bytes()).collect())
+                } else {
+                    let values = self.slice::<f64>(name, first, count, shape.get(1));
+                    values.map(|v| v.iter().flat_map(|x| x.to_le_bytes()).collect())
+                };
+                let bytes: Vec<u8> = bytes.map_err(fault)?;
+                to.append_bytes(place, &bytes)?;
+            }
+            // What lies behind the end of a file that was cut is read as zeros.
+            if to.grown()[place].sum != *sum {
+                return Err(fault(format!(
+                    "the rows of `{name}` are not those that were written: the file was cut short or changed"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// The rows of the statistics, column by column.
+    ///
+    /// # Errors
+    /// The rows are not there.
+    pub fn statistics(&self, names: &[String], rows: usize) -> Result<Vec<Vec<f64>>, ResultsError> {
+        let column = |name: &String| self.slice(&format!("statistics/{name}"), 0, rows, None);
+        let columns: Result<Vec<_>, _> = names.iter().map(column).collect();
+        columns.map_err(|reason| ResultsError::unreadable(&self.path, reason))
+    }
+
+    fn slice<T: H5Type>(
+        &self,
+        name: &str,
+        first: usize,
+        count: usize,
+        width: Option<&usize>,
+    ) -> Result<Vec<T>, String> {
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        guard(|| {
+            let dataset = self.file.dataset(name)?;
+            match width {
+                None => dataset.read_slice::<T>(&[first], &[count]),
+                Some(width) => dataset.read_slice::<T>(&[first, 0], &[count, *width]),
+            }
+        })
+    }
+}
+
+impl Results {
+    /// Takes over the rows of a run that was stopped, as many as it had at its checkpoint.
+    ///
+    /// # Errors
+    /// The file cannot be written, or the rows are not there.
+    pub fn take_over(&mut self, from: &Kept, rows: &[(u64, u32)]) -> Result<(), ResultsError> {
+        let Some(store) = &mut self.store else {
+            return Ok(());
+        };
+        from.copy(rows, store)?;
+        for view in &mut self.views {
+            view.resume(store);
+        }
+        Ok(())
+    }
+}

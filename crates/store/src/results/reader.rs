@@ -1,0 +1,100 @@
+//! Reads rows of datasets of `results.h5`, also of a file that was cut off or still grows.
+
+use crate::fclib::guard;
+use hdf5::{H5File, H5Type};
+use std::path::Path;
+
+/// A file of results, open.
+pub struct Reader {
+    file: H5File,
+    names: Vec<String>,
+    /// Numbers that one column may hold.
+    most: usize,
+}
+
+impl Reader {
+    /// Opens it.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub fn open(path: &Path) -> Result<Self, String> {
+        let length = match std::fs::metadata(path) {
+            Ok(data) if data.is_file() => data.len(),
+            Ok(_) => return Err("it is not a file".to_owned()),
+            Err(e) => return Err(e.to_string()),
+        };
+        let file = guard(|| H5File::options().best_effort_locking().open(path))
+            .map_err(|e| format!("it is not a file of results ({e})"))?;
+        let names = guard(|| Ok(file.dataset_names()))?;
+        // A declared size is a claim: nothing is allocated by it that the file could not hold.
+        let bytes = usize::try_from(length).unwrap_or(usize::MAX / 8) * 4 + (1 << 16);
+        Ok(Self {
+            file,
+            names,
+            most: bytes / 8,
+        })
+    }
+
+    /// Whether it has a dataset of this name.
+    pub fn has(&self, name: &str) -> bool {
+        self.names.iter().any(|n| n == name)
+    }
+
+    /// Rows of a dataset.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn rows(&self, name: &str) -> Result<usize, String> {
+        let shape = guard(|| Ok(self.file.dataset(name)?.shape()))?;
+        Ok(shape.first().copied().unwrap_or(0))
+    }
+
+    /// Rows of a dataset of `width` numbers each, as one list.
+    ///
+    /// # Errors
+    /// They are not there.
+    pub fn numbers(
+        &self,
+        name: &str,
+        (first, count): (usize, usize),
+        width: usize,
+    ) -> Result<Vec<f64>, String> {
+        self.slice(name, (first, count), width)
+    }
+
+    /// The same of whole numbers.
+    ///
+    /// # Errors
+    /// They are not there.
+    pub fn whole(&self, name: &str, (first, count): (usize, usize)) -> Result<Vec<i64>, String> {
+        self.slice(name, (first, count), 1)
+    }
+
+    fn slice<T: H5Type>(
+        &self,
+        name: &str,
+        (first, count): (usize, usize),
+        width: usize,
+    ) -> Result<Vec<T>, String> {
+        let rows = self.rows(name)?;
+        if first.checked_add(count).is_none_or(|end| end > rows) || count > self.most / width {
+            return Err(format!("`{name}` is cut short: it has {rows} rows"));
+        }
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        let values = guard(|| {
+            let dataset = self.file.dataset(name)?;
+            if dataset.shape().len() == 1 {
+                dataset.read_slice::<T>(&[first], &[count])
+            } else {
+                let width = dataset.shape()[1];
+                dataset.read_slice::<T>(&[first, 0], &[count, width])
+            }
+        })?;
+        if values.len() != count * width {
+            return Err(format!("`{name}` has another shape than results have"));
+        }
+        Ok(values)
+    }
+}

@@ -1,0 +1,255 @@
+//! A view: points, lines or polygons with data, step after step, as temporal VTKHDF PolyData.
+//!
+//! Layout: Kitware, VTKHDF file format, version 2.0 (the four kinds of cells must all be there).
+
+use super::declare::{FEW, MANY};
+use super::store::{Growing, ResultsError, Store};
+use fretwork_observe::statistics::Column;
+
+/// The cells of VTK's PolyData, in its order.
+const KINDS: [&str; 4] = ["Vertices", "Lines", "Polygons", "Strips"];
+
+/// What a view is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cells {
+    /// One vertex a point; data on points.
+    Vertices,
+    /// Chains of points; data on cells.
+    Lines,
+    /// Polygons; data on cells.
+    Polygons,
+}
+
+impl Cells {
+    fn kind(self) -> usize {
+        match self {
+            Self::Vertices => 0,
+            Self::Lines => 1,
+            Self::Polygons => 2,
+        }
+    }
+}
+
+/// One state of a view.
+#[derive(Clone, Debug, Default)]
+pub struct Part {
+    /// Coordinates, three a point (m).
+    pub points: Vec<f64>,
+    /// Points of each cell.
+    pub cells: Vec<Vec<i64>>,
+    /// One column a field, one value a point (vertices) or cell.
+    pub data: Vec<Vec<f64>>,
+    /// The same of whole numbers.
+    pub numbers: Vec<Vec<i64>>,
+}
+
+/// A view in the file.
+#[derive(Debug)]
+pub struct View {
+    cells: Cells,
+    points: Growing,
+    number_of_points: Growing,
+    numbers: [[Growing; 2]; 4],
+    connectivity: [Growing; 4],
+    offsets: [Growing; 4],
+    data: Vec<Growing>,
+    whole: Vec<Growing>,
+    values: Growing,
+    steps: [Growing; 3],
+    cell_offsets: Growing,
+    connectivity_offsets: Growing,
+    data_offsets: Vec<Growing>,
+    count: i64,
+    path: String,
+}
+
+impl View {
+    /// Declares a view in a group of its own.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn declare(
+        store: &mut Store,
+        path: &str,
+        cells: Cells,
+        (fields, numbers): (&[Column], &[Column]),
+    ) -> Result<Self, ResultsError> {
+        store.group(path)?;
+        store.integer_attribute(path, "Version", &[2, 0])?;
+        store.ascii_attribute(path, "Type", "PolyData")?;
+        let place = if cells == Cells::Vertices {
+            "PointData"
+        } else {
+            "CellData"
+        };
+        store.group(&format!("{path}/{place}"))?;
+        store.group(&format!("{path}/Steps"))?;
+        store.group(&format!("{path}/Steps/{place}Offsets"))?;
+        store.integer_attribute(&format!("{path}/Steps"), "NSteps", &[0])?;
+        let whole = |store: &mut Store, name: &str, width: u64, chunk: usize, doc: &str| {
+            store.growing::<i64>(&format!("{path}/{name}"), width, ("", doc), chunk)
+        };
+        let number_of_points = whole(store, "NumberOfPoints", 1, FEW, "points of each state")?;
+        let mut kinds = Vec::new();
+        for kind in KINDS {
+            store.group(&format!("{path}/{kind}"))?;
+            let mine = KINDS[cells.kind()] == kind;
+            let many = if mine { MANY } else { FEW };
+            let mut one = |name: &str, chunk: usize, doc: &str| {
+                whole(store, &format!("{kind}/{name}"), 1, chunk, doc)
+            };
+            kinds.push([
+                one("NumberOfCells", FEW, "cells of each state")?,
+                one(
+                    "NumberOfConnectivityIds",
+                    FEW,
+                    "corners of all cells of each state",
+                )?,
+                one(
+                    "Offsets",
+                    many,
+                    "where the corners of each cell begin, and where those of the last end",
+                )?,
+                one(
+                    "Connectivity",
+                    many,
+                    "points of the corners, counted in their state from 0",
+                )?,
+            ]);
+        }
+        let all: [[Growing; 4]; 4] = [kinds[0], kinds[1], kinds[2], kinds[3]];
+        let steps = [
+            whole(
+                store,
+                "Steps/PartOffsets",
+                1,
+                FEW,
+                "number of the first part of each state",
+            )?,
+            whole(
+                store,
+                "Steps/NumberOfParts",
+                1,
+                FEW,
+                "parts of each state; 1",
+            )?,
+            whole(
+                store,
+                "Steps/PointOffsets",
+                1,
+                FEW,
+                "first point of each state",
+            )?,
+        ];
+        let doc = "first cell of each state, by kind: vertices, lines, polygons, strips";
+        let cell_offsets = whole(store, "Steps/CellOffsets", 4, FEW, doc)?;
+        let doc = "first corner of each state, by kind: vertices, lines, polygons, strips";
+        let connectivity_offsets = whole(store, "Steps/ConnectivityIdOffsets", 4, FEW, doc)?;
+        let doc = ("s", "time of the state");
+        let values = store.growing::<f64>(&format!("{path}/Steps/Values"), 1, doc, FEW)?;
+        let doc = ("m", "coordinates");
+        let points = store.growing::<f64>(&format!("{path}/Points"), 3, doc, MANY)?;
+        let (mut data, mut whole_data, mut data_offsets) = (Vec::new(), Vec::new(), Vec::new());
+        for (k, field) in fields.iter().chain(numbers).enumerate() {
+            let (name, doc) = (
+                format!("{path}/{place}/{}", field.name),
+                (field.unit, field.doc),
+            );
+            if k < fields.len() {
+                data.push(store.growing::<f64>(&name, 1, doc, MANY)?);
+            } else {
+                whole_data.push(store.growing::<i64>(&name, 1, doc, MANY)?);
+            }
+            data_offsets.push(store.growing::<i64>(
+                &format!("{path}/Steps/{place}Offsets/{}", field.name),
+                1,
+                ("", "first value of each state"),
+                FEW,
+            )?);
+        }
+        Ok(Self {
+            cells,
+            points,
+            number_of_points,
+            numbers: all.map(|n| [n[0], n[1]]),
+            connectivity: all.map(|n| n[3]),
+            offsets: all.map(|n| n[2]),
+            data,
+            whole: whole_data,
+            values,
+            steps,
+            cell_offsets,
+            connectivity_offsets,
+            data_offsets,
+            count: 0,
+            path: path.to_owned(),
+        })
+    }
+
+    /// Appends a state.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn append(
+        &mut self,
+        store: &mut Store,
+        time: f64,
+        part: &Part,
+    ) -> Result<(), ResultsError> {
+        // Where this part begins: before anything of it is appended.
+        let first_cells: Vec<i64> = (0..4)
+            .map(|k| store.rows(self.offsets[k]) as i64 - self.count)
+            .collect();
+        let first_ids: Vec<i64> = (0..4)
+            .map(|k| store.rows(self.connectivity[k]) as i64)
+            .collect();
+        let first_point = store.rows(self.points) as i64;
+        let columns = self.data.iter().chain(&self.whole);
+        for (column, offsets) in columns.zip(&self.data_offsets) {
+            let first = store.rows(*column) as i64;
+            store.append(*offsets, &[first])?;
+        }
+        for (column, values) in self.data.iter().zip(&part.data) {
+            store.append(*column, values)?;
+        }
+        for (column, values) in self.whole.iter().zip(&part.numbers) {
+            store.append(*column, values)?;
+        }
+        store.append(self.points, &part.points)?;
+        store.append(self.number_of_points, &[part.points.len() as i64 / 3])?;
+        for kind in 0..4 {
+            let mine = kind == self.cells.kind();
+            let (mut ids, mut offsets) = (Vec::new(), vec![0i64]);
+            if mine {
+                for cell in &part.cells {
+                    ids.extend_from_slice(cell);
+                    offsets.push(ids.len() as i64);
+                }
+            }
+            store.append(self.numbers[kind][0], &[offsets.len() as i64 - 1])?;
+            store.append(self.numbers[kind][1], &[ids.len() as i64])?;
+            store.append(self.offsets[kind], &offsets)?;
+            store.append(self.connectivity[kind], &ids)?;
+        }
+        let [parts, number, points] = self.steps;
+        store.append(parts, &[self.count])?;
+        store.append(number, &[1i64])?;
+        store.append(points, &[first_point])?;
+        store.append(self.cell_offsets, &first_cells)?;
+        store.append(self.connectivity_offsets, &first_ids)?;
+        store.append(self.values, &[time])?;
+        self.count += 1;
+        store.count(&self.steps_path(), "NSteps", self.count);
+        Ok(())
+    }
+
+    /// Takes up the states that the file has.
+    pub fn resume(&mut self, store: &mut Store) {
+        self.count = store.rows(self.values) as i64;
+        store.count(&self.steps_path(), "NSteps", self.count);
+    }
+
+    fn steps_path(&self) -> String {
+        format!("{}/Steps", self.path)
+    }
+}

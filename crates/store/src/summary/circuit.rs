@@ -1,0 +1,134 @@
+//! The tribological circuit in the summary.
+
+use fretwork_observe::steady::Flow;
+use fretwork_core::wear::ledger::{Contents, Flows};
+use serde::Serialize;
+
+/// Mean flows over the second half of the account, with their intervals (kg/s; kg/(m s) in 2D); null where it was brought up
+/// to date too seldom.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[allow(non_snake_case)]
+pub struct Rates {
+    /// Source.
+    pub Qs: Option<Flow>,
+    /// What bonds tied again.
+    pub Qa: Option<Flow>,
+    /// Ejected.
+    pub Qe: Option<Flow>,
+    /// Recirculated.
+    pub Qr: Option<Flow>,
+    /// Wear.
+    pub Qw: Option<Flow>,
+    /// Qs - Qa - Qw, block by block: within its interval of zero in steady sliding.
+    pub Qs_less_Qw: Option<Flow>,
+    /// Growth of the mass in the contact.
+    pub M: Option<Flow>,
+}
+
+/// A first body that grains can belong to.
+#[derive(Clone, Debug, Serialize)]
+pub struct Base {
+    /// Its name.
+    pub name: String,
+    /// Grains tied to it at the end.
+    pub grains: usize,
+}
+
+/// The tribological circuit; see [`fretwork_core::wear::ledger`].
+#[derive(Clone, Debug, Serialize)]
+pub struct CircuitSummary {
+    /// When the account began (s).
+    pub start: f64,
+    /// Window of the rates (s).
+    pub window: [f64; 2],
+    /// What there is at the end.
+    pub contents: Contents,
+    /// What passed since the start.
+    pub flows: Flows,
+    /// What does not add up.
+    pub residual: Contents,
+    /// Unit of the mean flows: kg/s, in two dimensions kg/(m s), per metre of depth.
+    pub rates_unit: &'static str,
+    /// Mean flows.
+    pub rates: Rates,
+    /// First bodies.
+    pub bases: Vec<Base>,
+    /// Pieces that came loose.
+    pub pieces: u64,
+    /// Grains of the largest.
+    pub largest_piece: usize,
+    /// Share of the run's wall time that the account took.
+    pub cost_share: f64,
+}
+
+impl CircuitSummary {
+    /// Lines for a terminal.
+    pub(super) fn lines(&self) -> Vec<(&'static str, String)> {
+        let (c, f, r) = (&self.contents, &self.flows, &self.rates);
+        let tied: Vec<String> = self
+            .bases
+            .iter()
+            .map(|b| format!("{} to {}", b.grains, b.name))
+            .collect();
+        let flow = |q: &Option<Flow>| {
+            q.map_or("not known".to_owned(), |q| {
+                format!("{:.2e} +- {:.1e}", q.mean, q.half_width)
+            })
+        };
+        let steady = |q: &Option<Flow>| match q {
+            Some(q) if q.steady => "no trend",
+            Some(_) => "TREND",
+            None => "too few updates",
+        };
+        let equal = match (&r.Qs, &r.Qw, &r.Qs_less_Qw) {
+            (Some(s), Some(w), Some(d)) if d.may_be_zero() => {
+                if d.half_width < s.mean.max(w.mean) {
+                    "equal within the interval"
+                } else {
+                    "no verdict: the interval of their difference is wider than they are"
+                }
+            }
+            (Some(_), Some(_), Some(_)) => "they differ",
+            _ => "no verdict",
+        };
+        vec![
+            (
+                "grains",
+                format!(
+                    "tied {}, {} in the contact, {} ejected, {} lost",
+                    tied.join(", "),
+                    c.contact.grains,
+                    c.ejected.grains,
+                    c.lost.grains
+                ),
+            ),
+            (
+                "passed",
+                format!(
+                    "{} came loose in {} pieces (largest {}), {} tied again, {} ejected, {} came back, {} lost",
+                    f.source.grains,
+                    self.pieces,
+                    self.largest_piece,
+                    f.attached.grains,
+                    f.ejected.grains,
+                    f.recirculated.grains,
+                    f.wear.grains
+                ),
+            ),
+            (
+                "flows, second half",
+                format!(
+                    "Qs {} ({}), Qw {} ({}), {equal}; Qe {}, Qr {}, Qa {} {}",
+                    flow(&r.Qs),
+                    steady(&r.Qs),
+                    flow(&r.Qw),
+                    steady(&r.Qw),
+                    flow(&r.Qe),
+                    flow(&r.Qr),
+                    flow(&r.Qa),
+                    self.rates_unit
+                ),
+            ),
+        ]
+    }
+}

@@ -1,0 +1,114 @@
+//! What `--verbose` prints besides: contacts, first and last cycle, phases, solver, laws.
+
+use super::Summary;
+use fretwork_observe::quantity::{number, quantity};
+use super::text::Lines;
+
+impl Summary {
+    pub(super) fn details(&self, lines: &mut Lines) {
+        lines.add(
+            "contacts",
+            format!("{} between {} bodies", self.contacts, self.bodies),
+        );
+        let (first, last) = (
+            self.cycles.first(),
+            self.cycles.last().filter(|c| c.cycle > 1),
+        );
+        for c in first.into_iter().chain(last) {
+            let unfinished = if c.complete { "" } else { " (unfinished)" };
+            let text = format!(
+                "friction {}, E_d {}, mean P {}, largest |Q| {}, {} bonds broken, worn {}",
+                number(c.friction_coefficient, 4),
+                quantity(c.work, self.unit("J", "J/m")),
+                quantity(c.normal_force, self.unit("N", "N/m")),
+                quantity(c.tangential_amplitude, self.unit("N", "N/m")),
+                c.broken,
+                quantity(c.wear_volume, self.unit("m3", "m3/m"))
+            );
+            lines.add(&format!("cycle {}{unfinished}", c.cycle), text);
+        }
+        self.phase_lines(lines);
+        self.solver_lines(lines);
+        for p in &self.plugins {
+            let hash = &p.sha256[..12.min(p.sha256.len())];
+            let certified = if p.certified {
+                "certified"
+            } else {
+                "NOT certified"
+            };
+            let text = format!("{} {} {} ({hash}), {certified}", p.kind, p.name, p.version);
+            lines.add("law", text);
+        }
+        lines.add(
+            "made with",
+            format!(
+                "fretwork {}, seed {}, {} threads, {} of processor time",
+                self.version,
+                self.seed,
+                self.threads,
+                quantity(self.cpu_seconds, "s")
+            ),
+        );
+    }
+
+    fn phase_lines(&self, lines: &mut Lines) {
+        for (k, p) in self.phases.iter().enumerate() {
+            if self.phases[..k].iter().any(|q| q.name == p.name) {
+                continue;
+            }
+            let same = || self.phases.iter().filter(|q| q.name == p.name);
+            let end = same().next_back().and_then(|last| last.end);
+            let end = end.map_or_else(|| "the end of the run".to_owned(), |t| quantity(t, "s"));
+            let start = quantity(p.start, "s");
+            let text = match (same().count(), p.ended_by) {
+                (1, Some(why)) => format!("from {start} to {end}, ended by {why}"),
+                (1, None) => format!("from {start} to {end}"),
+                (count, _) => format!("{count} times, from {start} to {end}"),
+            };
+            lines.add(&format!("phase {}", p.name), text);
+        }
+    }
+
+    fn solver_lines(&self, lines: &mut Lines) {
+        let s = &self.solver;
+        let text = format!(
+            "{:.1} iterations a step, {} at most; error at most {:.2e} (tolerance {:.0e})",
+            s.iterations_mean, s.iterations_max, s.error_max, s.tolerance
+        );
+        lines.add("solver", text);
+        let used = s.steps_by_method.iter();
+        let used: Vec<String> = used
+            .map(|(name, n)| format!("{name} ended {n} steps"))
+            .collect();
+        lines.add("method", format!("{}: {}", s.method, used.join(", ")));
+        if s.method == "auto" {
+            lines.add("why", &s.why);
+        }
+        if s.projected_steps > 0 {
+            let text = format!(
+                "{} steps took overlaps out: up to {:.2e} of a body's length before, {:.2e} after",
+                s.projected_steps, s.overlap_before, s.overlap_after
+            );
+            lines.add("projection", text);
+        }
+        if s.coupling_iterations_mean > 0.0 {
+            let text = format!(
+                "{:.1} solves a step, damage and opening together",
+                s.coupling_iterations_mean
+            );
+            lines.add("coupling", text);
+        }
+        if s.fclib_written + s.fclib_skipped > 0 {
+            let skipped = match s.fclib_skipped {
+                0 => String::new(),
+                n => format!(
+                    "; {n} not, they hold bonds, cohesion or friction against rotation, which FCLIB does not"
+                ),
+            };
+            lines.add(
+                "problems",
+                format!("{} steps written in fclib/{skipped}", s.fclib_written),
+            );
+        }
+    }
+}

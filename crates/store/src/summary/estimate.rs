@@ -1,0 +1,63 @@
+//! How well the main results are known.
+
+use super::Summary;
+use fretwork_observe::scatter::{self, Scatter};
+use serde::Serialize;
+
+/// A result with what it may be off by, each as a half-width of an interval of 95 %, in the unit of the value; null where it
+/// was not estimated.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Estimate {
+    /// What the half-widths are around.
+    pub value: Option<f64>,
+    /// By the scatter within the run.
+    pub scatter: Option<f64>,
+    /// By the length of the time step: one run cannot tell, `fretwork trade` does.
+    pub step: Option<f64>,
+    /// By the tolerance of the solver: likewise.
+    pub tolerance: Option<f64>,
+    /// How the scatter was found, or why it was not.
+    pub method: Option<String>,
+}
+
+/// The main results.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Uncertainty {
+    /// Friction coefficient: the mean over the steady cycles or blocks.
+    pub friction_coefficient: Estimate,
+    /// Broken bonds over bonds made.
+    pub damage_ratio: Estimate,
+    /// Volume worn off first bodies (m^3; m^3/m in 2D).
+    pub wear: Estimate,
+}
+
+impl Uncertainty {
+    /// Of a summary whose other numbers are there; `friction` is the scatter of the friction coefficient.
+    pub fn new(summary: &Summary, friction: Option<&Scatter>) -> Self {
+        let mut all = Self::default();
+        let mu = &mut all.friction_coefficient;
+        mu.value = summary.friction_coefficient;
+        if let Some(scatter) = friction {
+            mu.method = Some(scatter.method());
+            mu.scatter = scatter.half_width();
+            mu.value = mu.scatter.map_or(mu.value, |_| Some(scatter.flow.mean));
+        }
+        if summary.bonds > 0 {
+            all.damage_ratio.value = Some(summary.damage_ratio);
+        }
+        let worn = summary.wear.volume_first_bodies;
+        if worn <= 0.0 {
+            return all;
+        }
+        all.wear.value = Some(worn);
+        // A cycle that stands for many is no draw like the others.
+        let alike = summary.fretting.is_some() && summary.cycles.iter().all(|c| c.jumped == 0);
+        if let Some(s) = scatter::over_cycles(&summary.cycles, |c| c.wear_volume).filter(|_| alike)
+        {
+            let cycles = summary.cycles.iter().filter(|c| c.complete).count();
+            all.wear.scatter = s.half_width().map(|w| w * cycles as f64);
+            all.wear.method = Some(format!("wear of a cycle times {cycles}: {}", s.method()));
+        }
+        all
+    }
+}

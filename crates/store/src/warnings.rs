@@ -1,0 +1,322 @@
+//! What went wrong in a run, and what to change: reasons not to trust it, and notes. docs/trustworthy.md has the table.
+
+use crate::summary::Summary;
+pub use fretwork_observe::warning::{NOT_REACHED, Warning};
+use fretwork_core::geometry::space::Space;
+use fretwork_scene::methods::{Demands, Service};
+use fretwork_core::solve::Report;
+use fretwork_core::solve::local::solver::Method;
+use fretwork_core::step::Simulation;
+
+/// Residual of the energy ledger, in parts of the largest energy, that rounding does not explain: ledgers close to 1e-9 and
+/// better, over millions of steps too.
+pub const LEDGER: f64 = 1e-6;
+/// Overlap that a projection leaves, in parts of the smaller body's length, that is worth a note.
+const OVERLAP: f64 = 1e-2;
+
+/// Steps that ended above the tolerance.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Missed {
+    /// How many.
+    pub steps: u64,
+    /// Number of the first.
+    pub first: u64,
+    /// Largest error of one.
+    pub error: f64,
+}
+
+impl Missed {
+    /// Counts a step by its number.
+    pub fn add(&mut self, report: &Report, step: u64) {
+        if report.converged {
+            return;
+        }
+        if self.steps == 0 {
+            self.first = step;
+        }
+        self.steps += 1;
+        self.error = self.error.max(report.error);
+    }
+
+    /// What to tell the user after `of` steps: only methods that the laws let through are proposed. None where all steps
+    /// converged.
+    pub fn warning<S: Space>(&self, simulation: &Simulation<S>, of: u64) -> Option<String> {
+        if self.steps == 0 {
+            return None;
+        }
+        let options = &simulation.solver;
+        let demands = Demands::of(simulation);
+        let others = [Method::Auto, Method::Newton, Method::Interior].into_iter();
+        let others = others
+            .filter(|m| *m != options.method)
+            .filter(|m| !matches!(demands.service(*m), Service::Refuses(_)));
+        let others: Vec<String> = others.map(|m| format!("{m:?}")).collect();
+        let other = if others.is_empty() {
+            String::new()
+        } else {
+            format!(", or try solver.method {}", others.join(" or "))
+        };
+        // Velocities of bodies that weigh little beside others round to more than a tight tolerance asks for.
+        let rounding = if options.tolerance < 1e-6 {
+            ", or allow a larger solver.tolerance (rounding may leave more than this one)"
+        } else {
+            ""
+        };
+        Some(format!(
+            "{}, raise solver.max_iterations (it is {}){other}{rounding}",
+            self.seen(of, options.tolerance),
+            options.max_iterations
+        ))
+    }
+
+    /// What was seen of `of` steps, and the first thing to change.
+    fn seen(&self, of: u64, tolerance: f64) -> String {
+        format!(
+            "{} of {of} steps, the first is step {}, ended with an error of up to {:.1e} (tolerance {tolerance:.0e}); take a \
+             smaller time.step",
+            self.steps, self.first, self.error
+        )
+    }
+}
+
+/// Steps of a run that missed the tolerance.
+pub fn missed(summary: &Summary) -> Missed {
+    let solver = &summary.solver;
+    Missed {
+        steps: solver.unconverged_steps,
+        first: solver.first_unconverged,
+        error: solver.error_max,
+    }
+}
+
+/// All that is to be said of a run as far as its summary knows it, worst first; reasons before notes. `advice` is what the
+/// laws let one change where steps missed the tolerance ([`Missed::warning`]).
+pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
+    let mut list = Vec::new();
+    let mut serious = |of: &'static str, text: Option<String>| {
+        list.extend(text.map(|text| Warning::serious(of, text)));
+    };
+    let ended = if summary.interrupted {
+        "INTERRUPTED"
+    } else {
+        "STOPPED"
+    };
+    serious(ended, stopped(summary));
+    serious("NOT FINITE", infinite(summary));
+    serious("ENERGY DOES NOT ADD UP", ledger(summary));
+    serious("TOO FAST", summary.haste.warning());
+    serious("MOTION LOST", summary.haste.rounding_warning());
+    serious("ALIASED DRIVE", drives(summary, true));
+    let missed = missed(summary);
+    let generic = || missed.seen(summary.steps, summary.solver.tolerance);
+    let advice = advice.or_else(|| (missed.steps > 0).then(generic));
+    serious("NOT CONVERGED", advice);
+    serious("NOT COUPLED", uncoupled(summary));
+    serious("NOT CERTIFIED", uncertified(summary));
+    serious("GRAINS DO NOT ADD UP", grains(summary));
+    let reached = summary.stopped.is_none();
+    serious("NOT REACHED", phases(summary).filter(|_| reached));
+    let jumps = summary.jump.iter().flat_map(|j| j.warnings());
+    list.extend(jumps.filter(|w| reached || w.of != NOT_REACHED));
+    list.extend(notes(summary));
+    list.sort_by_key(|w| !w.serious);
+    list
+}
+
+
+fn stopped(summary: &Summary) -> Option<String> {
+    let why = summary.stopped.as_ref()?;
+    Some(if summary.interrupted {
+        format!(
+            "{why}; the results are of the part that ran, the same command with --resume goes on"
+        )
+    } else {
+        format!("{why}; the results are of the part that ran")
+    })
+}
+
+fn infinite(summary: &Summary) -> Option<String> {
+    let e = &summary.energy;
+    let energies = [
+        e.kinetic,
+        e.potential,
+        e.elastic,
+        e.external_work,
+        e.residual,
+        e.dissipated(),
+    ];
+    let friction = [
+        summary.friction_coefficient,
+        summary.friction_from_dissipation,
+    ];
+    let all = energies.into_iter().chain(friction.into_iter().flatten());
+    all.into_iter().any(|x| !x.is_finite()).then(|| {
+        "energies or friction are no finite numbers: forces, speeds or sizes of the case are beyond what f64 holds".to_owned()
+    })
+}
+
+fn ledger(summary: &Summary) -> Option<String> {
+    let share = summary.energy_residual_relative;
+    (share > LEDGER).then(|| {
+        format!(
+            "the ledger's residual is {share:.1e} of the largest energy (rounding leaves less than {LEDGER:.0e}): a law's energies \
+             may be wrong, see fretwork law certify"
+        )
+    })
+}
+
+fn uncoupled(summary: &Summary) -> Option<String> {
+    let steps = summary.solver.uncoupled_steps;
+    (steps > 0).then(|| {
+        format!(
+            "{steps} of {} steps left damage and opening apart; raise max_iterations of `coupling: Implicit(tolerance: ..., max_iterations: ...)` or take a smaller time.step",
+            summary.steps
+        )
+    })
+}
+
+fn uncertified(summary: &Summary) -> Option<String> {
+    let wrong = summary.plugins.iter().filter(|p| !p.certified);
+    let names: Vec<String> = wrong
+        .map(|p| format!("{} law {}", p.kind, p.name))
+        .collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "the {} does not pass its certificate with the parameters of this run; fretwork law certify says why",
+            names.join(", the ")
+        )
+    })
+}
+
+/// Drives that the step aliases, or follows coarsely.
+fn drives(summary: &Summary, aliased: bool) -> Option<String> {
+    let drives = summary.unresolved_drives.iter();
+    let texts: Vec<&str> = drives
+        .filter(|d| d.aliased == aliased)
+        .map(|d| d.text.as_str())
+        .collect();
+    (!texts.is_empty()).then(|| texts.join("; "))
+}
+
+fn grains(summary: &Summary) -> Option<String> {
+    let r = &summary.circuit.as_ref()?.residual;
+    let off = [&r.tied, &r.contact, &r.ejected, &r.lost];
+    let off: i64 = off.iter().map(|a| a.grains.abs()).sum();
+    (off > 0).then(|| format!("the circuit's account misses {off} grains: this is a defect of the program, please report it"))
+}
+
+fn phases(summary: &Summary) -> Option<String> {
+    let missed = &summary.phases_missed;
+    (!missed.is_empty()).then(|| {
+        format!(
+            "the run ended before the phases {}; let it run longer (time.end)",
+            missed.join(", ")
+        )
+    })
+}
+
+/// What is worth knowing and leaves the results as they are.
+fn notes(summary: &Summary) -> Vec<Warning> {
+    let mut notes = Vec::new();
+    let mut note = |of, text: Option<String>| notes.extend(text.map(|t| Warning::note(of, t)));
+    let unfinished = !summary.cycles.is_empty() && summary.cycles.iter().all(|c| !c.complete);
+    note(
+        "NO COMPLETE CYCLE",
+        unfinished.then(|| {
+            "the run ended within the first cycle, or half, that counts: friction is of the part that ran; let it run longer \
+             (time.end)"
+                .to_owned()
+        }),
+    );
+    let mu = &summary.uncertainty.friction_coefficient;
+    let changes = mu
+        .method
+        .as_ref()
+        .filter(|m| mu.scatter.is_none() && m.starts_with("none"));
+    note(
+        "NOT STEADY",
+        changes.map(|m| {
+            let why = m.trim_start_matches("none: ");
+            format!("friction has no interval: {why}; let it run longer (time.end)")
+        }),
+    );
+    note("COARSE DRIVE", drives(summary, false));
+    note("LATE CONTACTS", summary.haste.note());
+    let over = summary.solver.overlap_after;
+    note(
+        "OVERLAP",
+        (over > OVERLAP).then(|| {
+            format!(
+                "taking overlaps out left up to {over:.1e} of a body's length; take a smaller time.step"
+            )
+        }),
+    );
+    notes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of_run(change: impl FnOnce(&mut Summary)) -> Vec<Warning> {
+        let mut summary = Summary {
+            steps: 600,
+            ..Summary::default()
+        };
+        change(&mut summary);
+        of(&summary, None)
+    }
+
+    #[test]
+    fn a_sound_run_has_none() {
+        assert_eq!(of_run(|_| ()), []);
+        assert_eq!(of_run(|s| s.energy_residual_relative = 1e-9), []);
+    }
+
+    #[test]
+    fn each_failed_check_is_a_reason() {
+        let list = of_run(|s| {
+            s.solver.unconverged_steps = 12;
+            s.solver.uncoupled_steps = 1;
+            s.solver.overlap_after = 0.5;
+            s.haste.late = 3;
+            s.haste.deepest = 0.2;
+            s.energy.kinetic = f64::NAN;
+            s.energy_residual_relative = 1e-3;
+            s.phases_missed = vec!["shear".to_owned()];
+            s.stopped = Some("no room".to_owned());
+            s.plugins = vec![crate::summary::PluginStamp {
+                kind: "contact".into(),
+                name: "mine".into(),
+                version: String::new(),
+                sha256: String::new(),
+                path: String::new(),
+                certified: false,
+            }];
+        });
+        let reasons: Vec<&str> = list.iter().filter(|w| w.serious).map(|w| w.of).collect();
+        let expected = [
+            "STOPPED",
+            "NOT FINITE",
+            "ENERGY DOES NOT ADD UP",
+            "TOO FAST",
+            "NOT CONVERGED",
+            "NOT COUPLED",
+            "NOT CERTIFIED",
+        ];
+        assert_eq!(reasons, expected);
+        let notes: Vec<&str> = list.iter().filter(|w| !w.serious).map(|w| w.of).collect();
+        assert_eq!(notes, ["OVERLAP"]);
+        assert!(
+            list[4]
+                .to_string()
+                .starts_with("NOT CONVERGED: 12 of 600 steps")
+        );
+    }
+
+    #[test]
+    fn phases_that_were_not_reached_are_a_reason_of_a_run_to_its_end() {
+        let list = of_run(|s| s.phases_missed = vec!["shear".to_owned()]);
+        assert!(list.len() == 1 && list[0].serious && list[0].of == NOT_REACHED);
+    }
+}
