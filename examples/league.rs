@@ -6,7 +6,7 @@
 //! `fclib_table.md` and `figures/solvers_profile.png`. `ONLY=auto` leaves the others and the picture out. BASELINE.csv holds the peer's times: problem, nc, solver, tol, solved, time_s.
 
 use fretwork::record::fclib::{self, Problem, Solution};
-use fretwork::report::{Axis, Chart, Series};
+use fretwork::report::{Axis, Chart, DrawChart, Series};
 use fretwork::solve::local::solver::{self, Limits, Method, Outcome};
 use fretwork::solve::local::{Elimination, LocalProblem, Reduction, scale_free};
 use std::collections::BTreeMap;

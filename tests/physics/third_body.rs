@@ -3,6 +3,7 @@
 
 use fretwork::geometry::space::{Plane, Solid, Space};
 use fretwork::laws::SearchPath;
+use fretwork::record::run::write_outputs;
 use fretwork::record::measure::Measures;
 use fretwork::record::statistics::Table;
 use fretwork::record::stress::love_weber;
@@ -98,7 +99,7 @@ fn seen<S: Dimensional>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> 
     let names: Vec<String> = columns.iter().map(|c| c.name.clone()).collect();
     let row = names.into_iter().zip(values).collect();
     let table = Table::create(&out.join("t.csv"), columns).unwrap_or_else(|e| panic!("{e}"));
-    let drawn = measures.draw(&out, "test", &table);
+    let drawn = write_outputs(&out, &measures.outputs("test", &table));
     drawn.unwrap_or_else(|e| panic!("{e}"));
     // Slice 0 is all of the time.
     let mut profile = read(&out.join("layer.csv"));

@@ -136,7 +136,7 @@ impl<S: Dimensional> Recorder<'_, S> {
     fn files(&mut self) -> Result<(), RunError> {
         let table = self.table.flush();
         let table = table.map_err(|e| unwritable(&self.out.join("statistics.csv"), &e));
-        let scars = self.write(&scars::tables(&self.simulation));
+        let scars = write_outputs(&self.out, &scars::tables(&self.simulation));
         let results = self.end_results();
         table.and(results).and(scars).and(self.draw())
     }
@@ -148,21 +148,6 @@ impl<S: Dimensional> Recorder<'_, S> {
             self.results.keep(number, &bytes);
         }
         Ok(self.results.finish(&self.out)?)
-    }
-
-    /// Writes and draws what observers ask for.
-    fn write(&self, outputs: &[Output]) -> Result<(), RunError> {
-        outputs.iter().try_for_each(|output| match output {
-            Output::Text { file, text } => {
-                let path = self.out.join(file);
-                std::fs::write(&path, text).map_err(|e| unwritable(&path, &e))
-            }
-            Output::Charts {
-                file,
-                charts,
-                columns,
-            } => Ok(draw_panels(charts, *columns, &self.out.join(file))?),
-        })
     }
 
     /// Draws the figures.
@@ -190,7 +175,7 @@ impl<S: Dimensional> Recorder<'_, S> {
                 jump::draw(&self.out, &self.loaded.case.name, j, S::D)?;
             }
             let title = &self.loaded.case.name;
-            self.write(&self.measures.outputs(title, &self.table))?;
+            write_outputs(&self.out, &self.measures.outputs(title, &self.table))?;
             figures::scars::draw(&self.out, &self.loaded.case.name, &self.simulation)?;
             if self.biaxial.is_some() {
                 let title = &self.loaded.case.name;
@@ -199,6 +184,24 @@ impl<S: Dimensional> Recorder<'_, S> {
         }
         Ok(())
     }
+}
+
+/// Writes and draws what observers ask for into a folder.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write_outputs(folder: &Path, outputs: &[Output]) -> Result<(), RunError> {
+    outputs.iter().try_for_each(|output| match output {
+        Output::Text { file, text } => {
+            let path = folder.join(file);
+            std::fs::write(&path, text).map_err(|e| unwritable(&path, &e))
+        }
+        Output::Charts {
+            file,
+            charts,
+            columns,
+        } => Ok(draw_panels(charts, *columns, &folder.join(file))?),
+    })
 }
 
 /// Writes a file that is whole whenever it is there.

@@ -14,6 +14,7 @@ mod rescue;
 mod row;
 mod stamps;
 
+pub use self::end::write_outputs;
 pub use self::error::RunError;
 pub use self::row::statistics_columns;
 

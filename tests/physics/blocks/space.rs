@@ -5,6 +5,7 @@ use super::{close, driven, scene, step};
 use fretwork::contact::Key;
 use fretwork::geometry::convex::Core;
 use fretwork::geometry::space::Solid;
+use fretwork::record::run::write_outputs;
 use fretwork::record::measure::Measures;
 use fretwork::record::statistics::Table;
 use fretwork::scene::measures::MeasureSpec;
@@ -223,7 +224,7 @@ fn blocks_are_measured() {
     step(&mut s);
     profile.sample(&s);
     let table = Table::create(&folder.join("t.csv"), Vec::new()).unwrap();
-    profile.draw(&folder, "", &table).unwrap();
+    write_outputs(&folder, &profile.outputs("", &table)).unwrap();
     let text = std::fs::read_to_string(folder.join("m.csv")).unwrap();
     std::fs::remove_dir_all(&folder).ok();
     for row in text.lines().skip(1) {
