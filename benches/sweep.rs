@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// What one update costs, counted in `src/solve/row/plain.rs`.
+/// What one update costs, counted in `crates/core/src/solve/row/plain.rs`.
 struct Cost {
     /// Bytes of the row; all of its cache lines are read and written back.
     row: f64,

@@ -14,5 +14,7 @@ pub mod scene;
 pub mod shipped;
 pub mod trade;
 
-pub use fretwork_core::{bodies, certify, contact, energy, geometry, laws, process, solve, step, wear};
+pub use fretwork_core::{
+    bodies, certify, contact, energy, geometry, laws, process, solve, step, wear,
+};
 pub use fretwork_plot as report;

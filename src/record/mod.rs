@@ -3,7 +3,8 @@
 pub mod run;
 
 pub use fretwork_observe::{
-    biaxial, choice, code, coordination, first_bodies, fretting, friction, jump, layer, loops, measure, output, placement, scars, scatter, solving, statistics, steady, strain, stress,
+    biaxial, choice, code, coordination, first_bodies, fretting, friction, jump, layer, loops,
+    measure, output, placement, scars, scatter, solving, statistics, steady, strain, stress,
 };
 pub use fretwork_plot::{figures, picture};
 pub use fretwork_store::{checkpoint, fclib, results, series, shapes, summary, views, warnings};

@@ -3,8 +3,8 @@
 
 use fretwork::geometry::space::{Plane, Solid, Space};
 use fretwork::laws::SearchPath;
-use fretwork::record::run::write_outputs;
 use fretwork::record::measure::Measures;
+use fretwork::record::run::write_outputs;
 use fretwork::record::statistics::Table;
 use fretwork::record::stress::love_weber;
 use fretwork::record::{RunOptions, Summary, run};

@@ -9,6 +9,7 @@ mod fclib;
 mod grains;
 mod law_drive;
 mod law_new;
+mod layers;
 mod plugin_loading;
 mod results;
 mod resume;

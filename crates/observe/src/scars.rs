@@ -1,8 +1,8 @@
 //! Wear scars: columns of the statistics, what the summary says and `scar_NAME.csv`.
 
-use super::statistics::Column;
 use super::output::Output;
 use super::quantity::quantity;
+use super::statistics::Column;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use fretwork_core::wear::{Form, Scar, shape};

@@ -2,9 +2,9 @@
 
 use super::canvas::{Canvas, INK, Rgb, WHITE};
 use super::chart::{Plot, Runs, Sheet, TEXT};
-use fretwork_observe::chart::{Chart, Style};
 use super::curve::{draw_series, gradient};
 use super::font::{Anchor, TextStyle, text_width};
+use fretwork_observe::chart::{Chart, Style};
 
 /// Size of a legend in pixels.
 #[derive(Clone, Copy, Debug)]
@@ -207,7 +207,8 @@ impl Rows {
 
 /// Rank and label of the series that ask for an entry.
 fn labels(chart: &Chart) -> Vec<(usize, &str)> {
-    let entry = |(i, s): (usize, &'_ fretwork_observe::chart::Series)| (!s.label.is_empty()).then_some(i);
+    let entry =
+        |(i, s): (usize, &'_ fretwork_observe::chart::Series)| (!s.label.is_empty()).then_some(i);
     let ranks = chart.series.iter().enumerate().filter_map(entry);
     ranks.map(|i| (i, chart.series[i].label.as_str())).collect()
 }

@@ -23,8 +23,8 @@ mod view;
 
 pub use canvas::ReportError;
 pub use chart::DrawChart;
-pub use fretwork_observe::chart::{Axis, Chart, Series, Style, quantity};
 pub use frame::{Arrow, Disk, Frame, Link, LinkState, Outline};
+pub use fretwork_observe::chart::{Axis, Chart, Series, Style, quantity};
 pub use notice::noted;
 pub use paint::{Paint, Scale, round_top};
 pub use panels::draw_panels;

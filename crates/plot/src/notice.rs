@@ -42,8 +42,8 @@ pub(super) fn banded(picture: &Canvas, text: &str) -> Result<Canvas, ReportError
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::canvas::png_size;
     use crate::DrawChart;
+    use crate::canvas::png_size;
     use fretwork_observe::chart::{Axis, Chart, Series};
 
     #[test]

@@ -1,9 +1,9 @@
 //! What the colour of a grain says.
 
-use fretwork_observe::chart::Axis;
 use super::canvas::{Canvas, INK, ReportError, Rgb, mix};
 use super::chart::TEXT;
 use super::font::{Anchor, TextStyle, text_width};
+use fretwork_observe::chart::Axis;
 use serde::{Deserialize, Serialize};
 
 /// What the colour of a grain says.

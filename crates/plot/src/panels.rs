@@ -2,8 +2,8 @@
 
 use super::canvas::{Canvas, INK, ReportError};
 use super::chart::{DrawChart, PAGE, Sheet, wrapped};
-use fretwork_observe::chart::Chart;
 use super::font::TextStyle;
+use fretwork_observe::chart::Chart;
 use std::path::Path;
 
 /// Width of a page in pixels: 318 to the inch where it is printed 16 cm wide.

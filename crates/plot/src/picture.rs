@@ -6,12 +6,12 @@ mod space;
 
 pub use fretwork_observe::placement::{ends, piece_centre, piece_outline};
 
-use fretwork_observe::placement::is_first;
+use crate::{Disk, Frame, Link, LinkState, Outline, Paint, ReportError, Scale};
 use fretwork_core::geometry::shape::Ball;
 use fretwork_core::geometry::space::Space;
-use crate::{Disk, Frame, Link, LinkState, Outline, Paint, ReportError, Scale};
-use fretwork_scene::case::OutputSpec;
 use fretwork_core::step::Simulation;
+use fretwork_observe::placement::is_first;
+use fretwork_scene::case::OutputSpec;
 use links::{forces, links};
 use std::path::Path;
 
@@ -217,10 +217,12 @@ impl Camera {
 }
 
 fn balls<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (S::Vector, f64)> + '_ {
-    s.shapes
-        .balls
-        .iter()
-        .map(|b| (fretwork_core::contact::detect::centre(b, &s.bodies), b.radius))
+    s.shapes.balls.iter().map(|b| {
+        (
+            fretwork_core::contact::detect::centre(b, &s.bodies),
+            b.radius,
+        )
+    })
 }
 
 fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Vec<Outline> {

@@ -4,8 +4,8 @@ use super::case::Case;
 use super::source::{Fault, nearest};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::laws::Interface;
-use fretwork_core::step::Simulation;
 use fretwork_core::process::circuit::{Fate, Spec, Zone};
+use fretwork_core::step::Simulation;
 use serde::Deserialize;
 
 /// The account of grains between first bodies, contact and outside.

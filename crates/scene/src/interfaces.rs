@@ -4,11 +4,13 @@ use super::case::{Case, InterfaceSpec};
 use super::material::{Given, InterfaceParameters, Shelf, Sourced};
 use super::source::{Fault, InputError, Source, nearest};
 use super::units;
+use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
 use fretwork_core::contact::detect::LawTable;
 use fretwork_core::geometry::space::Space;
-use fretwork_core::laws::{AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath};
+use fretwork_core::laws::{
+    AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath,
+};
 use fretwork_core::step::Simulation;
-use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 

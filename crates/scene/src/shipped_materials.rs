@@ -6,8 +6,14 @@ pub const FILES: [(&str, &str); 7] = [
         "benchmark_grain",
         include_str!("../../../materials/benchmark_grain.ron"),
     ),
-    ("glass_bead", include_str!("../../../materials/glass_bead.ron")),
-    ("magnetite", include_str!("../../../materials/magnetite.ron")),
+    (
+        "glass_bead",
+        include_str!("../../../materials/glass_bead.ron"),
+    ),
+    (
+        "magnetite",
+        include_str!("../../../materials/magnetite.ron"),
+    ),
     (
         "oxide_third_body",
         include_str!("../../../materials/oxide_third_body.ron"),

@@ -1,16 +1,16 @@
 //! The state of a simulation as the views of `results.h5`.
 
-use fretwork_observe::placement::{self, BondState};
 use super::results::state::ORIENTATION;
 use super::results::{Header, Part, Results, ResultsError};
 use super::shapes;
-use fretwork_observe::statistics::Column;
 use super::summary::Summary;
 use fretwork_core::contact::detect::centre;
 use fretwork_core::geometry::convex::Core;
 use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_scene::build::Loaded;
 use fretwork_core::step::Simulation;
+use fretwork_observe::placement::{self, BondState};
+use fretwork_observe::statistics::Column;
+use fretwork_scene::build::Loaded;
 
 /// What was built of a case.
 #[derive(Debug)]

@@ -1,12 +1,12 @@
 //! What went wrong in a run, and what to change: reasons not to trust it, and notes. docs/trustworthy.md has the table.
 
 use crate::summary::Summary;
-pub use fretwork_observe::warning::{NOT_REACHED, Warning};
 use fretwork_core::geometry::space::Space;
-use fretwork_scene::methods::{Demands, Service};
 use fretwork_core::solve::Report;
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::step::Simulation;
+pub use fretwork_observe::warning::{NOT_REACHED, Warning};
+use fretwork_scene::methods::{Demands, Service};
 
 /// Residual of the energy ledger, in parts of the largest energy, that rounding does not explain: ledgers close to 1e-9 and
 /// better, over millions of steps too.
@@ -122,7 +122,6 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     list.sort_by_key(|w| !w.serious);
     list
 }
-
 
 fn stopped(summary: &Summary) -> Option<String> {
     let why = summary.stopped.as_ref()?;

@@ -2,8 +2,8 @@
 
 use super::super::Failure;
 use super::super::output::inform;
-use crate::laws::search::{file_name, name_is_valid};
 use crate::laws::Kind;
+use crate::laws::search::{file_name, name_is_valid};
 use crate::shipped::built_in;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};

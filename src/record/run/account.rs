@@ -2,6 +2,7 @@
 
 use super::{Recorder, RunError};
 use crate::geometry::space::{Space, VectorLike};
+use crate::process::circuit::Circuit;
 use crate::record::results::Results;
 use crate::record::series::Series;
 use crate::record::statistics::Column;
@@ -12,7 +13,6 @@ use crate::scene::build::Dimensional;
 use crate::scene::case::Case;
 use crate::scene::circuit;
 use crate::step::Simulation;
-use crate::process::circuit::Circuit;
 use crate::wear::ledger::{Flows, Ledger, Place};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;

@@ -68,8 +68,8 @@ fn a_zone_that_comes_and_goes_ejects_and_gives_back() {
 /// cost both.
 #[test]
 fn debris_remembers_the_bonds_that_broke_before_the_last() {
-    use fretwork::scene::circuit;
     use fretwork::process::circuit::Circuit;
+    use fretwork::scene::circuit;
     let file = format!(
         "{}/cases/verification/falling_debris.ron",
         env!("CARGO_MANIFEST_DIR")

@@ -2,10 +2,10 @@
 
 use fretwork::geometry::space::{Plane, Solid};
 use fretwork::laws::SearchPath;
+use fretwork::process::circuit::Circuit;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::{circuit, load};
 use fretwork::step::Simulation;
-use fretwork::process::circuit::Circuit;
 use std::collections::HashSet;
 use std::path::Path;
 

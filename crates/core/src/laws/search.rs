@@ -215,7 +215,9 @@ impl SearchPath {
         };
         for (number, folder) in self.folders.iter().enumerate() {
             if number == self.shipped {
-                self.built_in.names().for_each(|(k, n)| add(k, n.to_owned(), Place::BuiltIn));
+                self.built_in
+                    .names()
+                    .for_each(|(k, n)| add(k, n.to_owned(), Place::BuiltIn));
             }
             let Ok(entries) = std::fs::read_dir(folder) else {
                 continue;
@@ -228,7 +230,9 @@ impl SearchPath {
                 }
             }
         }
-        self.built_in.names().for_each(|(k, n)| add(k, n.to_owned(), Place::BuiltIn));
+        self.built_in
+            .names()
+            .for_each(|(k, n)| add(k, n.to_owned(), Place::BuiltIn));
         out.sort();
         out
     }

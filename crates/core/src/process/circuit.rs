@@ -1,12 +1,12 @@
 //! The tribological circuit of a run: ties, ejection zones, the mass ledger, and debris as it comes loose.
 
-use crate::wear::ledger::{Ledger, Place};
-use crate::wear::ties::Ties;
 use crate::bodies::Bodies;
 use crate::contact::Network;
 use crate::geometry::periodic::Periodic;
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
+use crate::wear::ledger::{Ledger, Place};
+use crate::wear::ties::Ties;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};

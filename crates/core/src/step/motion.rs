@@ -4,8 +4,8 @@
 //! step's velocities are those at q_m.
 
 use crate::bodies::Bodies;
-use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::energy::BodyWork;
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
 /// Moves positions and orientations by `time` without forces.
 pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64) {

@@ -11,8 +11,8 @@ use super::coordination::{Coordination, coordination};
 use super::statistics::Column;
 use super::stress::{love_weber, plane_invariants};
 use fretwork_core::geometry::space::Space;
-use fretwork_scene::case::BiaxialSpec;
 use fretwork_core::step::Simulation;
+use fretwork_scene::case::BiaxialSpec;
 
 /// A flat wall square to an axis.
 #[derive(Clone, Copy, Debug)]

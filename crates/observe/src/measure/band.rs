@@ -5,12 +5,12 @@
 //! count. A straight line through the rows gives the angle; across that line the width is the rows' mean.
 
 use super::{Measure, grains, line};
-use fretwork_core::geometry::space::Space;
+use crate::chart::{Axis, Chart, Series};
 use crate::code::{self, CodeError};
+use crate::output::Output;
 use crate::statistics::{Column, Table};
 use crate::strain::Strain;
-use crate::chart::{Axis, Chart, Series};
-use crate::output::Output;
+use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use std::f64::consts::PI;
 

@@ -1,11 +1,11 @@
 //! Mass above a level: what a silo still holds.
 
 use super::{Measure, grains, line, since};
-use fretwork_core::geometry::space::Space;
-use crate::code::CodeError;
-use crate::statistics::{Column, Table};
 use crate::chart::{Axis, Chart, Series};
+use crate::code::CodeError;
 use crate::output::Output;
+use crate::statistics::{Column, Table};
+use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
 /// See [`fretwork_scene::measures::MeasureSpec::Mass`].

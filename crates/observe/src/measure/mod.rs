@@ -12,8 +12,8 @@ use super::output::Output;
 use super::statistics::{Column, Table};
 use fretwork_core::geometry::convex::{Core, Piece};
 use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_scene::measures::MeasureSpec;
 use fretwork_core::step::Simulation;
+use fretwork_scene::measures::MeasureSpec;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 

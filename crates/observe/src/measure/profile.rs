@@ -3,11 +3,11 @@
 //! A grain counts in the slice of its centre, with its mass where velocities are averaged.
 
 use super::{Measure, grains};
-use fretwork_core::geometry::space::{Space, VectorLike};
-use crate::code::{self, CodeError};
-use crate::statistics::{Column, Table};
 use crate::chart::{Axis, Chart, Series, Style};
+use crate::code::{self, CodeError};
 use crate::output::Output;
+use crate::statistics::{Column, Table};
+use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
 

@@ -6,11 +6,11 @@
 //! rate d sqrt(density/p) in 3D. In the summary mu and I are those of the mean stresses and of the mean rate.
 
 use super::{Measure, grains, line, mean, since};
-use fretwork_core::geometry::space::Space;
-use crate::code::CodeError;
-use crate::statistics::{Column, Table};
 use crate::chart::{Axis, Chart, Series};
+use crate::code::CodeError;
 use crate::output::Output;
+use crate::statistics::{Column, Table};
+use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use std::f64::consts::PI;
 

@@ -1,11 +1,11 @@
 //! The angle of a free surface: a straight line through the tops of the grains, column by column.
 
 use super::{Measure, grains, line, mean, since};
-use fretwork_core::geometry::space::{Space, VectorLike};
-use crate::code::CodeError;
-use crate::statistics::{Column, Table};
 use crate::chart::{Axis, Chart, Series};
+use crate::code::CodeError;
 use crate::output::Output;
+use crate::statistics::{Column, Table};
+use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 
 /// See [`fretwork_scene::measures::MeasureSpec::Slope`].

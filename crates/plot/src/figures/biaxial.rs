@@ -1,8 +1,8 @@
 //! The figure of a biaxial test: four panels against axial strain.
 
-use fretwork_observe::statistics::Table;
-use fretwork_observe::chart::{Axis, Chart, Series, Style};
 use crate::{ReportError, draw_panels};
+use fretwork_observe::chart::{Axis, Chart, Series, Style};
+use fretwork_observe::statistics::Table;
 use std::path::Path;
 
 /// Draws the stress ratio, the volumetric strain, the coordination and the compacity against axial strain,

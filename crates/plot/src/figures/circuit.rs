@@ -1,8 +1,8 @@
 //! The figure of the tribological circuit: what passed against time, and what is in the contact.
 
-use fretwork_observe::statistics::Table;
-use fretwork_observe::chart::{Axis, Chart, Series, Style};
 use crate::{ReportError, draw_panels};
+use fretwork_observe::chart::{Axis, Chart, Series, Style};
+use fretwork_observe::statistics::Table;
 use std::path::Path;
 
 /// Draws `circuit.png` from the columns of the statistics; `window` is the one of the mean flows (s).

@@ -1,7 +1,7 @@
 //! The figure of jumps over cycles.
 
-use fretwork_observe::chart::{Axis, Chart, Series, Style};
 use crate::{ReportError, draw_panels};
+use fretwork_observe::chart::{Axis, Chart, Series, Style};
 use fretwork_observe::jump::{JumpSummary, Point};
 use std::path::Path;
 

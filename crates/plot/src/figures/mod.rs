@@ -5,14 +5,14 @@ pub mod circuit;
 pub mod jump;
 pub mod scars;
 
-use fretwork_observe::friction::{Cycle, Cycles};
-use fretwork_observe::statistics::Table;
+use crate::DrawChart;
+use crate::{ReportError, draw_panels};
 use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_core::geometry::space::Space;
-use fretwork_observe::chart::{Axis, Chart, Series, Style, quantity};
-use crate::{ReportError, draw_panels};
 use fretwork_core::step::Simulation;
-use crate::DrawChart;
+use fretwork_observe::chart::{Axis, Chart, Series, Style, quantity};
+use fretwork_observe::friction::{Cycle, Cycles};
+use fretwork_observe::statistics::Table;
 use std::path::Path;
 
 /// Loops of a test that are drawn at most: the first, the last, and some of those between.

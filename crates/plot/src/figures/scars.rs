@@ -1,11 +1,11 @@
 //! The figure of a wear scar.
 
-use fretwork_core::geometry::space::Space;
-use fretwork_observe::scars::file_name;
-use fretwork_observe::chart::{Axis, Chart, Series, Style};
 use crate::{ReportError, draw_panels};
+use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use fretwork_core::wear::{Form, shape};
+use fretwork_observe::chart::{Axis, Chart, Series, Style};
+use fretwork_observe::scars::file_name;
 use std::path::Path;
 
 /// Draws the scars: the profile at first and now, and the depth; in space as means across the sliding.

@@ -1,11 +1,11 @@
 //! Contacts as lines between their ends: their state, bonds and forces.
 
 use super::images;
-use fretwork_observe::placement::{BondState, bond_state, ends};
+use crate::{Link, LinkState};
 use fretwork_core::contact::Contact;
 use fretwork_core::geometry::space::{Space, VectorLike};
-use crate::{Link, LinkState};
 use fretwork_core::step::Simulation;
+use fretwork_observe::placement::{BondState, bond_state, ends};
 
 /// The state of a contact in pictures.
 pub fn state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> LinkState {

@@ -1,10 +1,10 @@
 //! The quantity that colours the grains of a frame: their speed, or the damage of their bonds where there are bonds.
 
-use fretwork_observe::placement::is_first;
+use crate::{Paint, Scale, round_top};
 use fretwork_core::contact::Key;
 use fretwork_core::geometry::space::{Space, VectorLike};
-use crate::{Paint, Scale, round_top};
 use fretwork_core::step::Simulation;
+use fretwork_observe::placement::is_first;
 
 /// The share of the grains whose speed is within the colour bar: a few that fly do not turn all others pale.
 const WITHIN: f64 = 0.98;

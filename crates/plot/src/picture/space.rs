@@ -1,11 +1,11 @@
 //! The scene of a frame in space: grains, and first bodies cut to the part of space that grains can be in.
 
 use super::{balls, paint};
-use fretwork_observe::placement::{is_first, piece_centre, piece_outline};
+use crate::{Faces, Paint, Scene, Sphere, View};
 use fretwork_core::geometry::shape::Carried;
 use fretwork_core::geometry::space::{Space, VectorLike};
-use crate::{Faces, Paint, Scene, Sphere, View};
 use fretwork_core::step::Simulation;
+use fretwork_observe::placement::{is_first, piece_centre, piece_outline};
 
 type Point = [f64; 3];
 

@@ -2,12 +2,12 @@
 
 use super::grains::Seed;
 use super::{Builder, Dimensional, Origin};
-use fretwork_core::geometry::convex::{Boundary, Core, Piece};
-use fretwork_core::geometry::shape::Ball;
-use fretwork_core::geometry::space::{MatrixLike, VectorLike};
 use crate::recorded::{Motion, ShapedBody, ShapedGrain, ShapedPiece, StateError};
 use crate::sample::spec::{FrameSpec, StateSpec};
 use crate::source::InputError;
+use fretwork_core::geometry::convex::{Boundary, Core, Piece};
+use fretwork_core::geometry::shape::Ball;
+use fretwork_core::geometry::space::{MatrixLike, VectorLike};
 
 /// Grains that are no lone balls, of one of `grains`.
 pub(super) struct Others {
@@ -36,7 +36,8 @@ impl<S: Dimensional> Builder<'_, S> {
             FrameSpec::Number(n) => Some(n),
         };
         let Some(reader) = self.records else {
-            let message = "this program reads no results of other runs; hand the case a reader of them";
+            let message =
+                "this program reads no results of other runs; hand the case a reader of them";
             return Err(self.fail(format!("grains.{k}.results"), message.to_owned()));
         };
         let read = reader(&path, frame, S::D).map_err(|e| {

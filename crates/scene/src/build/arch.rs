@@ -2,9 +2,9 @@
 
 use super::polygons::Block;
 use super::{Builder, Dimensional};
-use fretwork_core::geometry::space::{MatrixLike, VectorLike};
 use crate::case::{Edges, GrainSpec};
 use crate::source::InputError;
+use fretwork_core::geometry::space::{MatrixLike, VectorLike};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Thinner blocks than this makes are a slip of the keyboard, and as many of them are neighbours as their number is high.

@@ -2,14 +2,14 @@
 
 use super::polygons::Block;
 use super::{Builder, Dimensional};
-use fretwork_core::geometry::convex::Part;
-use fretwork_core::geometry::convex::polyhedron::Polyhedron;
-use fretwork_core::geometry::space::VectorLike;
 use crate::sample::deposit::Corners;
 use crate::sample::spec::{BlockWallSpec, VoronoiSpec};
 use crate::sample::voronoi::{self, SHORTEST};
 use crate::sample::voronoi_space::{self, Failure};
 use crate::source::{Fault, InputError};
+use fretwork_core::geometry::convex::Part;
+use fretwork_core::geometry::convex::polyhedron::Polyhedron;
+use fretwork_core::geometry::space::VectorLike;
 use nalgebra::{Vector2, Vector3};
 
 /// More blocks than a run of days can follow are a slip of the keyboard.

@@ -1,10 +1,10 @@
 //! First bodies: balls, convex pieces and surfaces that move together, driven or free.
 
 use super::{Builder, Dimensional, Origin};
-use fretwork_core::bodies::{Driven, tensor};
-use fretwork_core::geometry::space::MatrixLike;
 use crate::case::{BodySpec, ShapeSpec};
 use crate::source::InputError;
+use fretwork_core::bodies::{Driven, tensor};
+use fretwork_core::geometry::space::MatrixLike;
 
 impl<S: Dimensional> Builder<'_, S> {
     pub(super) fn first_bodies(&mut self) -> Result<(), InputError> {

@@ -1,12 +1,12 @@
 //! Grains and the walls that come with scenes.
 
 use super::{Builder, Dimensional, Origin};
-use fretwork_core::bodies::Driven;
-use fretwork_core::geometry::shape::{Ball, Carried, HalfSpace, Surface};
-use fretwork_core::geometry::space::{Space, VectorLike};
 use crate::case::GrainSpec;
 use crate::sample;
 use crate::source::{Fault, InputError};
+use fretwork_core::bodies::Driven;
+use fretwork_core::geometry::shape::{Ball, Carried, HalfSpace, Surface};
+use fretwork_core::geometry::space::{Space, VectorLike};
 
 /// More grains than memory holds are a slip of the keyboard: those of a file,
 pub(super) const MOST_READ: usize = 10_000_000;

@@ -1,12 +1,12 @@
 //! Convex polygons: grains and parts of first bodies.
 
 use super::{Builder, Dimensional, Origin};
+use crate::case::{Coordinates, GrainSpec, OnePolygon};
+use crate::source::InputError;
 use fretwork_core::bodies::tensor;
 use fretwork_core::geometry::convex::Part;
 use fretwork_core::geometry::convex::polygon::{Polygon, PolygonError};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
-use crate::case::{Coordinates, GrainSpec, OnePolygon};
-use crate::source::InputError;
 use nalgebra::Vector2;
 
 /// More sides than a picture shows are a slip of the keyboard.

@@ -2,12 +2,12 @@
 
 use super::polygons::Block;
 use super::{Builder, Dimensional, Origin};
-use fretwork_core::geometry::convex::Part;
-use fretwork_core::geometry::convex::polyhedron::Polyhedron;
-use fretwork_core::geometry::space::VectorLike;
 use crate::case::{GrainSpec, OnePolyhedron};
 use crate::mesh_file;
 use crate::source::InputError;
+use fretwork_core::geometry::convex::Part;
+use fretwork_core::geometry::convex::polyhedron::Polyhedron;
+use fretwork_core::geometry::space::VectorLike;
 use nalgebra::{UnitQuaternion, Vector3};
 
 type V = Vector3<f64>;

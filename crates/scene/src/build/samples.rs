@@ -2,12 +2,12 @@
 
 use super::grains::{MOST_MADE, MOST_READ, Seed};
 use super::{Builder, Dimensional, Origin};
-use fretwork_core::geometry::space::VectorLike;
 use crate::sample::deposit::{Corners, deposit};
 use crate::sample::sizes::Sizes;
 use crate::sample::spec::{Counted, CsvSpec, DepositSpec, SizeSpec};
 use crate::sample::table::Table;
 use crate::source::{Fault, InputError};
+use fretwork_core::geometry::space::VectorLike;
 
 impl<S: Dimensional> Builder<'_, S> {
     /// A random deposit.

@@ -1,6 +1,9 @@
 //! Surfaces of first bodies.
 
 use super::Builder;
+use crate::case::{ShapeSpec, Side};
+use crate::source::InputError;
+use crate::{profile, profile_file, standard};
 use fretwork_core::geometry::convex::Part;
 use fretwork_core::geometry::convex::polygon::Polygon;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
@@ -11,9 +14,6 @@ use fretwork_core::geometry::mesh::Mesh;
 use fretwork_core::geometry::polyline::{Polyline, ProfileError};
 use fretwork_core::geometry::shape::{HalfSpace, Surface};
 use fretwork_core::geometry::space::{Plane, Solid, Space, VectorLike};
-use crate::case::{ShapeSpec, Side};
-use crate::source::InputError;
-use crate::{profile, profile_file, standard};
 use nalgebra::Vector2;
 
 /// Points of a random surface, at most,

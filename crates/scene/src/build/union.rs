@@ -2,12 +2,12 @@
 
 use super::surface::Placed;
 use super::{Builder, Dimensional, Origin};
+use crate::case::{GrainSpec, ShapeSpec};
+use crate::source::{self, Fault, InputError};
 use fretwork_core::bodies::tensor;
 use fretwork_core::geometry::convex::Part;
 use fretwork_core::geometry::shape::{Ball, Carried};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
-use crate::case::{GrainSpec, ShapeSpec};
-use crate::source::{self, Fault, InputError};
 use std::f64::consts::PI;
 
 /// Balls, convex parts and surfaces that move together.

@@ -129,7 +129,9 @@ impl<S: Dimensional> Builder<'_, S> {
         };
         let held = |b: &BodySpec| {
             let drives = crate::phases::drives_of(self.case, b);
-            drives.iter().all(|d| d.1 == fretwork_core::bodies::Dof::Fixed)
+            drives
+                .iter()
+                .all(|d| d.1 == fretwork_core::bodies::Dof::Fixed)
         };
         let grains = self.shapes.balls.len() + self.shapes.pieces.len();
         let carried = |b: u32| self.bodies.driven.iter().any(|d| d.body == b);

@@ -1,8 +1,8 @@
 //! What a folder holds to go on from.
 
 use super::{Frame, Identity, Kind, ResumeError};
-use fretwork_observe::code::decode;
 use crate::results::Kept;
+use fretwork_observe::code::decode;
 use std::path::Path;
 
 /// What there is to go on from.

@@ -26,10 +26,10 @@ pub use kept::Kept;
 pub use store::ResultsError;
 pub use view::{Cells, Part};
 
-use fretwork_observe::statistics::Column;
 use super::summary::PluginStamp;
 use declare::MANY;
 use events::Events;
+use fretwork_observe::statistics::Column;
 use shapes::Shaped;
 use std::path::Path;
 use std::time::{Duration, Instant};

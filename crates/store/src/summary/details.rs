@@ -1,8 +1,8 @@
 //! What `--verbose` prints besides: contacts, first and last cycle, phases, solver, laws.
 
 use super::Summary;
-use fretwork_observe::quantity::{number, quantity};
 use super::text::Lines;
+use fretwork_observe::quantity::{number, quantity};
 
 impl Summary {
     pub(super) fn details(&self, lines: &mut Lines) {

@@ -8,17 +8,17 @@ mod text;
 pub use self::circuit::{Base, CircuitSummary, Rates};
 pub use self::estimate::{Estimate, Uncertainty};
 
+use fretwork_core::contact::StepSizeDiagnostics;
+use fretwork_core::energy::Energy;
+use fretwork_core::step::control::Begun;
 use fretwork_observe::biaxial::Outcome;
+pub use fretwork_observe::first_bodies::BodyWear;
 use fretwork_observe::fretting;
 use fretwork_observe::friction::Cycle;
 use fretwork_observe::jump::JumpSummary;
-use fretwork_core::energy::Energy;
 use fretwork_observe::scars::ScarSummary;
-pub use fretwork_observe::first_bodies::BodyWear;
 pub use fretwork_observe::solving::SolverSummary;
-use fretwork_core::contact::StepSizeDiagnostics;
 use fretwork_scene::sampling::UnresolvedDrive;
-use fretwork_core::step::control::Begun;
 use serde::Serialize;
 
 /// A plugin that was loaded.

@@ -1,10 +1,10 @@
 //! What the end of a run prints: warnings, friction, damage, wear, energies. What else there is, see `details`.
 
-use fretwork_observe::quantity::{number, quantity, wear_rate};
 use super::{BodyWear, Summary};
 use fretwork_observe::biaxial::Outcome;
 use fretwork_observe::friction::Cycle;
 use fretwork_observe::jump::JumpSummary;
+use fretwork_observe::quantity::{number, quantity, wear_rate};
 use std::fmt::Write as _;
 
 /// Most values of measures that are printed unasked.

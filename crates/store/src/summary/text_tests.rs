@@ -1,7 +1,7 @@
 use super::*;
+use crate::summary::Uncertainty;
 use fretwork_observe::fretting::{self, Regime};
 use fretwork_observe::scatter;
-use crate::summary::Uncertainty;
 
 /// Fifty cycles of a fretting test with damage and wear, partial slip at first and gross slip in the end.
 fn fretting() -> Summary {

@@ -4,10 +4,10 @@
 //! proportion to its outline, in which roundings are polygons too. A polyhedron counts as the ball of its volume.
 
 use super::gap::Gap;
-use fretwork_core::geometry::convex::Core;
-use fretwork_core::geometry::space::Space;
 use crate::measure::Grain;
 use crate::measure::shear::below;
+use fretwork_core::geometry::convex::Core;
+use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
 /// Shares a grain's volume out over the cells of the gap.

@@ -4,11 +4,11 @@
 //! profiles and surfaces the mean line, of carried balls that of their caps (pi/4 of the radius for disks, 2/3 for
 //! spheres), of carried convex pieces their highest corner.
 
+use crate::measure::Grain;
 use fretwork_core::geometry::convex::Core;
 use fretwork_core::geometry::space::{Space, VectorLike};
-use crate::measure::Grain;
-use fretwork_scene::measures::Extent;
 use fretwork_core::step::Simulation;
+use fretwork_scene::measures::Extent;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 

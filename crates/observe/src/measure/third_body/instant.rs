@@ -5,10 +5,10 @@ use super::chains::{Pair, chains};
 use super::clusters::{Clusters, clusters};
 use super::cut;
 use super::gap::{Faces, Gap};
-use fretwork_core::geometry::space::{Space, VectorLike};
 use crate::coordination::degrees;
 use crate::measure::Grain;
 use crate::stress::each_moment;
+use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_PI_2;
@@ -171,7 +171,9 @@ fn held<S: Space>(s: &Simulation<S>) -> Vec<f64> {
     let mut held = vec![0.0; s.bodies.len()];
     let n = &s.network;
     for contact in n.contacts.iter().filter(|c| c.memory().is_some()) {
-        if n.bond(contact).is_some_and(fretwork_core::contact::Bond::intact) {
+        if n.bond(contact)
+            .is_some_and(fretwork_core::contact::Bond::intact)
+        {
             contact.bodies.iter().for_each(|b| held[*b as usize] += 1.0);
         }
     }

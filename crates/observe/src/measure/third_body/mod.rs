@@ -13,14 +13,14 @@ mod spent;
 mod tables;
 
 use super::{Measure, grains, mean, since};
-use fretwork_core::geometry::space::Space;
 use crate::code::{self, CodeError};
-use crate::statistics::{Column, Table};
 use crate::output::Output;
-use fretwork_scene::measures::ThirdBodySpec;
-use fretwork_core::step::Simulation;
+use crate::statistics::{Column, Table};
 use cells::{Block, History, MECHANISMS};
 use clusters::Clusters;
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::Simulation;
+use fretwork_scene::measures::ThirdBodySpec;
 use gap::Faces;
 use instant::Instant;
 use regime::{Flow, Regime, flow};

@@ -5,9 +5,9 @@
 
 use super::cells::MECHANISMS;
 use super::gap::{Faces, Gap};
+use crate::layer::{Balance, Layer};
 use fretwork_core::contact::Spent;
 use fretwork_core::geometry::space::Space;
-use crate::layer::{Balance, Layer};
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
 

@@ -64,11 +64,7 @@ fn row(slice: usize, k: usize, cell: &Cell, block: &Block) -> Vec<f64> {
 }
 
 /// The profiles: slice 0 is all of the time, the others follow; a value that nothing gives is `NaN`.
-pub(super) fn profiles(
-    whole: &Block,
-    slices: &[Block],
-    dimension: usize,
-) -> String {
+pub(super) fn profiles(whole: &Block, slices: &[Block], dimension: usize) -> String {
     // Across, along and their shear are all of a stress in the plane.
     let lateral = |k: &usize| dimension == 3 || *k != 15;
     let header = (0..PROFILE.len())
@@ -86,10 +82,7 @@ pub(super) fn profiles(
 }
 
 /// The energies by place and by bin, each with its share of all.
-pub(super) fn energies<S: Space>(
-    spent: &Dissipation<S>,
-    between: &(String, String),
-) -> String {
+pub(super) fn energies<S: Space>(spent: &Dissipation<S>, between: &(String, String)) -> String {
     let unit = if S::D == 2 { "J/m" } else { "J" };
     let mut header = vec!["place".to_owned()];
     header.extend(
@@ -123,11 +116,7 @@ pub(super) fn energies<S: Space>(
 }
 
 /// How many clusters there are of each size, and their mass without `inertia_scaling`.
-pub(super) fn clusters(
-    clusters: &Clusters,
-    inertia_scaling: f64,
-    dimension: usize,
-) -> String {
+pub(super) fn clusters(clusters: &Clusters, inertia_scaling: f64, dimension: usize) -> String {
     let unit = if dimension == 2 { "kg/m" } else { "kg" };
     let mut lines = vec![vec![
         "grains".to_owned(),

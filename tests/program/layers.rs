@@ -1,0 +1,135 @@
+//! The layers are crates, so that an import upwards does not compile; here their manifests are read, so that nobody turns an
+//! arrow round by naming a layer, or brings HDF5 or fonts into the core by a library.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Each layer, the layers it may name, and libraries that neither it nor what it stands on may bring.
+const LAYERS: [(&str, &[&str], &[&str]); 5] = [
+    (
+        "core",
+        &[],
+        &[
+            "rust-hdf5",
+            "clap",
+            "indicatif",
+            "plotters",
+            "ab_glyph",
+            "tiny-skia",
+            "epaint_default_fonts",
+            "ron",
+            "ariadne",
+            "csv",
+            "postcard",
+            "fretwork-shipped",
+        ],
+    ),
+    (
+        "scene",
+        &["core"],
+        &["rust-hdf5", "clap", "plotters", "ab_glyph", "tiny-skia"],
+    ),
+    (
+        "observe",
+        &["core", "scene"],
+        &["rust-hdf5", "clap", "plotters", "ab_glyph", "tiny-skia"],
+    ),
+    (
+        "store",
+        &["core", "observe", "scene"],
+        &["clap", "plotters", "ab_glyph", "tiny-skia"],
+    ),
+    (
+        "plot",
+        &["core", "observe", "scene"],
+        &["clap", "rust-hdf5"],
+    ),
+];
+
+/// Names in the normal dependencies of a manifest.
+fn dependencies(manifest: &str) -> BTreeSet<String> {
+    let mut out = BTreeSet::new();
+    let mut counts = false;
+    for line in manifest.lines().map(str::trim) {
+        if line.starts_with('[') {
+            counts = line == "[dependencies]" || line.ends_with(".dependencies]");
+        } else if counts && let Some((name, _)) = line.split_once(['=', '.', ' ']) {
+            out.insert(name.trim().to_owned());
+        }
+    }
+    out
+}
+
+/// What every package of the lock file names, by its name; several versions of one are taken together.
+fn locked(lock: &str) -> BTreeMap<&str, BTreeSet<&str>> {
+    let mut out: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    let mut name = "";
+    for line in lock.lines() {
+        if let Some(rest) = line.strip_prefix("name = ") {
+            name = rest.trim_matches('"');
+            out.entry(name).or_default();
+        } else if let Some(rest) = line.strip_prefix(" \"") {
+            let package = rest.trim_end_matches(['"', ',']);
+            let package = package.split(' ').next().unwrap_or(package);
+            out.entry(name).or_default().insert(package);
+        }
+    }
+    out
+}
+
+/// A package and all that it stands on.
+fn closure<'a>(of: &'a str, locked: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> BTreeSet<&'a str> {
+    let (mut known, mut open) = (BTreeSet::new(), vec![of]);
+    while let Some(package) = open.pop() {
+        if known.insert(package) {
+            open.extend(locked.get(package).into_iter().flatten());
+        }
+    }
+    known
+}
+
+fn read(file: &str) -> String {
+    let path = format!("{}/{file}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
+#[test]
+fn layers_name_only_what_is_below_them() {
+    for (layer, below, _) in LAYERS {
+        let named = dependencies(&read(&format!("crates/{layer}/Cargo.toml")));
+        assert!(named.contains("serde"), "{layer}: {named:?}");
+        let ours: BTreeSet<&str> = named
+            .iter()
+            .filter_map(|n| n.strip_prefix("fretwork-"))
+            .collect();
+        let allowed: BTreeSet<&str> = below.iter().copied().chain(["abi"]).collect();
+        assert!(ours.is_subset(&allowed), "{layer} names {ours:?}");
+        assert!(!named.contains("fretwork"), "{layer} names the program");
+    }
+    let known: BTreeSet<&str> = LAYERS.iter().map(|l| l.0).collect();
+    let crates = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/crates")).unwrap();
+    for entry in crates {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        assert!(
+            known.contains(name.as_str()),
+            "crates/{name} is no known layer"
+        );
+    }
+}
+
+#[test]
+fn lower_layers_bring_no_files_pictures_or_command_line() {
+    let lock = read("Cargo.lock");
+    let locked = locked(&lock);
+    for library in ["rust-hdf5", "clap", "plotters", "ron"] {
+        // It is there at all, so that the search below can find it.
+        assert!(closure("fretwork", &locked).contains(library), "{library}");
+    }
+    for (layer, _, refused) in LAYERS {
+        let package = format!("fretwork-{layer}");
+        assert!(locked.contains_key(package.as_str()), "{package}");
+        let brings = closure(&package, &locked);
+        for library in refused {
+            assert!(!brings.contains(library), "{package} brings {library}");
+        }
+    }
+}
