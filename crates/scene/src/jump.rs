@@ -3,39 +3,7 @@
 use super::case::{BodySpec, Case};
 use super::source::Fault;
 use fretwork_core::bodies::{Dof, TimeFunction};
-use serde::{Deserialize, Serialize};
-
-/// Jumps over the cycles of a friction test: some computed cycles stand for many, see [`fretwork_core::wear::jump`].
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct JumpSpec {
-    /// Cycles that are computed one by one before the first jump.
-    pub after: u32,
-    /// Cycles that one computed cycle stands for, at most.
-    pub at_most: u32,
-    /// Error of a jump that the length of the next one aims at: of what it adds, in parts of it, and of what it
-    /// misplaces, in parts of the scar after `cycles`; of the scar at hand without `cycles`.
-    pub tolerance: f64,
-    /// Cycles computed one by one after each jump, against which it is checked.
-    pub control: u32,
-    /// How much the damage of a bond may grow in a jump.
-    pub growth: f64,
-    /// Cycles after which the run ends, those jumped over included; by default it ends at `time.end`.
-    pub cycles: Option<u32>,
-}
-
-impl Default for JumpSpec {
-    fn default() -> Self {
-        Self {
-            after: 3,
-            at_most: 50,
-            tolerance: 0.02,
-            control: 1,
-            growth: 0.1,
-            cycles: None,
-        }
-    }
-}
+pub use fretwork_core::process::jump::JumpSpec;
 
 /// Most cycles of a jump, or of its control.
 const MOST: u32 = 100_000;

@@ -116,7 +116,10 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     serious("GRAINS DO NOT ADD UP", grains(summary));
     let reached = summary.stopped.is_none();
     serious("NOT REACHED", phases(summary).filter(|_| reached));
-    let jumps = summary.jump.iter().flat_map(|j| j.warnings());
+    let jumps = summary
+        .jump
+        .iter()
+        .flat_map(fretwork_observe::jump::warnings);
     list.extend(jumps.filter(|w| reached || w.of != NOT_REACHED));
     list.extend(notes(summary));
     list.sort_by_key(|w| !w.serious);

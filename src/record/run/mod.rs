@@ -213,9 +213,9 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let measures = Measures::new(&case.measures, case.inertia_scaling);
         let jumps = cycles
             .as_ref()
-            .and_then(|(cycles, _)| Jumps::begin(case, cycles, &mut simulation));
+            .and_then(|(cycles, _)| jumps::begin(case, cycles, &simulation));
         let mut columns = row::columns(&simulation, cycles.is_some(), biaxial.is_some());
-        columns.extend(jumps.is_some().then(Jumps::column));
+        columns.extend(jumps.is_some().then(jumps::column));
         columns.extend(Account::<S>::columns(case));
         columns.extend(measures.columns());
         let plugins = stamps(&simulation.laws);

@@ -2,7 +2,7 @@
 
 use super::Recorder;
 use super::account::Account;
-use super::jumps::Jumps;
+use super::jumps;
 use crate::geometry::space::Space;
 use crate::record::biaxial::Biaxial;
 use crate::record::measure::Measures;
@@ -75,7 +75,7 @@ pub fn statistics_columns<S: Dimensional>(case: &Case, s: &Simulation<S>) -> Vec
     let driven = |name: &str| s.bodies.driven.iter().any(|d| d.name == name);
     let friction = test.is_some_and(|t| driven(&t.body));
     let mut out = columns(s, friction, case.biaxial.is_some());
-    out.extend(case.jump.is_some().then(Jumps::column));
+    out.extend(case.jump.is_some().then(jumps::column));
     out.extend(Account::<S>::columns(case));
     out.extend(Measures::<S>::new(&case.measures, case.inertia_scaling).columns());
     out

@@ -3,7 +3,7 @@
 use super::{BodyWear, Summary};
 use fretwork_observe::biaxial::Outcome;
 use fretwork_observe::friction::Cycle;
-use fretwork_observe::jump::JumpSummary;
+use fretwork_observe::jump;
 use fretwork_observe::quantity::{number, quantity, wear_rate};
 use std::fmt::Write as _;
 
@@ -177,7 +177,7 @@ impl Summary {
             );
             lines.add("wear per energy", text);
         }
-        lines.all(self.jump.iter().flat_map(JumpSummary::lines));
+        lines.all(self.jump.iter().flat_map(jump::lines));
         let any = w.Qs > 0.0 || self.circuit.is_some();
         if any {
             let unit = self.unit("kg/s", "kg/(m s)");

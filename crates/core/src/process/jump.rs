@@ -1,0 +1,439 @@
+//! Jumps over cycles: which cycle stands for how many, and the control of each jump.
+
+use crate::contact::Bond;
+use crate::contact::events::Life;
+use crate::geometry::recede::Vertex;
+use crate::geometry::space::Space;
+use crate::step::Simulation;
+use crate::wear::jump::{Amounts, carried, error, growth, left, misplaced, next_length, parts};
+use serde::{Deserialize, Serialize};
+
+/// Jumps over the cycles of a friction test: some computed cycles stand for many, see [`crate::wear::jump`].
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct JumpSpec {
+    /// Cycles that are computed one by one before the first jump.
+    pub after: u32,
+    /// Cycles that one computed cycle stands for, at most.
+    pub at_most: u32,
+    /// Error of a jump that the length of the next one aims at: of what it adds, in parts of it, and of what it
+    /// misplaces, in parts of the scar after `cycles`; of the scar at hand without `cycles`.
+    pub tolerance: f64,
+    /// Cycles computed one by one after each jump, against which it is checked.
+    pub control: u32,
+    /// How much the damage of a bond may grow in a jump.
+    pub growth: f64,
+    /// Cycles after which the run ends, those jumped over included; by default it ends at `time.end`.
+    pub cycles: Option<u32>,
+}
+
+impl Default for JumpSpec {
+    fn default() -> Self {
+        Self {
+            after: 3,
+            at_most: 50,
+            tolerance: 0.02,
+            control: 1,
+            growth: 0.1,
+            cycles: None,
+        }
+    }
+}
+
+/// A jump that was checked.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Jump {
+    /// Cycles before it, those jumped over included.
+    pub after: u32,
+    /// Cycles that its one computed cycle stood for.
+    pub cycles: u32,
+    /// By how much it is off: the worst of volumes and damage, in parts of what it added, and of what is misplaced
+    /// after it, in parts of the scar at the end of the run. See [`fretwork_core::wear::jump`].
+    pub error: f64,
+    /// By how much the work of the cycles after it differs from that of the cycle before it, in parts of it.
+    pub work_change: f64,
+}
+
+/// The state at the end of a computed cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    /// Cycles, those jumped over included.
+    pub cycles: u32,
+    /// Cycles that the last one stood for.
+    pub stands_for: u32,
+    /// Volume worn off first bodies (m^3; m^3/m in 2D).
+    pub wear_volume: f64,
+    /// Mean damage of the bonds.
+    pub mean_damage: f64,
+}
+
+/// The jumps of a run.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct JumpSummary {
+    /// Cycles that were computed to their end, those that stand for many included.
+    pub computed_cycles: u32,
+    /// Cycles that they stand for.
+    pub represented_cycles: u32,
+    /// Cycles that were asked for.
+    pub asked_cycles: Option<u32>,
+    /// Error of a jump that was aimed at.
+    pub tolerance: f64,
+    /// What all jumps were off by and what is misplaced at the end, in parts of all wear, or of all growth of damage:
+    /// the worst; none where what jumps were off by has nothing to be set against.
+    pub error_estimate: Option<f64>,
+    /// Cycles of a jump that the run ended before it was checked.
+    pub unchecked_cycles: u32,
+    /// Internal variables of laws, which go on by the cycle that is computed only: they do not jump.
+    pub not_jumped: Vec<String>,
+    /// Volume worn off first bodies, in all cycles (m^3; m^3/m in 2D).
+    pub wear_volume: f64,
+    /// Jumps that were checked.
+    pub jumps: Vec<Jump>,
+    /// Computed cycles.
+    pub points: Vec<Point>,
+}
+
+/// The part of what is left of a run that a jump may take.
+const TAPER: f64 = 1.0 / 3.0;
+
+/// The sum of what is seen to be off is multiplied by this: growth that bends within a jump is off by more than the parabola
+/// shows. Of the fatigue bond whole runs were off by up to 1.47 times the sum (docs/wear.md).
+const SAFETY: f64 = 1.5;
+
+/// A jump that waits for its control.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Pending {
+    cycles: u32,
+    before: Amounts,
+    added: Amounts,
+    /// Sum over the control cycles so far.
+    control: Amounts,
+    computed: u32,
+    /// Work of the cycle before it, and sum over those of its control (J; J/m).
+    work: [f64; 2],
+}
+
+/// The jumps of a run.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Jumps {
+    spec: JumpSpec,
+    /// Steps of a cycle, and of the whole run.
+    steps: [u64; 2],
+    /// Work of the last cycle that was computed as one (J; J/m).
+    work: f64,
+    /// Number of the cycle at hand among those computed, 0 before the first.
+    number: u32,
+    /// Cycles that the one at hand stands for.
+    stands_for: u32,
+    /// Cycles closed: computed, and with those jumped over.
+    computed: u32,
+    represented: u32,
+    /// What cycles changed, at the start of the run and of the cycle at hand.
+    first: Amounts,
+    opened: Amounts,
+    /// Growth over the last cycle that was computed as one.
+    rate: Amounts,
+    /// Length of the next jump, before it is rounded and bound.
+    length: f64,
+    pending: Option<Pending>,
+    /// Growth over a cycle before the last jump, and how many cycles before the next one that was.
+    earlier: Option<(Amounts, f64)>,
+    /// How many cycles before the next jump the growth `rate` is of; 0 for the cycle just before it.
+    centre: f64,
+    /// Sum of what jumps were off by, quantity by quantity.
+    off: Vec<f64>,
+    /// What is misplaced on each scar.
+    form: Vec<f64>,
+    /// What the last jump that was checked added.
+    last: Option<Amounts>,
+    summary: JumpSummary,
+}
+
+impl Jumps {
+    /// Begins at the state at hand: with the steps of a cycle and of the whole run, and the number of the cycle that the next step
+    /// belongs to.
+    pub fn new<S: Space>(spec: JumpSpec, steps: [u64; 2], number: u32, s: &Simulation<S>) -> Self {
+        let first = amounts(s, 0.0);
+        Self {
+            steps,
+            work: 0.0,
+            number,
+            stands_for: 1,
+            computed: 0,
+            represented: 0,
+            opened: first.clone(),
+            rate: Vec::new(),
+            length: f64::from(spec.after),
+            pending: None,
+            earlier: None,
+            centre: 0.0,
+            off: vec![0.0; first.len()],
+            form: vec![0.0; first.len()],
+            last: None,
+            summary: JumpSummary {
+                asked_cycles: spec.cycles,
+                tolerance: spec.tolerance,
+                not_jumped: variables(s),
+                ..JumpSummary::default()
+            },
+            first,
+            spec,
+        }
+    }
+
+    /// Number of the cycle at hand among those computed, 0 before the first.
+    pub fn number(&self) -> u32 {
+        self.number
+    }
+
+    /// Cycles that the one at hand stands for.
+    pub fn stands_for(&self) -> u32 {
+        self.stands_for
+    }
+
+    /// Cycles so far, those jumped over included, when a share of the cycle at hand is done.
+    pub fn cycles(&self, share: f64) -> f64 {
+        f64::from(self.represented) + share * f64::from(self.stands_for)
+    }
+
+    /// Cycles that were jumped over, when a share of the cycle at hand is done.
+    pub fn jumped(&self, share: f64) -> f64 {
+        f64::from(self.represented - self.computed) + share * f64::from(self.stands_for - 1)
+    }
+
+    /// Takes in a step, with the number of the cycle that the next one belongs to, what was worn off first bodies and grains, and
+    /// the work of the cycle at hand. Whether the cycles asked for are reached.
+    pub fn follow<S: Space>(
+        &mut self,
+        s: &mut Simulation<S>,
+        next: u32,
+        worn: (f64, f64),
+        work: f64,
+    ) -> bool {
+        if next == self.number {
+            return false;
+        }
+        if self.number > 0 {
+            self.close(s, worn, work);
+        }
+        self.number = next;
+        self.opened = amounts(s, worn.1);
+        s.network.stands_for = f64::from(self.stands_for);
+        self.spec.cycles.is_some_and(|n| self.represented >= n)
+    }
+
+    /// Ends a cycle, and says what the next one stands for.
+    fn close<S: Space>(&mut self, s: &Simulation<S>, worn: (f64, f64), work: f64) {
+        let now = amounts(s, worn.1);
+        let grown = growth(&now, &self.opened);
+        self.computed += 1;
+        self.represented = self.represented.saturating_add(self.stands_for);
+        self.summary.points.push(Point {
+            cycles: self.represented,
+            stands_for: self.stands_for,
+            wear_volume: worn.0,
+            mean_damage: s.network.mean_damage(),
+        });
+        if self.stands_for > 1 {
+            self.pending = Some(Pending {
+                cycles: self.stands_for,
+                before: std::mem::take(&mut self.rate),
+                added: grown,
+                control: Vec::new(),
+                computed: 0,
+                work: [self.work, 0.0],
+            });
+            self.stands_for = 1;
+            return;
+        }
+        if let Some(pending) = &mut self.pending {
+            pending.computed += 1;
+            pending.work[1] += work;
+            add(&mut pending.control, &grown);
+            if pending.computed < self.spec.control {
+                return;
+            }
+        }
+        match self.pending.take() {
+            Some(pending) => {
+                let share = 1.0 / f64::from(pending.computed);
+                let scaled = |list: &Vec<f64>| list.iter().map(|x| share * x).collect();
+                self.rate = pending.control.iter().map(scaled).collect();
+                self.judge(s, &now, &pending);
+            }
+            None => {
+                self.rate = grown;
+                self.centre = 0.0;
+                if let Some((_, back)) = &mut self.earlier {
+                    *back += 1.0;
+                }
+            }
+        }
+        self.work = work;
+        if self.computed >= self.spec.after {
+            self.stands_for = self.next(s);
+        }
+    }
+
+    /// Compares a jump with the cycles beside it, and learns the length of the next.
+    fn judge<S: Space>(&mut self, s: &Simulation<S>, now: &Amounts, pending: &Pending) {
+        let n = f64::from(pending.cycles);
+        // Cycles count from the one before the jump; the mean of those after it stands for their middle.
+        let control = f64::from(pending.computed);
+        let middle = 0.5 * (control - 1.0);
+        let after = n + 1.0 + middle;
+        // Before the first jump the two cycles are the same, and a straight line goes through the others.
+        let (earlier, parts) = match self.earlier.take() {
+            Some((rate, back)) => (rate, parts(pending.cycles, [-back, -self.centre, after])),
+            None => {
+                let share = 0.5 * n * (n + 1.0) / after;
+                (pending.before.clone(), [0.0, n - share, share])
+            }
+        };
+        self.earlier = Some((pending.before.clone(), after + middle + self.centre));
+        self.centre = middle;
+        let grown = growth(now, &self.first);
+        // What is misplaced now is a smaller part of the scar that the run ends with.
+        let to_come = self
+            .spec
+            .cycles
+            .map_or(1.0, |n| f64::from(n) / f64::from(self.represented));
+        let mut worst = 0.0f64;
+        for (q, added) in pending.added.iter().enumerate() {
+            let rates = [&earlier[q], &pending.before[q], &self.rate[q]];
+            let sum = |list: &[f64]| list.iter().sum::<f64>();
+            let (all, total) = (sum(added), sum(&grown[q]));
+            if all <= 0.0 {
+                continue;
+            }
+            let off = if q < s.scars.len() {
+                let form = misplaced(added, self.last.as_ref().map_or(rates[1], |l| &l[q]));
+                self.form[q] = form.max(left(self.form[q], all));
+                worst = worst.max(form / (total * to_come));
+                error(all, rates.map(|r| sum(r)), &parts)
+            } else {
+                let at = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(0.0);
+                let bond = |(k, x): (usize, &f64)| error(*x, rates.map(|r| at(r, k)), &parts);
+                added.iter().enumerate().map(bond).sum()
+            };
+            self.off[q] = off + self.off[q] * carried(sum(rates[1]), sum(rates[2]));
+            worst = worst.max(off / all);
+        }
+        self.last = Some(pending.added.clone());
+        self.summary.jumps.push(Jump {
+            after: self.represented - self.spec.control - pending.cycles,
+            cycles: pending.cycles,
+            error: worst,
+            work_change: if pending.work[0] > 0.0 {
+                (pending.work[1] / control / pending.work[0] - 1.0).abs()
+            } else {
+                0.0
+            },
+        });
+        self.length = next_length(n, worst, self.spec.tolerance);
+    }
+
+    /// Cycles that the next cycle stands for: by the error, by the growth of damage, by what is left of the run.
+    fn next<S: Space>(&mut self, s: &Simulation<S>) -> u32 {
+        // A jump and its control must fit before the end.
+        let [cycle, run] = self.steps;
+        if run.saturating_sub(s.steps) < cycle * (1 + u64::from(self.spec.control)) {
+            return 1;
+        }
+        // Two at least, so that lengths can grow again; `at_most` may be one.
+        self.length = self.length.max(2.0).min(f64::from(self.spec.at_most));
+        let damage = self.rate.iter().skip(s.scars.len() + 1).flatten();
+        let fastest = damage.fold(0.0, |m: f64, x| m.max(*x));
+        let by_damage = if fastest > 0.0 {
+            self.spec.growth / fastest
+        } else {
+            f64::INFINITY
+        };
+        let mut most = self.length.min(by_damage);
+        if let Some(cycles) = self.spec.cycles {
+            // The last jumps are ever shorter: each takes back what the one before it misplaced.
+            let still = cycles.saturating_sub(self.represented + self.spec.control);
+            most = most.min(f64::from(still) * TAPER);
+        }
+        (most.floor() as u32).max(1)
+    }
+
+    /// What the summary says at the end of the run.
+    pub fn outcome<S: Space>(&self, s: &Simulation<S>, worn: (f64, f64)) -> JumpSummary {
+        let grown = growth(&amounts(s, worn.1), &self.first);
+        let share = |((off, form), grown): ((&f64, &f64), &Vec<f64>)| {
+            let (off, all) = (off + form, grown.iter().sum::<f64>());
+            match (off > 0.0, all > 0.0) {
+                (false, _) => Some(0.0),
+                (true, true) => Some(SAFETY * off / all),
+                (true, false) => None,
+            }
+        };
+        let off = self.off.iter().zip(&self.form);
+        let shares: Option<Vec<f64>> = off.zip(&grown).map(share).collect();
+        let waiting = self.pending.as_ref().map_or(0, |p| p.cycles);
+        let at_hand = if self.stands_for > 1 {
+            self.stands_for
+        } else {
+            0
+        };
+        JumpSummary {
+            computed_cycles: self.computed,
+            represented_cycles: self.represented,
+            error_estimate: shares.map(|list| list.into_iter().fold(0.0, f64::max)),
+            unchecked_cycles: waiting + at_hand,
+            wear_volume: worn.0,
+            ..self.summary.clone()
+        }
+    }
+}
+
+/// What cycles change: volumes worn at the places of each scar, what was worn off grains, and the damage of the bonds, interface
+/// by interface.
+fn amounts<S: Space>(s: &Simulation<S>, worn_third: f64) -> Amounts {
+    let mut all: Amounts = Vec::new();
+    for scar in &s.scars {
+        let volume = |(v, depth): (&Vertex<S::Vector>, f64)| v.tributary * depth;
+        all.push(scar.vertices().map(volume).collect());
+    }
+    all.push(vec![worn_third]);
+    // What broke stays at one; a slot that never was a bond has no damage to grow.
+    let held = |b: &Bond<S>| match b.damage < 1.0 || b.life != Life::default() {
+        true => b.damage,
+        false => 0.0,
+    };
+    let memory = s.network.memory.iter();
+    all.extend(memory.map(|m| m.bonds.iter().map(held).collect()));
+    all
+}
+
+/// Internal variables of the laws at work, `law: variable`.
+fn variables<S: Space>(s: &Simulation<S>) -> Vec<String> {
+    let laws = s.laws.iter().flat_map(|law| law.loaded());
+    let mut names: Vec<String> = laws
+        .flat_map(|l| {
+            let name = &l.plugin.name;
+            l.plugin
+                .variables
+                .iter()
+                .map(move |v| format!("{} of {name}", v.name))
+        })
+        .collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
+/// Adds value by value.
+fn add(sum: &mut Amounts, more: &Amounts) {
+    if sum.is_empty() {
+        sum.clone_from(more);
+        return;
+    }
+    for (sum, more) in sum.iter_mut().zip(more) {
+        sum.resize(more.len(), 0.0);
+        for (x, y) in sum.iter_mut().zip(more) {
+            *x += y;
+        }
+    }
+}
