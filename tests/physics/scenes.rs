@@ -434,3 +434,12 @@ fn as_many_balls_leave_a_cradle_as_come() {
     let far = speeds.iter().zip(known).map(|(v, k)| (v - k).abs());
     assert!(far.fold(0.0, f64::max) < 1e-12, "{speeds:?}");
 }
+
+/// Grains that are pressed from tooth to tooth of a rough floor by some hundredths of their radius a step meet each tooth
+/// before they overlap it.
+#[test]
+fn collapse_on_teeth_sees_its_contacts_in_time() {
+    let summary = finished("collapse", &["output.frames=0"], |_| {});
+    assert_eq!((summary.haste.late, summary.haste.passed), (0, 0));
+    assert!(summary.trustworthy, "{:?}", summary.reasons);
+}

@@ -1,9 +1,11 @@
 //! Every shipped law keeps its promises; laws made to break one fail where they should and nowhere else.
 
-use fretwork::certify::{Certificate, Outcome, certify};
+use fretwork::certify::{Certificate, Outcome, certify, certify_parameters};
 use fretwork::geometry::space::Plane;
 use fretwork::laws::bench::{Bench, Motion};
 use fretwork::laws::{AreaRule, BondRule, Interface, Kind, Loaded, Plugin, SearchPath};
+use fretwork::scene::build::Scene;
+use fretwork::scene::load;
 use fretwork::step::Simulation;
 use std::path::Path;
 use std::process::Command;
@@ -32,6 +34,42 @@ fn every_shipped_law_is_certified() {
         let found = certificate(&Plugin::open(&file).unwrap());
         assert!(found.certified(), "{kind} {name}: {:#?}", found.lines);
     }
+}
+
+/// Also with the parameters that shipped cases give it: no shipped case warns of its own laws.
+#[test]
+fn laws_of_shipped_cases_are_certified() {
+    let path = SearchPath::new(&[]);
+    let mut known: Vec<(String, Vec<f64>)> = Vec::new();
+    for folder in ["cases", "cases/verification"] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        let files = std::fs::read_dir(folder).unwrap().flatten();
+        let cases = files.map(|f| f.path());
+        for case in cases.filter(|p| p.extension().is_some_and(|e| e == "ron")) {
+            let built = load(&case, &[]).and_then(|loaded| loaded.build(&path));
+            let laws = match built.unwrap_or_else(|e| panic!("{e}")) {
+                Scene::Plane(built) => built.simulation.laws,
+                Scene::Solid(built) => built.simulation.laws,
+            };
+            for (interface, law) in laws.iter().flat_map(|i| i.loaded().map(move |l| (i, l))) {
+                let damage = law.plugin.kind == Kind::Damage;
+                let partner = interface.cohesion.as_ref().filter(|_| damage);
+                let beside = partner.map_or(&[][..], |c| &c.parameters);
+                let key = (
+                    format!("{} {}", law.plugin.kind, law.plugin.name),
+                    [&law.parameters, beside].concat(),
+                );
+                if known.contains(&key) {
+                    continue;
+                }
+                let found = certify_parameters(&law.plugin, &law.parameters, partner, &path);
+                let found = found.unwrap_or_else(|e| panic!("{}: {e}", case.display()));
+                assert!(found.certified(), "{}: {:#?}", case.display(), found.lines);
+                known.push(key);
+            }
+        }
+    }
+    assert!(known.len() > 20, "{}", known.len());
 }
 
 /// Every damage law with every cohesion law that has an opening: pulled, let go and pulled again, D grows,
