@@ -111,7 +111,7 @@ pub struct Simulation<S: Space> {
 }
 
 /// The gap a step may close, or the part of a penetration it must take back (m).
-fn quasi_shock(gap: f64, correction: f64) -> f64 {
+pub(super) fn quasi_shock(gap: f64, correction: f64) -> f64 {
     if gap > 0.0 { gap } else { correction * gap }
 }
 

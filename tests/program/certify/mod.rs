@@ -33,6 +33,11 @@ fn every_shipped_law_is_certified() {
     for (kind, name, file) in laws {
         let found = certificate(&Plugin::open(&file).unwrap());
         assert!(found.certified(), "{kind} {name}: {:#?}", found.lines);
+        if cfg!(target_os = "linux") {
+            let line = found.lines.iter().find(|l| l.check == "static memory");
+            let looked = line.is_some_and(|l| l.outcome == Outcome::Pass);
+            assert!(looked, "{kind} {name}: {:#?}", found.lines);
+        }
     }
 }
 
@@ -240,7 +245,7 @@ fn a_law_beside_a_bad_one_is_not_blamed() {
 fn wrong_laws_fail_their_line_and_no_other() {
     let folder = std::env::temp_dir().join(format!("fretwork-certify-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
-    let cases: [(&str, &[&str]); 20] = [
+    let cases: [(&str, &[&str]); 21] = [
         ("NOTHING", &[]),
         ("ENERGY", &["fracture energy"]),
         ("ENERGY_BY_HALF_A_PERCENT", &["fracture energy"]),
@@ -263,6 +268,7 @@ fn wrong_laws_fail_their_line_and_no_other() {
         ("PARAMETER", &["columns"]),
         ("BEFORE", &["columns"]),
         ("FAR", &["columns"]),
+        ("NOTHING_SET_UP_ONCE", &[]),
     ];
     for (wrong, lines) in cases {
         let library = folder.join(format!("{wrong}.so"));
@@ -270,6 +276,43 @@ fn wrong_laws_fail_their_line_and_no_other() {
         let found = certificate(&Plugin::open(&library).unwrap());
         let failed: Vec<&str> = broken(&found);
         assert_eq!(failed, *lines, "{wrong}: {:#?}", found.lines);
+    }
+    std::fs::remove_dir_all(&folder).ok();
+}
+
+/// What a law keeps in its library between calls is found, whether or not threads happen to meet there. (That they do not
+/// is chance: the line `threads` may fail beside it.)
+#[cfg(target_os = "linux")]
+#[test]
+fn laws_with_static_memory_are_found() {
+    let folder = std::env::temp_dir().join(format!("fretwork-static-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    for (wrong, at_least) in [
+        ("SCRATCH", 100.0),
+        ("COUNTER", 1.0),
+        ("CACHE", 1.0),
+        ("GROWING", 1.0),
+    ] {
+        let library = folder.join(format!("{wrong}.so"));
+        compile(wrong, &library, "plugins/abi/include");
+        let found = certificate(&Plugin::open(&library).unwrap());
+        let failed = broken(&found);
+        let others = failed.iter().filter(|l| **l != "threads");
+        assert!(
+            others.eq(["static memory"].iter()),
+            "{wrong}: {:#?}",
+            found.lines
+        );
+        let line = found
+            .lines
+            .iter()
+            .find(|l| l.check == "static memory")
+            .unwrap();
+        assert!(line.number >= at_least, "{wrong}: {line:?}");
+        assert!(
+            line.text.contains("make static arrays"),
+            "{wrong}: {line:?}"
+        );
     }
     std::fs::remove_dir_all(&folder).ok();
 }
