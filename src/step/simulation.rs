@@ -344,18 +344,18 @@ impl<S: Space> Simulation<S> {
         forms.clear();
         let contacts = self.network.contacts.iter();
         forms.extend(contacts.map(|contact| ContactForm {
-                bodies: contact.bodies,
-                normal: contact.normal,
-                arms: contact.arms,
-                central: contact.central,
-                shift_n: self.shift_of_gap(contact, h),
-                shift_t: S::Tangent::null(),
-                friction: 0.0,
-                tension: 0.0,
-                cohesion: 0.0,
-                elastic: None,
-                impulse: contact.impulse,
-            }));
+            bodies: contact.bodies,
+            normal: contact.normal,
+            arms: contact.arms,
+            central: contact.central,
+            shift_n: self.shift_of_gap(contact, h),
+            shift_t: S::Tangent::null(),
+            friction: 0.0,
+            tension: 0.0,
+            cohesion: 0.0,
+            elastic: None,
+            impulse: contact.impulse,
+        }));
         self.forms = forms;
     }
 
