@@ -1,7 +1,7 @@
 //! What contacts did in a step: relative velocities before it, and the solver's answers as the laws commit them.
 
 use super::motion::Before;
-use super::simulation::{Simulation, quasi_shock};
+use super::simulation::Simulation;
 use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::{Interface, Site, Turn, Velocities};
@@ -70,11 +70,11 @@ impl<S: Space> Simulation<S> {
                 let normal = if pulls { e.loss_n * un * un } else { 0.0 };
                 normal + e.loss_t * ut.dot(&ut)
             });
-            // What the correction asks for, unless the law's restitution took its place: a bounce gives nothing.
-            let asked =
-                quasi_shock(self.network.open_gap(contact), self.correction) / self.scheme.h;
-            let corrects = form.shift_n < 0.0 && form.shift_n == asked;
-            let lift = if corrects && n.dot(before) >= form.shift_n {
+            // The correction's, unless the law's restitution took its place: a bounce gives nothing.
+            let lifts = form.shift_n < 0.0
+                && n.dot(before) >= form.shift_n
+                && form.shift_n == self.shift_of_gap(contact, self.scheme.h);
+            let lift = if lifts {
                 -theta * form.shift_n * solution.unilateral_n.max(0.0)
             } else {
                 0.0

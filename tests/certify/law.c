@@ -25,7 +25,7 @@ static double scratch[1 << 16];
 static long calls;
 #endif
 #if defined(WRONG_CACHE)
-/* The stiffness of who was asked last. */
+/* The stiffness of who asked last: of another interface, perhaps. */
 static double cache;
 #endif
 #if defined(WRONG_GROWING)
@@ -84,8 +84,6 @@ static int32_t prepare(const fw_batch *b, fw_message *m) {
     for (size_t k = 0; k < b->n; k++) scratch[k] = b->opening_n[k];
 #elif defined(WRONG_COUNTER)
     calls++;
-#elif defined(WRONG_CACHE)
-    cache = p[K];
 #elif defined(WRONG_GROWING)
     if (b->n > room) {
         double *grown = realloc(work, b->n * sizeof *grown);
@@ -118,10 +116,11 @@ static int32_t prepare(const fw_batch *b, fw_message *m) {
         n = scratch[k];
 #elif defined(WRONG_GROWING)
         n = work[k];
-#elif defined(WRONG_CACHE)
-        if (cache <= 0.0) return fail(m, k);
 #endif
         double u = length(n, t1, t2), s = (1.0 - b->damage[k]) * p[K] * shape(p, u);
+#if defined(WRONG_CACHE)
+        s = (1.0 - b->damage[k]) * cache * shape(p, u);
+#endif
 #if defined(WRONG_BATCH)
         s *= 1.0 + 1e-9 * (double)k;
 #elif defined(WRONG_THREADS)
@@ -202,6 +201,14 @@ static double declared(const double *p, double angle) {
 #endif
 }
 
+#if defined(WRONG_CACHE)
+static int32_t validate(const double *p, fw_message *m) {
+    (void)m;
+    cache = p[K];
+    return FW_OK;
+}
+#endif
+
 static const fw_plugin table = {
     .size = sizeof(fw_plugin),
     .abi_major = FW_ABI_MAJOR,
@@ -217,6 +224,9 @@ static const fw_plugin table = {
     .n_variables = 1,
     .variables = variables,
     .degradation = 1.0,
+#if defined(WRONG_CACHE)
+    .validate = validate,
+#endif
     .prepare = prepare,
     .commit = commit,
     .energy = energy,
