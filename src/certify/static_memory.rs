@@ -24,6 +24,11 @@ pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
                 "the law is part of the program: the library with the same code is looked at",
             ));
         }
+        Err(Unseen::TooLarge(bytes)) => {
+            let text = "bytes of writable static memory in its library, too many to be compared: a law keeps nothing between calls; \
+                        make tables `const` and work arrays local to the call";
+            return Ok(Line::judged(CHECK, false, bytes as f64, text));
+        }
         Err(Unseen::System) => {
             return Ok(Line::skip(
                 CHECK,

@@ -7,9 +7,15 @@ use super::library::Plugin;
 pub enum Unseen {
     /// The law is part of the program, whose memory changes all the time.
     BuiltIn,
+    /// It has so many bytes, more than are compared.
+    TooLarge(usize),
     /// Not on this system.
     System,
 }
+
+/// So many bytes are compared (256 MB): they are kept several times.
+#[cfg(target_os = "linux")]
+const MOST: usize = 1 << 28;
 
 /// The writable segments of the library that holds a law's functions; never those of another library.
 #[derive(Debug)]
@@ -35,6 +41,10 @@ impl StaticMemory {
         let segments = elf::writable_segments(&functions(plugin));
         if segments.is_empty() {
             return Err(Unseen::System);
+        }
+        let bytes: usize = segments.iter().map(|s| s.1).sum();
+        if bytes > MOST {
+            return Err(Unseen::TooLarge(bytes));
         }
         Ok(Self { memory, segments })
     }

@@ -213,7 +213,7 @@ fn powers(text: &str) -> String {
     out
 }
 
-/// A metre with a prefix from mega upwards: `Mm` is written for a millimetre by mistake, and would be 1e9 times as long.
+/// A metre with a prefix from mega upwards: `Mm` is written for a millimetre by mistake, and would be 1e9 times that.
 fn far(text: &str) -> Option<&str> {
     let mut words = text.split(|c: char| !c.is_alphabetic() && c != '_');
     words.find(|word| {

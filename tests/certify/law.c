@@ -18,7 +18,10 @@ static double length(double a, double b, double c) { return sqrt(a * a + b * b +
 #if defined(WRONG_HIDDEN)
 static double memory;
 #endif
-#if defined(WRONG_SCRATCH)
+#if defined(WRONG_LARGE)
+#define WRONG_SCRATCH
+static double scratch[1 << 26];
+#elif defined(WRONG_SCRATCH)
 static double scratch[1 << 16];
 #endif
 #if defined(WRONG_COUNTER)
