@@ -157,29 +157,28 @@ fn check_out(out: &Path, problems: &[PathBuf]) -> Result<(), Failure> {
 }
 
 /// A problem in local form, and what leads back.
-enum Form {
-    AsGiven,
+enum Form<'a> {
+    AsGiven(&'a LocalProblem),
     Reduced(Reduction),
     Eliminated(Elimination),
 }
 
-impl Form {
-    fn of(problem: &Problem) -> Result<Self, ReduceError> {
+impl<'a> Form<'a> {
+    fn of(problem: &'a Problem) -> Result<Self, ReduceError> {
         match problem {
             Problem::Global(g) => Reduction::new(&g.problem).map(Self::Reduced),
             Problem::Local(l) => match &l.multipliers {
                 Some(m) => Elimination::new(&l.problem, m).map(Self::Eliminated),
-                None => Ok(Self::AsGiven),
+                None => Ok(Self::AsGiven(&l.problem)),
             },
         }
     }
 
-    fn local<'a>(&'a self, problem: &'a Problem) -> &'a LocalProblem {
-        match (self, problem) {
-            (Self::Reduced(r), _) => &r.local,
-            (Self::Eliminated(e), _) => &e.local,
-            (Self::AsGiven, Problem::Local(l)) => &l.problem,
-            (Self::AsGiven, Problem::Global(_)) => unreachable!("a global problem is reduced"),
+    fn local(&self) -> &LocalProblem {
+        match self {
+            Self::Reduced(r) => &r.local,
+            Self::Eliminated(e) => &e.local,
+            Self::AsGiven(local) => local,
         }
     }
 
@@ -212,7 +211,7 @@ fn one(path: &Path, args: &SolveArgs) -> Result<Solved, Failure> {
     let form =
         Form::of(&problem).map_err(|e| Failure::Usage(format!("{}: {e}", path.display())))?;
     let reduce_seconds = start.elapsed().as_secs_f64();
-    let local = form.local(&problem);
+    let local = form.local();
     let limits = Limits {
         tolerance: args.tolerance,
         scale_free: args.scale_free_tolerance,
@@ -234,6 +233,7 @@ fn one(path: &Path, args: &SolveArgs) -> Result<Solved, Failure> {
         fclib::write_with_solution(out, &problem, &solution)
             .map_err(|e| Failure::Failed(e.to_string()))?;
     }
+    drop(form);
     Ok(Solved {
         path: path.to_owned(),
         problem,

@@ -1,6 +1,7 @@
 /* A linear bond that softens linearly, and the same with one promise broken: -DWRONG_... chooses. */
 #include <math.h>
 #include <stdatomic.h>
+#include <stdlib.h>
 #include <string.h>
 #include "fretwork.h"
 
@@ -17,8 +18,28 @@ static double length(double a, double b, double c) { return sqrt(a * a + b * b +
 #if defined(WRONG_HIDDEN)
 static double memory;
 #endif
-#if defined(WRONG_SCRATCH)
+#if defined(WRONG_LARGE)
+#define WRONG_SCRATCH
+static double scratch[1 << 26];
+#elif defined(WRONG_SCRATCH)
 static double scratch[1 << 16];
+#endif
+#if defined(WRONG_COUNTER)
+static long calls;
+#endif
+#if defined(WRONG_CACHE)
+/* The stiffness of who asked last: of another interface, perhaps. */
+static double cache;
+#endif
+#if defined(WRONG_GROWING)
+/* A work array that is made larger when a batch needs it. */
+static double *work;
+static size_t room;
+#endif
+#if defined(WRONG_NOTHING_SET_UP_ONCE)
+/* No promise is broken: what is set up at the first call and never changes is no one's hidden state. */
+static double first[64];
+static int ready;
 #endif
 #if defined(WRONG_THREADS)
 static atomic_int threads;
@@ -64,6 +85,22 @@ static int32_t prepare(const fw_batch *b, fw_message *m) {
     const double *p = b->parameters;
 #if defined(WRONG_SCRATCH)
     for (size_t k = 0; k < b->n; k++) scratch[k] = b->opening_n[k];
+#elif defined(WRONG_COUNTER)
+    calls++;
+#elif defined(WRONG_GROWING)
+    if (b->n > room) {
+        double *grown = realloc(work, b->n * sizeof *grown);
+        if (!grown) return fail(m, 0);
+        work = grown;
+        room = b->n;
+    }
+    for (size_t k = 0; k < b->n; k++) work[k] = b->opening_n[k];
+#elif defined(WRONG_NOTHING_SET_UP_ONCE)
+    if (!ready) {
+        for (int k = 0; k < 64; k++) first[k] = cos(k);
+        ready = 1;
+    }
+    if (first[0] != 1.0) return fail(m, 0);
 #elif defined(WRONG_INPUT)
     ((double *)b->opening_n)[0] += 1e-20;
 #elif defined(WRONG_STATE)
@@ -80,8 +117,13 @@ static int32_t prepare(const fw_batch *b, fw_message *m) {
         double n = b->opening_n[k], t1 = b->opening_t1[k];
 #if defined(WRONG_SCRATCH)
         n = scratch[k];
+#elif defined(WRONG_GROWING)
+        n = work[k];
 #endif
         double u = length(n, t1, t2), s = (1.0 - b->damage[k]) * p[K] * shape(p, u);
+#if defined(WRONG_CACHE)
+        s = (1.0 - b->damage[k]) * cache * shape(p, u);
+#endif
 #if defined(WRONG_BATCH)
         s *= 1.0 + 1e-9 * (double)k;
 #elif defined(WRONG_THREADS)
@@ -162,6 +204,14 @@ static double declared(const double *p, double angle) {
 #endif
 }
 
+#if defined(WRONG_CACHE)
+static int32_t validate(const double *p, fw_message *m) {
+    (void)m;
+    cache = p[K];
+    return FW_OK;
+}
+#endif
+
 static const fw_plugin table = {
     .size = sizeof(fw_plugin),
     .abi_major = FW_ABI_MAJOR,
@@ -177,6 +227,9 @@ static const fw_plugin table = {
     .n_variables = 1,
     .variables = variables,
     .degradation = 1.0,
+#if defined(WRONG_CACHE)
+    .validate = validate,
+#endif
     .prepare = prepare,
     .commit = commit,
     .energy = energy,

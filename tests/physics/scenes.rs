@@ -449,3 +449,12 @@ fn a_first_body_that_is_a_ball_is_named() {
     assert_eq!(named, ["cylinder"]);
     assert!(fretwork::record::picture::named_balls(s, [-1.0, 1.0, -1.0, 1.0]).is_empty());
 }
+
+/// Grains that are pressed from tooth to tooth of a rough floor by some hundredths of their radius a step meet each tooth
+/// before they overlap it.
+#[test]
+fn collapse_on_teeth_sees_its_contacts_in_time() {
+    let summary = finished("collapse", &["output.frames=0"], |_| {});
+    assert_eq!((summary.haste.late, summary.haste.passed), (0, 0));
+    assert!(summary.trustworthy, "{:?}", summary.reasons);
+}

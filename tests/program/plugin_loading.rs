@@ -178,6 +178,11 @@ fn an_older_minor_with_a_shorter_table_loads() {
     assert!(plugin.fracture_energy(&[0.2, 0.3], 0.0).is_none());
 }
 
+/// Fields of a table whose only parameter is the first of a list.
+fn one_parameter(list: &str) -> String {
+    format!("table.parameters = {list}; table.n_parameters = 1;")
+}
+
 #[test]
 fn tables_that_break_the_rules_are_refused() {
     let folder = Folder::new("refused");
@@ -213,22 +218,14 @@ fn tables_that_break_the_rules_are_refused() {
         ),
         (
             "outside",
-            "table.parameters = outside; table.n_parameters = 1;",
+            &one_parameter("outside"),
             "default 2 of `rate` is out of its range",
         ),
-        (
-            "endless",
-            "table.parameters = endless; table.n_parameters = 1;",
-            "not finite",
-        ),
-        (
-            "nameless",
-            "table.parameters = nameless; table.n_parameters = 1;",
-            "`Rate 1`",
-        ),
+        ("endless", &one_parameter("endless"), "not finite"),
+        ("nameless", &one_parameter("nameless"), "`Rate 1`"),
         (
             "textless",
-            "table.parameters = textless; table.n_parameters = 1;",
+            &one_parameter("textless"),
             "parameter 0 is null",
         ),
         ("noschema", "table.parameters = 0;", "their table is null"),

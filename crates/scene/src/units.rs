@@ -160,6 +160,17 @@ fn read(text: &str) -> Result<Unit, UnitError> {
         expected: Some("a unit such as `MPa`, `um`, `kJ/m^2` or `J s/m^2`".into()),
         nearest: nearest(text, USUAL).map(str::to_owned),
     };
+    if let Some(word) = far(&plain) {
+        let small = word.replacen('M', "m", 1);
+        let near = read(&small).is_ok().then(|| text.replacen(word, &small, 1));
+        return Err(UnitError {
+            message: format!(
+                "`{word}` is a length of a thousand kilometres or more, which no case has; a millimetre is `mm`"
+            ),
+            expected: Some("`m`, `mm`, `um`, `nm`".into()),
+            nearest: near,
+        });
+    }
     let quantity = runits::parse(&plain).map_err(|error| match error {
         ParseError::Unit(UnknownUnit::Unknown(name)) => unknown(&name),
         ParseError::DivideByZero => refused("it divides by zero".into()),
@@ -200,6 +211,17 @@ fn powers(text: &str) -> String {
         name = c.is_alphabetic();
     }
     out
+}
+
+/// A metre with a prefix from mega upwards: `Mm` is written for a millimetre by mistake, and would be 1e9 times that.
+fn far(text: &str) -> Option<&str> {
+    let mut words = text.split(|c: char| !c.is_alphabetic() && c != '_');
+    words.find(|word| {
+        matches!(
+            word.strip_suffix('m'),
+            Some("M" | "G" | "T" | "P" | "E" | "Z" | "Y")
+        ) || matches!(*word, "megametre" | "megameter" | "gigametre" | "gigameter")
+    })
 }
 
 /// From the base units of the crate, which has grams, to those of the SI.
@@ -401,6 +423,17 @@ mod tests {
             if near.is_some() {
                 assert_eq!(error.nearest.as_deref(), near, "{error:?}");
             }
+        }
+        for (given, near) in [
+            ("Mm", Some("mm")),
+            ("N/Mm", Some("N/mm")),
+            ("kg/Mm3", Some("kg/mm3")),
+            ("Gm", None),
+        ] {
+            let error = known(given).err();
+            let error = error.unwrap_or_else(|| panic!("{given} passes"));
+            assert!(error.message.contains("a millimetre is `mm`"), "{error:?}");
+            assert_eq!(error.nearest.as_deref(), near, "{error:?}");
         }
         for bad in [
             "Mpa",

@@ -243,7 +243,6 @@ fn notes(summary: &Summary) -> Vec<Warning> {
         }),
     );
     note("COARSE DRIVE", drives(summary, false));
-    note("LATE CONTACTS", summary.haste.note());
     let over = summary.solver.overlap_after;
     note(
         "OVERLAP",

@@ -12,6 +12,7 @@ mod keep;
 mod notice;
 mod rescue;
 mod row;
+mod sample;
 mod stamps;
 
 pub use self::end::write_outputs;
@@ -36,7 +37,7 @@ use super::strain::Strain;
 use super::summary::{SolverSummary, Summary};
 use super::views;
 use crate::bodies::TimeFunction;
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::Space;
 use crate::interrupt;
 use crate::scene::build::{Built, Dimensional, Loaded};
 use crate::scene::sampling;
@@ -367,61 +368,6 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             }
         }
         Ok(None)
-    }
-
-    /// What was cumulated so far.
-    fn cumulated(&self) -> Cumulated {
-        let s = &self.simulation;
-        Cumulated {
-            balance: self.layer.balance(s),
-            broken: s.network.bonds_broken(),
-            worn: self.worn.0,
-        }
-    }
-
-    fn damage_ratio(&self) -> f64 {
-        let n = &self.simulation.network;
-        if n.bonds_made() > 0 {
-            n.bonds_broken() as f64 / n.bonds_made() as f64
-        } else {
-            0.0
-        }
-    }
-
-    /// Q, P and the slide of the friction test in the last step.
-    fn sample(&self) -> Option<Sample> {
-        let test = self.loaded.case.friction.as_ref()?;
-        let (_, place) = self.cycles.as_ref()?;
-        let s = &self.simulation;
-        let h = s.scheme.h;
-        let impulse = s.received[*place].0;
-        let slide = h * Layer::velocity(s, *place)[test.along];
-        let q = -impulse[test.along] / h;
-        Some(Sample {
-            time: s.time,
-            q,
-            p: impulse[test.normal] * self.facing(*place, test.normal) / h,
-            slide,
-            work: q * slide,
-        })
-    }
-
-    /// The side on which the contacts of a driven body push it along an axis: 1 or -1.
-    fn facing(&self, place: usize, axis: usize) -> f64 {
-        let s = &self.simulation;
-        let body = s.bodies.driven[place].body;
-        let push: f64 = s
-            .network
-            .contacts
-            .iter()
-            .filter(|c| c.impulse.norm() > 0.0)
-            .map(|c| match c.bodies {
-                [i, _] if i == body => c.normal[axis],
-                [_, j] if j == body => -c.normal[axis],
-                _ => 0.0,
-            })
-            .sum();
-        if push < 0.0 { -1.0 } else { 1.0 }
     }
 
     fn follow(&mut self, report: &StepReport, before: Cumulated) {

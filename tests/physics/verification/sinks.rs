@@ -72,6 +72,37 @@ fn impacts(table: &mut Table) {
         s.energy.impact,
         1e-2,
     );
+    // A bounce loses (1 - e^2) m v^2/2 and is no lift, also where overlaps are taken out by a velocity.
+    for e in [0.5_f64, 0.9, 1.0] {
+        let restitution = format!("interfaces.grain.parameters.contact.restitution_n={e}");
+        let sets = ["gravity=[0.0, 0.0]", "solver.correction=0.2", &restitution];
+        let mut s = plane("bouncing_ball", &sets);
+        s.bodies.velocity[ball].y = -10.0;
+        until(&mut s, 0.15, |_| {});
+        let before = 50.0 * s.bodies.mass[ball];
+        let up = s.bodies.velocity[ball].y;
+        for (quantity, expected, obtained) in [
+            ("velocity e v (m/s)", 10.0 * e, up),
+            (
+                "impact (1 - e^2) m v^2/2, over m v^2/2",
+                1.0 - e * e,
+                s.energy.impact / before,
+            ),
+            (
+                "correction, over m v^2/2",
+                0.0,
+                s.energy.correction / before,
+            ),
+        ] {
+            table.compare(
+                &format!("bounce, e = {e}"),
+                quantity,
+                expected,
+                obtained,
+                1e-9,
+            );
+        }
+    }
     for (case, end) in [("cradle_touching", 5e-4), ("cradle_apart", 0.2)] {
         let mut s = plane(case, &[]);
         until(&mut s, end, |_| {});

@@ -1,9 +1,11 @@
 //! Every shipped law keeps its promises; laws made to break one fail where they should and nowhere else.
 
-use fretwork::certify::{Certificate, Outcome, certify};
+use fretwork::certify::{Certificate, Outcome, certify, certify_parameters};
 use fretwork::geometry::space::Plane;
 use fretwork::laws::bench::{Bench, Motion};
 use fretwork::laws::{AreaRule, BondRule, Interface, Kind, Loaded, Plugin, SearchPath};
+use fretwork::scene::build::Scene;
+use fretwork::scene::load;
 use fretwork::step::Simulation;
 use std::path::Path;
 use std::process::Command;
@@ -31,7 +33,48 @@ fn every_shipped_law_is_certified() {
     for (kind, name, file) in laws {
         let found = certificate(&Plugin::open(&file).unwrap());
         assert!(found.certified(), "{kind} {name}: {:#?}", found.lines);
+        if cfg!(target_os = "linux") {
+            let line = found.lines.iter().find(|l| l.check == "static memory");
+            let looked = line.is_some_and(|l| l.outcome == Outcome::Pass);
+            assert!(looked, "{kind} {name}: {:#?}", found.lines);
+        }
     }
+}
+
+/// Also with the parameters that shipped cases give it: no shipped case warns of its own laws.
+#[test]
+fn laws_of_shipped_cases_are_certified() {
+    let path = SearchPath::new(&[]);
+    let mut known: Vec<(String, Vec<f64>)> = Vec::new();
+    for folder in ["cases", "cases/verification"] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        let files = std::fs::read_dir(folder).unwrap().flatten();
+        let cases = files.map(|f| f.path());
+        for case in cases.filter(|p| p.extension().is_some_and(|e| e == "ron")) {
+            let built = load(&case, &[]).and_then(|loaded| loaded.build(&path));
+            let laws = match built.unwrap_or_else(|e| panic!("{e}")) {
+                Scene::Plane(built) => built.simulation.laws,
+                Scene::Solid(built) => built.simulation.laws,
+            };
+            for (interface, law) in laws.iter().flat_map(|i| i.loaded().map(move |l| (i, l))) {
+                let damage = law.plugin.kind == Kind::Damage;
+                let partner = interface.cohesion.as_ref().filter(|_| damage);
+                let beside = partner.map_or(&[][..], |c| &c.parameters);
+                let key = (
+                    format!("{} {}", law.plugin.kind, law.plugin.name),
+                    [&law.parameters, beside].concat(),
+                );
+                if known.contains(&key) {
+                    continue;
+                }
+                let found = certify_parameters(&law.plugin, &law.parameters, partner, &path);
+                let found = found.unwrap_or_else(|e| panic!("{}: {e}", case.display()));
+                assert!(found.certified(), "{}: {:#?}", case.display(), found.lines);
+                known.push(key);
+            }
+        }
+    }
+    assert!(known.len() > 20, "{}", known.len());
 }
 
 /// Every damage law with every cohesion law that has an opening: pulled, let go and pulled again, D grows,
@@ -202,7 +245,7 @@ fn a_law_beside_a_bad_one_is_not_blamed() {
 fn wrong_laws_fail_their_line_and_no_other() {
     let folder = std::env::temp_dir().join(format!("fretwork-certify-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
-    let cases: [(&str, &[&str]); 20] = [
+    let cases: [(&str, &[&str]); 21] = [
         ("NOTHING", &[]),
         ("ENERGY", &["fracture energy"]),
         ("ENERGY_BY_HALF_A_PERCENT", &["fracture energy"]),
@@ -225,6 +268,7 @@ fn wrong_laws_fail_their_line_and_no_other() {
         ("PARAMETER", &["columns"]),
         ("BEFORE", &["columns"]),
         ("FAR", &["columns"]),
+        ("NOTHING_SET_UP_ONCE", &[]),
     ];
     for (wrong, lines) in cases {
         let library = folder.join(format!("{wrong}.so"));
@@ -232,6 +276,41 @@ fn wrong_laws_fail_their_line_and_no_other() {
         let found = certificate(&Plugin::open(&library).unwrap());
         let failed: Vec<&str> = broken(&found);
         assert_eq!(failed, *lines, "{wrong}: {:#?}", found.lines);
+    }
+    std::fs::remove_dir_all(&folder).ok();
+}
+
+/// What a law keeps in its library between calls is found, whether or not threads happen to meet there. (That they do not
+/// is chance: the line `threads` may fail beside it.)
+#[cfg(target_os = "linux")]
+#[test]
+fn laws_with_static_memory_are_found() {
+    let folder = std::env::temp_dir().join(format!("fretwork-static-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    for (wrong, at_least) in [
+        ("SCRATCH", 100.0),
+        ("COUNTER", 1.0),
+        ("CACHE", 1.0),
+        ("GROWING", 1.0),
+        ("LARGE", 8.0 * f64::from(1 << 26)),
+    ] {
+        let library = folder.join(format!("{wrong}.so"));
+        compile(wrong, &library, "plugins/abi/include");
+        let found = certificate(&Plugin::open(&library).unwrap());
+        let failed = broken(&found);
+        let others = failed.iter().filter(|l| **l != "threads");
+        assert!(
+            others.eq(["static memory"].iter()),
+            "{wrong}: {:#?}",
+            found.lines
+        );
+        let line = found
+            .lines
+            .iter()
+            .find(|l| l.check == "static memory")
+            .unwrap();
+        assert!(line.number >= at_least, "{wrong}: {line:?}");
+        assert!(line.text.contains("local to the call"), "{wrong}: {line:?}");
     }
     std::fs::remove_dir_all(&folder).ok();
 }

@@ -1,6 +1,7 @@
 //! Promises of every law at the border: batches, threads, memory, and bad numbers.
 
 use super::rig::{PRESSURE, Rig};
+use super::static_memory::static_memory;
 use super::{Check, Line};
 use crate::laws::LawError;
 use crate::laws::bench::{Answer, Bench, Motion, State};
@@ -9,9 +10,10 @@ use std::sync::Barrier;
 /// Made first: what fails it may spoil the memory of all that comes after.
 pub const FIRST: (&str, Check) = ("columns", columns);
 
-pub const CHECKS: [(&str, Check); 6] = [
+pub const CHECKS: [(&str, Check); 7] = [
     ("range", range),
     ("batch", batch),
+    ("static memory", static_memory),
     ("threads", threads),
     ("restore", restore),
     ("no hidden state", hidden),
@@ -19,10 +21,10 @@ pub const CHECKS: [(&str, Check); 6] = [
 ];
 
 /// Those that hang on parameters; the others are of the code alone.
-pub const OF_PARAMETERS: [(&str, Check); 2] = [CHECKS[0], CHECKS[5]];
+pub const OF_PARAMETERS: [(&str, Check); 2] = [CHECKS[0], CHECKS[6]];
 
 /// Moves a batch along walks, one a contact, some of them used more than once; the bits of all answers.
-fn together(
+pub fn together(
     bench: &mut Bench,
     walks: &[Vec<Motion>],
     n: usize,

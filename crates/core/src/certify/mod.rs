@@ -8,6 +8,7 @@ mod apart;
 mod bond;
 mod border;
 mod rig;
+mod static_memory;
 mod surface;
 
 pub use apart::{CERTIFY_APART, certify_apart, certify_asked};

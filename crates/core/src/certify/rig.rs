@@ -166,6 +166,21 @@ impl Rig {
         Bench::new(self.law.clone(), self.dimension, RADIUS)
     }
 
+    /// A second bench on which the law under test has other parameters.
+    pub fn with_parameters(&self, parameters: &[f64]) -> Bench {
+        let mut law = self.law.clone();
+        let tested = match self.kind {
+            Kind::Contact => Some(&mut law.contact),
+            Kind::Cohesion => law.cohesion.as_mut(),
+            Kind::Damage => law.damage.as_mut(),
+            Kind::Wear => law.wear.as_mut(),
+        };
+        if let Some(tested) = tested {
+            tested.parameters = parameters.to_vec();
+        }
+        Bench::new(law, self.dimension, RADIUS).lenient()
+    }
+
     /// Finds the opening at which damage begins and that at which the bond is broken, by single pulls in
     /// mode I and, where that does nothing, mode II.
     pub fn find_scale(&mut self) -> Result<(), LawError> {

@@ -7,10 +7,6 @@ use serde::{Deserialize, Serialize};
 
 /// Overlap, in parts of a contact's radius, from which a contact counts as found late.
 const LATE: f64 = 0.01;
-/// Overlap, in parts of a contact's radius, that no motion leaves which detection need not follow through the step: a body
-/// that slides by less over one facet may come that deep upon the next.
-const FOLLOWED: f64 = 0.05;
-
 /// When and between which bodies something was first seen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Occurrence {
@@ -148,13 +144,6 @@ impl StepSizeDiagnostics {
         })
     }
 
-    /// What is worth knowing and leaves the results as they are: contacts found late by less than the motion in a step that
-    /// need not be followed.
-    pub fn note(&self) -> Option<String> {
-        let late = self.late_contacts().filter(|_| self.deepest <= FOLLOWED);
-        late.map(|text| format!("{text}; a smaller time.step finds them sooner"))
-    }
-
     /// What to tell the user; none where every contact was seen in time.
     pub fn warning(&self) -> Option<String> {
         let first = |o: &Option<Occurrence>| o.as_ref().map_or(String::new(), Occurrence::text);
@@ -180,7 +169,7 @@ impl StepSizeDiagnostics {
                 first(&self.first_unwatched)
             )
         });
-        let late = self.late_contacts().filter(|_| self.deepest > FOLLOWED);
+        let late = self.late_contacts();
         let told: Vec<String> = [passed, held_back, unwatched, late]
             .into_iter()
             .flatten()

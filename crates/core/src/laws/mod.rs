@@ -15,6 +15,7 @@ pub mod library;
 pub mod pass;
 mod range;
 pub mod search;
+pub mod static_memory;
 mod trust;
 pub mod watch;
 

@@ -70,9 +70,11 @@ impl<S: Space> Simulation<S> {
                 let normal = if pulls { e.loss_n * un * un } else { 0.0 };
                 normal + e.loss_t * ut.dot(&ut)
             });
-            // A shift below zero without an approach is the correction's: u_n >= -shift.
-            let lifts = form.shift_n < 0.0 && n.dot(before) >= form.shift_n;
-            let lift = if lifts && self.correction > 0.0 {
+            // The correction's, unless the law's restitution took its place: a bounce gives nothing.
+            let lifts = form.shift_n < 0.0
+                && n.dot(before) >= form.shift_n
+                && form.shift_n == self.shift_of_gap(contact, self.scheme.h);
+            let lift = if lifts {
                 -theta * form.shift_n * solution.unilateral_n.max(0.0)
             } else {
                 0.0

@@ -110,11 +110,6 @@ pub struct Simulation<S: Space> {
     pub(super) solved: Solved<S>,
 }
 
-/// The gap a step may close, or the part of a penetration it must take back (m).
-fn quasi_shock(gap: f64, correction: f64) -> f64 {
-    if gap > 0.0 { gap } else { correction * gap }
-}
-
 impl<S: Space> Simulation<S> {
     /// Bytes of a contact beside the solver's rows and its bond: it at this step and at the last, its pair in the
     /// neighbour list, its form, and what it did.
@@ -345,23 +340,34 @@ impl<S: Space> Simulation<S> {
 
     /// The part of the forms that geometry gives.
     pub(super) fn geometry_of_forms(&mut self, h: f64) {
-        let correction = self.correction;
-        self.forms.clear();
-        let network = &self.network;
-        self.forms
-            .extend(network.contacts.iter().map(|contact| ContactForm {
-                bodies: contact.bodies,
-                normal: contact.normal,
-                arms: contact.arms,
-                central: contact.central,
-                shift_n: quasi_shock(network.open_gap(contact), correction) / h,
-                shift_t: S::Tangent::null(),
-                friction: 0.0,
-                tension: 0.0,
-                cohesion: 0.0,
-                elastic: None,
-                impulse: contact.impulse,
-            }));
+        let mut forms = std::mem::take(&mut self.forms);
+        forms.clear();
+        let contacts = self.network.contacts.iter();
+        forms.extend(contacts.map(|contact| ContactForm {
+            bodies: contact.bodies,
+            normal: contact.normal,
+            arms: contact.arms,
+            central: contact.central,
+            shift_n: self.shift_of_gap(contact, h),
+            shift_t: S::Tangent::null(),
+            friction: 0.0,
+            tension: 0.0,
+            cohesion: 0.0,
+            elastic: None,
+            impulse: contact.impulse,
+        }));
+        self.forms = forms;
+    }
+
+    /// The velocity at which a step may close a gap; of a penetration that at which the correction takes its share back, below
+    /// zero (m/s).
+    pub(super) fn shift_of_gap(&self, contact: &Contact<S>, h: f64) -> f64 {
+        let gap = self.network.open_gap(contact);
+        if gap > 0.0 {
+            gap / h
+        } else {
+            self.correction * gap / h
+        }
     }
 
     /// Hands bodies and contacts to the solver.

@@ -1,6 +1,7 @@
 //! What the file of results holds, declared before the first row: groups, attributes, texts, datasets.
 
-use super::store::{Growing, Number, ResultsError, Slot, Store};
+use super::dataset::{Growing, Number, Slot};
+use super::store::{ResultsError, Store};
 use hdf5::types::VarLenUnicode;
 use hdf5::{DatatypeMessage, H5Dataset, H5File, H5Group, H5Type};
 

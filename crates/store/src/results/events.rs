@@ -1,7 +1,8 @@
 //! Tables of events: columns that grow by a value an event, held back until the file is flushed.
 
+use super::dataset::Growing;
 use super::declare::MANY;
-use super::store::{Growing, ResultsError, Store};
+use super::store::{ResultsError, Store};
 use fretwork_observe::statistics::Column;
 
 /// A table of events.

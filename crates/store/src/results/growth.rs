@@ -4,7 +4,7 @@
 //! The crate syncs after each dataset of a flush: some 200 times for a file of results. So this is for files that are too
 //! large to be copied.
 
-use super::store::Grown;
+use super::dataset::Grown;
 use hdf5::FileLocking;
 use hdf5::swmr::SwmrFileWriter;
 use std::path::Path;

@@ -1,6 +1,7 @@
 //! Reads back what `results.h5` keeps of a run that was stopped: its checkpoints, and its rows.
 
-use super::store::{Grown, ResultsError, Store};
+use super::dataset::Grown;
+use super::store::{ResultsError, Store};
 use super::{CHECKPOINTS, Results};
 use crate::fclib::guard;
 use hdf5::{H5File, H5Type};

@@ -12,6 +12,7 @@
 //! /VTKHDF      the grains' view, for ParaView             contacts.vtkhdf, bodies.vtkhdf: links to the others
 //! ```
 
+mod dataset;
 mod declare;
 mod events;
 mod growth;
@@ -27,13 +28,14 @@ pub use store::ResultsError;
 pub use view::{Cells, Part};
 
 use super::summary::PluginStamp;
+use dataset::{Growing, Slot};
 use declare::MANY;
 use events::Events;
 use fretwork_observe::statistics::Column;
 use shapes::Shaped;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use store::{Growing, Slot, Store};
+use store::Store;
 use view::View;
 
 /// What is known before the first step.
@@ -72,6 +74,10 @@ const MOST: usize = 8192;
 
 /// The file is flushed no more often than this.
 const PACE: Duration = Duration::from_secs(2);
+
+/// And one that grows in place no more often than this: its flush syncs once a dataset, some 200 times. Checkpoints, which
+/// flush it too, mostly come before; between them its rows are handed to the system all the same.
+const PACE_IN_PLACE: Duration = Duration::from_secs(60);
 
 /// And no more often than takes one part in so many of the time: files and disks differ.
 const PART: u32 = 20;
@@ -274,7 +280,11 @@ impl Results {
         if rows >= MOST {
             self.write_held()?;
         }
-        let rested = |(last, cost): (Instant, Duration)| last.elapsed() >= PACE.max(cost * PART);
+        let pace = match self.store.as_ref().is_some_and(Store::grows_in_place) {
+            true => PACE_IN_PLACE,
+            false => PACE,
+        };
+        let rested = |(last, cost): (Instant, Duration)| last.elapsed() >= pace.max(cost * PART);
         let full = self.store.as_ref().is_some_and(Store::full);
         if full || self.flushed.is_none_or(rested) {
             self.flush()?;

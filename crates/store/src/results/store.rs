@@ -5,8 +5,9 @@
 //! cost more than they save, and the file grows in place by HDF5's single-writer protocol ([`super::growth`]), whose
 //! flush syncs once a dataset.
 //!
-//! This file, with `growth.rs`, `reader.rs` and `kept.rs`, is all of this folder that knows the HDF5 crate.
+//! This file, with `dataset.rs`, `growth.rs`, `reader.rs` and `kept.rs`, is all of this folder that knows the HDF5 crate.
 
+use super::dataset::{Bytes, Growing, Grown, Number, Slot};
 use super::declare::group;
 use super::growth::Growth;
 use hdf5::H5File;
@@ -47,73 +48,6 @@ impl ResultsError {
             path: path.to_owned(),
             reason,
         }
-    }
-}
-
-/// A dataset that grows along its first axis.
-#[derive(Clone, Copy, Debug)]
-pub struct Growing {
-    /// Its place in [`Store::grown`].
-    place: usize,
-}
-
-/// What is known of a growing dataset.
-#[derive(Clone, Debug)]
-pub struct Grown {
-    /// Its path.
-    pub path: String,
-    /// Rows so far, with those that are kept in memory.
-    pub rows: u64,
-    /// CRC-32 of their bytes.
-    pub sum: u32,
-    /// Numbers a row.
-    pub width: u64,
-    /// Whether they are whole numbers.
-    pub whole: bool,
-    /// Numbers of the last rows, as bits, that are not in the file yet.
-    pub(super) held: Vec<u64>,
-}
-
-impl Grown {
-    /// Its name from the root on, as readers give it.
-    pub fn name(&self) -> &str {
-        self.path.trim_start_matches('/')
-    }
-
-    /// Rows in the file.
-    pub(super) fn written(&self) -> u64 {
-        self.rows - self.held.len() as u64 / self.width
-    }
-
-    /// A shape or place of so many rows.
-    pub(super) fn shape(&self, rows: u64, width: u64) -> Vec<u64> {
-        match self.width {
-            1 => vec![rows],
-            _ => vec![rows, width],
-        }
-    }
-}
-
-/// Bytes that are written over again and again.
-#[derive(Clone, Copy, Debug)]
-pub struct Slot {
-    /// Its place in [`Store::slots`].
-    place: usize,
-}
-
-/// What is known of a slot.
-#[derive(Debug, Default)]
-struct Bytes {
-    path: String,
-    /// Bytes that the file has room for.
-    size: u64,
-    /// What is not in the file yet.
-    held: Option<Vec<u8>>,
-}
-
-impl Bytes {
-    fn name(&self) -> &str {
-        self.path.trim_start_matches('/')
     }
 }
 
@@ -325,6 +259,11 @@ impl Store {
         }
     }
 
+    /// Whether the file is so large that it grows in place, where a flush syncs once a dataset.
+    pub fn grows_in_place(&self) -> bool {
+        self.growth.is_some()
+    }
+
     /// Whether so many rows are kept in memory that they are to be flushed.
     pub fn full(&self) -> bool {
         self.held >= MOST_HELD
@@ -479,30 +418,6 @@ fn sync_folder(path: &Path) {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     if let Ok(folder) = std::fs::File::open(folder.unwrap_or(Path::new("."))) {
         let _ = folder.sync_all();
-    }
-}
-
-/// Numbers that are written.
-pub trait Number: Copy {
-    /// Whether they are whole.
-    const WHOLE: bool;
-    /// Little-endian bytes.
-    fn bytes(self) -> [u8; 8];
-}
-
-impl Number for f64 {
-    const WHOLE: bool = false;
-
-    fn bytes(self) -> [u8; 8] {
-        self.to_le_bytes()
-    }
-}
-
-impl Number for i64 {
-    const WHOLE: bool = true;
-
-    fn bytes(self) -> [u8; 8] {
-        self.to_le_bytes()
     }
 }
 

@@ -2,8 +2,9 @@
 //!
 //! Layout: Kitware, VTKHDF file format, version 2.0 (the four kinds of cells must all be there).
 
+use super::dataset::Growing;
 use super::declare::{FEW, MANY};
-use super::store::{Growing, ResultsError, Store};
+use super::store::{ResultsError, Store};
 use fretwork_observe::statistics::Column;
 
 /// The cells of VTK's PolyData, in its order.

@@ -6,7 +6,7 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 
 /// Part of the half thickness of the thinnest body from which a relative motion in a step is fast.
-const FAST: f64 = 0.05;
+const FAST: f64 = 0.01;
 
 /// Half thicknesses of the pieces, and how far the points of each body are from its centre.
 #[derive(Clone, Debug, Default)]

@@ -319,11 +319,14 @@ fn look<S: Space>(
     };
     for &names in &candidates {
         let turns = turning && names.1 & Key::SURFACE != 0;
-        if travels[body(names.0)] + travels[body(names.1)] <= fast && !turns {
+        // Two balls have one contact: where they go less than the alert distance, detection has seen it.
+        let balls = (names.0 | names.1) & (Key::PIECE | Key::SURFACE) == 0;
+        let slow = if balls { network.alert } else { fast };
+        if travels[body(names.0)] + travels[body(names.1)] <= slow && !turns {
             continue;
         }
         let pair = sweep.pair(names);
-        if pair.travel <= fast {
+        if pair.travel <= slow {
             continue;
         }
         let Some(margin) = margin(network, names, &pair, stage) else {

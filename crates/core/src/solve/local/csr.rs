@@ -49,11 +49,13 @@ impl Csr {
             row.sort_by_key(|e| e.0);
             let first = out.indices.len();
             for (c, x) in row {
-                if out.indices.len() > first && out.indices.last() == Some(c) {
-                    *out.values.last_mut().expect("an entry was pushed") += *x;
-                } else {
-                    out.indices.push(*c);
-                    out.values.push(*x);
+                let again = out.indices.len() > first && out.indices.last() == Some(c);
+                match out.values.last_mut().filter(|_| again) {
+                    Some(sum) => *sum += *x,
+                    None => {
+                        out.indices.push(*c);
+                        out.values.push(*x);
+                    }
                 }
             }
             out.starts.push(out.indices.len());

@@ -219,9 +219,9 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
     let laws = coulomb(&problem.mu);
     let mut solver = Choice::<D>::new(method);
     let (mut best, mut total) = (f64::INFINITY, 0.0);
-    let mut state = None;
     let velocity = Form::new(&w, &q, &laws, Norm::Velocity);
-    for _ in 0..REPEATS {
+    let mut repeats = 0;
+    let state = loop {
         let clock = Instant::now();
         let form = Form::new(&w, &q, &laws, Norm::Field);
         solver.used.clear();
@@ -234,12 +234,11 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
         let seconds = clock.elapsed().as_secs_f64();
         best = best.min(seconds);
         total += seconds;
-        state = Some(now);
-        if total > ENOUGH {
-            break;
+        repeats += 1;
+        if total > ENOUGH || repeats == REPEATS {
+            break now;
         }
-    }
-    let state = state.expect("solved at least once");
+    };
     let p: Vec<f64> = state.p.as_flattened().iter().map(|p| p * unit).collect();
     let Measured {
         error,

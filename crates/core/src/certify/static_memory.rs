@@ -1,0 +1,93 @@
+//! A law keeps nothing in the static memory of its library: threads that call it at once would overwrite each other's.
+
+use super::Line;
+use super::border::together;
+use super::rig::Rig;
+use crate::laws::LawError;
+use crate::laws::static_memory::{StaticMemory, Unseen};
+
+const CHECK: &str = "static memory";
+
+/// Contacts a batch, round by round. Each round has a larger one than all before: what is allocated as large as needed
+/// and kept shows by its address.
+const ROUNDS: [&[usize]; 3] = [&[1, 5, 17], &[3, 64], &[2, 300]];
+
+/// Compares the static memory before and after calls with other numbers, parameters and sizes of batches. What changes in the
+/// first round only is set up at first use; what changes again in each round is kept from call to call.
+pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
+    let plugin = rig.tested().plugin.clone();
+    let memory = match StaticMemory::of(&plugin) {
+        Ok(memory) => memory,
+        Err(Unseen::BuiltIn) => {
+            return Ok(Line::skip(
+                CHECK,
+                "the law is part of the program: the library with the same code is looked at",
+            ));
+        }
+        Err(Unseen::TooLarge(bytes)) => {
+            let text = "bytes of writable static memory in its library, too many to be compared: a law keeps nothing between calls; \
+                        make tables `const` and work arrays local to the call";
+            return Ok(Line::judged(CHECK, false, bytes as f64, text));
+        }
+        Err(Unseen::System) => {
+            return Ok(Line::skip(
+                CHECK,
+                "this system does not show the memory of a library",
+            ));
+        }
+    };
+    let mut seen = Vec::new();
+    for (round, sizes) in ROUNDS.iter().enumerate() {
+        calls(rig, round, sizes);
+        seen.push(memory.read());
+    }
+    // As a run would have it.
+    plugin.validate(&rig.tested().parameters)?;
+    let [Some(first), Some(second), Some(third)] = seen.as_slice() else {
+        return Ok(Line::skip(
+            CHECK,
+            "this system does not let the memory of a library be read",
+        ));
+    };
+    let changed = |a: &[u8], b: &[u8]| a.iter().zip(b).filter(|(a, b)| a != b).count();
+    let (once, again) = (changed(first, second), changed(second, third));
+    let still = once == 0 || again == 0;
+    let text = if still {
+        "bytes of its library's static memory that calls go on changing"
+    } else {
+        "bytes of its library's static memory that calls go on changing: it keeps something between calls outside its columns, \
+         and threads overwrite each other's; make static arrays, counters and saved variables local to the call, or declare \
+         what must last as an internal variable"
+    };
+    let number = if still { 0 } else { once.max(again) };
+    Ok(Line::judged(CHECK, still, number as f64, text))
+}
+
+/// Every call of the law, with numbers, parameters and sizes of batches of this round. Errors are other checks'.
+fn calls(rig: &Rig, round: usize, sizes: &[usize]) {
+    let seed = 1000 * (round as u64 + 1);
+    let plugin = &rig.tested().plugin;
+    let other = other_parameters(rig, round);
+    for n in sizes {
+        let walks: Vec<_> = (0..37).map(|k| rig.walk(seed + k, 12, 0.3)).collect();
+        let _ = together(&mut rig.another(), &walks, *n, 0);
+        if plugin.validate(&other).is_ok() {
+            let _ = together(&mut rig.with_parameters(&other), &walks, *n, 1);
+        }
+    }
+}
+
+/// The parameters, each a few thousandths off within its range.
+fn other_parameters(rig: &Rig, round: usize) -> Vec<f64> {
+    let share = 1e-3 * (round + 1) as f64;
+    let tested = rig.tested();
+    let fields = &tested.plugin.parameters;
+    let values = tested.parameters.iter().zip(fields);
+    values
+        .map(|(value, field)| {
+            let near = [value * (1.0 + share), value * (1.0 - share)];
+            let inside = |x: &f64| (field.minimum..=field.maximum).contains(x);
+            near.into_iter().find(inside).unwrap_or(*value)
+        })
+        .collect()
+}

@@ -1,0 +1,144 @@
+//! The static memory of a law's library (`.data` and `.bss`): what a law keeps there between calls, threads overwrite.
+
+use super::library::Plugin;
+
+/// Why the static memory of a law cannot be looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unseen {
+    /// The law is part of the program, whose memory changes all the time.
+    BuiltIn,
+    /// It has so many bytes, more than are compared.
+    TooLarge(usize),
+    /// Not on this system.
+    System,
+}
+
+/// So many bytes are compared (256 MB): they are kept several times.
+#[cfg(target_os = "linux")]
+const MOST: usize = 1 << 28;
+
+/// The writable segments of the library that holds a law's functions; never those of another library.
+#[derive(Debug)]
+pub struct StaticMemory {
+    #[cfg(target_os = "linux")]
+    memory: std::fs::File,
+    /// Address and length in bytes.
+    #[cfg(target_os = "linux")]
+    segments: Vec<(u64, usize)>,
+}
+
+#[cfg(target_os = "linux")]
+impl StaticMemory {
+    /// That of a law.
+    ///
+    /// # Errors
+    /// It cannot be looked at.
+    pub fn of(plugin: &Plugin) -> Result<Self, Unseen> {
+        if plugin.built_in {
+            return Err(Unseen::BuiltIn);
+        }
+        let memory = std::fs::File::open("/proc/self/mem").map_err(|_| Unseen::System)?;
+        let segments = elf::writable_segments(&functions(plugin));
+        if segments.is_empty() {
+            return Err(Unseen::System);
+        }
+        let bytes: usize = segments.iter().map(|s| s.1).sum();
+        if bytes > MOST {
+            return Err(Unseen::TooLarge(bytes));
+        }
+        Ok(Self { memory, segments })
+    }
+
+    /// What stands there now; none where the system does not let it be read.
+    pub fn read(&self) -> Option<Vec<u8>> {
+        use std::os::unix::fs::FileExt;
+        let mut bytes = Vec::new();
+        for (address, length) in &self.segments {
+            let start = bytes.len();
+            bytes.resize(start + length, 0);
+            // Through the system: a plain read of what native code may write meanwhile is not defined.
+            self.memory
+                .read_exact_at(&mut bytes[start..], *address)
+                .ok()?;
+        }
+        Some(bytes)
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+impl StaticMemory {
+    /// That of a law.
+    ///
+    /// # Errors
+    /// It cannot be looked at: always on this system.
+    pub fn of(plugin: &Plugin) -> Result<Self, Unseen> {
+        Err(match plugin.built_in {
+            true => Unseen::BuiltIn,
+            false => Unseen::System,
+        })
+    }
+
+    /// None on this system.
+    pub fn read(&self) -> Option<Vec<u8>> {
+        None
+    }
+}
+
+/// Addresses of the functions of a law.
+#[cfg(target_os = "linux")]
+fn functions(plugin: &Plugin) -> Vec<usize> {
+    let table = &plugin.table;
+    let calls = [table.prepare, table.commit, table.energy, table.initialise];
+    calls.into_iter().flatten().map(|f| f as usize).collect()
+}
+
+/// What the dynamic linker tells of loaded libraries.
+#[cfg(target_os = "linux")]
+mod elf {
+    use std::ffi::{c_int, c_void};
+
+    struct Search<'a> {
+        functions: &'a [usize],
+        found: Vec<(u64, usize)>,
+    }
+
+    /// Address and length of the writable segments of the libraries that hold one of these functions.
+    pub fn writable_segments(functions: &[usize]) -> Vec<(u64, usize)> {
+        let mut search = Search {
+            functions,
+            found: Vec::new(),
+        };
+        // SAFETY: the callback gets this search and no other, for the time of this call.
+        unsafe { libc::dl_iterate_phdr(Some(visit), (&raw mut search).cast()) };
+        search.found
+    }
+
+    unsafe extern "C" fn visit(
+        info: *mut libc::dl_phdr_info,
+        _size: usize,
+        search: *mut c_void,
+    ) -> c_int {
+        // SAFETY: the linker gives a valid record and the pointer that it was called with.
+        let (info, search) = unsafe { (&*info, &mut *search.cast::<Search<'_>>()) };
+        if info.dlpi_phdr.is_null() {
+            return 0;
+        }
+        // SAFETY: so many headers are there.
+        let headers =
+            unsafe { std::slice::from_raw_parts(info.dlpi_phdr, info.dlpi_phnum as usize) };
+        let loaded: Vec<(usize, usize, bool)> = headers
+            .iter()
+            .filter(|h| h.p_type == libc::PT_LOAD)
+            .map(|h| {
+                let address = (info.dlpi_addr as usize).wrapping_add(h.p_vaddr as usize);
+                (address, h.p_memsz as usize, h.p_flags & libc::PF_W != 0)
+            })
+            .collect();
+        let holds = |f: &usize| loaded.iter().any(|s| (s.0..s.0 + s.1).contains(f));
+        if search.functions.iter().any(holds) {
+            let writable = loaded.iter().filter(|s| s.2 && s.1 > 0);
+            search.found.extend(writable.map(|s| (s.0 as u64, s.1)));
+        }
+        0
+    }
+}
