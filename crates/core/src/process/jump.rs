@@ -48,7 +48,7 @@ pub struct Jump {
     /// Cycles that its one computed cycle stood for.
     pub cycles: u32,
     /// By how much it is off: the worst of volumes and damage, in parts of what it added, and of what is misplaced
-    /// after it, in parts of the scar at the end of the run. See [`fretwork_core::wear::jump`].
+    /// after it, in parts of the scar at the end of the run. See [`crate::wear::jump`].
     pub error: f64,
     /// By how much the work of the cycles after it differs from that of the cycle before it, in parts of it.
     pub work_change: f64,
