@@ -8,7 +8,7 @@
 use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
 use fretwork::scene::{Scene, load};
-use fretwork::step::Simulation;
+use fretwork::step::{Simulation, Steps};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -64,7 +64,7 @@ fn main() {
     }
 }
 
-fn bench<S: Space>(name: &str, mut s: Simulation<S>, steps: u32, peer_ms: f64, peer_ns: f64) {
+fn bench<S: Steps>(name: &str, mut s: Simulation<S>, steps: u32, peer_ms: f64, peer_ns: f64) {
     let ms = |d: Duration| d.as_secs_f64() * 1e3;
     let clock = Instant::now();
     let cold = s.step().unwrap_or_else(|e| panic!("{e}"));

@@ -12,7 +12,7 @@ use fretwork::report::{Axis, Chart, Series, draw_panels};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::source::Source;
 use fretwork::scene::{Loaded, case::Case};
-use fretwork::step::Simulation;
+use fretwork::step::{Simulation, Steps};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
@@ -269,7 +269,7 @@ fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
 }
 
 /// Steps until the layer is at rest: ten in a row that the first test of convergence ends.
-fn settle<S: Space>(s: &mut Simulation<S>) -> Result<(), Failure> {
+fn settle<S: Steps>(s: &mut Simulation<S>) -> Result<(), Failure> {
     let (first, mut calm) = (s.solver.test_every.div_ceil(2), 0);
     for _ in 0..SETTLING {
         let sweeps = s.step()?.solver.iterations;

@@ -16,7 +16,7 @@ use crate::scene::methods::{Demands, Service};
 use crate::scene::source::clean;
 use crate::scene::{Loaded, Scene, load, sampling};
 use crate::solve::local::solver::Method;
-use crate::step::Simulation;
+use crate::step::{Simulation, Steps};
 use clap::Args;
 use cost::Trial;
 use features::{Features, memory};
@@ -40,7 +40,7 @@ pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     }
 }
 
-fn whole<S: Space>(loaded: &Loaded, built: Built<S>, args: &CheckArgs) -> Result<(), Failure> {
+fn whole<S: Steps>(loaded: &Loaded, built: Built<S>, args: &CheckArgs) -> Result<(), Failure> {
     answer(describe(loaded, &built).trim_end())?;
     if !args.no_timing {
         let time = &loaded.case.time;

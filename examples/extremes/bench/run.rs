@@ -3,7 +3,7 @@
 use super::verdict::{Cause, Expected, Row, Verdict};
 use fretwork::geometry::space::{Space, VectorLike};
 use fretwork::record::Missed;
-use fretwork::step::Simulation;
+use fretwork::step::{Simulation, Steps};
 
 /// What was told during some steps.
 #[derive(Default)]
@@ -21,12 +21,12 @@ pub struct Ran {
 }
 
 /// Steps on, `steps` times.
-pub fn go<S: Space>(s: &mut Simulation<S>, steps: u64) -> Ran {
+pub fn go<S: Steps>(s: &mut Simulation<S>, steps: u64) -> Ran {
     watch(s, steps, |_| ())
 }
 
 /// The same, with a look at the state after each step.
-pub fn watch<S: Space>(
+pub fn watch<S: Steps>(
     s: &mut Simulation<S>,
     steps: u64,
     mut look: impl FnMut(&Simulation<S>),

@@ -1,7 +1,7 @@
 //! How long a run will take: from a few steps of a copy of the scene, timed for a short while. Nothing is written.
 
-use crate::geometry::space::Space;
 use crate::step::Simulation;
+use crate::step::Steps;
 use crate::trade::table::seconds;
 use cpu_time::ThreadTime;
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -50,7 +50,7 @@ pub struct RunTime {
 impl Trial {
     /// Steps a scene for a short while, in a thread of its own, which is left behind when the time is up: no scene, however
     /// large, holds the program up for longer.
-    pub fn of<S: Space>(mut simulation: Simulation<S>, steps: u64) -> Self {
+    pub fn of<S: Steps>(mut simulation: Simulation<S>, steps: u64) -> Self {
         let (sender, receiver) = channel::<Result<Timed, String>>();
         let watched = steps.min(STEPS);
         let work = move || {

@@ -3,9 +3,9 @@
 use super::TradeArgs;
 use crate::cli::Failure;
 use crate::cli::check::cost::Trial;
-use crate::geometry::space::Space;
 use crate::scene::build::Built;
 use crate::scene::{Loaded, Scene};
+use crate::step::Steps;
 use crate::trade::TradeError;
 use crate::trade::child::{Ended, Launcher, summary};
 use crate::trade::offer::{Offer, measure_names};
@@ -74,7 +74,7 @@ pub fn budget(args: &TradeArgs, loaded: &Loaded, scene: Scene) -> Result<(), Fai
     }
 }
 
-fn budget_of<S: Space>(args: &TradeArgs, loaded: &Loaded, built: Built<S>) -> Result<(), Failure> {
+fn budget_of<S: Steps>(args: &TradeArgs, loaded: &Loaded, built: Built<S>) -> Result<(), Failure> {
     let time = &loaded.case.time;
     let steps = (time.end / time.step - 1e-6).ceil().max(1.0) as u64;
     let grains = built.simulation.bodies.grains().count();

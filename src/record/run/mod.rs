@@ -39,7 +39,7 @@ use super::views;
 use crate::bodies::TimeFunction;
 use crate::geometry::space::Space;
 use crate::interrupt;
-use crate::scene::build::{Built, Dimensional, Loaded};
+use crate::scene::build::{Built, Dimensional, Loaded, Scene};
 use crate::scene::sampling;
 use crate::step::{Simulation, StepReport};
 use cpu_time::ProcessTime;
@@ -86,7 +86,11 @@ pub fn run<S: Dimensional>(
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
-    through(Recorder::new(loaded, built, options, None)?, progress)
+    // Compiled here, once for each dimension.
+    match S::scene(built) {
+        Scene::Plane(built) => through(Recorder::new(loaded, *built, options, None)?, progress),
+        Scene::Solid(built) => through(Recorder::new(loaded, *built, options, None)?, progress),
+    }
 }
 
 /// What the folder of the results holds of this case, to go on from.
@@ -113,7 +117,11 @@ pub fn go_on<S: Dimensional>(
     stop: Stop,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
-    through(Recorder::new(loaded, built, options, Some(stop))?, progress)
+    let from = Some(stop);
+    match S::scene(built) {
+        Scene::Plane(built) => through(Recorder::new(loaded, *built, options, from)?, progress),
+        Scene::Solid(built) => through(Recorder::new(loaded, *built, options, from)?, progress),
+    }
 }
 
 fn through<S: Dimensional>(

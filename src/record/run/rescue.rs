@@ -7,13 +7,13 @@
 use super::Recorder;
 use super::end::{self, LAST};
 use super::notice;
-use crate::geometry::space::Space;
 use crate::laws::watch::{self, Ready};
 use crate::record::friction::Cycles;
 use crate::record::results::Results;
 use crate::record::statistics::Table;
 use crate::record::summary::Summary;
 use crate::record::warnings;
+use crate::step::Steps;
 use crate::step::{StepError, StepReport};
 use cpu_time::ProcessTime;
 use std::path::PathBuf;
@@ -79,7 +79,7 @@ impl Left {
     }
 }
 
-impl<S: Space> Recorder<'_, S> {
+impl<S: Steps> Recorder<'_, S> {
     /// A step, during which the watch can save what was recorded.
     pub(super) fn step(&mut self) -> Result<StepReport, StepError> {
         self.count();

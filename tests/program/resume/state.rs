@@ -5,6 +5,7 @@ use fretwork::laws::SearchPath;
 use fretwork::record::code::{decode, encode};
 use fretwork::scene::{Built, Scene, load};
 use fretwork::solve::local::solver::Method;
+use fretwork::step::Steps;
 use fretwork::step::{Saved, Simulation};
 use std::path::Path;
 
@@ -17,17 +18,17 @@ fn built(case: &str, sets: &[&str]) -> Scene {
 }
 
 /// All that a simulation holds, as text: numbers are printed so that they read back as they are.
-fn all<S: Space>(s: &Simulation<S>) -> Vec<u8> {
+fn all<S: Steps>(s: &Simulation<S>) -> Vec<u8> {
     encode(&s.save()).unwrap()
 }
 
-fn steps<S: Space>(s: &mut Simulation<S>, count: u32) {
+fn steps<S: Steps>(s: &mut Simulation<S>, count: u32) {
     for _ in 0..count {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }
 }
 
-pub fn goes_on<S: Space>([one, other]: [Built<S>; 2], before: u32, after: u32) {
+pub fn goes_on<S: Steps>([one, other]: [Built<S>; 2], before: u32, after: u32) {
     let (mut whole, mut resumed) = (one.simulation, other.simulation);
     steps(&mut whole, before);
     let bytes = all(&whole);
@@ -121,7 +122,7 @@ fn what_auto_learned_goes_on_with_the_same_bits() {
         _ => panic!("the case is of the plane"),
     };
     // Twice the weight in each step: what the step before found does not help.
-    fn step<S: Space>(s: &mut Simulation<S>) {
+    fn step<S: Steps>(s: &mut Simulation<S>) {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         assert!(report.solver.converged, "{:?}", report.solver);
         assert_eq!(report.solver.used, Method::Interior);

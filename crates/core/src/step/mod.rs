@@ -13,6 +13,7 @@
 //!                               record (ledgers, statistics, files)
 //! ```
 mod answers;
+mod compiled;
 pub mod control;
 pub mod coupling;
 mod error;
@@ -26,6 +27,7 @@ mod removal;
 mod saved;
 pub mod simulation;
 
+pub use compiled::Steps;
 pub use error::StepError;
 pub use projection::Projected;
 pub use saved::Saved;

@@ -176,12 +176,8 @@ impl<S: Space> Simulation<S> {
         simulation
     }
 
-    /// One step of h.
-    ///
-    /// # Errors
-    /// A law's error, or velocities that are not finite; the state is then that of the failed step. Or a surface that
-    /// the step before wore through; the state is then that of its end.
-    pub fn step(&mut self) -> Result<StepReport, StepError> {
+    /// See [`Simulation::step`].
+    pub(super) fn one_step(&mut self) -> Result<StepReport, StepError> {
         self.whole()?;
         let mut report = StepReport::default();
         let Scheme { h, theta } = self.scheme;

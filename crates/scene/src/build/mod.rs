@@ -119,6 +119,11 @@ impl Loaded {
     /// # Errors
     /// At file, line and column.
     pub fn build_in<S: Dimensional>(&self, path: &SearchPath) -> Result<Built<S>, InputError> {
+        S::build(self, path)
+    }
+
+    /// See [`Self::build_in`], which compiles this once for each dimension.
+    fn build_by<S: Dimensional>(&self, path: &SearchPath) -> Result<Built<S>, InputError> {
         let shelf = Shelf::beside(&self.path);
         let (densities, mut materials) = self.materials(&shelf)?;
         let laws = interfaces::build(&self.case, &self.source, &shelf, path)?;

@@ -1,6 +1,6 @@
 //! Surfaces of first bodies.
 
-use super::Builder;
+use super::{Builder, Built, Loaded, Scene};
 use crate::case::{ShapeSpec, Side};
 use crate::source::InputError;
 use crate::{profile, profile_file, standard};
@@ -14,6 +14,8 @@ use fretwork_core::geometry::mesh::Mesh;
 use fretwork_core::geometry::polyline::{Polyline, ProfileError};
 use fretwork_core::geometry::shape::{HalfSpace, Surface};
 use fretwork_core::geometry::space::{Plane, Solid, Space, VectorLike};
+use fretwork_core::laws::SearchPath;
+use fretwork_core::step::Steps;
 use nalgebra::Vector2;
 
 /// Points of a random surface, at most,
@@ -22,7 +24,14 @@ const MOST_POINTS: usize = 1_000_000;
 const MOST_TERMS: f64 = 2e8;
 
 /// Shapes that exist in one dimension only.
-pub trait Dimensional: Space {
+pub trait Dimensional: Steps {
+    /// A scene of this dimension, see [`Loaded::build_in`].
+    ///
+    /// # Errors
+    /// As [`Loaded::build_in`].
+    fn build(loaded: &Loaded, path: &SearchPath) -> Result<Built<Self>, InputError>;
+    /// It as one of either dimension.
+    fn scene(built: Built<Self>) -> Scene;
     /// A profile of points, left to right.
     ///
     /// # Errors
@@ -62,6 +71,12 @@ pub trait Dimensional: Space {
 }
 
 impl Dimensional for Plane {
+    fn build(loaded: &Loaded, path: &SearchPath) -> Result<Built<Self>, InputError> {
+        loaded.build_by(path)
+    }
+    fn scene(built: Built<Self>) -> Scene {
+        Scene::Plane(Box::new(built))
+    }
     fn profile(
         points: Vec<(f64, f64)>,
         side: Side,
@@ -112,6 +127,12 @@ impl Dimensional for Plane {
 }
 
 impl Dimensional for Solid {
+    fn build(loaded: &Loaded, path: &SearchPath) -> Result<Built<Self>, InputError> {
+        loaded.build_by(path)
+    }
+    fn scene(built: Built<Self>) -> Scene {
+        Scene::Solid(Box::new(built))
+    }
     fn profile(
         _: Vec<(f64, f64)>,
         _: Side,

@@ -1,0 +1,36 @@
+//! The step, compiled once for each dimension: a crate that steps a scene does not compile the solver again.
+
+use super::{Simulation, StepError, StepReport};
+use crate::geometry::space::{Dim2, Dim3, Space};
+
+/// A dimension whose time step is compiled in this crate.
+pub trait Steps: Space {
+    /// One step of a scene, see [`Simulation::step`].
+    ///
+    /// # Errors
+    /// As [`Simulation::step`].
+    fn step(simulation: &mut Simulation<Self>) -> Result<StepReport, StepError>;
+}
+
+impl Steps for Dim2 {
+    fn step(simulation: &mut Simulation<Self>) -> Result<StepReport, StepError> {
+        simulation.one_step()
+    }
+}
+
+impl Steps for Dim3 {
+    fn step(simulation: &mut Simulation<Self>) -> Result<StepReport, StepError> {
+        simulation.one_step()
+    }
+}
+
+impl<S: Steps> Simulation<S> {
+    /// One step of h.
+    ///
+    /// # Errors
+    /// A law's error, or velocities that are not finite; the state is then that of the failed step. Or a surface that
+    /// the step before wore through; the state is then that of its end.
+    pub fn step(&mut self) -> Result<StepReport, StepError> {
+        S::step(self)
+    }
+}
