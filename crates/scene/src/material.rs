@@ -179,11 +179,11 @@ impl InterfaceParameters {
 /// The folders in which material files are looked for: `materials/` beside the case or in a folder
 /// above it, then in the working folder; a shipped one that none of them has is taken from the program.
 #[derive(Clone, Debug)]
-pub struct Shelf {
+pub struct MaterialLibrary {
     folders: Vec<PathBuf>,
 }
 
-impl Shelf {
+impl MaterialLibrary {
     /// For a case file.
     pub fn beside(case: &Path) -> Self {
         let absolute = std::path::absolute(case).unwrap_or_else(|_| case.to_owned());
