@@ -153,6 +153,7 @@ pub struct Summary {
     /// Scars of the surfaces that follow their wear; empty without.
     pub scars: Vec<ScarSummary>,
     /// What shows whether the step was small enough to see every contact in time.
+    #[serde(rename = "haste")]
     pub step_size: StepSizeDiagnostics,
     /// Drives that the step does not resolve.
     #[serde(skip)]
