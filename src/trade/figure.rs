@@ -156,10 +156,19 @@ fn subtitle(study: &Study, output: &Output, found: &Comparison, o: usize) -> Str
     };
     let against = match (output.exact, &found.own[o]) {
         (Some(x), _) => format!("against the true value {x}"),
-        (None, Some(own)) => format!("against {:.4} in the reference", own.value.mean),
+        (None, Some(own)) => format!("against {} in the reference", shown(own.value.mean)),
         _ => String::new(),
     };
     format!("{against}, {seeds}")
+}
+
+/// Four significant digits or decimals.
+fn shown(x: f64) -> String {
+    if (1e-3..1e6).contains(&x.abs()) {
+        format!("{x:.4}")
+    } else {
+        format!("{x:.3e}")
+    }
 }
 
 /// A setting by the values of all knobs that vary: what stands in the case may change, a figure says what was run.
