@@ -206,6 +206,8 @@ impl InterfaceParameters {
 #[derive(Clone, Debug)]
 pub struct Shelf {
     folders: Vec<PathBuf>,
+    /// Texts that the program gives itself, before all files.
+    own: BTreeMap<String, String>,
 }
 
 impl Shelf {
@@ -219,7 +221,17 @@ impl Shelf {
             .collect();
         folders.push(PathBuf::from("materials"));
         folders.retain(|f| f.is_dir());
-        Self { folders }
+        Self {
+            folders,
+            own: BTreeMap::new(),
+        }
+    }
+
+    /// The same, with texts by name that are taken before any file.
+    #[must_use]
+    pub fn with_own(mut self, texts: &BTreeMap<String, String>) -> Self {
+        self.own.clone_from(texts);
+        self
     }
 
     /// Reads `NAME.ron`.
@@ -227,6 +239,12 @@ impl Shelf {
     /// # Errors
     /// No such file (`Err(Ok(nearest, available))` as a pair of texts) or one that cannot be read.
     pub fn read(&self, name: &str) -> Result<Source, Result<Missing, InputError>> {
+        if let Some(text) = self.own.get(name) {
+            return Ok(Source::from_text(
+                format!("{name}.ron (built in Rust)"),
+                text.as_str(),
+            ));
+        }
         let plain = !name.is_empty()
             && name
                 .chars()
@@ -262,6 +280,7 @@ impl Shelf {
                     .map(str::to_owned)
             })
             .collect();
+        names.extend(self.own.keys().cloned());
         names.sort();
         names.dedup();
         for (shipped, _) in shipped_materials::FILES {

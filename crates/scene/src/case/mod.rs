@@ -2,6 +2,7 @@
 
 mod grains;
 mod shapes;
+pub(crate) mod text;
 mod wear;
 
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
