@@ -3,10 +3,10 @@
 use super::shipped_materials;
 use super::source::{Fault, InputError, Source, nearest};
 use super::units::{self, UnitError};
-use serde::{Deserialize, Serialize};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
 use serde::ser::SerializeStruct;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

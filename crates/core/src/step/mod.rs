@@ -13,6 +13,7 @@
 //!                               record (ledgers, statistics, files)
 //! ```
 mod answers;
+mod columns;
 pub mod control;
 pub mod coupling;
 mod error;
@@ -23,9 +24,11 @@ pub mod motion;
 pub mod projection;
 mod recession;
 mod removal;
+mod run;
 mod saved;
 pub mod simulation;
 
+pub use columns::ContactRow;
 pub use error::StepError;
 pub use projection::Projected;
 pub use saved::Saved;

@@ -4,10 +4,7 @@ use crate::case::{GrainSpec, OneGrain, OnePolygon, OnePolyhedron};
 
 impl GrainSpec {
     /// Balls, one by one.
-    pub fn balls(
-        material: impl Into<String>,
-        grains: impl IntoIterator<Item = OneGrain>,
-    ) -> Self {
+    pub fn balls(material: impl Into<String>, grains: impl IntoIterator<Item = OneGrain>) -> Self {
         Self::List {
             material: material.into(),
             grains: grains.into_iter().collect(),

@@ -14,7 +14,11 @@ impl ShapeSpec {
     /// Balls that move together: centres in the body's frame and radii (m).
     pub fn balls<C: Into<Vec<f64>>>(balls: impl IntoIterator<Item = (C, f64)>) -> Self {
         let balls = balls.into_iter();
-        Self::Balls(balls.map(|(centre, radius)| (centre.into(), radius)).collect())
+        Self::Balls(
+            balls
+                .map(|(centre, radius)| (centre.into(), radius))
+                .collect(),
+        )
     }
 
     /// A convex polygon (2D) by its corners (m), against the clock.

@@ -19,9 +19,7 @@ use std::str::FromStr;
 use std::time::Instant;
 
 /// A way to solve a problem.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 pub enum Method {
     /// The program chooses.
     #[default]
