@@ -1,5 +1,11 @@
 //! Cases written back as text are the same cases.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "a test fails by a panic"
+)]
+
 use fretwork_scene::{Loaded, load, load_reader, load_text};
 use std::path::{Path, PathBuf};
 
