@@ -9,6 +9,7 @@
 mod blocks;
 mod bonded;
 mod extremes;
+mod library;
 mod masonry;
 mod packing;
 mod peer_traps;

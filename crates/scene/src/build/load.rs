@@ -28,7 +28,7 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
 /// ```
 /// let text = r#"(
 ///     name: "a ball in the air", dimension: 2, time: (step: 1e-3, end: 0.1), gravity: [0.0, -9.81],
-///     materials: {"steel": "steel"}, interfaces: [],
+///     materials: {"steel": "rail_steel_r260"}, interfaces: [],
 ///     grains: [List(material: "steel", grains: [(at: [0.0, 0.0], radius: 0.01)])],
 /// )"#;
 /// let loaded = fretwork_scene::load_text("ball.ron", text, "".as_ref(), &["time.end=0.2".into()])?;

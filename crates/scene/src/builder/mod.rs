@@ -125,7 +125,7 @@ impl<S: Dimensional> CaseBuilder<S> {
         self
     }
 
-    /// A material of the case from the file `FILE.ron` in a folder `materials`, or from those built in, such as `steel`.
+    /// A material of the case from the file `FILE.ron` in a folder `materials`, or from those built in, such as `rail_steel_r260`.
     #[must_use]
     pub fn material(mut self, name: impl Into<String>, file: impl Into<String>) -> Self {
         self.case.materials.insert(name.into(), file.into());
