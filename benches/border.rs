@@ -116,7 +116,7 @@ fn share(call: f64) {
         env!("CARGO_MANIFEST_DIR")
     );
     let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
-    let mut s: Simulation<fretwork::geometry::space::Plane> = loaded
+    let mut s: Simulation<fretwork::geometry::space::Dim2> = loaded
         .build_in(&SearchPath::new(&[]))
         .unwrap_or_else(|e| panic!("{e}"))
         .simulation;

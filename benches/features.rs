@@ -10,9 +10,9 @@ mod features;
 use features::{FEATURES, Feature};
 use fretwork::contact::Bond;
 use fretwork::geometry::convex::polyhedron::Polyhedron;
-use fretwork::geometry::convex::{Core, Gauge};
+use fretwork::geometry::convex::{ContactTolerances, Core};
 use fretwork::geometry::periodic::Periodic;
-use fretwork::geometry::space::{Plane, Solid, Space};
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
@@ -54,10 +54,10 @@ fn main() {
     println!("|---|---|---|---|---|---|---|---|---|");
     let wants = |name: &str| wanted.as_ref().is_none_or(|w| name.contains(w.as_str()));
     if wants("disks") {
-        run::<Plane>("disks", "disks_box_5000");
+        run::<Dim2>("disks", "disks_box_5000");
     }
     if wants("spheres") {
-        run::<Solid>("spheres", "spheres_box_5000");
+        run::<Dim3>("spheres", "spheres_box_5000");
     }
 }
 
@@ -182,7 +182,7 @@ fn pieces() {
             apart,
         ),
     ] {
-        let gauge = Gauge {
+        let gauge = ContactTolerances {
             reach: REACH,
             slack: 0.01 * REACH,
             held: false,

@@ -58,8 +58,8 @@ fn main() {
             .build(&SearchPath::new(&[]))
             .unwrap_or_else(|e| panic!("{e}"));
         match scene {
-            Scene::Plane(b) => bench(name, b.simulation, steps, peer_ms, peer_ns),
-            Scene::Solid(b) => bench(name, b.simulation, steps, peer_ms, peer_ns),
+            Scene::Dim2(b) => bench(name, b.simulation, steps, peer_ms, peer_ns),
+            Scene::Dim3(b) => bench(name, b.simulation, steps, peer_ms, peer_ns),
         }
     }
 }

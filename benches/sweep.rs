@@ -7,7 +7,7 @@
 //! threads must give the bits of the sweep on one. Best of many runs: what else the machine does counts as
 //! little as it can. A word of the command line chooses the problems whose name holds it.
 
-use fretwork::geometry::space::{MatrixLike, Plane, Solid, Space, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::nlgs::{prepare, sweeps};
 use fretwork::solve::{ContactForm, Problem};
 use rand::{RngExt, SeedableRng};
@@ -320,7 +320,7 @@ struct Lattice<const D: usize> {
     share: f64,
 }
 
-fn disks(contacts: usize) -> impl Fn() -> Problem<Plane> {
+fn disks(contacts: usize) -> impl Fn() -> Problem<Dim2> {
     move || {
         let side = (contacts as f64 / 2.0).sqrt().round() as usize;
         let mut centres: Vec<[f64; 2]> = Vec::new();
@@ -337,7 +337,7 @@ fn disks(contacts: usize) -> impl Fn() -> Problem<Plane> {
     }
 }
 
-fn spheres(contacts: usize) -> impl Fn() -> Problem<Solid> {
+fn spheres(contacts: usize) -> impl Fn() -> Problem<Dim3> {
     move || {
         let side = (contacts as f64 / 3.0 / 4.0).cbrt();
         let (n, m) = (side.floor() as usize, side.ceil() as usize);
@@ -386,19 +386,19 @@ fn problem<S: Space, const D: usize>(lattice: Lattice<D>) -> Problem<S> {
     let mut p = Problem::default();
     for _ in &centres {
         let mass = random(0.8, 1.25);
-        let mut m = S::Vector::null();
-        let mut v = S::Vector::null();
+        let mut m = S::Vector::zero();
+        let mut v = S::Vector::zero();
         for k in 0..D {
             m[k] = 1.0 / mass;
             v[k] = random(-0.01, 0.01);
         }
         v[D - 1] -= 1.0;
         let inverse = S::Tensor::uniform(1.0 / (S::BALL_INERTIA * mass));
-        p.push_body(v, S::Spin::null(), m, inverse, 1.0);
+        p.push_body(v, S::Spin::zero(), m, inverse, 1.0);
     }
     let floor = centres.len() as u32;
-    let null = S::Vector::null();
-    p.push_body(null, S::Spin::null(), null, S::Tensor::uniform(0.0), 1.0);
+    let null = S::Vector::zero();
+    p.push_body(null, S::Spin::zero(), null, S::Tensor::uniform(0.0), 1.0);
     // Neighbours by cells one reach wide.
     let reach = 2.15;
     let mut cells = std::collections::HashMap::<[i64; D], Vec<u32>>::new();
@@ -432,7 +432,7 @@ fn problem<S: Space, const D: usize>(lattice: Lattice<D>) -> Problem<S> {
             }
         }
         if at[D - 1] < lowest + 0.2 {
-            let mut up = S::Vector::null();
+            let mut up = S::Vector::zero();
             up[D - 1] = 1.0;
             p.push(&contact(a as u32, floor, up, 1.0));
         }
@@ -447,7 +447,7 @@ fn contact<S: Space>(a: u32, b: u32, normal: S::Vector, push: f64) -> ContactFor
         arms: [-normal, normal],
         central: true,
         shift_n: 0.0,
-        shift_t: S::Tangent::null(),
+        shift_t: S::Tangent::zero(),
         friction: 0.3,
         tension: 0.0,
         cohesion: 0.0,

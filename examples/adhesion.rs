@@ -4,7 +4,7 @@
 //! third body and with five samples of it, prints the tables of `docs/rolling.md` and draws `docs/figures/adhesion.png` beside
 //! the closed form of the bare contact. Creepages (in per cent) may be given: `-- 0 1 2`; then nothing is drawn.
 
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::report::{Axis, Chart, Series, Style, draw_panels};
 use fretwork::scene::load;
@@ -188,7 +188,7 @@ fn roll(bare: bool, creepage: f64, seed: u64) -> Result<Rolling, Failure> {
         sets.push("grains.1.count=1".to_owned());
     }
     let loaded = load(&case, &sets)?;
-    let mut s = loaded.build_in::<Plane>(&SearchPath::new(&[]))?.simulation;
+    let mut s = loaded.build_in::<Dim2>(&SearchPath::new(&[]))?.simulation;
     let place = s.bodies.driven.iter().position(|d| d.name == "wheel");
     let place = place.ok_or("the case has no wheel")?;
     let wheel = s.bodies.driven[place].body as usize;

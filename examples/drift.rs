@@ -6,7 +6,7 @@
 //! contacts, the steps that projected and their sweeps, the energy that was given by taking penetrations out as a share
 //! of the work from outside, the residual of the ledger, and the time of a step with its projections.
 
-use fretwork::geometry::space::Solid;
+use fretwork::geometry::space::Dim3;
 use fretwork::laws::SearchPath;
 use fretwork::scene::load;
 use fretwork::step::Simulation;
@@ -36,7 +36,7 @@ fn main() -> Result<(), Failure> {
 }
 
 /// Penetrations in radii of the smaller grain: the deepest, and the mean over closed contacts.
-fn penetrations(s: &Simulation<Solid>) -> (f64, f64) {
+fn penetrations(s: &Simulation<Dim3>) -> (f64, f64) {
     let (mut deepest, mut sum, mut closed) = (0.0f64, 0.0, 0u32);
     for contact in s.network.contacts.iter().filter(|c| c.gap < 0.0) {
         let radius = |ball: u32| s.shapes.balls[ball as usize].radius;
@@ -60,7 +60,7 @@ fn run(setting: &str, steps: u64) -> Result<(), Failure> {
         sets.push(format!("solver.{setting}"));
     }
     let loaded = load(&case, &sets)?;
-    let mut s = loaded.build_in::<Solid>(&SearchPath::new(&[]))?.simulation;
+    let mut s = loaded.build_in::<Dim3>(&SearchPath::new(&[]))?.simulation;
     let part = steps.div_ceil(10);
     let (mut deepest, mut mean) = (0.0f64, 0.0f64);
     let (mut projected, mut sweeps) = (0u64, 0u64);

@@ -15,7 +15,7 @@ use features::{BASE, BONDS, FEATURES, Feature};
 use fretwork::bodies::Bodies;
 use fretwork::contact::Bond;
 use fretwork::geometry::shape::Ball;
-use fretwork::geometry::space::{Plane, Solid, Space};
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
@@ -62,10 +62,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     println!("|---|---|---|---|---|---|---|---|---|");
     let all = [&FEATURES[..], &MORE].concat();
-    scene::<Plane>("disks", Grains::Balls, &all)?;
-    scene::<Solid>("spheres", Grains::Balls, &all)?;
-    scene::<Plane>("bricks in the plane", Grains::Bricks, &[BASE, BONDS])?;
-    scene::<Solid>("bricks in space", Grains::Bricks, &[BASE, BONDS])?;
+    scene::<Dim2>("disks", Grains::Balls, &all)?;
+    scene::<Dim3>("spheres", Grains::Balls, &all)?;
+    scene::<Dim2>("bricks in the plane", Grains::Bricks, &[BASE, BONDS])?;
+    scene::<Dim3>("bricks in space", Grains::Bricks, &[BASE, BONDS])?;
     Ok(())
 }
 

@@ -4,7 +4,7 @@
 //! seeds, two at a time, prints means over the seeds with their intervals of 95 % as the table of `docs/circuit.md` and draws `docs/figures/regime_map.png`: friction and mean cluster against
 //! strength over pressure. What walls and bonds do depends on that ratio; pressure alone changes the inertial number.
 
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::record::run::{RunOptions, run};
 use fretwork::report::{Axis, Chart, Series, Style, draw_panels, quantity};
@@ -133,7 +133,7 @@ fn one(pressure: f64, ratio: f64, seed: u64) -> Result<Outcome, Failure> {
         "output=(frames: 0, views: 0, every: 5, figures: false)".to_owned(),
     ];
     let loaded = load(&case, &sets)?;
-    let built = loaded.build_in::<Plane>(&SearchPath::new(&[]))?;
+    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]))?;
     let folder = format!(
         "fretwork-regime-{}-{pressure}-{ratio}-{seed}",
         std::process::id()

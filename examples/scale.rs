@@ -1,12 +1,12 @@
 //! Cost of a step and memory against the number of grains.
 //!
-//! `cargo run --release --example scale [-- MOST]` settles layers of disks (20 deep) and spheres (10 deep), as wide
+//! `cargo run --release --example scale [-- MAX]` settles layers of disks (20 deep) and spheres (10 deep), as wide
 //! as their number asks, from 1,000 to MOST grains (1,000,000), each in a process of its own; prints the table of
 //! `docs/dev/performance.md` and draws `docs/figures/scale.png`. The depth stays the same, and with it the number of
 //! sweeps that a load needs to cross the layer.
 
 use fretwork::geometry::grid;
-use fretwork::geometry::space::{Plane, Solid, Space};
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::SearchPath;
 use fretwork::report::{Axis, Chart, Series, draw_panels};
 use fretwork::scene::build::Dimensional;
@@ -82,9 +82,9 @@ fn main() -> Result<(), Failure> {
         [one, dimension, count] if one == "one" => {
             let count = count.parse()?;
             let row = if dimension == "2" {
-                measure::<Plane>(count)?
+                measure::<Dim2>(count)?
             } else {
-                measure::<Solid>(count)?
+                measure::<Dim3>(count)?
             };
             let numbers = row.numbers().map(|x| format!("{x:e}"));
             println!("{}", numbers.join(" "));

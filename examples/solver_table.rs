@@ -184,7 +184,7 @@ fn go<S: Dimensional>(
 /// A row: seconds, steps, steps in all, iterations a step, not converged, largest error, friction by cycle.
 fn fretting(tolerance: &str, method: Method, seed: u64, budget: f64) -> Result<String, Any> {
     let loaded = load(Path::new(FRETTING), &sets(format!("seed={seed}")))?;
-    let Scene::Plane(built) = loaded.build(&SearchPath::new(&[]))? else {
+    let Scene::Dim2(built) = loaded.build(&SearchPath::new(&[]))? else {
         return Err("the fretting case is plane".into());
     };
     // Refused by the laws?
@@ -263,11 +263,11 @@ fn shipped(case: &Path, method: Method, budget: f64) -> Result<String, Any> {
         .max(1.0) as u64;
     let tally = match loaded.build(&SearchPath::new(&[])) {
         Err(e) => return Ok(format!("refused\t{e}")),
-        Ok(Scene::Plane(b)) => {
+        Ok(Scene::Dim2(b)) => {
             let mut b = b;
             go(&mut b.simulation, total, budget, |_, _| {})
         }
-        Ok(Scene::Solid(b)) => {
+        Ok(Scene::Dim3(b)) => {
             let mut b = b;
             go(&mut b.simulation, total, budget, |_, _| {})
         }

@@ -112,7 +112,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn single(mu: f64) -> Result<Single, Box<dyn Error>> {
     /// In the middle of the compression (s).
     const WHEN: f64 = 0.6;
-    const MOST: u32 = 10_000;
+    const MAX_SWEEPS: u32 = 10_000;
     let mut sets: Vec<String> = SMALLER.map(str::to_owned).to_vec();
     sets.push(format!("interfaces.grains.parameters.contact.mu={mu:?}"));
     let trace = process::run(Path::new(BIAXIAL), &sets, Some(WHEN))?;
@@ -139,7 +139,7 @@ fn single(mu: f64) -> Result<Single, Box<dyn Error>> {
     ];
     let fared: Vec<Fared> = methods
         .iter()
-        .map(|m| step::solve(&local.problem, *m, MOST))
+        .map(|m| step::solve(&local.problem, *m, MAX_SWEEPS))
         .collect();
     eprintln!("one step at mu = {mu}: {} contacts", local.problem.mu.len());
     Ok(Single {

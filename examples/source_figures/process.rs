@@ -1,6 +1,6 @@
 //! Runs of a case in the plane, step by step, with the counts and times that the figures show.
 
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::record::biaxial::{Biaxial, State};
 use fretwork::scene::{Scene, load};
@@ -42,10 +42,10 @@ pub struct Trace {
 /// Runs a case of two dimensions to a time, or to its end.
 pub fn run(case: &Path, sets: &[String], until: Option<f64>) -> Result<Trace, Box<dyn Error>> {
     let loaded = load(case, sets)?;
-    let Scene::Plane(built) = loaded.build(&SearchPath::new(&[]))? else {
+    let Scene::Dim2(built) = loaded.build(&SearchPath::new(&[]))? else {
         return Err(format!("{}: not a case of two dimensions", case.display()).into());
     };
-    let mut s: Simulation<Plane> = built.simulation;
+    let mut s: Simulation<Dim2> = built.simulation;
     let mut test = loaded
         .case
         .biaxial
@@ -86,7 +86,7 @@ pub fn run(case: &Path, sets: &[String], until: Option<f64>) -> Result<Trace, Bo
 }
 
 /// Kinetic energy of translation of a body (J/m).
-fn kinetic(s: &Simulation<Plane>, body: usize) -> f64 {
+fn kinetic(s: &Simulation<Dim2>, body: usize) -> f64 {
     0.5 * s.bodies.mass[body] * s.bodies.velocity[body].norm_squared()
 }
 

@@ -35,8 +35,8 @@ pub struct CheckArgs {
 pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     let loaded = load(&args.case.case, &args.case.sets)?;
     match loaded.build(&args.case.plugins.search()?)? {
-        Scene::Plane(built) => whole(&loaded, *built, args),
-        Scene::Solid(built) => whole(&loaded, *built, args),
+        Scene::Dim2(built) => whole(&loaded, *built, args),
+        Scene::Dim3(built) => whole(&loaded, *built, args),
     }
 }
 

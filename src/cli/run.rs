@@ -63,8 +63,8 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     }
     interrupt::watch();
     let done = pool.install(|| match scene {
-        Scene::Plane(built) => go(&loaded, *built, &options, args),
-        Scene::Solid(built) => go(&loaded, *built, &options, args),
+        Scene::Dim2(built) => go(&loaded, *built, &options, args),
+        Scene::Dim3(built) => go(&loaded, *built, &options, args),
     })?;
     let Some(summary) = done else {
         return Ok(());
@@ -145,7 +145,7 @@ fn go<S: Dimensional>(
     let mut display = Display::new(args.json);
     let mut step = |p: &record::Progress| display.step(p);
     let summary = match stop {
-        Some(stop) => record::go_on(loaded, built, options, stop, &mut step),
+        Some(stop) => record::resume(loaded, built, options, stop, &mut step),
         None => record::run(loaded, built, options, &mut step),
     };
     display.finish();

@@ -11,7 +11,7 @@ use crate::scene::methods::{Demands, Service};
 use crate::scene::source::clean;
 use crate::scene::{Loaded, Scene, load};
 use crate::solve::local::solver::Method;
-use crate::trade::chaos::Nudge;
+use crate::trade::chaos::Perturbation;
 use crate::trade::child::{Launcher, Limits, Status};
 use crate::trade::knobs::{knobs, openings};
 use crate::trade::offer::Offer;
@@ -158,7 +158,7 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     {
         refuse::budget(args, &loaded, scene)?;
     }
-    launcher.nudge = (!random).then_some(Nudge {
+    launcher.nudge = (!random).then_some(Perturbation {
         first: loaded.case.seed,
         step: loaded.case.time.step,
     });
@@ -351,8 +351,8 @@ struct Facts {
 impl Facts {
     fn of(loaded: &Loaded, scene: &Scene) -> Self {
         match scene {
-            Scene::Plane(built) => Self::from(loaded, built),
-            Scene::Solid(built) => Self::from(loaded, built),
+            Scene::Dim2(built) => Self::from(loaded, built),
+            Scene::Dim3(built) => Self::from(loaded, built),
         }
     }
 

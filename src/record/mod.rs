@@ -9,6 +9,6 @@ pub use fretwork_observe::{
 pub use fretwork_plot::{figures, picture};
 pub use fretwork_store::{checkpoint, fclib, results, series, shapes, summary, views, warnings};
 
-pub use run::{Progress, RunError, RunOptions, go_on, run, statistics_columns, stopped};
+pub use run::{Progress, RunError, RunOptions, resume, run, statistics_columns, stopped};
 pub use summary::Summary;
 pub use warnings::Missed;

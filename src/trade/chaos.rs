@@ -23,14 +23,14 @@ const SHARE: f64 = 0.2;
 
 /// How runs of a case that draws nothing are told apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nudge {
+pub struct Perturbation {
     /// The seed of the run that is not nudged.
     pub first: u64,
     /// The case's own step (s).
     pub step: f64,
 }
 
-impl Nudge {
+impl Perturbation {
     /// The step of a run with these `--set` (s); none where it is the setting's own, or stands in a whole `time`.
     pub fn step(&self, sets: &[&str], seed: u64) -> Option<f64> {
         let times = seed.wrapping_sub(self.first);
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn a_nudged_step_is_that_of_the_setting() {
-        let nudge = Nudge {
+        let nudge = Perturbation {
             first: 7,
             step: 1e-3,
         };

@@ -1,7 +1,7 @@
 //! Runs of a case in processes of their own, and what they leave: kept by a key, so that none is done twice.
 
 use super::TradeError;
-use super::chaos::Nudge;
+use super::chaos::Perturbation;
 use super::knobs::openings;
 use super::output::column;
 use crate::scene::Loaded;
@@ -107,7 +107,7 @@ pub struct Launcher {
     /// When they are not to be trusted.
     pub limits: Limits,
     /// How runs are told apart where the seed draws nothing.
-    pub nudge: Option<Nudge>,
+    pub nudge: Option<Perturbation>,
     fingerprint: String,
 }
 

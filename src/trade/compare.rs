@@ -3,7 +3,7 @@
 use super::child::{Finished, Launcher, Status, summary};
 use super::frontier::frontier;
 use super::interval::Mean;
-use super::knobs::{Knob, Sense};
+use super::knobs::{Sense, StudyParameter};
 use super::output::{Output, Wanted};
 use super::setting::Setting;
 use super::study::Ledger;
@@ -71,7 +71,7 @@ pub struct Comparison {
 /// What is compared.
 pub struct Compared<'a> {
     /// Varied.
-    pub knobs: &'a [Knob],
+    pub knobs: &'a [StudyParameter],
     /// Read.
     pub outputs: &'a [Output],
     /// Whether the seed changes the scene.
@@ -314,7 +314,7 @@ impl Compared<'_> {
 const NEAREST: f64 = 1.5;
 
 /// The level next to the reference's, of a knob that has an order: the first coarse enough to judge from, else the next.
-pub fn neighbour(knob: &Knob) -> Option<usize> {
+pub fn neighbour(knob: &StudyParameter) -> Option<usize> {
     let ordered = matches!(knob.sense, Sense::Step | Sense::Tolerance);
     let mut coarser = knob.reference + 1..knob.levels.len();
     let next = coarser.clone().next().filter(|_| ordered)?;
@@ -324,7 +324,7 @@ pub fn neighbour(knob: &Knob) -> Option<usize> {
 }
 
 /// How many times as coarse as the reference's a level is.
-fn ratio(knob: &Knob, level: usize) -> Option<f64> {
+fn ratio(knob: &StudyParameter, level: usize) -> Option<f64> {
     Some(knob.levels.get(level)?.number? / knob.levels.get(knob.reference)?.number?)
 }
 
@@ -395,7 +395,7 @@ mod tests {
             sets: Vec::new(),
             number: Some(x),
         };
-        let mut knob = Knob {
+        let mut knob = StudyParameter {
             name: "step".into(),
             sense: Sense::Step,
             levels: [1.0, 1.1, 2.0].map(level).into(),

@@ -1,7 +1,7 @@
 //! The figure: error against cost, one panel an output.
 
 use super::compare::{Comparison, OutputError, Row};
-use super::knobs::{Knob, Level, Sense};
+use super::knobs::{Level, Sense, StudyParameter};
 use super::output::{Output, Wanted};
 use super::setting::Setting;
 use super::study::Study;
@@ -163,7 +163,7 @@ fn subtitle(study: &Study, output: &Output, found: &Comparison, o: usize) -> Str
 }
 
 /// A setting by the values of all knobs that vary: what stands in the case may change, a figure says what was run.
-fn named(knobs: &[Knob], setting: &Setting) -> String {
+fn named(knobs: &[StudyParameter], setting: &Setting) -> String {
     let varied = knobs
         .iter()
         .zip(&setting.0)
@@ -181,7 +181,7 @@ fn named(knobs: &[Knob], setting: &Setting) -> String {
     parts.join(", ")
 }
 
-fn value(knob: &Knob, level: &Level) -> String {
+fn value(knob: &StudyParameter, level: &Level) -> String {
     match (knob.sense, level.number) {
         (Sense::Step, Some(x)) => quantity(x, "s", 2),
         (Sense::Tolerance, Some(x)) => quantity(x, "", 1),
@@ -209,7 +209,7 @@ mod tests {
             sets: Vec::new(),
             number: Some(x),
         };
-        let knob = |name: &str, sense, own| Knob {
+        let knob = |name: &str, sense, own| StudyParameter {
             name: name.to_owned(),
             sense,
             levels: vec![level(5e-5), level(1e-4)],

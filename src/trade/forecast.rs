@@ -1,7 +1,7 @@
 //! What a setting will cost, before it runs: from short probes, corrected by the runs that end.
 
 use super::child::{Ended, Finished, Launcher, Status};
-use super::knobs::{Knob, Sense};
+use super::knobs::{Sense, StudyParameter};
 use super::output::column;
 use super::setting::Setting;
 use super::{TradeError, study::Ledger};
@@ -28,7 +28,7 @@ impl Forecast {
     /// A run cannot be started.
     pub fn probe(
         launcher: &Launcher,
-        knobs: &[Knob],
+        knobs: &[StudyParameter],
         steps: f64,
         seed: u64,
         each: Duration,
@@ -84,7 +84,7 @@ impl Forecast {
     }
 
     /// Seconds of a run: as its other seeds took, or by the law above, times how far that law was off so far.
-    pub fn seconds(&self, setting: &Setting, knobs: &[Knob], done: &Ledger) -> f64 {
+    pub fn seconds(&self, setting: &Setting, knobs: &[StudyParameter], done: &Ledger) -> f64 {
         let ended = |r: &&Finished| r.status == Status::Done;
         let same: Vec<f64> = done
             .iter()
@@ -110,7 +110,7 @@ impl Forecast {
     }
 
     /// Seconds by the probes alone.
-    pub fn law(&self, setting: &Setting, knobs: &[Knob]) -> f64 {
+    pub fn law(&self, setting: &Setting, knobs: &[StudyParameter]) -> f64 {
         let step = shrink(setting, knobs, Sense::Step);
         let tolerance = shrink(setting, knobs, Sense::Tolerance);
         self.own.max(1e-3) / step * tolerance.powf(-self.power)
@@ -118,8 +118,8 @@ impl Forecast {
 }
 
 /// How much smaller than the case's own a step or tolerance is: the ratio, 1 where it is not varied.
-fn shrink(setting: &Setting, knobs: &[Knob], sense: Sense) -> f64 {
-    let of = |(k, level): (&Knob, &usize)| {
+fn shrink(setting: &Setting, knobs: &[StudyParameter], sense: Sense) -> f64 {
+    let of = |(k, level): (&StudyParameter, &usize)| {
         let number = |l: usize| k.levels.get(l).and_then(|l| l.number);
         Some(number(*level)? / number(k.own)?)
     };

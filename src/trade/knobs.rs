@@ -37,7 +37,7 @@ pub enum Sense {
 
 /// Something that is varied. Levels of a step or tolerance stand from the finest to the coarsest.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Knob {
+pub struct StudyParameter {
     /// Its name.
     pub name: String,
     /// How it acts.
@@ -75,7 +75,7 @@ pub fn knobs(
     methods: &[Method],
     names: &[String],
     vary: &[String],
-) -> Result<Vec<Knob>, TradeError> {
+) -> Result<Vec<StudyParameter>, TradeError> {
     let mut knobs = Vec::new();
     for name in names {
         if name == "precision" {
@@ -137,10 +137,10 @@ fn number(key: &str, x: f64) -> Level {
 }
 
 /// The levels of a preset, or why the case has none.
-fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<Knob, String> {
+fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<StudyParameter, String> {
     let case = &loaded.case;
     let knob = |sense, levels: Vec<Level>, own: usize, reference: usize| {
-        Ok(Knob {
+        Ok(StudyParameter {
             name: name.to_owned(),
             sense,
             levels,
@@ -241,13 +241,13 @@ fn ordered(
     own: f64,
     mut values: Vec<f64>,
     level: impl Fn(f64) -> Level,
-) -> Knob {
+) -> StudyParameter {
     let same = |a: f64, b: f64| (a - b).abs() <= 1e-11 * b.abs();
     values.retain(|v| !same(*v, own));
     values.push(own);
     values.sort_by(f64::total_cmp);
     values.dedup_by(|a, b| same(*a, *b));
-    Knob {
+    StudyParameter {
         name: name.to_owned(),
         sense,
         own: values.iter().position(|v| *v == own).unwrap_or(0),
@@ -256,7 +256,7 @@ fn ordered(
     }
 }
 
-fn steps(case: &Case, values: Vec<f64>) -> Knob {
+fn steps(case: &Case, values: Vec<f64>) -> StudyParameter {
     let every = case.output.every as f64 * case.time.step;
     ordered("step", Sense::Step, case.time.step, values, |h| {
         let mut level = number("time.step", h);
@@ -269,7 +269,7 @@ fn steps(case: &Case, values: Vec<f64>) -> Knob {
     })
 }
 
-fn tolerances(case: &Case, values: Vec<f64>) -> Knob {
+fn tolerances(case: &Case, values: Vec<f64>) -> StudyParameter {
     let own = case.solver.tolerance;
     ordered("tolerance", Sense::Tolerance, own, values, |t| {
         let mut level = number("solver.tolerance", t);
@@ -302,7 +302,7 @@ pub fn openings(loaded: &Loaded) -> Vec<String> {
 }
 
 /// `key.path=a,b,c`: commas within brackets or quotes belong to a value.
-fn listed(loaded: &Loaded, argument: &str) -> Result<Knob, TradeError> {
+fn listed(loaded: &Loaded, argument: &str) -> Result<StudyParameter, TradeError> {
     let form = || {
         TradeError::Usage(format!(
             "--vary {argument}: expected key.path=a,b,c with two values or more, the finest first"
@@ -363,7 +363,7 @@ fn listed(loaded: &Loaded, argument: &str) -> Result<Knob, TradeError> {
         });
         levels.len() - 1
     });
-    Ok(Knob {
+    Ok(StudyParameter {
         name: key.trim().to_owned(),
         sense: Sense::Listed,
         levels,

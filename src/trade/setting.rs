@@ -1,6 +1,6 @@
 //! A setting: a value for every knob.
 
-use super::knobs::Knob;
+use super::knobs::StudyParameter;
 
 /// The level of every knob, as an index into its levels, in the order of the knobs.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -8,12 +8,12 @@ pub struct Setting(pub Vec<usize>);
 
 impl Setting {
     /// The case as it is.
-    pub fn own(knobs: &[Knob]) -> Self {
+    pub fn own(knobs: &[StudyParameter]) -> Self {
         Self(knobs.iter().map(|k| k.own).collect())
     }
 
     /// The finest.
-    pub fn reference(knobs: &[Knob]) -> Self {
+    pub fn reference(knobs: &[StudyParameter]) -> Self {
         Self(knobs.iter().map(|k| k.reference).collect())
     }
 
@@ -25,14 +25,14 @@ impl Setting {
     }
 
     /// The knobs whose level is not the case's own.
-    pub fn changed(&self, knobs: &[Knob]) -> Vec<usize> {
+    pub fn changed(&self, knobs: &[StudyParameter]) -> Vec<usize> {
         (0..knobs.len())
             .filter(|&k| self.0[k] != knobs[k].own)
             .collect()
     }
 
     /// `step 5e-5, tolerance 1e-3`: what differs from the case.
-    pub fn name(&self, knobs: &[Knob]) -> String {
+    pub fn name(&self, knobs: &[StudyParameter]) -> String {
         let parts: Vec<String> = self
             .changed(knobs)
             .into_iter()
@@ -46,7 +46,7 @@ impl Setting {
     }
 
     /// The `--set` arguments that make it from the case.
-    pub fn sets(&self, knobs: &[Knob]) -> Vec<String> {
+    pub fn sets(&self, knobs: &[StudyParameter]) -> Vec<String> {
         let changed = self.changed(knobs);
         changed
             .iter()

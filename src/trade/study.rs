@@ -9,7 +9,7 @@ use super::TradeError;
 use super::child::{Ended, Finished, Launcher, Status};
 use super::compare::{Compared, Comparison, neighbour};
 use super::forecast::Forecast;
-use super::knobs::{Knob, Sense};
+use super::knobs::{Sense, StudyParameter};
 use super::output::Output;
 use super::setting::Setting;
 use serde::{Deserialize, Serialize};
@@ -31,7 +31,7 @@ pub struct Study {
     /// Starts runs.
     pub launcher: Arc<Launcher>,
     /// Varied.
-    pub knobs: Vec<Knob>,
+    pub knobs: Vec<StudyParameter>,
     /// Compared.
     pub outputs: Vec<Output>,
     /// Seeds, at least one.
@@ -85,10 +85,10 @@ impl Study {
     }
 
     fn plan(&self) -> Plan {
-        let levels: Vec<Knob> = self
+        let levels: Vec<StudyParameter> = self
             .knobs
             .iter()
-            .map(|k| Knob {
+            .map(|k| StudyParameter {
                 reference: 0,
                 ..k.clone()
             })
@@ -145,7 +145,7 @@ impl Study {
         self.fresh = self.done.len();
         // Coarser by turns, tolerance before step.
         while self.reference_work() > 0.6 * self.budget.as_secs_f64() {
-            let coarser = |k: &Knob| k.reference < k.own;
+            let coarser = |k: &StudyParameter| k.reference < k.own;
             let mut finest: Vec<usize> = (0..self.knobs.len())
                 .filter(|&k| self.ordered(k) && coarser(&self.knobs[k]))
                 .collect();

@@ -3,12 +3,12 @@
 use crate::campaign::Campaign;
 use crate::cases::files;
 use crate::mutate;
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::record::checkpoint::Frame;
 use fretwork::record::code::{decode, encode};
 use fretwork::record::fclib;
-use fretwork::record::results::{Kept, state};
+use fretwork::record::results::{PreviousResults, state};
 use fretwork::scene::{Loaded, load};
 use fretwork::step::Saved;
 use rand::RngExt;
@@ -101,7 +101,7 @@ fn damaged_results() {
         let first = state::read(path, Some(0), 2);
         let other = state::read(path, Some(usize::MAX), 3);
         assert!(other.is_err());
-        let Ok(kept) = Kept::open(path) else {
+        let Ok(kept) = PreviousResults::open(path) else {
             return last.is_ok() && first.is_ok();
         };
         for slot in kept.checkpoints().unwrap_or_default() {
@@ -178,15 +178,15 @@ fn damaged_states() {
     let folder = campaign.folder();
     let case = small(&folder);
     let laws = SearchPath::new(&[]);
-    let mut built = loaded(&case).build_in::<Plane>(&laws).unwrap();
+    let mut built = loaded(&case).build_in::<Dim2>(&laws).unwrap();
     (0..5).for_each(|_| built.simulation.step().map(drop).unwrap());
     let whole = encode(&built.simulation.save()).unwrap();
     campaign.run(&folder, damaged("state", vec![whole]), move |path| {
         let bytes = std::fs::read(path).unwrap();
-        let Ok(saved) = decode::<Saved<'_, Plane>>(&bytes) else {
+        let Ok(saved) = decode::<Saved<'_, Dim2>>(&bytes) else {
             return false;
         };
-        let mut again = loaded(&case).build_in::<Plane>(&laws).unwrap();
+        let mut again = loaded(&case).build_in::<Dim2>(&laws).unwrap();
         again.simulation.restore(saved)
     });
 }

@@ -77,8 +77,8 @@ fn steps<S: Space>(mut built: Built<S>) {
 /// Whether a case is one.
 pub fn tried(case: &Path, laws: &SearchPath) -> bool {
     match load(case, &[]).and_then(|loaded| loaded.build(laws)) {
-        Ok(Scene::Plane(built)) => steps(*built),
-        Ok(Scene::Solid(built)) => steps(*built),
+        Ok(Scene::Dim2(built)) => steps(*built),
+        Ok(Scene::Dim3(built)) => steps(*built),
         Err(error) => {
             assert!(!error.message.is_empty() && !error.to_string().is_empty());
             // What a user sees, with the line marked.

@@ -12,11 +12,11 @@
 mod counting;
 
 use counting::held;
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::record::checkpoint::Frame;
 use fretwork::record::friction::Cycle;
-use fretwork::record::results::Kept;
+use fretwork::record::results::PreviousResults;
 use fretwork::record::{RunOptions, run};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
@@ -77,7 +77,7 @@ fn followed<S: Dimensional>(name: &str, text: &str, steps: u64) -> (Vec<usize>, 
     let mut seen = Vec::with_capacity(steps as usize);
     let mut progress = |_: &fretwork::record::Progress| seen.push(held());
     run(&loaded, built, &options, &mut progress).unwrap_or_else(|e| panic!("{e}"));
-    let kept = Kept::open(&out.join("results.h5")).unwrap();
+    let kept = PreviousResults::open(&out.join("results.h5")).unwrap();
     let slots = kept.checkpoints().unwrap();
     let states = slots
         .iter()
@@ -104,8 +104,8 @@ fn of_cycles(steps: usize) -> usize {
 fn a_rubbed_layer_holds_no_more_but_its_cycles() {
     const SHORT: usize = 4_000;
     let long = std::env::var("FRETWORK_LONG").map_or(20_000, |n| n.parse().unwrap());
-    let (_, small) = followed::<Plane>("short", RUBBED, SHORT as u64);
-    let (seen, large) = followed::<Plane>("long", RUBBED, long as u64);
+    let (_, small) = followed::<Dim2>("short", RUBBED, SHORT as u64);
+    let (seen, large) = followed::<Dim2>("long", RUBBED, long as u64);
     let (early, late) = (most(&seen, SHORT), most(&seen, long));
     println!("held {early} and {late} bytes, states {small} and {large}");
     for k in (1000..=long).step_by(1000) {

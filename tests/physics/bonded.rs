@@ -1,10 +1,10 @@
 //! Bonds in a run: every method gives the motion that the sweeps over bodies give, which solve a contact and its
 //! bond at once.
 
-use fretwork::geometry::space::{MatrixLike, Plane, Solid, Space, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::form::{ContactForm, Elastic, Problem};
 use fretwork::solve::local::solver::Method;
-use fretwork::solve::{Habit, Options, solve};
+use fretwork::solve::{AutoState, Options, solve};
 
 const RADIUS: f64 = 0.1;
 
@@ -14,7 +14,7 @@ const RADIUS: f64 = 0.1;
 fn pile<S: Space>(stiff: f64, blocks: bool) -> (Problem<S>, Vec<ContactForm<S>>) {
     let mut problem = Problem::<S>::default();
     let along = |x: f64, y: f64| {
-        let mut v = S::Vector::null();
+        let mut v = S::Vector::zero();
         (v[0], v[1]) = (x, y);
         v
     };
@@ -24,7 +24,7 @@ fn pile<S: Space>(stiff: f64, blocks: bool) -> (Problem<S>, Vec<ContactForm<S>>)
             let x = RADIUS * (2.0 * k as f64 + row as f64);
             places.push(along(x, RADIUS * (1.0 + 3f64.sqrt() * row as f64)));
             let push = 0.05 * ((3 * row + k) as f64).sin();
-            let mut mass = S::Vector::null();
+            let mut mass = S::Vector::zero();
             for d in 0..S::D {
                 mass[d] = 1.0;
             }
@@ -34,14 +34,14 @@ fn pile<S: Space>(stiff: f64, blocks: bool) -> (Problem<S>, Vec<ContactForm<S>>)
                 let skew = S::Spin::from_slice(&[0.6 / RADIUS, 0.9 / RADIUS, -0.4 / RADIUS]);
                 inverse = inverse + S::Tensor::dyad(&skew, &skew);
             }
-            problem.push_body(v, S::Spin::null(), mass, inverse, RADIUS);
+            problem.push_body(v, S::Spin::zero(), mass, inverse, RADIUS);
         }
     }
     let floor = places.len() as u32;
     problem.push_body(
-        S::Vector::null(),
-        S::Spin::null(),
-        S::Vector::null(),
+        S::Vector::zero(),
+        S::Spin::zero(),
+        S::Vector::zero(),
         S::Tensor::uniform(0.0),
         1.0,
     );
@@ -50,11 +50,11 @@ fn pile<S: Space>(stiff: f64, blocks: bool) -> (Problem<S>, Vec<ContactForm<S>>)
         let k = forms.len() as f64;
         let moved = if bodies[1] == floor { 1.0 } else { 2.0 };
         let b = stiff / moved;
-        let mut pull = S::Vector::null();
+        let mut pull = S::Vector::zero();
         for d in 0..S::D {
             pull[d] = 0.02 * b * (1.7 * k + d as f64).cos();
         }
-        let mut lever = S::Vector::null();
+        let mut lever = S::Vector::zero();
         if blocks {
             let [t1, t2] = S::tangents(&normal);
             lever = t1 * (0.3 * RADIUS * k.cos()) + t2 * (0.2 * RADIUS * k.sin());
@@ -65,7 +65,7 @@ fn pile<S: Space>(stiff: f64, blocks: bool) -> (Problem<S>, Vec<ContactForm<S>>)
             arms: [normal * -RADIUS + lever, normal * RADIUS + lever],
             central: !blocks,
             shift_n: 0.0,
-            shift_t: S::Tangent::null(),
+            shift_t: S::Tangent::zero(),
             friction: 0.1,
             tension: if forms.len() % 4 == 1 { 0.05 } else { 0.0 },
             cohesion: 0.0,
@@ -77,7 +77,7 @@ fn pile<S: Space>(stiff: f64, blocks: bool) -> (Problem<S>, Vec<ContactForm<S>>)
                 tension_only: forms.len() % 3 != 0,
                 ..Elastic::none()
             }),
-            impulse: S::Vector::null(),
+            impulse: S::Vector::zero(),
         };
         problem.push(&form);
         forms.push(form);
@@ -105,7 +105,13 @@ fn by<S: Space>(stiff: f64, blocks: bool, method: Method, tolerance: f64) -> Vec
         method,
         ..Options::default()
     };
-    let report = solve(&mut problem, &forms, &[], &options, &mut Habit::default());
+    let report = solve(
+        &mut problem,
+        &forms,
+        &[],
+        &options,
+        &mut AutoState::default(),
+    );
     let name = method.name();
     assert!(report.converged, "{name} at {stiff}: {:e}", report.error);
     let mut out = Vec::new();
@@ -149,16 +155,16 @@ fn every_method<S: Space>(blocks: bool) {
 
 #[test]
 fn a_bonded_pile_in_the_plane() {
-    every_method::<Plane>(false);
+    every_method::<Dim2>(false);
 }
 
 #[test]
 fn a_bonded_pile_in_space() {
-    every_method::<Solid>(false);
+    every_method::<Dim3>(false);
 }
 
 #[test]
 fn a_bonded_pile_of_blocks() {
-    every_method::<Plane>(true);
-    every_method::<Solid>(true);
+    every_method::<Dim2>(true);
+    every_method::<Dim3>(true);
 }

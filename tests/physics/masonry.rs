@@ -1,7 +1,7 @@
 //! Blocks: convex polygons with several contact points a pair, and the closed forms of masonry.
 
 use fretwork::contact::Key;
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::scene::load;
 use fretwork::step::Simulation;
@@ -10,17 +10,17 @@ use std::path::Path;
 /// Acceleration of gravity (m/s^2).
 const G: f64 = 9.81;
 
-fn scene(case: &str, sets: &[String]) -> Simulation<Plane> {
+fn scene(case: &str, sets: &[String]) -> Simulation<Dim2> {
     let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let loaded = load(Path::new(&file), sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded
-        .build_in::<Plane>(&SearchPath::new(&[]))
+        .build_in::<Dim2>(&SearchPath::new(&[]))
         .unwrap_or_else(|e| panic!("{e}"));
     built.simulation
 }
 
 /// Steps until a time; every step must converge.
-fn until(s: &mut Simulation<Plane>, end: f64) {
+fn until(s: &mut Simulation<Dim2>, end: f64) {
     while s.time < end - 0.5 * s.scheme.h {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         let solver = &report.solver;
@@ -29,7 +29,7 @@ fn until(s: &mut Simulation<Plane>, end: f64) {
 }
 
 /// One step.
-fn one(s: &mut Simulation<Plane>) {
+fn one(s: &mut Simulation<Dim2>) {
     let end = s.time + s.scheme.h;
     until(s, end);
 }
@@ -40,13 +40,13 @@ fn tilted(degrees: f64) -> String {
 }
 
 /// The greatest speed of a grain (m/s).
-fn fastest(s: &Simulation<Plane>) -> f64 {
+fn fastest(s: &Simulation<Dim2>) -> f64 {
     let speeds = s.bodies.velocity.iter().map(|v| v.norm());
     speeds.fold(0.0, f64::max)
 }
 
 /// Names of all contacts.
-fn names(s: &Simulation<Plane>) -> Vec<Key> {
+fn names(s: &Simulation<Dim2>) -> Vec<Key> {
     s.network.contacts.iter().map(|c| c.key).collect()
 }
 
@@ -60,7 +60,7 @@ fn a_block_at_rest_keeps_its_two_points() {
         one(&mut s);
         assert_eq!(names(&s), first);
     }
-    assert!(s.network.contacts.iter().all(|c| c.born < 1e-3));
+    assert!(s.network.contacts.iter().all(|c| c.formed_at < 1e-3));
     assert!(fastest(&s) < 1e-9 && s.bodies.rotation[0].abs() < 1e-9);
 }
 
@@ -220,7 +220,7 @@ fn a_capsule_falls_and_lies() {
 #[test]
 fn painleves_rod_has_a_finite_impulse() {
     let mut s = scene("painleve_rod", &[]);
-    let energy = |s: &Simulation<Plane>| {
+    let energy = |s: &Simulation<Dim2>| {
         s.bodies.kinetic_energy() + s.bodies.mass[0] * G * s.bodies.position[0].y
     };
     let (start, mass) = (energy(&s), s.bodies.mass[0]);

@@ -22,7 +22,7 @@ fn steps(mu: &str) -> Vec<LocalProblem> {
     sets.push(format!("interfaces.grains.parameters.contact.mu={mu}"));
     let loaded = load(Path::new(&case), &sets).unwrap_or_else(|e| panic!("{e}"));
     let scene = loaded.build(&SearchPath::new(&[]));
-    let Scene::Plane(built) = scene.unwrap_or_else(|e| panic!("{e}")) else {
+    let Scene::Dim2(built) = scene.unwrap_or_else(|e| panic!("{e}")) else {
         panic!("the case is plane");
     };
     let mut s = built.simulation;

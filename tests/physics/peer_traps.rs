@@ -2,7 +2,7 @@
 //! absolute thresholds, a norm that calls a packing solved before the load has crossed it, and threads
 //! that change the results.
 
-use fretwork::geometry::space::{Plane, Solid};
+use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
@@ -21,7 +21,7 @@ fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
 
 /// Scales lengths by 2^-20 (grains of a few nanometres) and times by 2^-10, so that gravity is the same
 /// and every operation only changes exponents.
-fn shrink(s: &mut Simulation<Plane>) {
+fn shrink(s: &mut Simulation<Dim2>) {
     let (length, time) = (2f64.powi(-20), 2f64.powi(-10));
     let b = &mut s.bodies;
     for k in 0..b.len() {
@@ -48,8 +48,8 @@ fn shrink(s: &mut Simulation<Plane>) {
 #[test]
 fn a_scene_has_no_scale() {
     let sets = ["solver.tolerance=5e-2", "solver.max_iterations=3000"];
-    let mut large: Simulation<Plane> = scene("disks_box_5000", &sets);
-    let mut small: Simulation<Plane> = scene("disks_box_5000", &sets);
+    let mut large: Simulation<Dim2> = scene("disks_box_5000", &sets);
+    let mut small: Simulation<Dim2> = scene("disks_box_5000", &sets);
     shrink(&mut small);
     for _ in 0..2 {
         let (a, b) = (large.step().unwrap(), small.step().unwrap());
@@ -62,7 +62,7 @@ fn a_scene_has_no_scale() {
 }
 
 /// Share of the grains' weight that the walls carry.
-fn carried(s: &Simulation<Plane>) -> f64 {
+fn carried(s: &Simulation<Dim2>) -> f64 {
     let movable = (0..s.bodies.len()).filter(|b| !s.bodies.immovable(*b));
     let weight: f64 = movable.map(|b| s.bodies.mass[b] * 9.81).sum();
     let walls: f64 = s.received.iter().map(|r| -r.0.y / s.scheme.h).sum();
@@ -77,7 +77,7 @@ fn a_load_that_has_not_crossed_the_packing_is_no_solution() {
         "solver.max_iterations=6330",
         "solver.relaxation=1.0",
     ];
-    let mut s: Simulation<Plane> = scene("disks_box_5000", &early);
+    let mut s: Simulation<Dim2> = scene("disks_box_5000", &early);
     let early = s.step().unwrap();
     assert!(carried(&s) < 0.8, "the walls carry {}", carried(&s));
     assert!(
@@ -86,7 +86,7 @@ fn a_load_that_has_not_crossed_the_packing_is_no_solution() {
         early.solver
     );
 
-    let mut s: Simulation<Plane> = scene("disks_box_5000", &["solver.max_iterations=200000"]);
+    let mut s: Simulation<Dim2> = scene("disks_box_5000", &["solver.max_iterations=200000"]);
     let solved = s.step().unwrap();
     assert!(solved.solver.converged);
     // The second part of the error bounds what is missing by the root of the tolerance and some.
@@ -97,7 +97,7 @@ fn a_load_that_has_not_crossed_the_packing_is_no_solution() {
     );
 
     // A tighter solution is nearer; grains that rattle in their cages fall freely and weigh on nothing.
-    let mut s: Simulation<Plane> = scene(
+    let mut s: Simulation<Dim2> = scene(
         "disks_box_5000",
         &["solver.max_iterations=200000", "solver.tolerance=1e-6"],
     );
@@ -138,15 +138,15 @@ fn bits<S: Dimensional>(case: &str, threads: usize, steps: usize) -> Vec<u64> {
 #[test]
 fn threads_do_not_change_a_bit() {
     assert_eq!(
-        bits::<Plane>("disks_box_5000", 1, 3),
-        bits::<Plane>("disks_box_5000", 2, 3)
+        bits::<Dim2>("disks_box_5000", 1, 3),
+        bits::<Dim2>("disks_box_5000", 2, 3)
     );
     assert_eq!(
-        bits::<Solid>("spheres_box_5000", 1, 3),
-        bits::<Solid>("spheres_box_5000", 3, 3)
+        bits::<Dim3>("spheres_box_5000", 1, 3),
+        bits::<Dim3>("spheres_box_5000", 3, 3)
     );
     assert_eq!(
-        bits::<Plane>("cohesive_disks_3000", 1, 5),
-        bits::<Plane>("cohesive_disks_3000", 2, 5)
+        bits::<Dim2>("cohesive_disks_3000", 1, 5),
+        bits::<Dim2>("cohesive_disks_3000", 2, 5)
     );
 }

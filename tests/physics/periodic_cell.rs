@@ -1,6 +1,6 @@
 //! A shear cell of spheres that is periodic along x and y: what it keeps, and that an image is as good as a grain.
 
-use fretwork::geometry::space::Solid;
+use fretwork::geometry::space::Dim3;
 use fretwork::laws::SearchPath;
 use fretwork::scene::load;
 use fretwork::step::Simulation;
@@ -10,7 +10,7 @@ const CELL: [f64; 2] = [0.05, 0.042];
 const STEPS: usize = 500;
 
 /// 120 spheres thrown at random between two walls with friction; the upper one presses and moves obliquely.
-fn cell() -> Simulation<Solid> {
+fn cell() -> Simulation<Dim3> {
     let text = r#"(
     name: "cell",
     dimension: 3,
@@ -36,11 +36,11 @@ fn cell() -> Simulation<Solid> {
     std::fs::write(&path, text).unwrap_or_else(|e| panic!("{e}"));
     let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
     let _ = std::fs::remove_file(path);
-    let built = loaded.build_in::<Solid>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim3>(&SearchPath::new(&[]));
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 
-fn momentum(s: &Simulation<Solid>) -> Vector3<f64> {
+fn momentum(s: &Simulation<Dim3>) -> Vector3<f64> {
     s.bodies
         .grains()
         .map(|b| s.bodies.velocity[b] * s.bodies.mass[b])
@@ -48,9 +48,9 @@ fn momentum(s: &Simulation<Solid>) -> Vector3<f64> {
 }
 
 /// Contacts between grains that carry an impulse across the boundary of an axis.
-fn across(s: &Simulation<Solid>, axis: usize) -> usize {
+fn across(s: &Simulation<Dim3>, axis: usize) -> usize {
     let place = |b: u32| s.bodies.position[b as usize][axis].rem_euclid(CELL[axis]);
-    let far = |c: &&fretwork::contact::Contact<Solid>| {
+    let far = |c: &&fretwork::contact::Contact<Dim3>| {
         (place(c.bodies[0]) - place(c.bodies[1])).abs() > 0.5 * CELL[axis]
     };
     let grain = s.bodies.grain_flags();

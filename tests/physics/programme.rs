@@ -1,7 +1,7 @@
 //! What changes during a run: gravity, pressures, gates, phases; and drums. Against closed forms.
 
 use fretwork::bodies::Bodies;
-use fretwork::geometry::space::{Plane, Solid, Space};
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
@@ -78,7 +78,7 @@ fn close(obtained: f64, expected: f64, tolerance: f64) {
 /// holds the work.
 #[test]
 fn gravity_turns() {
-    let mut s = build::<Plane>(
+    let mut s = build::<Dim2>(
         "time: (step: 1e-3, end: 1.0), gravity: [0.0, -9.81],
         gravity_drive: Turned(angle: Ramp(from: 0.0, to: 1.5707963267948966, start: 0.0, end: 1.0)),
         grains: [List(material: \"glass\", grains: [(at: [0.0, 0.0], radius: 0.01)])]",
@@ -94,7 +94,7 @@ fn gravity_turns() {
 #[test]
 fn a_servo_follows_the_length() {
     let (p, l0, speed, m, t) = (-200.0, 0.5, 0.3, 4.0, 0.4);
-    let mut s = build::<Plane>(
+    let mut s = build::<Dim2>(
         "time: (step: 1e-4, end: 1.0),
         bodies: [
             (name: \"left\", material: \"glass\", shapes: [HalfSpace(normal: [1.0, 0.0])]),
@@ -119,7 +119,7 @@ fn a_servo_follows_the_length() {
 /// A grain rests on a gate, which vanishes at 0.1 s; then it falls freely.
 #[test]
 fn a_gate_vanishes() {
-    let mut s = build::<Plane>(
+    let mut s = build::<Dim2>(
         "time: (step: 1e-3, end: 1.0), gravity: [0.0, -9.81],
         bodies: [(name: \"gate\", material: \"glass\", vanishes: 0.1, shapes: [HalfSpace(normal: [0.0, 1.0])])],
         grains: [List(material: \"glass\", grains: [(at: [0.0, 0.01], radius: 0.01)])]",
@@ -135,7 +135,7 @@ fn a_gate_vanishes() {
 /// takes v/(mu g), and the path is v^2/(2 mu g).
 #[test]
 fn phases_hand_the_state_over() {
-    let mut s = build::<Plane>(
+    let mut s = build::<Dim2>(
         "time: (step: 1e-3, end: 9.0), gravity: [0.0, -9.81],
         bodies: [
             (name: \"floor\", material: \"glass\", shapes: [HalfSpace(normal: [0.0, 1.0])]),
@@ -174,7 +174,7 @@ fn phases_hand_the_state_over() {
 /// A grain falls by h: rest comes after the fall, sqrt(2 h/g), and `held`.
 #[test]
 fn a_phase_ends_at_rest() {
-    let mut s = build::<Plane>(
+    let mut s = build::<Dim2>(
         "time: (step: 1e-4, end: 9.0), gravity: [0.0, -9.81],
         bodies: [(name: \"floor\", material: \"glass\", shapes: [HalfSpace(normal: [0.0, 1.0])])],
         grains: [List(material: \"glass\", grains: [(at: [0.0, 0.11], radius: 0.01)])],
@@ -237,7 +237,7 @@ fn phases_that_cannot_be_followed_are_refused() {
 /// In a drum that turns at W a disk rolls on the spot at the lowest point with the spin W R/r.
 #[test]
 fn a_disk_rolls_in_a_drum() {
-    let mut s = build::<Plane>(
+    let mut s = build::<Dim2>(
         "time: (step: 1e-3, end: 9.0), gravity: [0.0, -9.81],
         bodies: [(name: \"drum\", material: \"glass\", shapes: [Drum(radius: 0.2)], dofs: (rz: Velocity(Constant(3.0))))],
         grains: [List(material: \"glass\", grains: [(at: [0.0, -0.15], radius: 0.05, spin: [12.0])])]",
@@ -258,7 +258,7 @@ fn a_sphere_swings_in_a_cylinder() {
     let (big, small, angle) = (0.2, 0.02, 0.05f64);
     let reach = big - small;
     let (x, z) = (reach * angle.sin(), -reach * angle.cos());
-    let mut s = build::<Solid>(&format!(
+    let mut s = build::<Dim3>(&format!(
         "time: (step: 1e-4, end: 9.0), gravity: [0.0, 0.0, -9.81],
         bodies: [(name: \"drum\", material: \"glass\", shapes: [Drum(radius: 0.2, axis: 1)])],
         grains: [List(material: \"glass\", grains: [(at: [{x:?}, 0.3, {z:?}], radius: 0.02)])]"
@@ -280,7 +280,7 @@ fn a_sphere_swings_in_a_cylinder() {
 #[test]
 fn a_group_of_phases_is_repeated() {
     let (stroke, cycles) = (0.02, 5);
-    let mut s = build::<Plane>(
+    let mut s = build::<Dim2>(
         "time: (step: 1e-3, end: 9.0), gravity: [0.0, -9.81],
         bodies: [
             (name: \"floor\", material: \"glass\", shapes: [HalfSpace(normal: [0.0, 1.0])]),
@@ -314,7 +314,7 @@ fn a_group_of_phases_is_repeated() {
 #[test]
 fn taps_wait_for_rest() {
     let (v, held) = (0.3, 0.02);
-    let mut s = build::<Plane>(
+    let mut s = build::<Dim2>(
         "time: (step: 1e-4, end: 9.0), gravity: [0.0, -9.81],
         bodies: [(name: \"floor\", material: \"glass\", shapes: [HalfSpace(normal: [0.0, 1.0])])],
         grains: [List(material: \"glass\", grains: [(at: [0.0, 0.01], radius: 0.01)])],

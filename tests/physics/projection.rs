@@ -1,6 +1,6 @@
 //! Overlaps that are taken out by moving bodies: who moves how far, what that gives, and what stays.
 
-use fretwork::geometry::space::{Plane, Solid};
+use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
@@ -49,7 +49,7 @@ fn two_disks_come_apart_by_their_masses_and_stay_at_rest() {
     for (period, shift) in [("", 0.0), ("periodic: (x: 1.0),", 0.95)] {
         let way = Vector2::new(0.8, 0.6) * (0.15 - DEPTH);
         let [x, y] = [shift + way.x - if shift > 0.0 { 1.0 } else { 0.0 }, way.y];
-        let mut s: Simulation<Plane> = built(&format!(
+        let mut s: Simulation<Dim2> = built(&format!(
             r#"dimension: 2, {period} {SMOOTH}
             grains: [List(material: "grain", grains: [
                 (at: [{shift:?}, 0.0], radius: 0.1), (at: [{x:?}, {y:?}], radius: 0.05)])],"#
@@ -79,7 +79,7 @@ fn two_disks_come_apart_by_their_masses_and_stay_at_rest() {
 /// An overlap within the bound is left alone, to the last bit.
 #[test]
 fn what_is_within_the_bound_stays() {
-    let mut s: Simulation<Plane> = built(&format!(
+    let mut s: Simulation<Dim2> = built(&format!(
         r#"dimension: 2, {SMOOTH}
         grains: [List(material: "grain", grains: [
             (at: [0.0, 0.0], radius: 0.1), (at: [0.19961, 0.0], radius: 0.1)])],"#
@@ -97,7 +97,7 @@ fn what_is_within_the_bound_stays() {
 #[test]
 fn a_column_is_lifted_and_its_weight_is_booked() {
     let [low, high] = [0.1 - DEPTH, 0.3 - 2.0 * DEPTH];
-    let mut s: Simulation<Plane> = built(&format!(
+    let mut s: Simulation<Dim2> = built(&format!(
         r#"dimension: 2, gravity: [0.0, -{G}], {SMOOTH}
         bodies: [(name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 1.0])])],
         grains: [List(material: "grain", grains: [
@@ -134,7 +134,7 @@ fn a_column_is_lifted_and_its_weight_is_booked() {
 fn walls_that_are_fixed_stay_and_a_load_is_lifted() {
     const LOAD: f64 = 50.0;
     let [disk, lid] = [0.1 - DEPTH, 0.2 - 2.0 * DEPTH];
-    let mut s: Simulation<Plane> = built(&format!(
+    let mut s: Simulation<Dim2> = built(&format!(
         r#"dimension: 2, {SMOOTH}
         bodies: [
             (name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 1.0])]),
@@ -143,7 +143,7 @@ fn walls_that_are_fixed_stay_and_a_load_is_lifted() {
         ],
         grains: [List(material: "grain", grains: [(at: [0.0, {disk:?}], radius: 0.1)])],"#
     ));
-    let place = |s: &Simulation<Plane>, name: &str| {
+    let place = |s: &Simulation<Dim2>, name: &str| {
         let driven = s.bodies.driven.iter().find(|d| d.name == name);
         driven.expect("the body").body as usize
     };
@@ -169,7 +169,7 @@ fn walls_that_are_fixed_stay_and_a_load_is_lifted() {
 fn a_bond_that_holds_is_not_pulled_apart() {
     let second = 0.2 - DEPTH;
     let third = second + 0.2;
-    let mut s: Simulation<Plane> = built(&format!(
+    let mut s: Simulation<Dim2> = built(&format!(
         r#"dimension: 2,
         interfaces: [
             (name: "bonded", between: ("grain", "grain"), contact: "frictionless", cohesion: "elastic-bond",
@@ -219,7 +219,7 @@ fn a_body_whose_inertia_differs_by_axis_keeps_its_energy_as_it_is_turned() {
         })
         .fold(f64::INFINITY, f64::min);
     let height = -lowest - DEPTH;
-    let mut s: Simulation<Solid> = built(&format!(
+    let mut s: Simulation<Dim3> = built(&format!(
         r#"dimension: 3, {SMOOTH}
         bodies: [(name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 0.0, 1.0])])],
         grains: [Polyhedra(material: "grain", grains: [(at: [0.0, 0.0, {height:?}], size: (0.3, 0.2, 0.1),

@@ -1,7 +1,7 @@
 //! A wheel that rolls on a compliant rail against the closed form of a brush: depth and length of the patch, friction from
 //! creep to full slip, and the power of its forces against the heat.
 
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::scene::load;
 use std::path::Path;
@@ -44,7 +44,7 @@ fn roll(creepage: f64, step: f64, layered: bool) -> Rolling {
         sets.push("grains.1.count=1".to_owned());
     }
     let loaded = load(&case, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Plane>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     let place = s.bodies.driven.iter().position(|d| d.name == "wheel");
     let place = place.expect("the case has a wheel");
@@ -165,7 +165,7 @@ fn a_foundation_over_an_overlap_is_at_rest() {
         "solver.correction=0.2",
     ];
     let loaded = load(&case, &sets.map(str::to_owned)).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Plane>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     for _ in 0..100 {
         s.step().unwrap_or_else(|e| panic!("{e}"));

@@ -1,7 +1,7 @@
 //! Silo, drum and plane shear, smaller than in `cases/`: what an expert would look at first.
 
 use fretwork::contact::detect::centre;
-use fretwork::geometry::space::{Plane, Solid};
+use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::SearchPath;
 use fretwork::record::picture::{Camera, Subject};
 use fretwork::record::{RunOptions, Summary, run};
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 const G: f64 = 9.81;
 
-fn case(name: &str, sets: &[&str]) -> (Loaded, Built<Plane>) {
+fn case(name: &str, sets: &[&str]) -> (Loaded, Built<Dim2>) {
     case_in(name, sets)
 }
 
@@ -47,12 +47,12 @@ fn recorded<S: Dimensional>(loaded: &Loaded, built: Built<S>, look: impl FnOnce(
     summary
 }
 
-fn place(s: &Simulation<Plane>, name: &str) -> usize {
+fn place(s: &Simulation<Dim2>, name: &str) -> usize {
     let found = s.bodies.driven.iter().position(|d| d.name == name);
     found.unwrap_or_else(|| panic!("a body named {name}"))
 }
 
-fn held(s: &Simulation<Plane>) -> f64 {
+fn held(s: &Simulation<Dim2>) -> f64 {
     let grains =
         (0..s.bodies.len()).filter(|b| s.bodies.driven.iter().all(|d| d.body as usize != *b));
     let inside = grains.filter(|b| s.bodies.position[*b].y > 0.0);
@@ -252,7 +252,7 @@ fn end_walls_make_a_narrow_drum_steeper() {
             ],
             more,
         ];
-        let (loaded, built) = case_in::<Solid>("rotating_drum_3d", &sets.concat());
+        let (loaded, built) = case_in::<Dim3>("rotating_drum_3d", &sets.concat());
         recorded(&loaded, built, |_| {}).measures["slope"].to_degrees()
     };
     let walls = angle(&[]);
@@ -263,7 +263,7 @@ fn end_walls_make_a_narrow_drum_steeper() {
 }
 
 /// The picture of a scene as it stands: its pixels, red, green and blue.
-fn pictured(s: &Simulation<Solid>, loaded: &Loaded, name: &str) -> Vec<[u8; 3]> {
+fn pictured(s: &Simulation<Dim3>, loaded: &Loaded, name: &str) -> Vec<[u8; 3]> {
     let path =
         std::env::temp_dir().join(format!("fretwork-scenes-{}-{name}.png", std::process::id()));
     let camera = Camera::new(s, &loaded.case.output);
@@ -282,7 +282,7 @@ fn frames_in_space_show_the_drum_and_the_speed() {
         let few = ["grains.0.count=60", "output.width=400"];
         [&few[..], more].concat()
     };
-    let (loaded, built) = case_in::<Solid>("rotating_drum_3d", &sets(&[]));
+    let (loaded, built) = case_in::<Dim3>("rotating_drum_3d", &sets(&[]));
     let mut s = built.simulation;
     let is = |p: &[u8; 3], colour: bool| {
         let (low, high) = (p.iter().min().unwrap_or(&0), p.iter().max().unwrap_or(&0));
@@ -303,7 +303,7 @@ fn frames_in_space_show_the_drum_and_the_speed() {
     let coloured = share(&moving, &|p| is(p, true));
     assert!(coloured > 0.01, "{coloured}");
     // Without first bodies near, the ground is white.
-    let (loaded, built) = case_in::<Solid>("newton_cradle", &["output.width=400"]);
+    let (loaded, built) = case_in::<Dim3>("newton_cradle", &["output.width=400"]);
     let cradle = pictured(&built.simulation, &loaded, "cradle");
     assert!(share(&cradle, &|p| *p == [255; 3]) > 0.3);
 }
@@ -326,7 +326,7 @@ struct Moved {
 }
 
 impl Moved {
-    fn new(mut s: Simulation<Plane>) -> Self {
+    fn new(mut s: Simulation<Dim2>) -> Self {
         let mut before = s.bodies.position.clone();
         while !s.control.finished() {
             if s.control.phase() < 2 {
@@ -366,7 +366,7 @@ impl Moved {
 }
 
 /// A case with its grains in the mirror x = 0.25 m.
-fn mirrored(name: &str, sets: &[&str]) -> Simulation<Plane> {
+fn mirrored(name: &str, sets: &[&str]) -> Simulation<Dim2> {
     let mut s = case(name, sets).1.simulation;
     for b in s.bodies.grains().collect::<Vec<_>>() {
         s.bodies.position[b].x = 0.5 - s.bodies.position[b].x;
@@ -424,7 +424,7 @@ fn a_fold_lifts_its_layer_with_the_block() {
 
 #[test]
 fn as_many_balls_leave_a_cradle_as_come() {
-    let (_, built) = case_in::<Solid>("newton_cradle", &[]);
+    let (_, built) = case_in::<Dim3>("newton_cradle", &[]);
     let mut s = built.simulation;
     while s.time < 0.06 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
@@ -441,7 +441,7 @@ fn a_first_body_that_is_a_ball_is_named() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/fretting_scar.ron");
     let loaded = fretwork::scene::load(std::path::Path::new(file), &[]).unwrap();
     let built = loaded
-        .build_in::<fretwork::geometry::space::Plane>(&SearchPath::new(&[]))
+        .build_in::<fretwork::geometry::space::Dim2>(&SearchPath::new(&[]))
         .unwrap();
     let s = &built.simulation;
     let named = fretwork::record::picture::named_balls(s, [-5e-3, 5e-3, -1e-3, 4e-3]);
@@ -455,6 +455,6 @@ fn a_first_body_that_is_a_ball_is_named() {
 #[test]
 fn collapse_on_teeth_sees_its_contacts_in_time() {
     let summary = finished("collapse", &["output.frames=0"], |_| {});
-    assert_eq!((summary.haste.late, summary.haste.passed), (0, 0));
+    assert_eq!((summary.step_size.late, summary.step_size.passed), (0, 0));
     assert!(summary.trustworthy, "{:?}", summary.reasons);
 }

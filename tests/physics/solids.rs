@@ -1,6 +1,6 @@
 //! Solids in space: polyhedra, capsules, clusters and meshes, and inertia that differs by axis.
 
-use fretwork::geometry::space::{MatrixLike, Solid};
+use fretwork::geometry::space::{Dim3, MatrixLike};
 use fretwork::laws::SearchPath;
 use fretwork::scene::load;
 use fretwork::step::Simulation;
@@ -12,17 +12,17 @@ type V = Vector3<f64>;
 /// Acceleration of gravity (m/s^2).
 const G: f64 = 9.81;
 
-fn scene(case: &str, sets: &[String]) -> Simulation<Solid> {
+fn scene(case: &str, sets: &[String]) -> Simulation<Dim3> {
     let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let loaded = load(Path::new(&file), sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded
-        .build_in::<Solid>(&SearchPath::new(&[]))
+        .build_in::<Dim3>(&SearchPath::new(&[]))
         .unwrap_or_else(|e| panic!("{e}"));
     built.simulation
 }
 
 /// Steps until a time; every step must converge.
-fn until(s: &mut Simulation<Solid>, end: f64) {
+fn until(s: &mut Simulation<Dim3>, end: f64) {
     while s.time < end - 0.5 * s.scheme.h {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         let solver = &report.solver;
@@ -31,7 +31,7 @@ fn until(s: &mut Simulation<Solid>, end: f64) {
 }
 
 /// The greatest speed of a grain (m/s).
-fn fastest(s: &Simulation<Solid>) -> f64 {
+fn fastest(s: &Simulation<Dim3>) -> f64 {
     let speeds = s.bodies.velocity.iter().map(|v| v.norm());
     speeds.fold(0.0, f64::max)
 }
@@ -49,7 +49,7 @@ fn a_block_at_rest_keeps_its_four_points() {
     let mut s = scene("verification/tilted_block_3d", &[tilted(10.0, 0)]);
     until(&mut s, 1.0);
     assert_eq!(s.network.contacts.len(), 4);
-    assert!(s.network.contacts.iter().all(|c| c.born < 1e-3));
+    assert!(s.network.contacts.iter().all(|c| c.formed_at < 1e-3));
     let turned = s.bodies.rotation[0].angle();
     assert!(fastest(&s) < 1e-9 && turned < 1e-9, "{turned:e}");
 }
@@ -117,7 +117,7 @@ fn a_rod_that_falls_on_its_end_gets_the_impulse_of_its_lever() {
 #[test]
 fn a_plate_thrown_tumbles_and_keeps_energy_and_momentum() {
     let mut s = scene("verification/tumbling", &[]);
-    let of = |s: &Simulation<Solid>| {
+    let of = |s: &Simulation<Dim3>| {
         (
             s.bodies.kinetic_energy(),
             s.bodies.angular_momentum(0, &s.bodies.spin[0]),
@@ -177,7 +177,7 @@ fn a_free_body_turns_under_a_moment_by_its_own_axis() {
 #[test]
 fn a_fixed_axis_stays_fixed_on_a_slope() {
     let mut s = scene("verification/fixed_axis", &[]);
-    let at = |s: &Simulation<Solid>, name: &str| {
+    let at = |s: &Simulation<Dim3>, name: &str| {
         let driven = s.bodies.driven.iter().find(|d| d.name == name).unwrap();
         driven.body as usize
     };

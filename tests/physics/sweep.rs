@@ -1,6 +1,6 @@
 //! The sweep of Gauss-Seidel gives the same bits on any number of threads.
 
-use fretwork::geometry::space::{MatrixLike, Plane, Solid, Space, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::nlgs::{prepare, solve, sweeps};
 use fretwork::solve::{ContactForm, Options, Problem};
 
@@ -8,25 +8,25 @@ use fretwork::solve::{ContactForm, Options, Problem};
 fn lattice<S: Space>(side: u32) -> Problem<S> {
     let count = side.pow(S::D as u32);
     let mut p = Problem::default();
-    let mut gravity = S::Vector::null();
+    let mut gravity = S::Vector::zero();
     gravity[S::D - 1] = -1.0;
     for k in 0..count {
         let wave = f64::from(k * k % 997) / 997.0;
         let mut v = gravity;
         v[0] = wave - 0.5;
-        let mut mass = S::Vector::null();
+        let mut mass = S::Vector::zero();
         for d in 0..S::D {
             mass[d] = 1.0 + 0.2 * wave;
         }
         let inertia = mass[0] / S::BALL_INERTIA;
-        p.push_body(v, S::Spin::null(), mass, S::Tensor::uniform(inertia), 1.0);
+        p.push_body(v, S::Spin::zero(), mass, S::Tensor::uniform(inertia), 1.0);
     }
-    let null = S::Vector::null();
-    p.push_body(null, S::Spin::null(), null, S::Tensor::uniform(0.0), 1.0);
+    let null = S::Vector::zero();
+    p.push_body(null, S::Spin::zero(), null, S::Tensor::uniform(0.0), 1.0);
     for k in 0..count {
         for d in 0..S::D {
             let step = side.pow(d as u32);
-            let mut normal = S::Vector::null();
+            let mut normal = S::Vector::zero();
             if k / step % side + 1 < side {
                 normal[d] = -1.0;
                 p.push(&contact([k, k + step], normal));
@@ -47,12 +47,12 @@ fn contact<S: Space>(bodies: [u32; 2], normal: S::Vector) -> ContactForm<S> {
         arms: [-normal, normal],
         central: true,
         shift_n: 0.0,
-        shift_t: S::Tangent::null(),
+        shift_t: S::Tangent::zero(),
         friction: 0.3,
         tension: 0.0,
         cohesion: 0.0,
         elastic: None,
-        impulse: S::Vector::null(),
+        impulse: S::Vector::zero(),
     }
 }
 
@@ -104,10 +104,10 @@ fn check<S: Space>(side: u32) {
 
 #[test]
 fn threads_do_not_change_the_bits_of_disks() {
-    check::<Plane>(110);
+    check::<Dim2>(110);
 }
 
 #[test]
 fn threads_do_not_change_the_bits_of_spheres() {
-    check::<Solid>(21);
+    check::<Dim3>(21);
 }

@@ -1,7 +1,7 @@
 //! The third body against closed forms: affine and rigid fields, cut disks and balls, a column under gravity, stress,
 //! and energies by place against the ledger.
 
-use fretwork::geometry::space::{Plane, Solid, Space};
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::SearchPath;
 use fretwork::record::measure::Measures;
 use fretwork::record::run::write_outputs;
@@ -156,7 +156,7 @@ fn body<S: Space>(s: &Simulation<S>, name: &str) -> usize {
 }
 
 /// Gives grains and wheel velocities along x that depend on the height.
-fn sheared(s: &mut Simulation<Plane>, v: impl Fn(f64) -> f64) {
+fn sheared(s: &mut Simulation<Dim2>, v: impl Fn(f64) -> f64) {
     let wheel = body(s, "wheel");
     for b in s.bodies.grains().collect::<Vec<_>>() {
         s.bodies.velocity[b].x = v(s.bodies.position[b].y);
@@ -169,8 +169,8 @@ fn sheared(s: &mut Simulation<Plane>, v: impl Fn(f64) -> f64) {
 #[test]
 fn an_affine_field_is_couette_without_temperature() {
     for bins in [10, 20, 7, 33] {
-        let text = between::<Plane>(2.0, &lattice(), bins);
-        let seen = seen::<Plane>(&text, |s| sheared(s, |y| 0.3 * y));
+        let text = between::<Dim2>(2.0, &lattice(), bins);
+        let seen = seen::<Dim2>(&text, |s| sheared(s, |y| 0.3 * y));
         let p = &seen.profile;
         for (w, y) in p["velocity_over_sliding"]
             .iter()
@@ -199,11 +199,11 @@ fn an_affine_field_is_couette_without_temperature() {
 /// The same with the first body above the second: depths run down from it.
 #[test]
 fn a_layer_may_be_looked_at_from_above() {
-    let text = between::<Plane>(2.0, &lattice(), 10).replace(
+    let text = between::<Dim2>(2.0, &lattice(), 10).replace(
         "between: (\"rail\", \"wheel\")",
         "between: (\"wheel\", \"rail\")",
     );
-    let seen = seen::<Plane>(&text, |s| sheared(s, |y| 0.3 * y));
+    let seen = seen::<Dim2>(&text, |s| sheared(s, |y| 0.3 * y));
     let p = &seen.profile;
     for (k, w) in p["velocity_over_sliding"].iter().enumerate() {
         close(*w, 0.05 + 0.1 * k as f64, 1e-12);
@@ -214,8 +214,8 @@ fn a_layer_may_be_looked_at_from_above() {
 /// A layer that moves as one at 0.3 of the wheel: no temperature, slip of 0.3 and 0.7.
 #[test]
 fn a_rigid_layer_is_a_plug() {
-    let text = between::<Plane>(2.0, &lattice(), 20);
-    let seen = seen::<Plane>(&text, |s| sheared(s, |y| if y < 2.0 { 0.3 } else { 1.0 }));
+    let text = between::<Dim2>(2.0, &lattice(), 20);
+    let seen = seen::<Dim2>(&text, |s| sheared(s, |y| if y < 2.0 { 0.3 } else { 1.0 }));
     close(seen.row["layer_slip_first"], 0.3, 1e-12);
     close(seen.row["layer_slip_second"], 0.7, 1e-12);
     close(seen.row["layer_temperature"], 0.0, 1e-26);
@@ -226,8 +226,8 @@ fn a_rigid_layer_is_a_plug() {
 /// Velocities +u and -u in turn in each row: <v> is null and T = u^2/2 in the plane.
 #[test]
 fn a_temperature_is_the_mean_square_by_the_dimension() {
-    let text = between::<Plane>(2.0, &lattice(), 10);
-    let seen = seen::<Plane>(&text, |s| {
+    let text = between::<Dim2>(2.0, &lattice(), 10);
+    let seen = seen::<Dim2>(&text, |s| {
         for (k, b) in s
             .bodies
             .grains()
@@ -251,8 +251,8 @@ fn a_temperature_is_the_mean_square_by_the_dimension() {
 fn a_grain_is_cut_exactly() {
     let segment = PI / 3.0 - 3f64.sqrt() / 4.0;
     let wide = |text: String| text.replace("x: 1.0", "x: 8.0").replace("y: 1.0", "y: 8.0");
-    let flat = between::<Plane>(3.0, &[([2.0, 1.5, 0.0], 1.0)], 3);
-    let flat = seen::<Plane>(&wide(flat), |_| {}).profile;
+    let flat = between::<Dim2>(3.0, &[([2.0, 1.5, 0.0], 1.0)], 3);
+    let flat = seen::<Dim2>(&wide(flat), |_| {}).profile;
     for (f, area) in flat["solid_fraction"]
         .iter()
         .zip([segment, PI - 2.0 * segment, segment])
@@ -261,8 +261,8 @@ fn a_grain_is_cut_exactly() {
     }
     // A cap of height h = 1/2: pi h^2 (3 - h)/3.
     let cap = PI * 0.25 * 2.5 / 3.0;
-    let solid = between::<Solid>(3.0, &[([2.0, 2.0, 1.5], 1.0)], 3);
-    let solid = seen::<Solid>(&wide(solid), |_| {}).profile;
+    let solid = between::<Dim3>(3.0, &[([2.0, 2.0, 1.5], 1.0)], 3);
+    let solid = seen::<Dim3>(&wide(solid), |_| {}).profile;
     let whole = 4.0 / 3.0 * PI;
     for (f, volume) in solid["solid_fraction"]
         .iter()
@@ -278,9 +278,9 @@ fn a_column_carries_the_weight_above() {
     let disks: Vec<_> = (0..8)
         .map(|k| ([0.5, 0.05 + 0.1 * f64::from(k), 0.0], 0.05))
         .collect();
-    let text = between::<Plane>(0.8 + 1e-9, &disks, 16)
+    let text = between::<Dim2>(0.8 + 1e-9, &disks, 16)
         .replace("periodic", "gravity: [0, -9.81], periodic");
-    let seen = seen::<Plane>(&text, |s| {
+    let seen = seen::<Dim2>(&text, |s| {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     });
     let s = &seen.simulation;
@@ -358,7 +358,7 @@ fn stresses_of_the_bins_add_up() {
             )
         })
         .collect();
-    added::<Plane>(&disks);
+    added::<Dim2>(&disks);
     let balls: Vec<_> = (0..27)
         .map(|k| {
             let at = [
@@ -369,7 +369,7 @@ fn stresses_of_the_bins_add_up() {
             (at, 0.08)
         })
         .collect();
-    added::<Solid>(&balls);
+    added::<Dim3>(&balls);
 }
 
 fn fretting(sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
@@ -379,7 +379,7 @@ fn fretting(sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
     );
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built: Built<Plane> = loaded
+    let built: Built<Dim2> = loaded
         .build_in(&SearchPath::new(&[]))
         .unwrap_or_else(|e| panic!("{e}"));
     let out = own("");
@@ -441,7 +441,7 @@ fn energies_by_place_are_those_of_the_ledger() {
 
 #[test]
 fn wrong_layers_are_refused() {
-    let good = between::<Plane>(2.0, &[([0.5, 0.5, 0.0], 0.1)], 20);
+    let good = between::<Dim2>(2.0, &[([0.5, 0.5, 0.0], 0.1)], 20);
     assert!(opened(&good).is_ok());
     for (old, new, said) in [
         (

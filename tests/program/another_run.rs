@@ -1,7 +1,7 @@
 //! Grains of every shape taken from another run: places, orientations, velocities, spins, mass, inertia and outlines.
 
 use fretwork::contact::detect::centre;
-use fretwork::geometry::space::{MatrixLike, Plane, Solid, Space, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::record::picture::piece_outline;
 use fretwork::record::results::{Header, Part, Results};
 use fretwork::record::statistics::Column;
@@ -155,12 +155,12 @@ const SOLID: &str = r#"
 
 #[test]
 fn grains_of_every_shape_go_on_in_the_plane() {
-    begins_where_the_other_ended::<Plane>("plane", PLANE, 12);
+    begins_where_the_other_ended::<Dim2>("plane", PLANE, 12);
 }
 
 #[test]
 fn grains_of_every_shape_go_on_in_space() {
-    begins_where_the_other_ended::<Solid>("solid", SOLID, 6);
+    begins_where_the_other_ended::<Dim3>("solid", SOLID, 6);
 }
 
 /// A layer of polygons falls and comes to lie in one run, and is sheared by a lid in the next.
@@ -168,7 +168,7 @@ fn grains_of_every_shape_go_on_in_space() {
 fn a_layer_of_polygons_settles_in_one_run_and_is_sheared_in_the_next() {
     let folder = Folder::new("shear");
     let cells = r#"Voronoi(material: "grain", size: 0.015, low: [0.0, 0.0], high: [0.2, 0.06], gap: 1e-3, rounding: 1e-3)"#;
-    let first = folder.run::<Plane>(&case(2, "stone", cells, ""));
+    let first = folder.run::<Dim2>(&case(2, "stone", cells, ""));
     let top = first.shapes.pieces.iter().map(|p| {
         let high = piece_outline(&first, p).concat();
         high.iter().map(|c| c.y).fold(0.0, f64::max)
@@ -178,10 +178,10 @@ fn a_layer_of_polygons_settles_in_one_run_and_is_sheared_in_the_next() {
         r#"(name: "lid", material: "grain", position: [0.0, {top}], mass: 5.0, shapes: [HalfSpace(normal: [0.0, -1.0])],
             dofs: (x: Velocity(Constant(0.2)), y: Force(Constant(-200.0))))"#
     );
-    let second = folder.build::<Plane>(&case(2, "stone", STATE, &lid));
+    let second = folder.build::<Dim2>(&case(2, "stone", STATE, &lid));
     let mut second = second.unwrap_or_else(|e| panic!("{e}")).simulation;
     assert_eq!(compare(&first, &second), 53);
-    let momentum = |s: &Simulation<Plane>| -> f64 {
+    let momentum = |s: &Simulation<Dim2>| -> f64 {
         let along = |b: usize| s.bodies.mass[b] * s.bodies.velocity[b].x;
         s.bodies.grains().map(along).sum()
     };
@@ -232,7 +232,7 @@ fn a_file_without_shapes_is_refused_with_a_sentence() {
         results.append_views(0.5, &parts).unwrap();
         results.finish(&folder.0).unwrap();
         let state = r#"State(results: "older.h5", material: "grain")"#;
-        let built = folder.build::<Plane>(&case(2, "stone", state, ""));
+        let built = folder.build::<Dim2>(&case(2, "stone", state, ""));
         match (built, taken) {
             (Ok(_), true) => {}
             (Err(said), false) => assert!(said.contains("run its case again"), "{said}"),

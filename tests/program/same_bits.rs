@@ -57,11 +57,11 @@ fn bits(loaded: &Loaded, threads: usize, steps: Result<u64, Duration>) -> (Vec<u
         .build()
         .unwrap();
     pool.install(|| match built(loaded) {
-        Scene::Plane(mut b) => {
+        Scene::Dim2(mut b) => {
             b.simulation.solver.parallel = threads > 1;
             stepped(&mut b.simulation, steps)
         }
-        Scene::Solid(mut b) => {
+        Scene::Dim3(mut b) => {
             b.simulation.solver.parallel = threads > 1;
             stepped(&mut b.simulation, steps)
         }
@@ -133,8 +133,8 @@ fn contacts_in_another_order_give_the_same_sums() {
         let path = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
         let loaded = load(path.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"));
         let [a, b] = [false, true].map(|turned| match built(&loaded) {
-            Scene::Plane(mut built) => sums(&mut built.simulation, turned, steps),
-            Scene::Solid(mut built) => sums(&mut built.simulation, turned, steps),
+            Scene::Dim2(mut built) => sums(&mut built.simulation, turned, steps),
+            Scene::Dim3(mut built) => sums(&mut built.simulation, turned, steps),
         });
         let far = |x: f64, y: f64| (x - y).abs() / x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
         let (pressed, lost) = (far(a.pressed, b.pressed), far(a.lost, b.lost));

@@ -1,6 +1,6 @@
 //! Grains that are made at random or read: from tables, grading curves and other runs.
 
-use fretwork::geometry::space::{Plane, Solid, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::{Built, Dimensional};
 use fretwork::scene::load;
@@ -30,11 +30,11 @@ const DEPOSIT: &str = r#"Deposit(material: "grain", count: 300, low: [0.0, 0.0],
 fn a_deposit_is_what_the_case_asks_for() {
     let folder = Folder::new("deposit");
     let built = folder
-        .sample::<Plane>(DEPOSIT)
+        .sample::<Dim2>(DEPOSIT)
         .unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(built.simulation.shapes.balls.len(), 300);
     assert!(built.samples[0].contains("300 grains placed at random"));
-    let none = folder.sample::<Plane>(&DEPOSIT.replace("count: 300", "count: 30000"));
+    let none = folder.sample::<Dim2>(&DEPOSIT.replace("count: 300", "count: 30000"));
     let said = refusal(none);
     assert!(said.contains("of 30000 grains found room"), "{said}");
     for (old, new, says) in [
@@ -48,7 +48,7 @@ fn a_deposit_is_what_the_case_asks_for() {
         ("[0.2, 0.2]", "[0.2, 0.0]", "greater than that of `low`"),
         ("[0.2, 0.2]", "[0.2]", "2 numbers"),
     ] {
-        let said = refusal(folder.sample::<Plane>(&DEPOSIT.replace(old, new)));
+        let said = refusal(folder.sample::<Dim2>(&DEPOSIT.replace(old, new)));
         assert!(said.contains(says), "{said}");
     }
 }
@@ -60,7 +60,7 @@ fn a_grading_curve_gives_the_sizes() {
         sizes: Sieve(file: "curve.csv"))"#;
     folder.write("curve.csv", "size,passing\n4e-3,0\n8e-3,0.5\n16e-3,1\n");
     let built = folder
-        .sample::<Solid>(grains)
+        .sample::<Dim3>(grains)
         .unwrap_or_else(|e| panic!("{e}"));
     let cubes = built
         .simulation
@@ -94,7 +94,7 @@ fn a_grading_curve_gives_the_sizes() {
         ),
     ] {
         folder.write("curve.csv", curve);
-        let said = refusal(folder.sample::<Solid>(grains));
+        let said = refusal(folder.sample::<Dim3>(grains));
         assert!(said.contains(says) && said.contains(line), "{said}");
     }
 }
@@ -108,7 +108,7 @@ fn a_table_gives_grains() {
         "radius,x,y,spin,velocity_y\n1e-2,0.05,0.01,3,-1\n2e-2,0.1,0.02,0,0\n",
     );
     let built = folder
-        .sample::<Plane>(grains)
+        .sample::<Dim2>(grains)
         .unwrap_or_else(|e| panic!("{e}"));
     let (bodies, balls) = (&built.simulation.bodies, &built.simulation.shapes.balls);
     assert_eq!((balls[0].radius, balls[1].radius), (1e-2, 2e-2));
@@ -133,13 +133,13 @@ fn a_table_gives_grains() {
         ),
     ] {
         folder.write("grains.csv", table);
-        let said = refusal(folder.sample::<Plane>(grains));
+        let said = refusal(folder.sample::<Dim2>(grains));
         assert!(said.contains(says) && said.contains(line), "{said}");
     }
     folder.write("grains.csv", "x,y,radius\n0.1,0.1,1e-2\n0.105,0.1,1e-2\n");
-    assert!(refusal(folder.sample::<Plane>(grains)).contains("overlap by"));
+    assert!(refusal(folder.sample::<Dim2>(grains)).contains("overlap by"));
     assert!(
-        refusal(folder.sample::<Plane>(&grains.replace("grains.", "grain.")))
+        refusal(folder.sample::<Dim2>(&grains.replace("grains.", "grain.")))
             .contains("no such file")
     );
 }
@@ -198,7 +198,7 @@ fn round_trip<S: Dimensional>(name: &str, grains: &str) {
         all
     };
     assert_eq!(all(&first), all(&second.simulation));
-    assert!(first.bodies.spin.iter().any(|w| *w != S::Spin::null()));
+    assert!(first.bodies.spin.iter().any(|w| *w != S::Spin::zero()));
     // An earlier state, and one that is not there.
     let number = |n: u32| state.replace(")", &format!(", frame: Number({n}))"));
     let start = folder
@@ -214,10 +214,10 @@ fn round_trip<S: Dimensional>(name: &str, grains: &str) {
 
 #[test]
 fn a_state_of_another_run_goes_on_bit_by_bit() {
-    round_trip::<Plane>("plane", DEPOSIT);
+    round_trip::<Dim2>("plane", DEPOSIT);
     let solid = r#"Deposit(material: "grain", count: 150, low: [0.0, 0.0, 0.0], high: [0.2, 0.1, 0.05],
         sizes: Uniform(radius: (5e-3, 8e-3)))"#;
-    round_trip::<Solid>("solid", solid);
+    round_trip::<Dim3>("solid", solid);
 }
 
 #[test]
@@ -229,13 +229,13 @@ fn states_that_cannot_be_read_are_refused_with_a_sentence() {
             results.display()
         )
     };
-    let missing = refusal(folder.sample::<Plane>(&state(&folder.0.join("nowhere"))));
+    let missing = refusal(folder.sample::<Dim2>(&state(&folder.0.join("nowhere"))));
     assert!(missing.contains("cannot read"), "{missing}");
     let text = folder.write("text.h5", "no HDF5 at all");
-    let said = refusal(folder.sample::<Plane>(&state(&text)));
+    let said = refusal(folder.sample::<Dim2>(&state(&text)));
     assert!(said.contains("not a file of results"), "{said}");
     let other = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fclib/gfc3d_OneContact.hdf5");
-    let said = refusal(folder.sample::<Plane>(&state(&other)));
+    let said = refusal(folder.sample::<Dim2>(&state(&other)));
     assert!(said.contains("no `/views/grains`"), "{said}");
     // A file cut off at any place: a state or a sentence, never a panic.
     let path = folder.write("first.ron", &case(2, "stone", DEPOSIT, ""));
@@ -254,8 +254,8 @@ fn states_that_cannot_be_read_are_refused_with_a_sentence() {
     let cut = folder.0.join("cut.h5");
     for part in 1..40 {
         std::fs::write(&cut, &whole[..whole.len() * part / 40]).unwrap();
-        drop(folder.sample::<Plane>(&state(&cut)));
+        drop(folder.sample::<Dim2>(&state(&cut)));
     }
-    let said = refusal(folder.sample::<Solid>(&state(&out.join("results.h5"))));
+    let said = refusal(folder.sample::<Dim3>(&state(&out.join("results.h5"))));
     assert!(said.contains("dimension 2"), "{said}");
 }

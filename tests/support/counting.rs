@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Bytes held at a time beyond which an allocation fails: the test then ends in an abort, with the input kept,
 /// and the machine stays usable.
-const MOST: usize = 6 << 30;
+const MAX_ALLOCATION: usize = 6 << 30;
 
 static HELD: AtomicUsize = AtomicUsize::new(0);
 static PEAK: AtomicUsize = AtomicUsize::new(0);
@@ -20,7 +20,7 @@ fn took(bytes: usize) {
 }
 
 fn allowed(bytes: usize) -> bool {
-    HELD.load(Relaxed).saturating_add(bytes) <= MOST
+    HELD.load(Relaxed).saturating_add(bytes) <= MAX_ALLOCATION
 }
 
 // SAFETY: every call goes to the system's allocator with the caller's own arguments, or returns null, which stands for

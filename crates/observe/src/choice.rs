@@ -1,7 +1,7 @@
 //! What `auto` chose over a run, in one sentence.
 
 use fretwork_core::solve::local::solver::Method;
-use fretwork_core::solve::{Chosen, Report, Tried};
+use fretwork_core::solve::{Attempt, Report, SolvePath};
 use serde::{Deserialize, Serialize};
 
 /// Counts over the steps of a run.
@@ -33,20 +33,20 @@ impl Choice {
     /// Counts a step.
     pub fn add(&mut self, report: &Report) {
         match report.chosen {
-            Chosen::Sweeps => {}
-            Chosen::Longer { .. } => self.swept_longer += 1,
-            Chosen::Unserved => self.newton_unserved += 1,
-            Chosen::Large => self.too_large += 1,
-            Chosen::Factorised {
+            SolvePath::Sweeps => {}
+            SolvePath::Longer { .. } => self.swept_longer += 1,
+            SolvePath::Unserved => self.newton_unserved += 1,
+            SolvePath::Large => self.too_large += 1,
+            SolvePath::Factorised {
                 after,
                 hyperstaticity,
                 newton,
                 interior,
             } => {
-                self.newton_tried += u64::from(newton != Tried::No);
-                self.newton_ended += u64::from(newton == Tried::Ended);
-                self.interior_tried += u64::from(interior != Tried::No);
-                self.interior_ended += u64::from(interior == Tried::Ended);
+                self.newton_tried += u64::from(newton != Attempt::No);
+                self.newton_ended += u64::from(newton == Attempt::Ended);
+                self.interior_tried += u64::from(interior != Attempt::No);
+                self.interior_ended += u64::from(interior == Attempt::Ended);
                 self.factorised += 1;
                 let part = 1.0 / self.factorised as f64;
                 self.hyperstaticity_mean += (hyperstaticity - self.hyperstaticity_mean) * part;
@@ -114,11 +114,11 @@ mod tests {
         assert!(choice.why(Method::Auto, 1).starts_with("sweeps"));
         assert_eq!(choice.why(Method::Pg, 1), "pg was asked for");
         for (after, hyperstaticity, newton, interior) in [
-            (100, 1.0, Tried::Ended, Tried::No),
-            (300, 2.0, Tried::Failed, Tried::Ended),
+            (100, 1.0, Attempt::Ended, Attempt::No),
+            (300, 2.0, Attempt::Failed, Attempt::Ended),
         ] {
             choice.add(&Report {
-                chosen: Chosen::Factorised {
+                chosen: SolvePath::Factorised {
                     after,
                     hyperstaticity,
                     newton,

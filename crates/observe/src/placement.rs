@@ -1,18 +1,21 @@
 //! Where the shapes and contacts of a simulation are.
 
 use fretwork_core::contact::{Contact, Key};
-use fretwork_core::geometry::convex::{Core, Piece};
+use fretwork_core::geometry::convex::{ConvexCollider, Core};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
 /// Where the centre of a piece stands (m).
-pub fn piece_centre<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> S::Vector {
+pub fn piece_centre<S: Space>(s: &Simulation<S>, piece: &ConvexCollider<S>) -> S::Vector {
     let b = piece.body as usize;
     s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &piece.offset)
 }
 
 /// The corners of a piece (m): one line around it in the plane, its faces in space.
-pub fn piece_outline<S: Space>(s: &Simulation<S>, piece: &Piece<S>) -> Vec<Vec<S::Vector>> {
+pub fn piece_outline<S: Space>(
+    s: &Simulation<S>,
+    piece: &ConvexCollider<S>,
+) -> Vec<Vec<S::Vector>> {
     let rotation = &s.bodies.rotation[piece.body as usize];
     let faces = piece.core.turned(rotation).outline(piece.rounding);
     let centre = s.shapes.periodic.wrapped(piece_centre(s, piece));
@@ -73,13 +76,13 @@ pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S:
 fn ends_of_piece<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
     let centre = s.bodies.position[contact.bodies[0] as usize];
     let at = centre + contact.arms[0];
-    let foot = at - contact.normal * contact.gap;
+    let closest_point = at - contact.normal * contact.gap;
     let [first, other] = contact.bodies.map(|b| is_first(s, b));
     let a = if first { at } else { centre };
     let b = if other || contact.key.surface().is_some() {
-        foot
+        closest_point
     } else {
-        foot - contact.arms[1]
+        closest_point - contact.arms[1]
     };
     (a, b)
 }

@@ -111,7 +111,7 @@ fn shear<S: Space>(pairs: impl Iterator<Item = (S::Vector, S::Vector)>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_core::geometry::space::{Plane, Solid};
+    use fretwork_core::geometry::space::{Dim2, Dim3};
     use nalgebra::{Matrix2, Rotation2, Rotation3, Vector2, Vector3};
 
     /// A simple shear, turned and widened, has its own amount, small or large, and a rotation alone has none.
@@ -126,7 +126,7 @@ mod tests {
         for amount in [0.0, 1e-3, 0.4, 3.0] {
             let turn = Rotation2::new(0.7).matrix() * 1.2;
             let f = turn * Matrix2::new(1.0, amount, 0.0, 1.0);
-            let got = shear::<Plane>(star.iter().map(|x| (*x, f * x)));
+            let got = shear::<Dim2>(star.iter().map(|x| (*x, f * x)));
             assert!((got - amount).abs() < 1e-9, "{got} in place of {amount}");
         }
         let ball: Vec<Vector3<f64>> = (0..20)
@@ -141,14 +141,14 @@ mod tests {
             .collect();
         let turn = Rotation3::from_euler_angles(0.3, -1.0, 2.0).matrix() * 0.8;
         let f = turn * Matrix3::new(1.0, 0.0, 0.6, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-        let got = shear::<Solid>(ball.iter().map(|x| (*x, f * x)));
+        let got = shear::<Dim3>(ball.iter().map(|x| (*x, f * x)));
         assert!((got - 0.6).abs() < 1e-9, "{got}");
     }
 
     #[test]
     fn neighbours_on_a_line_give_nothing() {
         let line = [1.0, -1.0, 2.0].map(|x| Vector2::new(x, 0.5 * x));
-        assert!(shear::<Plane>(line.iter().map(|x| (*x, *x))).is_nan());
-        assert!(shear::<Plane>(std::iter::empty()).is_nan());
+        assert!(shear::<Dim2>(line.iter().map(|x| (*x, *x))).is_nan());
+        assert!(shear::<Dim2>(std::iter::empty()).is_nan());
     }
 }

@@ -125,12 +125,12 @@ impl Sheet<'_> {
         let left = widest(&y) + 88.0 * u;
         let right = (widest(&x) / 2.0 + 12.0 * u).max(36.0 * u);
         let top = self.header(wide - left - 16.0 * u, u).1;
-        let foot = 116.0 * u;
+        let closest_point = 116.0 * u;
         let mut plot = Plot {
             left: left as i32,
             top: top as i32,
             width: ((wide - left - right) as i32).max(20),
-            height: ((high - top - foot) as i32).max(20),
+            height: ((high - top - closest_point) as i32).max(20),
         };
 
         // The legend goes where no curve passes, else in rows over the plot.

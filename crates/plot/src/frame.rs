@@ -201,13 +201,13 @@ impl Frame<'_> {
         if let Some(scale) = &self.scale {
             paint::scale(&mut page, scale, [side, under + 40.0 * u], u)?;
         }
-        let foot = under + bar + 38.0 * u;
-        furniture::legend(&mut page, self.links, [side, foot], u);
+        let closest_point = under + bar + 38.0 * u;
+        furniture::legend(&mut page, self.links, [side, closest_point], u);
         let right = side + field_width;
         let row = if self.scale.is_some() {
             under + 40.0 * u
         } else {
-            foot
+            closest_point
         };
         furniture::scale_bar(&mut page, [right, row], scale, u);
         page.save(path)

@@ -229,7 +229,7 @@ fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Ve
     let period = s.shapes.periodic.period[0];
     let mut out = Vec::with_capacity(s.shapes.pieces.len());
     for (k, piece) in s.shapes.pieces.iter().enumerate() {
-        if s.bodies.gone[piece.body as usize] {
+        if s.bodies.removed[piece.body as usize] {
             continue;
         }
         let shade = (!is_first(s, piece.body)).then_some(0.25);
@@ -255,7 +255,7 @@ pub fn named_balls<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline
     for driven in &s.bodies.driven {
         let surfaces = s.shapes.surfaces.iter().map(|f| f.body);
         let labelled = surfaces.into_iter().any(|body| body == driven.body);
-        if labelled || s.bodies.gone[driven.body as usize] || driven.name.starts_with("wall_") {
+        if labelled || s.bodies.removed[driven.body as usize] || driven.name.starts_with("wall_") {
             continue;
         }
         let own = s.shapes.balls.iter().zip(balls(s));
@@ -296,7 +296,7 @@ fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Vec
     let period = s.shapes.periodic.period[0];
     let mut out = Vec::with_capacity(s.shapes.balls.len());
     for (k, (ball, (centre, radius))) in s.shapes.balls.iter().zip(balls(s)).enumerate() {
-        if s.bodies.gone[ball.body as usize] {
+        if s.bodies.removed[ball.body as usize] {
             continue;
         }
         let angle = S::rotation_numbers(&s.bodies.rotation[ball.body as usize])[0];
@@ -327,7 +327,7 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
     let period = s.shapes.periodic.period[0];
     let far = 2.0 * ((window[1] - window[0]) + (window[3] - window[2]));
     let mut out = Vec::new();
-    let shown = |body: u32| !s.bodies.gone[body as usize];
+    let shown = |body: u32| !s.bodies.removed[body as usize];
     for surface in s.shapes.surfaces.iter().filter(|f| shown(f.body)) {
         let b = surface.body as usize;
         let (position, rotation) = (s.bodies.position[b], s.bodies.rotation[b]);

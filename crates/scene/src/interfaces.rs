@@ -1,7 +1,7 @@
 //! From the case's words to interface laws: plugins found, parameters resolved and checked.
 
 use super::case::{Case, InterfaceSpec};
-use super::material::{Given, InterfaceParameters, Shelf, Sourced};
+use super::material::{Given, InterfaceParameters, MaterialLibrary, Sourced};
 use super::source::{Fault, InputError, Source, nearest};
 use super::units;
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
@@ -31,7 +31,7 @@ pub struct Laws {
 pub fn build(
     case: &Case,
     source: &Source,
-    shelf: &Shelf,
+    shelf: &MaterialLibrary,
     path: &SearchPath,
 ) -> Result<Laws, InputError> {
     let materials: Vec<&String> = case.materials.keys().collect();
@@ -169,7 +169,7 @@ fn pins(case: &Case) -> Result<(), Fault> {
 
 fn read_parameters(
     spec: &InterfaceSpec,
-    shelf: &Shelf,
+    shelf: &MaterialLibrary,
     files: &mut Vec<(String, String)>,
     source: &Source,
     here: &str,

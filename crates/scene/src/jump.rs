@@ -6,7 +6,7 @@ use fretwork_core::bodies::{Dof, TimeFunction};
 pub use fretwork_core::process::jump::JumpSpec;
 
 /// Most cycles of a jump, or of its control.
-const MOST: u32 = 100_000;
+const MAX_CYCLES: u32 = 100_000;
 
 /// Refuses jumps that mean nothing.
 ///
@@ -47,8 +47,8 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
         if count == 0 {
             return fault(&format!("jump.{name}"), "must be at least 1");
         }
-        if count > MOST {
-            let message = format!("{count} is too many; at most {MOST}");
+        if count > MAX_CYCLES {
+            let message = format!("{count} is too many; at most {MAX_CYCLES}");
             return Err(Fault::new(format!("jump.{name}"), message));
         }
     }

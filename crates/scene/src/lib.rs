@@ -35,5 +35,5 @@ pub mod units;
 pub use build::{Built, Dimensional, Loaded, Scene, load, load_reader, load_text};
 pub use builder::CaseBuilder;
 pub use case::Case;
-pub use fretwork_core::geometry::space::{Plane as Dim2, Solid as Dim3};
+pub use fretwork_core::geometry::space::{Dim2, Dim3};
 pub use source::InputError;

@@ -204,13 +204,13 @@ impl InterfaceParameters {
 /// The folders in which material files are looked for: `materials/` beside the case or in a folder
 /// above it, then in the working folder; a shipped one that none of them has is taken from the program.
 #[derive(Clone, Debug)]
-pub struct Shelf {
+pub struct MaterialLibrary {
     folders: Vec<PathBuf>,
     /// Texts that the program gives itself, before all files.
     own: BTreeMap<String, String>,
 }
 
-impl Shelf {
+impl MaterialLibrary {
     /// For a case file.
     pub fn beside(case: &Path) -> Self {
         let absolute = std::path::absolute(case).unwrap_or_else(|_| case.to_owned());

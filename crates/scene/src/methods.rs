@@ -1,7 +1,7 @@
 //! Which methods can solve a case, before it runs.
 
 use fretwork_core::geometry::space::Space;
-use fretwork_core::laws::demand::{Asked, Demand};
+use fretwork_core::laws::demand::{LawRequirements, Requirement};
 use fretwork_core::solve::choose::refusal;
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::step::Simulation;
@@ -18,7 +18,7 @@ pub enum Service {
 }
 
 /// What the interfaces of a scene ask for; none where a law's trial failed, which a step will tell of.
-pub struct Demands(Vec<(String, Option<Demand>)>);
+pub struct Demands(Vec<(String, Option<LawRequirements>)>);
 
 impl Demands {
     /// Asks the laws.
@@ -41,7 +41,7 @@ impl Demands {
     }
 
     /// Interfaces by name and what they ask for.
-    pub fn each(&self) -> impl Iterator<Item = (&str, Option<&Demand>)> {
+    pub fn each(&self) -> impl Iterator<Item = (&str, Option<&LawRequirements>)> {
         self.0.iter().map(|(name, d)| (name.as_str(), d.as_ref()))
     }
 
@@ -53,25 +53,27 @@ impl Demands {
             let (asked, reason) = match demand {
                 Some(demand) => {
                     let (rotation, cohesion) = (demand.rotation, demand.cohesion);
-                    let turns = refusal(method, true, false).map_or(Asked::Never, |_| rotation);
-                    let pulls = refusal(method, false, true).map_or(Asked::Never, |_| cohesion);
+                    let turns =
+                        refusal(method, true, false).map_or(Requirement::Never, |_| rotation);
+                    let pulls =
+                        refusal(method, false, true).map_or(Requirement::Never, |_| cohesion);
                     let most = turns.max(pulls);
                     (most, refusal(method, most == turns, most == pulls))
                 }
-                None => (Asked::Unseen, refusal(method, true, true)),
+                None => (Requirement::Unseen, refusal(method, true, true)),
             };
             let Some(reason) = reason else { continue };
             match asked {
-                Asked::Never => {}
-                Asked::Always => {
+                Requirement::Never => {}
+                Requirement::Always => {
                     return Service::Refuses(format!("interface `{name}`: {reason}"));
                 }
-                Asked::Sometimes => {
+                Requirement::Sometimes => {
                     may = Some(format!(
                         "may be refused, interface `{name}` asks for it in some contacts: {reason}"
                     ));
                 }
-                Asked::Unseen => {
+                Requirement::Unseen => {
                     may = may.or(Some(format!(
                         "may be refused, the laws of interface `{name}` decide at run time and did not ask for it in trials: {reason}"
                     )));
@@ -86,18 +88,18 @@ impl Demands {
 mod tests {
     use super::*;
 
-    fn service(rotation: Asked, cohesion: Asked, method: Method) -> Service {
-        let demand = Demand {
+    fn service(rotation: Requirement, cohesion: Requirement, method: Method) -> Service {
+        let demand = LawRequirements {
             rotation,
             cohesion,
-            ..Demand::default()
+            ..LawRequirements::default()
         };
         Demands(vec![("a".into(), Some(demand))]).service(method)
     }
 
     #[test]
     fn refuses_what_is_certain_and_warns_of_the_rest() {
-        use Asked::{Always, Never, Sometimes, Unseen};
+        use Requirement::{Always, Never, Sometimes, Unseen};
         for method in Method::ALL.iter().copied() {
             assert_eq!(service(Never, Never, method), Service::Serves);
             let other = !matches!(method, Method::Newton | Method::Interior);

@@ -129,15 +129,15 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
     let all: u64 = groups(case)
         .map(|(group, times)| group.len() as u64 * u64::from(times))
         .sum();
-    if all > MOST {
-        let message = format!("{all} phases with their repeats; a run has at most {MOST}");
+    if all > MAX_PHASES {
+        let message = format!("{all} phases with their repeats; a run has at most {MAX_PHASES}");
         return Err(Fault::new("phases", message));
     }
     Ok(())
 }
 
 /// Most phases of a run, repeats counted.
-const MOST: u64 = 1_000_000;
+const MAX_PHASES: u64 = 1_000_000;
 
 /// Refuses a repeat that goes nowhere.
 fn repeat(case: &Case, k: usize) -> Result<(), Fault> {

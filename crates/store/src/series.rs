@@ -26,7 +26,7 @@ impl<T> Default for Series<T> {
 
 impl<T> Series<T> {
     /// Most points; half as many remain at least.
-    pub const MOST: usize = 2048;
+    pub const MAX_POINTS: usize = 2048;
 
     /// Takes a point in.
     pub fn add(&mut self, point: T) {
@@ -36,7 +36,7 @@ impl<T> Series<T> {
             self.last = Some(point);
             return;
         }
-        if self.points.len() == Self::MOST {
+        if self.points.len() == Self::MAX_POINTS {
             let mut k = 0;
             self.points.retain(|_| {
                 k += 1;
@@ -72,12 +72,13 @@ mod tests {
             let points: Vec<u64> = series.points().copied().collect();
             assert_eq!(series.last().copied(), count.checked_sub(1));
             assert_eq!(points.last(), series.last());
-            if count <= Series::<u64>::MOST as u64 {
+            if count <= Series::<u64>::MAX_POINTS as u64 {
                 assert_eq!(points, (0..count).collect::<Vec<_>>());
                 continue;
             }
             assert!(
-                points.len() > Series::<u64>::MOST / 2 && points.len() <= Series::<u64>::MOST + 1
+                points.len() > Series::<u64>::MAX_POINTS / 2
+                    && points.len() <= Series::<u64>::MAX_POINTS + 1
             );
             let apart: Vec<u64> = points.windows(2).map(|w| w[1] - w[0]).collect();
             let (end, rest) = apart.split_last().unwrap();

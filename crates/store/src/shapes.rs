@@ -57,7 +57,7 @@ pub fn needed<S: Space>(s: &Simulation<S>) -> bool {
 fn shaped<S: Space>(s: &Simulation<S>) -> Vec<bool> {
     let mut parts = vec![0u32; s.bodies.len()];
     // A lone piece counts as two parts, as does a ball aside of the centre.
-    let aside = |b: &Ball<S>| 1 + u32::from(b.offset != S::Vector::null());
+    let aside = |b: &Ball<S>| 1 + u32::from(b.offset != S::Vector::zero());
     for ball in &s.shapes.balls {
         parts[ball.body as usize] += aside(ball);
     }

@@ -255,7 +255,7 @@ pub fn append<S: Space>(
         }
     }
     if loaded.case.circuit.is_some() {
-        let gone = of.iter().map(|b| f64::from(u8::from(s.bodies.gone[*b])));
+        let gone = of.iter().map(|b| f64::from(u8::from(s.bodies.removed[*b])));
         grains.data.push(gone.collect());
     }
     grains.data.extend(shear);
@@ -339,7 +339,7 @@ fn contacts<S: Space>(s: &Simulation<S>) -> Part {
         let bond = s.network.bond(contact);
         let status = if state == 1.0 {
             3.0
-        } else if contact.impulse == S::Vector::null() {
+        } else if contact.impulse == S::Vector::zero() {
             2.0 * state
         } else {
             1.0 + f64::from(u8::from(contact.slides))
@@ -378,7 +378,7 @@ fn bodies<S: Space>(s: &Simulation<S>) -> Part {
         data: vec![Vec::new(); 1],
         ..Part::default()
     };
-    let shown = |body: u32| !s.bodies.gone[body as usize];
+    let shown = |body: u32| !s.bodies.removed[body as usize];
     for surface in s.shapes.surfaces.iter().filter(|f| shown(f.body)) {
         let b = surface.body as usize;
         for chain in surface.shape.outline() {

@@ -104,8 +104,8 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     serious(ended, stopped(summary));
     serious("NOT FINITE", infinite(summary));
     serious("ENERGY DOES NOT ADD UP", ledger(summary));
-    serious("TOO FAST", summary.haste.warning());
-    serious("MOTION LOST", summary.haste.rounding_warning());
+    serious("TOO FAST", summary.step_size.warning());
+    serious("MOTION LOST", summary.step_size.rounding_warning());
     serious("ALIASED DRIVE", drives(summary, true));
     let missed = missed(summary);
     let generic = || missed.seen(summary.steps, summary.solver.tolerance);
@@ -280,8 +280,8 @@ mod tests {
             s.solver.unconverged_steps = 12;
             s.solver.uncoupled_steps = 1;
             s.solver.overlap_after = 0.5;
-            s.haste.late = 3;
-            s.haste.deepest = 0.2;
+            s.step_size.late = 3;
+            s.step_size.deepest = 0.2;
             s.energy.kinetic = f64::NAN;
             s.energy_residual_relative = 1e-3;
             s.phases_missed = vec!["shear".to_owned()];

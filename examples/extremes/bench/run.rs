@@ -56,13 +56,13 @@ impl Ran {
         let mut told = Vec::new();
         let stopped = self.stopped.iter().cloned();
         told.extend(stopped.map(|words| (Cause::Stopped, words)));
-        let haste = &s.network.haste;
+        let step_size = &s.network.step_size;
         // One sentence tells of all of them.
-        let warning = haste.warning().unwrap_or_default();
+        let warning = step_size.warning().unwrap_or_default();
         let causes = [
-            (haste.late, Cause::Late),
-            (haste.unwatched_steps, Cause::Unwatched),
-            (haste.passed, Cause::Passed),
+            (step_size.late, Cause::Late),
+            (step_size.unwatched_steps, Cause::Unwatched),
+            (step_size.passed, Cause::Passed),
         ];
         let causes = causes.into_iter().filter(|(times, _)| *times > 0);
         told.extend(causes.map(|(_, cause)| (cause, warning.clone())));

@@ -3,7 +3,7 @@
 use super::super::bench::{
     Expected, Group, HELD, Row, Sketch, ball, grains, place, plane, refused, volume, watch,
 };
-use fretwork::geometry::space::{Plane, Solid};
+use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
 
@@ -11,14 +11,14 @@ pub const STIFFNESS: Group = Group {
     name: "bond stiffness",
     criterion: "a ball hangs on it: the ledger closes to 1e-9, the elongation is below 2 m g/K (theta = 1/2), at last m g/K to 1e-6 \
                 (theta = 1)",
-    runs: &[(2, stiffness::<Plane>), (3, stiffness::<Solid>)],
+    runs: &[(2, stiffness::<Dim2>), (3, stiffness::<Dim3>)],
     quick: true,
 };
 
 pub const TORN: Group = Group {
     name: "all bonds break",
     criterion: "all break in one step; the ledger closes to 1e-9; what is left moves on",
-    runs: &[(2, torn::<Plane>), (3, torn::<Solid>)],
+    runs: &[(2, torn::<Dim2>), (3, torn::<Dim3>)],
     quick: true,
 };
 
@@ -117,7 +117,7 @@ fn torn<S: Dimensional>() -> Vec<Row> {
         };
         let mut at_once = 0;
         let ran = watch(&mut s, 200, |s| {
-            at_once = at_once.max(s.network.breaks.len() as u64);
+            at_once = at_once.max(s.network.bond_breaks.len() as u64);
         });
         let (made, broken) = (s.network.bonds_made(), s.network.bonds_broken());
         let residual = s.energy.relative_residual();

@@ -1,20 +1,20 @@
 //! Blocks face to face: walls with more unknowns than motions, and faces that are flush.
 
 use super::super::bench::{G, Group, HELD, Row, Sketch, carried, floor, go, refused};
-use fretwork::geometry::space::{Plane, Solid, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
 
 pub const WALL: Group = Group {
     name: "hyperstatic wall",
     criterion: "the floor bears the weight to 1e-6, no block moves faster than 1e-6 m/s or turns",
-    runs: &[(2, wall::<Plane>), (3, wall::<Solid>)],
+    runs: &[(2, wall::<Dim2>), (3, wall::<Dim3>)],
     quick: true,
 };
 
 pub const FACES: Group = Group {
     name: "aligned faces",
     criterion: "the floor bears the weight to 1e-6, overlap below 1e-9 of the block, no block turns",
-    runs: &[(2, faces::<Plane>), (3, faces::<Solid>)],
+    runs: &[(2, faces::<Dim2>), (3, faces::<Dim3>)],
     quick: true,
 };
 
@@ -54,7 +54,7 @@ fn standing<S: Dimensional>(value: String, blocks: &[String], width: f64, mu: f6
     // How far a turn moved the ends of the axes.
     let turned = |(a, b): (&S::Rotation, &S::Rotation)| {
         let ends = (0..S::D).map(|k| {
-            let mut axis = S::Vector::null();
+            let mut axis = S::Vector::zero();
             axis[k] = 1.0;
             (S::rotate(a, &axis) - S::rotate(b, &axis)).norm()
         });

@@ -4,21 +4,21 @@ use super::super::bench::Cause::Refused;
 use super::super::bench::{
     Expected, Group, HELD, Row, Sketch, ball, floor, go, grains, overlap, place, refused, told,
 };
-use fretwork::geometry::space::{Plane, Solid, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
 
 pub const COINCIDENT: Group = Group {
     name: "coincident centres",
     criterion: "refused at the start; where motion would bring them there within a step they meet before: no kinetic energy gained, no overlap",
-    runs: &[(2, coincident::<Plane>), (3, coincident::<Solid>)],
+    runs: &[(2, coincident::<Dim2>), (3, coincident::<Dim3>)],
     quick: true,
 };
 
 pub const LENGTH: Group = Group {
     name: "length",
     criterion: "a heap of balls scaled in length by L, a power of 4, and in time by its root: the same sweeps in each step, the same places over L to the last bit",
-    runs: &[(2, lengths::<Plane>), (3, lengths::<Solid>)],
+    runs: &[(2, lengths::<Dim2>), (3, lengths::<Dim3>)],
     quick: true,
 };
 

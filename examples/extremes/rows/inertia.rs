@@ -5,7 +5,7 @@ use super::super::bench::{
     Expected, G, Group, HELD, Row, Sketch, ball, carried, floor, go, grains, overlap, place,
     refused, told, volume,
 };
-use fretwork::geometry::space::{Plane, Solid, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
 
 /// A tolerance bounds the square of the share of the work that is not carried: docs/design.md. A share of the weight that
@@ -16,14 +16,14 @@ const BEARS: &str = "the floor bears (m1 + m2) g and the joint m2 g to the root 
 pub const MASS: Group = Group {
     name: "mass ratio",
     criterion: BEARS,
-    runs: &[(2, masses::<Plane>), (3, masses::<Solid>)],
+    runs: &[(2, masses::<Dim2>), (3, masses::<Dim3>)],
     quick: true,
 };
 
 pub const SIZE: Group = Group {
     name: "size ratio",
     criterion: BEARS,
-    runs: &[(2, sizes::<Plane>), (3, sizes::<Solid>)],
+    runs: &[(2, sizes::<Dim2>), (3, sizes::<Dim3>)],
     quick: true,
 };
 
@@ -154,7 +154,7 @@ fn disks() -> Vec<Row> {
         (10_000, "Auto", HELD),
         (10_000, "Interior", HELD),
     ]
-    .map(column::<Plane>)
+    .map(column::<Dim2>)
     .into()
 }
 
@@ -165,6 +165,6 @@ fn spheres() -> Vec<Row> {
         (1000, "Auto", HELD),
         (10_000, "Auto", HELD),
     ]
-    .map(column::<Solid>)
+    .map(column::<Dim3>)
     .into()
 }

@@ -1,21 +1,21 @@
 //! Next to nothing: no gravity, no grains, one grain, one contact.
 
 use super::super::bench::{G, Group, HELD, Row, Sketch, ball, floor, go, grains, place, refused};
-use fretwork::geometry::space::{Plane, Solid};
+use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
 
 pub const WEIGHTLESS: Group = Group {
     name: "no gravity",
     criterion: "balls at rest that touch stay at rest to the last bit; a ball that moves keeps its velocity to the last bit",
-    runs: &[(2, weightless::<Plane>), (3, weightless::<Solid>)],
+    runs: &[(2, weightless::<Dim2>), (3, weightless::<Dim3>)],
     quick: true,
 };
 
 pub const FEW: Group = Group {
     name: "few bodies",
     criterion: "steps, all finite; a free ball falls by g t^2/2 to 1e-12; a contact bears m g to 1e-9",
-    runs: &[(2, few::<Plane>), (3, few::<Solid>)],
+    runs: &[(2, few::<Dim2>), (3, few::<Dim3>)],
     quick: true,
 };
 

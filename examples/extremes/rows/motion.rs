@@ -2,21 +2,21 @@
 
 use super::super::bench::Cause::Passed;
 use super::super::bench::{Expected, Group, HELD, Row, Sketch, go, place, refused, told};
-use fretwork::geometry::space::{Plane, Solid};
+use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
 pub const SPEED: Group = Group {
     name: "speed",
     criterion: "a ball thrown at a post stays in front of it, and energy is not created",
-    runs: &[(2, speeds::<Plane>), (3, speeds::<Solid>)],
+    runs: &[(2, speeds::<Dim2>), (3, speeds::<Dim3>)],
     quick: true,
 };
 
 pub const CORNERS: Group = Group {
     name: "corners at speed",
     criterion: "a box thrown at a profile or a height field stays in front of it, and energy is not created",
-    runs: &[(2, corners::<Plane>), (3, corners::<Solid>)],
+    runs: &[(2, corners::<Dim2>), (3, corners::<Dim3>)],
     quick: true,
 };
 

@@ -5,21 +5,21 @@ use super::super::bench::{
     G, Group, HELD, Row, Sketch, ball, carried, floor, go, grains, held_though, overlap, place,
     plane, refused, volume, watch,
 };
-use fretwork::geometry::space::{Plane, Solid, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
 use std::f64::consts::PI;
 
 pub const FRICTION: Group = Group {
     name: "friction",
     criterion: "a block on 30 degrees has v = max(0, sin - mu cos) g t down the slope and nothing across, to 1e-9 of g t",
-    runs: &[(2, friction::<Plane>), (3, friction::<Solid>)],
+    runs: &[(2, friction::<Dim2>), (3, friction::<Dim3>)],
     quick: true,
 };
 
 pub const WEDGE: Group = Group {
     name: "wedge",
     criterion: "without friction each side bears m g/(2 sin a) to 1e-6; with it the sides together m g",
-    runs: &[(2, wedge::<Plane>), (3, wedge::<Solid>)],
+    runs: &[(2, wedge::<Dim2>), (3, wedge::<Dim3>)],
     quick: true,
 };
 
@@ -33,7 +33,7 @@ pub const ROD: Group = Group {
 pub const TOLERANCE: Group = Group {
     name: "tolerance 0",
     criterion: "ends, with max_iterations or an error below rounding, and the floor bears the weight to 1e-12",
-    runs: &[(2, tolerance::<Plane>), (3, tolerance::<Solid>)],
+    runs: &[(2, tolerance::<Dim2>), (3, tolerance::<Dim3>)],
     quick: true,
 };
 
@@ -60,7 +60,7 @@ fn friction<S: Dimensional>() -> Vec<Row> {
             Err(e) => return refused(value, HELD, &e),
         };
         // In space down a slope between the axes.
-        let mut slope = S::Vector::null();
+        let mut slope = S::Vector::zero();
         slope[0] = if S::D == 2 { 1.0 } else { 0.8 };
         if S::D == 3 {
             slope[1] = 0.6;
@@ -122,7 +122,7 @@ fn rod() -> Vec<Row> {
         let sketch = Sketch {
             mu,
             step: 1e-4,
-            bodies: floor::<Plane>(),
+            bodies: floor::<Dim2>(),
             grains: format!(
                 "Polygons(material: \"m0\", grains: [(at: [0.0, 0.0], points: [(0.0, 0.0), (1.0, 0.0), (1.0, 0.002), \
                  (0.0, 0.002)], angle: 1.1071487177940904, velocity: [{speed:?}, 0.0])])"
@@ -130,7 +130,7 @@ fn rod() -> Vec<Row> {
             ..Sketch::default()
         };
         let value = format!("mu = {mu}, v = {speed} m/s");
-        let mut s = match sketch.build::<Plane>() {
+        let mut s = match sketch.build::<Dim2>() {
             Ok(s) => s,
             Err(e) => return refused(value, HELD, &e),
         };

@@ -5,20 +5,20 @@ use super::super::bench::{
     Group, HELD, Row, Sketch, ball, floor, go, grains, held_though, overlap, place, refused, told,
     up, watch,
 };
-use fretwork::geometry::space::{Plane, Solid, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
 
 pub const STEP: Group = Group {
     name: "step",
     criterion: "20 falling disks, 40 falling spheres, 200 steps: energy never above the start, the ledger closes to 1e-9, overlap below 1e-3 of the radius",
-    runs: &[(2, steps::<Plane>), (3, steps::<Solid>)],
+    runs: &[(2, steps::<Dim2>), (3, steps::<Dim3>)],
     quick: true,
 };
 
 pub const JUMP: Group = Group {
     name: "jump in time",
     criterion: "the ledger closes to 1e-9 where the motion or force of a lid jumps, and the lid has gone its way to 1e-9",
-    runs: &[(2, jumps::<Plane>), (3, jumps::<Solid>)],
+    runs: &[(2, jumps::<Dim2>), (3, jumps::<Dim3>)],
     quick: true,
 };
 
@@ -168,16 +168,16 @@ fn jumps<S: Dimensional>() -> Vec<Row> {
 fn many() -> Vec<Row> {
     let r = 0.1f64;
     let high = 3f64.sqrt() * r;
-    let at = |x: f64, up: f64| ball(&place::<Plane>(x, 0.0, up), r);
+    let at = |x: f64, up: f64| ball(&place::<Dim2>(x, 0.0, up), r);
     let sketch = Sketch {
         // It stands from 2 - sqrt 3 = 0.268 on.
         mu: 0.3,
-        bodies: floor::<Plane>(),
+        bodies: floor::<Dim2>(),
         grains: grains("m0", &[at(0.0, r), at(2.0 * r, r), at(r, r + high)]),
         ..Sketch::default()
     };
     let value = "1,000,000 steps of 1 ms".to_owned();
-    let mut s = match sketch.build::<Plane>() {
+    let mut s = match sketch.build::<Dim2>() {
         Ok(s) => s,
         Err(e) => return vec![refused(value, HELD, &e)],
     };

@@ -5,7 +5,7 @@ use crate::contact::Bond;
 use crate::geometry::shape::Ball;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::Interface;
-use crate::laws::demand::{Asked, Demand};
+use crate::laws::demand::{LawRequirements, Requirement};
 use crate::record::views;
 use crate::scene::build::Built;
 use crate::scene::case::{BodySpec, Case};
@@ -116,11 +116,15 @@ impl Features {
 
     fn laws<S: Space>(&mut self, s: &Simulation<S>) {
         let demands = Demands::of(s);
-        let names = |which: fn(&Demand) -> Asked| {
+        let names = |which: fn(&LawRequirements) -> Requirement| {
             let each = demands.each().filter_map(|(name, demand)| {
-                let asked = demand.map_or(Asked::Unseen, which);
-                let sure = if asked == Asked::Unseen { "?" } else { "" };
-                (asked != Asked::Never).then(|| format!("{name}{sure}"))
+                let asked = demand.map_or(Requirement::Unseen, which);
+                let sure = if asked == Requirement::Unseen {
+                    "?"
+                } else {
+                    ""
+                };
+                (asked != Requirement::Never).then(|| format!("{name}{sure}"))
             });
             let each: Vec<String> = each.collect();
             (!each.is_empty()).then(|| format!("in {}", each.join(", ")))
@@ -267,10 +271,10 @@ impl Features {
     }
 }
 
-fn asks<S: Space>(s: &Simulation<S>, which: fn(&Demand) -> Asked) -> bool {
+fn asks<S: Space>(s: &Simulation<S>, which: fn(&LawRequirements) -> Requirement) -> bool {
     let demands = Demands::of(s);
     let mut each = demands.each();
-    each.any(|(_, d)| d.is_none_or(|d| which(d) != Asked::Never))
+    each.any(|(_, d)| d.is_none_or(|d| which(d) != Requirement::Never))
 }
 
 /// Bytes that a grain and a contact take, from the types that hold them.

@@ -69,8 +69,8 @@ pub fn budget(args: &TradeArgs, loaded: &Loaded, scene: Scene) -> Result<(), Fai
         return Ok(());
     }
     match scene {
-        Scene::Plane(built) => budget_of(args, loaded, *built),
-        Scene::Solid(built) => budget_of(args, loaded, *built),
+        Scene::Dim2(built) => budget_of(args, loaded, *built),
+        Scene::Dim3(built) => budget_of(args, loaded, *built),
     }
 }
 

@@ -103,7 +103,7 @@ impl<S: Space> Account<S> {
         results: &mut Results,
         last: bool,
     ) -> Result<(), RunError> {
-        for b in &s.network.breaks {
+        for b in &s.network.bond_breaks {
             let at = s.shapes.periodic.wrapped(b.place).padded();
             let id = |k: usize| s.bodies.id[b.bodies[k] as usize] as f64;
             self.broken += 1;

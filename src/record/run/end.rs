@@ -31,7 +31,7 @@ impl<S: Space> Recorder<'_, S> {
         } else {
             0.0
         };
-        summary.haste = n.haste.clone();
+        summary.step_size = n.step_size.clone();
         summary.energy = s.energy;
         summary.energy_residual_relative = s.energy.relative_residual();
         summary.solver.coupling_iterations_mean = self.couplings as f64 / s.steps.max(1) as f64;

@@ -34,10 +34,10 @@ impl<S: Dimensional> Recorder<'_, S> {
             return false;
         };
         let s = &mut self.simulation;
-        let (number, stands_for) = (jumps.number(), jumps.stands_for());
+        let (number, cycle_multiplier) = (jumps.number(), jumps.cycle_multiplier());
         let mut work = 0.0;
         if let Some(cycle) = cycles.list.last_mut().filter(|c| c.cycle == number) {
-            cycle.jumped = stands_for - 1;
+            cycle.jumped = cycle_multiplier - 1;
             work = cycle.work;
         }
         jumps.follow(s, cycles.number(s.time + s.scheme.h), self.worn, work)

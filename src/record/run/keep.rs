@@ -6,7 +6,7 @@ use super::flows::Flows;
 use super::jumps::Jumps;
 use super::{Recorder, RunError, unwritable};
 use crate::geometry::space::Space;
-use crate::record::checkpoint::{Kind, LAST, ResumeError, Stop};
+use crate::record::checkpoint::{Kind, LAST, ResumeError, ResumePoint};
 use crate::record::code::{CodeError, decode, encode};
 use crate::record::friction::Cycles;
 use crate::record::layer::Layer;
@@ -117,7 +117,7 @@ impl<S: Dimensional> Recorder<'_, S> {
     }
 
     /// Takes up the state of a run that was stopped, and its rows up to there, in a file that then takes its place.
-    pub(super) fn take_up(&mut self, stop: Stop) -> Result<(), RunError> {
+    pub(super) fn take_up(&mut self, stop: ResumePoint) -> Result<(), RunError> {
         let path = stop.kept.path().to_owned();
         let refused = |source: CodeError| ResumeError::State {
             path: path.clone(),

@@ -23,10 +23,10 @@ use self::account::Account;
 use self::error::unwritable;
 use self::flows::Flows;
 use self::jumps::Jumps;
-use self::rescue::Refuge;
+use self::rescue::EmergencySave;
 use self::stamps::{density_of, stamps};
 use super::biaxial::Biaxial;
-use super::checkpoint::{Found, Identity, Keeper, Kind, Stop, find};
+use super::checkpoint::{CheckpointWriter, Found, Identity, Kind, ResumePoint, find};
 use super::friction::{Cycles, Sample, State as Cumulated};
 use super::layer::Layer;
 use super::measure::Measures;
@@ -86,7 +86,7 @@ pub fn run<S: Dimensional>(
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
-    through(Recorder::new(loaded, built, options, None)?, progress)
+    execute(Recorder::new(loaded, built, options, None)?, progress)
 }
 
 /// What the folder of the results holds of this case, to go on from.
@@ -106,17 +106,17 @@ pub fn stopped<S: Space>(
 ///
 /// # Errors
 /// As [`run`], or a state that the case cannot take up.
-pub fn go_on<S: Dimensional>(
+pub fn resume<S: Dimensional>(
     loaded: &Loaded,
     built: Built<S>,
     options: &RunOptions,
-    stop: Stop,
+    stop: ResumePoint,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
-    through(Recorder::new(loaded, built, options, Some(stop))?, progress)
+    execute(Recorder::new(loaded, built, options, Some(stop))?, progress)
 }
 
-fn through<S: Dimensional>(
+fn execute<S: Dimensional>(
     mut recorder: Recorder<'_, S>,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
@@ -161,11 +161,11 @@ struct Recorder<'a, S: Space> {
     /// Steps of the run, and over how many of them states and pictures are spread: those it was begun with.
     total: u64,
     spread: u64,
-    keeper: Keeper,
+    keeper: CheckpointWriter,
     /// Time that the run took before it was stopped, of the clock and of processors; and since when it runs now.
     spent: (Duration, Duration),
     /// Where the watch over plugins finds the files during a step.
-    refuge: Refuge,
+    refuge: EmergencySave,
     clock: Instant,
     processor: ProcessTime,
     density: f64,
@@ -178,13 +178,13 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         loaded: &'a Loaded,
         built: Built<S>,
         options: &RunOptions,
-        stop: Option<Stop>,
+        stop: Option<ResumePoint>,
     ) -> Result<Self, RunError> {
         let frames = options.out.join("frames");
         std::fs::create_dir_all(&frames).map_err(|e| unwritable(&frames, &e))?;
         let case = &loaded.case;
         let number = stop.as_ref().map_or(0, |s| s.number + 1);
-        let keeper = Keeper::new(
+        let keeper = CheckpointWriter::new(
             case.output.checkpoint,
             &Identity::of(loaded, &built)?,
             number,
@@ -280,7 +280,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             spread: total,
             keeper,
             spent: (Duration::ZERO, Duration::ZERO),
-            refuge: Refuge::new(options.out.clone()),
+            refuge: EmergencySave::new(options.out.clone()),
             clock: Instant::now(),
             processor: ProcessTime::now(),
             density: density_of(loaded, first.is_some()),
@@ -386,7 +386,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let h = s.scheme.h;
         if let (Some(sample), Some((cycles, _))) = (self.sample, &mut self.cycles) {
             self.slide += sample.slide;
-            self.load_path += s.network.stands_for * sample.p * sample.slide.abs();
+            self.load_path += s.network.cycle_multiplier * sample.p * sample.slide.abs();
             cycles.add(&sample, h, before, after, damage);
         }
         let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);

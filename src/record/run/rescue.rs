@@ -21,7 +21,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// All that can be written without the simulation.
-struct Left {
+struct UnsavedOutputs {
     table: Table,
     results: Results,
     cycles: Option<(Cycles, usize)>,
@@ -32,25 +32,25 @@ struct Left {
 
 /// The place where it lies during a step.
 #[derive(Debug)]
-pub(super) struct Refuge {
-    left: Arc<Mutex<Option<Left>>>,
+pub(super) struct EmergencySave {
+    left: Arc<Mutex<Option<UnsavedOutputs>>>,
     _ready: Ready,
 }
 
-impl std::fmt::Debug for Left {
+impl std::fmt::Debug for UnsavedOutputs {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Left").finish_non_exhaustive()
     }
 }
 
-impl Refuge {
+impl EmergencySave {
     /// An empty place that the watch knows.
     pub fn new(out: PathBuf) -> Self {
         let left = Arc::new(Mutex::new(None));
         let place = Arc::clone(&left);
         let (clock, processor) = (Instant::now(), ProcessTime::now());
         let ready = watch::rescue(move |who| {
-            let left: Option<Left> = place.lock().ok().and_then(|mut l| l.take());
+            let left: Option<UnsavedOutputs> = place.lock().ok().and_then(|mut l| l.take());
             left.is_some_and(|mut left| {
                 left.summary.wall_seconds = (left.spent.0 + clock.elapsed()).as_secs_f64();
                 left.summary.cpu_seconds = (left.spent.1 + processor.elapsed()).as_secs_f64();
@@ -64,7 +64,7 @@ impl Refuge {
     }
 }
 
-impl Left {
+impl UnsavedOutputs {
     /// Writes it; whether all of it is on disk.
     fn write(&mut self, who: &str, out: &std::path::Path) -> bool {
         let summary = &mut self.summary;
@@ -83,7 +83,7 @@ impl<S: Space> Recorder<'_, S> {
     /// A step, during which the watch can save what was recorded.
     pub(super) fn step(&mut self) -> Result<StepReport, StepError> {
         self.count();
-        let left = Left {
+        let left = UnsavedOutputs {
             table: std::mem::take(&mut self.table),
             results: std::mem::take(&mut self.results),
             cycles: self.cycles.take(),

@@ -4,13 +4,13 @@ use super::face::opens_by_its_law;
 use super::{scene, step};
 use fretwork::contact::Key;
 use fretwork::geometry::convex::Core;
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::step::Simulation;
 use nalgebra::Vector2;
 use std::collections::HashMap;
 
 /// Corners of a piece where it stands (m).
-fn corners(s: &Simulation<Plane>, piece: usize) -> Vec<Vector2<f64>> {
+fn corners(s: &Simulation<Dim2>, piece: usize) -> Vec<Vector2<f64>> {
     let piece = &s.shapes.pieces[piece];
     let b = piece.body as usize;
     let core = piece.core.turned(&s.bodies.rotation[b]);
@@ -37,13 +37,13 @@ fn common(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
 
 #[test]
 fn a_wall_in_running_bond() {
-    let s = scene::<Plane>("block_wall", &[]);
+    let s = scene::<Dim2>("block_wall", &[]);
     assert_eq!(s.shapes.pieces.len(), 22);
     let density = s.bodies.mass[0] / 0.02;
     let mass: f64 = (0..22).map(|b| s.bodies.mass[b]).sum();
     assert!((mass / (density * 0.8 * 0.5) - 1.0).abs() < 1e-14);
     let open = ["grains.0.gap=0.01", "grains.0.at=[0.3, 0.2]"];
-    let s = scene::<Plane>("block_wall", &open);
+    let s = scene::<Dim2>("block_wall", &open);
     for k in 0..22 {
         let points = corners(&s, k);
         let of = |axis: usize| points.iter().map(move |p| p[axis]);
@@ -61,9 +61,9 @@ fn a_wall_in_running_bond() {
 #[test]
 fn neighbours_are_bonded_over_their_sides_and_nothing_else_is() {
     for rounds in ["grains.0.rounds=0", "grains.0.rounds=5"] {
-        let mut s = scene::<Plane>("verification/voronoi_plate", &[rounds]);
+        let mut s = scene::<Dim2>("verification/voronoi_plate", &[rounds]);
         let area: f64 = s.bodies.mass[..150].iter().sum();
-        let density = scene::<Plane>("block_wall", &[]).bodies.mass[0] / 0.02;
+        let density = scene::<Dim2>("block_wall", &[]).bodies.mass[0] / 0.02;
         assert!((area / (density * 0.06) - 1.0).abs() < 1e-13);
         step(&mut s);
         let mut held: HashMap<(u32, u32), f64> = HashMap::new();
@@ -96,5 +96,5 @@ fn neighbours_are_bonded_over_their_sides_and_nothing_else_is() {
 
 #[test]
 fn a_face_opens_by_its_law_over_its_whole_length() {
-    opens_by_its_law::<Plane>("verification/bonded_face", 2, 0.5, 2e-15);
+    opens_by_its_law::<Dim2>("verification/bonded_face", 2, 0.5, 2e-15);
 }

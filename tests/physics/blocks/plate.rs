@@ -1,17 +1,17 @@
 //! A bonded Voronoi plate that tears pays for its crack.
 
 use super::{scene, step};
-use fretwork::geometry::space::{Plane, Solid};
+use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
 
 #[test]
 fn a_plate_pays_for_its_crack() {
-    pays::<Plane>("verification/voronoi_plate", 8e-4, 20);
+    pays::<Dim2>("verification/voronoi_plate", 8e-4, 20);
 }
 
 #[test]
 fn a_plate_in_space_pays_for_its_crack() {
-    pays::<Solid>("verification/voronoi_plate_3d", 6e-4, 40);
+    pays::<Dim3>("verification/voronoi_plate_3d", 6e-4, 40);
 }
 
 /// Damage is coupled explicitly: what is missing goes with the step. More than `cracked` points break until `end` (s).

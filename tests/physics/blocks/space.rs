@@ -4,7 +4,7 @@ use super::face::opens_by_its_law;
 use super::{close, driven, scene, step};
 use fretwork::contact::Key;
 use fretwork::geometry::convex::Core;
-use fretwork::geometry::space::Solid;
+use fretwork::geometry::space::Dim3;
 use fretwork::record::measure::Measures;
 use fretwork::record::run::write_outputs;
 use fretwork::record::statistics::Table;
@@ -16,7 +16,7 @@ use std::collections::HashMap;
 type V = Vector3<f64>;
 
 /// Faces of a piece where it stands (m).
-fn faces(s: &Simulation<Solid>, piece: usize) -> Vec<Vec<V>> {
+fn faces(s: &Simulation<Dim3>, piece: usize) -> Vec<Vec<V>> {
     let piece = &s.shapes.pieces[piece];
     let b = piece.body as usize;
     let core = piece.core.turned(&s.bodies.rotation[b]);
@@ -57,7 +57,7 @@ const WALL: [&str; 5] = [
 
 #[test]
 fn a_wall_in_running_bond() {
-    let s = scene::<Solid>("block_wall", &WALL);
+    let s = scene::<Dim3>("block_wall", &WALL);
     assert_eq!(s.shapes.pieces.len(), 22);
     let density = s.bodies.mass[0] / (0.02 * 0.15);
     let mass: f64 = (0..22).map(|b| s.bodies.mass[b]).sum();
@@ -82,7 +82,7 @@ fn a_wall_stands_below_its_angle_of_friction_and_slides_above() {
     for (mu, slides) in [(0.4, false), (0.3, true)] {
         let mu_set = format!("interfaces.joints.parameters.contact.mu={mu}");
         let sets = [&WALL[..], &[mu_set.as_str()]].concat();
-        let mut s = scene::<Solid>("block_wall", &sets);
+        let mut s = scene::<Dim3>("block_wall", &sets);
         while s.time < 0.05 {
             step(&mut s);
         }
@@ -96,7 +96,7 @@ fn a_wall_stands_below_its_angle_of_friction_and_slides_above() {
 
 #[test]
 fn a_face_opens_by_its_law_over_its_whole_area() {
-    opens_by_its_law::<Solid>("verification/bonded_face_3d", 4, 0.2, 1e-13);
+    opens_by_its_law::<Dim3>("verification/bonded_face_3d", 4, 0.2, 1e-13);
 }
 
 /// Pulled by u, bent by two small angles and twisted: at the four corners (±a, ±b) of the face stand springs of a
@@ -114,7 +114,7 @@ fn a_face_that_is_bent_and_twisted_resists_at_its_corners() {
     // The grip turns about its centre, half a metre above the face: the face follows sideways, and is held there.
     let (dx, dy) = (later(0.5 * ry), later(-0.5 * rx));
     let set = format!("bodies.grip.dofs=(x: {dx}, y: {dy}, z: {z}, rx: {x}, ry: {y}, rz: {t})");
-    let mut s = scene::<Solid>("verification/bonded_face_3d", &[&set]);
+    let mut s = scene::<Dim3>("verification/bonded_face_3d", &[&set]);
     let grip = driven(&s, "grip");
     while s.time < 4.2e-6 {
         step(&mut s);
@@ -154,10 +154,10 @@ fn a_face_that_is_bent_and_twisted_resists_at_its_corners() {
 #[test]
 fn neighbours_are_bonded_over_their_faces_and_nothing_else_is() {
     for rounds in ["grains.0.rounds=0", "grains.0.rounds=5"] {
-        let mut s = scene::<Solid>("verification/voronoi_plate_3d", &[rounds]);
+        let mut s = scene::<Dim3>("verification/voronoi_plate_3d", &[rounds]);
         let cells = s.shapes.pieces.len() - 2;
         assert_eq!(cells, 60);
-        let density = scene::<Solid>("block_wall", &WALL).bodies.mass[0] / (0.02 * 0.15);
+        let density = scene::<Dim3>("block_wall", &WALL).bodies.mass[0] / (0.02 * 0.15);
         let mass: f64 = s.bodies.mass[..cells].iter().sum();
         assert!((mass / (density * 0.12 * 0.08 * 0.04) - 1.0).abs() < 1e-13);
         step(&mut s);
@@ -202,7 +202,7 @@ fn blocks_are_measured() {
     };
     let mut scaled = Measures::new(std::slice::from_ref(&mass), 1e3);
     let mut mass = Measures::new(&[mass], 1.0);
-    let mut s = scene::<Solid>("block_wall", &WALL);
+    let mut s = scene::<Dim3>("block_wall", &WALL);
     let whole: f64 = s.bodies.mass[..22].iter().sum();
     // Centres of three of the five courses are above.
     assert!(close(mass.sample(&s)[0], 0.6 * whole, 1e-14));
@@ -246,7 +246,7 @@ fn blocks_are_measured() {
         "grains=[Polyhedra(material: \"grain\", grains: [{}])]",
         stairs.join(", ")
     );
-    let mut s = scene::<Solid>("block_wall", &[WALL[0], WALL[1], WALL[2], &grains]);
+    let mut s = scene::<Dim3>("block_wall", &[WALL[0], WALL[1], WALL[2], &grains]);
     step(&mut s);
     let slope = MeasureSpec::Slope {
         name: name(),

@@ -2,7 +2,7 @@
 //! have, when and which.
 
 use super::bench::{G, Sketch, ball, floor, grains, place};
-use fretwork::geometry::space::{Plane, Solid, Space, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
 
@@ -26,7 +26,7 @@ fn go<S: Space>(s: &mut Simulation<S>, steps: usize) {
 
 fn momentum<S: Space>(s: &Simulation<S>) -> S::Vector {
     let bodies = s.bodies.grains();
-    bodies.fold(S::Vector::null(), |p, b| {
+    bodies.fold(S::Vector::zero(), |p, b| {
         p + s.bodies.velocity[b] * s.bodies.mass[b]
     })
 }
@@ -39,7 +39,7 @@ fn moving<S: Space>(s: &Simulation<S>) -> usize {
 
 /// No warning: nothing was passed through, nothing was seen late.
 fn silent<S: Space>(s: &Simulation<S>) {
-    assert_eq!(s.network.haste.warning(), None);
+    assert_eq!(s.network.step_size.warning(), None);
 }
 
 /// A blade of half the grains' thickness is driven by ten times its thickness a step along a row of grains.
@@ -48,7 +48,7 @@ fn a_driven_blade_takes_along_what_it_meets() {
     let row: Vec<String> = (0..10)
         .map(|k| ball(&format!("[{}, 0.0]", 0.05 + 0.1 * f64::from(k)), 0.01))
         .collect();
-    let mut s = built::<Plane>(&Sketch {
+    let mut s = built::<Dim2>(&Sketch {
         bodies: "(name: \"blade\", material: \"m0\", shapes: [Polygon(points: [(-0.005,-0.1),(0.005,-0.1),(0.005,0.1),(-0.005,0.1)])], \
                  position: [-0.1, 0.0], dofs: (x: Velocity(Constant(100.0)))),"
             .to_owned(),
@@ -73,7 +73,7 @@ fn a_thin_capsule_does_not_fall_through_a_row_of_grains() {
     let row: Vec<String> = (0..9)
         .map(|k| ball(&format!("[{}, 0.0]", -0.4 + 0.1 * f64::from(k)), 0.01))
         .collect();
-    let mut s = built::<Plane>(&Sketch {
+    let mut s = built::<Dim2>(&Sketch {
         grains: format!(
             "Clusters(material: \"m0\", grains: [(at: [0.0, 0.53], shapes: [Capsule(from: (-0.5, 0.0), to: (0.5, 0.0), \
              radius: 0.005)], velocity: [0.0, -200.0])]), {}",
@@ -113,7 +113,7 @@ fn a_spinning_rod_hits_the_grain_in_its_way() {
         grains: grains("m0", std::slice::from_ref(&target)),
         ..still()
     };
-    let mut s = built::<Plane>(&paddle);
+    let mut s = built::<Dim2>(&paddle);
     go(&mut s, 3);
     let v = s.bodies.velocity[0];
     // Pushed in the sense of the rotation, no faster than where it was touched.
@@ -121,7 +121,7 @@ fn a_spinning_rod_hits_the_grain_in_its_way() {
     assert!(along > 1.0 && along < 1.5 * 300.0 * 0.5, "{v:?}");
     silent(&s);
 
-    let mut s = built::<Plane>(&Sketch {
+    let mut s = built::<Dim2>(&Sketch {
         bodies: String::new(),
         grains: format!(
             "Clusters(material: \"m0\", grains: [(at: [0.0, 0.0], shapes: [{rod}], spin: [300.0])]), {}",
@@ -172,8 +172,8 @@ fn head_on<S: Dimensional>() {
 
 #[test]
 fn fast_balls_meet_head_on() {
-    head_on::<Plane>();
-    head_on::<Solid>();
+    head_on::<Dim2>();
+    head_on::<Dim3>();
 }
 
 /// Two balls that pass beside each other keep their velocities to the last bit, however near the line of their centres is to
@@ -182,7 +182,7 @@ fn fast_balls_meet_head_on() {
 fn fast_balls_that_miss_each_other_do_not_meet() {
     for (x, aside) in [(0.1, 0.0201), (0.05, 0.03), (0.4, 0.021), (0.021, 0.0205)] {
         let moving = "(at: [0.0, 0.0, 0.0], radius: 0.01, velocity: [200.0, 0.0, 0.0])".to_owned();
-        let mut s = built::<Solid>(&Sketch {
+        let mut s = built::<Dim3>(&Sketch {
             grains: grains("m0", &[moving, ball(&format!("[{x}, {aside}, 0.0]"), 0.01)]),
             ..still()
         });
@@ -211,7 +211,7 @@ fn a_fast_sphere_stays_in_front_of_a_wall() {
             grains: grains("m0", std::slice::from_ref(&thrown)),
             ..still()
         };
-        let mut s = match sketch.build::<Solid>() {
+        let mut s = match sketch.build::<Dim3>() {
             Ok(s) => s,
             Err(e) => panic!("{e}"),
         };
@@ -226,7 +226,7 @@ fn a_fast_sphere_stays_in_front_of_a_wall() {
 #[test]
 fn speed_makes_no_bonds() {
     let moving = "(at: [0.0, 0.0], radius: 0.01, velocity: [30.0, 0.0])".to_owned();
-    let mut s = built::<Plane>(&Sketch {
+    let mut s = built::<Dim2>(&Sketch {
         interface: "cohesion: \"elastic-bond\",",
         parameters: ", cohesion: {\"k_n\": 1e9, \"k_t\": 1e9}".to_owned(),
         grains: grains("m0", &[moving, ball("[0.045, 0.0]", 0.01)]),
@@ -234,7 +234,7 @@ fn speed_makes_no_bonds() {
     });
     let before = momentum(&s);
     go(&mut s, 3);
-    assert!(s.network.haste.foreseen > 0);
+    assert!(s.network.step_size.foreseen > 0);
     assert_eq!(s.network.bonds_made(), 0);
     assert!((s.bodies.velocity[1].x - 15.0).abs() < 1e-6);
     assert!((momentum(&s) - before).norm() < 1e-12 * before.norm());
@@ -246,21 +246,21 @@ fn slow_scenes_do_without() {
     let stack: Vec<String> = (0..5)
         .map(|k| {
             ball(
-                &place::<Plane>(0.0, 0.0, 0.0101 + 0.0201 * f64::from(k)),
+                &place::<Dim2>(0.0, 0.0, 0.0101 + 0.0201 * f64::from(k)),
                 0.01,
             )
         })
         .collect();
-    let mut s = built::<Plane>(&Sketch {
+    let mut s = built::<Dim2>(&Sketch {
         gravity: G,
         step: 1e-4,
-        bodies: floor::<Plane>(),
+        bodies: floor::<Dim2>(),
         grains: grains("m0", &stack),
         ..still()
     });
     go(&mut s, 500);
-    let haste = &s.network.haste;
-    assert_eq!((haste.foreseen, haste.repeated_solves), (0, 0));
+    let step_size = &s.network.step_size;
+    assert_eq!((step_size.foreseen, step_size.repeated_solves), (0, 0));
     silent(&s);
 }
 
@@ -268,7 +268,7 @@ fn slow_scenes_do_without() {
 #[test]
 fn a_surface_that_starts_to_turn_holds_a_slow_ball() {
     let thrown = "(at: [0.0, 0.02], radius: 0.01, velocity: [0.0, -0.2])".to_owned();
-    let mut s = built::<Plane>(&Sketch {
+    let mut s = built::<Dim2>(&Sketch {
         bodies: "(name: \"floor\", material: \"m0\", shapes: [HalfSpace(normal: [0.0, 1.0])], \
                  dofs: (rz: Velocity(Ramp(from: 0.0, to: 0.5, start: 0.01, end: 0.09)))),"
             .to_owned(),
@@ -278,7 +278,7 @@ fn a_surface_that_starts_to_turn_holds_a_slow_ball() {
     let floor = s.bodies.driven[0].body as usize;
     for _ in 0..150 {
         go(&mut s, 1);
-        let normal = Plane::rotate(&s.bodies.rotation[floor], &nalgebra::Vector2::y());
+        let normal = Dim2::rotate(&s.bodies.rotation[floor], &nalgebra::Vector2::y());
         let height = normal.dot(&s.bodies.position[0]);
         assert!(height > 0.01 - 5e-4, "{height}");
     }
@@ -288,7 +288,7 @@ fn a_surface_that_starts_to_turn_holds_a_slow_ball() {
 /// A line that is at rest and turns by 0.4 rad a step at once meets the ball above its end.
 #[test]
 fn a_flap_that_starts_to_turn_hits_what_is_in_its_way() {
-    let mut s = built::<Plane>(&Sketch {
+    let mut s = built::<Dim2>(&Sketch {
         bodies: "(name: \"flap\", material: \"m0\", shapes: [Profile(points: [(-0.5, 0.0), (0.5, 0.0)], side: Below)], \
                  dofs: (rz: Velocity(Ramp(from: 0.0, to: 400.0, start: 0.01, end: 0.011)))),"
             .to_owned(),
@@ -304,7 +304,7 @@ fn a_flap_that_starts_to_turn_hits_what_is_in_its_way() {
 }
 
 fn passed<S: Space>(s: &Simulation<S>) {
-    let told = s.network.haste.warning().unwrap_or_default();
+    let told = s.network.step_size.warning().unwrap_or_default();
     assert!(told.contains("into or through"), "{told}");
 }
 
@@ -312,7 +312,7 @@ fn passed<S: Space>(s: &Simulation<S>) {
 #[test]
 fn what_is_passed_before_detection_is_reported() {
     let moving = "(at: [0.0, 0.0], radius: 0.01, velocity: [200.0, 0.0])".to_owned();
-    let mut s = built::<Plane>(&Sketch {
+    let mut s = built::<Dim2>(&Sketch {
         grains: grains("m0", &[moving, ball("[0.05, 0.0]", 0.01)]),
         ..still()
     });
@@ -320,7 +320,7 @@ fn what_is_passed_before_detection_is_reported() {
     passed(&s);
 
     let kicked = |x: f64| {
-        let mut s = built::<Plane>(&Sketch {
+        let mut s = built::<Dim2>(&Sketch {
             bodies: "(name: \"blade\", material: \"m0\", shapes: [Polygon(points: [(-0.005,-0.1),(0.005,-0.1),(0.005,0.1),(-0.005,0.1)])], \
                      dofs: (x: Velocity(Table([(0.01, 0.0), (0.010000001, 100.0)])))),"
                 .to_owned(),
@@ -338,10 +338,10 @@ fn what_is_passed_before_detection_is_reported() {
 }
 
 /// A ball at 200 m/s on to two at rest, with restitution.
-fn row_of_three(e: f64, step: f64, places: [f64; 2], steps: usize) -> Simulation<Plane> {
+fn row_of_three(e: f64, step: f64, places: [f64; 2], steps: usize) -> Simulation<Dim2> {
     let moving = "(at: [0.0, 0.0], radius: 0.01, velocity: [200.0, 0.0])".to_owned();
     let at = |x: f64| ball(&format!("[{x}, 0.0]"), 0.01);
-    let mut s = built::<Plane>(&Sketch {
+    let mut s = built::<Dim2>(&Sketch {
         mu: 0.0,
         restitution: Some(e),
         step,
@@ -381,9 +381,12 @@ fn impacts_with_restitution_one_after_the_other() {
             }
             silent(&s);
             let s = row_of_three(e, 1e-3, places, wait);
-            let haste = &s.network.haste;
-            assert!(haste.held_back > 0 && haste.passed == 0, "{haste:?}");
-            assert!(haste.warning().is_some());
+            let step_size = &s.network.step_size;
+            assert!(
+                step_size.held_back > 0 && step_size.passed == 0,
+                "{step_size:?}"
+            );
+            assert!(step_size.warning().is_some());
         }
     }
 }
@@ -392,7 +395,7 @@ fn impacts_with_restitution_one_after_the_other() {
 #[test]
 fn a_ball_does_not_bounce_through_another() {
     let thrown = |x: f64| format!("(at: [{x}, 0.0], radius: 0.01, velocity: [150.0, 0.0])");
-    let mut s = built::<Plane>(&Sketch {
+    let mut s = built::<Dim2>(&Sketch {
         bodies: "(name: \"wall\", material: \"m0\", position: [1.0, 0.0], shapes: [HalfSpace(normal: [-1.0, 0.0])]),"
             .to_owned(),
         mu: 0.0,
@@ -405,6 +408,9 @@ fn a_ball_does_not_bounce_through_another() {
         let [rear, front] = [0, 1].map(|b: usize| s.bodies.position[b].x);
         assert!(front - rear > 0.015 && front < 0.991, "{rear} {front}");
     }
-    let haste = &s.network.haste;
-    assert!(haste.held_back > 0 && haste.passed == 0, "{haste:?}");
+    let step_size = &s.network.step_size;
+    assert!(
+        step_size.held_back > 0 && step_size.passed == 0,
+        "{step_size:?}"
+    );
 }

@@ -1,7 +1,7 @@
 //! One bond pulled: Monerie-Acary-Cangemi with C = 1e12 Pa/m, w = 0.1 J/m^2.
 
 use super::{Table, plane};
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::step::Simulation;
 
 const C: f64 = 1e12;
@@ -16,7 +16,7 @@ pub fn all(table: &mut Table) {
 }
 
 /// Traction on the grip along its motion (Pa).
-fn traction(s: &Simulation<Plane>) -> f64 {
+fn traction(s: &Simulation<Dim2>) -> f64 {
     let grip = s
         .bodies
         .driven
@@ -99,7 +99,7 @@ fn viscosity(table: &mut Table) {
 fn unload(table: &mut Table) {
     let u0 = (W / C).sqrt();
     let mut s = plane("bond_unload", &[]);
-    let bond = |s: &Simulation<Plane>| {
+    let bond = |s: &Simulation<Dim2>| {
         // There is no bond before the first step.
         s.network.memory[0]
             .bonds

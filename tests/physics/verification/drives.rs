@@ -1,6 +1,6 @@
 //! Imposed motion: bodies are where their functions of time say, at every instant, and the work of it is booked.
 
-use fretwork::geometry::space::{Plane, Solid, Space};
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::SearchPath;
 use fretwork::record::code::{decode, encode};
 use fretwork::record::run::{RunOptions, run};
@@ -157,7 +157,7 @@ fn imposed_translations_are_on_their_paths() {
             1e-14
         };
         for theta in [0.5, 0.7, 1.0] {
-            let s = driven::<Plane>("x", drive, theta, "gravity: [3.0, -9.81],");
+            let s = driven::<Dim2>("x", drive, theta, "gravity: [3.0, -9.81],");
             // Once in motion, from the beginning: to the step's order.
             let v = s.bodies.velocity[0].x;
             let order = if theta == 0.5 { 2e-3 } else { 0.1 };
@@ -168,7 +168,7 @@ fn imposed_translations_are_on_their_paths() {
             assert!((s.energy.initial_kinetic - 1.5 * v * v).abs() < 1e-15);
             let worst = off(s, way, |s| s.bodies.position[0].x - 0.25);
             assert!(worst <= bound, "{drive}, theta {theta}: {worst:e}");
-            let s = driven::<Solid>("z", drive, theta, "gravity: [0.0, 2.0, -9.81],");
+            let s = driven::<Dim3>("z", drive, theta, "gravity: [0.0, 2.0, -9.81],");
             let worst = off(s, way, |s| s.bodies.position[0].z - 0.25);
             assert!(worst <= bound, "{drive}, theta {theta}: {worst:e}");
         }
@@ -184,12 +184,12 @@ fn imposed_rotations_are_on_their_paths() {
             1e-14
         };
         for theta in [0.5, 1.0] {
-            let s = driven::<Plane>("rz", drive, theta, "");
+            let s = driven::<Dim2>("rz", drive, theta, "");
             assert!((s.bodies.spin[0].x - first).abs() <= 0.1 * first.abs().max(0.1));
             let worst = off(s, way, |s| s.bodies.rotation[0]);
             assert!(worst <= bound, "{drive}, theta {theta}: {worst:e}");
             for (name, axis) in [("rx", Vector3::x()), ("ry", Vector3::y())] {
-                let s = driven::<Solid>(name, drive, theta, "");
+                let s = driven::<Dim3>(name, drive, theta, "");
                 let worst = off(s, way, |s| s.bodies.rotation[0].scaled_axis().dot(&axis));
                 assert!(worst <= bound, "{drive}, theta {theta}: {worst:e}");
             }
@@ -201,7 +201,7 @@ fn imposed_rotations_are_on_their_paths() {
 /// is the kinetic energy that they give.
 #[test]
 fn stages_take_over_where_the_body_is() {
-    let mut s = driven::<Plane>(
+    let mut s = driven::<Dim2>(
         "x",
         "Stages([(until: Some(0.02), drive: Force(Constant(6.0))),
                  (until: Some(0.04), drive: Displacement(Sine(amplitude: 0.01, frequency: 20.0))),
@@ -233,7 +233,7 @@ fn stages_take_over_where_the_body_is() {
 /// Functions of a phase run on its own time; a repeated phase begins again where the body is.
 #[test]
 fn phases_begin_where_the_body_is() {
-    let mut s = driven::<Plane>(
+    let mut s = driven::<Dim2>(
         "y",
         "Free",
         0.5,
@@ -275,7 +275,7 @@ fn phases_begin_where_the_body_is() {
 fn a_long_run_does_not_drift() {
     const STEPS: u32 = 100_000;
     for (drive, way) in [(DRIVES[0].0, DRIVES[0].1), (DRIVES[6].0, DRIVES[6].1)] {
-        let mut s = driven::<Plane>("x", drive, 0.5, "");
+        let mut s = driven::<Dim2>("x", drive, 0.5, "");
         let mut worst = 0.0f64;
         for n in 1..=STEPS {
             step(&mut s);
@@ -298,7 +298,7 @@ fn a_long_run_does_not_drift() {
         })
         .collect();
     let drive = format!("Velocity(Table([{}]))", points.join(", "));
-    let mut s = driven::<Plane>("x", &drive, 0.5, "");
+    let mut s = driven::<Dim2>("x", &drive, 0.5, "");
     for _ in 0..STEPS {
         step(&mut s);
     }
@@ -316,7 +316,7 @@ fn a_long_run_does_not_drift() {
 fn jumps_of_the_velocity_are_work_of_the_drive() {
     let table = "Displacement(Table([(0.0, 0.0), (0.01, 0.02), (0.03, -0.08)]))";
     for theta in [0.5, 1.0] {
-        let mut s = driven::<Plane>("x", table, theta, "");
+        let mut s = driven::<Dim2>("x", table, theta, "");
         let expected = [(10, 2.0, 0.0), (20, -5.0, 1.5 * 21.0), (5, 0.0, -1.5 * 4.0)];
         for (steps, v, work) in expected {
             for _ in 0..steps {
@@ -337,7 +337,7 @@ fn jumps_of_the_velocity_are_work_of_the_drive() {
 /// A wall that moves from time zero on meets what touches it at its velocity: it leaves with (1 + e) V.
 #[test]
 fn a_wall_hits_with_the_velocity_it_starts_with() {
-    let mut s: Simulation<Plane> = build(
+    let mut s: Simulation<Dim2> = build(
         r#"time: (step: 1e-3, end: 1.0),
         interfaces: [(name: "all", between: ("glass", "glass"), contact: "frictionless",
                       parameters: (contact: {"restitution_n": 0.6}))],
@@ -360,7 +360,7 @@ fn a_wall_hits_with_the_velocity_it_starts_with() {
 fn what_sticks_goes_along() {
     let (a, f) = (1e-3, 5.0);
     let slip = |h: f64, theta: f64| {
-        let mut s: Simulation<Plane> = build(&format!(
+        let mut s: Simulation<Dim2> = build(&format!(
             r#"time: (step: {h:?}, end: 10.0, theta: {theta:?}), gravity: [0.0, -9.81],
             interfaces: [(name: "all", between: ("glass", "glass"), contact: "coulomb", parameters: (contact: {{"mu": 0.5}}))],
             bodies: [
@@ -373,7 +373,7 @@ fn what_sticks_goes_along() {
             0.25 * TAU
         ));
         let body =
-            |s: &Simulation<Plane>, k: usize| s.bodies.position[s.bodies.driven[k].body as usize].x;
+            |s: &Simulation<Dim2>, k: usize| s.bodies.position[s.bodies.driven[k].body as usize].x;
         let (floor, block) = (body(&s, 0), body(&s, 1));
         let steps = (10.0 / f / h).round() as u32;
         let mut worst = 0.0f64;
@@ -405,22 +405,22 @@ fn a_kept_state_goes_on_along_its_paths() {
             x: Stages([(until: Some(0.0401), drive: {saw}), (drive: {})]), y: {saw}, rz: {}))],"#,
         DRIVES[1].0, DRIVES[0].0
     );
-    let mut one: Simulation<Plane> = build(&lines);
+    let mut one: Simulation<Dim2> = build(&lines);
     for at in [7, 30, 45] {
         while one.steps < at {
             step(&mut one);
         }
-        let mut other: Simulation<Plane> = build(&lines);
+        let mut other: Simulation<Dim2> = build(&lines);
         let bytes = encode(&one.save()).unwrap();
         assert!(other.restore(decode(&bytes).unwrap()));
-        let mut alone: Simulation<Plane> = build(&lines);
+        let mut alone: Simulation<Dim2> = build(&lines);
         for _ in 0..at {
             step(&mut alone);
         }
         for _ in 0..60 {
             step(&mut other);
             step(&mut alone);
-            let state = |s: &Simulation<Plane>| {
+            let state = |s: &Simulation<Dim2>| {
                 let b = &s.bodies;
                 let all = [
                     b.position[0].x,
@@ -466,7 +466,7 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
     };
     let ran = |frequency: f64| {
         let loaded = case(frequency);
-        let built = loaded.build_in::<Plane>(&SearchPath::new(&[]));
+        let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
         let built = built.unwrap_or_else(|e| panic!("{e}"));
         let name = format!("fretwork-drives-{}-{frequency}", std::process::id());
         let out = std::env::temp_dir().join(name);

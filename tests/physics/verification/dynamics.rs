@@ -1,7 +1,7 @@
 //! Rigid dynamics: impacts, sliding, rolling, columns.
 
 use super::{G, Table, plane, solid, until};
-use fretwork::geometry::space::{Plane, Space};
+use fretwork::geometry::space::{Dim2, Space};
 use fretwork::step::Simulation;
 
 pub fn all(table: &mut Table) {
@@ -234,7 +234,7 @@ fn cradle(table: &mut Table) {
 }
 
 fn column(table: &mut Table) {
-    let mut s: Simulation<Plane> = plane("column", &["solver.tolerance=1e-10"]);
+    let mut s: Simulation<Dim2> = plane("column", &["solver.tolerance=1e-10"]);
     until(&mut s, 2e-3, |_| {});
     let weight = s.bodies.mass[mover(&s)] * G;
     let mut forces: Vec<f64> = s

@@ -1,7 +1,7 @@
 //! Identities: the energy ledger, friction from forces and from heat, action and reaction.
 
 use super::Table;
-use fretwork::geometry::space::{Plane, Solid};
+use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::SearchPath;
 use fretwork::record::run::{RunOptions, run};
 use fretwork::scene::load;
@@ -27,7 +27,7 @@ fn ledger(table: &mut Table) {
     ];
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded
-        .build_in::<Plane>(&SearchPath::new(&[]))
+        .build_in::<Dim2>(&SearchPath::new(&[]))
         .unwrap_or_else(|e| panic!("{e}"));
     let options = RunOptions {
         out: out.clone(),
@@ -61,7 +61,7 @@ fn pulled(table: &mut Table) {
     );
     let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded
-        .build_in::<Plane>(&SearchPath::new(&[]))
+        .build_in::<Dim2>(&SearchPath::new(&[]))
         .unwrap_or_else(|e| panic!("{e}"));
     let options = RunOptions {
         out: out.clone(),
@@ -84,7 +84,7 @@ fn three_dimensions(table: &mut Table) {
     let file = format!("{}/cases/shear_cell_3d.ron", env!("CARGO_MANIFEST_DIR"));
     let sets = ["time.end=0.07".to_owned()];
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let mut s: Simulation<Solid> = loaded
+    let mut s: Simulation<Dim3> = loaded
         .build_in(&SearchPath::new(&[]))
         .unwrap_or_else(|e| panic!("{e}"))
         .simulation;

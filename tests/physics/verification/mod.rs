@@ -12,7 +12,7 @@ mod sinks;
 mod solvers;
 mod stages;
 
-use fretwork::geometry::space::{Plane, Solid};
+use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
@@ -64,11 +64,11 @@ fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
     built.simulation
 }
 
-fn plane(case: &str, sets: &[&str]) -> Simulation<Plane> {
+fn plane(case: &str, sets: &[&str]) -> Simulation<Dim2> {
     scene(case, sets)
 }
 
-fn solid(case: &str, sets: &[&str]) -> Simulation<Solid> {
+fn solid(case: &str, sets: &[&str]) -> Simulation<Dim3> {
     scene(case, sets)
 }
 

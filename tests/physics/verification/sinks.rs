@@ -2,7 +2,7 @@
 //! ledger's residual: normal work from the lid's path, forces along a column, momentum in 3D.
 
 use super::{G, Table, plane, solid, until};
-use fretwork::geometry::space::{Plane, Solid, Space, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::step::Simulation;
 use nalgebra::Vector3;
 
@@ -131,8 +131,11 @@ fn column(table: &mut Table) {
     let weight = s.bodies.mass.iter().copied().fold(0.0, f64::max) * G;
     let mut carried: Vec<(f64, f64)> = Vec::new();
     for c in &s.network.contacts {
-        let foot = s.bodies.position[c.bodies[0] as usize] + c.arms[0];
-        carried.push((foot.y, c.normal.dot(&c.impulse) / s.scheme.h / weight));
+        let closest_point = s.bodies.position[c.bodies[0] as usize] + c.arms[0];
+        carried.push((
+            closest_point.y,
+            c.normal.dot(&c.impulse) / s.scheme.h / weight,
+        ));
     }
     carried.sort_by(|a, b| a.0.total_cmp(&b.0));
     table.compare("column", "contacts", 10.0, carried.len() as f64, 0.0);
@@ -213,13 +216,13 @@ impl Lid {
 
 /// The layer of row 34 at the case's own tolerance, every step converged, no bond lost.
 fn lid(table: &mut Table) {
-    let mut s: Simulation<Plane> = plane("energy", &[]);
+    let mut s: Simulation<Dim2> = plane("energy", &[]);
     let d = driven(&s, "top");
     let b = s.bodies.driven[d].body as usize;
     let (mut lid, mut last) = (Lid::default(), s.bodies.position[b]);
     until(&mut s, 0.1, |s| {
         let now = s.bodies.position[b];
-        lid.add::<Plane>(&s.received[d].0, s.scheme.h, &(now - last), 1);
+        lid.add::<Dim2>(&s.received[d].0, s.scheme.h, &(now - last), 1);
         last = now;
     });
     let e = &s.energy;
@@ -262,7 +265,7 @@ fn shear(table: &mut Table) {
     let (mut velocity, mut unbalanced) = (s.bodies.velocity.clone(), 0.0f64);
     until(&mut s, 0.6, |s| {
         let now = s.bodies.position[b];
-        lid.add::<Solid>(&s.received[d].0, s.scheme.h, &(now - last), 2);
+        lid.add::<Dim3>(&s.received[d].0, s.scheme.h, &(now - last), 2);
         last = now;
         // Without gravity grains gain what contacts give them, and driven bodies receive the opposite.
         let (mut sum, mut scale): (Vector3<f64>, f64) = (Vector3::zeros(), 0.0);

@@ -1,7 +1,7 @@
 //! Every method in a run: a closed form where there is one, else what plain Gauss-Seidel finds.
 
 use super::{G, Table, scene};
-use fretwork::geometry::space::{Plane, Solid, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
@@ -27,23 +27,23 @@ pub fn all(table: &mut Table) {
     dragged(table);
     thrown(table);
     // Bonds that bend and twist: compliance, moments.
-    alike::<Solid>(
+    alike::<Dim3>(
         table,
         "beam_3d",
         &["time.end=0.2"],
         &["Auto", "Anderson", "Newton", "Apgd", "Cpg", "Interior"],
     );
     // Friction against rotation, bounded by another unknown.
-    alike::<Solid>(
+    alike::<Dim3>(
         table,
         "rolling_stop_sphere",
         &["time.end=0.02"],
         &["Auto", "Anderson", "Apgd", "Pcpg"],
     );
     // Impacts: contacts with a gap bounce freely when they close, and until then carry nothing.
-    alike::<Plane>(table, "cradle_touching", &[], &ALL);
+    alike::<Dim2>(table, "cradle_touching", &[], &ALL);
     // Bonds that only pull, under friction.
-    alike::<Plane>(
+    alike::<Dim2>(
         table,
         "pulled_friction",
         &[],
@@ -56,7 +56,7 @@ pub fn all(table: &mut Table) {
 fn column(table: &mut Table) {
     for method in ALL {
         let set = format!("solver.method={method}");
-        let mut s: Simulation<Plane> = scene("column", &[&set]);
+        let mut s: Simulation<Dim2> = scene("column", &[&set]);
         for _ in 0..2 {
             let report = s.step().unwrap_or_else(|e| panic!("{method}: {e}"));
             assert!(report.solver.converged, "{method}: {:?}", report.solver);
@@ -73,7 +73,7 @@ fn column(table: &mut Table) {
 /// no impulse changes its slip.
 fn dragged(table: &mut Table) {
     for method in ALL {
-        let mut s: Simulation<Plane> = scene(
+        let mut s: Simulation<Dim2> = scene(
             "slide_to_stop",
             &[
                 &format!("solver.method={method}"),
@@ -99,7 +99,7 @@ fn dragged(table: &mut Table) {
 fn thrown(table: &mut Table) {
     for mu in ["0.3", "1e4", "1e7"] {
         for method in ALL {
-            let mut s: Simulation<Plane> = scene(
+            let mut s: Simulation<Dim2> = scene(
                 "bouncing_ball",
                 &[
                     &format!("solver.method={method}"),
@@ -200,7 +200,7 @@ fn refused() {
         assert!(error.contains(word), "{error}");
     }
 
-    let mut s: Simulation<Solid> = scene("rolling_stop_sphere", &[]);
+    let mut s: Simulation<Dim3> = scene("rolling_stop_sphere", &[]);
     s.solver.method = Method::Newton;
     let error = s.step().expect_err("is refused").to_string();
     assert!(error.contains("rotation"), "{error}");

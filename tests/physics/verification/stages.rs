@@ -1,7 +1,7 @@
 //! Drives that follow one another, and the biaxial test that is made with them.
 
 use super::{Table, plane, until};
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::record::biaxial::Biaxial;
 use fretwork::record::stress::love_weber;
@@ -15,7 +15,7 @@ pub fn all(table: &mut Table) {
     biaxial(table);
 }
 
-fn place(s: &Simulation<Plane>, name: &str) -> usize {
+fn place(s: &Simulation<Dim2>, name: &str) -> usize {
     let found = s.bodies.driven.iter().position(|d| d.name == name);
     found.unwrap_or_else(|| panic!("a body named {name}"))
 }
@@ -54,7 +54,7 @@ fn lid(table: &mut Table) {
     let name = "staged_drive";
     let lid = place(&s, "lid");
     let cart = s.bodies.driven[place(&s, "cart")].body as usize;
-    let cart_work = |s: &Simulation<Plane>| 0.5 * 5.0 * s.bodies.velocity[cart].x.powi(2);
+    let cart_work = |s: &Simulation<Dim2>| 0.5 * 5.0 * s.bodies.velocity[cart].x.powi(2);
     until(&mut s, 0.2, |_| {});
     let felt = s.received[lid].0.y / s.scheme.h;
     table.compare(name, "the lid feels F (N/m)", f, felt, 1e-9);
@@ -87,7 +87,7 @@ fn lid(table: &mut Table) {
 
 /// Momentum of the driven walls and half of that of the grains: its rate is how much the mean push on two walls
 /// exceeds the load.
-fn momentum(s: &Simulation<Plane>) -> [f64; 2] {
+fn momentum(s: &Simulation<Dim2>) -> [f64; 2] {
     let walls = ["right", "top"].map(|name| s.bodies.driven[place(s, name)].body as usize);
     let mut sum = [0.0; 2];
     for b in 0..s.bodies.len() {
@@ -108,7 +108,7 @@ fn biaxial(table: &mut Table) {
     let root = env!("CARGO_MANIFEST_DIR");
     let file = format!("{root}/cases/verification/biaxial.ron");
     let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Plane>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     let spec = loaded
         .case
@@ -125,7 +125,7 @@ fn biaxial(table: &mut Table) {
     let before = momentum(&s);
     until(&mut s, 0.4, |s| test.follow(s));
     let after = momentum(&s);
-    let at = |s: &Simulation<Plane>, name: &str| {
+    let at = |s: &Simulation<Dim2>, name: &str| {
         s.bodies.position[s.bodies.driven[place(s, name)].body as usize]
     };
     // The left wall stands 0.01 m below zero, the right one 0.14 m from its frame.

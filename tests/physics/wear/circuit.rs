@@ -1,6 +1,6 @@
 //! The mass ledger of whole runs, against what the scene makes happen.
 
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::record::Summary;
 use fretwork::record::run::{RunOptions, run};
@@ -16,7 +16,7 @@ fn summary(case: &str, sets: &[&str]) -> Summary {
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded
-        .build_in::<Plane>(&SearchPath::new(&[]))
+        .build_in::<Dim2>(&SearchPath::new(&[]))
         .unwrap_or_else(|e| panic!("{e}"));
     let options = RunOptions {
         out: folder(case.rsplit('/').next().unwrap()),
@@ -81,7 +81,7 @@ fn debris_remembers_the_bonds_that_broke_before_the_last() {
     ]
     .map(str::to_owned);
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Plane>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     s.step().unwrap();
     let mut account = Circuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);
@@ -89,7 +89,7 @@ fn debris_remembers_the_bonds_that_broke_before_the_last() {
     while account.debris.is_empty() && s.time < 0.8 {
         s.step().unwrap();
         account.note(&s);
-        for b in &s.network.breaks {
+        for b in &s.network.bond_breaks {
             when.push(s.time);
             cost += b.life.fracture;
         }

@@ -1,7 +1,7 @@
 //! Breaks of bonds, and what is spent at contacts, against the ledger's sums.
 
-use fretwork::contact::Spent;
-use fretwork::geometry::space::{Plane, Solid, VectorLike};
+use fretwork::contact::ContactDissipation;
+use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
@@ -21,8 +21,8 @@ fn told<S: Dimensional>(case: &str, sets: &[&str], steps: usize) -> u64 {
         let totals = s.step().unwrap_or_else(|e| panic!("{e}")).totals;
         let spent = s.network.spent.as_ref().unwrap();
         assert_eq!(spent.len(), s.network.contacts.len());
-        let sum = |of: fn(&Spent) -> f64| spent.iter().map(of).sum::<f64>();
-        let torn: f64 = s.network.breaks.iter().map(|b| b.life.fracture).sum();
+        let sum = |of: fn(&ContactDissipation) -> f64| spent.iter().map(of).sum::<f64>();
+        let torn: f64 = s.network.bond_breaks.iter().map(|b| b.life.fracture).sum();
         let pairs = [
             (sum(|s| s.friction), totals.friction),
             (sum(|s| s.impact), totals.impact),
@@ -33,7 +33,7 @@ fn told<S: Dimensional>(case: &str, sets: &[&str], steps: usize) -> u64 {
         for (by_contact, booked) in pairs {
             assert!((by_contact - booked).abs() < 1e-13 * scale);
         }
-        for b in &s.network.breaks {
+        for b in &s.network.bond_breaks {
             let life = &b.life;
             let work: f64 = life.work.iter().sum();
             // All that was done on the bond was released or damped.
@@ -49,7 +49,7 @@ fn told<S: Dimensional>(case: &str, sets: &[&str], steps: usize) -> u64 {
             assert!(near, "{b:?}");
         }
         fracture += torn;
-        breaks += s.network.breaks.len() as u64;
+        breaks += s.network.bond_breaks.len() as u64;
     }
     assert_eq!(breaks, s.network.bonds_broken());
     let intact: f64 = s
@@ -70,11 +70,11 @@ fn told<S: Dimensional>(case: &str, sets: &[&str], steps: usize) -> u64 {
 
 #[test]
 fn breaks_of_a_torn_plate_tell_all_its_fracture_energy() {
-    assert!(told::<Plane>("verification/voronoi_plate", &[], 800) > 10);
-    assert!(told::<Solid>("verification/voronoi_plate_3d", &[], 600) > 10);
+    assert!(told::<Dim2>("verification/voronoi_plate", &[], 800) > 10);
+    assert!(told::<Dim3>("verification/voronoi_plate_3d", &[], 600) > 10);
 }
 
 #[test]
 fn breaks_under_fretting_tell_all_its_fracture_energy() {
-    assert!(told::<Plane>("wheel_rail_fretting", &["time.step=1e-4"], 540) > 10);
+    assert!(told::<Dim2>("wheel_rail_fretting", &["time.step=1e-4"], 540) > 10);
 }

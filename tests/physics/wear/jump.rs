@@ -1,6 +1,6 @@
 //! Jumps over cycles, against runs that compute every cycle.
 
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::record::jump::JumpSummary;
 use fretwork::record::{RunOptions, Summary, run};
@@ -16,7 +16,7 @@ fn ran(case: &str, name: &str, sets: &[&str]) -> (Summary, Vec<f64>) {
     ];
     all.extend(sets.iter().map(|s| (*s).to_owned()));
     let loaded = load(&path, &all).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Plane>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
     let built = built.unwrap_or_else(|e| panic!("{e}"));
     let out: PathBuf =
         std::env::temp_dir().join(format!("fretwork-jump-{name}-{}", std::process::id()));

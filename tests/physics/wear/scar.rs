@@ -1,6 +1,6 @@
 //! Surfaces that wear: what the laws book is what is gone, and contacts follow.
 
-use fretwork::geometry::space::{Plane, Solid, Space, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
@@ -94,19 +94,19 @@ fn archard(k: f64) -> impl Fn(f64, &Rubbed) -> f64 {
 
 #[test]
 fn archards_volume_is_gone_from_a_profile() {
-    let s = worn::<Plane>("verification/worn_slide", &[], archard(1e-8));
+    let s = worn::<Dim2>("verification/worn_slide", &[], archard(1e-8));
     // Pressed by 2000 N/m over 0.35 m, were the profile flat: 7e-6 m^2; it is within some per cent.
     assert!((s.scars[0].volume() / 7e-6 - 1.0).abs() < 0.05);
 }
 
 #[test]
 fn archards_volume_is_gone_from_a_height_field() {
-    worn::<Solid>("verification/worn_slide_3d", &[], archard(1e-9));
+    worn::<Dim3>("verification/worn_slide_3d", &[], archard(1e-9));
 }
 
 #[test]
 fn surfaces_that_follow_every_tenth_step_lose_the_same_volume() {
-    worn::<Plane>(
+    worn::<Dim2>(
         "verification/worn_slide",
         &["bodies.rail.wears.every=10"],
         archard(1e-8),
@@ -119,12 +119,12 @@ const ENERGY: &str = "interfaces.0.wear=\"dissipated-energy\"";
 fn volume_is_alpha_times_the_energy_of_the_ledger() {
     let alpha = 1e-8;
     let sets = [ENERGY, "interfaces.0.parameters.wear={\"alpha\": 1e-8}"];
-    let s = worn::<Plane>("verification/worn_slide", &sets, |_, r| {
+    let s = worn::<Dim2>("verification/worn_slide", &sets, |_, r| {
         alpha * r.work.max(0.0)
     });
     let ratio = s.scars[0].volume() / (alpha * s.energy.friction);
     assert!((ratio - 1.0).abs() < 1e-10, "{ratio}");
-    let s = worn::<Solid>("verification/worn_slide_3d", &sets, |_, r| {
+    let s = worn::<Dim3>("verification/worn_slide_3d", &sets, |_, r| {
         alpha * r.work.max(0.0)
     });
     let ratio = s.scars[0].volume() / (alpha * s.energy.friction);
@@ -155,7 +155,7 @@ fn t_gamma_wears_by_its_map() {
         );
         let load = format!("bodies.block.dofs.y=Force(Constant({load:e}))");
         let sets = ["interfaces.0.wear=\"t-gamma\"", &law, &load];
-        worn::<Plane>("verification/worn_slide", &sets, map);
+        worn::<Dim2>("verification/worn_slide", &sets, map);
         // The severe case is in that regime where one contact takes the load, four steps of five at least.
         assert_eq!(in_severe.get() > 400, severe, "{}", in_severe.get());
     }
@@ -187,7 +187,7 @@ fn a_block_sinks_into_what_it_covers() {
         "detection.skin=0.004",
         "detection.alert=2e-4",
     ];
-    let mut s = scene::<Plane>("verification/worn_slide", &sets);
+    let mut s = scene::<Dim2>("verification/worn_slide", &sets);
     for _ in 0..10_000 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }
@@ -214,7 +214,7 @@ fn a_block_sinks_into_what_it_covers() {
 #[test]
 fn the_scar_of_a_cylinder_tends_to_its_form() {
     let (radius, a) = (0.05f64, 2e-4);
-    let mut s = scene::<Plane>("fretting_scar", &[]);
+    let mut s = scene::<Dim2>("fretting_scar", &[]);
     let cylinder = s.bodies.driven[1].body as usize;
     let mut curvatures = Vec::new();
     for cycle in 1..=50 {
@@ -268,7 +268,7 @@ fn the_scar_of_a_cylinder_tends_to_its_form() {
 #[test]
 fn a_punch_that_rocks_wears_a_w_and_one_that_is_held_a_u() {
     let form = |sets: &[&str]| {
-        let mut s = scene::<Plane>("punch_scar", sets);
+        let mut s = scene::<Dim2>("punch_scar", sets);
         for _ in 0..4000 {
             s.step().unwrap_or_else(|e| panic!("{e}"));
         }
@@ -292,7 +292,7 @@ fn volume_is_alpha_times_the_energy_where_the_motion_turns() {
     let sets = [ENERGY, "interfaces.0.parameters.wear={\"alpha\": 5e-11}"].map(str::to_owned);
     let loaded = fretwork::scene::load(std::path::Path::new(&file), &sets).unwrap();
     let path = fretwork::laws::SearchPath::new(&[]);
-    let mut s = loaded.build_in::<Plane>(&path).unwrap().simulation;
+    let mut s = loaded.build_in::<Dim2>(&path).unwrap().simulation;
     let (mut volume, mut given) = (0.0, 0);
     while s.time < 0.1 {
         let totals = s.step().unwrap().totals;

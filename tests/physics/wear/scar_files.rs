@@ -1,6 +1,6 @@
 //! What wear leaves on disk, and how a run ends that wore a surface through.
 
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::scene::load;
 use fretwork::scene::standard::{self, Cut};
@@ -47,9 +47,9 @@ fn run(out: &Folder, sets: &[&str]) -> Output {
     command.output().unwrap()
 }
 
-fn build(sets: &[String]) -> Simulation<Plane> {
+fn build(sets: &[String]) -> Simulation<Dim2> {
     let loaded = load(&worn_slide(), sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Plane>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 

@@ -1,6 +1,6 @@
 //! Debris of polygons and polyhedra, whose faces are tied at several points: a plate that tears off its grip.
 
-use fretwork::geometry::space::{Plane, Solid};
+use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::SearchPath;
 use fretwork::process::circuit::Circuit;
 use fretwork::scene::build::Dimensional;
@@ -11,12 +11,12 @@ use std::path::Path;
 
 #[test]
 fn a_plate_of_polygons_comes_loose() {
-    comes_loose::<Plane>("voronoi_plate", 800);
+    comes_loose::<Dim2>("voronoi_plate", 800);
 }
 
 #[test]
 fn a_plate_of_polyhedra_comes_loose() {
-    comes_loose::<Solid>("voronoi_plate_3d", 1500);
+    comes_loose::<Dim3>("voronoi_plate_3d", 1500);
 }
 
 /// The bodies that unbroken bonds tie to one, by a walk over all of them.

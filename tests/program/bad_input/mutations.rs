@@ -58,8 +58,8 @@ fn damaged(text: &str, numbers: bool, rng: &mut Pcg64) -> Vec<u8> {
 fn tried(case: &Path, laws: &SearchPath) -> bool {
     let built = load(case, &[]).and_then(|loaded| loaded.build(laws));
     match built {
-        Ok(Scene::Plane(mut built)) => (0..2).for_each(|_| drop(built.simulation.step())),
-        Ok(Scene::Solid(mut built)) => (0..2).for_each(|_| drop(built.simulation.step())),
+        Ok(Scene::Dim2(mut built)) => (0..2).for_each(|_| drop(built.simulation.step())),
+        Ok(Scene::Dim3(mut built)) => (0..2).for_each(|_| drop(built.simulation.step())),
         Err(error) => {
             assert!(!error.to_string().is_empty() && !error.message.is_empty());
             return false;

@@ -1,7 +1,7 @@
 //! Every shipped law keeps its promises; laws made to break one fail where they should and nowhere else.
 
 use fretwork::certify::{Certificate, Outcome, certify, certify_parameters};
-use fretwork::geometry::space::Plane;
+use fretwork::geometry::space::Dim2;
 use fretwork::laws::bench::{Bench, Motion};
 use fretwork::laws::{AreaRule, BondRule, Interface, Kind, Loaded, Plugin, SearchPath};
 use fretwork::scene::build::Scene;
@@ -53,8 +53,8 @@ fn laws_of_shipped_cases_are_certified() {
         for case in cases.filter(|p| p.extension().is_some_and(|e| e == "ron")) {
             let built = load(&case, &[]).and_then(|loaded| loaded.build(&path));
             let laws = match built.unwrap_or_else(|e| panic!("{e}")) {
-                Scene::Plane(built) => built.simulation.laws,
-                Scene::Solid(built) => built.simulation.laws,
+                Scene::Dim2(built) => built.simulation.laws,
+                Scene::Dim3(built) => built.simulation.laws,
             };
             for (interface, law) in laws.iter().flat_map(|i| i.loaded().map(move |l| (i, l))) {
                 let damage = law.plugin.kind == Kind::Damage;
@@ -188,7 +188,7 @@ fn a_wrong_energy_shows_in_the_residual() {
             "interfaces.grain.parameters.damage={}",
         ]
         .map(str::to_owned);
-        let mut s: Simulation<Plane> = fretwork::scene::load(&case, &sets)
+        let mut s: Simulation<Dim2> = fretwork::scene::load(&case, &sets)
             .unwrap_or_else(|e| panic!("{e}"))
             .build_in(&SearchPath::new(&[place]))
             .unwrap_or_else(|e| panic!("{e}"))

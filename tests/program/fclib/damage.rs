@@ -52,7 +52,7 @@ unsafe impl GlobalAlloc for Watched {
 static WATCHED: Watched = Watched;
 
 /// No single allocation may be larger; the files have some ten to thirty thousand bytes.
-const MOST: usize = 4 << 20;
+const MAX_ALLOCATION: usize = 4 << 20;
 
 /// Bytes that hurt most in sizes and addresses.
 const EXTREMES: [u8; 6] = [0x00, 0x01, 0x7f, 0x80, 0xfe, 0xff];
@@ -122,7 +122,7 @@ fn damaged_files_are_refused_without_a_panic() {
             std::fs::write(&kept, &bytes).unwrap();
             kept
         };
-        if largest > MOST {
+        if largest > MAX_ALLOCATION {
             panic!(
                 "round {round}: {largest} bytes at once, {}",
                 keep().display()

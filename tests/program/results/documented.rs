@@ -56,8 +56,8 @@ fn every_column_of_the_shipped_cases_is_documented() {
         let loaded = load(path.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"));
         let built = loaded.build(&SearchPath::new(&[]));
         let missing = match built.unwrap_or_else(|e| panic!("{e}")) {
-            Scene::Plane(built) => missing(&loaded, &built, &page),
-            Scene::Solid(built) => missing(&loaded, &built, &page),
+            Scene::Dim2(built) => missing(&loaded, &built, &page),
+            Scene::Dim3(built) => missing(&loaded, &built, &page),
         };
         assert!(
             missing.is_empty(),

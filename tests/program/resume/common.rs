@@ -1,7 +1,7 @@
 //! Runs through the program: to their end, or killed; and whether two folders hold the same.
 
 use fretwork::record::checkpoint::{Frame, Kind};
-use fretwork::record::results::Kept;
+use fretwork::record::results::PreviousResults;
 use fretwork::record::summary::FROM_THE_CLOCK;
 use hdf5::H5File;
 use serde_json::Value;
@@ -116,7 +116,7 @@ pub fn draft(out: &Path) -> Option<Vec<u8>> {
 
 /// The last whole frame of a folder.
 pub fn last_frame(out: &Path) -> Option<Frame> {
-    let kept = Kept::open(&out.join("results.h5")).ok()?;
+    let kept = PreviousResults::open(&out.join("results.h5")).ok()?;
     let slots = kept.checkpoints().ok()?;
     let frames = slots.iter().filter_map(|bytes| Frame::read(bytes));
     frames.max_by_key(|f| f.number)

@@ -54,8 +54,8 @@ fn goes_on_with(kind: Kind, name: &str, dimension: usize) -> bool {
     let loaded = load(&file, &[]).unwrap_or_else(|e| panic!("{kind} {name}: {e}"));
     let built = || loaded.build(&SearchPath::new(&[]));
     match [built(), built()] {
-        [Ok(Scene::Plane(a)), Ok(Scene::Plane(b))] => goes_on([*a, *b], 70, 70),
-        [Ok(Scene::Solid(a)), Ok(Scene::Solid(b))] => goes_on([*a, *b], 70, 70),
+        [Ok(Scene::Dim2(a)), Ok(Scene::Dim2(b))] => goes_on([*a, *b], 70, 70),
+        [Ok(Scene::Dim3(a)), Ok(Scene::Dim3(b))] => goes_on([*a, *b], 70, 70),
         [Err(e), _] if e.to_string().contains("dimensions only") => return false,
         [Err(e), _] => panic!("{kind} {name}: {e}"),
         _ => panic!("{kind} {name}: built once in two ways"),

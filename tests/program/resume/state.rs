@@ -50,8 +50,8 @@ pub fn goes_on<S: Space>([one, other]: [Built<S>; 2], before: u32, after: u32) {
 
 fn check(case: &str, sets: &[&str], before: u32, after: u32) {
     match [built(case, sets), built(case, sets)] {
-        [Scene::Plane(a), Scene::Plane(b)] => goes_on([*a, *b], before, after),
-        [Scene::Solid(a), Scene::Solid(b)] => goes_on([*a, *b], before, after),
+        [Scene::Dim2(a), Scene::Dim2(b)] => goes_on([*a, *b], before, after),
+        [Scene::Dim3(a), Scene::Dim3(b)] => goes_on([*a, *b], before, after),
         _ => panic!("one case, two dimensions"),
     }
 }
@@ -79,7 +79,7 @@ fn a_surface_that_wears_goes_on_from_what_it_shows() {
 
 #[test]
 fn a_state_of_another_scene_is_not_taken() {
-    let [Scene::Plane(one), Scene::Plane(other)] = [
+    let [Scene::Dim2(one), Scene::Dim2(other)] = [
         built("verification/column", &[]),
         built("wheel_rail_fretting", &[]),
     ] else {
@@ -117,7 +117,7 @@ fn what_auto_learned_goes_on_with_the_same_bits() {
     std::fs::write(&path, case).unwrap();
     let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
     let build = || match loaded.build(&SearchPath::new(&[])) {
-        Ok(Scene::Plane(built)) => built.simulation,
+        Ok(Scene::Dim2(built)) => built.simulation,
         _ => panic!("the case is of the plane"),
     };
     // Twice the weight in each step: what the step before found does not help.

@@ -128,7 +128,7 @@ impl<S: Space> Paths<S> {
     pub(super) fn new(dofs: usize) -> Self {
         Self {
             along: vec![None; dofs],
-            upright: S::upright(),
+            upright: S::identity(),
         }
     }
 
@@ -205,7 +205,7 @@ impl<S: Space> Bodies<S> {
                 if k < S::D {
                     self.position[b][k] = path.origin + way;
                 } else if turning == 1 {
-                    let mut angle = S::Spin::null();
+                    let mut angle = S::Spin::zero();
                     angle[k - S::D] = way;
                     self.rotation[b] = S::turned(&paths.upright, &angle);
                 }

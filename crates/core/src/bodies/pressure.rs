@@ -136,13 +136,13 @@ mod tests {
     use crate::bodies::{Driven, TimeFunction};
     use crate::geometry::periodic::Periodic;
     use crate::geometry::shape::{Carried, HalfSpace};
-    use crate::geometry::space::Solid;
+    use crate::geometry::space::Dim3;
     use nalgebra::Vector3;
 
     /// In 3D with a periodic y the force on a lid is p (right - left) period, wherever the walls go.
     #[test]
     fn the_force_follows_the_area() {
-        let mut bodies = Bodies::<Solid>::default();
+        let mut bodies = Bodies::<Dim3>::default();
         let mut shapes = Shapes {
             balls: Vec::new(),
             pieces: Vec::new(),
@@ -174,7 +174,7 @@ mod tests {
             shapes.surfaces.push(Carried {
                 body,
                 offset: Vector3::zeros(),
-                shape: Box::new(HalfSpace::<Solid> { normal, shown: 1.0 }),
+                shape: Box::new(HalfSpace::<Dim3> { normal, shown: 1.0 }),
                 material: 0,
             });
         }

@@ -37,7 +37,7 @@ pub struct Bodies<S: Space> {
     /// Their paths where their motion is imposed, in their order.
     pub paths: Vec<Paths<S>>,
     /// Which bodies were taken away: they touch nothing and are not shown.
-    pub gone: Vec<bool>,
+    pub removed: Vec<bool>,
     /// Motion of each body that rounding took away (m); empty while there is none.
     pub lost: Vec<S::Vector>,
 }
@@ -58,7 +58,7 @@ impl<S: Space> Default for Bodies<S> {
             inverse_inertia: Vec::new(),
             driven: Vec::new(),
             paths: Vec::new(),
-            gone: Vec::new(),
+            removed: Vec::new(),
             lost: Vec::new(),
         }
     }
@@ -98,7 +98,7 @@ impl<S: Space> Bodies<S> {
             self.length.len(),
             self.inverse_mass.len(),
             self.inverse_inertia.len(),
-            self.gone.len(),
+            self.removed.len(),
         ];
         columns.iter().all(|rows| *rows == n)
             && self.tensors.len() <= n
@@ -117,19 +117,19 @@ impl<S: Space> Bodies<S> {
         let index = self.len();
         self.id.push(index as u64);
         self.position.push(position);
-        self.rotation.push(S::upright());
-        self.velocity.push(S::Vector::null());
-        self.spin.push(S::Spin::null());
+        self.rotation.push(S::identity());
+        self.velocity.push(S::Vector::zero());
+        self.spin.push(S::Spin::zero());
         self.mass.push(mass);
         self.inertia.push(inertia);
         self.length.push(length);
-        let mut inverse = S::Vector::null();
+        let mut inverse = S::Vector::zero();
         for k in 0..S::D {
             inverse[k] = 1.0 / mass;
         }
         self.inverse_mass.push(inverse);
         self.inverse_inertia.push(one_over(inertia));
-        self.gone.push(false);
+        self.removed.push(false);
         index as u32
     }
 
@@ -187,7 +187,7 @@ impl<S: Space> Bodies<S> {
     pub fn drive(&mut self, driven: Driven) {
         self.paths.push(Paths::new(driven.dofs.len()));
         self.driven.push(driven);
-        self.engage(self.driven.len() - 1, 0.0);
+        self.update_constraints(self.driven.len() - 1, 0.0);
     }
 
     /// Puts the drives in force at a time in charge of all bodies whose drives change.
@@ -195,38 +195,38 @@ impl<S: Space> Bodies<S> {
         for place in 0..self.driven.len() {
             let mut dofs = self.driven[place].dofs.iter();
             if dofs.any(|d| matches!(d, Dof::Stages(_))) {
-                self.engage(place, time);
+                self.update_constraints(place, time);
             }
         }
     }
 
     /// Gives a driven body another drive on one degree of freedom, in force at a time.
-    pub fn redrive(&mut self, place: usize, dof: usize, drive: Dof, time: f64) {
+    pub fn set_drive(&mut self, place: usize, dof: usize, drive: Dof, time: f64) {
         self.driven[place].dofs[dof] = drive;
         self.paths[place].forget(dof);
-        self.engage(place, time);
+        self.update_constraints(place, time);
     }
 
     /// Takes a driven body away for good.
     pub fn remove(&mut self, place: usize) {
         let driven = &mut self.driven[place];
-        self.gone[driven.body as usize] = true;
+        self.removed[driven.body as usize] = true;
         driven.dofs.fill(Dof::Fixed);
         self.paths[place].forget_all();
-        self.engage(place, 0.0);
+        self.update_constraints(place, 0.0);
     }
 
     /// Takes a grain away for good: it stands still.
-    pub fn take_out(&mut self, body: usize) {
-        self.gone[body] = true;
-        (self.velocity[body], self.spin[body]) = (S::Vector::null(), S::Spin::null());
-        self.inverse_mass[body] = S::Vector::null();
+    pub fn remove_body(&mut self, body: usize) {
+        self.removed[body] = true;
+        (self.velocity[body], self.spin[body]) = (S::Vector::zero(), S::Spin::zero());
+        self.inverse_mass[body] = S::Vector::zero();
         self.inverse_inertia[body] = 0.0;
     }
 
     /// Which bodies are grains: those that are not driven, and are still there.
     pub fn grain_flags(&self) -> Vec<bool> {
-        let mut grain: Vec<bool> = self.gone.iter().map(|g| !g).collect();
+        let mut grain: Vec<bool> = self.removed.iter().map(|g| !g).collect();
         for driven in &self.driven {
             grain[driven.body as usize] = false;
         }
@@ -246,7 +246,7 @@ impl<S: Space> Bodies<S> {
     }
 
     /// Imposed degrees of freedom have no compliance, the others that of their inertia.
-    fn engage(&mut self, place: usize, time: f64) {
+    fn update_constraints(&mut self, place: usize, time: f64) {
         let driven = &self.driven[place];
         let b = driven.body as usize;
         let imposed = |d: &Dof| d.imposed_velocity(time).is_some();
@@ -266,7 +266,7 @@ impl<S: Space> Bodies<S> {
 
     /// Whether contacts cannot move the body at all.
     pub fn immovable(&self, body: usize) -> bool {
-        self.inverse_mass[body] == S::Vector::null() && self.inverse_inertia[body] == 0.0
+        self.inverse_mass[body] == S::Vector::zero() && self.inverse_inertia[body] == 0.0
     }
 
     /// Which bodies never move: all their degrees of freedom are fixed.
@@ -292,16 +292,16 @@ fn one_over(inertia: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::{Plane, Solid};
+    use crate::geometry::space::{Dim2, Dim3};
     use nalgebra::{Vector2, Vector3};
 
     #[test]
     fn balls_have_the_inertia_of_the_books() {
-        let mut disks = Bodies::<Plane>::default();
+        let mut disks = Bodies::<Dim2>::default();
         disks.add_ball(Vector2::new(0.0, 0.0), 0.5, 2.0);
         let m = 2.0 * std::f64::consts::PI * 0.25;
         assert!((disks.mass[0] - m).abs() < 1e-15 && (disks.inertia[0] - m / 8.0).abs() < 1e-15);
-        let mut spheres = Bodies::<Solid>::default();
+        let mut spheres = Bodies::<Dim3>::default();
         spheres.add_ball(Vector3::zeros(), 0.5, 2.0);
         let m = 2.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.125;
         assert!((spheres.inertia[0] - 0.4 * m * 0.25).abs() < 1e-15);

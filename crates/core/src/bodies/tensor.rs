@@ -55,17 +55,17 @@ impl<S: Space> Tensor<S> {
     /// The midpoint rule for the momentum in the body's axes, P' = P x (I^-1 P), with the rotation that takes it
     /// along: Austin, Krishnaprasad and Wang, "Almost Poisson integration of rigid body systems", J. Comput. Phys.
     /// 107 (1993). Second order; parts of the time are as short as the spin asks.
-    pub fn coast(
+    pub fn free_rotation(
         &self,
         rotation: &S::Rotation,
         spin: &S::Spin,
         time: f64,
     ) -> (S::Rotation, S::Spin) {
         /// A body that turns by more than this (rad) in half a step, or takes more parts, is not followed closer.
-        const MOST_TURN: f64 = 100.0;
-        const MOST_PARTS: f64 = 1e5;
-        let parts = (spin.norm() * time.abs()).min(MOST_TURN) / self.turn;
-        let parts = parts.ceil().clamp(1.0, MOST_PARTS);
+        const MAX_TURN: f64 = 100.0;
+        const MAX_PARTS: f64 = 1e5;
+        let parts = (spin.norm() * time.abs()).min(MAX_TURN) / self.turn;
+        let parts = parts.ceil().clamp(1.0, MAX_PARTS);
         let time = time / parts;
         let mut rotation = *rotation;
         let mut momentum = self.own.apply(&S::unrotate_spin(&rotation, spin));
@@ -80,9 +80,9 @@ impl<S: Space> Tensor<S> {
 
     /// The spin halfway, in the body's axes.
     fn middle(&self, momentum: &S::Spin, time: f64) -> S::Spin {
-        const MOST: usize = 50;
+        const MAX_ITERATIONS: usize = 50;
         let mut spin = self.inverse.apply(momentum);
-        for _ in 0..MOST {
+        for _ in 0..MAX_ITERATIONS {
             let after = turned_back::<S>(momentum, &(spin * (0.5 * time)));
             let next = self.inverse.apply(&((*momentum + after) * 0.5));
             let change = (next - spin).norm();
@@ -111,10 +111,10 @@ fn turned_back<S: Space>(v: &S::Spin, half: &S::Spin) -> S::Spin {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::{Plane, Solid};
+    use crate::geometry::space::{Dim2, Dim3};
     use nalgebra::{Matrix1, Matrix3, UnitQuaternion, Vector3};
 
-    type Rigid = Tensor<Solid>;
+    type Rigid = Tensor<Dim3>;
 
     fn diagonal(a: f64, b: f64, c: f64) -> Rigid {
         Rigid::new(Matrix3::from_diagonal(&Vector3::new(a, b, c))).unwrap()
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn what_is_alike_about_all_axes_needs_no_tensor() {
         assert!(Rigid::new(Matrix3::identity() * 3.0).is_none());
-        assert!(Tensor::<Plane>::new(Matrix1::new(2.0)).is_none());
+        assert!(Tensor::<Dim2>::new(Matrix1::new(2.0)).is_none());
     }
 
     #[test]
@@ -136,7 +136,7 @@ mod tests {
         let (time, steps) = (3.0, 3000);
         let (mut rotation, mut spin) = (UnitQuaternion::identity(), start);
         for _ in 0..steps {
-            (rotation, spin) = top.coast(&rotation, &spin, time / f64::from(steps));
+            (rotation, spin) = top.free_rotation(&rotation, &spin, time / f64::from(steps));
         }
         let precession = UnitQuaternion::from_scaled_axis(momentum * (time / i1));
         let axis = precession * Vector3::z();
@@ -155,7 +155,7 @@ mod tests {
             let momentum = needle.momentum(&rotation, &spin);
             let energy = spin.dot(&momentum);
             for _ in 0..50 {
-                (rotation, spin) = needle.coast(&rotation, &spin, 5e-3);
+                (rotation, spin) = needle.free_rotation(&rotation, &spin, 5e-3);
             }
             let now = needle.momentum(&rotation, &spin);
             assert!(
@@ -176,7 +176,7 @@ mod tests {
         let energy = spin.dot(&momentum);
         let mut turned_over = false;
         for _ in 0..2000 {
-            (rotation, spin) = body.coast(&rotation, &spin, 0.01);
+            (rotation, spin) = body.free_rotation(&rotation, &spin, 0.01);
             turned_over |= (rotation * Vector3::y()).dot(&momentum) < 0.0;
         }
         let now = body.momentum(&rotation, &spin);

@@ -58,7 +58,7 @@ impl Life {
 
 /// What was dissipated at one contact in one step (J; J/m in 2D).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Spent {
+pub struct ContactDissipation {
     /// By friction.
     pub friction: f64,
     /// By impact.
@@ -73,7 +73,7 @@ pub struct Spent {
     pub correction: f64,
 }
 
-impl Spent {
+impl ContactDissipation {
     /// All that was dissipated.
     pub fn total(&self) -> f64 {
         self.friction + self.impact + self.adhesion + self.fracture + self.viscous

@@ -34,7 +34,7 @@ impl<S: Space> Bond<S> {
     fn none(area: f64) -> Self {
         Self {
             opening_n: 0.0,
-            opening_t: S::Tangent::null(),
+            opening_t: S::Tangent::zero(),
             gap: 0.0,
             damage: 1.0,
             used: 1.0,
@@ -97,7 +97,7 @@ impl<S: Space> Memory<S> {
             self.bonds.push(Bond::none(area));
             self.variables.iter_mut().for_each(|c| c.push(0.0));
             if self.rotates {
-                self.rotations.push(S::Spin::null());
+                self.rotations.push(S::Spin::zero());
             }
             (self.bonds.len() - 1) as u32
         });
@@ -114,7 +114,7 @@ impl<S: Space> Memory<S> {
             column[slot] = *value;
         }
         if self.rotates {
-            self.rotations[slot] = S::Spin::null();
+            self.rotations[slot] = S::Spin::zero();
         }
     }
 
@@ -127,7 +127,7 @@ impl<S: Space> Memory<S> {
             ..Bond::none(area)
         };
         if self.rotates {
-            self.rotations[slot] = S::Spin::null();
+            self.rotations[slot] = S::Spin::zero();
         }
         self.made += 1;
     }

@@ -5,7 +5,7 @@ pub mod memory;
 pub mod network;
 pub mod step_size;
 
-pub use events::{Break, Life, Loss, Spent};
+pub use events::{Break, ContactDissipation, Life, Loss};
 pub use memory::{Bond, Memory};
 pub use network::{Contact, Key, Network};
 pub use step_size::StepSizeDiagnostics;

@@ -1,6 +1,6 @@
 //! Contacts of the current step and what carries over from the last one.
 
-use super::events::{Break, Loss, Spent};
+use super::events::{Break, ContactDissipation, Loss};
 use super::memory::Memory;
 use super::step_size::StepSizeDiagnostics;
 use crate::bodies::Bodies;
@@ -57,7 +57,7 @@ pub struct Contact<S: Space> {
     /// See [`crate::solve::ContactForm::central`].
     pub central: bool,
     /// A corner of a polygon touches, not a side: there is no face to bond over.
-    pub sharp: bool,
+    pub vertex_contact: bool,
     /// Whether a bond of this pair broke.
     pub broken: bool,
     /// Place in the memory of its interface law, or [`Contact::NO_MEMORY`].
@@ -75,7 +75,7 @@ pub struct Contact<S: Space> {
     /// Moment of the last solve on the candidate (N m s); zero where nothing resists rotation.
     pub moment: S::Spin,
     /// When the contact formed (s).
-    pub born: f64,
+    pub formed_at: f64,
     /// Time under a compressive impulse without a break (s).
     pub pressed: f64,
     /// It closes within this step, faster than detection at the start of the step can follow: its gap and normal are those
@@ -123,23 +123,23 @@ pub struct Network<S: Space> {
     pub torn_energy: f64,
     /// Bonds that broke in the last step, in its order.
     #[serde(skip)]
-    pub breaks: Vec<Break<S>>,
+    pub bond_breaks: Vec<Break<S>>,
     /// Bodies, candidate and antagonist, and interface law of the bonds that were made in the last step.
     #[serde(skip)]
-    pub joins: Vec<([u32; 2], u16)>,
+    pub bonds_formed: Vec<([u32; 2], u16)>,
     /// What the last step dissipated at its contacts, in their order; kept where something asked for it.
     #[serde(skip)]
-    pub spent: Option<Vec<Spent>>,
+    pub spent: Option<Vec<ContactDissipation>>,
     /// What the last step wore off surfaces; kept where something asked for it.
     #[serde(skip)]
     pub losses: Option<Vec<Loss>>,
     /// Times over that a step wears and damages: the cycles that the cycle at hand stands for, see
     /// [`crate::wear::jump`]; 1 without jumps.
-    pub stands_for: f64,
+    pub cycle_multiplier: f64,
     /// Volume worn off each surface so far, by its index (m^3; m^3/m in 2D).
     pub worn: BTreeMap<usize, f64>,
     /// What shows whether the step was small enough.
-    pub haste: StepSizeDiagnostics,
+    pub step_size: StepSizeDiagnostics,
     /// How often the neighbour list was rebuilt.
     pub rebuilds: u64,
     /// Relative motion in a step (m) from which a pair is followed through the step.
@@ -186,13 +186,13 @@ impl<S: Space> Network<S> {
             alert,
             skin,
             torn_energy: 0.0,
-            breaks: Vec::new(),
-            joins: Vec::new(),
+            bond_breaks: Vec::new(),
+            bonds_formed: Vec::new(),
             spent: None,
             losses: None,
-            stands_for: 1.0,
+            cycle_multiplier: 1.0,
             worn: BTreeMap::new(),
-            haste: StepSizeDiagnostics::default(),
+            step_size: StepSizeDiagnostics::default(),
             rebuilds: 0,
             fast: alert,
             candidates: Vec::new(),
@@ -212,7 +212,7 @@ impl<S: Space> Network<S> {
 
     /// The contacts that [`Self::contact_count`] counts.
     pub fn counted_contacts(&self) -> impl Iterator<Item = &Contact<S>> {
-        let counts = |c: &&Contact<S>| !c.beyond || c.impulse != S::Vector::null();
+        let counts = |c: &&Contact<S>| !c.beyond || c.impulse != S::Vector::zero();
         self.contacts.iter().filter(counts)
     }
 
@@ -230,11 +230,11 @@ impl<S: Space> Network<S> {
     }
 
     /// Tells that the bond of a contact broke, with what it went through.
-    pub(crate) fn tell_break(&mut self, contact: &Contact<S>) {
+    pub(crate) fn record_break(&mut self, contact: &Contact<S>) {
         let Some(bond) = self.bond(contact) else {
             return;
         };
-        self.breaks.push(Break {
+        self.bond_breaks.push(Break {
             key: contact.key,
             bodies: contact.bodies,
             law: contact.law,
@@ -249,7 +249,7 @@ impl<S: Space> Network<S> {
 
     /// Says where breaks are, which are told with the arms of their contacts.
     pub(crate) fn locate_breaks(&mut self, bodies: &Bodies<S>) {
-        for b in &mut self.breaks {
+        for b in &mut self.bond_breaks {
             b.place += bodies.position[b.bodies[0] as usize];
         }
     }

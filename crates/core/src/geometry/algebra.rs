@@ -39,7 +39,7 @@ pub trait VectorLike:
     /// Number of components.
     const N: usize;
     /// The null vector.
-    fn null() -> Self;
+    fn zero() -> Self;
     /// Scalar product.
     fn dot(&self, other: &Self) -> f64;
     /// Euclidean norm.
@@ -48,7 +48,7 @@ pub trait VectorLike:
     fn limited(self, bound: f64) -> Self;
     /// From a slice; missing components are zero.
     fn from_slice(values: &[f64]) -> Self {
-        let mut v = Self::null();
+        let mut v = Self::zero();
         for (k, x) in values.iter().take(Self::N).enumerate() {
             v[k] = *x;
         }
@@ -81,7 +81,7 @@ macro_rules! vector_like {
         impl VectorLike for $type {
             const N: usize = $n;
             #[inline(always)]
-            fn null() -> Self {
+            fn zero() -> Self {
                 Self::zeros()
             }
             #[inline(always)]
@@ -128,7 +128,7 @@ pub trait MatrixLike:
     fn diagonal(d: &Self::V) -> Self;
     /// A number times the identity.
     fn uniform(x: f64) -> Self {
-        let mut d = Self::V::null();
+        let mut d = Self::V::zero();
         for k in 0..Self::V::N {
             d[k] = x;
         }

@@ -1,6 +1,6 @@
 //! The inside of a cylinder: a drum. A circle in 2D; in 3D an endless cylinder along an axis of its body.
 
-use super::shape::{Surface, Touch, about};
+use super::shape::{ClosestPoint, Surface, about};
 use super::space::{Space, VectorLike};
 use std::f64::consts::TAU;
 
@@ -37,7 +37,7 @@ impl Drum {
 }
 
 impl<S: Space> Surface<S> for Drum {
-    fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<Touch<S::Vector>>) {
+    fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<ClosestPoint<S::Vector>>) {
         let across = self.across::<S>(centre);
         let r = across.norm();
         let distance = self.radius - r;
@@ -48,12 +48,12 @@ impl<S: Space> Surface<S> for Drum {
             across * (-1.0 / r)
         } else {
             // On the axis all directions are as near; one of them.
-            let mut n = S::Vector::null();
+            let mut n = S::Vector::zero();
             n[self.plane::<S>()[0]] = -1.0;
             n
         };
-        out.push(Touch {
-            foot: *centre - normal * distance,
+        out.push(ClosestPoint {
+            closest_point: *centre - normal * distance,
             normal,
             distance,
             feature: 0,
@@ -69,7 +69,7 @@ impl<S: Space> Surface<S> for Drum {
         if S::D == 2 {
             let point = |k: usize| {
                 let (sin, cos) = (TAU * (k % 180) as f64 / 180.0).sin_cos();
-                let mut p = S::Vector::null();
+                let mut p = S::Vector::zero();
                 (p[i], p[j]) = (self.radius * cos, self.radius * sin);
                 p
             };
@@ -89,7 +89,7 @@ impl<S: Space> Surface<S> for Drum {
         let [i, j] = self.plane::<S>();
         let point = |k: usize, along: f64| {
             let (sin, cos) = (TAU * (k % 180) as f64 / 180.0).sin_cos();
-            let mut p = S::Vector::null();
+            let mut p = S::Vector::zero();
             (p[i], p[j], p[self.axis]) = (self.radius * cos, self.radius * sin, along);
             p
         };
@@ -109,7 +109,7 @@ impl<S: Space> Surface<S> for Drum {
     }
 
     fn keeps_place(&self, spin: &S::Spin) -> bool {
-        let mut axis = S::Vector::null();
+        let mut axis = S::Vector::zero();
         if S::D == 3 {
             axis[self.axis] = 1.0;
         }
@@ -120,10 +120,10 @@ impl<S: Space> Surface<S> for Drum {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::{Plane, Solid};
+    use crate::geometry::space::{Dim2, Dim3};
     use nalgebra::{Vector2, Vector3};
 
-    fn touch<S: Space>(drum: &Drum, at: S::Vector, reach: f64) -> Vec<Touch<S::Vector>> {
+    fn touch<S: Space>(drum: &Drum, at: S::Vector, reach: f64) -> Vec<ClosestPoint<S::Vector>> {
         let mut out = Vec::new();
         Surface::<S>::touches(drum, &at, reach, &mut out);
         out
@@ -132,26 +132,23 @@ mod tests {
     #[test]
     fn distances_are_those_of_a_circle() {
         let drum = Drum::new(2.0, 0);
-        let found = touch::<Plane>(&drum, Vector2::new(0.9, -1.2), 0.6)[0];
+        let found = touch::<Dim2>(&drum, Vector2::new(0.9, -1.2), 0.6)[0];
         assert!((found.distance - 0.5).abs() < 1e-15);
         assert!((found.normal - Vector2::new(-0.6, 0.8)).norm() < 1e-15);
-        assert!((found.foot - Vector2::new(1.2, -1.6)).norm() < 1e-15);
-        assert!(touch::<Plane>(&drum, Vector2::new(0.9, -1.2), 0.5).is_empty());
+        assert!((found.closest_point - Vector2::new(1.2, -1.6)).norm() < 1e-15);
+        assert!(touch::<Dim2>(&drum, Vector2::new(0.9, -1.2), 0.5).is_empty());
         // Behind the wall the distance is negative.
-        let behind = touch::<Plane>(&drum, Vector2::new(0.0, 2.25), 0.1)[0];
+        let behind = touch::<Dim2>(&drum, Vector2::new(0.0, 2.25), 0.1)[0];
         assert!((behind.distance + 0.25).abs() < 1e-15);
         // On the axis a wide reach still gives a unit normal.
-        assert_eq!(
-            touch::<Plane>(&drum, Vector2::zeros(), 3.0)[0].distance,
-            2.0
-        );
+        assert_eq!(touch::<Dim2>(&drum, Vector2::zeros(), 3.0)[0].distance, 2.0);
     }
 
     #[test]
     fn faces_look_inwards_and_reach_as_far_as_asked() {
         for axis in 0..3 {
             let drum = Drum::new(2.0, axis);
-            for face in Surface::<Solid>::faces_within(&drum, 5.0) {
+            for face in Surface::<Dim3>::faces_within(&drum, 5.0) {
                 let middle = face.iter().sum::<Vector3<f64>>() / 4.0;
                 let normal = (face[1] - face[0]).cross(&(face[2] - face[1]));
                 assert!(normal.dot(&middle) < 0.0 && normal[axis].abs() < 1e-12);
@@ -166,15 +163,15 @@ mod tests {
             let drum = Drum::new(2.0, axis);
             let mut at = Vector3::zeros();
             (at[(axis + 1) % 3], at[(axis + 2) % 3], at[axis]) = (0.9, -1.2, 7.0);
-            let found = touch::<Solid>(&drum, at, 0.6)[0];
+            let found = touch::<Dim3>(&drum, at, 0.6)[0];
             assert!((found.distance - 0.5).abs() < 1e-15);
             assert_eq!(found.normal[axis], 0.0);
-            assert_eq!(found.foot[axis], 7.0);
+            assert_eq!(found.closest_point[axis], 7.0);
             let mut spin = Vector3::zeros();
             spin[axis] = 3.0;
-            assert!(Surface::<Solid>::keeps_place(&drum, &spin));
+            assert!(Surface::<Dim3>::keeps_place(&drum, &spin));
             spin[(axis + 1) % 3] = 1e-3;
-            assert!(!Surface::<Solid>::keeps_place(&drum, &spin));
+            assert!(!Surface::<Dim3>::keeps_place(&drum, &spin));
         }
     }
 }

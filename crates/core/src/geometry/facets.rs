@@ -1,6 +1,6 @@
 //! Triangles of a surface in space: where a ball touches them, without ghosts at their seams.
 
-use super::shape::Touch;
+use super::shape::ClosestPoint;
 use nalgebra::Vector3;
 use std::collections::HashMap;
 
@@ -60,19 +60,19 @@ struct Found {
     part: [u64; 3],
     corners: usize,
     count: usize,
-    foot: V,
+    closest_point: V,
     first: usize,
 }
 
 /// All places where a ball centred at `centre` is nearest to the surface within `reach` (m), in the order of their
 /// features. `facets` are all that come into the box of that size about it.
-pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Touch<V>>) {
+pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
     let start = out.len();
     let mut found: Vec<Found> = Vec::new();
     for (k, facet) in facets.iter().enumerate() {
         let [a, b, c] = facet.corners;
-        let (foot, used) = nearest(*centre, a, b, c);
-        if (foot - centre).norm() >= reach {
+        let (closest_point, used) = nearest(*centre, a, b, c);
+        if (closest_point - centre).norm() >= reach {
             continue;
         }
         let part = facet.part(used);
@@ -82,7 +82,7 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Touch<
                 part,
                 corners: used.iter().filter(|u| **u).count(),
                 count: 1,
-                foot,
+                closest_point,
                 first: k,
             }),
         }
@@ -91,7 +91,7 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Touch<
     // An edge or a corner counts when all facets about it find it: else a face is nearer.
     found.retain(|f| f.count >= about(f.part).count());
     let up = |f: &Found| pseudo_normal(about(f.part), &f.part, f.corners);
-    let arm = |f: &Found| centre - f.foot;
+    let arm = |f: &Found| centre - f.closest_point;
     let nearest = |f: &&Found, g: &&Found| arm(f).norm_squared().total_cmp(&arm(g).norm_squared());
     // A way of the size of rounding has no direction.
     let tiny = 1e-13 * (centre.norm() + reach);
@@ -108,15 +108,16 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Touch<
         }
         let face = f.corners == 3;
         let rises = |g: &Facet<V>| {
-            let over = |c: &V| (c - f.foot).dot(&up) > BEHIND * (c - f.foot).norm();
+            let over =
+                |c: &V| (c - f.closest_point).dot(&up) > BEHIND * (c - f.closest_point).norm();
             g.corners.iter().any(over)
         };
         if (inside || length <= tiny) && about(f.part).any(rises) {
             // At the bottom of a crease or below it: behind the planes of all its sides.
             out.extend(about(f.part).map(|g| {
                 let (normal, distance) = (g.normal(), arm.dot(&g.normal()));
-                Touch {
-                    foot: centre - normal * distance,
+                ClosestPoint {
+                    closest_point: centre - normal * distance,
                     normal,
                     distance,
                     feature: g.name * 8,
@@ -124,8 +125,8 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Touch<
             }));
             continue;
         }
-        out.push(Touch {
-            foot: f.foot,
+        out.push(ClosestPoint {
+            closest_point: f.closest_point,
             normal: if face || inside || length <= tiny {
                 up
             } else {

@@ -108,7 +108,7 @@ pub fn most_pairs<V: VectorLike>(
 /// Balls in a cell, as a ball sees them in the mean, above which they are sorted by size. Balls of one size have three.
 const CROWD: f64 = 8.0;
 /// The widest reach of a level is at most twice its narrowest, but in the last, a thousandth of a millionth of the widest.
-const MOST_LEVELS: usize = 31;
+const MAX_LEVELS: usize = 31;
 
 /// Balls by size, each level with its grid; from narrow to wide.
 struct Levels {
@@ -139,14 +139,14 @@ impl Levels {
             let ratio = width(widest) / width(radius);
             // The exponent, since it never falls as the ratio rises: narrower levels hold no wider ball.
             let exponent = (ratio.to_bits() >> 52) as usize;
-            exponent.saturating_sub(1023).min(MOST_LEVELS - 1)
+            exponent.saturating_sub(1023).min(MAX_LEVELS - 1)
         };
         let classes: Vec<usize> = radii.iter().map(|r| class(*r)).collect();
-        let mut members: Vec<Vec<u32>> = vec![Vec::new(); MOST_LEVELS];
+        let mut members: Vec<Vec<u32>> = vec![Vec::new(); MAX_LEVELS];
         for (ball, class) in classes.iter().enumerate() {
             members[*class].push(ball as u32);
         }
-        let filled: Vec<usize> = (0..MOST_LEVELS)
+        let filled: Vec<usize> = (0..MAX_LEVELS)
             .rev()
             .filter(|class| !members[*class].is_empty())
             .collect();

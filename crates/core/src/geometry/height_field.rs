@@ -2,8 +2,8 @@
 
 use super::facets::{self, Facet};
 use super::recede::{Recede, Shares, Vertex};
-use super::shape::{Surface, Touch};
-use super::space::Solid;
+use super::shape::{ClosestPoint, Surface};
+use super::space::Dim3;
 use nalgebra::Vector3;
 
 /// Heights z over a regular grid of `nx` by `ny` points, two triangles a cell. With `periodic` the
@@ -105,8 +105,13 @@ fn triangles(i: i64, j: i64) -> [[(i64, i64); 3]; 2] {
     ]
 }
 
-impl Surface<Solid> for HeightField {
-    fn touches(&self, centre: &Vector3<f64>, reach: f64, out: &mut Vec<Touch<Vector3<f64>>>) {
+impl Surface<Dim3> for HeightField {
+    fn touches(
+        &self,
+        centre: &Vector3<f64>,
+        reach: f64,
+        out: &mut Vec<ClosestPoint<Vector3<f64>>>,
+    ) {
         let (extent, mut near) = (Vector3::repeat(reach), Vec::new());
         self.facets(&(centre - extent), &(centre + extent), &mut near);
         facets::touches(&near, centre, reach, out);
@@ -158,11 +163,11 @@ impl Surface<Solid> for HeightField {
         true
     }
 
-    fn receding(&self) -> Option<&dyn Recede<Solid>> {
+    fn receding(&self) -> Option<&dyn Recede<Dim3>> {
         Some(self)
     }
 
-    fn receding_mut(&mut self) -> Option<&mut dyn Recede<Solid>> {
+    fn receding_mut(&mut self) -> Option<&mut dyn Recede<Dim3>> {
         Some(self)
     }
 
@@ -179,7 +184,7 @@ impl Surface<Solid> for HeightField {
     }
 }
 
-impl Recede<Solid> for HeightField {
+impl Recede<Dim3> for HeightField {
     fn vertices(&self) -> Vec<Vertex<Vector3<f64>>> {
         let third = self.spacing[0] * self.spacing[1] / 6.0;
         let mut tributary = vec![0.0; self.heights.len()];
@@ -203,10 +208,10 @@ impl Recede<Solid> for HeightField {
         tributary.into_iter().enumerate().map(vertex).collect()
     }
 
-    fn shares(&self, foot: &Vector3<f64>) -> Shares {
+    fn shares(&self, closest_point: &Vector3<f64>) -> Shares {
         // The cell, and the place in it.
         let place = |axis: usize| {
-            let x = foot[axis] / self.spacing[axis];
+            let x = closest_point[axis] / self.spacing[axis];
             let cell = x.floor() as i64;
             let cell = if self.periodic[axis] {
                 cell
@@ -249,7 +254,7 @@ impl Recede<Solid> for HeightField {
 mod tests {
     use super::*;
 
-    fn touches(field: &HeightField, at: [f64; 3], reach: f64) -> Vec<Touch<Vector3<f64>>> {
+    fn touches(field: &HeightField, at: [f64; 3], reach: f64) -> Vec<ClosestPoint<Vector3<f64>>> {
         let mut out = Vec::new();
         field.touches(&Vector3::from(at), reach, &mut out);
         out
@@ -318,12 +323,12 @@ mod tests {
             let mut put = 0.0;
             for k in 0..50 {
                 let t = f64::from(k);
-                let foot = Vector3::new(
+                let closest_point = Vector3::new(
                     1.2 * (0.5 + 0.5 * t.sin()),
                     2.1 * (0.5 + 0.5 * (1.7 * t).cos()),
                     0.0,
                 );
-                for (vertex, part) in field.shares(&foot) {
+                for (vertex, part) in field.shares(&closest_point) {
                     assert!((0.0..=1.0).contains(&part));
                     depth[vertex] += 1e-3 * part / vertices[vertex].tributary;
                 }

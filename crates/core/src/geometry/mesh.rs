@@ -1,8 +1,8 @@
 //! A surface of triangles in space, solid behind them: a first body from a file.
 
 use super::facets::{self, Facet};
-use super::shape::{Surface, Touch};
-use super::space::Solid;
+use super::shape::{ClosestPoint, Surface};
+use super::space::Dim3;
 use nalgebra::Vector3;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
@@ -26,7 +26,9 @@ pub enum MeshError {
     #[error("the mesh has no triangles")]
     Empty,
     /// More than names can tell apart.
-    #[error("the mesh has {0} triangles; at most {MOST} are told apart: take a coarser one")]
+    #[error(
+        "the mesh has {0} triangles; at most {MAX_TRIANGLES} are told apart: take a coarser one"
+    )]
     TooMany(usize),
     /// Not a number.
     #[error("point {0} of the mesh is not finite")]
@@ -45,7 +47,7 @@ pub enum MeshError {
 }
 
 /// What the names of contacts can tell apart.
-pub const MOST: usize = 1 << 28;
+pub const MAX_TRIANGLES: usize = 1 << 28;
 
 impl Mesh {
     /// From points (m) and triangles of them.
@@ -56,7 +58,7 @@ impl Mesh {
         if triangles.is_empty() {
             return Err(MeshError::Empty);
         }
-        if triangles.len() > MOST {
+        if triangles.len() > MAX_TRIANGLES {
             return Err(MeshError::TooMany(triangles.len()));
         }
         if let Some(k) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
@@ -119,8 +121,8 @@ fn bounds(low: &V, high: &V) -> AABB<[f64; 3]> {
     AABB::from_corners((*low).into(), (*high).into())
 }
 
-impl Surface<Solid> for Mesh {
-    fn touches(&self, centre: &V, reach: f64, out: &mut Vec<Touch<V>>) {
+impl Surface<Dim3> for Mesh {
+    fn touches(&self, centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
         let (extent, mut near) = (V::repeat(reach), Vec::new());
         self.facets(&(centre - extent), &(centre + extent), &mut near);
         facets::touches(&near, centre, reach, out);
@@ -177,7 +179,7 @@ mod tests {
         Mesh::new(points, triangles.collect()).unwrap()
     }
 
-    fn touches(at: [f64; 3], reach: f64) -> Vec<Touch<V>> {
+    fn touches(at: [f64; 3], reach: f64) -> Vec<ClosestPoint<V>> {
         let mut out = Vec::new();
         cube().touches(&V::from(at), reach, &mut out);
         out

@@ -1,8 +1,8 @@
 //! The profile of a first body in the plane: a chain of segments, solid on its right-hand side.
 
 use super::recede::{Recede, Shares, Vertex};
-use super::shape::{Corner, Surface, Touch};
-use super::space::Plane;
+use super::shape::{ClosestPoint, Corner, Surface};
+use super::space::Dim2;
 use nalgebra::Vector2;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
@@ -157,8 +157,13 @@ impl Polyline {
     }
 }
 
-impl Surface<Plane> for Polyline {
-    fn touches(&self, centre: &Vector2<f64>, reach: f64, out: &mut Vec<Touch<Vector2<f64>>>) {
+impl Surface<Dim2> for Polyline {
+    fn touches(
+        &self,
+        centre: &Vector2<f64>,
+        reach: f64,
+        out: &mut Vec<ClosestPoint<Vector2<f64>>>,
+    ) {
         let (c, shift) = self.wrapped(centre);
         let start = out.len();
         let window = AABB::from_corners([c.x - reach, c.y - reach], [c.x + reach, c.y + reach]);
@@ -171,9 +176,9 @@ impl Surface<Plane> for Polyline {
                 let normal = Vector2::new(-along.y, along.x) / along.norm();
                 let distance = (c - a).dot(&normal);
                 if distance.abs() < reach {
-                    let foot = c - normal * distance + Vector2::new(shift, 0.0);
-                    out.push(Touch {
-                        foot,
+                    let closest_point = c - normal * distance + Vector2::new(shift, 0.0);
+                    out.push(ClosestPoint {
+                        closest_point,
                         normal,
                         distance,
                         feature: 2 * k,
@@ -200,10 +205,10 @@ impl Surface<Plane> for Polyline {
             if length < reach && length > 0.0 && nearest {
                 let distance = if valley { -length } else { length };
                 let normal = from / distance;
-                let foot = vertex + Vector2::new(shift, 0.0);
+                let closest_point = vertex + Vector2::new(shift, 0.0);
                 let feature = if at_end { 2 * k + 1 } else { u32::MAX };
-                out.push(Touch {
-                    foot,
+                out.push(ClosestPoint {
+                    closest_point,
                     normal,
                     distance,
                     feature,
@@ -265,16 +270,16 @@ impl Surface<Plane> for Polyline {
         vec![self.points.clone()]
     }
 
-    fn receding(&self) -> Option<&dyn Recede<Plane>> {
+    fn receding(&self) -> Option<&dyn Recede<Dim2>> {
         Some(self)
     }
 
-    fn receding_mut(&mut self) -> Option<&mut dyn Recede<Plane>> {
+    fn receding_mut(&mut self) -> Option<&mut dyn Recede<Dim2>> {
         Some(self)
     }
 }
 
-impl Recede<Plane> for Polyline {
+impl Recede<Dim2> for Polyline {
     fn vertices(&self) -> Vec<Vertex<Vector2<f64>>> {
         let n = self.segments();
         let wide = |k: usize| (self.points[k + 1].x - self.points[k].x).abs();
@@ -305,13 +310,19 @@ impl Recede<Plane> for Polyline {
         })
     }
 
-    fn shares(&self, foot: &Vector2<f64>) -> Shares {
-        let (foot, _) = self.wrapped(foot);
+    fn shares(&self, closest_point: &Vector2<f64>) -> Shares {
+        let (closest_point, _) = self.wrapped(closest_point);
         let (n, to) = (self.segments(), self.direction());
-        let passed = self.points.partition_point(|p| to * p.x <= to * foot.x);
+        let passed = self
+            .points
+            .partition_point(|p| to * p.x <= to * closest_point.x);
         let k = passed.clamp(1, n) - 1;
         let (a, b) = (self.points[k].x, self.points[k + 1].x);
-        let s = if a == b { 0.0 } else { (foot.x - a) / (b - a) };
+        let s = if a == b {
+            0.0
+        } else {
+            (closest_point.x - a) / (b - a)
+        };
         let s = s.clamp(0.0, 1.0);
         let next = if k + 1 == n && self.period.is_some() {
             0
@@ -360,7 +371,7 @@ impl Recede<Plane> for Polyline {
 mod tests {
     use super::*;
 
-    fn touches(profile: &Polyline, x: f64, y: f64, reach: f64) -> Vec<Touch<Vector2<f64>>> {
+    fn touches(profile: &Polyline, x: f64, y: f64, reach: f64) -> Vec<ClosestPoint<Vector2<f64>>> {
         let mut out = Vec::new();
         profile.touches(&Vector2::new(x, y), reach, &mut out);
         out
@@ -424,7 +435,9 @@ mod tests {
             assert_eq!(near.len(), far.len());
             for (a, b) in near.iter().zip(&far) {
                 assert_eq!(a.feature, b.feature);
-                assert!((a.foot - b.foot + Vector2::new(7.0, 0.0)).norm() < 1e-12);
+                assert!(
+                    (a.closest_point - b.closest_point + Vector2::new(7.0, 0.0)).norm() < 1e-12
+                );
             }
         }
         assert!(!touches(&saw, 1e-9, 0.1, 0.2).is_empty());

@@ -31,7 +31,7 @@ pub trait Recede<S: Space> {
         None
     }
     /// The vertices about a point of the surface, by the linear functions of its segment or triangle.
-    fn shares(&self, foot: &S::Vector) -> Shares;
+    fn shares(&self, closest_point: &S::Vector) -> Shares;
     /// Puts the vertices named at their depths (m) below where they stood at first. The largest step that one took (m).
     fn recede(&mut self, depth: &[f64], named: &[usize]) -> f64;
     /// 1 where the solid is below and heights fall, -1 where it is above and they rise.

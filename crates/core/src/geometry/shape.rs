@@ -1,6 +1,6 @@
 //! What can touch: balls, convex pieces, and surfaces carried by first bodies.
 
-use super::convex::Piece;
+use super::convex::ConvexCollider;
 use super::facets::Facet;
 use super::periodic::Periodic;
 use super::recede::Recede;
@@ -22,9 +22,9 @@ pub struct Ball<S: Space> {
 
 /// Where a ball is nearest to a surface, in the surface's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch<V> {
+pub struct ClosestPoint<V> {
     /// Nearest point of the surface (m).
-    pub foot: V,
+    pub closest_point: V,
     /// Unit normal, from the surface to the ball's centre.
     pub normal: V,
     /// Distance from the surface to the centre (m), negative when the centre is inside the solid.
@@ -48,7 +48,7 @@ pub struct Corner<V> {
 pub trait Surface<S: Space>: Debug + Send + Sync {
     /// All places where a ball centred at `centre` is nearest to the surface within `reach` (m), in the
     /// order of their features. No ghost contacts at seams between faces.
-    fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<Touch<S::Vector>>);
+    fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<ClosestPoint<S::Vector>>);
     /// Whether a ball may be within `reach`: cheap, may say yes too often.
     fn near(&self, centre: &S::Vector, reach: f64) -> bool;
     /// Corners of the surface in the box from `low` to `high` (m) on which a flat side may come to lie, in
@@ -86,7 +86,7 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     }
     /// Whether turning about the body's origin with this spin, in the body's axes, leaves the surface where it is.
     fn keeps_place(&self, spin: &S::Spin) -> bool {
-        *spin == S::Spin::null()
+        *spin == S::Spin::zero()
     }
 }
 
@@ -105,11 +105,11 @@ pub struct HalfSpace<S: Space> {
 }
 
 impl<S: Space> Surface<S> for HalfSpace<S> {
-    fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<Touch<S::Vector>>) {
+    fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<ClosestPoint<S::Vector>>) {
         let distance = centre.dot(&self.normal);
         if distance < reach {
-            out.push(Touch {
-                foot: *centre - self.normal * distance,
+            out.push(ClosestPoint {
+                closest_point: *centre - self.normal * distance,
                 normal: self.normal,
                 distance,
                 feature: 0,
@@ -130,7 +130,7 @@ impl<S: Space> Surface<S> for HalfSpace<S> {
     }
 
     fn keeps_place(&self, spin: &S::Spin) -> bool {
-        *spin == S::Spin::null() || (S::D == 3 && about::<S>(&self.normal, spin))
+        *spin == S::Spin::zero() || (S::D == 3 && about::<S>(&self.normal, spin))
     }
 
     fn outline(&self) -> Vec<Vec<S::Vector>> {
@@ -173,7 +173,7 @@ pub struct Shapes<S: Space> {
     /// Disks or spheres.
     pub balls: Vec<Ball<S>>,
     /// Convex pieces.
-    pub pieces: Vec<Piece<S>>,
+    pub pieces: Vec<ConvexCollider<S>>,
     /// Surfaces of first bodies.
     pub surfaces: Vec<Carried<S>>,
     /// Periodic boundaries.
@@ -183,12 +183,12 @@ pub struct Shapes<S: Space> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::Plane;
+    use crate::geometry::space::Dim2;
     use nalgebra::Vector2;
 
     #[test]
     fn half_space_gives_signed_distance() {
-        let floor = HalfSpace::<Plane> {
+        let floor = HalfSpace::<Dim2> {
             normal: Vector2::new(0.0, 1.0),
             shown: 1.0,
         };
@@ -196,6 +196,6 @@ mod tests {
         floor.touches(&Vector2::new(3.0, 0.5), 1.0, &mut out);
         floor.touches(&Vector2::new(3.0, -0.5), 1.0, &mut out);
         assert_eq!((out[0].distance, out[1].distance), (0.5, -0.5));
-        assert_eq!(out[0].foot, Vector2::new(3.0, 0.0));
+        assert_eq!(out[0].closest_point, Vector2::new(3.0, 0.0));
     }
 }

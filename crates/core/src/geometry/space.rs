@@ -29,7 +29,7 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     type Core: super::convex::Core<Self>;
 
     /// Velocity of a point at `arm` from the centre of a body that turns: omega x arm.
-    fn sweep(spin: &Self::Spin, arm: &Self::Vector) -> Self::Vector;
+    fn spin_velocity(spin: &Self::Spin, arm: &Self::Vector) -> Self::Vector;
     /// Moment of a force at `arm`: arm x force.
     fn moment(arm: &Self::Vector, force: &Self::Vector) -> Self::Spin;
     /// The matrix S with S p = (I^-1 moment(arm, p)) x arm.
@@ -57,21 +57,25 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     fn twist(n: &Self::Vector, t: &Self::Tangent) -> Self::Spin;
     /// Turns a tangential part with its contact: by the least rotation from one normal to the next, then
     /// by an angle about the new one. In 2D it turns with its frame.
-    fn carry(
+    fn transport(
         from: &Self::Vector,
         to: &Self::Vector,
         angle: f64,
         t: &Self::Tangent,
     ) -> Self::Tangent;
     /// The same for a spin.
-    fn carry_spin(from: &Self::Vector, to: &Self::Vector, angle: f64, w: &Self::Spin)
-    -> Self::Spin;
+    fn transport_spin(
+        from: &Self::Vector,
+        to: &Self::Vector,
+        angle: f64,
+        w: &Self::Spin,
+    ) -> Self::Spin;
     /// A tangential part from its components along [`Space::tangents`].
     fn from_components(n: &Self::Vector, t1: f64, t2: f64) -> Self::Tangent;
     /// The components of a tangential part along [`Space::tangents`].
     fn components(n: &Self::Vector, t: &Self::Tangent) -> [f64; 2];
     /// No rotation.
-    fn upright() -> Self::Rotation;
+    fn identity() -> Self::Rotation;
     /// Turns by the rotation vector `spin * time`.
     fn turned(rotation: &Self::Rotation, angle: &Self::Spin) -> Self::Rotation;
     /// From the body's frame to the world.
@@ -107,12 +111,12 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
 
 /// The plane; masses and forces are per metre of depth.
 #[derive(Copy, Clone, Debug, Default)]
-pub struct Plane;
+pub struct Dim2;
 /// Three-dimensional space.
 #[derive(Copy, Clone, Debug, Default)]
-pub struct Solid;
+pub struct Dim3;
 
-impl Space for Plane {
+impl Space for Dim2 {
     const D: usize = 2;
     type Vector = Vector2<f64>;
     type Spin = Vector1<f64>;
@@ -124,7 +128,7 @@ impl Space for Plane {
     const BALL_INERTIA: f64 = 0.5;
 
     #[inline(always)]
-    fn sweep(spin: &Self::Spin, arm: &Self::Vector) -> Self::Vector {
+    fn spin_velocity(spin: &Self::Spin, arm: &Self::Vector) -> Self::Vector {
         Vector2::new(-spin[0] * arm[1], spin[0] * arm[0])
     }
     #[inline(always)]
@@ -170,10 +174,20 @@ impl Space for Plane {
         *t
     }
     #[inline(always)]
-    fn carry(_from: &Self::Vector, _to: &Self::Vector, _: f64, t: &Self::Tangent) -> Self::Tangent {
+    fn transport(
+        _from: &Self::Vector,
+        _to: &Self::Vector,
+        _: f64,
+        t: &Self::Tangent,
+    ) -> Self::Tangent {
         *t
     }
-    fn carry_spin(_from: &Self::Vector, _to: &Self::Vector, _: f64, w: &Self::Spin) -> Self::Spin {
+    fn transport_spin(
+        _from: &Self::Vector,
+        _to: &Self::Vector,
+        _: f64,
+        w: &Self::Spin,
+    ) -> Self::Spin {
         *w
     }
     fn from_components(_n: &Self::Vector, t1: f64, _t2: f64) -> Self::Tangent {
@@ -183,7 +197,7 @@ impl Space for Plane {
     fn components(_n: &Self::Vector, t: &Self::Tangent) -> [f64; 2] {
         [t[0], 0.0]
     }
-    fn upright() -> f64 {
+    fn identity() -> f64 {
         0.0
     }
     fn turned(rotation: &f64, angle: &Self::Spin) -> f64 {
@@ -228,7 +242,7 @@ impl Space for Plane {
     }
 }
 
-impl Space for Solid {
+impl Space for Dim3 {
     const D: usize = 3;
     type Vector = Vector3<f64>;
     type Spin = Vector3<f64>;
@@ -240,7 +254,7 @@ impl Space for Solid {
     const BALL_INERTIA: f64 = 0.4;
 
     #[inline(always)]
-    fn sweep(spin: &Self::Spin, arm: &Self::Vector) -> Self::Vector {
+    fn spin_velocity(spin: &Self::Spin, arm: &Self::Vector) -> Self::Vector {
         spin.cross(arm)
     }
     #[inline(always)]
@@ -289,17 +303,17 @@ impl Space for Solid {
     fn twist(n: &Self::Vector, t: &Self::Tangent) -> Self::Spin {
         n.cross(t)
     }
-    fn carry(
+    fn transport(
         from: &Self::Vector,
         to: &Self::Vector,
         angle: f64,
         t: &Self::Tangent,
     ) -> Self::Tangent {
         // Rounding leaves a part along the normal, which is none of a tangent's.
-        let turned = Self::carry_spin(from, to, angle, t);
+        let turned = Self::transport_spin(from, to, angle, t);
         turned - to * to.dot(&turned)
     }
-    fn carry_spin(
+    fn transport_spin(
         from: &Self::Vector,
         to: &Self::Vector,
         angle: f64,
@@ -322,7 +336,7 @@ impl Space for Solid {
         let [e1, e2] = Self::tangents(n);
         [e1.dot(t), e2.dot(t)]
     }
-    fn upright() -> Self::Rotation {
+    fn identity() -> Self::Rotation {
         nalgebra::UnitQuaternion::identity()
     }
     fn turned(rotation: &Self::Rotation, angle: &Self::Spin) -> Self::Rotation {
@@ -393,21 +407,21 @@ mod tests {
             Vector3::new(0.3, 0.7, -1.1),
             Vector3::new(-0.2, 0.4, 0.9),
         );
-        let power = Solid::sweep(&w, &arm).dot(&f);
-        assert!((power - w.dot(&Solid::moment(&arm, &f))).abs() < 1e-14);
+        let power = Dim3::spin_velocity(&w, &arm).dot(&f);
+        assert!((power - w.dot(&Dim3::moment(&arm, &f))).abs() < 1e-14);
         let inverse = Matrix3::new(2.0, 0.3, -0.1, 0.3, 1.0, 0.2, -0.1, 0.2, 0.7);
-        let block = Solid::sweep(&(inverse * Solid::moment(&arm, &f)), &arm);
-        assert!((block - Solid::rotation_block(&arm, &inverse) * f).norm() < 1e-14);
+        let block = Dim3::spin_velocity(&(inverse * Dim3::moment(&arm, &f)), &arm);
+        assert!((block - Dim3::rotation_block(&arm, &inverse) * f).norm() < 1e-14);
         let (arm, f, w) = (
             Vector2::new(1.0, -2.0),
             Vector2::new(0.3, 0.7),
             Vector1::new(0.6),
         );
-        let power = Plane::sweep(&w, &arm).dot(&f);
-        assert!((power - w[0] * Plane::moment(&arm, &f)[0]).abs() < 1e-14);
+        let power = Dim2::spin_velocity(&w, &arm).dot(&f);
+        assert!((power - w[0] * Dim2::moment(&arm, &f)[0]).abs() < 1e-14);
         let inverse = Matrix1::new(0.3);
-        let block = Plane::sweep(&(inverse * Plane::moment(&arm, &f)), &arm);
-        assert!((block - Plane::rotation_block(&arm, &inverse) * f).norm() < 1e-14);
+        let block = Dim2::spin_velocity(&(inverse * Dim2::moment(&arm, &f)), &arm);
+        assert!((block - Dim2::rotation_block(&arm, &inverse) * f).norm() < 1e-14);
     }
 
     #[test]
@@ -419,7 +433,7 @@ mod tests {
             [1.0, 0.0, 0.0],
         ] {
             let n = Vector3::from(n);
-            let [t1, t2] = Solid::tangents(&n);
+            let [t1, t2] = Dim3::tangents(&n);
             assert!((n.cross(&t1) - t2).norm() < 1e-14 && t1.dot(&n).abs() < 1e-14);
         }
     }

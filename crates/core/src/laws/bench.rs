@@ -6,7 +6,7 @@ use super::bonds::Held;
 use super::columns::StepInfo;
 use super::interface::Interface;
 use super::library::{Call, LawError};
-use super::pass::{Care, Passes};
+use super::pass::{Care, LawEvaluator};
 use serde::Serialize;
 
 /// What a contact on the bench remembers.
@@ -71,7 +71,7 @@ pub struct Bench {
     dimension: u32,
     area: f64,
     radius: f64,
-    passes: Passes,
+    passes: LawEvaluator,
     said: Vec<f64>,
 }
 
@@ -84,7 +84,7 @@ impl Bench {
             dimension,
             area,
             radius,
-            passes: Passes::default(),
+            passes: LawEvaluator::default(),
             said: Vec::new(),
         }
     }

@@ -3,7 +3,7 @@
 use super::columns::StepInfo;
 use super::interface::Interface;
 use super::library::{Call, LawError};
-use super::pass::{Passes, Site, Totals, Turn};
+use super::pass::{ContactStep, LawEvaluator, MomentStep, Totals};
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -35,7 +35,7 @@ impl Held {
     }
 }
 
-impl Passes {
+impl LawEvaluator {
     /// Ends the step of the intact bonds of one interface, which are the members.
     #[allow(clippy::too_many_arguments)]
     pub(super) fn commit_bonds<S: Space>(
@@ -43,8 +43,8 @@ impl Passes {
         index: usize,
         law: &Interface,
         network: &mut Network<S>,
-        sites: &[Site<S>],
-        turns: &[Turn<S>],
+        sites: &[ContactStep<S>],
+        turns: &[MomentStep<S>],
         info: &StepInfo,
         totals: &mut Totals,
     ) -> Result<(), LawError> {
@@ -57,8 +57,8 @@ impl Passes {
             let bond = network.bond(&network.contacts[*at]);
             let (before, used) = bond.map_or((0.0, 0.0), |b| (b.damage, b.used));
             *damage = damage.max(used);
-            if network.stands_for != 1.0 {
-                *damage = (before + network.stands_for * (*damage - before)).min(1.0);
+            if network.cycle_multiplier != 1.0 {
+                *damage = (before + network.cycle_multiplier * (*damage - before)).min(1.0);
             }
         }
         self.keep_state(index, network);
@@ -68,7 +68,7 @@ impl Passes {
     }
 
     /// The largest distance between the damage that the step's impulses were formed with and the one
-    /// that their openings give, where that is larger; [`Passes::adopt`] takes it for the next solve.
+    /// that their openings give, where that is larger; [`LawEvaluator::adopt`] takes it for the next solve.
     ///
     /// # Errors
     /// A law's own error, with the contact at fault.
@@ -76,8 +76,8 @@ impl Passes {
         &mut self,
         laws: &[Interface],
         network: &mut Network<S>,
-        sites: &[Site<S>],
-        turns: &[Turn<S>],
+        sites: &[ContactStep<S>],
+        turns: &[MomentStep<S>],
         info: &StepInfo,
     ) -> Result<f64, LawError> {
         let mut worst = 0.0f64;
@@ -165,8 +165,8 @@ impl Passes {
         index: usize,
         law: &Interface,
         network: &mut Network<S>,
-        sites: &[Site<S>],
-        turns: &[Turn<S>],
+        sites: &[ContactStep<S>],
+        turns: &[MomentStep<S>],
         info: &StepInfo,
         held: &mut Held,
     ) {
@@ -285,7 +285,7 @@ impl Passes {
                 contact.pressed = 0.0;
                 network.broken_pairs.insert(contact.key.pair());
                 let contact = contact.clone();
-                network.tell_break(&contact);
+                network.record_break(&contact);
                 if law.variables() == 0 {
                     network.memory[index].release(slot as u32);
                     network.contacts[*at].slot = Contact::<S>::NO_MEMORY;

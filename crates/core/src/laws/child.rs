@@ -189,14 +189,14 @@ fn listen(out: impl Read, token: u64, send: &mpsc::Sender<Value>) {
 
 /// The end of what a process says on standard error.
 fn last_words(mut err: impl Read) -> String {
-    const MOST: usize = 4096;
+    const MAX_BYTES: usize = 4096;
     let (mut all, mut buffer) = (Vec::new(), [0; 1024]);
     while let Ok(n) = err.read(&mut buffer) {
         if n == 0 {
             break;
         }
         all.extend_from_slice(&buffer[..n]);
-        let over = all.len().saturating_sub(MOST);
+        let over = all.len().saturating_sub(MAX_BYTES);
         all.drain(..over);
     }
     String::from_utf8_lossy(&all).trim().to_owned()

@@ -69,23 +69,23 @@ pub struct Columns {
 /// Values behind the end of each column that a plugin writes, to see whether it went too far.
 const FENCE: usize = 8;
 /// What stands there: a NaN that no law computes.
-const POST: u64 = 0x7ff4_f37e_0b5e_55ed;
+const CANARY: u64 = 0x7ff4_f37e_0b5e_55ed;
 
 /// Puts up the fence behind a column.
-fn fence(column: &mut Vec<f64>) {
+fn guard(column: &mut Vec<f64>) {
     column.reserve(FENCE);
     for place in &mut column.spare_capacity_mut()[..FENCE] {
-        place.write(f64::from_bits(POST));
+        place.write(f64::from_bits(CANARY));
     }
 }
 
 /// Whether the fence of a column is broken.
-fn trodden(column: &mut Vec<f64>) -> bool {
+fn overrun(column: &mut Vec<f64>) -> bool {
     let posts = column.spare_capacity_mut()[..FENCE].iter();
-    // SAFETY: `fence` wrote them, and nothing has moved the column since.
+    // SAFETY: `guard` wrote them, and nothing has moved the column since.
     posts
         .into_iter()
-        .any(|p| unsafe { p.assume_init_read() }.to_bits() != POST)
+        .any(|p| unsafe { p.assume_init_read() }.to_bits() != CANARY)
 }
 
 /// Columns written by plugins, named as in the ABI.
@@ -265,7 +265,7 @@ impl Columns {
         let n = self.n;
         let (first, count) = (loaded.first_variable, loaded.variables());
         let states = self.state_next.iter_mut().skip(first).take(count);
-        self.out.all().chain(states).for_each(fence);
+        self.out.all().chain(states).for_each(guard);
         let column = |v: &Vec<f64>| if v.len() == n { v.as_ptr() } else { null() };
         let mut output = |v: &mut Vec<f64>| {
             if v.len() == n {
@@ -379,7 +379,7 @@ impl Columns {
         let answer = call(&batch);
         let states = self.state_next.iter_mut().skip(first).take(count);
         let written = self.out.all().chain(states);
-        self.overrun = written.fold(false, |broken, column| broken | trodden(column));
+        self.overrun = written.fold(false, |broken, column| broken | overrun(column));
         answer
     }
 }

@@ -3,13 +3,13 @@
 use super::columns::StepInfo;
 use super::interface::{Interface, Loaded};
 use super::library::{Call, LawError};
-use super::pass::{Passes, Site, Totals, Turn};
+use super::pass::{ContactStep, LawEvaluator, MomentStep, Totals};
 use crate::contact::network::Key;
-use crate::contact::{Loss, Network, Spent};
+use crate::contact::{ContactDissipation, Loss, Network};
 use crate::geometry::space::{Space, VectorLike};
 use std::collections::HashSet;
 
-impl Passes {
+impl LawEvaluator {
     /// Ends the step: `sites` are what the contacts did, in the network's order, `turns` the moments of
     /// those that resist rotation.
     ///
@@ -19,21 +19,21 @@ impl Passes {
         &mut self,
         laws: &[Interface],
         network: &mut Network<S>,
-        sites: &[Site<S>],
-        turns: &[Turn<S>],
+        sites: &[ContactStep<S>],
+        turns: &[MomentStep<S>],
         info: &StepInfo,
     ) -> Result<Totals, LawError> {
         let mut totals = Totals::default();
         if let Some(spent) = &mut network.spent {
             spent.clear();
-            spent.resize(network.contacts.len(), Spent::default());
+            spent.resize(network.contacts.len(), ContactDissipation::default());
         }
         if let Some(losses) = &mut network.losses {
             losses.clear();
         }
         for (k, (contact, site)) in network.contacts.iter_mut().zip(sites).enumerate() {
             contact.impulse = site.solution.impulse;
-            contact.moment = S::Spin::null();
+            contact.moment = S::Spin::zero();
             let n = &contact.normal;
             contact.pressed = if n.dot(&contact.impulse) > 0.0 && !contact.beyond {
                 contact.pressed + info.h
@@ -55,12 +55,12 @@ impl Passes {
             }
             if let Some(spent) = &mut network.spent {
                 let (adhesion, impact) = if adheres { (work, 0.0) } else { (0.0, work) };
-                spent[k] = Spent {
+                spent[k] = ContactDissipation {
                     friction,
                     impact,
                     adhesion,
                     correction: -site.corrected,
-                    ..Spent::default()
+                    ..ContactDissipation::default()
                 };
             }
         }
@@ -115,7 +115,7 @@ impl Passes {
         law: &Interface,
         loaded: &Loaded,
         network: &mut Network<S>,
-        sites: &[Site<S>],
+        sites: &[ContactStep<S>],
         info: &StepInfo,
     ) -> Result<(), LawError> {
         self.gather_after(law, network, sites, info);
@@ -142,9 +142,10 @@ impl Passes {
     /// Lets pairs that parted keep what they owe only while they are fewer than the contacts.
     fn forget_debts<S: Space>(&mut self, network: &Network<S>) {
         let contacts = &network.contacts;
-        if self.debts.len() > 2 * contacts.len() {
+        if self.negative_friction_work.len() > 2 * contacts.len() {
             let near = |pair: &(u32, u32)| contacts.binary_search_by_key(pair, |c| c.key.pair());
-            self.debts.retain(|pair, _| near(pair).is_ok());
+            self.negative_friction_work
+                .retain(|pair, _| near(pair).is_ok());
         }
     }
 
@@ -155,7 +156,7 @@ impl Passes {
         law: &Interface,
         wear: &Loaded,
         network: &mut Network<S>,
-        sites: &[Site<S>],
+        sites: &[ContactStep<S>],
         info: &StepInfo,
         totals: &mut Totals,
     ) -> Result<(), LawError> {
@@ -168,13 +169,13 @@ impl Passes {
             let work = -site.solution.unilateral_t.dot(&ut);
             // Where the velocity turns within a step, friction gives work back: later steps owe it to the law.
             let pair = contact.key.pair();
-            let owed = match self.debts.is_empty() {
+            let owed = match self.negative_friction_work.is_empty() {
                 true => 0.0,
-                false => self.debts.remove(&pair).unwrap_or(0.0),
+                false => self.negative_friction_work.remove(&pair).unwrap_or(0.0),
             };
             let work = work + owed;
             if work < 0.0 {
-                self.debts.insert(pair, work);
+                self.negative_friction_work.insert(pair, work);
             }
             self.columns.friction_work.push(work.max(0.0));
         }
@@ -182,13 +183,16 @@ impl Passes {
         self.run(wear, info, 0.0, Call::Commit)
             .map_err(|e| self.at(law, network, e))?;
         // What a bond gives when it breaks it gives once, also in a cycle that stands for many.
-        let breaks = network.breaks.iter().filter(|_| network.stands_for > 1.0);
+        let breaks = network
+            .bond_breaks
+            .iter()
+            .filter(|_| network.cycle_multiplier > 1.0);
         let broke: HashSet<Key> = breaks.map(|b| b.key).collect();
         for (k, at) in self.members.iter().enumerate() {
             let times = if broke.contains(&network.contacts[*at].key) {
                 1.0
             } else {
-                network.stands_for
+                network.cycle_multiplier
             };
             let volume = times * self.columns.out.volume[k];
             if let Some(surface) = network.contacts[*at].key.surface() {

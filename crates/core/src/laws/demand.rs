@@ -9,7 +9,7 @@ use super::library::LawError;
 
 /// Whether a law asks for something, from the least to the most.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Asked {
+pub enum Requirement {
     /// It cannot.
     #[default]
     Never,
@@ -21,7 +21,7 @@ pub enum Asked {
     Always,
 }
 
-impl Asked {
+impl Requirement {
     /// From what trials gave: whether the contact touched, and whether the law asked for it.
     fn of(trials: &[(bool, bool)], constant: bool) -> Self {
         let any = trials.iter().any(|(_, asks)| *asks);
@@ -37,13 +37,13 @@ impl Asked {
 
 /// What an interface asks of a solver beyond Coulomb's cone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Demand {
+pub struct LawRequirements {
     /// Friction against sliding.
-    pub friction: Asked,
+    pub friction: Requirement,
     /// Friction against rotation.
-    pub rotation: Asked,
+    pub rotation: Requirement,
     /// Shear cohesion; unseen of laws of bonds, which are tried in no trial.
-    pub cohesion: Asked,
+    pub cohesion: Requirement,
 }
 
 impl Interface {
@@ -51,7 +51,7 @@ impl Interface {
     ///
     /// # Errors
     /// What a law said to the trial.
-    pub fn demand(&self, dimension: u32, radii: &[f64]) -> Result<Demand, LawError> {
+    pub fn demand(&self, dimension: u32, radii: &[f64]) -> Result<LawRequirements, LawError> {
         let bonds = self.opens() && (self.bonds != BondRule::Never || self.healing.is_some());
         let acting = Self {
             cohesion: self.cohesion.clone().filter(|_| !self.opens()),
@@ -75,13 +75,13 @@ impl Interface {
                 grips.push((touches, answer.strength[1] > 0.0));
             }
         }
-        Ok(Demand {
-            friction: Asked::of(&rubs, constant),
-            rotation: Asked::of(&turns, constant),
-            cohesion: Asked::of(&grips, simple).max(if bonds {
-                Asked::Unseen
+        Ok(LawRequirements {
+            friction: Requirement::of(&rubs, constant),
+            rotation: Requirement::of(&turns, constant),
+            cohesion: Requirement::of(&grips, simple).max(if bonds {
+                Requirement::Unseen
             } else {
-                Asked::Never
+                Requirement::Never
             }),
         })
     }

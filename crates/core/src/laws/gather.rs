@@ -2,11 +2,11 @@
 
 use super::columns::{Columns, StepInfo, Triple};
 use super::interface::Interface;
-use super::pass::{Passes, Site};
+use super::pass::{ContactStep, LawEvaluator};
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 
-impl Passes {
+impl LawEvaluator {
     /// Columns at the start of the step.
     pub(super) fn gather<S: Space>(
         &mut self,
@@ -37,7 +37,7 @@ impl Passes {
         &mut self,
         law: &Interface,
         network: &Network<S>,
-        sites: &[Site<S>],
+        sites: &[ContactStep<S>],
         info: &StepInfo,
     ) {
         self.columns.clear();
@@ -115,7 +115,7 @@ fn gather_contact<S: Space>(
     columns.gap.push(contact.gap);
     columns.area.push(contact_area(law, network, contact));
     columns.radius.push(contact.radius);
-    columns.age.push(info.time - contact.born);
+    columns.age.push(info.time - contact.formed_at);
     columns.pressed.push(contact.pressed);
     push_vector::<S>(&mut columns.velocity, &contact.normal, velocity);
     let (opening, damage) = match network.bond(contact) {

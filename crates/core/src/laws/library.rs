@@ -548,10 +548,10 @@ unsafe fn text(pointer: *const c_char) -> Result<String, String> {
 }
 
 unsafe fn fields(first: *const abi::FwField, n: usize, what: &str) -> Result<Vec<Field>, String> {
-    const MOST: usize = 256;
-    if n > MOST {
+    const MAX_FIELDS: usize = 256;
+    if n > MAX_FIELDS {
         return Err(format!(
-            "it declares {n} {what}s; at most {MOST} are accepted"
+            "it declares {n} {what}s; at most {MAX_FIELDS} are accepted"
         ));
     }
     if n > 0 && first.is_null() {

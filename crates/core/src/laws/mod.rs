@@ -22,6 +22,6 @@ pub mod watch;
 pub use built_in::BuiltInLaws;
 pub use interface::{AreaRule, BondRule, Interface, Loaded};
 pub use library::{Call, Kind, LawError, Plugin};
-pub use pass::{Site, Totals, Turn, Velocities};
+pub use pass::{ContactStep, MomentStep, Totals, Velocities};
 pub use range::Range;
 pub use search::{Place, SearchPath};

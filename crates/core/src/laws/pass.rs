@@ -19,7 +19,7 @@ use std::collections::HashMap;
 
 /// What one contact did over the step.
 #[derive(Clone, Copy, Debug)]
-pub struct Site<S: Space> {
+pub struct ContactStep<S: Space> {
     /// Relative velocity u^- (m/s).
     pub before: S::Vector,
     /// Theta-averaged relative velocity u_th (m/s).
@@ -38,7 +38,7 @@ pub struct Site<S: Space> {
 
 /// What a contact that resists rotation did over the step.
 #[derive(Clone, Copy, Debug)]
-pub struct Turn<S: Space> {
+pub struct MomentStep<S: Space> {
     /// The solver's answer.
     pub moment: MomentSolution<S>,
     /// Theta-averaged relative spin (rad/s).
@@ -90,14 +90,14 @@ pub struct Totals {
 
 /// Working memory of the passes.
 #[derive(Debug, Default)]
-pub struct Passes {
+pub struct LawEvaluator {
     pub(super) columns: Columns,
     pub(super) members: Vec<usize>,
     pub(super) held: Held,
     /// Interface, slot and damage of the bonds of a coupling's last trial.
     pub(super) trials: Vec<(usize, usize, f64)>,
     /// Work that friction of a pair gave back and wear laws have not seen (J, negative).
-    pub(super) debts: HashMap<(u32, u32), f64>,
+    pub(super) negative_friction_work: HashMap<(u32, u32), f64>,
     /// Contacts of the last solve that close within the step and were kept from it although their law has restitution.
     pub(crate) held_back: Vec<usize>,
     /// Interfaces whose bonds have been made.
@@ -125,8 +125,8 @@ pub(super) enum Care {
 /// What the passes carry from step to step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Carried {
-    /// Pairs and what friction gave back there, in the order of the pairs; see [`Passes`].
-    debts: Vec<((u32, u32), f64)>,
+    /// Pairs and what friction gave back there, in the order of the pairs; see [`LawEvaluator`].
+    negative_friction_work: Vec<((u32, u32), f64)>,
     bonded: Vec<bool>,
     largest: Largest,
 }
@@ -143,13 +143,17 @@ struct Friction {
     spinning: f64,
 }
 
-impl Passes {
+impl LawEvaluator {
     /// What they carry from step to step.
     pub fn carried(&self) -> Carried {
-        let mut debts: Vec<_> = self.debts.iter().map(|(k, v)| (*k, *v)).collect();
-        debts.sort_unstable_by_key(|d| d.0);
+        let mut negative_friction_work: Vec<_> = self
+            .negative_friction_work
+            .iter()
+            .map(|(k, v)| (*k, *v))
+            .collect();
+        negative_friction_work.sort_unstable_by_key(|d| d.0);
         Carried {
-            debts,
+            negative_friction_work,
             bonded: self.bonded.clone(),
             largest: self.largest.clone(),
         }
@@ -157,7 +161,7 @@ impl Passes {
 
     /// Goes on from what others carried.
     pub fn carry_on(&mut self, from: Carried) {
-        self.debts = from.debts.into_iter().collect();
+        self.negative_friction_work = from.negative_friction_work.into_iter().collect();
         self.bonded = from.bonded;
         self.largest = from.largest;
     }
@@ -197,7 +201,8 @@ impl Passes {
                 let healed = law
                     .healing
                     .is_some_and(|time| contact.pressed > 0.0 && reached(contact.pressed, time));
-                let bonds = !intact && !contact.sharp && !contact.beyond && (due || healed);
+                let bonds =
+                    !intact && !contact.vertex_contact && !contact.beyond && (due || healed);
                 // A bond that only pulls fills its gap; one that pushes too yields until the gap is closed. An overlap is
                 // filled by both: the bond is at rest where it is made.
                 let filled = if law.tension_only() {
@@ -220,7 +225,7 @@ impl Passes {
                     _ => {}
                 }
                 if bonds {
-                    network.joins.push((contact.bodies, contact.law));
+                    network.bonds_formed.push((contact.bodies, contact.law));
                 }
                 if bonds && contact.broken {
                     contact.broken = false;
@@ -243,7 +248,7 @@ impl Passes {
         if self.members.is_empty() || !law.loaded().any(|l| l.plugin.initialises()) {
             return Ok(());
         }
-        let still = vec![S::Vector::null(); network.contacts.len()];
+        let still = vec![S::Vector::zero(); network.contacts.len()];
         self.gather(law, network, &still, info);
         self.columns.size_outputs();
         for loaded in law.loaded() {
@@ -327,7 +332,7 @@ impl Passes {
                         contact: *at as u32,
                         rolling: friction.rolling,
                         spinning: friction.spinning,
-                        a: S::Spin::null(),
+                        a: S::Spin::zero(),
                         b_twist: 0.0,
                         b_bend: 0.0,
                         loss_twist: 0.0,

@@ -15,7 +15,7 @@ pub enum Unseen {
 
 /// So many bytes are compared (256 MB): they are kept several times.
 #[cfg(target_os = "linux")]
-const MOST: usize = 1 << 28;
+const MAX_BYTES: usize = 1 << 28;
 
 /// The writable segments of the library that holds a law's functions; never those of another library.
 #[derive(Debug)]
@@ -43,7 +43,7 @@ impl StaticMemory {
             return Err(Unseen::System);
         }
         let bytes: usize = segments.iter().map(|s| s.1).sum();
-        if bytes > MOST {
+        if bytes > MAX_BYTES {
             return Err(Unseen::TooLarge(bytes));
         }
         Ok(Self { memory, segments })

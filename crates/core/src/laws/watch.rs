@@ -15,19 +15,19 @@ struct Slot {
 }
 
 /// Threads beyond so many share the last slot, and are not watched.
-const MOST: usize = 256;
-static SLOTS: [Slot; MOST] = [const {
+const MAX_SLOTS: usize = 256;
+static SLOTS: [Slot; MAX_SLOTS] = [const {
     Slot {
         turns: AtomicU64::new(0),
         who: AtomicPtr::new(std::ptr::null_mut()),
         call: AtomicUsize::new(0),
     }
-}; MOST];
+}; MAX_SLOTS];
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 
 thread_local! {
     static MINE: &'static Slot =
-        &SLOTS[THREADS.fetch_add(1, Ordering::Relaxed).min(MOST - 1)];
+        &SLOTS[THREADS.fetch_add(1, Ordering::Relaxed).min(MAX_SLOTS - 1)];
 }
 
 /// Names of the calls, in the order of their numbers.
@@ -183,13 +183,13 @@ pub fn watch(
         // dynamic linker, which that takes.
         let _ = saved.recv_timeout(Duration::from_millis(20));
         let _ = std::io::Write::flush(&mut std::io::stderr().lock());
-        let mut seen = vec![(0, 0); MOST];
+        let mut seen = vec![(0, 0); MAX_SLOTS];
         let _ = begins.send(());
         drop(begins);
         let (label, at) = loop {
             std::thread::sleep(limit / looks);
             // The last slot is of all threads that found no other.
-            let slots = SLOTS[..MOST - 1].iter().zip(&mut seen);
+            let slots = SLOTS[..MAX_SLOTS - 1].iter().zip(&mut seen);
             let mut late = slots.filter_map(|(slot, (turns, since))| {
                 let now = slot.turns.load(Ordering::Relaxed);
                 *since = if now == *turns && now % 2 == 1 {

@@ -182,12 +182,17 @@ impl<S: Space> Circuit<S> {
         let ties = |bodies: &[u32; 2], law: u16| {
             spec.interfaces.contains(&law) && bodies.iter().all(|b| counts(*b, number, spec))
         };
-        for (bodies, law) in &s.network.joins {
+        for (bodies, law) in &s.network.bonds_formed {
             if ties(bodies, *law) {
                 self.made.push(*bodies);
             }
         }
-        for b in s.network.breaks.iter().filter(|b| ties(&b.bodies, b.law)) {
+        for b in s
+            .network
+            .bond_breaks
+            .iter()
+            .filter(|b| ties(&b.bodies, b.law))
+        {
             let cut = Cut {
                 bodies: b.bodies,
                 work: [b.life.work[0], b.life.work[1]],
@@ -230,7 +235,7 @@ impl<S: Space> Circuit<S> {
         self.ledger.book(&places);
         for (k, (old, new)) in before.iter().zip(&places).enumerate() {
             if *new == Place::Lost && *old != Place::Lost {
-                s.take_out(self.grains[k] as usize);
+                s.remove_body(self.grains[k] as usize);
             }
         }
         self.cost += clock.elapsed();
@@ -271,7 +276,7 @@ impl<S: Space> Circuit<S> {
 
     fn debris_of(&self, s: &Simulation<S>, base: u32, piece: &[u32]) -> Debris<S> {
         let first = s.bodies.position[piece[0] as usize];
-        let (mut mass, mut moment) = (0.0, S::Vector::null());
+        let (mut mass, mut moment) = (0.0, S::Vector::zero());
         for b in piece {
             let (m, at) = (s.bodies.mass[*b as usize], s.bodies.position[*b as usize]);
             mass += m;

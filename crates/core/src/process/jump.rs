@@ -60,7 +60,7 @@ pub struct Point {
     /// Cycles, those jumped over included.
     pub cycles: u32,
     /// Cycles that the last one stood for.
-    pub stands_for: u32,
+    pub cycle_multiplier: u32,
     /// Volume worn off first bodies (m^3; m^3/m in 2D).
     pub wear_volume: f64,
     /// Mean damage of the bonds.
@@ -124,7 +124,7 @@ pub struct Jumps {
     /// Number of the cycle at hand among those computed, 0 before the first.
     number: u32,
     /// Cycles that the one at hand stands for.
-    stands_for: u32,
+    cycle_multiplier: u32,
     /// Cycles closed: computed, and with those jumped over.
     computed: u32,
     represented: u32,
@@ -158,7 +158,7 @@ impl Jumps {
             steps,
             work: 0.0,
             number,
-            stands_for: 1,
+            cycle_multiplier: 1,
             computed: 0,
             represented: 0,
             opened: first.clone(),
@@ -187,18 +187,18 @@ impl Jumps {
     }
 
     /// Cycles that the one at hand stands for.
-    pub fn stands_for(&self) -> u32 {
-        self.stands_for
+    pub fn cycle_multiplier(&self) -> u32 {
+        self.cycle_multiplier
     }
 
     /// Cycles so far, those jumped over included, when a share of the cycle at hand is done.
     pub fn cycles(&self, share: f64) -> f64 {
-        f64::from(self.represented) + share * f64::from(self.stands_for)
+        f64::from(self.represented) + share * f64::from(self.cycle_multiplier)
     }
 
     /// Cycles that were jumped over, when a share of the cycle at hand is done.
     pub fn jumped(&self, share: f64) -> f64 {
-        f64::from(self.represented - self.computed) + share * f64::from(self.stands_for - 1)
+        f64::from(self.represented - self.computed) + share * f64::from(self.cycle_multiplier - 1)
     }
 
     /// Takes in a step, with the number of the cycle that the next one belongs to, what was worn off first bodies and grains, and
@@ -218,7 +218,7 @@ impl Jumps {
         }
         self.number = next;
         self.opened = amounts(s, worn.1);
-        s.network.stands_for = f64::from(self.stands_for);
+        s.network.cycle_multiplier = f64::from(self.cycle_multiplier);
         self.spec.cycles.is_some_and(|n| self.represented >= n)
     }
 
@@ -227,23 +227,23 @@ impl Jumps {
         let now = amounts(s, worn.1);
         let grown = growth(&now, &self.opened);
         self.computed += 1;
-        self.represented = self.represented.saturating_add(self.stands_for);
+        self.represented = self.represented.saturating_add(self.cycle_multiplier);
         self.summary.points.push(Point {
             cycles: self.represented,
-            stands_for: self.stands_for,
+            cycle_multiplier: self.cycle_multiplier,
             wear_volume: worn.0,
             mean_damage: s.network.mean_damage(),
         });
-        if self.stands_for > 1 {
+        if self.cycle_multiplier > 1 {
             self.pending = Some(Pending {
-                cycles: self.stands_for,
+                cycles: self.cycle_multiplier,
                 before: std::mem::take(&mut self.rate),
                 added: grown,
                 control: Vec::new(),
                 computed: 0,
                 work: [self.work, 0.0],
             });
-            self.stands_for = 1;
+            self.cycle_multiplier = 1;
             return;
         }
         if let Some(pending) = &mut self.pending {
@@ -271,7 +271,7 @@ impl Jumps {
         }
         self.work = work;
         if self.computed >= self.spec.after {
-            self.stands_for = self.next(s);
+            self.cycle_multiplier = self.next(s);
         }
     }
 
@@ -372,8 +372,8 @@ impl Jumps {
         let off = self.off.iter().zip(&self.form);
         let shares: Option<Vec<f64>> = off.zip(&grown).map(share).collect();
         let waiting = self.pending.as_ref().map_or(0, |p| p.cycles);
-        let at_hand = if self.stands_for > 1 {
-            self.stands_for
+        let at_hand = if self.cycle_multiplier > 1 {
+            self.cycle_multiplier
         } else {
             0
         };

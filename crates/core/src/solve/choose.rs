@@ -7,7 +7,7 @@
 //! the steps that follow, until one helps again. The lengths follow from sizes alone: the same case takes the same path on
 //! any machine.
 
-use super::chosen::{Chosen, Tried, hyperstaticity};
+use super::chosen::{Attempt, SolvePath, hyperstaticity};
 use super::form::{ContactForm, Problem};
 use super::local::auto::sweeps_per_factorisation;
 use super::local::solver::Method;
@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 /// What the last steps taught.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Habit {
+pub struct AutoState {
     /// Sweeps before Newton over what their costs say.
     patience: f64,
     /// Whether the interior point ended the last step that Newton did not: it then comes first.
@@ -28,7 +28,7 @@ pub struct Habit {
     passed_over: [u32; 2],
 }
 
-impl Default for Habit {
+impl Default for AutoState {
     fn default() -> Self {
         Self {
             patience: 1.0,
@@ -38,7 +38,7 @@ impl Default for Habit {
     }
 }
 
-impl Habit {
+impl AutoState {
     /// Whether the interior point has its turn: after each failure it is passed over twice as often, 64 times at most.
     fn interior_is_due(&mut self) -> bool {
         let due = self.passed_over[0] == 0;
@@ -60,9 +60,9 @@ pub fn solve<S: Space>(
     forms: &[ContactForm<S>],
     moments: &[MomentForm<S>],
     options: &Options,
-    habit: &mut Habit,
+    habit: &mut AutoState,
 ) -> Report {
-    let pieces = Pieces {
+    let pieces = SolveContext {
         forms,
         moments,
         options,
@@ -75,13 +75,13 @@ pub fn solve<S: Space>(
     }
 }
 
-struct Pieces<'a, S: Space> {
+struct SolveContext<'a, S: Space> {
     forms: &'a [ContactForm<S>],
     moments: &'a [MomentForm<S>],
     options: &'a Options,
 }
 
-impl<S: Space> Pieces<'_, S> {
+impl<S: Space> SolveContext<'_, S> {
     /// Sweeps over bodies, so many at most.
     fn sweep(&self, problem: &mut Problem<S>, accelerated: bool, most: u32) -> Report {
         let options = Options {
@@ -144,7 +144,7 @@ impl<S: Space> Pieces<'_, S> {
         }
     }
 
-    fn auto(&self, problem: &mut Problem<S>, habit: &mut Habit) -> Report {
+    fn auto(&self, problem: &mut Problem<S>, habit: &mut AutoState) -> Report {
         /// Factorisations' worth of sweeps before Newton, at a loose and at a tight tolerance.
         const LOOSE: f64 = 40.0;
         const TIGHT: f64 = 20.0;
@@ -176,9 +176,9 @@ impl<S: Space> Pieces<'_, S> {
         let sweeps = worth * per * habit.patience;
         let sweeps = sweeps.clamp(200.0, f64::from(u32::MAX / 2)) as u32;
         let without = if refusal(Method::Newton, rolls, false).is_some() {
-            Some(Chosen::Unserved)
+            Some(SolvePath::Unserved)
         } else {
-            (unknowns > LARGEST).then_some(Chosen::Large)
+            (unknowns > LARGEST).then_some(SolvePath::Large)
         };
         if let Some(chosen) = without {
             let mut report = self.sweep(problem, true, options.max_iterations);
@@ -197,14 +197,14 @@ impl<S: Space> Pieces<'_, S> {
             // Newton is to have its turn before the iterations end.
             let more = (left / 2).min(sweeps.saturating_mul(HYPERSTATIC - 1));
             report.add(&self.sweep(problem, true, more));
-            report.chosen = Chosen::Longer { hyperstaticity };
+            report.chosen = SolvePath::Longer { hyperstaticity };
         }
         let after = report.iterations;
         let cohesion = self.forms.iter().any(|f| f.cohesion > 0.0);
         let mut interior = hyperstaticity < DETERMINED
             && refusal(Method::Interior, rolls, cohesion).is_none()
             && habit.interior_is_due();
-        let (mut newton, mut inside) = (Tried::No, Tried::No);
+        let (mut newton, mut inside) = (Attempt::No, Attempt::No);
         let mut round = 0;
         while !report.converged && report.iterations < options.max_iterations {
             let first = round == 0 && interior && habit.interior_first;
@@ -222,7 +222,7 @@ impl<S: Space> Pieces<'_, S> {
                 inside = self.interior(problem, &mut report, INTERIOR, habit);
                 interior = false;
             }
-            report.chosen = Chosen::Factorised {
+            report.chosen = SolvePath::Factorised {
                 after,
                 hyperstaticity,
                 newton,
@@ -235,8 +235,8 @@ impl<S: Space> Pieces<'_, S> {
             }
             round += 1;
         }
-        if let Chosen::Factorised { .. } = report.chosen {
-            let ended = newton == Tried::Ended || inside == Tried::Ended;
+        if let SolvePath::Factorised { .. } = report.chosen {
+            let ended = newton == Attempt::Ended || inside == Attempt::Ended;
             habit.patience *= if ended { 0.5 } else { 2.0 };
             habit.patience = habit.patience.clamp(1.0, 64.0);
         }
@@ -249,10 +249,10 @@ impl<S: Space> Pieces<'_, S> {
         problem: &mut Problem<S>,
         report: &mut Report,
         steps: u32,
-        habit: &mut Habit,
-    ) -> Tried {
+        habit: &mut AutoState,
+    ) -> Attempt {
         let tried = self.attempt(problem, report, Method::Interior, steps, false);
-        habit.learn(tried == Tried::Ended);
+        habit.learn(tried == Attempt::Ended);
         tried
     }
 
@@ -264,13 +264,13 @@ impl<S: Space> Pieces<'_, S> {
         method: Method,
         steps: u32,
         anew: bool,
-    ) -> Tried {
+    ) -> Attempt {
         let left = self
             .options
             .max_iterations
             .saturating_sub(report.iterations);
         if left == 0 {
-            return Tried::No;
+            return Attempt::No;
         }
         let mut saved = Vec::new();
         problem.store(&mut saved);
@@ -290,9 +290,9 @@ impl<S: Space> Pieces<'_, S> {
             report.add(&before);
         }
         if report.converged {
-            Tried::Ended
+            Attempt::Ended
         } else {
-            Tried::Failed
+            Attempt::Failed
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::geometry::space::{Space, VectorLike};
 
 /// What came of a method in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Tried {
+pub enum Attempt {
     /// It was not tried.
     #[default]
     No,
@@ -17,7 +17,7 @@ pub enum Tried {
 
 /// What [`super::local::solver::Method::Auto`] did in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Chosen {
+pub enum SolvePath {
     /// Sweeps were enough, or another method was asked for.
     #[default]
     Sweeps,
@@ -33,9 +33,9 @@ pub enum Chosen {
         /// The set's [`hyperstaticity`].
         hyperstaticity: f64,
         /// What Newton did, the last time.
-        newton: Tried,
+        newton: Attempt,
         /// What the interior point did.
-        interior: Tried,
+        interior: Attempt,
     },
     /// Sweeps had taken their share, and went on: Newton does not serve friction against rotation.
     Unserved,
@@ -43,7 +43,7 @@ pub enum Chosen {
     Large,
 }
 
-impl Chosen {
+impl SolvePath {
     /// What is to be told of a step of several solves: the first in which more than sweeps were asked for.
     #[must_use]
     pub fn or(self, later: Self) -> Self {
@@ -64,7 +64,7 @@ pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) 
     let mut unknowns = 0;
     for (k, form) in forms.iter().enumerate() {
         let solution = problem.solution(k);
-        let carries = solution.unilateral_n != 0.0 || solution.unilateral_t != S::Tangent::null();
+        let carries = solution.unilateral_n != 0.0 || solution.unilateral_t != S::Tangent::zero();
         let moves = |b: &u32| freedoms::<S>(problem, *b as usize, true) > 0;
         if !carries || !form.bodies.iter().any(moves) {
             continue;
@@ -99,16 +99,16 @@ fn freedoms<S: Space>(problem: &Problem<S>, body: usize, turns: bool) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::{MatrixLike, Plane, Space};
+    use crate::geometry::space::{Dim2, MatrixLike, Space};
     use nalgebra::Vector2;
 
     /// A ball on `supports` fixed bodies, all of which carry.
     fn ball(supports: usize, friction: f64) -> f64 {
-        let mut problem = Problem::<Plane>::default();
-        let body = |p: &mut Problem<Plane>, inverse: f64| {
+        let mut problem = Problem::<Dim2>::default();
+        let body = |p: &mut Problem<Dim2>, inverse: f64| {
             let mass = Vector2::new(inverse, inverse);
             let inertia = MatrixLike::uniform(inverse);
-            p.push_body(Vector2::zeros(), VectorLike::null(), mass, inertia, 1.0);
+            p.push_body(Vector2::zeros(), VectorLike::zero(), mass, inertia, 1.0);
         };
         body(&mut problem, 1.0);
         let mut forms = Vec::new();
@@ -116,13 +116,13 @@ mod tests {
             body(&mut problem, 0.0);
             let angle = 1.0 + 0.1 * k as f64;
             let normal = Vector2::new(angle.cos(), angle.sin());
-            let form = ContactForm::<Plane> {
+            let form = ContactForm::<Dim2> {
                 bodies: [0, k as u32 + 1],
                 normal,
                 arms: [-normal, normal],
                 central: true,
                 shift_n: 0.0,
-                shift_t: <Plane as Space>::Tangent::null(),
+                shift_t: <Dim2 as Space>::Tangent::zero(),
                 friction,
                 tension: 0.0,
                 cohesion: 0.0,

@@ -40,12 +40,12 @@ pub fn project_array<const D: usize>(z: &[f64; D], mu: f64, c: f64) -> [f64; D] 
 #[inline(always)]
 fn nearest(normal: f64, length: f64, mu: f64, c: f64) -> (f64, f64) {
     let inside = normal >= 0.0 && length <= mu * normal + c;
-    let foot = (normal + mu * (length - c)) / (1.0 + mu * mu);
-    let slides = length > c && foot > 0.0;
-    let foot = select_unpredictable(slides, foot, 0.0);
-    let bound = select_unpredictable(slides, mu * foot + c, length.min(c));
+    let closest_point = (normal + mu * (length - c)) / (1.0 + mu * mu);
+    let slides = length > c && closest_point > 0.0;
+    let closest_point = select_unpredictable(slides, closest_point, 0.0);
+    let bound = select_unpredictable(slides, mu * closest_point + c, length.min(c));
     (
-        select_unpredictable(inside, normal, foot),
+        select_unpredictable(inside, normal, closest_point),
         select_unpredictable(inside, -1.0, bound),
     )
 }

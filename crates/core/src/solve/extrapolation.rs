@@ -4,10 +4,10 @@
 use pulp::{Arch, Simd, WithSimd};
 
 /// Differences remembered at most.
-const MOST: usize = 8;
+const MAX_DIFFERENCES: usize = 8;
 
 /// A number by difference remembered, zero where there is none.
-type Lanes = [f64; MOST];
+type Lanes = [f64; MAX_DIFFERENCES];
 
 /// The last differences of the map, those of one unknown side by side, and their Gram matrix.
 #[derive(Debug)]
@@ -16,7 +16,7 @@ struct Memory {
     dg: Vec<Lanes>,
     /// Changes of f = g(p) - p.
     df: Vec<Lanes>,
-    gram: [Lanes; MOST],
+    gram: [Lanes; MAX_DIFFERENCES],
     /// df . f.
     along: Lanes,
     next: usize,
@@ -27,19 +27,19 @@ struct Memory {
 impl Memory {
     fn new(most: usize, n: usize) -> Self {
         Self {
-            dg: vec![[0.0; MOST]; n],
-            df: vec![[0.0; MOST]; n],
-            gram: [[0.0; MOST]; MOST],
-            along: [0.0; MOST],
+            dg: vec![[0.0; MAX_DIFFERENCES]; n],
+            df: vec![[0.0; MAX_DIFFERENCES]; n],
+            gram: [[0.0; MAX_DIFFERENCES]; MAX_DIFFERENCES],
+            along: [0.0; MAX_DIFFERENCES],
             next: 0,
             size: 0,
-            most: most.clamp(1, MOST),
+            most: most.clamp(1, MAX_DIFFERENCES),
         }
     }
 
     fn clear(&mut self) {
-        self.dg.fill([0.0; MOST]);
-        self.df.fill([0.0; MOST]);
+        self.dg.fill([0.0; MAX_DIFFERENCES]);
+        self.df.fill([0.0; MAX_DIFFERENCES]);
         (self.size, self.next) = (0, 0);
     }
 
@@ -53,12 +53,13 @@ impl Memory {
         let k = self.next;
         self.next = (k + 1) % self.most;
         self.size = (self.size + 1).min(self.most);
-        let (mut gram, mut along, mut own) = ([0.0; MOST], [0.0; MOST], (0.0, 0.0));
+        let (mut gram, mut along, mut own) =
+            ([0.0; MAX_DIFFERENCES], [0.0; MAX_DIFFERENCES], (0.0, 0.0));
         let old = g0.iter().zip(f0);
         let rows = self.dg.iter_mut().zip(&mut self.df);
         for (((dg, df), (g0, f0)), (g, f)) in rows.zip(old).zip(g.iter().zip(f)) {
             let d = f - f0;
-            for j in 0..MOST {
+            for j in 0..MAX_DIFFERENCES {
                 gram[j] += d * df[j];
                 along[j] += f * df[j];
             }

@@ -1,7 +1,9 @@
 //! What the stepper hands to a solver: bodies as lines of velocity, contacts in the standard form.
 
 use super::colour::Order;
-use super::row::{FullRow, GeneralRow, Line, MomentForm, MomentRow, MomentSolution, PlainRow, Row};
+use super::row::{
+    FullRow, GeneralRow, MomentForm, MomentRow, MomentSolution, PlainRow, Row, SolverBody,
+};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
 /// One contact in the standard local form. Impulses are in N s, velocities in m/s.
@@ -37,16 +39,16 @@ impl<S: Space> ContactForm<S> {
     pub(super) fn idle() -> Self {
         Self {
             bodies: [0, 0],
-            normal: S::Vector::null(),
-            arms: [S::Vector::null(); 2],
+            normal: S::Vector::zero(),
+            arms: [S::Vector::zero(); 2],
             central: true,
             shift_n: 0.0,
-            shift_t: S::Tangent::null(),
+            shift_t: S::Tangent::zero(),
             friction: 0.0,
             tension: 0.0,
             cohesion: 0.0,
             elastic: None,
-            impulse: S::Vector::null(),
+            impulse: S::Vector::zero(),
         }
     }
 }
@@ -75,7 +77,7 @@ impl<S: Space> Elastic<S> {
     pub fn none() -> Self {
         Self {
             a_n: 0.0,
-            a_t: S::Tangent::null(),
+            a_t: S::Tangent::zero(),
             b_n: 0.0,
             b_t: 0.0,
             tension_only: false,
@@ -180,7 +182,7 @@ pub(super) enum Place {
 /// problem.push(&ContactForm {
 ///     bodies: [0, 1],
 ///     normal: Vector2::new(0.0, 1.0),
-///     arms: [Vector2::new(0.0, -0.01), Vector2::null()],
+///     arms: [Vector2::new(0.0, -0.01), Vector2::zero()],
 ///     central: true,
 ///     shift_n: 0.0,
 ///     shift_t: <Plane as Space>::Tangent::null(),
@@ -200,7 +202,7 @@ pub(super) enum Place {
 #[derive(Debug)]
 pub struct Problem<S: Space> {
     /// Velocities in place, one line a body.
-    pub lines: Vec<Line<S>>,
+    pub lines: Vec<SolverBody<S>>,
     /// Free velocities, as the lines.
     pub free: Vec<(S::Vector, S::Spin)>,
     pub(super) lengths: Vec<f64>,
@@ -242,7 +244,7 @@ impl<S: Space> Default for Problem<S> {
 
 impl<S: Space> Problem<S> {
     /// Bytes of a body: its line, its free velocity, length and inverse masses.
-    pub const BYTES_A_BODY: usize = size_of::<Line<S>>()
+    pub const BYTES_A_BODY: usize = size_of::<SolverBody<S>>()
         + size_of::<(S::Vector, S::Spin)>()
         + size_of::<f64>()
         + size_of::<Mobility<S>>();
@@ -291,7 +293,7 @@ impl<S: Space> Problem<S> {
             mass: inverse_mass,
             inertia: inverse_inertia,
         };
-        self.lines.push(Line {
+        self.lines.push(SolverBody {
             v,
             s: w * length,
             im: isotropic,
@@ -307,7 +309,7 @@ impl<S: Space> Problem<S> {
         let plain = contact.elastic.is_none()
             && contact.tension == 0.0
             && contact.cohesion == 0.0
-            && contact.shift_t == S::Tangent::null();
+            && contact.shift_t == S::Tangent::zero();
         if contact.central {
             let (i, j) = (contact.bodies[0] as usize, contact.bodies[1] as usize);
             let (a, b) = (&self.lines[i], &self.lines[j]);
@@ -360,7 +362,7 @@ impl<S: Space> Problem<S> {
 
     /// The diagonal block of W in world axes.
     fn block(&self, contact: &ContactForm<S>) -> S::Matrix {
-        let mut w = S::Matrix::diagonal(&S::Vector::null());
+        let mut w = S::Matrix::diagonal(&S::Vector::zero());
         for (body, arm) in contact.bodies.iter().zip(&contact.arms) {
             let Mobility { mass, inertia } = &self.masses[*body as usize];
             w = w + S::Matrix::diagonal(mass) + S::rotation_block(arm, inertia);

@@ -20,8 +20,8 @@ pub mod nlgs;
 pub mod row;
 pub mod standard;
 
-pub use choose::{Habit, solve};
-pub use chosen::{Chosen, Tried};
+pub use choose::{AutoState, solve};
+pub use chosen::{Attempt, SolvePath};
 pub use form::{ContactForm, Problem};
 pub use nlgs::{Options, Report};
 pub use row::{MomentForm, MomentSolution};

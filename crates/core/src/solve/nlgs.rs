@@ -1,13 +1,13 @@
 //! Non-linear Gauss-Seidel: contact by contact, velocities updated in place, warm started.
 
 use super::accelerate::Acceleration;
-use super::chosen::Chosen;
+use super::chosen::SolvePath;
 use super::colour::{Order, Schedule};
 use super::error::Norm;
 use super::form::{Place, Problem};
 use super::local::solver::Method;
 use super::measure::{free_velocity, measure, scale};
-use super::row::{Line, Lines, Load, Row, Update, Visit, visit};
+use super::row::{Lines, Load, Row, SolverBody, Update, Visit, visit};
 use crate::geometry::space::Space;
 
 /// When to stop.
@@ -60,7 +60,7 @@ pub struct Report {
     /// The method that ended it.
     pub used: Method,
     /// What `auto` chose.
-    pub chosen: Chosen,
+    pub chosen: SolvePath,
 }
 
 /// Puts the rows in order, forms velocities from the impulses at hand, and judges them.
@@ -221,7 +221,11 @@ impl Caution {
 }
 
 /// Gives a row its impulse, or lets it answer where nothing moves.
-fn take<S: Space, R: Row<S>>(row: &mut R, impulse: &Option<S::Vector>, lines: &mut [Line<S>]) {
+fn take<S: Space, R: Row<S>>(
+    row: &mut R,
+    impulse: &Option<S::Vector>,
+    lines: &mut [SolverBody<S>],
+) {
     match impulse {
         Some(impulse) => row.set(impulse),
         None => {

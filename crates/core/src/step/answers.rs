@@ -1,10 +1,10 @@
 //! What contacts did in a step: relative velocities before it, and the solver's answers as the laws commit them.
 
-use super::motion::Before;
+use super::motion::StepStart;
 use super::simulation::Simulation;
 use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};
-use crate::laws::{Interface, Site, Turn, Velocities};
+use crate::laws::{ContactStep, Interface, MomentStep, Velocities};
 use crate::solve::{self, MomentForm};
 
 /// What the contacts did in a solved step. Its memory is kept from step to step: of many contacts the pages of a new
@@ -12,8 +12,8 @@ use crate::solve::{self, MomentForm};
 #[derive(Debug)]
 pub(super) struct Solved<S: Space> {
     pub before: Velocities<S>,
-    pub sites: Vec<Site<S>>,
-    pub turns: Vec<Turn<S>>,
+    pub sites: Vec<ContactStep<S>>,
+    pub turns: Vec<MomentStep<S>>,
 }
 
 impl<S: Space> Default for Solved<S> {
@@ -31,9 +31,9 @@ impl<S: Space> Simulation<S> {
     fn relative_velocity(&self, contact: &Contact<S>) -> S::Vector {
         let [i, j] = contact.bodies.map(|b| b as usize);
         let bodies = &self.bodies;
-        bodies.velocity[i] + S::sweep(&bodies.spin[i], &contact.arms[0])
+        bodies.velocity[i] + S::spin_velocity(&bodies.spin[i], &contact.arms[0])
             - bodies.velocity[j]
-            - S::sweep(&bodies.spin[j], &contact.arms[1])
+            - S::spin_velocity(&bodies.spin[j], &contact.arms[1])
     }
 
     /// Relative velocities and spins at the start of the step.
@@ -81,7 +81,7 @@ impl<S: Space> Simulation<S> {
             };
             // Solvers that do not put a sliding contact on its bound leave it within their tolerance.
             let bound = form.friction * (solution.unilateral_n + form.tension) + form.cohesion;
-            Site {
+            ContactStep {
                 before: *before,
                 slides: solution.unilateral_t.norm() >= (1.0 - 1e-6) * bound,
                 average,
@@ -95,7 +95,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// What the contacts that resist rotation did.
-    pub(super) fn turns(&mut self, start: &Before<S>) {
+    pub(super) fn turns(&mut self, start: &StepStart<S>) {
         let mut turns = std::mem::take(&mut self.solved.turns);
         turns.clear();
         let theta = self.scheme.theta;
@@ -108,7 +108,7 @@ impl<S: Space> Simulation<S> {
             let [i, j] = contact.bodies;
             let spin = average(i) - average(j);
             let (twist, bend) = S::split_spin(&contact.normal, &spin);
-            Turn {
+            MomentStep {
                 spin,
                 lost: form.loss_twist * twist * twist + form.loss_bend * bend.dot(&bend),
                 moment,

@@ -64,8 +64,8 @@ impl<S: Space> Simulation<S> {
         let least = LOST * self.network.alert;
         let stuck = (0..self.bodies.lost.len()).find(|b| self.bodies.lost[*b].norm() > least);
         if let Some(body) = stuck {
-            let haste = &mut self.network.haste;
-            haste.lose_motion(self.time, &self.bodies, body as u32);
+            let step_size = &mut self.network.step_size;
+            step_size.lose_motion(self.time, &self.bodies, body as u32);
         }
     }
 }

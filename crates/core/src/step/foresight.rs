@@ -1,6 +1,6 @@
 //! Contacts that close within a step: known before it is solved, or found by its velocities, and then it is solved again.
 
-use super::motion::Before;
+use super::motion::StepStart;
 use super::{Simulation, StepError, StepReport};
 use crate::contact::Key;
 use crate::contact::detect::{self, Motion};
@@ -8,7 +8,7 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
 
 /// Solves of a step at most: each may send bodies into others that the one before did not.
-const MOST_SOLVES: usize = 6;
+const MAX_SOLVES: usize = 6;
 /// Change of a surface's spin, in parts of it, from which it is a jump.
 const TURNS: f64 = 0.01;
 
@@ -61,10 +61,10 @@ impl<S: Space> Simulation<S> {
     /// Reports impacts with restitution that were only kept from closing, since others of the step came before them.
     fn report_held_back(&mut self) {
         for k in &self.passes.held_back {
-            if self.solved.sites[*k].solution.impulse != S::Vector::null() {
+            if self.solved.sites[*k].solution.impulse != S::Vector::zero() {
                 let pair = self.network.contacts[*k].bodies;
-                let haste = &mut self.network.haste;
-                haste.hold_back(self.time, &self.bodies, pair);
+                let step_size = &mut self.network.step_size;
+                step_size.hold_back(self.time, &self.bodies, pair);
             }
         }
     }
@@ -87,7 +87,7 @@ impl<S: Space> Simulation<S> {
     /// Solves the step, and again while its velocities send bodies into others that were not solved for.
     pub(super) fn solve(
         &mut self,
-        start: &Before<S>,
+        start: &StepStart<S>,
         free: &[(S::Vector, S::Spin)],
         info: &StepInfo,
         report: &mut StepReport,
@@ -99,7 +99,7 @@ impl<S: Space> Simulation<S> {
 
     fn solve_with_all(
         &mut self,
-        start: &Before<S>,
+        start: &StepStart<S>,
         free: &[(S::Vector, S::Spin)],
         info: &StepInfo,
         report: &mut StepReport,
@@ -127,7 +127,7 @@ impl<S: Space> Simulation<S> {
                 time: self.time,
                 h: info.h,
             };
-            if solves == MOST_SOLVES {
+            if solves == MAX_SOLVES {
                 detect::report_passing(network, &self.shapes, bodies, &self.table, &motion);
                 return Ok(());
             }

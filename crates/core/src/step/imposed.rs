@@ -47,7 +47,7 @@ impl<S: Space> Simulation<S> {
     /// Puts in force what acts over the step, and has the imposed motion of the step begin.
     pub(super) fn begin_motion(&mut self) {
         let before = self.energies_of_driven();
-        self.obey();
+        self.apply_schedule();
         let (h, theta) = (self.scheme.h, self.scheme.theta);
         self.bodies.set_off(self.time, h, theta);
         let after = self.energies_of_driven();

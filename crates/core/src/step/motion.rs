@@ -17,15 +17,15 @@ pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64) {
             if bodies.position[b][k] == from[k] && v[k] != 0.0 {
                 // The way is less than the spacing of numbers here.
                 // What goes to and fro is not missed.
-                bodies.lost.resize(bodies.position.len(), S::Vector::null());
+                bodies.lost.resize(bodies.position.len(), S::Vector::zero());
                 bodies.lost[b][k] += v[k] * time;
             }
         }
         let w = bodies.spin[b];
-        if w != S::Spin::null() {
+        if w != S::Spin::zero() {
             let rotation = bodies.rotation[b];
             (bodies.rotation[b], bodies.spin[b]) = match bodies.tensor(b) {
-                Some(tensor) => tensor.coast(&rotation, &w, time),
+                Some(tensor) => tensor.free_rotation(&rotation, &w, time),
                 None => (S::turned(&rotation, &(w * time)), w),
             };
         }
@@ -55,7 +55,7 @@ pub fn free_velocities<S: Space>(
     for driven in &bodies.driven {
         let b = driven.body as usize;
         let (v, w) = &mut free[b];
-        let mut moment = S::Spin::null();
+        let mut moment = S::Spin::zero();
         for (k, dof) in driven.dofs.iter().enumerate() {
             let dof = dof.over(time, h);
             let imposed = dof.speeds(time, h, theta).map(|speeds| speeds.end);
@@ -78,12 +78,12 @@ pub fn free_velocities<S: Space>(
 }
 
 /// State of the bodies at the start of a step, kept to book the step's work.
-pub struct Before<S: Space> {
+pub struct StepStart<S: Space> {
     velocity: Vec<S::Vector>,
     spin: Vec<S::Spin>,
 }
 
-impl<S: Space> Before<S> {
+impl<S: Space> StepStart<S> {
     /// Remembers the velocities.
     pub fn new(bodies: &Bodies<S>) -> Self {
         Self {

@@ -36,7 +36,7 @@ type Move<S> = (<S as Space>::Vector, <S as Space>::Spin);
 /// Residual of the moves, over the moves. What is left is taken out by the next projection.
 const TOLERANCE: f64 = 1e-3;
 /// Between bodies that cannot make room no sweep ends.
-const MOST_SWEEPS: u32 = 5000;
+const MAX_SWEEPS: u32 = 5000;
 
 impl<S: Space> Simulation<S> {
     /// Takes overlaps out where one is beyond the bound, detects again, and books what that gave.
@@ -52,7 +52,7 @@ impl<S: Space> Simulation<S> {
         let options = Options {
             tolerance: TOLERANCE,
             norm: Norm::Velocity,
-            max_iterations: MOST_SWEEPS,
+            max_iterations: MAX_SWEEPS,
             parallel: self.solver.parallel,
             ..Options::default()
         };
@@ -70,7 +70,7 @@ impl<S: Space> Simulation<S> {
         let driven = &self.bodies.driven;
         if driven
             .iter()
-            .any(|d| moves[d.body as usize].1 != S::Spin::null())
+            .any(|d| moves[d.body as usize].1 != S::Spin::zero())
         {
             // A surface that turns sweeps more than its frame moves.
             self.network.forget_neighbours();
@@ -142,7 +142,7 @@ impl<S: Space> Simulation<S> {
 /// Moves a body and turns it, with its spin where inertia differs by axis: energy is kept.
 fn displace<S: Space>(bodies: &mut Bodies<S>, b: usize, shift: &S::Vector, turn: &S::Spin) {
     bodies.position[b] += *shift;
-    if *turn == S::Spin::null() {
+    if *turn == S::Spin::zero() {
         return;
     }
     let from = bodies.rotation[b];
@@ -160,8 +160,8 @@ fn pose<S: Space>(problem: &mut Problem<S>, bodies: &Bodies<S>, network: &Networ
     problem.clear();
     for b in 0..bodies.len() {
         problem.push_body(
-            S::Vector::null(),
-            S::Spin::null(),
+            S::Vector::zero(),
+            S::Spin::zero(),
             bodies.inverse_mass[b],
             bodies.inverse_tensor(b),
             bodies.length[b],
@@ -178,12 +178,12 @@ fn pose<S: Space>(problem: &mut Problem<S>, bodies: &Bodies<S>, network: &Networ
             arms: contact.arms,
             central: contact.central,
             shift_n: if held { 0.0 } else { contact.gap },
-            shift_t: S::Tangent::null(),
+            shift_t: S::Tangent::zero(),
             friction: 0.0,
             tension: hold,
             cohesion: hold,
             elastic: None,
-            impulse: S::Vector::null(),
+            impulse: S::Vector::zero(),
         });
     }
 }

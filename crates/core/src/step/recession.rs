@@ -6,7 +6,7 @@
 
 use super::{Simulation, StepError};
 use crate::geometry::space::Space;
-use crate::wear::scar::{Scar, WornThrough, foot};
+use crate::wear::scar::{Scar, WornThrough, closest_point};
 
 impl<S: Space> Simulation<S> {
     /// Has a surface worn by its contacts; the network keeps their losses from now on.
@@ -42,8 +42,8 @@ impl<S: Space> Simulation<S> {
             };
             let carried = &self.shapes.surfaces[scar.surface];
             let rotation = &self.bodies.rotation[carried.body as usize];
-            let foot = foot(carried, rotation, &contact.arms[1]);
-            let put = scar.put(&self.shapes, &foot, loss.volume);
+            let closest_point = closest_point(carried, rotation, &contact.arms[1]);
+            let put = scar.put(&self.shapes, &closest_point, loss.volume);
             self.worn_through = self.worn_through.take().or(put.err());
         }
     }
@@ -52,7 +52,7 @@ impl<S: Space> Simulation<S> {
     pub(super) fn recede(&mut self) {
         let steps = self.steps;
         // A step that wears for many is followed at once: the contact must find what stands proud.
-        let many = self.network.stands_for > 1.0;
+        let many = self.network.cycle_multiplier > 1.0;
         self.lower(|scar| many || steps.is_multiple_of(scar.every));
     }
 

@@ -10,7 +10,7 @@ use crate::contact::Network;
 use crate::energy::Energy;
 use crate::geometry::space::Space;
 use crate::laws::pass::Carried;
-use crate::solve::Habit;
+use crate::solve::AutoState;
 use crate::wear::{Scar, WornThrough};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -34,7 +34,7 @@ pub struct Saved<'a, S: Space> {
     scars: Cow<'a, [Scar<S>]>,
     worn_through: Option<WornThrough>,
     control: Control<S>,
-    habit: Habit,
+    habit: AutoState,
     carried: Carried,
 }
 

@@ -3,7 +3,7 @@
 use super::StepError;
 use super::answers::Solved;
 use super::coupling::{Coupling, CouplingReport, Progress};
-use super::motion::{self, Before};
+use super::motion::{self, StepStart};
 use super::projection::Projected;
 use crate::bodies::Bodies;
 use crate::contact::detect::{self, LawTable, detect};
@@ -12,8 +12,8 @@ use crate::energy::Energy;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
-use crate::laws::pass::Passes;
-use crate::laws::{Interface, LawError, Site, Totals};
+use crate::laws::pass::LawEvaluator;
+use crate::laws::{ContactStep, Interface, LawError, Totals};
 use crate::solve::local::solver::Method;
 use crate::solve::{self, ContactForm, MomentForm, Problem};
 use crate::wear::{Scar, WornThrough};
@@ -102,8 +102,8 @@ pub struct Simulation<S: Space> {
     pub control: super::control::Control<S>,
     /// What the sum of the steps in `time` has too much by rounding (s).
     pub(super) time_excess: f64,
-    pub(super) habit: solve::Habit,
-    pub(super) passes: Passes,
+    pub(super) habit: solve::AutoState,
+    pub(super) passes: LawEvaluator,
     pub(super) problem: Problem<S>,
     pub(super) forms: Vec<ContactForm<S>>,
     pub(super) moments: Vec<MomentForm<S>>,
@@ -116,7 +116,7 @@ impl<S: Space> Simulation<S> {
     pub const BYTES_A_CONTACT: usize = 2 * size_of::<Contact<S>>()
         + size_of::<(u32, u32)>()
         + size_of::<ContactForm<S>>()
-        + size_of::<Site<S>>()
+        + size_of::<ContactStep<S>>()
         + size_of::<S::Vector>();
 
     /// A scene at rest at time zero.
@@ -135,14 +135,14 @@ impl<S: Space> Simulation<S> {
         }
         network.fast = detect::fast_motion(&shapes, alert);
         let kinetic = bodies.kinetic_energy();
-        let received = vec![(S::Vector::null(), S::Spin::null()); bodies.driven.len()];
+        let received = vec![(S::Vector::zero(), S::Spin::zero()); bodies.driven.len()];
         let mut simulation = Self {
             bodies,
             shapes,
             laws,
             table,
             network,
-            gravity: S::Vector::null(),
+            gravity: S::Vector::zero(),
             scheme: Scheme {
                 h: 1e-3,
                 theta: 0.5,
@@ -165,8 +165,8 @@ impl<S: Space> Simulation<S> {
             worn_through: None,
             control: Default::default(),
             time_excess: 0.0,
-            habit: solve::Habit::default(),
-            passes: Passes::default(),
+            habit: solve::AutoState::default(),
+            passes: LawEvaluator::default(),
             problem: Problem::default(),
             forms: Vec::new(),
             moments: Vec::new(),
@@ -191,12 +191,12 @@ impl<S: Space> Simulation<S> {
             h,
             theta,
         };
-        self.network.breaks.clear();
-        self.network.joins.clear();
+        self.network.bond_breaks.clear();
+        self.network.bonds_formed.clear();
         let driven = self.motion_of_driven();
         self.begin_motion();
         self.watch_first_move(&driven);
-        let mut start = Before::new(&self.bodies);
+        let mut start = StepStart::new(&self.bodies);
         let clock = Instant::now();
         motion::advance(&mut self.bodies, (1.0 - theta) * h);
         detect(
@@ -232,7 +232,7 @@ impl<S: Space> Simulation<S> {
         motion::advance(&mut self.bodies, theta * h);
         let sites = self.solved.sites.iter();
         report.active = sites
-            .filter(|s| s.solution.impulse != S::Vector::null())
+            .filter(|s| s.solution.impulse != S::Vector::zero())
             .count();
         self.end_motion();
         self.steps += 1;
@@ -247,7 +247,7 @@ impl<S: Space> Simulation<S> {
     /// impulses are formed with is the one that their openings give.
     pub(super) fn couple(
         &mut self,
-        start: &Before<S>,
+        start: &StepStart<S>,
         free: &[(S::Vector, S::Spin)],
         info: &StepInfo,
         report: &mut StepReport,
@@ -349,7 +349,7 @@ impl<S: Space> Simulation<S> {
             arms: contact.arms,
             central: contact.central,
             shift_n: self.shift_of_gap(contact, h),
-            shift_t: S::Tangent::null(),
+            shift_t: S::Tangent::zero(),
             friction: 0.0,
             tension: 0.0,
             cohesion: 0.0,
@@ -408,8 +408,8 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Books the step in the energy ledger.
-    fn book(&mut self, start: &Before<S>, totals: &Totals) {
-        let mut received = vec![(S::Vector::null(), S::Spin::null()); self.bodies.driven.len()];
+    fn book(&mut self, start: &StepStart<S>, totals: &Totals) {
+        let mut received = vec![(S::Vector::zero(), S::Spin::zero()); self.bodies.driven.len()];
         let mut place = vec![usize::MAX; self.bodies.len()];
         for (d, driven) in self.bodies.driven.iter().enumerate() {
             place[driven.body as usize] = d;

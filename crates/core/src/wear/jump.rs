@@ -51,13 +51,13 @@ pub fn error(jumped: f64, rates: [f64; 3], parts: &[f64; 3]) -> f64 {
 }
 
 /// More than this an increment does not grow over a jump whose error is worth carrying on.
-const MOST_CARRIED: f64 = 10.0;
+const MAX_CARRIED: f64 = 10.0;
 
 /// By how much an error grows while the increment of a cycle goes from one value to another: of z' = f(z) the error of
 /// z grows as f does. Increments that fall are not counted on.
 pub fn carried(from: f64, to: f64) -> f64 {
     if from > 0.0 {
-        (to / from).clamp(1.0, MOST_CARRIED)
+        (to / from).clamp(1.0, MAX_CARRIED)
     } else {
         1.0
     }

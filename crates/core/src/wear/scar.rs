@@ -83,14 +83,14 @@ impl<S: Space> Scar<S> {
     pub fn put(
         &mut self,
         shapes: &Shapes<S>,
-        foot: &S::Vector,
+        closest_point: &S::Vector,
         volume: f64,
     ) -> Result<(), WornThrough> {
         let shape = &shapes.surfaces[self.surface].shape;
         let Some(shape) = shape.receding() else {
             return Ok(());
         };
-        for (vertex, part) in shape.shares(foot) {
+        for (vertex, part) in shape.shares(closest_point) {
             if part == 0.0 {
                 continue;
             }
@@ -195,7 +195,11 @@ impl<S: Space> Scar<S> {
 }
 
 /// The foot of a contact in the frame of its surface: the arm from the centre of the body that carries it (m).
-pub fn foot<S: Space>(carried: &Carried<S>, rotation: &S::Rotation, arm: &S::Vector) -> S::Vector {
+pub fn closest_point<S: Space>(
+    carried: &Carried<S>,
+    rotation: &S::Rotation,
+    arm: &S::Vector,
+) -> S::Vector {
     S::unrotate(rotation, arm) - carried.offset
 }
 
@@ -204,10 +208,10 @@ mod tests {
     use super::*;
     use crate::geometry::periodic::Periodic;
     use crate::geometry::polyline::Polyline;
-    use crate::geometry::space::Plane;
+    use crate::geometry::space::Dim2;
     use nalgebra::Vector2;
 
-    fn scene(points: &[(f64, f64)], period: Option<f64>) -> Shapes<Plane> {
+    fn scene(points: &[(f64, f64)], period: Option<f64>) -> Shapes<Dim2> {
         let points = points.iter().map(|p| Vector2::new(p.0, p.1)).collect();
         let shape = Polyline::new(points, period).unwrap_or_else(|e| panic!("{e}"));
         Shapes {
@@ -226,7 +230,7 @@ mod tests {
     }
 
     /// The integral of height along the chain, by trapezia: less where solid is lost, whichever way it goes.
-    fn under(shapes: &Shapes<Plane>) -> f64 {
+    fn under(shapes: &Shapes<Dim2>) -> f64 {
         let chain = shapes.surfaces[0].shape.outline().remove(0);
         let trapezium = |w: &[Vector2<f64>]| 0.5 * (w[1].x - w[0].x) * (w[0].y + w[1].y);
         chain.windows(2).map(trapezium).sum()
@@ -257,8 +261,8 @@ mod tests {
                 let x = 1.0 + 0.999 * (1.3 * f64::from(k)).sin();
                 // With a period what is one period away is the same place.
                 let x = x + period.map_or(0.0, |p| p * f64::from(k % 5 - 2));
-                let foot = Vector2::new(x, 0.0);
-                scar.put(&shapes, &foot, 1e-4).unwrap();
+                let closest_point = Vector2::new(x, 0.0);
+                scar.put(&shapes, &closest_point, 1e-4).unwrap();
                 scar.show(&mut shapes, 1.0);
             }
             let gone = before - under(&shapes);

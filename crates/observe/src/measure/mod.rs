@@ -10,7 +10,7 @@ mod third_body;
 use super::code::CodeError;
 use super::output::Output;
 use super::statistics::{Column, Table};
-use fretwork_core::geometry::convex::{Core, Piece};
+use fretwork_core::geometry::convex::{ConvexCollider, Core};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use fretwork_scene::measures::MeasureSpec;
@@ -224,7 +224,7 @@ struct Grain<'a, S: Space> {
     /// Its part of the body's mass, by volume (kg; kg/m in 2D).
     mass: f64,
     /// What it is, where it is no ball.
-    piece: Option<&'a Piece<S>>,
+    piece: Option<&'a ConvexCollider<S>>,
 }
 
 impl<S: Space> Grain<'_, S> {
@@ -233,7 +233,7 @@ impl<S: Space> Grain<'_, S> {
         let Some(piece) = self.piece else {
             return self.radius;
         };
-        let mut up = S::Vector::null();
+        let mut up = S::Vector::zero();
         up[S::D - 1] = 1.0;
         let up = S::unrotate(&s.bodies.rotation[self.body], &up);
         let corners = piece.core.outline(0.0).concat();

@@ -47,7 +47,7 @@ impl<S: Space> Profile<S> {
         let empty = Slice {
             mass: 0.0,
             volume: 0.0,
-            momentum: S::Vector::null(),
+            momentum: S::Vector::zero(),
             spin: 0.0,
         };
         Self {

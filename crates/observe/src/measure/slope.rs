@@ -30,7 +30,7 @@ impl<S: Space> Measure<S> for Slope {
         // A grain in flight is no surface.
         let mut touched = vec![false; s.bodies.len()];
         for contact in &s.network.contacts {
-            if contact.impulse != S::Vector::null() {
+            if contact.impulse != S::Vector::zero() {
                 contact
                     .bodies
                     .iter()

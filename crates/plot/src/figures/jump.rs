@@ -29,7 +29,7 @@ pub fn draw(
             continue;
         }
         let all = jump.points.iter().map(at).collect();
-        let alone = jump.points.iter().filter(|p| p.stands_for == 1);
+        let alone = jump.points.iter().filter(|p| p.cycle_multiplier == 1);
         let mut chart = Chart::new(
             format!(
                 "{} by cycle",

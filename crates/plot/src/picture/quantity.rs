@@ -26,7 +26,7 @@ pub(super) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<Scale>) {
         .collect();
     let grain: Vec<bool> = of
         .iter()
-        .map(|b| !is_first(s, *b) && !s.bodies.gone[*b as usize])
+        .map(|b| !is_first(s, *b) && !s.bodies.removed[*b as usize])
         .collect();
     let scale = if s.network.bonds_made() > 0 {
         damage_scale(false)

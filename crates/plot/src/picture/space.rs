@@ -26,7 +26,7 @@ fn view() -> View {
 
 /// All that a frame shows. `paints` are of the balls, then of the pieces.
 pub(super) fn scene<S: Space>(s: &Simulation<S>, paints: &[Paint]) -> Scene {
-    let shown = |body: u32| !s.bodies.gone[body as usize];
+    let shown = |body: u32| !s.bodies.removed[body as usize];
     let mut spheres = Vec::with_capacity(s.shapes.balls.len());
     for (k, (ball, (centre, radius))) in s.shapes.balls.iter().zip(balls(s)).enumerate() {
         if shown(ball.body) {
@@ -63,7 +63,7 @@ pub(super) fn scene<S: Space>(s: &Simulation<S>, paints: &[Paint]) -> Scene {
 fn walls<S: Space>(s: &Simulation<S>) -> Vec<Faces> {
     let surfaces = s.shapes.surfaces.iter();
     let surfaces: Vec<&Carried<S>> = surfaces
-        .filter(|f| !s.bodies.gone[f.body as usize])
+        .filter(|f| !s.bodies.removed[f.body as usize])
         .collect();
     let (low, high) = room(s, &surfaces);
     let reach = length(&sub(&high, &low)).max(f64::MIN_POSITIVE);

@@ -5,7 +5,7 @@ use super::{Builder, Dimensional, Origin};
 use crate::recorded::{Motion, ShapedBody, ShapedGrain, ShapedPiece, StateError};
 use crate::sample::spec::{FrameSpec, StateSpec};
 use crate::source::InputError;
-use fretwork_core::geometry::convex::{Boundary, Core, Piece};
+use fretwork_core::geometry::convex::{Boundary, ConvexCollider, Core};
 use fretwork_core::geometry::shape::Ball;
 use fretwork_core::geometry::space::{MatrixLike, VectorLike};
 
@@ -77,7 +77,7 @@ impl<S: Dimensional> Builder<'_, S> {
     fn rotation(&self, k: usize, motion: &Motion) -> Result<S::Rotation, InputError> {
         let Some(numbers) = &motion.rotation else {
             // The orientation of a ball changes nothing.
-            return Ok(S::upright());
+            return Ok(S::identity());
         };
         S::rotation_from(numbers).ok_or_else(|| {
             let message =
@@ -156,7 +156,7 @@ impl<S: Dimensional> Builder<'_, S> {
         // One, to the bit, for the same material.
         let ratio = density / of.density;
         let (mass, length) = (of.mass * ratio, of.length);
-        let mut axes = [S::Spin::null(); 3];
+        let mut axes = [S::Spin::zero(); 3];
         for (i, axis) in axes.iter_mut().enumerate().take(n) {
             axis[i] = 1.0;
         }
@@ -182,7 +182,7 @@ fn recorded<S: Dimensional>(
     piece: ShapedPiece,
     body: u32,
     material: u16,
-) -> Result<Piece<S>, String> {
+) -> Result<ConvexCollider<S>, String> {
     let corners = piece.corners.iter();
     let corners: Vec<S::Vector> = corners.map(|c| S::Vector::from_slice(c)).collect();
     let farthest = corners.iter().map(VectorLike::norm).fold(0.0, f64::max);
@@ -196,7 +196,7 @@ fn recorded<S: Dimensional>(
     if !(known && size.is_finite() && size > 0.0 && farthest.is_finite()) {
         return Err("a piece of it has no size".to_owned());
     }
-    Ok(Piece {
+    Ok(ConvexCollider {
         body,
         core,
         offset,

@@ -8,7 +8,7 @@ use fretwork_core::geometry::space::{MatrixLike, VectorLike};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Thinner blocks than this makes are a slip of the keyboard, and as many of them are neighbours as their number is high.
-const MOST_BLOCKS: usize = 10_000;
+const MAX_BLOCKS: usize = 10_000;
 
 impl<S: Dimensional> Builder<'_, S> {
     /// The blocks between the radial joints of an arch, from right to left; none for other grains.
@@ -34,8 +34,8 @@ impl<S: Dimensional> Builder<'_, S> {
             );
             return Err(self.fail(format!("{here}.thickness"), message));
         }
-        if !(2..=MOST_BLOCKS).contains(blocks) {
-            let message = format!("an arch has 2 to {MOST_BLOCKS} blocks, got {blocks}");
+        if !(2..=MAX_BLOCKS).contains(blocks) {
+            let message = format!("an arch has 2 to {MAX_BLOCKS} blocks, got {blocks}");
             return Err(self.fail(format!("{here}.blocks"), message));
         }
         if !(*span > 0.0 && *span <= PI) {
@@ -73,8 +73,8 @@ impl<S: Dimensional> Builder<'_, S> {
                 inertia,
                 offset: part.centre - at,
                 part,
-                velocity: S::Vector::null(),
-                spin: S::Spin::null(),
+                velocity: S::Vector::zero(),
+                spin: S::Spin::zero(),
             });
         }
         Ok(out)

@@ -7,17 +7,17 @@ use crate::sample::spec::{BlockWallSpec, VoronoiSpec};
 use crate::sample::voronoi::{self, SHORTEST};
 use crate::sample::voronoi_space::{self, Failure};
 use crate::source::{Fault, InputError};
-use fretwork_core::geometry::convex::Part;
+use fretwork_core::geometry::convex::ConvexPart;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
 use fretwork_core::geometry::space::VectorLike;
 use nalgebra::{Vector2, Vector3};
 
 /// More blocks than a run of days can follow are a slip of the keyboard.
-const MOST_BLOCKS: usize = 100_000;
+const MAX_BLOCKS: usize = 100_000;
 /// Lloyd's rounds change nothing that is seen after some hundred.
-const MOST_ROUNDS: usize = 1_000;
+const MAX_ROUNDS: usize = 1_000;
 /// Cells times rounds that are made in some seconds, in the plane and in space. Making the cells without a round counts as one.
-const MOST_WORK: [f64; 2] = [1e6, 5e4];
+const MAX_WORK: [f64; 2] = [1e6, 5e4];
 
 impl<S: Dimensional> Builder<'_, S> {
     /// Voronoi cells of a box.
@@ -39,17 +39,17 @@ impl<S: Dimensional> Builder<'_, S> {
         let corners = Corners { low, high };
         let size = self.length(&format!("{here}.size"), spec.size)?;
         let cells = corners.volume() / size.powi(S::D as i32);
-        if cells > MOST_BLOCKS as f64 {
+        if cells > MAX_BLOCKS as f64 {
             let message = format!("the region would hold {cells:.3e} cells of this size");
             let fault = Fault::new(format!("{here}.size"), message);
-            let advice = format!("larger cells, at most {MOST_BLOCKS}");
+            let advice = format!("larger cells, at most {MAX_BLOCKS}");
             return Err(self.source.locate(fault.expected(advice)));
         }
-        if spec.rounds > MOST_ROUNDS {
-            let message = format!("at most {MOST_ROUNDS} rounds, got {}", spec.rounds);
+        if spec.rounds > MAX_ROUNDS {
+            let message = format!("at most {MAX_ROUNDS} rounds, got {}", spec.rounds);
             return Err(self.fail(format!("{here}.rounds"), message));
         }
-        let most = MOST_WORK[S::D - 2];
+        let most = MAX_WORK[S::D - 2];
         if cells * (spec.rounds + 1) as f64 > most {
             let message = format!(
                 "{} rounds over {cells:.3e} cells take too long: cells times rounds, and one more, may be {most:e} at \
@@ -215,12 +215,12 @@ impl<S: Dimensional> Builder<'_, S> {
             }
         }
         let blocks = spec.rows.saturating_mul(spec.columns.saturating_add(1));
-        if blocks > MOST_BLOCKS {
+        if blocks > MAX_BLOCKS {
             let message = format!("{blocks} blocks are too many");
             let fault = Fault::new(format!("{here}.rows"), message);
             return Err(self
                 .source
-                .locate(fault.expected(format!("at most {MOST_BLOCKS}"))));
+                .locate(fault.expected(format!("at most {MAX_BLOCKS}"))));
         }
         let half = 0.5 * (wide - gap);
         let mut out = Vec::with_capacity(blocks);
@@ -250,7 +250,13 @@ impl<S: Dimensional> Builder<'_, S> {
     }
 
     /// A block of a wall about its centre.
-    fn brick(&self, here: &str, width: f64, thick: f64, high: f64) -> Result<Part<S>, InputError> {
+    fn brick(
+        &self,
+        here: &str,
+        width: f64,
+        thick: f64,
+        high: f64,
+    ) -> Result<ConvexPart<S>, InputError> {
         if S::D == 3 {
             return self.polyhedron(here, &Polyhedron::cuboid([width, thick, high]), 0.0);
         }

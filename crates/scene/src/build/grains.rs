@@ -9,9 +9,9 @@ use fretwork_core::geometry::shape::{Ball, Carried, HalfSpace, Surface};
 use fretwork_core::geometry::space::{Space, VectorLike};
 
 /// More grains than memory holds are a slip of the keyboard: those of a file,
-pub(super) const MOST_READ: usize = 10_000_000;
+pub(super) const MAX_READ: usize = 10_000_000;
 /// and those that a line of the case makes.
-pub(super) const MOST_MADE: usize = 2_000_000;
+pub(super) const MAX_MADE: usize = 2_000_000;
 
 /// A ball to be.
 pub(super) struct Seed<S: Space> {
@@ -38,9 +38,9 @@ impl<S: Space> Seed<S> {
             at,
             radius,
             of,
-            rotation: S::upright(),
-            velocity: S::Vector::null(),
-            spin: S::Spin::null(),
+            rotation: S::identity(),
+            velocity: S::Vector::zero(),
+            spin: S::Spin::zero(),
             origin,
         }
     }
@@ -87,7 +87,7 @@ impl<S: Dimensional> Builder<'_, S> {
                     for (name, corner) in [("low", low), ("high", high)] {
                         self.corner(&format!("{here}.{name}"), corner)?;
                     }
-                    self.few_enough(&format!("{here}.count"), *count, MOST_MADE)?;
+                    self.few_enough(&format!("{here}.count"), *count, MAX_MADE)?;
                     let periodic = self.shapes.periodic.period[0].is_some();
                     let list =
                         sample::lattice(S::D, periodic, *count, *radius, low, high, self.case.seed);
@@ -169,7 +169,7 @@ impl<S: Dimensional> Builder<'_, S> {
             self.shapes.balls.push(Ball {
                 body,
                 radius: seed.radius,
-                offset: S::Vector::null(),
+                offset: S::Vector::zero(),
                 material,
             });
         }
@@ -224,7 +224,7 @@ impl<S: Dimensional> Builder<'_, S> {
         self.bodies.drive(Driven { name, body, dofs });
         self.shapes.surfaces.push(Carried {
             body,
-            offset: S::Vector::null(),
+            offset: S::Vector::zero(),
             shape,
             material,
         });

@@ -2,7 +2,7 @@
 
 use super::Loaded;
 use crate::case::Case;
-use crate::material::{InterfaceParameters, Material, Shelf};
+use crate::material::{InterfaceParameters, Material, MaterialLibrary};
 use crate::recorded::RecordReader;
 use crate::source::{self, InputError, Source};
 use serde::Serialize;
@@ -129,7 +129,7 @@ impl Loaded {
     }
 
     /// Where material files are looked for.
-    pub(super) fn shelf(&self) -> Shelf {
-        Shelf::beside(&self.path).with_own(&self.own_files)
+    pub(super) fn shelf(&self) -> MaterialLibrary {
+        MaterialLibrary::beside(&self.path).with_own(&self.own_files)
     }
 }

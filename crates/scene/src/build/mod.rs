@@ -18,7 +18,7 @@ pub use surface::Dimensional;
 
 use super::case::Case;
 use super::interfaces;
-use super::material::{Material, Shelf};
+use super::material::{Material, MaterialLibrary};
 use super::methods::{Demands, Service};
 use super::recorded::RecordReader;
 use super::scene_file::{self, SceneFile};
@@ -28,7 +28,7 @@ use fretwork_core::contact::detect::{LawTable, centre};
 use fretwork_core::geometry::grid;
 use fretwork_core::geometry::periodic::Periodic;
 use fretwork_core::geometry::shape::Shapes;
-use fretwork_core::geometry::space::{Plane, Solid, Space, VectorLike};
+use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork_core::laws::{Interface, SearchPath};
 use fretwork_core::solve;
 use fretwork_core::step::{Scheme, Simulation};
@@ -55,9 +55,9 @@ pub struct Loaded {
 #[derive(Debug)]
 pub enum Scene {
     /// Two dimensions.
-    Plane(Box<Built<Plane>>),
+    Dim2(Box<Built<Dim2>>),
     /// Three dimensions.
-    Solid(Box<Built<Solid>>),
+    Dim3(Box<Built<Dim3>>),
 }
 
 /// A scene ready to step.
@@ -84,9 +84,9 @@ impl Loaded {
     /// At file, line and column.
     pub fn build(&self, path: &SearchPath) -> Result<Scene, InputError> {
         if self.case.dimension == 2 {
-            Ok(Scene::Plane(Box::new(self.build_in::<Plane>(path)?)))
+            Ok(Scene::Dim2(Box::new(self.build_in::<Dim2>(path)?)))
         } else {
-            Ok(Scene::Solid(Box::new(self.build_in::<Solid>(path)?)))
+            Ok(Scene::Dim3(Box::new(self.build_in::<Dim3>(path)?)))
         }
     }
 
@@ -162,7 +162,7 @@ impl Loaded {
     #[allow(clippy::type_complexity)]
     fn materials(
         &self,
-        shelf: &Shelf,
+        shelf: &MaterialLibrary,
     ) -> Result<(BTreeMap<String, (u16, f64)>, Vec<(String, String)>), InputError> {
         let (mut densities, mut texts) = (BTreeMap::new(), Vec::new());
         for (k, (name, file)) in self.case.materials.iter().enumerate() {
@@ -190,10 +190,10 @@ impl Loaded {
 }
 
 /// Pairs of grains that a skin may make neighbours, see [`Builder::refuse_wide_skin`].
-const MOST_PAIRS: f64 = 2e8;
+const MAX_PAIRS: f64 = 2e8;
 /// Pairs of grains at the start, see [`Builder::refuse_piles`]: of any case, and for each grain.
-const MOST_PAIRS_AT_ALL: usize = 2_000_000;
-const MOST_PAIRS_A_GRAIN: usize = 100;
+const MAX_PAIRS_AT_ALL: usize = 2_000_000;
+const MAX_PAIRS_A_GRAIN: usize = 100;
 
 struct Builder<'a, S: Space> {
     records: Option<RecordReader>,
@@ -250,7 +250,7 @@ impl<S: Dimensional> Builder<'_, S> {
 
     fn vector(&self, path: &str, values: &[f64]) -> Result<S::Vector, InputError> {
         if values.is_empty() {
-            return Ok(S::Vector::null());
+            return Ok(S::Vector::zero());
         }
         if values.len() != S::D {
             let message = format!(
@@ -362,11 +362,11 @@ impl<S: Dimensional> Builder<'_, S> {
             .collect();
         let radii: Vec<f64> = self.radii().collect();
         let pairs = grid::most_pairs(&centres, &radii, alert + skin, &self.shapes.periodic);
-        if pairs <= MOST_PAIRS {
+        if pairs <= MAX_PAIRS {
             return Ok(());
         }
         let message = format!(
-            "a skin of {skin:e} m makes {pairs:.1e} pairs to look at, of {MOST_PAIRS:e} at most; make it smaller than \
+            "a skin of {skin:e} m makes {pairs:.1e} pairs to look at, of {MAX_PAIRS:e} at most; make it smaller than \
              the largest radius ({largest:e} m), the default is 0.3 of the smallest"
         );
         Err(self.fail("detection.skin", message))
@@ -396,7 +396,7 @@ impl<S: Dimensional> Builder<'_, S> {
             } else {
                 skin
             };
-        let most = MOST_PAIRS_AT_ALL + MOST_PAIRS_A_GRAIN * centres.len();
+        let most = MAX_PAIRS_AT_ALL + MAX_PAIRS_A_GRAIN * centres.len();
         let still = self.bodies.still();
         let keep = |a: u32, b: u32| {
             let ((i, m), (j, n)) = (owner(a), owner(b));

@@ -4,20 +4,20 @@ use super::{Builder, Dimensional, Origin};
 use crate::case::{Coordinates, GrainSpec, OnePolygon};
 use crate::source::InputError;
 use fretwork_core::bodies::tensor;
-use fretwork_core::geometry::convex::Part;
+use fretwork_core::geometry::convex::ConvexPart;
 use fretwork_core::geometry::convex::polygon::{Polygon, PolygonError};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use nalgebra::Vector2;
 
 /// More sides than a picture shows are a slip of the keyboard.
-const MOST_SIDES: usize = 10_000;
+const MAX_SIDES: usize = 10_000;
 
 /// A grain of one piece: its centre of mass (m), mass and moment of inertia at unit density.
 pub(super) struct Block<S: Space> {
     pub at: S::Vector,
     pub volume: f64,
     pub inertia: S::Tensor,
-    pub part: Part<S>,
+    pub part: ConvexPart<S>,
     /// Where the part's centre stands from the block's centre of mass (m).
     pub offset: S::Vector,
     pub velocity: S::Vector,
@@ -26,14 +26,14 @@ pub(super) struct Block<S: Space> {
 
 impl<S: Space> Block<S> {
     /// A part at rest where it stands.
-    pub fn of(part: Part<S>) -> Self {
+    pub fn of(part: ConvexPart<S>) -> Self {
         Self {
             at: part.centre,
             volume: part.volume,
             inertia: part.inertia,
-            offset: S::Vector::null(),
-            velocity: S::Vector::null(),
-            spin: S::Spin::null(),
+            offset: S::Vector::zero(),
+            velocity: S::Vector::zero(),
+            spin: S::Spin::zero(),
             part,
         }
     }
@@ -105,9 +105,9 @@ impl<S: Dimensional> Builder<'_, S> {
             }
             Some((sides, radius)) => {
                 let path = format!("{here}.regular");
-                if !(3..=MOST_SIDES).contains(&sides) {
+                if !(3..=MAX_SIDES).contains(&sides) {
                     let message =
-                        format!("a regular polygon has 3 to {MOST_SIDES} sides, got {sides}");
+                        format!("a regular polygon has 3 to {MAX_SIDES} sides, got {sides}");
                     return Err(self.fail(path, message));
                 }
                 self.radius(&path, radius)?;
@@ -137,7 +137,7 @@ impl<S: Dimensional> Builder<'_, S> {
         here: &str,
         points: &[(f64, f64)],
         rounding: f64,
-    ) -> Result<Part<S>, InputError> {
+    ) -> Result<ConvexPart<S>, InputError> {
         if !(rounding.is_finite() && rounding >= 0.0) {
             let message = format!("must not be negative, got {rounding}");
             return Err(self.fail(format!("{here}.rounding"), message));
@@ -159,7 +159,7 @@ impl<S: Dimensional> Builder<'_, S> {
         from: &Coordinates,
         to: &Coordinates,
         radius: f64,
-    ) -> Result<Part<S>, InputError> {
+    ) -> Result<ConvexPart<S>, InputError> {
         self.radius(&format!("{here}.radius"), radius)?;
         let from = self.vector(&format!("{here}.from"), &from.0)?;
         let to = self.vector(&format!("{here}.to"), &to.0)?;

@@ -5,7 +5,7 @@ use super::{Builder, Dimensional, Origin};
 use crate::case::{GrainSpec, OnePolyhedron};
 use crate::mesh_file;
 use crate::source::InputError;
-use fretwork_core::geometry::convex::Part;
+use fretwork_core::geometry::convex::ConvexPart;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
 use fretwork_core::geometry::space::VectorLike;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -56,7 +56,7 @@ impl<S: Dimensional> Builder<'_, S> {
             volume: part.volume,
             inertia: part.inertia,
             part,
-            offset: S::Vector::null(),
+            offset: S::Vector::zero(),
             velocity: self.vector(&format!("{here}.velocity"), &grain.velocity)?,
             spin: self.spin(&format!("{here}.spin"), &grain.spin)?,
         })
@@ -106,7 +106,7 @@ impl<S: Dimensional> Builder<'_, S> {
         here: &str,
         core: &Polyhedron,
         rounding: f64,
-    ) -> Result<Part<S>, InputError> {
+    ) -> Result<ConvexPart<S>, InputError> {
         if !(rounding.is_finite() && rounding >= 0.0) {
             let message = format!("must not be negative, got {rounding}");
             return Err(self.fail(format!("{here}.rounding"), message));

@@ -1,6 +1,6 @@
 //! Samples that are made at random, and grains from tables.
 
-use super::grains::{MOST_MADE, MOST_READ, Seed};
+use super::grains::{MAX_MADE, MAX_READ, Seed};
 use super::{Builder, Dimensional, Origin};
 use crate::sample::deposit::{Corners, deposit};
 use crate::sample::sizes::Sizes;
@@ -28,7 +28,7 @@ impl<S: Dimensional> Builder<'_, S> {
             return Err(self.fail(format!("{here}.high"), message));
         }
         let path = format!("{here}.count");
-        self.few_enough(&path, spec.count, MOST_MADE)?;
+        self.few_enough(&path, spec.count, MAX_MADE)?;
         let periodic = self.shapes.periodic;
         let seed = self.case.seed.wrapping_add(k as u64);
         let made = deposit::<S>(spec.count, &sizes, &corners, &periodic, seed);
@@ -136,7 +136,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let optional = [moving, turning].concat();
         let table = Table::read(&self.folder.join(&spec.file), &required, &optional)
             .map_err(|e| self.source.named_at(&format!("grains.{k}.file"), e))?;
-        self.few_enough(&format!("grains.{k}.file"), table.len(), MOST_READ)?;
+        self.few_enough(&format!("grains.{k}.file"), table.len(), MAX_READ)?;
         let columns = |names: &[&str]| names.iter().map(|n| table.column(n)).collect::<Vec<_>>();
         let (place, moving, turning) = (columns(place), columns(moving), columns(turning));
         let radius = table.column("radius");

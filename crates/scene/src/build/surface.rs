@@ -4,7 +4,7 @@ use super::Builder;
 use crate::case::{ShapeSpec, Side};
 use crate::source::InputError;
 use crate::{profile, profile_file, standard};
-use fretwork_core::geometry::convex::Part;
+use fretwork_core::geometry::convex::ConvexPart;
 use fretwork_core::geometry::convex::polygon::Polygon;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
 use fretwork_core::geometry::crossing;
@@ -13,13 +13,13 @@ use fretwork_core::geometry::height_field::HeightField;
 use fretwork_core::geometry::mesh::Mesh;
 use fretwork_core::geometry::polyline::{Polyline, ProfileError};
 use fretwork_core::geometry::shape::{HalfSpace, Surface};
-use fretwork_core::geometry::space::{Plane, Solid, Space, VectorLike};
+use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use nalgebra::Vector2;
 
 /// Points of a random surface, at most,
-const MOST_POINTS: usize = 1_000_000;
+const MAX_POINTS: usize = 1_000_000;
 /// and points times waves of a rough profile, which its making takes time for.
-const MOST_TERMS: f64 = 2e8;
+const MAX_TERMS: f64 = 2e8;
 
 /// Shapes that exist in one dimension only.
 pub trait Dimensional: Space {
@@ -51,17 +51,17 @@ pub trait Dimensional: Space {
     ///
     /// # Errors
     /// That the dimension has none.
-    fn polygon(core: &Polygon, rounding: f64) -> Result<Part<Self>, String>;
+    fn polygon(core: &Polygon, rounding: f64) -> Result<ConvexPart<Self>, String>;
     /// A polyhedron of a body.
     ///
     /// # Errors
     /// That the dimension has none.
-    fn polyhedron(core: &Polyhedron, rounding: f64) -> Result<Part<Self>, String>;
+    fn polyhedron(core: &Polyhedron, rounding: f64) -> Result<ConvexPart<Self>, String>;
     /// All that is within a radius of a segment.
-    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> Part<Self>;
+    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> ConvexPart<Self>;
 }
 
-impl Dimensional for Plane {
+impl Dimensional for Dim2 {
     fn profile(
         points: Vec<(f64, f64)>,
         side: Side,
@@ -100,18 +100,18 @@ impl Dimensional for Plane {
     fn mesh(_: Mesh) -> Result<Box<dyn Surface<Self>>, String> {
         Err("a mesh needs three dimensions; use a Profile in two".into())
     }
-    fn polygon(core: &Polygon, rounding: f64) -> Result<Part<Self>, String> {
+    fn polygon(core: &Polygon, rounding: f64) -> Result<ConvexPart<Self>, String> {
         Ok(core.part(rounding))
     }
-    fn polyhedron(_: &Polyhedron, _: f64) -> Result<Part<Self>, String> {
+    fn polyhedron(_: &Polyhedron, _: f64) -> Result<ConvexPart<Self>, String> {
         Err("polyhedra and boxes need three dimensions; use polygons in two".into())
     }
-    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> Part<Self> {
+    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> ConvexPart<Self> {
         Polygon::segment(*from, *to).part(radius)
     }
 }
 
-impl Dimensional for Solid {
+impl Dimensional for Dim3 {
     fn profile(
         _: Vec<(f64, f64)>,
         _: Side,
@@ -137,13 +137,13 @@ impl Dimensional for Solid {
     fn mesh(mesh: Mesh) -> Result<Box<dyn Surface<Self>>, String> {
         Ok(Box::new(mesh))
     }
-    fn polygon(_: &Polygon, _: f64) -> Result<Part<Self>, String> {
+    fn polygon(_: &Polygon, _: f64) -> Result<ConvexPart<Self>, String> {
         Err("polygons and arches need two dimensions; use polyhedra in three".into())
     }
-    fn polyhedron(core: &Polyhedron, rounding: f64) -> Result<Part<Self>, String> {
+    fn polyhedron(core: &Polyhedron, rounding: f64) -> Result<ConvexPart<Self>, String> {
         Ok(core.part(rounding))
     }
-    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> Part<Self> {
+    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> ConvexPart<Self> {
         Polyhedron::segment(*from, *to).part(radius)
     }
 }
@@ -154,7 +154,7 @@ pub(super) type Placed<S> = (<S as Space>::Vector, Box<dyn Surface<S>>);
 impl<S: Dimensional> Builder<'_, S> {
     pub(super) fn surface(&self, here: &str, shape: &ShapeSpec) -> Result<Placed<S>, InputError> {
         let period = self.shapes.periodic.period[0];
-        let null = S::Vector::null();
+        let null = S::Vector::zero();
         let bad = |message: String| self.fail(here, message);
         match shape {
             ShapeSpec::HalfSpace { normal, at } => {
@@ -307,15 +307,15 @@ impl<S: Dimensional> Builder<'_, S> {
         period: f64,
         (longest, shortest): (f64, f64),
     ) -> Result<(), InputError> {
-        if points > MOST_POINTS {
-            let message = format!("a rough profile has at most {MOST_POINTS} points, got {points}");
+        if points > MAX_POINTS {
+            let message = format!("a rough profile has at most {MAX_POINTS} points, got {points}");
             return Err(self.fail(format!("{here}.points"), message));
         }
         let waves = profile::waves(points, period, longest, shortest);
         let count = (waves.end() - waves.start()) as f64 + 1.0;
-        if points as f64 * count > MOST_TERMS {
+        if points as f64 * count > MAX_TERMS {
             let message = format!(
-                "{points} points with {count} waves take too long to make: points times waves may be {MOST_TERMS:e} at \
+                "{points} points with {count} waves take too long to make: points times waves may be {MAX_TERMS:e} at \
                  most; take fewer points, or a larger `shortest`"
             );
             return Err(self.fail(format!("{here}.points"), message));

@@ -5,7 +5,7 @@ use super::{Builder, Dimensional, Origin};
 use crate::case::{GrainSpec, ShapeSpec};
 use crate::source::{self, Fault, InputError};
 use fretwork_core::bodies::tensor;
-use fretwork_core::geometry::convex::Part;
+use fretwork_core::geometry::convex::ConvexPart;
 use fretwork_core::geometry::shape::{Ball, Carried};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use std::f64::consts::PI;
@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 /// Balls, convex parts and surfaces that move together.
 pub(super) struct Union<S: Space> {
     balls: Vec<(S::Vector, f64)>,
-    parts: Vec<Part<S>>,
+    parts: Vec<ConvexPart<S>>,
     surfaces: Vec<Placed<S>>,
 }
 
@@ -39,7 +39,7 @@ impl<S: Space> Union<S> {
 
     /// The centre of mass; the origin where a surface has no volume (m).
     pub fn centre(&self) -> S::Vector {
-        let (mut centre, volume) = (S::Vector::null(), self.volume());
+        let (mut centre, volume) = (S::Vector::zero(), self.volume());
         if volume > 0.0 && self.surfaces.is_empty() {
             for (x, v, _) in self.volumes() {
                 centre += x * (v / volume);
@@ -189,7 +189,7 @@ impl<S: Dimensional> Builder<'_, S> {
             body,
             radius,
             offset: if alone {
-                S::Vector::null()
+                S::Vector::zero()
             } else {
                 x - *centre
             },

@@ -92,7 +92,7 @@ fn room<V: VectorLike>(
         }
     }
     for _ in 0..THROWS {
-        let mut at = V::null();
+        let mut at = V::zero();
         for k in 0..V::N {
             let (low, high) = ranges[k];
             at[k] = low + (high - low) * rng.random_range(0.0..1.0);
@@ -183,7 +183,7 @@ impl<V: VectorLike> Levels<V> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_core::geometry::space::{Plane, Solid};
+    use fretwork_core::geometry::space::{Dim2, Dim3};
 
     fn smallest_gap<S: Space>(grains: &[(S::Vector, f64)], periodic: &Periodic) -> f64 {
         let mut least = f64::INFINITY;
@@ -201,7 +201,7 @@ mod tests {
                 period: [period, None, None],
             };
             let corners = Corners {
-                low: S::Vector::null(),
+                low: S::Vector::zero(),
                 high: S::Vector::from_slice(high),
             };
             let sizes = Sizes::power((0.01, 0.08), S::D as f64);
@@ -223,8 +223,8 @@ mod tests {
 
     #[test]
     fn deposits_do_not_overlap_and_follow_their_seed() {
-        check::<Plane>(&[1.0, 1.0], 250);
-        check::<Solid>(&[1.0, 0.8, 0.8], 600);
+        check::<Dim2>(&[1.0, 1.0], 250);
+        check::<Dim3>(&[1.0, 0.8, 0.8], 600);
     }
 
     #[test]
@@ -234,7 +234,7 @@ mod tests {
             high: nalgebra::Vector2::new(1.0, 1.0),
         };
         let sizes = Sizes::power((0.1, 0.1), 0.0);
-        let made = deposit::<Plane>(60, &sizes, &corners, &Periodic::default(), 1);
+        let made = deposit::<Dim2>(60, &sizes, &corners, &Periodic::default(), 1);
         assert!(made.grains.len() < 32 && made.grains.len() > 5);
         assert!((made.asked - 60.0 * std::f64::consts::PI * 0.01).abs() < 1e-9);
     }

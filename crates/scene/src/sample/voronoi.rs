@@ -8,7 +8,7 @@ use super::deposit::{Corners, deposit};
 use super::sizes::Sizes;
 use fretwork_core::geometry::convex::mass;
 use fretwork_core::geometry::periodic::Periodic;
-use fretwork_core::geometry::space::Plane;
+use fretwork_core::geometry::space::Dim2;
 use nalgebra::Vector2;
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
@@ -45,7 +45,7 @@ pub fn tiling(
     let only_x = Periodic {
         period: [around, None, None],
     };
-    let thrown = deposit::<Plane>(count, &apart, corners, &only_x, seed);
+    let thrown = deposit::<Dim2>(count, &apart, corners, &only_x, seed);
     if thrown.grains.len() < count {
         return None;
     }

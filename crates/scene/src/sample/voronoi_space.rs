@@ -11,7 +11,7 @@ use super::sizes::Sizes;
 use super::voronoi::SHORTEST;
 use fretwork_core::geometry::convex::polyhedron::normal;
 use fretwork_core::geometry::periodic::Periodic;
-use fretwork_core::geometry::space::Solid;
+use fretwork_core::geometry::space::Dim3;
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -68,7 +68,7 @@ pub fn tiling(
     let around = [0, 1, 2].map(|k| periodic.period[k].filter(|p| wide[k] >= p * (1.0 - 1e-9)));
     let apart = Sizes::power((0.25 * size, 0.25 * size), 0.0);
     let periods = Periodic { period: around };
-    let thrown = deposit::<Solid>(count, &apart, corners, &periods, seed);
+    let thrown = deposit::<Dim3>(count, &apart, corners, &periods, seed);
     if thrown.grains.len() < count {
         return Err(Failure::Thin);
     }

@@ -13,7 +13,7 @@ use super::nearest::nearest;
 const LONGEST_LINE: usize = 400;
 
 /// Beyond this many lines only the one-line form is given.
-const MOST_LINES: usize = 200_000;
+const MAX_LINES: usize = 200_000;
 
 /// What is wrong with an input, and where.
 ///
@@ -305,7 +305,7 @@ fn picture(
     let stop = boundary(text, span.end).clamp(begin, end);
     let to = from + text[begin..stop].chars().count().max(1);
     let number = text[..start].matches('\n').count();
-    if number > MOST_LINES {
+    if number > MAX_LINES {
         return None;
     }
     // ariadne numbers the lines it is given, so that those before must be there.

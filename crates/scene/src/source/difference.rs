@@ -121,12 +121,12 @@ fn alike(texts: [&str; 2], nodes: [&Node; 2]) -> bool {
 
 /// A value in a few words.
 fn short(text: &str) -> String {
-    const MOST: usize = 48;
+    const MAX_LENGTH: usize = 48;
     let line: String = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    if line.chars().count() <= MOST {
+    if line.chars().count() <= MAX_LENGTH {
         return line;
     }
-    line.chars().take(MOST).chain("...".chars()).collect()
+    line.chars().take(MAX_LENGTH).chain("...".chars()).collect()
 }
 
 #[cfg(test)]

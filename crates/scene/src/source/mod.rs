@@ -37,7 +37,7 @@ pub use nearest::nearest;
 pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};
 pub use tree::{Entry, Fault as TextFault, Group, Kind, MAX_DEPTH, Node, Shape, Tree};
 
-use pieces::Pieces;
+use pieces::SourceMap;
 
 /// A text and where it came from.
 #[derive(Debug, Clone)]
@@ -48,7 +48,7 @@ pub struct Source {
     text: String,
     tree: Tree,
     sets: Vec<String>,
-    pieces: Pieces,
+    pieces: SourceMap,
 }
 
 impl Source {
@@ -74,7 +74,7 @@ impl Source {
             path,
             original: text.as_str().into(),
             tree: Tree::of(&text),
-            pieces: Pieces::whole(text.len()),
+            pieces: SourceMap::whole(text.len()),
             sets: Vec::new(),
             text,
         }
@@ -125,7 +125,7 @@ impl Source {
             Err(error) => error,
         };
         let mut source = Cow::Borrowed(self);
-        for _ in 0..MOST_SPELLINGS {
+        for _ in 0..MAX_SPELLINGS {
             let Some((other, passed)) = source.respelled(&error) else {
                 break;
             };
@@ -241,7 +241,7 @@ impl Source {
 }
 
 /// Values that may be spelt otherwise than ron takes them, each with all at the same place of the schema.
-const MOST_SPELLINGS: usize = 256;
+const MAX_SPELLINGS: usize = 256;
 
 /// Whether ron went past a byte, behind any white space.
 fn passes(source: &Source, error: &SpannedError, byte: usize) -> bool {

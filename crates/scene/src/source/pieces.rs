@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// A stretch of the text in use.
 #[derive(Debug, Clone)]
-struct Piece {
+struct SourceRange {
     length: usize,
     from: Origin,
 }
@@ -41,13 +41,13 @@ pub(super) struct Place {
 /// It turns places in the changed text back into places in the file, whose line
 /// numbers are the only ones the reader of an error can look up.
 #[derive(Debug, Clone)]
-pub(super) struct Pieces(Vec<Piece>);
+pub(super) struct SourceMap(Vec<SourceRange>);
 
-impl Pieces {
+impl SourceMap {
     /// A file of this length, unchanged.
     pub fn whole(length: usize) -> Self {
         let from = Origin::File(0);
-        Self(vec![Piece { length, from }])
+        Self(vec![SourceRange { length, from }])
     }
 
     /// Where a span of the text in use belongs.
@@ -95,7 +95,7 @@ impl Pieces {
     }
 
     /// The piece around a byte (the last one, for the end of the text) and its start.
-    fn piece_at(&self, at: usize) -> (usize, &Piece) {
+    fn piece_at(&self, at: usize) -> (usize, &SourceRange) {
         let mut start = 0;
         for piece in &self.0 {
             if at < start + piece.length {
@@ -103,7 +103,7 @@ impl Pieces {
             }
             start += piece.length;
         }
-        const NOTHING: &Piece = &Piece {
+        const NOTHING: &SourceRange = &SourceRange {
             length: 0,
             from: Origin::File(0),
         };
@@ -124,7 +124,7 @@ impl Pieces {
         };
         let mut pieces = Vec::with_capacity(self.0.len() + 2);
         let mut start = 0;
-        let mut new = Some(Piece { length, from });
+        let mut new = Some(SourceRange { length, from });
         for piece in &self.0 {
             let end = start + piece.length;
             if at < end && new.is_some() {
@@ -160,7 +160,7 @@ impl Pieces {
             }
             start = end;
         }
-        pieces.extend(parts.iter().map(|(length, argument)| Piece {
+        pieces.extend(parts.iter().map(|(length, argument)| SourceRange {
             length: *length,
             from: Origin::Set {
                 set,
@@ -173,8 +173,8 @@ impl Pieces {
     }
 }
 
-impl Piece {
-    fn part(&self, skip: usize, length: usize) -> Piece {
+impl SourceRange {
+    fn part(&self, skip: usize, length: usize) -> SourceRange {
         let from = match &self.from {
             Origin::File(start) => Origin::File(start + skip),
             Origin::Added(at) => Origin::Added(*at),
@@ -196,6 +196,6 @@ impl Piece {
                 }
             }
         };
-        Piece { length, from }
+        SourceRange { length, from }
     }
 }

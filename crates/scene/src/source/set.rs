@@ -424,24 +424,24 @@ fn as_one_value<T: DeserializeOwned>(wanted: &Assignment<'_>, levels: &[Level]) 
 
 /// `one of `a`, `b``.
 pub(super) fn one_of<S: AsRef<str>>(names: &[S]) -> String {
-    const MOST: usize = 24;
+    const MAX_NAMED: usize = 24;
     let quoted: Vec<String> = names
         .iter()
-        .take(MOST)
+        .take(MAX_NAMED)
         .map(|name| format!("`{}`", name.as_ref()))
         .collect();
-    let more = if names.len() > MOST { ", ..." } else { "" };
+    let more = if names.len() > MAX_NAMED { ", ..." } else { "" };
     let lead = if names.len() == 1 { "" } else { "one of " };
     format!("{lead}{}{more}", quoted.join(", "))
 }
 
 /// Text for a message: one line, not too long.
 pub(super) fn shorten(text: &str) -> String {
-    const MOST: usize = 40;
+    const MAX_NAMED: usize = 40;
     let line = text.lines().next().unwrap_or_default().trim_end();
     let mut short: String = line
         .chars()
-        .take(MOST)
+        .take(MAX_NAMED)
         .map(|c| {
             if super::commands_a_terminal(c) {
                 ' '

@@ -1,7 +1,7 @@
 //! What a folder holds to go on from.
 
 use super::{Frame, Identity, Kind, ResumeError};
-use crate::results::Kept;
+use crate::results::PreviousResults;
 use fretwork_observe::code::decode;
 use std::path::Path;
 
@@ -11,16 +11,16 @@ pub enum Found {
     /// Nothing: the run has not begun, or no state of it was kept yet.
     Nothing,
     /// A state.
-    State(Stop),
+    State(ResumePoint),
     /// The run has come to its end.
     Finished,
 }
 
 /// Where a run was stopped.
 #[derive(Debug)]
-pub struct Stop {
+pub struct ResumePoint {
     /// Its file, open.
-    pub kept: Kept,
+    pub kept: PreviousResults,
     /// Number of the frame.
     pub number: u64,
     /// Bytes of its state.
@@ -50,7 +50,7 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
         path: path.clone(),
         reason,
     };
-    let kept = Kept::open(&path).map_err(unreadable)?;
+    let kept = PreviousResults::open(&path).map_err(unreadable)?;
     let slots = kept.checkpoints().map_err(unreadable)?;
     let mut frames: Vec<Frame> = slots.iter().filter_map(|b| Frame::read(b)).collect();
     frames.sort_by_key(|f| f.number);
@@ -81,7 +81,7 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
     let mut states = frames.into_iter().filter(|f| f.kind == Kind::State);
     Ok(match states.next_back() {
         None => Found::Nothing,
-        Some(frame) => Found::State(Stop {
+        Some(frame) => Found::State(ResumePoint {
             kept,
             number: frame.number,
             state: frame.state,

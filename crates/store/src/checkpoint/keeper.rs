@@ -10,7 +10,7 @@ const SHARE: u32 = 20;
 
 /// Keeps a run's checkpoints.
 #[derive(Debug)]
-pub struct Keeper {
+pub struct CheckpointWriter {
     rule: Checkpoint,
     identity: Vec<u8>,
     /// Number of the next frame.
@@ -19,7 +19,7 @@ pub struct Keeper {
     cost: Duration,
 }
 
-impl Keeper {
+impl CheckpointWriter {
     /// Of a run of this identity, whose next frame has this number.
     ///
     /// # Errors

@@ -14,7 +14,7 @@ mod identity;
 mod keeper;
 
 pub use error::ResumeError;
-pub use find::{Found, LAST, Stop, find};
+pub use find::{Found, LAST, ResumePoint, find};
 pub use frame::{Frame, Kind};
 pub use identity::Identity;
-pub use keeper::Keeper;
+pub use keeper::CheckpointWriter;

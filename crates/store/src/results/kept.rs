@@ -11,13 +11,13 @@ use std::path::{Path, PathBuf};
 const BLOCK: usize = 1 << 16;
 
 /// The file of a run that was stopped.
-pub struct Kept {
+pub struct PreviousResults {
     path: PathBuf,
     file: H5File,
     names: Vec<String>,
 }
 
-impl std::fmt::Debug for Kept {
+impl std::fmt::Debug for PreviousResults {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Kept")
             .field("path", &self.path)
@@ -25,7 +25,7 @@ impl std::fmt::Debug for Kept {
     }
 }
 
-impl Kept {
+impl PreviousResults {
     /// Opens it.
     ///
     /// # Errors
@@ -163,7 +163,11 @@ impl Results {
     ///
     /// # Errors
     /// The file cannot be written, or the rows are not there.
-    pub fn take_over(&mut self, from: &Kept, rows: &[(u64, u32)]) -> Result<(), ResultsError> {
+    pub fn take_over(
+        &mut self,
+        from: &PreviousResults,
+        rows: &[(u64, u32)],
+    ) -> Result<(), ResultsError> {
         let Some(store) = &mut self.store else {
             return Ok(());
         };

@@ -23,7 +23,7 @@ pub mod state;
 mod store;
 mod view;
 
-pub use kept::Kept;
+pub use kept::PreviousResults;
 pub use reader::Reader;
 pub use store::ResultsError;
 pub use view::{Cells, Part};
@@ -71,7 +71,7 @@ pub struct Header {
 }
 
 /// Most rows of statistics, or events, that are held back, however short the time since the last were written.
-const MOST: usize = 8192;
+const MAX_HELD_ROWS: usize = 8192;
 
 /// The file is flushed no more often than this.
 const PACE: Duration = Duration::from_secs(2);
@@ -278,7 +278,7 @@ impl Results {
 
     /// Flushes the file if enough time has passed; many rows are not held back until then.
     fn write_in_time(&mut self, rows: usize) -> Result<(), ResultsError> {
-        if rows >= MOST {
+        if rows >= MAX_HELD_ROWS {
             self.write_held()?;
         }
         let pace = match self.store.as_ref().is_some_and(Store::grows_in_place) {

@@ -19,7 +19,7 @@ const LARGE: u64 = 64 << 20;
 const LARGE_FROM: &str = "FRETWORK_COPY_LIMIT";
 
 /// Rows of so many bytes are not kept in memory until the next flush.
-const MOST_HELD: usize = 8 << 20;
+const MAX_HELD: usize = 8 << 20;
 
 /// Why results cannot be written, or those of a run that was stopped not be read.
 #[derive(Debug, thiserror::Error)]
@@ -243,7 +243,7 @@ impl Store {
         let numbers = bytes.as_chunks::<8>().0.iter();
         dataset.held.extend(numbers.map(|b| u64::from_le_bytes(*b)));
         self.held += bytes.len();
-        if self.held < MOST_HELD {
+        if self.held < MAX_HELD {
             return Ok(());
         }
         match &mut self.growth {
@@ -266,7 +266,7 @@ impl Store {
 
     /// Whether so many rows are kept in memory that they are to be flushed.
     pub fn full(&self) -> bool {
-        self.held >= MOST_HELD
+        self.held >= MAX_HELD
     }
 
     /// Makes what was appended visible and safe.

@@ -153,7 +153,7 @@ pub struct Summary {
     /// Scars of the surfaces that follow their wear; empty without.
     pub scars: Vec<ScarSummary>,
     /// What shows whether the step was small enough to see every contact in time.
-    pub haste: StepSizeDiagnostics,
+    pub step_size: StepSizeDiagnostics,
     /// Drives that the step does not resolve.
     #[serde(skip)]
     pub unresolved_drives: Vec<UnresolvedDrive>,

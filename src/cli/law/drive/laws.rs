@@ -59,8 +59,8 @@ fn of_case(case: &Path, args: &DriveArgs) -> Result<(Bench, String), Failure> {
     };
     let scene = loaded.build(&args.plugins.search()?)?;
     let (law, radius) = match &scene {
-        Scene::Plane(built) => site(built, place),
-        Scene::Solid(built) => site(built, place),
+        Scene::Dim2(built) => site(built, place),
+        Scene::Dim3(built) => site(built, place),
     };
     let laws: Vec<String> = law
         .loaded()

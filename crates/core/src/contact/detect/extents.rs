@@ -22,7 +22,7 @@ impl Extents {
         let mut levers = vec![0.0f64; bodies.len()];
         for ball in &shapes.balls {
             let lever = &mut levers[ball.body as usize];
-            if ball.offset != S::Vector::null() {
+            if ball.offset != S::Vector::zero() {
                 *lever = lever.max(ball.offset.norm() + ball.radius);
             }
         }
@@ -58,7 +58,7 @@ impl Extents {
         let of = |b: usize| {
             let ((v, w), lever) = (&velocities[b], self.levers[b]);
             let turn = if lever > 0.0 { w.norm() * lever } else { 0.0 };
-            if bodies.gone[b] {
+            if bodies.removed[b] {
                 0.0
             } else {
                 h * (v.norm() + turn)

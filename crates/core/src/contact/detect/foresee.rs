@@ -2,7 +2,7 @@
 //! close, for pairs whose relative motion in the step is fast. Scenes without fast motion do no more here than look at speeds.
 
 use super::extents::Extents;
-use super::order::{Meeting, mark_later};
+use super::order::{PredictedMeeting, mark_later};
 use super::sweep::{Course, Pair, Sweep};
 use super::{LawTable, centres, rebuild};
 use crate::bodies::Bodies;
@@ -18,7 +18,7 @@ const PASSED: f64 = 0.25;
 /// The neighbour list looks this many times as far as the motion asks, so that it lasts while bodies become faster.
 const HEADROOM: f64 = 1.5;
 /// Pairs that a widened neighbour list may look at, in parts of those of the plain one, and beside that.
-const MOST_PAIRS: (f64, f64) = (4.0, 5e6);
+const MAX_PAIRS: (f64, f64) = (4.0, 5e6);
 
 /// The motion of a step: velocities (m/s, rad/s) of all bodies over it, its start and length (s).
 pub struct Motion<'a, S: Space> {
@@ -112,7 +112,7 @@ pub fn overlooked<S: Space>(
         &travels,
         Stage::After,
     );
-    network.haste.repeated_solves += u64::from(!found.is_empty());
+    network.step_size.repeated_solves += u64::from(!found.is_empty());
     found
 }
 
@@ -217,7 +217,7 @@ fn widen<S: Space>(
             .max_by(|a, b| travels[*a].total_cmp(&travels[*b]));
         if let Some(body) = farthest {
             network
-                .haste
+                .step_size
                 .leave_unwatched(motion.time, bodies, body as u32);
         }
     }
@@ -262,7 +262,7 @@ fn limit<S: Space>(network: &mut Network<S>, shapes: &Shapes<S>, centres: &[S::V
     let bodies: Vec<(u32, f64)> = bodies.collect();
     let radii: Vec<f64> = bodies.iter().map(|b| b.1).collect();
     let look_at = |radii: &[f64]| grid::most_pairs(centres, radii, reach, &shapes.periodic);
-    let most = MOST_PAIRS.0 * look_at(&radii) + MOST_PAIRS.1;
+    let most = MAX_PAIRS.0 * look_at(&radii) + MAX_PAIRS.1;
     // Halved a few times it is nothing.
     for _ in 0..64 {
         let widened = &network.widened;
@@ -337,7 +337,7 @@ fn look<S: Space>(
             continue;
         }
         if stage == Stage::Report {
-            network.haste.pass(motion.time, bodies, pair.bodies());
+            network.step_size.pass(motion.time, bodies, pair.bodies());
             continue;
         }
         let [one, other] = pair.materials();
@@ -346,7 +346,7 @@ fn look<S: Space>(
             (sweep.course(&pair, margin.begins), laws.get(one, other))
         {
             sweep.contacts(&pair, s, law, &mut found);
-            meetings.push(Meeting {
+            meetings.push(PredictedMeeting {
                 names,
                 bodies: pair.bodies(),
                 at: s,
@@ -356,7 +356,7 @@ fn look<S: Space>(
         }
         if found.len() == known && stage == Stage::After {
             // It cannot be followed, or not be held where it meets.
-            network.haste.pass(motion.time, bodies, pair.bodies());
+            network.step_size.pass(motion.time, bodies, pair.bodies());
         }
     }
     if stage == Stage::Before {
@@ -412,7 +412,7 @@ impl<S: Space> Network<S> {
     /// Takes contacts that close in the step in among the others; of those that are there already it changes the geometry.
     pub fn take_in(&mut self, found: Vec<Contact<S>>) {
         let there = self.contacts.len();
-        self.haste.foreseen += found.len() as u64;
+        self.step_size.foreseen += found.len() as u64;
         for mut contact in found {
             let at = self.contacts[..there].binary_search_by_key(&contact.key, |c| c.key);
             match at {

@@ -54,7 +54,7 @@ impl LawTable {
 #[inline]
 pub fn centre<S: Space>(ball: &Ball<S>, bodies: &Bodies<S>) -> S::Vector {
     let b = ball.body as usize;
-    if ball.offset == S::Vector::null() {
+    if ball.offset == S::Vector::zero() {
         bodies.position[b]
     } else {
         bodies.position[b] + S::rotate(&bodies.rotation[b], &ball.offset)
@@ -179,7 +179,7 @@ fn rebuild<S: Space>(
         }
     };
     let still = bodies.still();
-    let gone = |i: u32| bodies.gone[i as usize];
+    let gone = |i: u32| bodies.removed[i as usize];
     let never =
         |i: u32, j: u32| i == j || gone(i) || gone(j) || (still[i as usize] && still[j as usize]);
     let touch = |i: u32, j: u32| !never(i, j);
@@ -252,8 +252,8 @@ fn drop_contact<S: Space>(network: &mut Network<S>, k: usize) {
         network.memory[law].broken += 1;
         let contact = contact.clone();
         network.broken_pairs.insert(contact.key.pair());
-        network.tell_break(&contact);
-        if let Some(told) = network.breaks.last_mut() {
+        network.record_break(&contact);
+        if let Some(told) = network.bond_breaks.last_mut() {
             told.torn = torn;
         }
     }

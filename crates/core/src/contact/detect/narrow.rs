@@ -3,8 +3,8 @@
 use super::{LawTable, drop_contact, frame, held};
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, Key, Network};
-use crate::geometry::convex::{Core, Meeting, Piece};
-use crate::geometry::shape::{Ball, Shapes, Touch};
+use crate::geometry::convex::{ContactPoint, ConvexCollider, Core};
+use crate::geometry::shape::{Ball, ClosestPoint, Shapes};
 use crate::geometry::space::{Space, VectorLike};
 
 /// One pass over the candidates, in order, and over the old contacts beside them.
@@ -20,8 +20,8 @@ pub(super) struct Narrow<'a, S: Space> {
     pub(super) h: f64,
     /// Next old contact not yet met.
     at: usize,
-    touches: Vec<Touch<S::Vector>>,
-    pub(super) meetings: Vec<Meeting<S::Vector>>,
+    touches: Vec<ClosestPoint<S::Vector>>,
+    pub(super) meetings: Vec<ContactPoint<S::Vector>>,
 }
 
 impl<'a, S: Space> Narrow<'a, S> {
@@ -33,7 +33,7 @@ impl<'a, S: Space> Narrow<'a, S> {
         time: f64,
         h: f64,
     ) -> Self {
-        let turned = |p: &Piece<S>| p.core.turned(&bodies.rotation[p.body as usize]);
+        let turned = |p: &ConvexCollider<S>| p.core.turned(&bodies.rotation[p.body as usize]);
         Self {
             shapes,
             bodies,
@@ -97,22 +97,22 @@ impl<'a, S: Space> Narrow<'a, S> {
         };
         let (i, j) = (p.body as usize, q.body as usize);
         let simple = |ball: &Ball<S>, b: usize| {
-            (ball.offset == S::Vector::null()
+            (ball.offset == S::Vector::zero()
                 && self.bodies.length[b] == ball.radius
                 && self.isotropic(b))
-                || (self.bodies.immovable(b) && self.bodies.spin[b] == S::Spin::null())
+                || (self.bodies.immovable(b) && self.bodies.spin[b] == S::Spin::zero())
         };
         let Some(law) = self.laws.get(p.material, q.material) else {
             return;
         };
-        let foot = self.centres[a as usize] - normal * p.radius;
+        let closest_point = self.centres[a as usize] - normal * p.radius;
         let central = simple(p, i) && simple(q, j);
         let arms = if central {
             [normal * -p.radius, normal * q.radius]
         } else {
             let other = self.centres[b as usize] + normal * q.radius;
             [
-                foot - self.bodies.position[i],
+                closest_point - self.bodies.position[i],
                 other - self.bodies.position[j],
             ]
         };
@@ -125,16 +125,16 @@ impl<'a, S: Space> Narrow<'a, S> {
             bodies: [p.body, q.body],
             law,
             central,
-            sharp: false,
+            vertex_contact: false,
             broken: false,
             slot: Contact::<S>::NO_MEMORY,
             gap: length - sum,
             normal,
             arms,
             radius: p.radius * q.radius / sum,
-            impulse: S::Vector::null(),
-            moment: S::Spin::null(),
-            born: self.time,
+            impulse: S::Vector::zero(),
+            moment: S::Spin::zero(),
+            formed_at: self.time,
             pressed: 0.0,
             closing: false,
             later: false,
@@ -189,9 +189,9 @@ impl<'a, S: Space> Narrow<'a, S> {
                 taken[k - old.start] = true;
             }
             let normal = S::rotate(&rotation, &touch.normal);
-            let foot = origin + S::rotate(&rotation, &touch.foot);
-            let still = self.bodies.immovable(j) && self.bodies.spin[j] == S::Spin::null();
-            let centred = ball.offset == S::Vector::null() && self.bodies.length[i] == ball.radius;
+            let closest_point = origin + S::rotate(&rotation, &touch.closest_point);
+            let still = self.bodies.immovable(j) && self.bodies.spin[j] == S::Spin::zero();
+            let centred = ball.offset == S::Vector::zero() && self.bodies.length[i] == ball.radius;
             let arm = self.centres[a as usize] - normal * ball.radius - self.bodies.position[i];
             let found = Contact {
                 key: Key {
@@ -202,16 +202,16 @@ impl<'a, S: Space> Narrow<'a, S> {
                 bodies: [ball.body, surface.body],
                 law,
                 central: still && centred && self.isotropic(i),
-                sharp: false,
+                vertex_contact: false,
                 broken: false,
                 slot: Contact::<S>::NO_MEMORY,
                 gap,
                 normal,
-                arms: [arm, foot - self.bodies.position[j]],
+                arms: [arm, closest_point - self.bodies.position[j]],
                 radius: ball.radius,
-                impulse: S::Vector::null(),
-                moment: S::Spin::null(),
-                born: self.time,
+                impulse: S::Vector::zero(),
+                moment: S::Spin::zero(),
+                formed_at: self.time,
                 pressed: 0.0,
                 closing: false,
                 later: false,
@@ -258,7 +258,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                 let old = &network.old[k];
                 found.impulse = old.impulse;
                 found.moment = old.moment;
-                found.born = old.born;
+                found.formed_at = old.formed_at;
                 found.friction_work = old.friction_work;
                 found.pressed = old.pressed;
                 found.slot = old.slot;
@@ -270,9 +270,9 @@ impl<'a, S: Space> Narrow<'a, S> {
                     let angle = 0.5 * self.h * S::split_spin(&found.normal, &(i + j)).0;
                     let memory = &mut network.memory[found.law as usize];
                     let bond = &mut memory.bonds[slot];
-                    bond.opening_t = S::carry(&from, &found.normal, angle, &bond.opening_t);
+                    bond.opening_t = S::transport(&from, &found.normal, angle, &bond.opening_t);
                     if let Some(rotation) = memory.rotations.get_mut(slot) {
-                        *rotation = S::carry_spin(&from, &found.normal, angle, rotation);
+                        *rotation = S::transport_spin(&from, &found.normal, angle, rotation);
                     }
                 }
             }
@@ -284,7 +284,9 @@ impl<'a, S: Space> Narrow<'a, S> {
                     let before = network.old[..self.at].iter().rev();
                     let same = before.take_while(|c| c.key.pair() == pair);
                     let known = same.map(|c| -c.gap).fold(0.0, f64::max);
-                    network.haste.meet(&found, known, self.time, self.bodies);
+                    network
+                        .step_size
+                        .meet(&found, known, self.time, self.bodies);
                 }
             }
         }

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// A pair that meets in the step.
-pub(super) struct Meeting {
+pub(super) struct PredictedMeeting {
     /// Candidate and antagonist, and their bodies.
     pub names: (u32, u32),
     pub bodies: [u32; 2],
@@ -26,7 +26,7 @@ pub(super) struct Meeting {
 /// have to go through another that was stopped on its way. Meetings nearer to each other than `fast` (m) are simultaneous.
 pub(super) fn mark_later<S: Space>(
     found: &mut [Contact<S>],
-    meetings: &[Meeting],
+    meetings: &[PredictedMeeting],
     sweep: &Sweep<S>,
     candidates: &[(u32, u32)],
     body: impl Fn(u32) -> usize,
@@ -35,7 +35,7 @@ pub(super) fn mark_later<S: Space>(
     if meetings.len() < 2 {
         return;
     }
-    let mut order: Vec<&Meeting> = meetings.iter().collect();
+    let mut order: Vec<&PredictedMeeting> = meetings.iter().collect();
     order.sort_by(|m, n| m.at.total_cmp(&n.at));
     // The first impact of each movable body, among meetings that come first.
     let mut first: BTreeMap<u32, f64> = BTreeMap::new();
@@ -89,5 +89,5 @@ pub(super) fn mark_later<S: Space>(
 }
 
 fn is_movable<S: Space>(bodies: &Bodies<S>, b: usize) -> bool {
-    bodies.inverse_mass[b] != S::Vector::null() || bodies.inverse_inertia[b] > 0.0
+    bodies.inverse_mass[b] != S::Vector::zero() || bodies.inverse_inertia[b] > 0.0
 }

@@ -3,7 +3,7 @@
 use super::narrow::Narrow;
 use super::{SLACK, drop_contact, frame, held};
 use crate::contact::network::{Contact, Key, Network};
-use crate::geometry::convex::{Core, Gauge, Meeting};
+use crate::geometry::convex::{ContactPoint, ContactTolerances, Core};
 use crate::geometry::space::{Space, VectorLike};
 
 /// Who meets: bodies, materials, and the size where the meeting gives none (m).
@@ -18,7 +18,7 @@ impl<S: Space> Narrow<'_, S> {
     /// A pair of which one at least is a piece.
     pub(super) fn pieces(&mut self, network: &mut Network<S>, a: u32, b: u32) {
         let old = self.old_of(network, (a, b));
-        let gauge = Gauge {
+        let gauge = ContactTolerances {
             reach: self.reach(network, old.clone()),
             slack: SLACK * network.alert,
             held: old.clone().any(|k| held(network, Some(k))),
@@ -45,8 +45,8 @@ impl<S: Space> Narrow<'_, S> {
         &self,
         a: u32,
         b: u32,
-        gauge: &Gauge,
-        out: &mut Vec<Meeting<S::Vector>>,
+        gauge: &ContactTolerances,
+        out: &mut Vec<ContactPoint<S::Vector>>,
     ) -> Option<(Pair, S::Vector, S::Vector)> {
         let balls = self.shapes.balls.len();
         let at = |name: u32| (name & !Key::PIECE) as usize;
@@ -117,7 +117,7 @@ impl<S: Space> Narrow<'_, S> {
         &mut self,
         network: &mut Network<S>,
         pair: &Pair,
-        meetings: &[Meeting<S::Vector>],
+        meetings: &[ContactPoint<S::Vector>],
         old: std::ops::Range<usize>,
         origins: [S::Vector; 2],
     ) {
@@ -130,10 +130,10 @@ impl<S: Space> Narrow<'_, S> {
         for k in old.clone() {
             if held(network, Some(k)) && !met.iter().any(|m| m.1 == Some(k)) {
                 let at = network.old[k].arms[0] - origins[0];
-                let far = |m: &Meeting<S::Vector>| (m.on_candidate - at).norm();
+                let far = |m: &ContactPoint<S::Vector>| (m.on_candidate - at).norm();
                 let nearest = meetings.iter().min_by(|m, n| far(m).total_cmp(&far(n)));
                 let feature = network.old[k].key.feature;
-                met.extend(nearest.map(|m| (Meeting { feature, ..*m }, Some(k))));
+                met.extend(nearest.map(|m| (ContactPoint { feature, ..*m }, Some(k))));
             }
         }
         met.sort_by_key(|(m, _)| m.feature);
@@ -148,16 +148,16 @@ impl<S: Space> Narrow<'_, S> {
                 bodies: pair.bodies,
                 law: pair.law,
                 central: false,
-                sharp: !m.facing,
+                vertex_contact: !m.facing,
                 broken: false,
                 slot: Contact::<S>::NO_MEMORY,
                 gap: m.gap,
                 normal: m.normal,
                 arms: [m.on_candidate + origins[0], m.on_antagonist + origins[1]],
                 radius: if m.share > 0.0 { m.share } else { pair.radius },
-                impulse: S::Vector::null(),
-                moment: S::Spin::null(),
-                born: self.time,
+                impulse: S::Vector::zero(),
+                moment: S::Spin::zero(),
+                formed_at: self.time,
                 pressed: 0.0,
                 closing: false,
                 later: false,
@@ -180,7 +180,7 @@ impl<S: Space> Narrow<'_, S> {
 /// end of the face must not take it from the one beside it.
 fn matches<S: Space>(
     contacts: &[Contact<S>],
-    meetings: &[Meeting<S::Vector>],
+    meetings: &[ContactPoint<S::Vector>],
     old: std::ops::Range<usize>,
     origin: &S::Vector,
 ) -> Vec<Option<usize>> {
@@ -214,12 +214,12 @@ fn matches<S: Space>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::Plane;
+    use crate::geometry::space::Dim2;
     use nalgebra::Vector2;
 
-    fn meeting(x: f64, feature: u64) -> Meeting<Vector2<f64>> {
+    fn meeting(x: f64, feature: u64) -> ContactPoint<Vector2<f64>> {
         let at = Vector2::new(x, 0.0);
-        Meeting {
+        ContactPoint {
             on_candidate: at,
             on_antagonist: at,
             normal: Vector2::new(0.0, 1.0),
@@ -230,7 +230,7 @@ mod tests {
         }
     }
 
-    fn contact(x: f64, feature: u64) -> Contact<Plane> {
+    fn contact(x: f64, feature: u64) -> Contact<Dim2> {
         let arm = Vector2::new(x, 0.0);
         Contact {
             key: Key {
@@ -241,7 +241,7 @@ mod tests {
             bodies: [0, 1],
             law: 0,
             central: false,
-            sharp: false,
+            vertex_contact: false,
             broken: false,
             slot: 0,
             gap: 0.0,
@@ -250,7 +250,7 @@ mod tests {
             radius: 1.0,
             impulse: Vector2::zeros(),
             moment: nalgebra::Vector1::zeros(),
-            born: 0.0,
+            formed_at: 0.0,
             pressed: 0.0,
             closing: false,
             later: false,
@@ -263,7 +263,7 @@ mod tests {
     /// The bond at one end of a face broke and its contact went; at the other end the corner got another name.
     #[test]
     fn a_bond_stays_at_its_end_of_the_face_when_names_change() {
-        let of = |old: &[Contact<Plane>], new: &[Meeting<Vector2<f64>>]| {
+        let of = |old: &[Contact<Dim2>], new: &[ContactPoint<Vector2<f64>>]| {
             matches(old, new, 0..old.len(), &Vector2::zeros())
         };
         let new = [meeting(-1.0, 4), meeting(1.0, 6)];

@@ -7,8 +7,8 @@
 use super::extents::Extents;
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, Key};
-use crate::geometry::convex::{Core, Gauge, Meeting, Piece};
-use crate::geometry::shape::{Ball, Carried, Shapes, Touch};
+use crate::geometry::convex::{ContactPoint, ContactTolerances, ConvexCollider, Core};
+use crate::geometry::shape::{Ball, Carried, ClosestPoint, Shapes};
 use crate::geometry::space::{Space, VectorLike};
 
 /// Bodies, and the velocities that they have over the step.
@@ -26,7 +26,7 @@ pub(super) struct Sweep<'a, S: Space> {
 #[derive(Clone, Copy)]
 enum Shape<'a, S: Space> {
     Ball(&'a Ball<S>),
-    Piece(&'a Piece<S>, f64),
+    ConvexCollider(&'a ConvexCollider<S>, f64),
     Surface(&'a Carried<S>),
 }
 
@@ -34,7 +34,7 @@ impl<S: Space> Shape<'_, S> {
     fn body(&self) -> u32 {
         match self {
             Self::Ball(b) => b.body,
-            Self::Piece(p, _) => p.body,
+            Self::ConvexCollider(p, _) => p.body,
             Self::Surface(s) => s.body,
         }
     }
@@ -42,7 +42,7 @@ impl<S: Space> Shape<'_, S> {
     fn material(&self) -> u16 {
         match self {
             Self::Ball(b) => b.material,
-            Self::Piece(p, _) => p.material,
+            Self::ConvexCollider(p, _) => p.material,
             Self::Surface(s) => s.material,
         }
     }
@@ -50,7 +50,7 @@ impl<S: Space> Shape<'_, S> {
     fn offset(&self) -> &S::Vector {
         match self {
             Self::Ball(b) => &b.offset,
-            Self::Piece(p, _) => &p.offset,
+            Self::ConvexCollider(p, _) => &p.offset,
             Self::Surface(s) => &s.offset,
         }
     }
@@ -59,7 +59,7 @@ impl<S: Space> Shape<'_, S> {
     fn bound(&self) -> f64 {
         match self {
             Self::Ball(b) => b.radius,
-            Self::Piece(p, _) => p.bound,
+            Self::ConvexCollider(p, _) => p.bound,
             Self::Surface(_) => 0.0,
         }
     }
@@ -68,7 +68,7 @@ impl<S: Space> Shape<'_, S> {
     fn half_thickness(&self) -> f64 {
         match self {
             Self::Ball(b) => b.radius,
-            Self::Piece(_, half) => *half,
+            Self::ConvexCollider(_, half) => *half,
             Self::Surface(_) => f64::INFINITY,
         }
     }
@@ -77,7 +77,7 @@ impl<S: Space> Shape<'_, S> {
     fn size(&self) -> f64 {
         match self {
             Self::Ball(b) => b.radius,
-            Self::Piece(p, _) => p.size,
+            Self::ConvexCollider(p, _) => p.size,
             Self::Surface(_) => f64::INFINITY,
         }
     }
@@ -138,7 +138,7 @@ impl<'a, S: Space> Pair<'a, S> {
 /// Parts of the half thickness that are gone on at least.
 const STRIDE: f64 = 0.25;
 /// Instants of a step that are looked at for one pair.
-const MOST_INSTANTS: usize = 2000;
+const MAX_INSTANTS: usize = 2000;
 /// How exactly the instant of a meeting is found, in parts of the half thickness.
 const EXACT: f64 = 1e-3;
 
@@ -148,7 +148,7 @@ impl<'a, S: Space> Sweep<'a, S> {
             Shape::Surface(&self.shapes.surfaces[(name & !Key::SURFACE) as usize])
         } else if name & Key::PIECE != 0 {
             let k = (name & !Key::PIECE) as usize;
-            Shape::Piece(&self.shapes.pieces[k], self.extents.pieces[k])
+            Shape::ConvexCollider(&self.shapes.pieces[k], self.extents.pieces[k])
         } else {
             Shape::Ball(&self.shapes.balls[name as usize])
         }
@@ -159,11 +159,11 @@ impl<'a, S: Space> Sweep<'a, S> {
         let b = shape.body() as usize;
         let (v, w) = &self.velocities[b];
         let mut rotation = self.bodies.rotation[b];
-        if s > 0.0 && *w != S::Spin::null() {
+        if s > 0.0 && *w != S::Spin::zero() {
             rotation = S::turned(&rotation, &(*w * (s * self.h)));
         }
         let body = self.bodies.position[b] + *v * (s * self.h);
-        let centre = if *shape.offset() == S::Vector::null() {
+        let centre = if *shape.offset() == S::Vector::zero() {
             body
         } else {
             body + S::rotate(&rotation, shape.offset())
@@ -183,12 +183,12 @@ impl<'a, S: Space> Sweep<'a, S> {
             [0, 1].map(|k: usize| self.velocities[shapes[k].body() as usize]);
         let lever = |shape: &Shape<S>| match shape {
             Shape::Ball(b) => b.offset.norm(),
-            Shape::Piece(p, _) => p.offset.norm() + p.bound,
+            Shape::ConvexCollider(p, _) => p.offset.norm() + p.bound,
             Shape::Surface(_) => 0.0,
         };
         let approach = v - v_other;
         let mut turning = w.norm() * lever(&shapes[0]);
-        let mut image = S::Vector::null();
+        let mut image = S::Vector::zero();
         match &shapes[1] {
             Shape::Surface(surface) => {
                 let own = S::unrotate_spin(&other.rotation, &w_other);
@@ -222,7 +222,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         }
         let (travel, half) = (pair.travel, pair.half_thickness);
         let (mut before, mut s) = (0.0, 0.0);
-        for _ in 0..MOST_INSTANTS {
+        for _ in 0..MAX_INSTANTS {
             let left = (1.0 - s) * travel;
             let Probe { gap, normal } = self.probe(pair, s, left + margin);
             let room = gap + margin;
@@ -308,15 +308,15 @@ impl<'a, S: Space> Sweep<'a, S> {
         pair: &Pair<S>,
         [one, other]: &[Pose<S>; 2],
         reach: f64,
-        out: &mut Vec<Meeting<S::Vector>>,
+        out: &mut Vec<ContactPoint<S::Vector>>,
     ) {
-        let gauge = Gauge {
+        let gauge = ContactTolerances {
             reach,
             slack: super::SLACK * self.alert,
             held: false,
         };
         let apart = one.centre - other.centre - pair.image;
-        let turned = |p: &Piece<S>, pose: &Pose<S>| p.core.turned(&pose.rotation);
+        let turned = |p: &ConvexCollider<S>, pose: &Pose<S>| p.core.turned(&pose.rotation);
         match (&pair.shapes[0], &pair.shapes[1]) {
             (Shape::Ball(a), Shape::Ball(b)) => {
                 let distance = apart.norm();
@@ -325,7 +325,7 @@ impl<'a, S: Space> Sweep<'a, S> {
                 } else {
                     S::Vector::from_slice(&[1.0])
                 };
-                out.push(Meeting {
+                out.push(ContactPoint {
                     on_candidate: apart - normal * a.radius,
                     on_antagonist: normal * b.radius,
                     normal,
@@ -335,11 +335,11 @@ impl<'a, S: Space> Sweep<'a, S> {
                     facing: true,
                 });
             }
-            (Shape::Ball(a), Shape::Piece(b, _)) => {
+            (Shape::Ball(a), Shape::ConvexCollider(b, _)) => {
                 let core = turned(b, other);
                 out.push(core.meet_ball(&apart, a.radius, b.rounding));
             }
-            (Shape::Piece(a, _), Shape::Piece(b, _)) => {
+            (Shape::ConvexCollider(a, _), Shape::ConvexCollider(b, _)) => {
                 let roundings = [a.rounding, b.rounding];
                 let (a, b) = (turned(a, one), turned(b, other));
                 a.meet(&b, &apart, roundings, &gauge, out);
@@ -349,9 +349,9 @@ impl<'a, S: Space> Sweep<'a, S> {
                 let mut touches = Vec::new();
                 b.shape.touches(&place, a.radius + reach, &mut touches);
                 keep_same_side(&mut touches);
-                out.extend(touches.iter().map(|t| Meeting {
+                out.extend(touches.iter().map(|t| ContactPoint {
                     on_candidate: place - t.normal * a.radius,
-                    on_antagonist: t.foot,
+                    on_antagonist: t.closest_point,
                     normal: t.normal,
                     gap: t.distance - a.radius,
                     feature: u64::from(t.feature),
@@ -359,7 +359,7 @@ impl<'a, S: Space> Sweep<'a, S> {
                     facing: true,
                 }));
             }
-            (Shape::Piece(a, _), Shape::Surface(b)) => {
+            (Shape::ConvexCollider(a, _), Shape::Surface(b)) => {
                 let place = S::unrotate(&other.rotation, &apart);
                 let core = turned(a, one).turned(&S::inverse(&other.rotation));
                 core.meet_surface(b.shape.as_ref(), &place, a.rounding, &gauge, out);
@@ -396,12 +396,13 @@ impl<'a, S: Space> Sweep<'a, S> {
         let [(v, w), (v_other, w_other)] = [i, j].map(|b| self.velocities[b as usize]);
         let sizes = [pair.shapes[0].size(), pair.shapes[1].size()];
         let radius = match (&pair.shapes[0], &pair.shapes[1]) {
-            (_, Shape::Surface(_)) | (Shape::Ball(_), Shape::Piece(..)) => sizes[0],
+            (_, Shape::Surface(_)) | (Shape::Ball(_), Shape::ConvexCollider(..)) => sizes[0],
             _ => sizes[0] * sizes[1] / (sizes[0] + sizes[1]),
         };
         for m in met {
-            let velocity =
-                v + S::sweep(&w, &m.on_candidate) - v_other - S::sweep(&w_other, &m.on_antagonist);
+            let velocity = v + S::spin_velocity(&w, &m.on_candidate)
+                - v_other
+                - S::spin_velocity(&w_other, &m.on_antagonist);
             // What the two go on the way there.
             let way = (-s * self.h * m.normal.dot(&velocity)).max(0.0);
             out.push(Contact {
@@ -413,16 +414,16 @@ impl<'a, S: Space> Sweep<'a, S> {
                 bodies: [i, j],
                 law,
                 central: false,
-                sharp: !m.facing,
+                vertex_contact: !m.facing,
                 broken: false,
                 slot: Contact::<S>::NO_MEMORY,
                 gap: m.gap + way,
                 normal: m.normal,
                 arms: [m.on_candidate, m.on_antagonist],
                 radius: if m.share > 0.0 { m.share } else { radius },
-                impulse: S::Vector::null(),
-                moment: S::Spin::null(),
-                born: self.time,
+                impulse: S::Vector::zero(),
+                moment: S::Spin::zero(),
+                formed_at: self.time,
                 pressed: 0.0,
                 slides: false,
                 friction_work: 0.0,
@@ -435,7 +436,7 @@ impl<'a, S: Space> Sweep<'a, S> {
 }
 
 /// A ball near a thin part is also behind its other side: leaves what is on the side of the nearest.
-fn keep_same_side<V>(touches: &mut Vec<Touch<V>>) {
+fn keep_same_side<V>(touches: &mut Vec<ClosestPoint<V>>) {
     let nearest = touches
         .iter()
         .min_by(|t, u| t.distance.abs().total_cmp(&u.distance.abs()));

@@ -25,7 +25,7 @@ use std::fmt::Debug;
 
 /// A convex part of a body: all points within `rounding` of its core.
 #[derive(Clone, Debug)]
-pub struct Piece<S: Space> {
+pub struct ConvexCollider<S: Space> {
     /// Index of the body.
     pub body: u32,
     /// The core, about the piece's centre, in the body's axes.
@@ -43,12 +43,12 @@ pub struct Piece<S: Space> {
 }
 
 /// How deep a corner may be behind a skin, a profile or facets, and still be pushed out, in parts of the size of its
-/// piece: [`Piece::bound`]. What is deeper may be in front of another part of it.
+/// piece: [`ConvexCollider::bound`]. What is deeper may be in front of another part of it.
 pub const DEEP: f64 = 0.25;
 
 /// The shape of a piece and its mass properties, before it has a body.
 #[derive(Clone, Debug)]
-pub struct Part<S: Space> {
+pub struct ConvexPart<S: Space> {
     /// The core, about its centre of mass.
     pub core: S::Core,
     /// The centre of mass (m).
@@ -63,10 +63,10 @@ pub struct Part<S: Space> {
     pub inertia: S::Tensor,
 }
 
-impl<S: Space> Part<S> {
+impl<S: Space> ConvexPart<S> {
     /// A part of a body, its centre of mass at `offset` in the body's frame (m).
-    pub fn carried(self, body: u32, offset: S::Vector, material: u16) -> Piece<S> {
-        Piece {
+    pub fn carried(self, body: u32, offset: S::Vector, material: u16) -> ConvexCollider<S> {
+        ConvexCollider {
             body,
             core: self.core,
             offset,
@@ -93,7 +93,7 @@ fn half_thickness<S: Space>(points: &[S::Vector], normals: &[S::Vector]) -> f64 
 
 /// Where two bodies are near: one point of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meeting<V> {
+pub struct ContactPoint<V> {
     /// Point of the candidate's surface (m).
     pub on_candidate: V,
     /// Point of the antagonist's surface (m).
@@ -113,7 +113,7 @@ pub struct Meeting<V> {
 
 /// How near is near.
 #[derive(Clone, Copy, Debug)]
-pub struct Gauge {
+pub struct ContactTolerances {
     /// Meetings with a larger gap are not looked for (m).
     pub reach: f64,
     /// Two corners that are no farther apart along a face are seen as corner on face (m): between corners
@@ -138,15 +138,15 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
         other: &Self,
         apart: &S::Vector,
         roundings: [f64; 2],
-        gauge: &Gauge,
-        out: &mut Vec<Meeting<S::Vector>>,
+        gauge: &ContactTolerances,
+        out: &mut Vec<ContactPoint<S::Vector>>,
     );
 
     /// The meeting with a ball whose centre stands at `apart`; the ball is the candidate, the gap that to
     /// the rounded core.
-    fn meet_ball(&self, apart: &S::Vector, radius: f64, rounding: f64) -> Meeting<S::Vector> {
+    fn meet_ball(&self, apart: &S::Vector, radius: f64, rounding: f64) -> ContactPoint<S::Vector> {
         let (distance, normal) = self.outward(apart);
-        Meeting {
+        ContactPoint {
             on_candidate: *apart - normal * radius,
             on_antagonist: *apart - normal * (distance - rounding),
             normal,
@@ -170,8 +170,8 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
         surface: &dyn Surface<S>,
         at: &S::Vector,
         rounding: f64,
-        gauge: &Gauge,
-        out: &mut Vec<Meeting<S::Vector>>,
+        gauge: &ContactTolerances,
+        out: &mut Vec<ContactPoint<S::Vector>>,
     );
 
     /// Corners of the rounded core for pictures and files (m): one closed line without its last point in the

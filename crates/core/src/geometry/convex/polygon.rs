@@ -1,8 +1,11 @@
 //! Convex polygons in the plane.
 
-use super::{Boundary, Core, Gauge, Meeting, Part, mass, polygon_pair, polygon_surface};
+use super::{
+    Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, mass, polygon_pair,
+    polygon_surface,
+};
 use crate::geometry::shape::Surface;
-use crate::geometry::space::{Plane, Space};
+use crate::geometry::space::{Dim2, Space};
 use nalgebra::{Matrix1, Vector2};
 
 /// Cosine of the angle below which two sides face each other: some five degrees.
@@ -116,13 +119,13 @@ impl Polygon {
     }
 
     /// The part of a body with this core and a rounding (m).
-    pub fn part(&self, rounding: f64) -> Part<Plane> {
+    pub fn part(&self, rounding: f64) -> ConvexPart<Dim2> {
         let properties = mass::of(&self.points, rounding);
         let core = Self {
             points: self.points.iter().map(|p| p - properties.centre).collect(),
             normals: self.normals.clone(),
         };
-        Part {
+        ConvexPart {
             bound: core.farthest() + rounding,
             core,
             centre: properties.centre,
@@ -206,7 +209,7 @@ impl Polygon {
     }
 }
 
-impl Core<Plane> for Polygon {
+impl Core<Dim2> for Polygon {
     fn turned(&self, rotation: &f64) -> Self {
         let (s, c) = rotation.sin_cos();
         let turn = |v: &Vector2<f64>| Vector2::new(c * v.x - s * v.y, s * v.x + c * v.y);
@@ -221,8 +224,8 @@ impl Core<Plane> for Polygon {
         other: &Self,
         apart: &Vector2<f64>,
         roundings: [f64; 2],
-        gauge: &Gauge,
-        out: &mut Vec<Meeting<Vector2<f64>>>,
+        gauge: &ContactTolerances,
+        out: &mut Vec<ContactPoint<Vector2<f64>>>,
     ) {
         polygon_pair::meet(self, other, apart, roundings, gauge, out);
     }
@@ -233,16 +236,16 @@ impl Core<Plane> for Polygon {
     }
 
     fn half_thickness(&self) -> f64 {
-        super::half_thickness::<Plane>(&self.points, &self.normals)
+        super::half_thickness::<Dim2>(&self.points, &self.normals)
     }
 
     fn meet_surface(
         &self,
-        surface: &dyn Surface<Plane>,
+        surface: &dyn Surface<Dim2>,
         at: &Vector2<f64>,
         rounding: f64,
-        gauge: &Gauge,
-        out: &mut Vec<Meeting<Vector2<f64>>>,
+        gauge: &ContactTolerances,
+        out: &mut Vec<ContactPoint<Vector2<f64>>>,
     ) {
         polygon_surface::meet(self, surface, at, rounding, gauge, out);
     }
@@ -262,7 +265,7 @@ impl Core<Plane> for Polygon {
             let parts = (angle / 0.2).ceil().max(1.0) as usize;
             for part in 0..=parts {
                 let turn = angle * part as f64 / parts as f64;
-                out.push(self.points[k] + Plane::rotate(&turn, &before) * rounding);
+                out.push(self.points[k] + Dim2::rotate(&turn, &before) * rounding);
             }
         }
         vec![out]

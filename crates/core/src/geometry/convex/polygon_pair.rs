@@ -6,7 +6,7 @@
 //! so that names do not change when the two sides change their parts.
 
 use super::polygon::Polygon;
-use super::{Gauge, Meeting};
+use super::{ContactPoint, ContactTolerances};
 use nalgebra::Vector2;
 
 type V = Vector2<f64>;
@@ -18,8 +18,8 @@ pub fn meet(
     b: &Polygon,
     apart: &V,
     roundings: [f64; 2],
-    gauge: &Gauge,
-    out: &mut Vec<Meeting<V>>,
+    gauge: &ContactTolerances,
+    out: &mut Vec<ContactPoint<V>>,
 ) {
     let reach = gauge.reach + roundings[0] + roundings[1];
     let (from_a, side_a) = separation(a, b, &-apart);
@@ -39,7 +39,7 @@ pub fn meet(
             if distance <= reach {
                 let normal = d / distance;
                 let (pa, pb) = (a.points()[i] + apart, b.points()[j]);
-                out.push(Meeting {
+                out.push(ContactPoint {
                     on_candidate: pa - normal * roundings[0],
                     on_antagonist: pb + normal * roundings[1],
                     normal,
@@ -80,7 +80,7 @@ pub fn meet(
         } else {
             (on_other, on_lead, normal)
         };
-        out.push(Meeting {
+        out.push(ContactPoint {
             on_candidate,
             on_antagonist,
             normal,
@@ -243,13 +243,13 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
-    const EXACT: Gauge = Gauge {
+    const EXACT: ContactTolerances = ContactTolerances {
         reach: 1e9,
         slack: 0.0,
         held: false,
     };
 
-    fn met(a: &Polygon, b: &Polygon, apart: V, roundings: [f64; 2]) -> Vec<Meeting<V>> {
+    fn met(a: &Polygon, b: &Polygon, apart: V, roundings: [f64; 2]) -> Vec<ContactPoint<V>> {
         let mut out = Vec::new();
         meet(a, b, &apart, roundings, &EXACT, &mut out);
         out
@@ -369,7 +369,7 @@ mod tests {
             assert!((p.gap - 0.05).abs() < 1e-14 && (p.share - 1.0).abs() < 1e-14);
         }
         // Of the same width: no corner is beyond the other, up to the slack.
-        let gauge = Gauge {
+        let gauge = ContactTolerances {
             reach: 0.1,
             slack: 1e-6,
             held: false,
@@ -407,7 +407,7 @@ mod tests {
         let right = top.points()[1];
         let apart = V::new(1.0 + 5e-4, 1.0 + 0.02) - right;
         for held in [false, true] {
-            let gauge = Gauge {
+            let gauge = ContactTolerances {
                 reach: 0.5,
                 slack: 1e-6,
                 held,

@@ -2,9 +2,9 @@
 //! corners, and the surface's corners on the polygon's sides.
 
 use super::polygon::Polygon;
-use super::{DEEP, Gauge, Meeting};
-use crate::geometry::shape::{Surface, Touch};
-use crate::geometry::space::Plane;
+use super::{ContactPoint, ContactTolerances, DEEP};
+use crate::geometry::shape::{ClosestPoint, Surface};
+use crate::geometry::space::Dim2;
 use nalgebra::Vector2;
 
 type V = Vector2<f64>;
@@ -17,17 +17,17 @@ const SEAM: f64 = 1e-9;
 /// Meetings of the polygon, centred at `at` in the surface's frame, in the order of their features.
 pub fn meet(
     polygon: &Polygon,
-    surface: &dyn Surface<Plane>,
+    surface: &dyn Surface<Dim2>,
     at: &V,
     rounding: f64,
-    gauge: &Gauge,
-    out: &mut Vec<Meeting<V>>,
+    gauge: &ContactTolerances,
+    out: &mut Vec<ContactPoint<V>>,
 ) {
     let first = out.len();
     let reach = gauge.reach + rounding;
     let deep = reach.max(DEEP * (polygon.farthest() + rounding));
     let n = polygon.points().len();
-    let mut touches: Vec<Touch<V>> = Vec::new();
+    let mut touches: Vec<ClosestPoint<V>> = Vec::new();
     for (k, point) in polygon.points().iter().enumerate() {
         let p = point + at;
         touches.clear();
@@ -35,8 +35,8 @@ pub fn meet(
         keep_nearest(&mut touches, reach);
         for (t, touch) in touches.iter().enumerate() {
             // Over a seam both faces are met alike.
-            let alike = |other: &Touch<V>| {
-                (other.foot - touch.foot).norm() <= SEAM * reach
+            let alike = |other: &ClosestPoint<V>| {
+                (other.closest_point - touch.closest_point).norm() <= SEAM * reach
                     && other.normal.dot(&touch.normal) >= 1.0 - SEAM
             };
             if touches[..t].iter().any(alike) {
@@ -48,9 +48,9 @@ pub fn meet(
                 continue;
             }
             let (from, to) = polygon.side(facing);
-            out.push(Meeting {
+            out.push(ContactPoint {
                 on_candidate: p - touch.normal * rounding,
-                on_antagonist: touch.foot,
+                on_antagonist: touch.closest_point,
                 normal: touch.normal,
                 gap: touch.distance - rounding,
                 feature: ((u64::from(touch.feature) << 24) | k as u64) << 1,
@@ -74,7 +74,7 @@ pub fn meet(
         if !inside || normal.dot(&(before + after)) <= 0.0 {
             continue;
         }
-        out.push(Meeting {
+        out.push(ContactPoint {
             on_candidate: corner.at - outward * (distance - rounding),
             on_antagonist: corner.at,
             normal,
@@ -89,8 +89,8 @@ pub fn meet(
 
 /// Of what a corner touches, leaves what is within reach; where that is nothing, the corner may have sunk in deeper within
 /// a step: then the place nearest to it, if it is behind that. A corner near a thin part is far behind its other side.
-fn keep_nearest(touches: &mut Vec<Touch<V>>, reach: f64) {
-    let depth = |t: &Touch<V>| t.distance.abs();
+fn keep_nearest(touches: &mut Vec<ClosestPoint<V>>, reach: f64) {
+    let depth = |t: &ClosestPoint<V>| t.distance.abs();
     let nearest = touches.iter().map(depth).fold(f64::INFINITY, f64::min);
     if nearest < reach {
         touches.retain(|t| depth(t) < reach);
@@ -105,7 +105,7 @@ mod tests {
     use crate::geometry::polyline::Polyline;
     use crate::geometry::shape::HalfSpace;
 
-    const GAUGE: Gauge = Gauge {
+    const GAUGE: ContactTolerances = ContactTolerances {
         reach: 0.2,
         slack: 1e-4,
         held: false,
@@ -121,7 +121,7 @@ mod tests {
         .unwrap()
     }
 
-    fn met(surface: &dyn Surface<Plane>, polygon: &Polygon, at: V, r: f64) -> Vec<Meeting<V>> {
+    fn met(surface: &dyn Surface<Dim2>, polygon: &Polygon, at: V, r: f64) -> Vec<ContactPoint<V>> {
         let mut out = Vec::new();
         meet(polygon, surface, &at, r, &GAUGE, &mut out);
         out
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn a_box_lies_on_two_corners_of_a_floor() {
-        let floor = HalfSpace::<Plane> {
+        let floor = HalfSpace::<Dim2> {
             normal: V::new(0.0, 1.0),
             shown: 1.0,
         };

@@ -1,10 +1,11 @@
 //! Convex polyhedra in space, and the segments of capsules.
 
 use super::{
-    Boundary, Core, Gauge, Meeting, Part, polyhedron_mass, polyhedron_pair, polyhedron_surface,
+    Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, polyhedron_mass, polyhedron_pair,
+    polyhedron_surface,
 };
 use crate::geometry::shape::Surface;
-use crate::geometry::space::{Solid, Space};
+use crate::geometry::space::{Dim3, Space};
 use nalgebra::{UnitQuaternion, Vector3};
 use parry3d_f64::math::Vector as HullPoint;
 use parry3d_f64::shape::ConvexPolyhedron;
@@ -49,7 +50,7 @@ pub enum PolyhedronError {
     #[error("a polyhedron needs at least four points, got {0}")]
     TooFew(usize),
     /// More than names of contact points can tell apart.
-    #[error("a polyhedron has at most {MOST_EDGES} edges, got {0}; take fewer points")]
+    #[error("a polyhedron has at most {MAX_EDGES} edges, got {0}; take fewer points")]
     TooMany(usize),
     /// Not a number.
     #[error("point {0} of the polyhedron is not finite")]
@@ -74,7 +75,7 @@ pub enum PolyhedronError {
 const FACING: f64 = 0.996;
 
 /// What the names of contact points can tell apart.
-pub const MOST_EDGES: usize = 1 << 14;
+pub const MAX_EDGES: usize = 1 << 14;
 
 impl Polyhedron {
     /// The hull of points (m), all of which must be its corners.
@@ -207,13 +208,13 @@ impl Polyhedron {
     }
 
     /// The part of a body with this core and a rounding (m).
-    pub fn part(&self, rounding: f64) -> Part<Solid> {
+    pub fn part(&self, rounding: f64) -> ConvexPart<Dim3> {
         let properties = polyhedron_mass::of(self, rounding);
         let core = Self {
             points: self.points.iter().map(|p| p - properties.centre).collect(),
             ..self.clone()
         };
-        Part {
+        ConvexPart {
             bound: core.farthest() + rounding,
             core,
             centre: properties.centre,
@@ -329,7 +330,7 @@ impl Polyhedron {
 
 /// A unit vector normal to another.
 pub fn across(v: &V) -> V {
-    Solid::tangents(&v.normalize())[0]
+    Dim3::tangents(&v.normalize())[0]
 }
 
 /// Outward normal of a face by its area vector: exact in the mean where corners are not quite in a plane.
@@ -370,7 +371,7 @@ impl Topology {
         if faces.iter().any(|f| f.len() < 3) || !edges.iter().all(closed) {
             return Err(PolyhedronError::Open);
         }
-        if edges.len() > MOST_EDGES {
+        if edges.len() > MAX_EDGES {
             return Err(PolyhedronError::TooMany(edges.len()));
         }
         let mut out = Self {
@@ -408,7 +409,7 @@ impl Topology {
     }
 }
 
-impl Core<Solid> for Polyhedron {
+impl Core<Dim3> for Polyhedron {
     fn turned(&self, rotation: &UnitQuaternion<f64>) -> Self {
         let turn = rotation.to_rotation_matrix();
         Self {
@@ -423,8 +424,8 @@ impl Core<Solid> for Polyhedron {
         other: &Self,
         apart: &V,
         roundings: [f64; 2],
-        gauge: &Gauge,
-        out: &mut Vec<Meeting<V>>,
+        gauge: &ContactTolerances,
+        out: &mut Vec<ContactPoint<V>>,
     ) {
         polyhedron_pair::meet(self, other, apart, roundings, gauge, out);
     }
@@ -434,16 +435,16 @@ impl Core<Solid> for Polyhedron {
     }
 
     fn half_thickness(&self) -> f64 {
-        super::half_thickness::<Solid>(&self.points, &self.normals)
+        super::half_thickness::<Dim3>(&self.points, &self.normals)
     }
 
     fn meet_surface(
         &self,
-        surface: &dyn Surface<Solid>,
+        surface: &dyn Surface<Dim3>,
         at: &V,
         rounding: f64,
-        gauge: &Gauge,
-        out: &mut Vec<Meeting<V>>,
+        gauge: &ContactTolerances,
+        out: &mut Vec<ContactPoint<V>>,
     ) {
         polyhedron_surface::meet(self, surface, at, rounding, gauge, out);
     }

@@ -7,7 +7,7 @@ type V = Vector3<f64>;
 
 /// Names of contact points. A corner or a crossing of two edges has the same name whichever face leads.
 pub mod name {
-    use super::super::polyhedron::MOST_EDGES;
+    use super::super::polyhedron::MAX_EDGES;
 
     /// A corner of the candidate or of the antagonist.
     pub fn corner(corner: usize, of_candidate: bool) -> u64 {
@@ -16,7 +16,7 @@ pub mod name {
 
     /// An edge of the candidate over one of the antagonist.
     pub fn crossing(of_candidate: usize, of_antagonist: usize) -> u64 {
-        4 * (of_candidate * MOST_EDGES + of_antagonist) as u64 + 2
+        4 * (of_candidate * MAX_EDGES + of_antagonist) as u64 + 2
     }
 }
 

@@ -9,7 +9,7 @@
 
 use super::polyhedron::{Polyhedron, across};
 use super::polyhedron_clip::{self, Lead, name};
-use super::{Gauge, Meeting};
+use super::{ContactPoint, ContactTolerances};
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
@@ -26,8 +26,8 @@ pub fn meet(
     b: &Polyhedron,
     apart: &V,
     roundings: [f64; 2],
-    gauge: &Gauge,
-    out: &mut Vec<Meeting<V>>,
+    gauge: &ContactTolerances,
+    out: &mut Vec<ContactPoint<V>>,
 ) {
     let reach = gauge.reach + roundings[0] + roundings[1];
     let alike = ALIKE * gauge.slack + ROUNDING * apart.norm();
@@ -125,9 +125,9 @@ impl Pair<'_> {
         normal: &V,
         distance: f64,
         feature: u64,
-        out: &mut Vec<Meeting<V>>,
+        out: &mut Vec<ContactPoint<V>>,
     ) {
-        out.push(Meeting {
+        out.push(ContactPoint {
             on_candidate: at[0] - normal * self.roundings[0],
             on_antagonist: at[1] + normal * self.roundings[1],
             normal: *normal,
@@ -143,8 +143,8 @@ impl Pair<'_> {
         &self,
         points: &[polyhedron_clip::Point],
         a_leads: bool,
-        gauge: &Gauge,
-        out: &mut Vec<Meeting<V>>,
+        gauge: &ContactTolerances,
+        out: &mut Vec<ContactPoint<V>>,
     ) {
         for point in points {
             let gap = point.height - self.thickness();
@@ -157,11 +157,11 @@ impl Pair<'_> {
             } else {
                 point.at
             };
-            let foot = at - point.normal * point.height;
+            let closest_point = at - point.normal * point.height;
             let (places, normal) = if a_leads {
-                ([foot, at], -point.normal)
+                ([closest_point, at], -point.normal)
             } else {
-                ([at, foot], point.normal)
+                ([at, closest_point], point.normal)
             };
             self.push(&places, &normal, point.height, point.feature, out);
             if let Some(last) = out.last_mut() {
@@ -172,7 +172,7 @@ impl Pair<'_> {
     }
 
     /// Two edges that are nearest; two points where they lie side by side.
-    fn edges(&self, near: &Nearest, gauge: &Gauge, out: &mut Vec<Meeting<V>>) {
+    fn edges(&self, near: &Nearest, gauge: &ContactTolerances, out: &mut Vec<ContactPoint<V>>) {
         let distance = near.way.norm();
         let [e, f] = near.edges;
         if let Some(ends) = side_by_side(
@@ -404,9 +404,9 @@ fn side_by_side([p0, p1]: [V; 2], [q0, q1]: [V; 2], slack: f64) -> Option<[[V; 2
         return None;
     }
     let v = q1 - q0;
-    let foot = |x: V| q0 + v * ((x - q0).dot(&v) / v.norm_squared()).clamp(0.0, 1.0);
+    let closest_point = |x: V| q0 + v * ((x - q0).dot(&v) / v.norm_squared()).clamp(0.0, 1.0);
     Some([low, high].map(|s| {
         let on = p0 + u * s;
-        [on, foot(on)]
+        [on, closest_point(on)]
     }))
 }

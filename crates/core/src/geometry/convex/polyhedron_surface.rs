@@ -7,10 +7,10 @@
 
 use super::polyhedron::Polyhedron;
 use super::polyhedron_pair::holds;
-use super::{DEEP, Gauge, Meeting};
+use super::{ContactPoint, ContactTolerances, DEEP};
 use crate::geometry::facets::{self, Facet, Ridge};
-use crate::geometry::shape::{Surface, Touch};
-use crate::geometry::space::Solid;
+use crate::geometry::shape::{ClosestPoint, Surface};
+use crate::geometry::space::Dim3;
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
@@ -21,11 +21,11 @@ const SAME: f64 = 1e-9;
 /// Meetings of the polyhedron, centred at `at` in the surface's frame, in the order of their features.
 pub fn meet(
     core: &Polyhedron,
-    surface: &dyn Surface<Solid>,
+    surface: &dyn Surface<Dim3>,
     at: &V,
     rounding: f64,
-    gauge: &Gauge,
-    out: &mut Vec<Meeting<V>>,
+    gauge: &ContactTolerances,
+    out: &mut Vec<ContactPoint<V>>,
 ) {
     let size = core.farthest() + rounding;
     let extent = V::repeat(size + gauge.reach);
@@ -62,13 +62,13 @@ struct Near<'a> {
 
 impl Near<'_> {
     /// Corners of the polyhedron on the surface.
-    fn corners(&self, surface: &dyn Surface<Solid>, faceted: bool, out: &mut Vec<Meeting<V>>) {
+    fn corners(&self, surface: &dyn Surface<Dim3>, faceted: bool, out: &mut Vec<ContactPoint<V>>) {
         let reach = if faceted {
             self.reach.max(self.deep)
         } else {
             self.reach
         };
-        let mut touches: Vec<Touch<V>> = Vec::new();
+        let mut touches: Vec<ClosestPoint<V>> = Vec::new();
         for (k, point) in self.core.points().iter().enumerate() {
             let p = point + self.at;
             touches.clear();
@@ -80,9 +80,9 @@ impl Near<'_> {
                 if facing.is_some_and(|f| !faces[f].contains(&(k as u32))) {
                     continue;
                 }
-                out.push(Meeting {
+                out.push(ContactPoint {
                     on_candidate: p - touch.normal * self.rounding,
-                    on_antagonist: touch.foot,
+                    on_antagonist: touch.closest_point,
                     normal: touch.normal,
                     gap: touch.distance - self.rounding,
                     feature: u64::from(touch.feature) << 32 | k as u64,
@@ -94,7 +94,7 @@ impl Near<'_> {
     }
 
     /// Sharp corners of the surface on the faces and edges of the polyhedron.
-    fn points(&self, facets: &[Facet<V>], ridges: &[Ridge], out: &mut Vec<Meeting<V>>) {
+    fn points(&self, facets: &[Facet<V>], ridges: &[Ridge], out: &mut Vec<ContactPoint<V>>) {
         let mut seen: Vec<u64> = Vec::new();
         for ridge in ridges {
             for (name, place) in ridge.names.into_iter().zip(ridge.ends) {
@@ -107,14 +107,14 @@ impl Near<'_> {
                     continue;
                 }
                 // Corner on corner is met as a corner of the polyhedron.
-                let foot = place - self.at - outward * distance;
-                let corner = |p: &V| (p - foot).norm() <= self.same;
+                let closest_point = place - self.at - outward * distance;
+                let corner = |p: &V| (p - closest_point).norm() <= self.same;
                 if self.core.points().iter().any(corner)
                     || !facets::behind(facets, name, &place, &-outward)
                 {
                     continue;
                 }
-                out.push(Meeting {
+                out.push(ContactPoint {
                     on_candidate: place - outward * (distance - self.rounding),
                     on_antagonist: place,
                     normal: -outward,
@@ -128,7 +128,7 @@ impl Near<'_> {
     }
 
     /// Sharp edges of the surface across edges of the polyhedron.
-    fn edges(&self, ridges: &[Ridge], out: &mut Vec<Meeting<V>>) {
+    fn edges(&self, ridges: &[Ridge], out: &mut Vec<ContactPoint<V>>) {
         for ridge in ridges {
             let [p, q] = ridge.ends;
             let u = q - p;
@@ -157,7 +157,7 @@ impl Near<'_> {
                         && ridge.holds(&normal)
                         && holds(self.core, e, &-normal)
                     {
-                        out.push(Meeting {
+                        out.push(ContactPoint {
                             on_candidate: a + v * t - normal * self.rounding,
                             on_antagonist: p + u * s,
                             normal,

@@ -1,10 +1,10 @@
 //! Polyhedra against each other and against surfaces, by other ways to the same numbers.
 
 use super::polyhedron::Polyhedron;
-use super::{Core, Gauge, Meeting};
+use super::{ContactPoint, ContactTolerances, Core};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::shape::{HalfSpace, Surface};
-use crate::geometry::space::Solid;
+use crate::geometry::space::Dim3;
 use nalgebra::{UnitQuaternion, Vector3};
 use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query;
@@ -15,12 +15,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 type V = Vector3<f64>;
 
-const EXACT: Gauge = Gauge {
+const EXACT: ContactTolerances = ContactTolerances {
     reach: 1e9,
     slack: 0.0,
     held: false,
 };
-const FINE: Gauge = Gauge {
+const FINE: ContactTolerances = ContactTolerances {
     reach: 0.1,
     slack: 1e-6,
     held: false,
@@ -31,8 +31,8 @@ fn met(
     b: &Polyhedron,
     apart: V,
     roundings: [f64; 2],
-    gauge: &Gauge,
-) -> Vec<Meeting<V>> {
+    gauge: &ContactTolerances,
+) -> Vec<ContactPoint<V>> {
     let mut out = Vec::new();
     a.meet(b, &apart, roundings, gauge, &mut out);
     out
@@ -191,7 +191,7 @@ fn stacked_boxes_touch_at_four_points_with_a_quarter_of_the_face_each() {
         assert!((PI * p.share * p.share - 1.0).abs() < 1e-13);
     }
     // Of the same width: no corner is beyond the other, up to the slack; names do not depend on the noise.
-    let names = |points: &[Meeting<V>]| points.iter().map(|m| m.feature).collect::<Vec<_>>();
+    let names = |points: &[ContactPoint<V>]| points.iter().map(|m| m.feature).collect::<Vec<_>>();
     let known = names(&met(&top, &top, V::new(0.0, 0.0, 2.0), [0.0; 2], &FINE));
     for shift in [0.0, 1e-12, -1e-9, 5e-7] {
         for gap in [-1e-9, 0.0, 1e-13, 1e-9, 0.05] {
@@ -303,7 +303,12 @@ fn floor(slope: f64) -> Mesh {
     Mesh::new(points, triangles).unwrap()
 }
 
-fn on(core: &Polyhedron, surface: &dyn Surface<Solid>, at: V, rounding: f64) -> Vec<Meeting<V>> {
+fn on(
+    core: &Polyhedron,
+    surface: &dyn Surface<Dim3>,
+    at: V,
+    rounding: f64,
+) -> Vec<ContactPoint<V>> {
     let mut out = Vec::new();
     core.meet_surface(surface, &at, rounding, &FINE, &mut out);
     out
@@ -311,7 +316,7 @@ fn on(core: &Polyhedron, surface: &dyn Surface<Solid>, at: V, rounding: f64) -> 
 
 #[test]
 fn a_box_lies_on_four_corners_of_a_floor() {
-    let floor = HalfSpace::<Solid> {
+    let floor = HalfSpace::<Dim3> {
         normal: V::z(),
         shown: 1.0,
     };

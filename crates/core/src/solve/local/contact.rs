@@ -26,7 +26,7 @@ pub struct Local<const D: usize> {
 fn schur<const D: usize>(w: &Block<D>) -> ([[f64; 2]; 2], f64) {
     /// What is added to an A that is singular, as a share of W: impulses along it then answer its velocities
     /// as far as friction lets them.
-    const LEAST: f64 = 1e-12;
+    const MIN_RATIO: f64 = 1e-12;
     let iwnn = if w[0][0] > 0.0 { 1.0 / w[0][0] } else { 0.0 };
     let mut a = [[0.0; 2]; 2];
     for i in 1..D {
@@ -42,7 +42,7 @@ fn schur<const D: usize>(w: &Block<D>) -> ([[f64; 2]; 2], f64) {
         }
     };
     let size = (1..D).fold(w[0][0].abs(), |m, k| m.max(w[k][k].abs()));
-    let least = LEAST * size;
+    let least = MIN_RATIO * size;
     if determinant(&a) <= if D == 2 { least } else { least * size } {
         a[0][0] += least;
         a[1][1] += least;

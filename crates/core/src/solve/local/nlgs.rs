@@ -156,7 +156,7 @@ pub struct Tests {
 impl Tests {
     /// Sweeps at most between two tests; fewer at first, where impulses may go on to change in directions that
     /// the error does not see.
-    const MOST: u32 = 10;
+    const MAX_SWEEPS_APART: u32 = 10;
     /// The expected error over the tolerance from which to test.
     const NEAR: f64 = 1.5;
 
@@ -170,7 +170,7 @@ impl Tests {
         self.done += 1;
         self.since += 1;
         let near = Self::NEAR * budget.tolerance;
-        let due = self.since >= (self.done / 2).clamp(1, Self::MOST)
+        let due = self.since >= (self.done / 2).clamp(1, Self::MAX_SWEEPS_APART)
             || self.expected(sweep, state) <= near * near
             || state.iterations >= budget.max_iterations;
         if due {

@@ -33,7 +33,7 @@ pub enum ReduceError {
     Multipliers(Singular),
     /// The local form would not fit in memory.
     #[error(
-        "the local form would have up to {entries} entries, above {MOST_ENTRIES}: so many contacts share a body \
+        "the local form would have up to {entries} entries, above {MAX_ENTRIES}: so many contacts share a body \
          or a structure; give the problem in local form, or fewer contacts"
     )]
     Large {
@@ -48,12 +48,12 @@ pub enum ReduceError {
 }
 
 /// W of some 3 GB while it is formed.
-const MOST_ENTRIES: usize = 100_000_000;
+const MAX_ENTRIES: usize = 100_000_000;
 
 /// B^T K^-1 B where it fits in memory.
 fn sandwich(factors: &Factors, b: &Csr) -> Result<Csr, ReduceError> {
     match factors.reach(b) {
-        entries if entries > MOST_ENTRIES => Err(ReduceError::Large { entries }),
+        entries if entries > MAX_ENTRIES => Err(ReduceError::Large { entries }),
         _ => Ok(factors.sandwich(b)),
     }
 }

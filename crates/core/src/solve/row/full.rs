@@ -1,7 +1,7 @@
 //! Contact of two balls with a bond, cohesion or tangential restitution: solved in closed form.
 
 use super::{
-    Line, Residual, Row, inverse, inverse_along, natural_map, push, relative, restore_parts,
+    Residual, Row, SolverBody, inverse, inverse_along, natural_map, push, relative, restore_parts,
     store_parts,
 };
 use crate::geometry::space::{Space, VectorLike, greatest, least};
@@ -127,7 +127,7 @@ impl<S: Space> Row<S> for FullRow<S> {
     }
 
     #[inline(always)]
-    fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64) {
+    fn update(&mut self, a: &mut SolverBody<S>, b: &mut SolverBody<S>, relaxation: f64) {
         let (n, t) = (&self.normal, &self.tangent);
         let (un, ut) = relative(&self.n, a, b);
         let f = un - n.w * self.pn;
@@ -148,7 +148,7 @@ impl<S: Space> Row<S> for FullRow<S> {
         self.pt += dt;
     }
 
-    fn load(&self, a: &mut Line<S>, b: &mut Line<S>) {
+    fn load(&self, a: &mut SolverBody<S>, b: &mut SolverBody<S>) {
         push(&self.n, self.pn, self.pt, a, b);
     }
 
@@ -169,7 +169,7 @@ impl<S: Space> Row<S> for FullRow<S> {
         self.pn
     }
 
-    fn speed(&self, a: &Line<S>, b: &Line<S>) -> f64 {
+    fn speed(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64 {
         let (un, ut) = relative(&self.n, a, b);
         un * un + ut.dot(&ut)
     }
@@ -189,7 +189,7 @@ impl<S: Space> Row<S> for FullRow<S> {
         )
     }
 
-    fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual {
+    fn residual(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> Residual {
         let rho = self.rho();
         if rho == 0.0 {
             return Residual::default();
@@ -201,7 +201,7 @@ impl<S: Space> Row<S> for FullRow<S> {
         natural_map(shifted, (un, ut), shift, rho, self.mu, self.cohesion)
     }
 
-    fn solution(&self, a: &Line<S>, b: &Line<S>) -> ContactSolution<S> {
+    fn solution(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> ContactSolution<S> {
         let (un, ut) = relative(&self.n, a, b);
         let (en, et) = self.bond(un, ut);
         ContactSolution {

@@ -1,7 +1,7 @@
 //! A contact with levers or of a body that is free along some axes only: solved as a block, exactly where there is
 //! no shear cohesion.
 
-use super::{Line, Residual, Row, inverse, inverse_along, natural_map};
+use super::{Residual, Row, SolverBody, inverse, inverse_along, natural_map};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic, Mobility};
 use crate::solve::local::contact::Local;
@@ -19,8 +19,8 @@ struct Block<S: Space> {
 /// Coulomb's law with W' in the frame of the contact.
 #[derive(Clone, Debug)]
 enum Exact {
-    Plane(Local<2>),
-    Solid(Local<3>),
+    Dim2(Local<2>),
+    Dim3(Local<3>),
 }
 
 impl Exact {
@@ -30,10 +30,10 @@ impl Exact {
         let entry = |i: usize, j: usize| axes[i].dot(&w.apply(&axes[j]));
         if S::D == 2 {
             let w = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
-            Self::Plane(Local::new(&w, mu))
+            Self::Dim2(Local::new(&w, mu))
         } else {
             let w = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
-            Self::Solid(Local::new(&w, mu))
+            Self::Dim3(Local::new(&w, mu))
         }
     }
 
@@ -41,11 +41,11 @@ impl Exact {
     fn solve<S: Space>(&mut self, n: &S::Vector, f: &S::Vector) -> (f64, S::Tangent) {
         let [t1, t2] = S::components(n, &S::tangential(n, f));
         match self {
-            Self::Plane(local) => {
+            Self::Dim2(local) => {
                 let p = local.solve(&[n.dot(f), t1]);
                 (p[0], S::from_components(n, p[1], 0.0))
             }
-            Self::Solid(local) => {
+            Self::Dim3(local) => {
                 let p = local.solve(&[n.dot(f), t1, t2]);
                 (p[0], S::from_components(n, p[1], p[2]))
             }
@@ -55,7 +55,7 @@ impl Exact {
 
 impl<S: Space> Block<S> {
     fn new(w: S::Matrix, n: &S::Vector, mu: f64, b_n: f64, b_t: f64) -> Self {
-        let mut ones = S::Vector::null();
+        let mut ones = S::Vector::zero();
         for k in 0..S::D {
             ones[k] = 1.0;
         }
@@ -181,15 +181,15 @@ impl<S: Space> GeneralRow<S> {
             cohesion: contact.cohesion,
             elastic,
             sn: n.dot(&contact.impulse).max(0.0),
-            st: S::Tangent::null(),
+            st: S::Tangent::zero(),
         }
     }
 
-    fn relative(&self, a: &Line<S>, b: &Line<S>) -> S::Vector {
-        a.v + S::sweep(&a.s, &self.arms[0]) - b.v - S::sweep(&b.s, &self.arms[1])
+    fn relative(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> S::Vector {
+        a.v + S::spin_velocity(&a.s, &self.arms[0]) - b.v - S::spin_velocity(&b.s, &self.arms[1])
     }
 
-    fn push(&self, p: &S::Vector, a: &mut Line<S>, b: &mut Line<S>) {
+    fn push(&self, p: &S::Vector, a: &mut SolverBody<S>, b: &mut SolverBody<S>) {
         a.v += p.scaled_by(&self.inverse_masses[0]);
         b.v -= p.scaled_by(&self.inverse_masses[1]);
         a.s += self.inverse_spins[0].apply(&S::moment(&self.arms[0], p));
@@ -222,7 +222,7 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         self.bodies
     }
 
-    fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64) {
+    fn update(&mut self, a: &mut SolverBody<S>, b: &mut SolverBody<S>, relaxation: f64) {
         let (n, e) = (self.n, self.elastic);
         let f = self.relative(a, b) - self.block.apply(&self.p);
         let at = S::lift(&n, &e.a_t);
@@ -249,7 +249,7 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         self.st = st;
     }
 
-    fn load(&self, a: &mut Line<S>, b: &mut Line<S>) {
+    fn load(&self, a: &mut SolverBody<S>, b: &mut SolverBody<S>) {
         self.push(&self.p, a, b);
     }
 
@@ -272,7 +272,7 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         self.n.dot(&self.p)
     }
 
-    fn speed(&self, a: &Line<S>, b: &Line<S>) -> f64 {
+    fn speed(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64 {
         let u = self.relative(a, b);
         u.dot(&u)
     }
@@ -285,7 +285,7 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         self.pulled.iwn.min(self.pulled.iwt)
     }
 
-    fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual {
+    fn residual(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> Residual {
         let n = &self.n;
         let u = self.relative(a, b);
         let (en, et) = self.bond(&u);
@@ -307,7 +307,7 @@ impl<S: Space> Row<S> for GeneralRow<S> {
         }
     }
 
-    fn solution(&self, a: &Line<S>, b: &Line<S>) -> ContactSolution<S> {
+    fn solution(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> ContactSolution<S> {
         let (en, et) = self.bond(&self.relative(a, b));
         ContactSolution {
             impulse: self.p,

@@ -1,11 +1,11 @@
 //! Velocities that several threads update at the same time.
 
-use super::Line;
+use super::SolverBody;
 use crate::geometry::space::Space;
 
 /// Velocities reached by several threads, each at bodies of its own.
 pub(in crate::solve) struct Lines<S: Space> {
-    first: *mut Line<S>,
+    first: *mut SolverBody<S>,
     len: usize,
 }
 
@@ -14,7 +14,7 @@ pub(in crate::solve) struct Lines<S: Space> {
 unsafe impl<S: Space> Sync for Lines<S> {}
 
 impl<S: Space> Lines<S> {
-    pub fn new(lines: &mut [Line<S>]) -> Self {
+    pub fn new(lines: &mut [SolverBody<S>]) -> Self {
         Self {
             first: lines.as_mut_ptr(),
             len: lines.len(),
@@ -23,7 +23,7 @@ impl<S: Space> Lines<S> {
 
     /// The line of a body, for code that keeps to the rule of `Sync` by itself.
     #[inline(always)]
-    pub fn at(&self, body: u32) -> *mut Line<S> {
+    pub fn at(&self, body: u32) -> *mut SolverBody<S> {
         debug_assert!((body as usize) < self.len);
         // SAFETY: indices are those of bodies pushed before the contact.
         unsafe { self.first.add(body as usize) }
@@ -31,7 +31,7 @@ impl<S: Space> Lines<S> {
 
     /// Runs `f` on the lines of two bodies and stores those of movable bodies.
     #[inline(always)]
-    pub fn with(&self, bodies: [u32; 2], f: impl FnOnce(&mut Line<S>, &mut Line<S>)) {
+    pub fn with(&self, bodies: [u32; 2], f: impl FnOnce(&mut SolverBody<S>, &mut SolverBody<S>)) {
         debug_assert!(bodies[0] != bodies[1]);
         let [a, b] = bodies.map(|k| self.at(k));
         // SAFETY: see `Sync` above.
@@ -51,7 +51,7 @@ impl<S: Space> Lines<S> {
 
     /// The same for one thread alone: stores both.
     #[inline(always)]
-    pub fn alone(&self, bodies: [u32; 2], f: impl FnOnce(&mut Line<S>, &mut Line<S>)) {
+    pub fn alone(&self, bodies: [u32; 2], f: impl FnOnce(&mut SolverBody<S>, &mut SolverBody<S>)) {
         debug_assert!(bodies[0] != bodies[1]);
         let [a, b] = bodies.map(|k| self.at(k));
         // SAFETY: two bodies, and no other thread is at work.
@@ -59,7 +59,7 @@ impl<S: Space> Lines<S> {
     }
 
     #[inline(always)]
-    pub fn read(&self, bodies: [u32; 2]) -> (Line<S>, Line<S>) {
+    pub fn read(&self, bodies: [u32; 2]) -> (SolverBody<S>, SolverBody<S>) {
         let [a, b] = bodies.map(|k| self.at(k));
         // SAFETY: nothing is written while errors are measured.
         unsafe { (*a, *b) }

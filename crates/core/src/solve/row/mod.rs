@@ -27,7 +27,7 @@ use crate::geometry::space::{Space, VectorLike};
 /// Velocity of a body in the solver: 64 bytes in both dimensions.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub struct Line<S: Space> {
+pub struct SolverBody<S: Space> {
     /// Velocity of the centre (m/s).
     pub v: S::Vector,
     /// Angular velocity times the body's length (m/s).
@@ -38,13 +38,13 @@ pub struct Line<S: Space> {
     pub is: f64,
 }
 
-impl<S: Space> Line<S> {
+impl<S: Space> SolverBody<S> {
     /// Of a body that nothing moves.
     #[cfg(target_arch = "x86_64")]
     fn idle() -> Self {
         Self {
-            v: S::Vector::null(),
-            s: S::Spin::null(),
+            v: S::Vector::zero(),
+            s: S::Spin::zero(),
             im: 0.0,
             is: 0.0,
         }
@@ -68,9 +68,9 @@ pub struct Residual {
 pub(super) trait Row<S: Space>: Clone + Send + Sync + 'static {
     fn bodies(&self) -> [u32; 2];
     /// Solves the contact for the velocities at hand, goes `relaxation` times as far, and updates them.
-    fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64);
+    fn update(&mut self, a: &mut SolverBody<S>, b: &mut SolverBody<S>, relaxation: f64);
     /// Adds what the stored impulse does to the velocities.
-    fn load(&self, a: &mut Line<S>, b: &mut Line<S>);
+    fn load(&self, a: &mut SolverBody<S>, b: &mut SolverBody<S>);
     /// Appends the numbers of the impulse.
     fn store(&self, out: &mut Vec<f64>);
     /// Takes them back from the front of `from`; the velocities are the caller's.
@@ -80,15 +80,15 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync + 'static {
     /// The normal impulse.
     fn normal(&self) -> f64;
     /// |u|^2 at the velocities at hand.
-    fn speed(&self, a: &Line<S>, b: &Line<S>) -> f64;
+    fn speed(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64;
     /// The step of the natural map; 0 of a contact that nothing can be done about.
     fn rho(&self) -> f64;
     /// The friction coefficient.
     fn friction(&self) -> f64;
-    fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual;
+    fn residual(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> Residual;
     /// What the contact carries at the velocities at hand: the bond's part follows from them, the
     /// unilateral part is the rest.
-    fn solution(&self, a: &Line<S>, b: &Line<S>) -> ContactSolution<S>;
+    fn solution(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> ContactSolution<S>;
 }
 
 fn store_parts<T: VectorLike>(n: f64, t: &T, out: &mut Vec<f64>) {
@@ -105,13 +105,19 @@ fn restore_parts<T: VectorLike>(n: &mut f64, t: &mut T, from: &mut &[f64]) {
 }
 
 #[inline(always)]
-fn relative<S: Space>(n: &S::Vector, a: &Line<S>, b: &Line<S>) -> (f64, S::Tangent) {
+fn relative<S: Space>(n: &S::Vector, a: &SolverBody<S>, b: &SolverBody<S>) -> (f64, S::Tangent) {
     let d = a.v - b.v;
     (n.dot(&d), S::tangential(n, &d) - S::roll(&(a.s + b.s), n))
 }
 
 #[inline(always)]
-fn push<S: Space>(n: &S::Vector, dn: f64, dt: S::Tangent, a: &mut Line<S>, b: &mut Line<S>) {
+fn push<S: Space>(
+    n: &S::Vector,
+    dn: f64,
+    dt: S::Tangent,
+    a: &mut SolverBody<S>,
+    b: &mut SolverBody<S>,
+) {
     let impulse = *n * dn + S::lift(n, &dt);
     let twist = S::twist(n, &dt);
     a.v += impulse * a.im;
@@ -156,6 +162,6 @@ fn inverse(w: f64) -> f64 {
 /// The same along the tangent. Where bodies move along the normal alone their slip is given, and friction
 /// goes against it at once, as far as it may.
 fn inverse_along(w_t: f64, w_n: f64) -> f64 {
-    const LEAST: f64 = 1e-12;
-    inverse(w_t.max(LEAST * w_n))
+    const MIN_RATIO: f64 = 1e-12;
+    inverse(w_t.max(MIN_RATIO * w_n))
 }

@@ -3,7 +3,7 @@
 //! M = M_sc + M_el, dual to the relative spin w = w_i - w_j: M_el = -(a + B w) as for impulses, and M_sc
 //! opposes w with |M_sc| <= (friction length) p_n, bending and twist apart.
 
-use super::{Line, Residual, inverse};
+use super::{Residual, SolverBody, inverse};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::{Mobility, Place};
 
@@ -84,17 +84,23 @@ impl<S: Space> MomentRow<S> {
         }
     }
 
-    fn relative(&self, a: &Line<S>, b: &Line<S>) -> S::Spin {
+    fn relative(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> S::Spin {
         a.s * self.over[0] - b.s * self.over[1]
     }
 
-    fn push(&self, moment: &S::Spin, a: &mut Line<S>, b: &mut Line<S>) {
+    fn push(&self, moment: &S::Spin, a: &mut SolverBody<S>, b: &mut SolverBody<S>) {
         a.s += self.inverse_spins[0].apply(moment);
         b.s -= self.inverse_spins[1].apply(moment);
     }
 
     /// Solves for the spins at hand under the normal impulse `pn`.
-    pub fn update(&mut self, pn: f64, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64) {
+    pub fn update(
+        &mut self,
+        pn: f64,
+        a: &mut SolverBody<S>,
+        b: &mut SolverBody<S>,
+        relaxation: f64,
+    ) {
         let form = &self.form;
         let pn = pn.max(0.0);
         let f = self.relative(a, b) - self.moment * self.w;
@@ -127,7 +133,7 @@ impl<S: Space> MomentRow<S> {
         self.moment = *moment;
     }
 
-    pub fn load(&self, a: &mut Line<S>, b: &mut Line<S>) {
+    pub fn load(&self, a: &mut SolverBody<S>, b: &mut SolverBody<S>) {
         self.push(&self.moment, a, b);
     }
 
@@ -139,7 +145,7 @@ impl<S: Space> MomentRow<S> {
     }
 
     /// The natural map, times a lever: a velocity.
-    pub fn residual(&self, pn: f64, a: &Line<S>, b: &Line<S>) -> Residual {
+    pub fn residual(&self, pn: f64, a: &SolverBody<S>, b: &SolverBody<S>) -> Residual {
         if self.iw == 0.0 {
             return Residual::default();
         }
@@ -161,7 +167,7 @@ impl<S: Space> MomentRow<S> {
         }
     }
 
-    pub fn solution(&self, a: &Line<S>, b: &Line<S>) -> MomentSolution<S> {
+    pub fn solution(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> MomentSolution<S> {
         MomentSolution {
             contact: self.form.contact,
             moment: self.moment,

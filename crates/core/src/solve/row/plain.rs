@@ -1,7 +1,7 @@
 //! Contact of two balls without a bond: solved in closed form.
 
 use super::{
-    Line, Residual, Row, inverse, inverse_along, natural_map, push, relative, restore_parts,
+    Residual, Row, SolverBody, inverse, inverse_along, natural_map, push, relative, restore_parts,
     store_parts,
 };
 use crate::geometry::space::{Space, VectorLike, greatest, least};
@@ -47,7 +47,7 @@ impl<S: Space> PlainRow<S> {
 /// The tangential part of an impulse to begin with; none without friction.
 fn grip<S: Space>(n: &S::Vector, impulse: &S::Vector, mu: f64) -> S::Tangent {
     if mu == 0.0 {
-        S::Tangent::null()
+        S::Tangent::zero()
     } else {
         S::tangential(n, impulse)
     }
@@ -60,7 +60,7 @@ impl<S: Space> Row<S> for PlainRow<S> {
     }
 
     #[inline(always)]
-    fn update(&mut self, a: &mut Line<S>, b: &mut Line<S>, relaxation: f64) {
+    fn update(&mut self, a: &mut SolverBody<S>, b: &mut SolverBody<S>, relaxation: f64) {
         if self.mu == 0.0 {
             let un = self.n.dot(&(a.v - b.v));
             let pn = greatest(self.pn - (un + self.shift) * (self.iwn * relaxation), 0.0);
@@ -78,7 +78,7 @@ impl<S: Space> Row<S> for PlainRow<S> {
         self.pt = pt;
     }
 
-    fn load(&self, a: &mut Line<S>, b: &mut Line<S>) {
+    fn load(&self, a: &mut SolverBody<S>, b: &mut SolverBody<S>) {
         push(&self.n, self.pn, self.pt, a, b);
     }
 
@@ -99,7 +99,7 @@ impl<S: Space> Row<S> for PlainRow<S> {
         self.pn
     }
 
-    fn speed(&self, a: &Line<S>, b: &Line<S>) -> f64 {
+    fn speed(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64 {
         let (un, ut) = relative(&self.n, a, b);
         un * un + ut.dot(&ut)
     }
@@ -114,14 +114,14 @@ impl<S: Space> Row<S> for PlainRow<S> {
     }
 
     #[inline(always)]
-    fn residual(&self, a: &Line<S>, b: &Line<S>) -> Residual {
+    fn residual(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> Residual {
         let (un, ut) = relative(&self.n, a, b);
         let rho = self.rho();
         if rho > 0.0 {
             natural_map(
                 (self.pn, self.pt),
                 (un, ut),
-                (self.shift, S::Tangent::null()),
+                (self.shift, S::Tangent::zero()),
                 rho,
                 self.mu,
                 0.0,
@@ -131,7 +131,7 @@ impl<S: Space> Row<S> for PlainRow<S> {
         }
     }
 
-    fn solution(&self, _: &Line<S>, _: &Line<S>) -> ContactSolution<S> {
+    fn solution(&self, _: &SolverBody<S>, _: &SolverBody<S>) -> ContactSolution<S> {
         ContactSolution {
             impulse: self.n * self.pn + S::lift(&self.n, &self.pt),
             unilateral_n: self.pn,

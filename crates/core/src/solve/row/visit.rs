@@ -3,7 +3,7 @@
 
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{self, Moving, Records, Tuple, Wide, push, relative};
-use super::{Line, Lines, Row};
+use super::{Lines, Row, SolverBody};
 use crate::geometry::space::{Space, VectorLike, least};
 use crate::solve::error::{Scale, Sums};
 
@@ -23,8 +23,8 @@ pub trait Visit {
     unsafe fn several<W: Wide, const U: usize>(
         &mut self,
         rows: &Records<W, U>,
-        a: &Records<Line<W::Space>, U>,
-        b: &Records<Line<W::Space>, U>,
+        a: &Records<SolverBody<W::Space>, U>,
+        b: &Records<SolverBody<W::Space>, U>,
         at: usize,
     );
 }
@@ -63,8 +63,8 @@ impl Visit for Update {
     unsafe fn several<W: Wide, const U: usize>(
         &mut self,
         rows: &Records<W, U>,
-        a: &Records<Line<W::Space>, U>,
-        b: &Records<Line<W::Space>, U>,
+        a: &Records<SolverBody<W::Space>, U>,
+        b: &Records<SolverBody<W::Space>, U>,
         _: usize,
     ) {
         // SAFETY: as asked for.
@@ -93,8 +93,8 @@ impl Visit for Load {
     unsafe fn several<W: Wide, const U: usize>(
         &mut self,
         rows: &Records<W, U>,
-        a: &Records<Line<W::Space>, U>,
-        b: &Records<Line<W::Space>, U>,
+        a: &Records<SolverBody<W::Space>, U>,
+        b: &Records<SolverBody<W::Space>, U>,
         _: usize,
     ) {
         // SAFETY: as asked for.
@@ -162,8 +162,8 @@ impl Visit for Measure {
     unsafe fn several<W: Wide, const U: usize>(
         &mut self,
         rows: &Records<W, U>,
-        a: &Records<Line<W::Space>, U>,
-        b: &Records<Line<W::Space>, U>,
+        a: &Records<SolverBody<W::Space>, U>,
+        b: &Records<SolverBody<W::Space>, U>,
         at: usize,
     ) {
         // SAFETY: as asked for.
@@ -187,7 +187,7 @@ pub struct Free {
 /// Roundings in a relative velocity, squared.
 const ROUNDINGS: f64 = 256.0 * f64::EPSILON * f64::EPSILON;
 /// The natural map multiplies that of a slip by mu, which beyond this is no excuse.
-const MOST: f64 = 1e6;
+const MAX_FRICTION: f64 = 1e6;
 
 impl Free {
     /// The sums.
@@ -213,7 +213,7 @@ impl Visit for Free {
         self.free[k] += speed;
         self.energy[k] += row.rho() * speed;
         let own = a.v.dot(&a.v) + a.s.dot(&a.s) + b.v.dot(&b.v) + b.s.dot(&b.s);
-        let mu = least(row.friction(), MOST);
+        let mu = least(row.friction(), MAX_FRICTION);
         self.noise[k] += own * (1.0 + mu * mu) * ROUNDINGS;
     }
 
@@ -222,8 +222,8 @@ impl Visit for Free {
     unsafe fn several<W: Wide, const U: usize>(
         &mut self,
         rows: &Records<W, U>,
-        a: &Records<Line<W::Space>, U>,
-        b: &Records<Line<W::Space>, U>,
+        a: &Records<SolverBody<W::Space>, U>,
+        b: &Records<SolverBody<W::Space>, U>,
         _: usize,
     ) {
         // SAFETY: as asked for.
@@ -235,7 +235,7 @@ impl Visit for Free {
             speed.add_to(&mut self.free);
             (row.rho * speed).add_to(&mut self.energy);
             let own = a.v.dot(a.v) + a.s.dot(a.s) + b.v.dot(b.v) + b.s.dot(b.s);
-            let mu = row.mu.min(lanes::Lanes::all(MOST));
+            let mu = row.mu.min(lanes::Lanes::all(MAX_FRICTION));
             let one = lanes::Lanes::all(1.0);
             let noise = own * (one + mu * mu) * lanes::Lanes::all(ROUNDINGS);
             noise.add_to(&mut self.noise);

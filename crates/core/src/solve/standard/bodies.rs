@@ -22,7 +22,7 @@ pub struct Axis<S: Space> {
 impl<S: Space> Axis<S> {
     /// Whether it pushes at all.
     pub fn pushes(&self) -> bool {
-        self.linear != S::Vector::null() || self.angular != [S::Spin::null(); 2]
+        self.linear != S::Vector::zero() || self.angular != [S::Spin::zero(); 2]
     }
 
     /// The same in a bond of stiffness `b` over the step; not there where the stiffness is zero.
@@ -34,8 +34,8 @@ impl<S: Space> Axis<S> {
             }
         } else {
             Self {
-                linear: S::Vector::null(),
-                angular: [S::Spin::null(); 2],
+                linear: S::Vector::zero(),
+                angular: [S::Spin::zero(); 2],
                 compliance: 1.0,
             }
         }
@@ -94,8 +94,8 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
     pub fn push(&self, c: usize, p: &[f64; D], motions: &mut [Motion<S>]) {
         let unknown = &self.unknowns[c];
         for (side, sign) in [(0, 1.0), (1, -1.0)] {
-            let mut impulse = S::Vector::null();
-            let mut moment = S::Spin::null();
+            let mut impulse = S::Vector::zero();
+            let mut moment = S::Spin::zero();
             for (axis, p) in unknown.axes.iter().zip(p) {
                 impulse += axis.linear * (sign * p);
                 moment += axis.angular[side] * (sign * p);
@@ -160,7 +160,7 @@ impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
     fn velocity(&self, p: &[[f64; D]], q: &[[f64; D]], u: &mut [[f64; D]]) {
         let mut motions = self.scratch.borrow_mut();
         motions.clear();
-        motions.resize(self.masses.len(), (S::Vector::null(), S::Spin::null()));
+        motions.resize(self.masses.len(), (S::Vector::zero(), S::Spin::zero()));
         for (c, p) in p.iter().enumerate() {
             self.push(c, p, &mut motions);
         }

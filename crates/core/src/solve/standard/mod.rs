@@ -76,8 +76,8 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             q: Vec::new(),
             places: Vec::with_capacity(forms.len()),
             moments: Vec::with_capacity(moments.len()),
-            constant: vec![S::Vector::null(); forms.len()],
-            constant_moments: vec![S::Spin::null(); moments.len()],
+            constant: vec![S::Vector::zero(); forms.len()],
+            constant_moments: vec![S::Spin::zero(); moments.len()],
         };
         for (k, form) in forms.iter().enumerate() {
             let places = out.push_contact(problem, form, k);
@@ -178,9 +178,9 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             return places;
         }
         let axes: [Axis<S>; D] = spins::<S, D>(&contact.normal).map(|spin| Axis {
-            linear: S::Vector::null(),
+            linear: S::Vector::zero(),
             angular: [spin; 2],
-            compliance: if spin == S::Spin::null() { 1.0 } else { 0.0 },
+            compliance: if spin == S::Spin::zero() { 1.0 } else { 0.0 },
         });
         if form.rolling > 0.0 || form.spinning > 0.0 {
             let law = Law::Moment {
@@ -190,7 +190,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             };
             places.contact = Some(self.add(contact.bodies, axes, law));
         }
-        if form.b_twist > 0.0 || form.b_bend > 0.0 || form.a != S::Spin::null() {
+        if form.b_twist > 0.0 || form.b_bend > 0.0 || form.a != S::Spin::zero() {
             let mut axes = axes;
             for (d, axis) in axes.iter_mut().enumerate() {
                 if axis.pushes() {
@@ -224,7 +224,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         for (form, m) in moments.iter().zip(&self.constant_moments) {
             let bodies = forms[form.contact as usize].bodies;
             for (body, sign) in [(bodies[0], 1.0), (bodies[1], -1.0)] {
-                let (_, w) = self.w.mobility(body, (S::Vector::null(), *m * sign));
+                let (_, w) = self.w.mobility(body, (S::Vector::zero(), *m * sign));
                 motions[body as usize].1 += w;
             }
         }

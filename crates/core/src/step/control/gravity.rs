@@ -94,7 +94,7 @@ impl GravityDrive {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::{Plane, Solid};
+    use crate::geometry::space::{Dim2, Dim3};
     use nalgebra::{Vector2, Vector3};
     use std::f64::consts::FRAC_PI_2;
 
@@ -110,12 +110,12 @@ mod tests {
             about,
         };
         let down = Vector2::new(0.0, -9.81);
-        let g = quarter(2).at::<Plane>(&down, 1.0);
+        let g = quarter(2).at::<Dim2>(&down, 1.0);
         assert!((g - Vector2::new(9.81, 0.0)).norm() < 1e-14);
-        let g = quarter(2).at::<Plane>(&down, 1.0 / 3.0);
+        let g = quarter(2).at::<Dim2>(&down, 1.0 / 3.0);
         assert!((g - Vector2::new(9.81 * 0.5, -9.81 * 0.75f64.sqrt())).norm() < 1e-14);
         let down = Vector3::new(0.0, 0.0, -2.0);
-        let about_y = quarter(1).delayed(5.0).at::<Solid>(&down, 6.0);
+        let about_y = quarter(1).delayed(5.0).at::<Dim3>(&down, 6.0);
         assert!((about_y - Vector3::new(-2.0, 0.0, 0.0)).norm() < 1e-14);
         assert!(quarter(1).fault(2).is_some() && quarter(1).fault(3).is_none());
     }

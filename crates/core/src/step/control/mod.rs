@@ -35,7 +35,7 @@ pub struct Control<S: Space> {
 impl<S: Space> Default for Control<S> {
     fn default() -> Self {
         Self {
-            gravity: S::Vector::null(),
+            gravity: S::Vector::zero(),
             gravity_drive: None,
             servos: Vec::new(),
             gates: Vec::new(),
@@ -70,7 +70,7 @@ impl<S: Space> Control<S> {
 
 impl<S: Space> Simulation<S> {
     /// Puts in force what acts over the step that begins.
-    pub(super) fn obey(&mut self) {
+    pub(super) fn apply_schedule(&mut self) {
         if self.control.clock.turns() {
             self.begin_phase();
         }
@@ -109,7 +109,8 @@ impl<S: Space> Simulation<S> {
             // They were checked when the scene was built.
             self.control.servos.extend(servos.unwrap_or_default());
             let middle = time + 0.5 * self.scheme.h;
-            self.bodies.redrive(place, dof, drive.delayed(time), middle);
+            self.bodies
+                .set_drive(place, dof, drive.delayed(time), middle);
         }
         if let Some(gravity) = changes.gravity {
             (self.control.gravity, self.control.gravity_drive) = (gravity, None);

@@ -166,7 +166,7 @@ pub(super) struct History {
 
 impl History {
     /// Most blocks.
-    const MOST: usize = 128;
+    const MAX_BLOCKS: usize = 128;
 
     pub fn new() -> Self {
         Self {
@@ -181,7 +181,7 @@ impl History {
             last.join(&sample);
             return;
         }
-        if self.blocks.len() == Self::MOST {
+        if self.blocks.len() == Self::MAX_BLOCKS {
             let pairs = self.blocks.chunks(2).map(whole);
             self.blocks = pairs.collect();
             self.each *= 2;
@@ -236,7 +236,10 @@ mod tests {
                 ..Block::default()
             });
         }
-        assert!(history.blocks.len() <= History::MOST && history.blocks.len() > History::MOST / 3);
+        assert!(
+            history.blocks.len() <= History::MAX_BLOCKS
+                && history.blocks.len() > History::MAX_BLOCKS / 3
+        );
         let all = history.whole();
         assert_eq!((all.samples, all.time), (1000, [0.0, 1000.0]));
         assert_eq!((all.bins()[0].mass, all.bins()[0].depth()), (1000.0, 499.5));

@@ -18,7 +18,7 @@ pub(super) struct Gap {
     /// Axis across it.
     pub across: usize,
     /// Where depth is zero, along `across` (m).
-    pub foot: f64,
+    pub closest_point: f64,
     /// 1 where depth grows with the coordinate, -1 where it falls.
     pub side: f64,
     /// Its thickness (m).
@@ -32,7 +32,7 @@ pub(super) struct Gap {
 impl Gap {
     /// Depth of a point (m).
     pub fn depth<V: VectorLike>(&self, at: &V) -> f64 {
-        self.side * (at[self.across] - self.foot)
+        self.side * (at[self.across] - self.closest_point)
     }
 
     /// Volume of a bin (m^3; m^2 in 2D).
@@ -140,7 +140,7 @@ impl Faces {
             None => [at(0), at(1)],
         };
         Gap {
-            foot: ends[0],
+            closest_point: ends[0],
             // A layer of no thickness has no profile; its bins stay in order.
             thickness: (self.gap.side * (ends[1] - ends[0])).max(f64::MIN_POSITIVE),
             ..self.gap
@@ -168,9 +168,9 @@ impl Faces {
     ) -> (S::Vector, S::Vector) {
         let of = |k: usize| {
             let (velocity, spin) = motion(k);
-            let mut arm = S::Vector::null();
+            let mut arm = S::Vector::zero();
             arm[self.gap.across] = self.offsets[k];
-            velocity + S::sweep(&spin, &arm)
+            velocity + S::spin_velocity(&spin, &arm)
         };
         (of(0), of(1) - of(0))
     }
@@ -292,7 +292,7 @@ mod tests {
     fn gap(bins: usize) -> Gap {
         Gap {
             across: 1,
-            foot: 0.5,
+            closest_point: 0.5,
             side: 1.0,
             thickness: 2.0,
             section: 3.0,

@@ -77,7 +77,7 @@ impl Instant {
         }
         let degree = degrees(s);
         let held = held(s);
-        let mut means = vec![(0.0, 0.0, S::Vector::null()); cells.len()];
+        let mut means = vec![(0.0, 0.0, S::Vector::zero()); cells.len()];
         for Share { grain, cell, share } in &shares {
             let (grain, cell) = (&all[*grain as usize], *cell as usize);
             let (b, mass) = (grain.body, share * grain.mass);
@@ -153,7 +153,7 @@ fn temperature<S: Space>(
 /// On the straight line between the points beside a place, or through the last two.
 fn mean_at<V: VectorLike>(points: &[(f64, V)], place: f64) -> V {
     if points.len() < 2 {
-        return points.first().map_or(V::null(), |p| p.1);
+        return points.first().map_or(V::zero(), |p| p.1);
     }
     let k = points.partition_point(|p| p.0 < place);
     let k = k.clamp(1, points.len() - 1);

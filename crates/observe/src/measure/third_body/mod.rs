@@ -234,7 +234,7 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
     }
 
     fn follow(&mut self, s: &Simulation<S>) {
-        for body in s.network.breaks.iter().flat_map(|b| b.bodies) {
+        for body in s.network.bond_breaks.iter().flat_map(|b| b.bodies) {
             self.lost[body as usize] += 1.0;
         }
         let Some(faces) = &self.faces else { return };

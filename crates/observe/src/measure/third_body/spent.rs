@@ -6,7 +6,7 @@
 use super::cells::MECHANISMS;
 use super::gap::{Faces, Gap};
 use crate::layer::{Balance, Layer};
-use fretwork_core::contact::Spent;
+use fretwork_core::contact::ContactDissipation;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
@@ -122,7 +122,7 @@ impl<S: Space> Dissipation<S> {
         let n = &s.network;
         let spent = n.spent.iter().flatten();
         for (contact, spent) in n.contacts.iter().zip(spent) {
-            if *spent == Spent::default() {
+            if *spent == ContactDissipation::default() {
                 continue;
             }
             let at = s.bodies.position[contact.bodies[0] as usize] + contact.arms[0];
@@ -135,7 +135,7 @@ impl<S: Space> Dissipation<S> {
             ];
             self.add(contact.bodies, ends, gap.bin(gap.depth(&at)), energies);
         }
-        for torn in n.breaks.iter().filter(|b| b.torn != 0.0) {
+        for torn in n.bond_breaks.iter().filter(|b| b.torn != 0.0) {
             let bin = gap.bin(gap.depth(&torn.place));
             self.add(torn.bodies, ends, bin, [0.0, 0.0, torn.torn, 0.0, 0.0]);
         }

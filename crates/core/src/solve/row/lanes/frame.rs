@@ -1,15 +1,15 @@
 //! Relative velocities and impulses of several contacts at once, as `relative` and `push` of one.
 
 use super::vector::*;
-use crate::geometry::space::{Plane, Solid, Space};
-use crate::solve::row::Line;
+use crate::geometry::space::{Dim2, Dim3, Space};
+use crate::solve::row::SolverBody;
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// What [`Columns`] can do, whatever their number.
 pub trait Tuple<const U: usize>:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Lanes<U>, Output = Self> + Neg<Output = Self>
 {
-    fn null() -> Self;
+    fn zero() -> Self;
     fn dot(self, with: Self) -> Lanes<U>;
     fn norm(self) -> Lanes<U>;
     fn limited(self, bound: Lanes<U>) -> Self;
@@ -24,8 +24,8 @@ pub trait Tuple<const U: usize>:
 
 impl<const U: usize, const R: usize> Tuple<U> for Columns<U, R> {
     #[inline(always)]
-    fn null() -> Self {
-        Columns::null()
+    fn zero() -> Self {
+        Columns::zero()
     }
     #[inline(always)]
     fn dot(self, with: Self) -> Lanes<U> {
@@ -67,7 +67,7 @@ impl<F: Frame, const U: usize> Moving<F, U> {
     /// # Safety
     /// The lines are there.
     #[inline(always)]
-    pub unsafe fn load(from: &Records<Line<F>, U>) -> Self {
+    pub unsafe fn load(from: &Records<SolverBody<F>, U>) -> Self {
         // SAFETY: as asked for.
         unsafe { F::lines(from) }
     }
@@ -77,7 +77,7 @@ impl<F: Frame, const U: usize> Moving<F, U> {
     /// # Safety
     /// The lines are there.
     #[inline(always)]
-    pub unsafe fn keep(&self, to: &Records<Line<F>, U>) {
+    pub unsafe fn keep(&self, to: &Records<SolverBody<F>, U>) {
         let zero = Lanes::all(0.0);
         let moves = self.im.above(zero).or(self.is.above(zero)).bits();
         // SAFETY: as asked for.
@@ -94,13 +94,13 @@ pub trait Frame: Space {
 
     /// # Safety
     /// The lines are there.
-    unsafe fn lines<const U: usize>(from: &Records<Line<Self>, U>) -> Moving<Self, U>;
+    unsafe fn lines<const U: usize>(from: &Records<SolverBody<Self>, U>) -> Moving<Self, U>;
     /// Writes back the lines of a mask.
     ///
     /// # Safety
     /// The lines are there.
     unsafe fn keep<const U: usize>(
-        to: &Records<Line<Self>, U>,
+        to: &Records<SolverBody<Self>, U>,
         body: &Moving<Self, U>,
         mask: [i32; U],
     );
@@ -143,12 +143,12 @@ pub fn push<F: Frame, const U: usize>(
     b.s = b.s - twist * b.is;
 }
 
-impl Frame for Plane {
+impl Frame for Dim2 {
     type V<const U: usize> = Columns<U, 2>;
     type T<const U: usize> = Columns<U, 1>;
 
     #[inline(always)]
-    unsafe fn lines<const U: usize>(from: &Records<Line<Self>, U>) -> Moving<Self, U> {
+    unsafe fn lines<const U: usize>(from: &Records<SolverBody<Self>, U>) -> Moving<Self, U> {
         // SAFETY: as asked for; the line is v, s, im, is.
         unsafe {
             let [v0, v1, s, im] = load(from, 0);
@@ -163,7 +163,7 @@ impl Frame for Plane {
 
     #[inline(always)]
     unsafe fn keep<const U: usize>(
-        to: &Records<Line<Self>, U>,
+        to: &Records<SolverBody<Self>, U>,
         body: &Moving<Self, U>,
         mask: [i32; U],
     ) {
@@ -194,12 +194,12 @@ impl Frame for Plane {
     }
 }
 
-impl Frame for Solid {
+impl Frame for Dim3 {
     type V<const U: usize> = Columns<U, 3>;
     type T<const U: usize> = Columns<U, 3>;
 
     #[inline(always)]
-    unsafe fn lines<const U: usize>(from: &Records<Line<Self>, U>) -> Moving<Self, U> {
+    unsafe fn lines<const U: usize>(from: &Records<SolverBody<Self>, U>) -> Moving<Self, U> {
         // SAFETY: as asked for; the line is v, s, im, is.
         unsafe {
             let [v0, v1, v2, s0] = load(from, 0);
@@ -215,7 +215,7 @@ impl Frame for Solid {
 
     #[inline(always)]
     unsafe fn keep<const U: usize>(
-        to: &Records<Line<Self>, U>,
+        to: &Records<SolverBody<Self>, U>,
         body: &Moving<Self, U>,
         mask: [i32; U],
     ) {

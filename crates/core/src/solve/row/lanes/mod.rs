@@ -12,8 +12,8 @@ pub use vector::{Lanes, Records};
 pub use wide::Wide;
 
 use super::visit::Visit;
-use super::{FullRow, Line, Lines, PlainRow, Row};
-use crate::geometry::space::{Plane, Solid, Space};
+use super::{FullRow, Lines, PlainRow, Row, SolverBody};
+use crate::geometry::space::{Dim2, Dim3, Space};
 use std::any::TypeId;
 use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 
@@ -38,12 +38,7 @@ pub fn visit<S: Space, R: Row<S>>(
             }
         )*};
     }
-    of!(
-        PlainRow<Plane>,
-        FullRow<Plane>,
-        PlainRow<Solid>,
-        FullRow<Solid>
-    );
+    of!(PlainRow<Dim2>, FullRow<Dim2>, PlainRow<Dim3>, FullRow<Dim3>);
     false
 }
 
@@ -54,12 +49,12 @@ unsafe fn all<W: Wide, V: Visit>(
     rows: *mut W,
     groups: &[u32],
     count: usize,
-    lines: *mut Line<W::Space>,
+    lines: *mut SolverBody<W::Space>,
     what: &mut V,
 ) {
     let mut idle = Idle {
         row: W::idle(),
-        line: Line::idle(),
+        line: SolverBody::idle(),
     };
     for group in groups.windows(2) {
         let [mut first, end] = [group[0], group[1]].map(|k| (k - groups[0]) as usize);
@@ -84,14 +79,14 @@ unsafe fn all<W: Wide, V: Visit>(
 /// Fills the lanes that have no contact: nothing moves, and nothing is stored.
 struct Idle<W: Wide> {
     row: W,
-    line: Line<W::Space>,
+    line: SolverBody<W::Space>,
 }
 
 /// Four rows and the lines of their bodies.
 struct Four<W: Wide> {
     row: [*mut W; 4],
-    a: [*mut Line<W::Space>; 4],
-    b: [*mut Line<W::Space>; 4],
+    a: [*mut SolverBody<W::Space>; 4],
+    b: [*mut SolverBody<W::Space>; 4],
 }
 
 /// How many contacts ahead the lines are called for.
@@ -106,7 +101,7 @@ impl<W: Wide> Four<W> {
     unsafe fn new(
         rows: *mut W,
         [first, end, count]: [usize; 3],
-        lines: *mut Line<W::Space>,
+        lines: *mut SolverBody<W::Space>,
         idle: &mut Idle<W>,
     ) -> Self {
         // SAFETY: as above.

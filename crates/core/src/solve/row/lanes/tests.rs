@@ -1,7 +1,7 @@
-use crate::geometry::space::{Plane, Solid, Space, VectorLike};
+use crate::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use crate::solve::form::{ContactForm, Elastic};
 use crate::solve::row::visit::{Free, Load, Measure, Update, Visit};
-use crate::solve::row::{FullRow, Line, Lines, PlainRow, Row};
+use crate::solve::row::{FullRow, Lines, PlainRow, Row, SolverBody};
 
 /// Between -1 and 1, and much the same for no two.
 fn wave(k: usize, of: u32) -> f64 {
@@ -9,12 +9,12 @@ fn wave(k: usize, of: u32) -> f64 {
 }
 
 /// Bodies with velocities and masses; every fourteenth is fixed.
-fn lines<S: Space>(count: u32) -> Vec<Line<S>> {
+fn lines<S: Space>(count: u32) -> Vec<SolverBody<S>> {
     let line = |body: u32| {
         let fixed = body % 14 == 1;
-        let mut line = Line::<S> {
-            v: S::Vector::null(),
-            s: S::Spin::null(),
+        let mut line = SolverBody::<S> {
+            v: S::Vector::zero(),
+            s: S::Spin::zero(),
             im: if fixed {
                 0.0
             } else {
@@ -47,7 +47,7 @@ fn smooth<S: Space>(pair: u32) -> ContactForm<S> {
 
 /// A contact of every pair of bodies, some of which stick, some slide and some open.
 fn contact<S: Space>(pair: u32) -> ContactForm<S> {
-    let mut normal = S::Vector::null();
+    let mut normal = S::Vector::zero();
     for k in 0..S::D {
         normal[k] = wave(k + 20, pair);
     }
@@ -58,7 +58,7 @@ fn contact<S: Space>(pair: u32) -> ContactForm<S> {
         arms: [-normal, normal],
         central: true,
         shift_n: 0.1 * wave(30, pair),
-        shift_t: S::Tangent::null(),
+        shift_t: S::Tangent::zero(),
         friction: 0.3 + 0.3 * wave(31, pair),
         tension: 0.0,
         cohesion: 0.0,
@@ -69,7 +69,7 @@ fn contact<S: Space>(pair: u32) -> ContactForm<S> {
 
 /// With bonds, some of which only pull, cohesion, restitution, or none of them.
 fn bonded<S: Space>(pair: u32) -> ContactForm<S> {
-    let mut tangent = S::Tangent::null();
+    let mut tangent = S::Tangent::zero();
     for k in 0..S::Tangent::N {
         tangent[k] = 0.3 * wave(k + 40, pair);
     }
@@ -93,7 +93,7 @@ fn bonded<S: Space>(pair: u32) -> ContactForm<S> {
 
 struct State<R, S: Space> {
     rows: Vec<R>,
-    lines: Vec<Line<S>>,
+    lines: Vec<SolverBody<S>>,
 }
 
 impl<S: Space, R: Row<S>> State<R, S> {
@@ -167,10 +167,10 @@ fn same<S: Space, R: Row<S>>(
 
 #[test]
 fn lanes_give_the_bits_of_single_contacts() {
-    same(contact::<Plane>, PlainRow::new);
-    same(contact::<Solid>, PlainRow::new);
-    same(smooth::<Plane>, PlainRow::new);
-    same(smooth::<Solid>, PlainRow::new);
-    same(bonded::<Plane>, FullRow::new);
-    same(bonded::<Solid>, FullRow::new);
+    same(contact::<Dim2>, PlainRow::new);
+    same(contact::<Dim3>, PlainRow::new);
+    same(smooth::<Dim2>, PlainRow::new);
+    same(smooth::<Dim3>, PlainRow::new);
+    same(bonded::<Dim2>, FullRow::new);
+    same(bonded::<Dim3>, FullRow::new);
 }

@@ -175,7 +175,7 @@ pub struct Columns<const U: usize, const R: usize>(pub [Lanes<U>; R]);
 
 impl<const U: usize, const R: usize> Columns<U, R> {
     #[inline(always)]
-    pub fn null() -> Self {
+    pub fn zero() -> Self {
         Self([Lanes::all(0.0); R])
     }
 

@@ -205,7 +205,7 @@ impl<F: Frame> Wide for PlainRow<F> {
         let r = unsafe { Plain::<F, U>::new(rows) };
         let (un, ut) = relative(&r.n, a, b);
         let rho = r.iwn.min(r.iwt);
-        let shift = (r.shift, Tuple::null());
+        let shift = (r.shift, Tuple::zero());
         natural_map((r.pn, r.pt), (un, ut), shift, rho, r.mu, Lanes::all(0.0))
     }
 }
@@ -434,11 +434,11 @@ fn project<T: Tuple<U>, const U: usize>(
     let inside = normal
         .not_below(zero)
         .and(length.not_above(mu * normal + c));
-    let foot = (normal + mu * (length - c)) / (one + mu * mu);
-    let slides = length.above(c).and(foot.above(zero));
-    let foot = slides.choose(foot, zero);
-    let bound = slides.choose(mu * foot + c, length.min(c));
-    let n = inside.choose(normal, foot);
+    let closest_point = (normal + mu * (length - c)) / (one + mu * mu);
+    let slides = length.above(c).and(closest_point.above(zero));
+    let closest_point = slides.choose(closest_point, zero);
+    let bound = slides.choose(mu * closest_point + c, length.min(c));
+    let n = inside.choose(normal, closest_point);
     if T::SIZE == 1 {
         let on = T::from_numbers(&[bound.signed_as(tangent.number(0))]);
         return (n, T::chosen(inside, tangent, on));
