@@ -18,12 +18,11 @@ use fretwork::geometry::shape::Ball;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::source::Source;
-use fretwork::scene::{Loaded, case::Case};
+use fretwork::scene::load_text;
 use fretwork::solve::Problem;
 use fretwork::step::Simulation;
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::Path;
 
 #[global_allocator]
 static COUNTING: counting::Counting = counting::Counting;
@@ -191,20 +190,12 @@ fn measure<S: Dimensional>(
     apart: bool,
     sets: &[&str],
 ) -> Result<Held, Box<dyn std::error::Error>> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("cases/memory.ron");
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
     let before = held();
     let mut s: Simulation<S> = {
-        let mut source = Source::from_text(&path, case::<S>(grains, count, apart));
-        for set in sets {
-            source.set::<Case>(set)?;
-        }
-        let case: Case = source.parse()?;
-        let loaded = Loaded {
-            source,
-            case,
-            path,
-            records: None,
-        };
+        let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
+        let text = case::<S>(grains, count, apart);
+        let loaded = load_text("memory.ron", &text, &cases, &sets)?;
         loaded.build_in::<S>(&SearchPath::new(&[]))?.simulation
     };
     for _ in 0..STEPS {

@@ -10,10 +10,9 @@ use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::SearchPath;
 use fretwork::report::{Axis, Chart, Series, draw_panels};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::source::Source;
-use fretwork::scene::{Loaded, case::Case};
+use fretwork::scene::load_text;
 use fretwork::step::{Simulation, Steps};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
@@ -208,15 +207,8 @@ fn layer<S: Dimensional>(count: usize) -> String {
 }
 
 fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("cases/layer.ron");
-    let source = Source::from_text(&path, layer::<S>(count));
-    let case: Case = source.parse()?;
-    let loaded = Loaded {
-        source,
-        case,
-        path,
-        records: None,
-    };
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let loaded = load_text("layer.ron", &layer::<S>(count), &cases, &[])?;
     let mut s = loaded.build_in::<S>(&SearchPath::new(&[]))?.simulation;
     settle(&mut s)?;
     // As many steps as give some ten million updates of a contact.

@@ -3,6 +3,7 @@
 pub use fretwork_scene::*;
 
 use crate::record::results::state;
+use std::io::Read;
 use std::path::Path;
 
 /// Reads a case and applies `--set`s; where it takes grains from another run, they are read of its `results.h5`.
@@ -11,4 +12,30 @@ use std::path::Path;
 /// At file, line and column.
 pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
     Ok(fretwork_scene::load(path, sets)?.reading_records(state::read))
+}
+
+/// The same from a text, see [`fretwork_scene::load_text`].
+///
+/// # Errors
+/// At name, line and column.
+pub fn load_text(
+    name: &str,
+    text: &str,
+    folder: &Path,
+    sets: &[String],
+) -> Result<Loaded, InputError> {
+    Ok(fretwork_scene::load_text(name, text, folder, sets)?.reading_records(state::read))
+}
+
+/// The same from what gives bytes, see [`fretwork_scene::load_reader`].
+///
+/// # Errors
+/// As [`load_text`], and what cannot be read.
+pub fn load_reader(
+    name: &str,
+    from: impl Read,
+    folder: &Path,
+    sets: &[String],
+) -> Result<Loaded, InputError> {
+    Ok(fretwork_scene::load_reader(name, from, folder, sets)?.reading_records(state::read))
 }

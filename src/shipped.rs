@@ -1,6 +1,6 @@
 //! The shipped laws, linked into the program: it can stand alone.
 
-use crate::laws::BuiltInLaws;
+use crate::laws::{BuiltInLaws, SearchPath};
 use std::sync::OnceLock;
 
 /// The shipped laws, for [`crate::laws::SearchPath::with_built_in`].
@@ -12,4 +12,10 @@ pub fn built_in() -> BuiltInLaws {
         unsafe { BuiltInLaws::from_tables(tables) }
     })
     .clone()
+}
+
+/// A search path with the shipped laws, for programs that use this library: the folders of the environment variable
+/// `FRETWORK_PLUGIN_PATH` come after them. [`SearchPath::new`] takes further folders.
+pub fn search_path() -> SearchPath {
+    SearchPath::new(&[]).with_built_in(built_in())
 }

@@ -3,6 +3,12 @@
 //!
 //! `FRETWORK_FUZZ=N` tries N inputs of each kind, `FRETWORK_FUZZ_SEED=S` others, `FRETWORK_FUZZ_FROM=K` from number K on.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "a test fails by a panic"
+)]
+
 mod binary;
 mod campaign;
 mod cases;

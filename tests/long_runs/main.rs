@@ -2,6 +2,12 @@
 //!
 //! `FRETWORK_LONG=N` makes it N steps long.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "a test fails by a panic"
+)]
+
 #[path = "../support/counting.rs"]
 mod counting;
 
@@ -12,10 +18,9 @@ use fretwork::record::checkpoint::Frame;
 use fretwork::record::friction::Cycle;
 use fretwork::record::results::PreviousResults;
 use fretwork::record::{RunOptions, run};
-use fretwork::scene::build::{Dimensional, Loaded};
-use fretwork::scene::case::Case;
-use fretwork::scene::source::Source;
-use std::path::PathBuf;
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::load_text;
+use std::path::Path;
 
 #[global_allocator]
 static COUNTING: counting::Counting = counting::Counting;
@@ -57,18 +62,9 @@ const RUBBED: &str = r#"(
 
 /// Bytes held after each step of a run, and the bytes of the state in the last checkpoint.
 fn followed<S: Dimensional>(name: &str, text: &str, steps: u64) -> (Vec<usize>, usize) {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("cases/long_run.ron");
-    let mut source = Source::from_text(&path, text);
-    source
-        .set::<Case>(&format!("time.end={:e}", 1e-4 * steps as f64))
-        .unwrap();
-    let case: Case = source.parse().unwrap_or_else(|e| panic!("{e}"));
-    let loaded = Loaded {
-        source,
-        case,
-        path,
-        records: None,
-    };
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let sets = [format!("time.end={:e}", 1e-4 * steps as f64)];
+    let loaded = load_text("long_run.ron", text, &cases, &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<S>(&SearchPath::new(&[]));
     let built = built.unwrap_or_else(|e| panic!("{e}"));
     let out = std::env::temp_dir().join(format!("fretwork-long-{}-{name}", std::process::id()));

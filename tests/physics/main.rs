@@ -1,8 +1,15 @@
 //! Physics: closed forms, identities and peers' figures, through the public library.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "a test fails by a panic"
+)]
+
 mod blocks;
 mod bonded;
 mod extremes;
+mod library;
 mod masonry;
 mod packing;
 mod peer_traps;

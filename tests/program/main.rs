@@ -1,5 +1,11 @@
 //! The program: its commands, input, files, plugins, and that a run can be resumed and repeated bit by bit.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "a test fails by a panic"
+)]
+
 mod another_run;
 mod bad_input;
 mod certify;

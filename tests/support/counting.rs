@@ -30,6 +30,7 @@ unsafe impl GlobalAlloc for Counting {
         if !allowed(layout.size()) {
             return std::ptr::null_mut();
         }
+        // SAFETY: the caller's own layout.
         let at = unsafe { System.alloc(layout) };
         if !at.is_null() {
             took(layout.size());
@@ -41,6 +42,7 @@ unsafe impl GlobalAlloc for Counting {
         if !allowed(layout.size()) {
             return std::ptr::null_mut();
         }
+        // SAFETY: the caller's own layout.
         let at = unsafe { System.alloc_zeroed(layout) };
         if !at.is_null() {
             took(layout.size());
@@ -49,6 +51,7 @@ unsafe impl GlobalAlloc for Counting {
     }
 
     unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
+        // SAFETY: every block comes from the system's allocator, and layouts are passed on as they are.
         unsafe { System.dealloc(at, layout) };
         HELD.fetch_sub(layout.size(), Relaxed);
     }
@@ -57,6 +60,7 @@ unsafe impl GlobalAlloc for Counting {
         if !allowed(size) {
             return std::ptr::null_mut();
         }
+        // SAFETY: as for `dealloc`; the size is the caller's own.
         let new = unsafe { System.realloc(at, layout, size) };
         if !new.is_null() {
             took(size);

@@ -1,5 +1,18 @@
 //! Charts and pictures as PNG files: axes with units, curves, disks, polygons and spheres; the [`picture`] of a simulation and
 //! the [`figures`] of a run.
+//!
+//! ```
+//! use fretwork_plot::{Axis, Chart, DrawChart, Series};
+//!
+//! let points = (0..=50).map(|k| 1e-3 * f64::from(k)).map(|t| (t, 0.5 * 9.81 * t * t)).collect();
+//! let chart = Chart::new("A fall", Axis::new("time t", "s"), Axis::new("way s", "m"))
+//!     .with(Series::new("s = g t²/2", points));
+//! let path = std::env::temp_dir().join(format!("fretwork-fall-{}.png", std::process::id()));
+//! chart.draw(&path)?;
+//! assert!(std::fs::read(&path)?.starts_with(b"\x89PNG"));
+//! # std::fs::remove_file(&path)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]

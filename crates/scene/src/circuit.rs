@@ -6,16 +6,16 @@ use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::laws::Interface;
 use fretwork_core::process::circuit::{Fate, Spec, Zone};
 use fretwork_core::step::Simulation;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// The account of grains between first bodies, contact and outside.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CircuitSpec {
     /// First bodies that grains can belong to, by name: a grain does while a path of unbroken bonds ties it to one.
     pub bases: Vec<String>,
     /// Interfaces whose bonds tie; by default all that make bonds.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bonds: Option<Vec<String>>,
     /// When the account begins (s); the bonds that tie must be made by then.
     #[serde(default)]
@@ -24,7 +24,7 @@ pub struct CircuitSpec {
     #[serde(default = "ten")]
     pub every: u64,
     /// Where grains are outside the contact.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub zones: Vec<ZoneSpec>,
 }
 
@@ -33,7 +33,7 @@ fn ten() -> u64 {
 }
 
 /// A region where grains are ejected.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ZoneSpec {
     /// Its name.
@@ -43,11 +43,11 @@ pub struct ZoneSpec {
     /// Highest corner (m); `inf` where it is open.
     pub high: Vec<f64>,
     /// The body with which it moves; its corners are then relative to that body's position.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub carried_by: Option<String>,
     /// A grain that stays for so long (s) is lost and taken out of the scene, 0 for at once; without it grains stay
     /// ejected and may come back.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lost_after: Option<f64>,
 }
 

@@ -9,6 +9,7 @@
 pub mod biaxial;
 pub mod bond_sites;
 pub mod build;
+pub mod builder;
 pub mod case;
 pub mod check;
 pub mod circuit;
@@ -31,5 +32,8 @@ pub mod source;
 pub mod standard;
 pub mod units;
 
-pub use build::{Built, Loaded, Scene, load};
+pub use build::{Built, Dimensional, Loaded, Scene, load, load_reader, load_text};
+pub use builder::CaseBuilder;
+pub use case::Case;
+pub use fretwork_core::geometry::space::{Dim2, Dim3};
 pub use source::InputError;

@@ -3,20 +3,21 @@
 use super::shipped_materials;
 use super::source::{Fault, InputError, Source, nearest};
 use super::units::{self, UnitError};
-use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
+use serde::ser::SerializeStruct;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// A number and where it comes from.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sourced {
     /// Value.
     pub value: f64,
     /// Its unit; that of the schema, in SI units, by default.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub unit: String,
     /// Paper, norm or table.
     pub source: String,
@@ -39,6 +40,25 @@ pub struct Given {
     pub value: f64,
     /// Its unit, where one is given.
     pub unit: Option<String>,
+}
+
+impl From<f64> for Given {
+    /// A number in the unit of the schema.
+    fn from(value: f64) -> Self {
+        Self { value, unit: None }
+    }
+}
+
+impl Serialize for Given {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Some(unit) = &self.unit else {
+            return serializer.serialize_f64(self.value);
+        };
+        let mut group = serializer.serialize_struct("Given", 2)?;
+        group.serialize_field("value", &self.value)?;
+        group.serialize_field("unit", unit)?;
+        group.end()
+    }
 }
 
 impl<'de> Deserialize<'de> for Given {
@@ -80,7 +100,7 @@ impl<'de> Deserialize<'de> for Given {
 }
 
 /// A material.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
     /// What it is.
@@ -88,7 +108,7 @@ pub struct Material {
     /// Density (kg/m^3).
     pub density: Sourced,
     /// Further properties, for the record.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub properties: BTreeMap<String, Sourced>,
 }
 
@@ -138,18 +158,23 @@ impl Material {
 }
 
 /// Parameters of laws for a kind of interface: slot, law, parameter.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct InterfaceParameters {
     /// What it describes.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub doc: String,
     /// Contact laws.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub contact: BTreeMap<String, BTreeMap<String, Sourced>>,
     /// Cohesion laws.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub cohesion: BTreeMap<String, BTreeMap<String, Sourced>>,
     /// Damage laws.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub damage: BTreeMap<String, BTreeMap<String, Sourced>>,
     /// Wear laws.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub wear: BTreeMap<String, BTreeMap<String, Sourced>>,
 }
 
@@ -181,6 +206,8 @@ impl InterfaceParameters {
 #[derive(Clone, Debug)]
 pub struct MaterialLibrary {
     folders: Vec<PathBuf>,
+    /// Texts that the program gives itself, before all files.
+    own: BTreeMap<String, String>,
 }
 
 impl MaterialLibrary {
@@ -194,7 +221,17 @@ impl MaterialLibrary {
             .collect();
         folders.push(PathBuf::from("materials"));
         folders.retain(|f| f.is_dir());
-        Self { folders }
+        Self {
+            folders,
+            own: BTreeMap::new(),
+        }
+    }
+
+    /// The same, with texts by name that are taken before any file.
+    #[must_use]
+    pub fn with_own(mut self, texts: &BTreeMap<String, String>) -> Self {
+        self.own.clone_from(texts);
+        self
     }
 
     /// Reads `NAME.ron`.
@@ -202,6 +239,12 @@ impl MaterialLibrary {
     /// # Errors
     /// No such file (`Err(Ok(nearest, available))` as a pair of texts) or one that cannot be read.
     pub fn read(&self, name: &str) -> Result<Source, Result<Missing, InputError>> {
+        if let Some(text) = self.own.get(name) {
+            return Ok(Source::from_text(
+                format!("{name}.ron (built in Rust)"),
+                text.as_str(),
+            ));
+        }
         let plain = !name.is_empty()
             && name
                 .chars()
@@ -237,6 +280,7 @@ impl MaterialLibrary {
                     .map(str::to_owned)
             })
             .collect();
+        names.extend(self.own.keys().cloned());
         names.sort();
         names.dedup();
         for (shipped, _) in shipped_materials::FILES {

@@ -5,7 +5,7 @@ use super::source::{Fault, nearest};
 use serde::{Deserialize, Serialize};
 
 /// A quantity, or a few that belong together. "Up" is the last axis: y in 2D, z in 3D.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum MeasureSpec {
     /// Mass of the grains whose centres stand above a level along an axis (kg; kg/m in 2D).
@@ -82,7 +82,7 @@ pub enum MeasureSpec {
 }
 
 /// See [`MeasureSpec::ThirdBody`].
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ThirdBodySpec {
     /// Prefix of the columns and files.
@@ -111,7 +111,7 @@ pub struct ThirdBodySpec {
 }
 
 /// Where a third body ends.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Extent {
     /// At the mean heights of the faces of the first bodies.
     #[default]

@@ -7,67 +7,73 @@ use fretwork_core::bodies::pressure::Servo;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use fretwork_core::step::control::{Changes, GravityDrive, Phase, Until};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A phase. What it does not name stays as it is.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct PhaseSpec {
     /// Name.
     pub name: String,
     /// When it ends; only the last may have none, and lasts to the end of the run.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<Until>,
     /// Drives of bodies, by their names. Functions run on the time since the phase began.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub drives: BTreeMap<String, Redriven>,
     /// Gravity (m/s^2), one number an axis; ends any drive of gravity before.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity: Option<Vec<f64>>,
     /// How gravity changes, on the time since the phase began.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_drive: Option<GravityDrive>,
     /// Friction coefficients: the parameter `mu` of the contact laws of interfaces, by their names.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub friction: BTreeMap<String, f64>,
     /// Bodies that are taken away.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub open: Vec<String>,
     /// Tolerance of the solver.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     /// When it ends the run goes back, until this was done so many times.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeat: Option<Repeat>,
 }
 
 /// A group of phases that is done several times, one after another: taps, cycles.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Repeat {
     /// Name of the first phase of the group; the phase itself by default.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<String>,
     /// How many times the group is done in all.
     pub times: u32,
 }
 
 /// The degrees of freedom of a body that get another drive.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Redriven {
     /// Translation along x.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<Dof>,
     /// Translation along y.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<Dof>,
     /// Translation along z (3D).
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub z: Option<Dof>,
     /// Rotation about x (3D).
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub rx: Option<Dof>,
     /// Rotation about y (3D).
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub ry: Option<Dof>,
     /// Rotation about z (the only one in 2D).
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub rz: Option<Dof>,
 }
 

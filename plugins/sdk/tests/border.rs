@@ -1,4 +1,10 @@
 //! The border as a host sees it: columns, sizes, messages, panics.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "a test fails by a panic"
+)]
 use fretwork_law::abi::*;
 use fretwork_law::{
     ContactLaw, DamageLaw, Friction, Intact, Law, Parameters, Site, Variable, WearLaw, border,
@@ -167,8 +173,8 @@ fn infinite_state_is_a_fault() {
 #[test]
 fn a_refusal_is_cut_between_characters() {
     let mode = 3.0;
-    // SAFETY: one value, one parameter.
     let run = |capacity| {
+        // SAFETY: one value, one parameter.
         call(capacity, |m| unsafe {
             border::validate::<Toy>(&raw const mode, m)
         })

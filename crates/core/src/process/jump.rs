@@ -9,7 +9,7 @@ use crate::wear::jump::{Amounts, carried, error, growth, left, misplaced, next_l
 use serde::{Deserialize, Serialize};
 
 /// Jumps over the cycles of a friction test: some computed cycles stand for many, see [`crate::wear::jump`].
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct JumpSpec {
     /// Cycles that are computed one by one before the first jump.

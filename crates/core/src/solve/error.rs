@@ -25,10 +25,10 @@
 //! Solvers meet it with two more that it does not hold: [`lost`], and |r| / max(|u|, |u_free|) where that is above a half, without
 //! which a problem that has no solution would be solved by impulses without bound.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// How the residual is measured.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Norm {
     /// Against the load that the contacts carry, and globally in balance.
     #[default]

@@ -13,6 +13,7 @@
 //!                               record (ledgers, statistics, files)
 //! ```
 mod answers;
+mod columns;
 mod compiled;
 pub mod control;
 pub mod coupling;
@@ -24,9 +25,11 @@ pub mod motion;
 pub mod projection;
 mod recession;
 mod removal;
+mod run;
 mod saved;
 pub mod simulation;
 
+pub use columns::ContactRow;
 pub use compiled::Steps;
 pub use error::StepError;
 pub use projection::Projected;

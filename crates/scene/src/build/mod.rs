@@ -5,6 +5,7 @@ mod arch;
 mod blocks;
 mod first_body;
 mod grains;
+mod load;
 mod polygons;
 mod polyhedra;
 mod samples;
@@ -12,6 +13,7 @@ mod surface;
 mod union;
 mod wear;
 
+pub use load::{load, load_reader, load_text};
 pub use surface::Dimensional;
 
 use super::case::Case;
@@ -45,6 +47,8 @@ pub struct Loaded {
     pub path: PathBuf,
     /// What reads grains of the results of other runs; none where such cases are refused.
     pub records: Option<RecordReader>,
+    /// Texts of material and parameter files that the program gives itself, by name.
+    pub(super) own_files: BTreeMap<String, String>,
 }
 
 /// A scene of either dimension.
@@ -73,35 +77,7 @@ pub struct Built<S: Space> {
     pub origins: Vec<Origin>,
 }
 
-/// Reads a case and applies `--set`s.
-///
-/// # Errors
-/// At file, line and column.
-pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
-    let mut source = Source::read(path)?;
-    for set in sets {
-        source.set::<Case>(set)?;
-    }
-    let case: Case = source.parse()?;
-    super::check::numbers(&case).map_err(|f| source.locate(f))?;
-    Ok(Loaded {
-        source,
-        case,
-        path: path.to_owned(),
-        records: None,
-    })
-}
-
 impl Loaded {
-    /// The same case, where grains of other runs are read by `reader`.
-    #[must_use]
-    pub fn reading_records(self, reader: RecordReader) -> Self {
-        Self {
-            records: Some(reader),
-            ..self
-        }
-    }
-
     /// Builds the scene.
     ///
     /// # Errors
@@ -124,7 +100,7 @@ impl Loaded {
 
     /// See [`Self::build_in`], which compiles this once for each dimension.
     fn build_by<S: Dimensional>(&self, path: &SearchPath) -> Result<Built<S>, InputError> {
-        let shelf = MaterialLibrary::beside(&self.path);
+        let shelf = self.shelf();
         let (densities, mut materials) = self.materials(&shelf)?;
         let laws = interfaces::build(&self.case, &self.source, &shelf, path)?;
         materials.extend(laws.files);
@@ -183,7 +159,7 @@ impl Loaded {
 
     /// Density of a material of the case (kg/m^3), without any scaling of inertia.
     pub fn density(&self, name: &str) -> Option<f64> {
-        let (densities, _) = self.materials(&MaterialLibrary::beside(&self.path)).ok()?;
+        let (densities, _) = self.materials(&self.shelf()).ok()?;
         densities.get(name).map(|d| d.1)
     }
 

@@ -2,10 +2,10 @@
 
 use super::shapes::ShapeSpec;
 use crate::sample::spec::{BlockWallSpec, CsvSpec, DepositSpec, StateSpec, VoronoiSpec};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// Grains.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum GrainSpec {
     /// One by one.
@@ -61,7 +61,7 @@ pub enum GrainSpec {
         /// Thickness (m).
         thickness: f64,
         /// Centre of the circle (m).
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
         centre: Vec<f64>,
         /// Angle of the whole arch (rad), symmetric about the vertical; half a circle by default.
         #[serde(default = "half_circle")]
@@ -81,7 +81,7 @@ pub enum GrainSpec {
         /// Material of the grains.
         material: String,
         /// Material of the walls.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         walls: Option<String>,
     },
     /// A loose random deposit in a box.
@@ -93,7 +93,7 @@ pub enum GrainSpec {
 }
 
 /// One grain.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct OneGrain {
     /// Centre (m).
@@ -101,10 +101,10 @@ pub struct OneGrain {
     /// Radius (m).
     pub radius: f64,
     /// Velocity (m/s).
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub velocity: Vec<f64>,
     /// Angular velocity (rad/s): one number in 2D, three in 3D.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub spin: Vec<f64>,
 }
 
@@ -117,7 +117,7 @@ fn half_circle() -> f64 {
 }
 
 /// The edges of a voussoir between its joints.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Edges {
     /// Arcs: mass and centre are those of a piece of the ring. It touches at its joints alone.
     #[default]
@@ -127,16 +127,16 @@ pub enum Edges {
 }
 
 /// One polygon: its corners, or a regular one.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct OnePolygon {
     /// Where the origin of its corners stands (m).
     pub at: Vec<f64>,
     /// Corners (m), against the clock.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<(f64, f64)>,
     /// Sides and circumscribed radius (m) of a regular polygon, in place of points.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub regular: Option<(usize, f64)>,
     /// Radius of the rounding about it (m).
     #[serde(default)]
@@ -145,47 +145,47 @@ pub struct OnePolygon {
     #[serde(default)]
     pub angle: f64,
     /// Velocity of its centre of mass (m/s).
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub velocity: Vec<f64>,
     /// Angular velocity (rad/s).
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub spin: Vec<f64>,
 }
 
 /// One polyhedron: a cuboid, the hull of its corners, or that of a mesh.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct OnePolyhedron {
     /// Where the origin of its corners stands (m); the centre of a cuboid.
     pub at: Vec<f64>,
     /// Corners (m), in any order.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<(f64, f64, f64)>,
     /// Lengths of the edges of a cuboid (m), in place of points.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<(f64, f64, f64)>,
     /// An STL or OBJ file beside the case whose hull it is, in place of points.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// By what the lengths of the file are multiplied.
     #[serde(default = "one")]
     pub scale: f64,
     /// Rotation vector (rad) by which the corners are turned about their origin.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub turned: Vec<f64>,
     /// Radius of the rounding about it (m).
     #[serde(default)]
     pub rounding: f64,
     /// Velocity of its centre of mass (m/s).
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub velocity: Vec<f64>,
     /// Angular velocity (rad/s).
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub spin: Vec<f64>,
 }
 
 /// One rigid union.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct OneCluster {
     /// Where the origin of its shapes stands (m).
@@ -193,9 +193,9 @@ pub struct OneCluster {
     /// Balls and convex shapes; where they overlap they weigh twice.
     pub shapes: Vec<ShapeSpec>,
     /// Velocity of its centre of mass (m/s).
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub velocity: Vec<f64>,
     /// Angular velocity (rad/s).
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub spin: Vec<f64>,
 }

@@ -2,6 +2,7 @@
 
 mod grains;
 mod shapes;
+pub(crate) mod text;
 mod wear;
 
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
@@ -19,17 +20,17 @@ use fretwork_core::solve::error::Norm;
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::step::control::GravityDrive;
 use fretwork_core::step::coupling::Coupling;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A case, as RON. Every number can be changed with `--set key.path=value`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
     /// Title.
     pub name: String,
     /// What it shows, and where its numbers come from.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub doc: String,
     /// 2 or 3.
     pub dimension: u32,
@@ -39,13 +40,13 @@ pub struct Case {
     /// Step and end.
     pub time: TimeSpec,
     /// Acceleration of gravity (m/s^2), one number an axis.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub gravity: Vec<f64>,
     /// How gravity changes in time.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_drive: Option<GravityDrive>,
     /// Phases of the run, one after another.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub phases: Vec<PhaseSpec>,
     /// Factor on all densities, for quasi-static runs without gravity: inertia is scaled so that steps
     /// resolve the motion, not the sound (da Cruz et al. 2005: results do not depend on it while the
@@ -57,10 +58,10 @@ pub struct Case {
     #[serde(default)]
     pub coupling: Coupling,
     /// Length of the periodic cell along an axis (m).
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub periodic: PeriodicSpec,
     /// Detection.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub detection: DetectionSpec,
     /// The solver.
     #[serde(default)]
@@ -70,28 +71,28 @@ pub struct Case {
     /// Interface laws between materials.
     pub interfaces: Vec<InterfaceSpec>,
     /// SHA-256 that libraries of laws must have, in hexadecimal, by `kind/name`; a law without one may be any.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub pins: BTreeMap<String, String>,
     /// First bodies.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<BodySpec>,
     /// Grains.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub grains: Vec<GrainSpec>,
     /// What is measured as a friction test.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<FrictionSpec>,
     /// What is measured as a biaxial test.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub biaxial: Option<BiaxialSpec>,
     /// The account of grains between first bodies, contact and outside.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub circuit: Option<CircuitSpec>,
     /// Jumps over the cycles of the friction test; none by default.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub jump: Option<JumpSpec>,
     /// Other quantities that are measured.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub measures: Vec<MeasureSpec>,
     /// What is written, and how often.
     #[serde(default)]
@@ -99,7 +100,7 @@ pub struct Case {
 }
 
 /// Time step and end of the run.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct TimeSpec {
     /// h (s).
@@ -111,34 +112,44 @@ pub struct TimeSpec {
     pub theta: f64,
 }
 
+/// Leaves out what says nothing when a case is written.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
 fn half() -> f64 {
     0.5
 }
 
 /// Periodic lengths (m).
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PeriodicSpec {
     /// Along x.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<f64>,
     /// Along y.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<f64>,
     /// Along z.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub z: Option<f64>,
 }
 
 /// Detection distances (m); by default a fraction of the smallest radius.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DetectionSpec {
     /// Pairs nearer than this are contacts.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub alert: Option<f64>,
     /// How much farther the neighbour list looks.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub skin: Option<f64>,
 }
 
 /// Options of the solver.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SolverSpec {
     /// The method: `Auto`, `Nlgs`, `Anderson`, `Pg`, `Cpg`, `Pcpg`, `Apgd`, `Newton`, `Interior`; see
@@ -178,7 +189,7 @@ impl Default for SolverSpec {
 }
 
 /// The law between two materials: four slots, each a plugin's name.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct InterfaceSpec {
     /// Name.
@@ -186,27 +197,27 @@ pub struct InterfaceSpec {
     /// The two materials, by their names in this case.
     pub between: (String, String),
     /// File in `materials/` with parameters of laws.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub parameters_from: Option<String>,
     /// Contact law.
     pub contact: String,
     /// Cohesion law.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cohesion: Option<String>,
     /// Damage law.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damage: Option<String>,
     /// Wear law.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wear: Option<String>,
     /// Parameters given here win over those of the file.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub parameters: SlotValues,
     /// When bonds are made.
     #[serde(default)]
     pub bonds: BondRule,
     /// Time under compression after which a contact bonds, also again after its bond broke (s).
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub healing: Option<f64>,
     /// Factor of the contact's area, see `AreaRule`.
     #[serde(default = "one")]
@@ -230,21 +241,25 @@ impl InterfaceSpec {
 }
 
 /// Values by slot and parameter: numbers in the unit of the law, or `(value: 5, unit: "um")`.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SlotValues {
     /// Of the contact law.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub contact: BTreeMap<String, Given>,
     /// Of the cohesion law.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub cohesion: BTreeMap<String, Given>,
     /// Of the damage law.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub damage: BTreeMap<String, Given>,
     /// Of the wear law.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub wear: BTreeMap<String, Given>,
 }
 
 /// A first body.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodySpec {
     /// Name.
@@ -254,41 +269,51 @@ pub struct BodySpec {
     /// What it is made of.
     pub shapes: Vec<ShapeSpec>,
     /// Position of its frame (m); the origin by default.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub position: Vec<f64>,
     /// Mass (kg; kg/m in 2D). From density and balls where not given.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass: Option<f64>,
     /// Moment of inertia (kg m^2; per metre in 2D).
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inertia: Option<f64>,
     /// When the body is taken away (s); never by default.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vanishes: Option<f64>,
     /// Whether and how far its profiles and height fields follow their wear; not by default.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wears: Option<WearSpec>,
     /// Degrees of freedom; fixed where not given.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub dofs: DofSpec,
 }
 
 /// Degrees of freedom of a first body.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DofSpec {
     /// Translation along x.
+    #[serde(skip_serializing_if = "is_fixed")]
     pub x: Dof,
     /// Translation along y.
+    #[serde(skip_serializing_if = "is_fixed")]
     pub y: Dof,
     /// Translation along z (3D).
+    #[serde(skip_serializing_if = "is_fixed")]
     pub z: Dof,
     /// Rotation about x (3D).
+    #[serde(skip_serializing_if = "is_fixed")]
     pub rx: Dof,
     /// Rotation about y (3D).
+    #[serde(skip_serializing_if = "is_fixed")]
     pub ry: Dof,
     /// Rotation about z (the only one in 2D).
+    #[serde(skip_serializing_if = "is_fixed")]
     pub rz: Dof,
+}
+
+fn is_fixed(dof: &Dof) -> bool {
+    *dof == Dof::Fixed
 }
 
 impl Default for DofSpec {
@@ -306,7 +331,7 @@ impl Default for DofSpec {
 }
 
 /// A friction test: the body that rubs, along which axis, pressed along which.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionSpec {
     /// Name of the body.
@@ -321,7 +346,7 @@ pub struct FrictionSpec {
     #[serde(default)]
     pub start: f64,
     /// Length of a cycle (s); by default the period of the body's sine.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<f64>,
 }
 
@@ -330,7 +355,7 @@ fn axis_y() -> usize {
 }
 
 /// A biaxial test of the grains between four flat walls (2D).
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct BiaxialSpec {
     /// The walls on the low and the high side, along which the sample is sheared: names of bodies.
@@ -343,7 +368,7 @@ pub struct BiaxialSpec {
 }
 
 /// What is written.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputSpec {
     /// Pictures over the run.
@@ -357,10 +382,13 @@ pub struct OutputSpec {
     /// Width of a frame (pixels).
     pub width: u32,
     /// What frames show (m): xmin, xmax, ymin, ymax (2D); what there is by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<[f64; 4]>,
     /// Thickness (m) of layers along the last axis that frames tell apart by colour.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub layers: Option<f64>,
     /// The local shear that is darkest in pictures of it; recorded and drawn where given.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub shear: Option<f64>,
     /// Steps between two that are written as FCLIB problems, `fclib/step-N.hdf5`; 0 for none.
     pub fclib: u64,
@@ -369,7 +397,7 @@ pub struct OutputSpec {
 }
 
 /// When checkpoints are written.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub enum Checkpoint {
     /// Every so many seconds of wall time; less often where they would take more than a twentieth of the time.
     Seconds(f64),

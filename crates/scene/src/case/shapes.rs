@@ -1,9 +1,10 @@
 //! What first bodies are made of.
 
-use serde::Deserialize;
+use serde::ser::SerializeTuple;
+use serde::{Deserialize, Serialize};
 
 /// On which side of a profile the solid is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Side {
     /// Solid below, open above: a rail.
     Below,
@@ -12,7 +13,7 @@ pub enum Side {
 }
 
 /// A profile of a standard.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub enum StandardName {
     /// Wheel, EN 13715: S1002, flange 28 mm high and 32.5 mm thick.
     S1002,
@@ -21,7 +22,7 @@ pub enum StandardName {
 }
 
 /// A part of a first body.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum ShapeSpec {
     /// Solid behind a plane; `at` is a point of it (m), `normal` points to the open side.
@@ -29,16 +30,16 @@ pub enum ShapeSpec {
         /// Outward normal.
         normal: Vec<f64>,
         /// A point of the plane.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
         at: Vec<f64>,
     },
     /// A profile by its points, left to right (2D).
     Profile {
         /// Points (m).
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
         points: Vec<(f64, f64)>,
         /// A table of them with the columns `x` and `z`, in place of `points`: a path relative to the case.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         file: Option<String>,
         /// Where the solid is.
         side: Side,
@@ -51,16 +52,16 @@ pub enum ShapeSpec {
         #[serde(default = "half_millimetre")]
         spacing: f64,
         /// Where it begins and ends along the standard's own lateral axis (m); all of it by default.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         from: Option<f64>,
         /// Its other end (m).
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         to: Option<f64>,
         /// n of an inclination 1:n (rail); upright by default.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         inclination: Option<f64>,
         /// Where the solid is; of a wheel above, of a rail below by default.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         side: Option<Side>,
     },
     /// A self-affine rough profile over the period of x (2D): random phases, spectrum |q|^(-1-2H).
@@ -73,7 +74,7 @@ pub enum ShapeSpec {
         #[serde(default = "hurst")]
         hurst: f64,
         /// Longest wavelength (m); the period by default.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         longest: Option<f64>,
         /// Shortest wavelength (m).
         shortest: f64,
@@ -113,10 +114,10 @@ pub enum ShapeSpec {
         /// Lengths of its edges (m).
         size: (f64, f64, f64),
         /// Its centre (m).
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
         at: Vec<f64>,
         /// Rotation vector (rad) by which it is turned about its centre.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
         turned: Vec<f64>,
         /// Radius of the rounding about it (m).
         #[serde(default)]
@@ -130,7 +131,7 @@ pub enum ShapeSpec {
         #[serde(default = "one")]
         scale: f64,
         /// Where the origin of the file stands (m).
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
         at: Vec<f64>,
     },
     /// Balls fixed to the body: (position relative to the body's frame, radius).
@@ -166,10 +167,10 @@ pub enum ShapeSpec {
         /// Spacing (m).
         spacing: (f64, f64),
         /// Heights (m), row by row; or none with `rms`.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
         heights: Vec<f64>,
         /// Root-mean-square of random heights (m).
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         rms: Option<f64>,
     },
 }
@@ -185,6 +186,16 @@ fn one() -> f64 {
 /// A place by its coordinates, (x, y) or (x, y, z).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coordinates(pub Vec<f64>);
+
+impl Serialize for Coordinates {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut tuple = serializer.serialize_tuple(self.0.len())?;
+        for x in &self.0 {
+            tuple.serialize_element(x)?;
+        }
+        tuple.end()
+    }
+}
 
 impl<'de> Deserialize<'de> for Coordinates {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {

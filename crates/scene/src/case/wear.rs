@@ -1,9 +1,9 @@
 //! How the surfaces of a first body follow their wear.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// What a first body says of its wear.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct WearSpec {
     /// Depth at which a surface is worn through and the run stops (m).

@@ -1,9 +1,9 @@
 //! What a case says about samples that are made or read.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A loose random deposit in a box, without overlaps; see [`super::deposit`].
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct DepositSpec {
     /// Material.
@@ -19,7 +19,7 @@ pub struct DepositSpec {
 }
 
 /// Voronoi cells that fill a box side by side; see [`super::voronoi`] and [`super::voronoi_space`].
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct VoronoiSpec {
     /// Material.
@@ -43,7 +43,7 @@ pub struct VoronoiSpec {
 
 /// A wall of blocks in running bond: every second course begins and ends with half a block. In 3D it stands along x
 /// and z and is one block thick.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct BlockWallSpec {
     /// Material.
@@ -55,18 +55,18 @@ pub struct BlockWallSpec {
     /// Width and height of a block (m).
     pub block: (f64, f64),
     /// Thickness of the wall along y (m), in 3D alone.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thickness: Option<f64>,
     /// Width of the open joints between blocks (m).
     #[serde(default)]
     pub gap: f64,
     /// Low left (in 3D front) corner of the wall (m).
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub at: Vec<f64>,
 }
 
 /// A distribution of sizes.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum SizeSpec {
     /// Every radius between two is as frequent.
@@ -96,7 +96,7 @@ pub enum SizeSpec {
 }
 
 /// What a distribution counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Counted {
     /// Grains.
     #[default]
@@ -107,7 +107,7 @@ pub enum Counted {
 
 /// Grains of a CSV file with the columns x, y (z in 3D), radius, and where wanted velocity_x, velocity_y
 /// (velocity_z) and spin (spin_x, spin_y, spin_z in 3D).
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CsvSpec {
     /// Path relative to the case.
@@ -117,7 +117,7 @@ pub struct CsvSpec {
 }
 
 /// Grains of a state of another run, with their velocities and spins.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct StateSpec {
     /// The run's `results.h5` or its folder, relative to the case.
@@ -130,7 +130,7 @@ pub struct StateSpec {
 }
 
 /// A state of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum FrameSpec {
     /// The last one.
     #[default]

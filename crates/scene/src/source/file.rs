@@ -58,8 +58,18 @@ fn empty(path: &Path) -> InputError {
 /// As [`open`], or a file that grows beyond `most` bytes while it is read.
 pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
     let (file, length) = open(path, most)?;
-    let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
-    file.take(most + 1)
+    let capacity = usize::try_from(length).unwrap_or(0);
+    read_at_most(path, file, most, capacity)
+}
+
+fn read_at_most(
+    path: &Path,
+    from: impl Read,
+    most: u64,
+    capacity: usize,
+) -> Result<Vec<u8>, InputError> {
+    let mut bytes = Vec::with_capacity(capacity);
+    from.take(most + 1)
         .read_to_end(&mut bytes)
         .map_err(|error| InputError::file(path, &error))?;
     if bytes.len() as u64 > most {
@@ -74,7 +84,18 @@ pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
 /// # Errors
 /// As [`read_bytes`], or a file that is not UTF-8 or holds white space alone.
 pub fn read_text(path: &Path) -> Result<String, InputError> {
-    let bytes = read_bytes(path, MAX_BYTES)?;
+    decode(path, read_bytes(path, MAX_BYTES)?)
+}
+
+/// Reads a text from a stream, to its end; errors name it by `path`.
+///
+/// # Errors
+/// As [`read_text`].
+pub fn read_text_from(path: &Path, from: &mut dyn Read) -> Result<String, InputError> {
+    decode(path, read_at_most(path, from, MAX_BYTES, 0)?)
+}
+
+fn decode(path: &Path, bytes: Vec<u8>) -> Result<String, InputError> {
     let text = String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let before = String::from_utf8_lossy(&error.as_bytes()[..valid]).into_owned();

@@ -32,7 +32,7 @@ use serde::de::DeserializeOwned;
 
 pub use diagnostic::InputError;
 pub use difference::{Difference, first_difference};
-pub use file::{MAX_BYTES, open, read_bytes, read_text};
+pub use file::{MAX_BYTES, open, read_bytes, read_text, read_text_from};
 pub use nearest::nearest;
 pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};
 pub use tree::{Entry, Fault as TextFault, Group, Kind, MAX_DEPTH, Node, Shape, Tree};

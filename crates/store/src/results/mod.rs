@@ -24,6 +24,7 @@ mod store;
 mod view;
 
 pub use kept::PreviousResults;
+pub use reader::Reader;
 pub use store::ResultsError;
 pub use view::{Cells, Part};
 

@@ -14,12 +14,12 @@ use super::nlgs::{Nlgs, Order};
 use super::scale_free;
 use super::state::{Budget, Solver, State};
 use crate::solve::error::{Norm, lost, unbounded};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::str::FromStr;
 use std::time::Instant;
 
 /// A way to solve a problem.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 pub enum Method {
     /// The program chooses.
     #[default]

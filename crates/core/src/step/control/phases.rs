@@ -6,7 +6,7 @@ use crate::geometry::space::Space;
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// When a phase ends.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum Until {
     /// At a time of the run (s).

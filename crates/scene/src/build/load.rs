@@ -1,0 +1,135 @@
+//! From text, a reader or a value to a case that was read and checked.
+
+use super::Loaded;
+use crate::case::Case;
+use crate::material::{InterfaceParameters, Material, MaterialLibrary};
+use crate::recorded::RecordReader;
+use crate::source::{self, InputError, Source};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::io::Read;
+use std::path::Path;
+
+/// Reads a case file and applies `--set`s.
+///
+/// # Errors
+/// At file, line and column.
+pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
+    read(Source::read(path)?, path, sets)
+}
+
+/// The same from a text. `name` stands for the file in errors; the files that the case names, and `materials/`, are looked
+/// for relative to `folder` (an empty path for the working folder).
+///
+/// # Errors
+/// At name, line and column.
+///
+/// # Examples
+/// ```
+/// let text = r#"(
+///     name: "a ball in the air", dimension: 2, time: (step: 1e-3, end: 0.1), gravity: [0.0, -9.81],
+///     materials: {"steel": "rail_steel_r260"}, interfaces: [],
+///     grains: [List(material: "steel", grains: [(at: [0.0, 0.0], radius: 0.01)])],
+/// )"#;
+/// let loaded = fretwork_scene::load_text("ball.ron", text, "".as_ref(), &["time.end=0.2".into()])?;
+/// assert_eq!(loaded.case.time.end, 0.2);
+/// // A mistake is an error with its place, as in a file.
+/// let wrong = fretwork_scene::load_text("ball.ron", &text.replace("radius", "radus"), "".as_ref(), &[]);
+/// let sentence = wrong.map(|_| ()).unwrap_err().to_string();
+/// assert!(sentence.contains("ball.ron:4:") && sentence.contains("did you mean `radius`?"), "{sentence}");
+/// # Ok::<(), fretwork_scene::InputError>(())
+/// ```
+pub fn load_text(
+    name: &str,
+    text: &str,
+    folder: &Path,
+    sets: &[String],
+) -> Result<Loaded, InputError> {
+    read(Source::from_text(name, text), &folder.join(name), sets)
+}
+
+/// The same from what gives bytes, read to its end: at most 64 MiB of UTF-8.
+///
+/// # Errors
+/// As [`load_text`], and what cannot be read.
+pub fn load_reader(
+    name: &str,
+    mut from: impl Read,
+    folder: &Path,
+    sets: &[String],
+) -> Result<Loaded, InputError> {
+    let text = source::read_text_from(Path::new(name), &mut from)?;
+    load_text(name, &text, folder, sets)
+}
+
+fn read(mut source: Source, path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
+    for set in sets {
+        source.set::<Case>(set)?;
+    }
+    let case: Case = source.parse()?;
+    Loaded::checked(source, case, path)
+}
+
+impl Loaded {
+    /// A case that was made in Rust, for instance by a [`CaseBuilder`](crate::CaseBuilder). Errors show their place in the
+    /// text that [`Case::to_ron`] makes of it. Files are looked for as in [`load_text`].
+    ///
+    /// # Errors
+    /// What a case file with the same content would be refused for.
+    pub fn from_case(case: Case, folder: &Path) -> Result<Self, InputError> {
+        let name = "case.ron (built in Rust)";
+        let text = case.to_ron()?;
+        Self::checked(Source::from_text(name, text), case, &folder.join(name))
+    }
+
+    fn checked(source: Source, case: Case, path: &Path) -> Result<Self, InputError> {
+        crate::check::numbers(&case).map_err(|f| source.locate(f))?;
+        Ok(Self {
+            source,
+            case,
+            path: path.to_owned(),
+            records: None,
+            own_files: BTreeMap::new(),
+        })
+    }
+
+    /// The same case, where grains of other runs are read by `reader`.
+    #[must_use]
+    pub fn reading_records(self, reader: RecordReader) -> Self {
+        Self {
+            records: Some(reader),
+            ..self
+        }
+    }
+
+    /// The same case, with a material of one's own: `materials` of the case finds it under `file` before any file of that name.
+    ///
+    /// # Errors
+    /// A material that cannot be written as text.
+    pub fn with_material(self, file: &str, material: &Material) -> Result<Self, InputError> {
+        self.with_file(file, material)
+    }
+
+    /// The same case, with parameters of laws of one's own: `parameters_from` of an interface finds them under `file`.
+    ///
+    /// # Errors
+    /// Parameters that cannot be written as text.
+    pub fn with_parameters(
+        self,
+        file: &str,
+        parameters: &InterfaceParameters,
+    ) -> Result<Self, InputError> {
+        self.with_file(file, parameters)
+    }
+
+    fn with_file(mut self, file: &str, content: &impl Serialize) -> Result<Self, InputError> {
+        let text = crate::case::text::write(file, content)?;
+        self.own_files.insert(file.to_owned(), text);
+        Ok(self)
+    }
+
+    /// Where material files are looked for.
+    pub(super) fn shelf(&self) -> MaterialLibrary {
+        MaterialLibrary::beside(&self.path).with_own(&self.own_files)
+    }
+}

@@ -1,0 +1,127 @@
+//! Grains made in Rust; kinds that are not here are written as the variants of [`GrainSpec`].
+
+use crate::case::{GrainSpec, OneGrain, OnePolygon, OnePolyhedron};
+
+impl GrainSpec {
+    /// Balls, one by one.
+    pub fn balls(material: impl Into<String>, grains: impl IntoIterator<Item = OneGrain>) -> Self {
+        Self::List {
+            material: material.into(),
+            grains: grains.into_iter().collect(),
+        }
+    }
+
+    /// A hexagonal (2D) or cubic (3D) lattice that fills a box from its low corner (m) up: at most `count` balls, radii (m)
+    /// drawn uniformly between two.
+    pub fn lattice(
+        material: impl Into<String>,
+        count: usize,
+        radius: (f64, f64),
+        low: impl Into<Vec<f64>>,
+        high: impl Into<Vec<f64>>,
+    ) -> Self {
+        Self::Lattice {
+            material: material.into(),
+            count,
+            radius,
+            low: low.into(),
+            high: high.into(),
+        }
+    }
+
+    /// Convex polygons, one by one (2D).
+    pub fn polygons(
+        material: impl Into<String>,
+        grains: impl IntoIterator<Item = OnePolygon>,
+    ) -> Self {
+        Self::Polygons {
+            material: material.into(),
+            grains: grains.into_iter().collect(),
+        }
+    }
+
+    /// Convex polyhedra, one by one (3D).
+    pub fn polyhedra(
+        material: impl Into<String>,
+        grains: impl IntoIterator<Item = OnePolyhedron>,
+    ) -> Self {
+        Self::Polyhedra {
+            material: material.into(),
+            grains: grains.into_iter().collect(),
+        }
+    }
+}
+
+impl OneGrain {
+    /// A ball at rest: centre and radius (m).
+    pub fn new(at: impl Into<Vec<f64>>, radius: f64) -> Self {
+        Self {
+            at: at.into(),
+            radius,
+            velocity: Vec::new(),
+            spin: Vec::new(),
+        }
+    }
+
+    /// With a velocity (m/s).
+    #[must_use]
+    pub fn velocity(mut self, velocity: impl Into<Vec<f64>>) -> Self {
+        self.velocity = velocity.into();
+        self
+    }
+
+    /// With an angular velocity (rad/s): one number in 2D, three in 3D.
+    #[must_use]
+    pub fn spin(mut self, spin: impl Into<Vec<f64>>) -> Self {
+        self.spin = spin.into();
+        self
+    }
+}
+
+impl OnePolygon {
+    /// A polygon at rest by its corners (m), against the clock, about a place (m).
+    pub fn new(at: impl Into<Vec<f64>>, points: impl Into<Vec<(f64, f64)>>) -> Self {
+        Self {
+            at: at.into(),
+            points: points.into(),
+            regular: None,
+            rounding: 0.0,
+            angle: 0.0,
+            velocity: Vec::new(),
+            spin: Vec::new(),
+        }
+    }
+
+    /// A regular polygon at rest: its number of sides and circumscribed radius (m).
+    pub fn regular(at: impl Into<Vec<f64>>, sides: usize, radius: f64) -> Self {
+        Self {
+            regular: Some((sides, radius)),
+            ..Self::new(at, Vec::new())
+        }
+    }
+}
+
+impl OnePolyhedron {
+    /// A polyhedron at rest, the hull of its corners (m) about a place (m).
+    pub fn new(at: impl Into<Vec<f64>>, points: impl Into<Vec<(f64, f64, f64)>>) -> Self {
+        Self {
+            at: at.into(),
+            points: points.into(),
+            size: None,
+            file: None,
+            scale: 1.0,
+            turned: Vec::new(),
+            rounding: 0.0,
+            velocity: Vec::new(),
+            spin: Vec::new(),
+        }
+    }
+
+    /// A cuboid at rest by its centre and the lengths of its edges (m).
+    pub fn cuboid(at: impl Into<Vec<f64>>, size: (f64, f64, f64)) -> Self {
+        Self {
+            size: Some(size),
+            ..Self::new(at, Vec::new())
+        }
+    }
+}

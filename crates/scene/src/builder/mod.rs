@@ -1,0 +1,219 @@
+//! A case made in Rust, without any file.
+//!
+//! A [`CaseBuilder`] fills in a [`Case`], the type that case files are read into, so that all that a file can say can be said
+//! here, is checked by the same code and refused in the same sentences. What has no method of its own is reached by
+//! [`CaseBuilder::change`].
+
+mod body;
+mod grains;
+mod interface;
+mod shapes;
+
+use crate::build::{Built, Dimensional, Loaded};
+use crate::case::{BodySpec, Case, GrainSpec, InterfaceSpec, PeriodicSpec, SolverSpec, TimeSpec};
+use crate::material::{Material, Sourced};
+use crate::source::InputError;
+use fretwork_core::laws::SearchPath;
+use std::collections::BTreeMap;
+use std::marker::PhantomData;
+use std::path::PathBuf;
+
+/// Builds a [`Case`] in two ([`Dim2`](crate::Dim2)) or three ([`Dim3`](crate::Dim3)) dimensions, and from it a simulation.
+///
+/// # Examples
+/// A ball rests on a plane, both of a material of one's own. The laws are those that the search path finds; the crate
+/// `fretwork` has one with all shipped laws, `fretwork::shipped::search_path()`.
+/// ```
+/// use fretwork_scene::case::{BodySpec, GrainSpec, InterfaceSpec, OneGrain, ShapeSpec};
+/// use fretwork_scene::{CaseBuilder, Dim3};
+///
+/// let loaded = CaseBuilder::<Dim3>::new("a ball on a plane")
+///     .time(1e-4, 0.1)
+///     .gravity([0.0, 0.0, -9.81])
+///     .own_material("glass", 2500.0, "data sheet")
+///     .interface(InterfaceSpec::new("dry", ("glass", "glass"), "coulomb", &[("mu", 0.3)]))
+///     .body(BodySpec::new("floor", "glass", ShapeSpec::half_space([0.0, 0.0, 1.0], [0.0; 3])))
+///     .grains(GrainSpec::balls("glass", [OneGrain::new([0.0, 0.0, 0.01], 0.01)]))
+///     .load()?;
+/// assert_eq!(loaded.density("glass"), Some(2500.0));
+///
+/// // Mistakes are the errors of case files.
+/// let wrong = CaseBuilder::<Dim3>::new("no step").load().map(|_| ()).unwrap_err();
+/// assert!(wrong.to_string().contains("time.step"), "{wrong}");
+/// # Ok::<(), fretwork_scene::InputError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct CaseBuilder<S> {
+    case: Case,
+    folder: PathBuf,
+    materials: BTreeMap<String, Material>,
+    dimension: PhantomData<S>,
+}
+
+impl<S: Dimensional> CaseBuilder<S> {
+    /// A case with a title and nothing in it: it still needs its [time](Self::time), materials and bodies.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self {
+            case: Case {
+                name: name.into(),
+                doc: String::new(),
+                dimension: S::D as u32,
+                seed: 0,
+                time: TimeSpec {
+                    step: 0.0,
+                    end: 0.0,
+                    theta: 0.5,
+                },
+                gravity: Vec::new(),
+                gravity_drive: None,
+                phases: Vec::new(),
+                inertia_scaling: 1.0,
+                coupling: Default::default(),
+                periodic: PeriodicSpec::default(),
+                detection: Default::default(),
+                solver: SolverSpec::default(),
+                materials: BTreeMap::new(),
+                interfaces: Vec::new(),
+                pins: BTreeMap::new(),
+                bodies: Vec::new(),
+                grains: Vec::new(),
+                friction: None,
+                biaxial: None,
+                circuit: None,
+                jump: None,
+                measures: Vec::new(),
+                output: Default::default(),
+            },
+            folder: PathBuf::new(),
+            materials: BTreeMap::new(),
+            dimension: PhantomData,
+        }
+    }
+
+    /// The time step and the end of the run (s).
+    #[must_use]
+    pub fn time(mut self, step: f64, end: f64) -> Self {
+        (self.case.time.step, self.case.time.end) = (step, end);
+        self
+    }
+
+    /// Acceleration of gravity (m/s^2), one number an axis; none by default.
+    #[must_use]
+    pub fn gravity(mut self, gravity: impl Into<Vec<f64>>) -> Self {
+        self.case.gravity = gravity.into();
+        self
+    }
+
+    /// Lengths of the periodic cell along x, y and z (m); not periodic by default.
+    #[must_use]
+    pub fn periodic(mut self, [x, y, z]: [Option<f64>; 3]) -> Self {
+        self.case.periodic = PeriodicSpec { x, y, z };
+        self
+    }
+
+    /// Seed of everything random; 0 by default.
+    #[must_use]
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.case.seed = seed;
+        self
+    }
+
+    /// Options of the solver.
+    #[must_use]
+    pub fn solver(mut self, solver: SolverSpec) -> Self {
+        self.case.solver = solver;
+        self
+    }
+
+    /// A material of the case from the file `FILE.ron` in a folder `materials`, or from those built in, such as `rail_steel_r260`.
+    #[must_use]
+    pub fn material(mut self, name: impl Into<String>, file: impl Into<String>) -> Self {
+        self.case.materials.insert(name.into(), file.into());
+        self
+    }
+
+    /// A material of the case by its density (kg/m^3) and where that number comes from.
+    #[must_use]
+    pub fn own_material(
+        mut self,
+        name: impl Into<String>,
+        density: f64,
+        source: impl Into<String>,
+    ) -> Self {
+        let name = name.into();
+        let material = Material {
+            doc: name.clone(),
+            density: Sourced {
+                value: density,
+                unit: "kg/m^3".to_owned(),
+                source: source.into(),
+            },
+            properties: BTreeMap::new(),
+        };
+        self.materials.insert(name.clone(), material);
+        self.case.materials.insert(name.clone(), name);
+        self
+    }
+
+    /// The laws between two materials.
+    #[must_use]
+    pub fn interface(mut self, interface: InterfaceSpec) -> Self {
+        self.case.interfaces.push(interface);
+        self
+    }
+
+    /// A first body.
+    #[must_use]
+    pub fn body(mut self, body: BodySpec) -> Self {
+        self.case.bodies.push(body);
+        self
+    }
+
+    /// Grains.
+    #[must_use]
+    pub fn grains(mut self, grains: GrainSpec) -> Self {
+        self.case.grains.push(grains);
+        self
+    }
+
+    /// Anything else that a case holds: phases, measures, detection, output.
+    #[must_use]
+    pub fn change(mut self, change: impl FnOnce(&mut Case)) -> Self {
+        change(&mut self.case);
+        self
+    }
+
+    /// The folder relative to which files that the case names are found; the working folder by default.
+    #[must_use]
+    pub fn folder(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.folder = folder.into();
+        self
+    }
+
+    /// The case as it stands, unchecked. Materials of [`own_material`](Self::own_material) are not part of it: it names them
+    /// as files.
+    pub fn case(&self) -> Case {
+        self.case.clone()
+    }
+
+    /// Checks the case, as if it had been read from a file.
+    ///
+    /// # Errors
+    /// As [`Loaded::from_case`].
+    pub fn load(self) -> Result<Loaded, InputError> {
+        let mut loaded = Loaded::from_case(self.case, &self.folder)?;
+        for (name, material) in &self.materials {
+            loaded = loaded.with_material(name, material)?;
+        }
+        Ok(loaded)
+    }
+
+    /// Checks the case and builds its simulation with the laws of a search path.
+    ///
+    /// # Errors
+    /// What a case file with the same content would be refused for: laws and materials that are not found, parameters out of
+    /// range, bodies that overlap.
+    pub fn build(self, laws: &SearchPath) -> Result<Built<S>, InputError> {
+        self.load()?.build_in(laws)
+    }
+}
