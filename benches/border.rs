@@ -29,7 +29,7 @@ fn least(mut work: impl FnMut(), repeats: usize) -> f64 {
 fn main() {
     let path = SearchPath::new(&[]);
     let plugin = path
-        .find(Kind::Damage, "mac")
+        .find(Kind::DAMAGE, "mac")
         .unwrap_or_else(|e| panic!("{e}"));
     let parameters = [0.1, 0.0, 1e-3];
     let law = Mac {

@@ -5,7 +5,6 @@
 //! packing is not at rest in its solver's terms), the mean of `STEPS` warm steps, where their time goes,
 //! and the ratios to the peer's figures in `cases/benchmarks/README.md`. One thread.
 
-use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
 use fretwork::scene::{Scene, load};
 use fretwork::step::{Simulation, Steps};

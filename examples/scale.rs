@@ -6,7 +6,7 @@
 //! sweeps that a load needs to cross the layer.
 
 use fretwork::geometry::grid;
-use fretwork::geometry::space::{Dim2, Dim3, Space};
+use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::SearchPath;
 use fretwork::report::{Axis, Chart, Series, draw_panels};
 use fretwork::scene::build::Dimensional;

@@ -74,11 +74,9 @@ pub fn law(command: &LawCommand) -> Result<(), Failure> {
 fn named(path: &SearchPath, name: &str) -> Result<Vec<Plugin>, Failure> {
     let (kind, name) = match name.split_once('/') {
         Some((kind, name)) => {
-            let found = Kind::ALL.into_iter().find(|k| k.word() == kind);
+            let found = Kind::from_word(kind);
             let kind = found.ok_or_else(|| {
-                Failure::Usage(format!(
-                    "there is no kind `{kind}`; use contact, cohesion, damage or wear"
-                ))
+                Failure::Usage(format!("there is no kind `{kind}`; use {}", Kind::words()))
             })?;
             (Some(kind), name)
         }

@@ -5,6 +5,7 @@
 //! value of the rest: no solver is finer than another at one tolerance, and a correction is a choice, not a resolution.
 
 use super::TradeError;
+use crate::laws::Kind;
 use crate::scene::case::{Case, GrainSpec};
 use crate::scene::source::nearest;
 use crate::scene::{Loaded, load};
@@ -188,7 +189,11 @@ fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<StudyParame
             knob(Sense::Choice, all.iter().map(level).collect(), place, place)
         }
         "coupling" => {
-            if !case.interfaces.iter().any(|i| i.damage.is_some()) {
+            if !case
+                .interfaces
+                .iter()
+                .any(|i| i.law(Kind::DAMAGE).is_some())
+            {
                 return Err("the case has no damage law, whose coupling could be varied".into());
             }
             let own = usize::from(case.coupling != Coupling::Explicit);

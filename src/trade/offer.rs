@@ -40,7 +40,7 @@ impl Offer {
             |l: &Interface| l.opens() && (l.bonding_time().is_some() || l.healing.is_some());
         let bonded = s.laws.iter().any(bonds) || s.network.bonds_made() > 0;
         let damaged = bonded && s.laws.iter().any(Interface::damages);
-        let wears = s.laws.iter().any(|l| l.wear.is_some());
+        let wears = s.laws.iter().any(|l| l.wear().is_some());
         let circuit = case.circuit.is_some();
         let needs: [(&[&str], bool, &str); 10] = [
             (&["haste", "uncertainty", "energy.scale"], false, OF_THE_RUN),

@@ -2,7 +2,6 @@
 
 use crate::campaign::Campaign;
 use crate::mutate;
-use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
 use fretwork::scene::{Built, Scene, load};
 use fretwork::step::Steps;

@@ -34,7 +34,7 @@ impl Folder {
     /// A damage law with `fields` of the table set over those of a good one.
     fn law(&self, name: &str, fields: &str) -> PathBuf {
         self.compile(
-            &search::file_name(Kind::Damage, name),
+            &search::file_name(Kind::DAMAGE, name),
             &source(name, fields, "return &table;"),
         )
     }
@@ -120,7 +120,7 @@ fn reason(path: &Path) -> String {
 fn a_good_plugin_loads_and_answers() {
     let folder = Folder::new("good");
     let plugin = Plugin::open(&folder.law("good", "")).unwrap();
-    assert_eq!((plugin.kind, plugin.name.as_str()), (Kind::Damage, "good"));
+    assert_eq!((plugin.kind, plugin.name.as_str()), (Kind::DAMAGE, "good"));
     assert_eq!(plugin.version, "2.1");
     assert_eq!(plugin.sha256.len(), 64);
     assert_eq!(plugin.parameters[0].unit, "1/s");
@@ -268,31 +268,31 @@ fn the_search_goes_by_kind_and_name() {
         std::fs::create_dir_all(place).unwrap();
     }
     let library = folder.law("slow-rot", "table.version = \"first\";");
-    let file = search::file_name(Kind::Damage, "slow-rot");
+    let file = search::file_name(Kind::DAMAGE, "slow-rot");
     std::fs::copy(&library, first.join(&file)).unwrap();
     let other = folder.law("slow-rot", "table.version = \"second\";");
     std::fs::copy(&other, second.join(&file)).unwrap();
     // The same library under the name of another kind.
     std::fs::copy(
         &library,
-        first.join(search::file_name(Kind::Wear, "slow-rot")),
+        first.join(search::file_name(Kind::WEAR, "slow-rot")),
     )
     .unwrap();
     std::fs::write(first.join("libfretwork_strange_thing.so"), "x").unwrap();
 
     let path = SearchPath::new(&[first.clone(), second.clone(), folder.0.join("absent")]);
-    let found = path.find(Kind::Damage, "slow-rot").unwrap();
+    let found = path.find(Kind::DAMAGE, "slow-rot").unwrap();
     assert_eq!(
         (found.version.as_str(), found.path),
         ("first", first.join(&file))
     );
     let back = SearchPath::new(&[second, first.clone()]);
-    let found = back.find(Kind::Damage, "slow-rot").unwrap();
+    let found = back.find(Kind::DAMAGE, "slow-rot").unwrap();
     assert_eq!(found.version, "second");
 
-    let wrong = path.find(Kind::Wear, "slow-rot").unwrap_err().to_string();
+    let wrong = path.find(Kind::WEAR, "slow-rot").unwrap_err().to_string();
     assert!(wrong.contains("promises the wear law"), "{wrong}");
-    match path.find(Kind::Damage, "slow-rut").unwrap_err() {
+    match path.find(Kind::DAMAGE, "slow-rut").unwrap_err() {
         LawError::Unknown {
             nearest, available, ..
         } => {
@@ -303,7 +303,7 @@ fn the_search_goes_by_kind_and_name() {
     }
     // Nothing but a plain name is looked up, even where the file is there.
     for bad in ["../first/slow-rot", "SLOW-ROT", "", ".", "slow-rot.so"] {
-        let refused = path.find(Kind::Damage, bad);
+        let refused = path.find(Kind::DAMAGE, bad);
         assert!(matches!(refused, Err(LawError::Unknown { .. })), "{bad}");
     }
 }
@@ -312,15 +312,15 @@ fn the_search_goes_by_kind_and_name() {
 fn the_shipped_laws_are_found_and_agree_with_their_names() {
     let path = SearchPath::new(&[]);
     for (kind, name) in [
-        (Kind::Contact, "coulomb"),
-        (Kind::Contact, "coulomb-damage"),
-        (Kind::Contact, "frictionless"),
-        (Kind::Cohesion, "elastic-bond"),
-        (Kind::Cohesion, "mac"),
-        (Kind::Damage, "mac"),
-        (Kind::Damage, "mohr-coulomb-brittle"),
-        (Kind::Wear, "archard"),
-        (Kind::Wear, "dissipated-energy"),
+        (Kind::CONTACT, "coulomb"),
+        (Kind::CONTACT, "coulomb-damage"),
+        (Kind::CONTACT, "frictionless"),
+        (Kind::COHESION, "elastic-bond"),
+        (Kind::COHESION, "mac"),
+        (Kind::DAMAGE, "mac"),
+        (Kind::DAMAGE, "mohr-coulomb-brittle"),
+        (Kind::WEAR, "archard"),
+        (Kind::WEAR, "dissipated-energy"),
     ] {
         let plugin = path.find(kind, name).unwrap();
         let defaults: Vec<f64> = plugin.parameters.iter().map(|p| p.default).collect();
@@ -426,7 +426,7 @@ fn the_program_alone_runs_a_case() {
     // A library of that name on the path would be another law.
     let elsewhere = folder.0.join("elsewhere");
     std::fs::create_dir_all(&elsewhere).unwrap();
-    let file = elsewhere.join(search::file_name(Kind::Damage, "mac"));
+    let file = elsewhere.join(search::file_name(Kind::DAMAGE, "mac"));
     std::fs::write(file, "not a library").unwrap();
     let words = ["law", "show", "damage/mac", "--plugin-path", "elsewhere"];
     let (_, shown, _) = call(&program, &words);

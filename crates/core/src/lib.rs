@@ -52,6 +52,7 @@ pub mod bodies;
 pub mod certify;
 pub mod contact;
 pub mod energy;
+pub mod fields;
 pub mod geometry;
 pub mod laws;
 pub mod process;

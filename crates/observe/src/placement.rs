@@ -1,5 +1,6 @@
 //! Where the shapes and contacts of a simulation are.
 
+pub use fretwork_core::contact::BondState;
 use fretwork_core::contact::{Contact, Key};
 use fretwork_core::geometry::convex::{ConvexCollider, Core};
 use fretwork_core::geometry::space::Space;
@@ -7,8 +8,7 @@ use fretwork_core::step::Simulation;
 
 /// Where the centre of a piece stands (m).
 pub fn piece_centre<S: Space>(s: &Simulation<S>, piece: &ConvexCollider<S>) -> S::Vector {
-    let b = piece.body as usize;
-    s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &piece.offset)
+    fretwork_core::contact::detect::piece_centre(piece, &s.bodies)
 }
 
 /// The corners of a piece (m): one line around it in the plane, its faces in space.
@@ -29,28 +29,8 @@ pub fn is_first<S: Space>(s: &Simulation<S>, body: u32) -> bool {
 }
 
 /// The state of the bond of a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum BondState {
-    /// There is no bond, and was none.
-    None,
-    /// It holds.
-    Intact {
-        /// Its damage, 0 to 1.
-        damage: f64,
-    },
-    /// It broke.
-    Broken,
-}
-
-/// The state of the bond of a contact.
 pub fn bond_state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> BondState {
-    match s.network.bond(contact) {
-        Some(bond) if bond.intact() => BondState::Intact {
-            damage: bond.damage,
-        },
-        _ if contact.broken => BondState::Broken,
-        _ => BondState::None,
-    }
+    s.network.bond_state(contact)
 }
 
 /// The two ends of a contact: the candidate's centre, and the antagonist's centre or the foot on a

@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::source::{Fault, nearest};
 use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::laws::Interface;
+use fretwork_core::laws::{Interface, Kind};
 use fretwork_core::process::circuit::{Fate, Spec, Zone};
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
@@ -139,7 +139,8 @@ fn body(case: &Case, path: &str, name: &str) -> Result<(), Fault> {
 
 /// Interfaces whose bonds tie, by index.
 fn tying(case: &Case, circuit: &CircuitSpec) -> Result<Vec<usize>, Fault> {
-    let all = || (0..case.interfaces.len()).filter(|i| case.interfaces[*i].cohesion.is_some());
+    let all =
+        || (0..case.interfaces.len()).filter(|i| case.interfaces[*i].law(Kind::COHESION).is_some());
     let Some(names) = &circuit.bonds else {
         return Ok(all().collect());
     };
@@ -152,7 +153,7 @@ fn tying(case: &Case, circuit: &CircuitSpec) -> Result<Vec<usize>, Fault> {
                 .expected_name(known.iter().copied(), "interfaces")
                 .nearest(nearest(name, known.iter().copied())));
         };
-        if case.interfaces[at].cohesion.is_none() {
+        if case.interfaces[at].law(Kind::COHESION).is_none() {
             let message = format!("the interface `{name}` has no cohesion law, it makes no bonds");
             return Err(Fault::new(path, message));
         }

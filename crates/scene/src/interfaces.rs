@@ -7,12 +7,9 @@ use super::units;
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
 use fretwork_core::contact::detect::LawTable;
 use fretwork_core::geometry::space::Space;
-use fretwork_core::laws::{
-    AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath,
-};
+use fretwork_core::laws::{AreaRule, BondRule, Interface, Kind, LawError, Loaded, SearchPath};
 use fretwork_core::step::Simulation;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
 /// The laws of a case and which materials they govern.
 pub struct Laws {
@@ -100,15 +97,7 @@ pub fn build(
 
 /// The laws that an interface names.
 fn used(spec: &InterfaceSpec) -> impl Iterator<Item = (Kind, &str)> {
-    let optional = [
-        (Kind::Cohesion, &spec.cohesion),
-        (Kind::Damage, &spec.damage),
-        (Kind::Wear, &spec.wear),
-    ];
-    let named = optional
-        .into_iter()
-        .filter_map(|(kind, name)| Some((kind, name.as_deref()?)));
-    std::iter::once((Kind::Contact, spec.contact.as_str())).chain(named)
+    spec.laws.iter().map(|(kind, name)| (kind, name.as_str()))
 }
 
 /// Pairs of materials whose bodies pass through each other, since no interface is between them.
@@ -210,21 +199,12 @@ impl From<Fault> for Wrong {
     }
 }
 
-type ByLaw = BTreeMap<String, BTreeMap<String, Sourced>>;
-
 fn compose(
     case: &Case,
     spec: &InterfaceSpec,
     file: &InterfaceParameters,
     path: &SearchPath,
 ) -> Result<Interface, Wrong> {
-    let load = |kind: Kind, name: &str, file: &ByLaw, own: &BTreeMap<String, Given>| {
-        load(case, kind, name, file.get(name), own, path)
-    };
-    let (p, own) = (file, &spec.parameters);
-    let optional = |kind, name: &Option<String>, file: &ByLaw, own| {
-        name.as_ref().map(|n| load(kind, n, file, own)).transpose()
-    };
     if let BondRule::At(time) = spec.bonds
         && !(time.is_finite() && time >= 0.0)
     {
@@ -234,12 +214,8 @@ fn compose(
         )
         .into());
     }
-    for (slot, law, given) in [
-        ("cohesion", &spec.cohesion, &own.cohesion),
-        ("damage", &spec.damage, &own.damage),
-        ("wear", &spec.wear, &own.wear),
-    ] {
-        if let (None, Some(name)) = (law, given.keys().next()) {
+    for (slot, given) in spec.parameters.iter() {
+        if let (None, Some(name)) = (spec.law(slot), given.keys().next()) {
             let fault = Fault::new(
                 format!("parameters.{slot}.{name}"),
                 format!("`{name}` is a parameter of the {slot} law, and there is no {slot} law"),
@@ -251,21 +227,22 @@ fn compose(
                 .into());
         }
     }
-    let interface = Interface {
-        name: spec.name.clone(),
-        contact: load(Kind::Contact, &spec.contact, &p.contact, &own.contact)?,
-        cohesion: optional(Kind::Cohesion, &spec.cohesion, &p.cohesion, &own.cohesion)?,
-        damage: optional(Kind::Damage, &spec.damage, &p.damage, &own.damage)?,
-        wear: optional(Kind::Wear, &spec.wear, &p.wear, &own.wear)?,
-        bonds: spec.bonds,
-        healing: spec.healing,
-        area: AreaRule {
-            factor: spec.area_factor,
-        },
+    let none = BTreeMap::new();
+    let mut laws = Vec::new();
+    for (kind, name) in used(spec) {
+        let of_file = file.slots.get(kind).and_then(|laws| laws.get(name));
+        let own = spec.parameters.get(kind).unwrap_or(&none);
+        laws.push(load(case, kind, name, of_file, own, path)?);
+    }
+    // What does not fit is said of the damage law, or of `healing`.
+    let unfit = |e: LawError| Wrong::from(Fault::new("damage", e.to_string()));
+    let mut interface = Interface::new(spec.name.clone(), laws).map_err(unfit)?;
+    interface.area = AreaRule {
+        factor: spec.area_factor,
     };
     interface
-        .compose()
-        .map_err(|e| Fault::new("damage", e.to_string()).into())
+        .with_bonds(spec.bonds, spec.healing)
+        .map_err(unfit)
 }
 
 fn load(
@@ -374,9 +351,5 @@ fn load(
     plugin
         .validate(&parameters)
         .map_err(|e| Fault::new(slot, e.to_string()))?;
-    Ok(Loaded {
-        plugin: Arc::<Plugin>::new(plugin),
-        parameters,
-        first_variable: 0,
-    })
+    Ok(Loaded::new(plugin, parameters))
 }

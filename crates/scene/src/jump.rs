@@ -3,6 +3,7 @@
 use super::case::{BodySpec, Case};
 use super::source::Fault;
 use fretwork_core::bodies::{Dof, TimeFunction};
+use fretwork_core::laws::Kind;
 pub use fretwork_core::process::jump::JumpSpec;
 
 /// Most cycles of a jump, or of its control.
@@ -32,7 +33,10 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
     }
     repeats(case, jump)?;
     let wears = case.bodies.iter().any(|b| b.wears.is_some());
-    let damages = case.interfaces.iter().any(|i| i.damage.is_some());
+    let damages = case
+        .interfaces
+        .iter()
+        .any(|i| i.law(Kind::DAMAGE).is_some());
     if !wears && !damages {
         let message = "nothing here changes from cycle to cycle that a jump could carry on: no body `wears` and no \
                        interface has a damage law; give one of them, or leave `jump` out";

@@ -3,8 +3,9 @@
 use super::shipped_materials;
 use super::source::{Fault, InputError, Source, nearest};
 use super::units::{self, UnitError};
+use crate::case::slots::{BySlot, Field, FieldName, with_kinds};
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{MapAccess, Visitor};
+use serde::de::{Error as _, MapAccess, Visitor};
 use serde::ser::SerializeStruct;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -157,25 +158,62 @@ impl Material {
     }
 }
 
-/// Parameters of laws for a kind of interface: slot, law, parameter.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields, default)]
+/// Parameters of laws for a kind of interface: slot, law, parameter. In the text each slot is a field with the word of its
+/// kind.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct InterfaceParameters {
     /// What it describes.
-    #[serde(skip_serializing_if = "String::is_empty")]
     pub doc: String,
-    /// Contact laws.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub contact: BTreeMap<String, BTreeMap<String, Sourced>>,
-    /// Cohesion laws.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub cohesion: BTreeMap<String, BTreeMap<String, Sourced>>,
-    /// Damage laws.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub damage: BTreeMap<String, BTreeMap<String, Sourced>>,
-    /// Wear laws.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub wear: BTreeMap<String, BTreeMap<String, Sourced>>,
+    /// Parameters by slot and law.
+    pub slots: BySlot<BTreeMap<String, BTreeMap<String, Sourced>>>,
+}
+
+impl<'de> Deserialize<'de> for InterfaceParameters {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Fields(&'static [&'static str]);
+        impl<'de> Visitor<'de> for Fields {
+            type Value = InterfaceParameters;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("struct InterfaceParameters")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+                let (mut doc, mut slots) = (None, BySlot::default());
+                while let Some(field) = map.next_key_seed(FieldName(self.0))? {
+                    let word = match field {
+                        Field::Own(_) if doc.is_none() => {
+                            doc = Some(map.next_value()?);
+                            continue;
+                        }
+                        Field::Slot(kind) if slots.get(kind).is_none() => {
+                            slots.set(kind, map.next_value()?);
+                            continue;
+                        }
+                        Field::Own(name) => name,
+                        Field::Slot(kind) => kind.word(),
+                    };
+                    return Err(A::Error::duplicate_field(word));
+                }
+                let doc = doc.unwrap_or_default();
+                Ok(InterfaceParameters { doc, slots })
+            }
+        }
+        let fields = with_kinds(&["doc"], 1);
+        deserializer.deserialize_struct("InterfaceParameters", fields, Fields(fields))
+    }
+}
+
+impl Serialize for InterfaceParameters {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let count = 1 + self.slots.iter().count();
+        let mut fields = serializer.serialize_struct("InterfaceParameters", count)?;
+        if !self.doc.is_empty() {
+            fields.serialize_field("doc", &self.doc)?;
+        }
+        for (kind, laws) in self.slots.iter() {
+            fields.serialize_field(kind.word(), laws)?;
+        }
+        fields.end()
+    }
 }
 
 impl InterfaceParameters {
@@ -184,12 +222,7 @@ impl InterfaceParameters {
     /// # Errors
     /// The first one, with its path.
     pub fn units(&self) -> Result<(), Fault> {
-        for (slot, laws) in [
-            ("contact", &self.contact),
-            ("cohesion", &self.cohesion),
-            ("damage", &self.damage),
-            ("wear", &self.wear),
-        ] {
+        for (slot, laws) in self.slots.iter() {
             for (law, parameters) in laws {
                 for (name, number) in parameters {
                     units::known(&number.unit)

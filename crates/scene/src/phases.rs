@@ -391,7 +391,7 @@ fn changes<S: Space>(spec: &PhaseSpec, s: &Simulation<S>) -> Result<Changes<S>, 
         let Some(k) = s.laws.iter().position(|l| l.name == *name) else {
             continue;
         };
-        let law = &s.laws[k].contact;
+        let law = s.laws[k].contact();
         let Some(p) = law.plugin.parameters.iter().position(|p| p.name == "mu") else {
             let message = format!(
                 "the contact law `{}` has no parameter `mu` to change",

@@ -1,14 +1,13 @@
 //! The state of a simulation as the views of `results.h5`.
 
-use super::results::state::ORIENTATION;
 use super::results::{Header, Part, Results, ResultsError};
 use super::shapes;
 use super::summary::Summary;
-use fretwork_core::contact::detect::centre;
-use fretwork_core::geometry::convex::Core;
+use fretwork_core::fields::{FieldList, Fields, GrainPart, Value, orientation, removed};
 use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::laws::Kind;
 use fretwork_core::step::Simulation;
-use fretwork_observe::placement::{self, BondState};
+use fretwork_observe::placement;
 use fretwork_observe::statistics::Column;
 use fretwork_scene::build::Loaded;
 
@@ -31,18 +30,8 @@ pub fn header<S: Space>(
     statistics: &[Column],
 ) -> Header {
     let dimension = S::D;
+    let fields = fields(built.simulation, loaded.case.circuit.is_some());
     let c = Column::new;
-    let axes = ["spin_x", "spin_y", "spin_z"].map(|name| c(name, "rad/s", "angular velocity"));
-    let axes = if dimension == 2 { &[][..] } else { &axes };
-    let turns = match (shapes::needed(built.simulation), dimension) {
-        (false, _) => Vec::new(),
-        (true, 2) => vec![c("angle", "rad", "orientation")],
-        (true, _) => ORIENTATION
-            .map(|name| c(name, "", "orientation, a unit quaternion"))
-            .to_vec(),
-    };
-    let gone = loaded.case.circuit.iter();
-    let gone = gone.map(|_| c("gone", "", "1 for grains that were taken out"));
     let shear = loaded.case.output.shear.map(|_| {
         let doc =
             "local shear since the second phase began, or the start; not a number on first bodies";
@@ -52,7 +41,11 @@ pub fn header<S: Space>(
     let area = if dimension == 2 { "m" } else { "m^2" };
     let kg = if dimension == 2 { "kg/m" } else { "kg" };
     let at = ["x", "y", "z"].map(|a| c(a, "m", "where it was"));
-    let bonds = loaded.case.interfaces.iter().any(|i| i.cohesion.is_some());
+    let bonds = loaded
+        .case
+        .interfaces
+        .iter()
+        .any(|i| i.law(Kind::COHESION).is_some());
     let broken = [
         c("id", "", "number of the break, from 1"),
         c("time", "s", "end of the step in which it broke"),
@@ -119,117 +112,60 @@ pub fn header<S: Space>(
         version: summary.version.clone(),
         statistics: statistics.to_vec(),
         fields: [
-            [
-                c("id", "", "identity of the body"),
-                c(
-                    "radius",
-                    "m",
-                    "radius; of other shapes that of the ball (2D: disk) of the same volume",
-                ),
-                c("material", "", "index of the material"),
-                c("first_body", "", "1 for parts of a first body"),
-                c("velocity_x", "m/s", "velocity"),
-                c("velocity_y", "m/s", "velocity"),
-                c("velocity_z", "m/s", "velocity"),
-                c("spin", "rad/s", "angular velocity, its norm in 3D"),
-                c(
-                    "corners",
-                    "",
-                    "corners of a polygon or polyhedron, 2 of a capsule, 0 for a ball",
-                ),
-            ]
-            .into_iter()
-            .chain(axes.iter().cloned())
-            .chain(turns)
-            .chain(gone)
-            .chain(shear)
-            .collect(),
-            contact_columns(dimension),
+            columns(&fields.grains, false).chain(shear).collect(),
+            columns(&fields.contacts, false).collect(),
             vec![c("body", "", "identity of the body")],
         ],
-        numbers: [Vec::new(), contact_numbers(), Vec::new()],
+        numbers: [
+            columns(&fields.grains, true).collect(),
+            columns(&fields.contacts, true).collect(),
+            Vec::new(),
+        ],
     }
 }
 
-/// Fields of contacts: numbers.
-fn contact_columns(dimension: usize) -> Vec<Column> {
-    let c = Column::new;
-    let newton = if dimension == 2 { "N/m" } else { "N" };
-    let joule = if dimension == 2 { "J/m" } else { "J" };
-    let mut columns = vec![
-        c("state", "", "0 contact, 1 intact bond, 2 broken bond"),
-        c(
-            "status",
-            "",
-            "0 carries nothing, 1 sticks, 2 slides (friction is at its bound), 3 an intact bond holds, 4 carries nothing and its bond broke",
-        ),
-        c("damage", "", "damage D; 1 where there is no bond"),
-        c("gap", "m", "gap"),
-        c(
-            "force_normal",
-            newton,
-            "normal force, positive in compression",
-        ),
-        c("force_tangential", newton, "norm of the tangential force"),
-        c(
-            "force_tangential_1",
-            newton,
-            "tangential force on body_1 along the tangent t1; in 2D t1 is the normal turned by +90 degrees",
-        ),
-    ];
-    if dimension == 3 {
-        columns.push(c(
-            "force_tangential_2",
-            newton,
-            "tangential force on body_1 along t2 = normal x t1",
-        ));
-    }
-    let normal = ["normal_x", "normal_y", "normal_z"];
-    let normal = normal.map(|name| {
-        c(
-            name,
-            "",
-            "unit normal, from body_2 to body_1; a positive normal force pushes body_1 along it",
-        )
-    });
-    columns.extend(normal.into_iter().take(dimension));
-    if dimension == 3 {
-        let tangent = ["tangent_1_x", "tangent_1_y", "tangent_1_z"];
-        columns.extend(tangent.map(|name| c(name, "", "unit tangent t1")));
-    }
-    columns.extend([
-        c(
-            "friction_work",
-            joule,
-            "energy that friction took at this contact since it formed",
-        ),
-        c("opening_normal", "m", "elongation of the bond"),
-        c("opening_tangential", "m", "norm of its tangential opening"),
-        c("law", "", "index of the interface"),
-    ]);
-    columns
+/// The fields of a simulation's views: those it registers, orientations where there are grains that are no lone balls, and
+/// whether grains were taken out where a circuit does so.
+fn fields<S: Space>(s: &Simulation<S>, circuit: bool) -> Fields<S> {
+    let mut fields = s.fields.clone();
+    let turns = shapes::needed(s).then(orientation).into_iter().flatten();
+    let gone = circuit.then(removed);
+    turns.chain(gone).for_each(|field| fields.grains.add(field));
+    fields
 }
 
-/// Fields of contacts: whole numbers.
-fn contact_numbers() -> Vec<Column> {
-    let c = Column::new;
-    vec![
-        c(
-            "body_1",
-            "",
-            "identity of the candidate, as `id` of grains and `body` of bodies",
-        ),
-        c("body_2", "", "identity of the antagonist"),
-    ]
+/// Columns of fields of numbers, or of whole numbers.
+fn columns<S: Space, T>(fields: &FieldList<S, T>, whole: bool) -> impl Iterator<Item = Column> {
+    let listed = fields.iter().filter(move |f| f.is_whole() == whole);
+    listed.map(|f| Column::new(f.name, f.unit, f.doc))
+}
+
+/// Appends the values of all fields for one thing.
+fn push_fields<S: Space, T>(part: &mut Part, fields: &FieldList<S, T>, s: &Simulation<S>, of: &T) {
+    let (mut data, mut numbers) = (part.data.iter_mut(), part.numbers.iter_mut());
+    for field in fields.iter() {
+        match &field.value {
+            Value::Number(get) => data.next().into_iter().for_each(|c| c.push(get(s, of))),
+            Value::Whole(get) => numbers.next().into_iter().for_each(|c| c.push(get(s, of))),
+        }
+    }
+}
+
+/// A part with empty columns for these fields.
+fn empty<S: Space, T>(fields: &FieldList<S, T>) -> Part {
+    let count = |whole: bool| fields.iter().filter(|f| f.is_whole() == whole).count();
+    Part {
+        data: vec![Vec::new(); count(false)],
+        numbers: vec![Vec::new(); count(true)],
+        ..Part::default()
+    }
 }
 
 /// Bytes that a state takes a grain and a contact: points, cells and fields of 8 bytes.
 pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
-    let (plain, turns) = if S::D == 2 { (9, 1) } else { (12, 4) };
-    let turns = if shapes::needed(s) { turns } else { 0 };
-    let fields = plain + turns + usize::from(circuit);
-    let contact = contact_columns(S::D).len() + contact_numbers().len();
-    [8 * (3 + 2 + fields), 8 * (6 + 3 + contact)]
+    let fields = fields(s, circuit);
+    let (grain, contact) = (fields.grains.iter().count(), fields.contacts.iter().count());
+    [8 * (3 + 2 + grain), 8 * (6 + 3 + contact)]
 }
 
 /// Appends the state at hand of a case; `shear` is a column of the grains where the header has it.
@@ -242,133 +178,32 @@ pub fn append<S: Space>(
     loaded: &Loaded,
     shear: Option<Vec<f64>>,
 ) -> Result<(), ResultsError> {
-    let mut grains = grains(s);
-    let balls = s.shapes.balls.iter().map(|b| b.body as usize);
-    let pieces = s.shapes.pieces.iter().map(|p| p.body as usize);
-    let of: Vec<usize> = balls.chain(pieces).collect();
-    if shapes::needed(s) {
-        for k in 0..if S::D == 2 { 1 } else { 4 } {
-            let turns = of
-                .iter()
-                .map(|b| S::rotation_numbers(&s.bodies.rotation[*b])[k]);
-            grains.data.push(turns.collect());
-        }
-    }
-    if loaded.case.circuit.is_some() {
-        let gone = of.iter().map(|b| f64::from(u8::from(s.bodies.removed[*b])));
-        grains.data.push(gone.collect());
-    }
+    let fields = fields(s, loaded.case.circuit.is_some());
+    let mut grains = grains(s, &fields);
     grains.data.extend(shear);
-    results.append_views(s.time, &[grains, contacts(s), bodies(s)])
+    results.append_views(s.time, &[grains, contacts(s, &fields), bodies(s)])
 }
 
-fn grains<S: Space>(s: &Simulation<S>) -> Part {
-    let axes = if S::D == 2 { 0 } else { 3 };
-    let mut part = Part {
-        data: vec![Vec::new(); 9 + axes],
-        ..Part::default()
-    };
-    for ball in &s.shapes.balls {
-        let at = centre(ball, &s.bodies);
-        grain(
-            s,
-            &mut part,
-            at,
-            [ball.body, ball.material.into(), 0],
-            ball.radius,
-        );
-    }
-    for piece in &s.shapes.pieces {
-        let at = placement::piece_centre(s, piece);
-        let corners = piece.core.boundary().corners.len() as u32;
-        let of = [piece.body, piece.material.into(), corners];
-        grain(s, &mut part, at, of, piece.size);
+fn grains<S: Space>(s: &Simulation<S>, fields: &Fields<S>) -> Part {
+    let mut part = empty(&fields.grains);
+    for grain in GrainPart::all(s) {
+        part.cells.push(vec![part.points.len() as i64 / 3]);
+        let at = s.shapes.periodic.wrapped(grain.centre);
+        part.points.extend(at.padded());
+        push_fields(&mut part, &fields.grains, s, &grain);
     }
     part
 }
 
-/// One ball or polygon: where it stands, its body, material and number of corners, its radius (m).
-fn grain<S: Space>(s: &Simulation<S>, part: &mut Part, at: S::Vector, of: [u32; 3], radius: f64) {
-    let [body, material, corners] = of;
-    let b = body as usize;
-    part.cells.push(vec![part.points.len() as i64 / 3]);
-    part.points.extend(s.shapes.periodic.wrapped(at).padded());
-    let first = s.bodies.driven.iter().any(|d| d.body == body);
-    let v = s.bodies.velocity[b].padded();
-    let spin = if S::D == 2 {
-        s.bodies.spin[b][0]
-    } else {
-        s.bodies.spin[b].norm()
-    };
-    let values = [
-        s.bodies.id[b] as f64,
-        radius,
-        f64::from(material),
-        f64::from(u8::from(first)),
-        v[0],
-        v[1],
-        v[2],
-        spin,
-        f64::from(corners),
-    ];
-    push(part, &values);
-    for (column, value) in part.data[9..].iter_mut().zip(s.bodies.spin[b].padded()) {
-        column.push(value);
-    }
-}
-
-fn contacts<S: Space>(s: &Simulation<S>) -> Part {
-    let mut part = Part {
-        data: vec![Vec::new(); contact_columns(S::D).len()],
-        numbers: vec![Vec::new(); contact_numbers().len()],
-        ..Part::default()
-    };
+fn contacts<S: Space>(s: &Simulation<S>, fields: &Fields<S>) -> Part {
+    let mut part = empty(&fields.contacts);
     for (k, contact) in s.network.counted_contacts().enumerate() {
         let (a, b) = placement::ends(s, contact);
         let at = s.shapes.periodic.wrapped(a);
         part.points.extend(at.padded());
         part.points.extend((b - a + at).padded());
         part.cells.push(vec![2 * k as i64, 2 * k as i64 + 1]);
-        let (state, damage) = match placement::bond_state(s, contact) {
-            BondState::Intact { damage } => (1.0, damage),
-            BondState::Broken => (2.0, 1.0),
-            BondState::None => (0.0, 1.0),
-        };
-        let n = &contact.normal;
-        let force = contact.impulse * (1.0 / s.scheme.h);
-        let bond = s.network.bond(contact);
-        let status = if state == 1.0 {
-            3.0
-        } else if contact.impulse == S::Vector::zero() {
-            2.0 * state
-        } else {
-            1.0 + f64::from(u8::from(contact.slides))
-        };
-        let mut values = vec![
-            state,
-            status,
-            damage,
-            contact.gap,
-            n.dot(&force),
-            S::tangential(n, &force).norm(),
-        ];
-        let tangents = S::tangents(n);
-        let along = tangents.iter().map(|t| t.dot(&force));
-        values.extend(along.take(S::D - 1));
-        values.extend((0..S::D).map(|k| n[k]));
-        if S::D == 3 {
-            values.extend(tangents[0].padded());
-        }
-        values.extend([
-            contact.friction_work,
-            bond.map_or(0.0, |b| b.opening_n),
-            bond.map_or(0.0, |b| b.opening_t.norm()),
-            f64::from(contact.law),
-        ]);
-        push(&mut part, &values);
-        for (column, body) in part.numbers.iter_mut().zip(contact.bodies) {
-            column.push(s.bodies.id[body as usize] as i64);
-        }
+        push_fields(&mut part, &fields.contacts, s, contact);
     }
     part
 }

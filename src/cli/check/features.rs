@@ -146,10 +146,7 @@ impl Features {
                 } else {
                     0
                 };
-                let cohesion = law
-                    .cohesion
-                    .as_ref()
-                    .filter(|_| law.opens() && bonding(law))?;
+                let cohesion = law.cohesion().filter(|_| law.opens() && bonding(law))?;
                 let bytes = size_of::<Bond<S>>() + turn;
                 Some(format!("{}, {bytes} bytes a bond", cohesion.plugin.name))
             }),
@@ -157,15 +154,15 @@ impl Features {
         self.say(
             "attraction without bonds",
             named(&|law| {
-                let cohesion = law.cohesion.as_ref().filter(|_| !law.opens());
+                let cohesion = law.cohesion().filter(|_| !law.opens());
                 cohesion.map(|l| l.plugin.name.clone())
             }),
         );
         self.say(
             "damage",
             named(&|law| {
-                let cohesion = law.cohesion.as_ref().filter(|_| law.damages());
-                let by = law.damage.as_ref().or(cohesion);
+                let cohesion = law.cohesion().filter(|_| law.damages());
+                let by = law.damage().or(cohesion);
                 by.map(|l| l.plugin.name.clone())
             }),
         );
@@ -182,7 +179,7 @@ impl Features {
         );
         self.say(
             "wear",
-            named(&|law| law.wear.as_ref().map(|l| l.plugin.name.clone())),
+            named(&|law| law.wear().map(|l| l.plugin.name.clone())),
         );
         self.say(
             "history variables",
@@ -282,7 +279,7 @@ pub fn memory<S: Space>(s: &Simulation<S>) -> [String; 2] {
     let (state, line) = (Bodies::<S>::BYTES, Problem::<S>::BYTES_A_BODY);
     let kept = state + size_of::<Ball<S>>() + size_of::<S::Vector>();
     let [plain, full, general] = Problem::<S>::BYTES_A_CONTACT;
-    let bonded = s.laws.iter().any(|law| law.cohesion.is_some());
+    let bonded = s.laws.iter().any(|law| law.cohesion().is_some());
     let central = s.network.contacts.iter().all(|c| c.central);
     let mut rows = vec![if bonded {
         format!("{full} bytes in the sweep")

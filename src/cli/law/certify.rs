@@ -81,7 +81,7 @@ pub fn certify(args: &CertifyArgs) -> Result<(), Failure> {
 }
 
 fn is_kind(word: &str) -> bool {
-    crate::laws::Kind::ALL.iter().any(|k| k.word() == word)
+    crate::laws::Kind::from_word(word).is_some()
 }
 
 fn one(

@@ -68,30 +68,12 @@ const CRATES: [(&str, &str); 7] = [
     ),
 ];
 
-fn template(kind: Kind, lang: Language) -> &'static str {
-    match (lang, kind) {
-        (Language::Rust, Kind::Contact) => include_str!("templates/contact.rs.txt"),
-        (Language::Rust, Kind::Cohesion) => include_str!("templates/cohesion.rs.txt"),
-        (Language::Rust, Kind::Damage) => include_str!("templates/damage.rs.txt"),
-        (Language::Rust, Kind::Wear) => include_str!("templates/wear.rs.txt"),
-        (Language::C, Kind::Contact) => include_str!("templates/contact.c"),
-        (Language::C, Kind::Cohesion) => include_str!("templates/cohesion.c"),
-        (Language::C, Kind::Damage) => include_str!("templates/damage.c"),
-        (Language::C, Kind::Wear) => include_str!("templates/wear.c"),
-        (Language::Fortran, Kind::Contact) => include_str!("templates/contact.f90"),
-        (Language::Fortran, Kind::Cohesion) => include_str!("templates/cohesion.f90"),
-        (Language::Fortran, Kind::Damage) => include_str!("templates/damage.f90"),
-        (Language::Fortran, Kind::Wear) => include_str!("templates/wear.f90"),
-    }
-}
-
 pub fn new(args: &NewArgs) -> Result<(), Failure> {
     let usage = |what: String| Err(Failure::Usage(what));
-    let Some(kind) = Kind::ALL.into_iter().find(|k| k.word() == args.kind) else {
-        return usage(format!(
-            "--kind {}: expected contact, cohesion, damage or wear",
-            args.kind
-        ));
+    let Some((kind, templates)) =
+        Kind::from_word(&args.kind).and_then(|kind| Some((kind, kind.spec().templates?)))
+    else {
+        return usage(format!("--kind {}: expected {}", args.kind, Kind::words()));
     };
     // An underscore in a name stands for the dash that cases write.
     let name = args.name.replace('_', "-");
@@ -122,7 +104,12 @@ pub fn new(args: &NewArgs) -> Result<(), Failure> {
             .replace("@KIND@", kind.word())
             .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
     };
-    let source = fill(template(kind, args.lang));
+    let template = match args.lang {
+        Language::Rust => templates.rust,
+        Language::C => templates.c,
+        Language::Fortran => templates.fortran,
+    };
+    let source = fill(template);
     let library = file_name(kind, &name);
     let here = folder.display();
     let (build, made) = match args.lang {

@@ -19,9 +19,8 @@ pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
         for law in interface.loaded() {
             let p = &law.plugin;
             let partner = interface
-                .cohesion
-                .as_ref()
-                .filter(|_| p.kind == Kind::Damage)
+                .cohesion()
+                .filter(|_| stands_beside_cohesion(p.kind))
                 .filter(|cohesion| known.certified(cohesion, None));
             let certified = known.certified(law, partner);
             let same = |s: &&mut PluginStamp| {
@@ -44,6 +43,13 @@ pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
         }
     }
     stamps
+}
+
+/// Whether laws of a kind are certified beside a cohesion law.
+fn stands_beside_cohesion(kind: Kind) -> bool {
+    let sets = kind.spec().certificate.partners.iter();
+    sets.flat_map(|set| set.iter())
+        .any(|(partner, _)| *partner == Kind::COHESION)
 }
 
 /// A law with its parameters.

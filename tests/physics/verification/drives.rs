@@ -1,6 +1,6 @@
 //! Imposed motion: bodies are where their functions of time say, at every instant, and the work of it is booked.
 
-use fretwork::geometry::space::{Dim2, Dim3, Space};
+use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::SearchPath;
 use fretwork::record::code::{decode, encode};
 use fretwork::record::run::{RunOptions, run};

@@ -3,13 +3,13 @@
 use fretwork::certify::{Certificate, Outcome, certify, certify_parameters};
 use fretwork::geometry::space::Dim2;
 use fretwork::laws::bench::{Bench, Motion};
-use fretwork::laws::{AreaRule, BondRule, Interface, Kind, Loaded, Plugin, SearchPath};
+use fretwork::laws::{Interface, Kind, Loaded, Plugin, SearchPath};
 use fretwork::scene::build::Scene;
 use fretwork::scene::load;
 use fretwork::step::Simulation;
+use fretwork_abi::FLAG_OPENING;
 use std::path::Path;
 use std::process::Command;
-use std::sync::Arc;
 
 fn certificate(plugin: &Plugin) -> Certificate {
     let defaults: Vec<f64> = plugin.parameters.iter().map(|p| p.default).collect();
@@ -57,8 +57,8 @@ fn laws_of_shipped_cases_are_certified() {
                 Scene::Dim3(built) => built.simulation.laws,
             };
             for (interface, law) in laws.iter().flat_map(|i| i.loaded().map(move |l| (i, l))) {
-                let damage = law.plugin.kind == Kind::Damage;
-                let partner = interface.cohesion.as_ref().filter(|_| damage);
+                let damage = law.plugin.kind == Kind::DAMAGE;
+                let partner = interface.cohesion().filter(|_| damage);
                 let beside = partner.map_or(&[][..], |c| &c.parameters);
                 let key = (
                     format!("{} {}", law.plugin.kind, law.plugin.name),
@@ -85,27 +85,16 @@ fn any_damage_goes_with_any_cohesion_that_opens() {
     let laws = path.available();
     let loaded = |kind: Kind, name: &str| {
         let plugin = path.find(kind, name).unwrap_or_else(|e| panic!("{e}"));
-        Loaded {
-            parameters: plugin.parameters.iter().map(|p| p.default).collect(),
-            plugin: Arc::new(plugin),
-            first_variable: 0,
-        }
+        Loaded::with_defaults(plugin)
     };
     let (mut pairs, mut refused) = (0, 0);
-    for (_, cohesion, _) in laws.iter().filter(|l| l.0 == Kind::Cohesion) {
-        for (_, damage, _) in laws.iter().filter(|l| l.0 == Kind::Damage) {
-            let law = Interface {
-                name: "pair".into(),
-                contact: loaded(Kind::Contact, "frictionless"),
-                cohesion: Some(loaded(Kind::Cohesion, cohesion)),
-                damage: Some(loaded(Kind::Damage, damage)),
-                wear: None,
-                bonds: BondRule::Start,
-                healing: None,
-                area: AreaRule::default(),
-            };
-            let opens = law.opens();
-            let law = match law.compose() {
+    for (_, cohesion, _) in laws.iter().filter(|l| l.0 == Kind::COHESION) {
+        for (_, damage, _) in laws.iter().filter(|l| l.0 == Kind::DAMAGE) {
+            let bond = loaded(Kind::COHESION, cohesion);
+            let opens = bond.has(FLAG_OPENING);
+            let contact = loaded(Kind::CONTACT, "frictionless");
+            let laws = [contact, bond, loaded(Kind::DAMAGE, damage)];
+            let law = match Interface::new("pair", laws) {
                 Ok(law) => law,
                 Err(e) => {
                     assert!(!opens && e.to_string().contains("no opening"), "{e}");
@@ -170,7 +159,7 @@ fn a_law_built_with_the_first_header_is_certified() {
 fn a_wrong_energy_shows_in_the_residual() {
     let folder = std::env::temp_dir().join(format!("fretwork-residual-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
-    let library = folder.join(fretwork::laws::search::file_name(Kind::Cohesion, "tested"));
+    let library = folder.join(fretwork::laws::search::file_name(Kind::COHESION, "tested"));
     let residual = |wrong: &str| {
         // A library stays open for the life of a program: each has a folder of its own.
         let place = folder.join(wrong);
@@ -210,7 +199,7 @@ fn a_wrong_energy_shows_in_the_residual() {
 fn a_law_beside_a_bad_one_is_not_blamed() {
     let folder = std::env::temp_dir().join(format!("fretwork-blame-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
-    let name = fretwork::laws::search::file_name(Kind::Cohesion, "tested");
+    let name = fretwork::laws::search::file_name(Kind::COHESION, "tested");
     for (wrong, good) in [("NOTHING", true), ("DISSIPATION", false), ("STATE", false)] {
         let place = folder.join(wrong);
         std::fs::create_dir_all(&place).unwrap();

@@ -41,11 +41,11 @@ fn case(dimension: usize, laws: &str) -> String {
 /// Goes on with a law in a dimension; whether the law is of it.
 fn goes_on_with(kind: Kind, name: &str, dimension: usize) -> bool {
     let bond = "contact: \"coulomb\", cohesion: \"elastic-bond\"";
-    let laws = match kind {
-        Kind::Contact => format!("contact: \"{name}\""),
-        Kind::Cohesion => format!("contact: \"coulomb\", cohesion: \"{name}\""),
-        Kind::Damage => format!("{bond}, damage: \"{name}\""),
-        Kind::Wear => format!("{bond}, damage: \"linear-softening\", wear: \"{name}\""),
+    let laws = match kind.word() {
+        "contact" => format!("contact: \"{name}\""),
+        "cohesion" => format!("contact: \"coulomb\", cohesion: \"{name}\""),
+        "damage" => format!("{bond}, damage: \"{name}\""),
+        _ => format!("{bond}, damage: \"linear-softening\", wear: \"{name}\""),
     };
     let folder = Folder::new(&format!("law-{kind}-{name}-{dimension}"));
     std::fs::create_dir_all(&folder.0).unwrap();

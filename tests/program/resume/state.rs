@@ -1,6 +1,5 @@
 //! The state of a simulation, put into bytes and taken up by a simulation that was built anew.
 
-use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
 use fretwork::record::code::{decode, encode};
 use fretwork::scene::{Built, Scene, load};

@@ -6,7 +6,6 @@ use crate::laws::{BuiltInLaws, Kind, LawError, Loaded, Plugin, SearchPath};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// The hidden word by which the program is asked to certify a law.
 pub const CERTIFY_APART: &str = "__certify";
@@ -39,7 +38,7 @@ impl Named {
         let plugin = match &self.library {
             Some((path, sha256)) => Plugin::open_pinned(path, Some(sha256))?,
             None => {
-                let kind = Kind::ALL.into_iter().find(|k| k.word() == self.kind);
+                let kind = Kind::from_word(&self.kind);
                 let found = kind.and_then(|k| built_in.open(k, &self.name));
                 found.unwrap_or_else(|| {
                     Err(LawError::Unusable {
@@ -49,11 +48,8 @@ impl Named {
                 })?
             }
         };
-        Ok(Loaded {
-            plugin: Arc::new(plugin),
-            parameters: self.parameters.into_iter().map(f64::from_bits).collect(),
-            first_variable: 0,
-        })
+        let parameters = self.parameters.into_iter().map(f64::from_bits);
+        Ok(Loaded::new(plugin, parameters.collect()))
     }
 }
 

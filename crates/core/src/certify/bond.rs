@@ -23,7 +23,7 @@ fn stored_energy(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "stored energy";
     /// Intervals of Simpson's rule.
     const N: usize = 400;
-    if rig.kind != Kind::Cohesion {
+    if rig.kind != Kind::COHESION {
         return Ok(Line::skip(NAME, "the energy is the cohesion's"));
     }
     // The onset is known to a tenth of a decade.
@@ -161,7 +161,7 @@ fn loops(rig: &Rig) -> Vec<Vec<Motion>> {
 /// The traction at D is (1 - D)^m times that of the undamaged bond.
 fn degradation(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "degradation";
-    if rig.kind != Kind::Cohesion {
+    if rig.kind != Kind::COHESION {
         return Ok(Line::skip(NAME, "the traction is the cohesion's"));
     }
     let m = rig.tested().plugin.degradation;
@@ -312,7 +312,7 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
 /// The stiffness is the slope of the traction, or the secant, at frozen damage and variables.
 fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "tangent";
-    if rig.kind != Kind::Cohesion {
+    if rig.kind != Kind::COHESION {
         return Ok(Line::skip(NAME, "the traction is the cohesion's"));
     }
     let mut worst = 0.0f64;

@@ -13,7 +13,8 @@ mod surface;
 
 pub use apart::{CERTIFY_APART, certify_apart, certify_asked};
 
-use crate::laws::{Kind, LawError, Loaded, Plugin, SearchPath};
+use crate::laws::kind::CheckSet;
+use crate::laws::{LawError, Loaded, Plugin, SearchPath};
 use rig::Rig;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -198,12 +199,10 @@ fn certify_telling(
         }
         book.partner = rig.partner().to_owned();
         (book.tell)(Event::Begins(SCALE));
-        match (rig.find_scale(), plugin.kind) {
+        match (rig.find_scale(), plugin.kind.spec().certificate.checks) {
             (Err(e), _) => book.write(Line::failed(SCALE, &e)),
-            (Ok(()), Kind::Cohesion | Kind::Damage) if rig.opens() => {
-                book.make(&mut rig, &bond::CHECKS);
-            }
-            (Ok(()), kind) => book.make(&mut rig, surface::checks(kind)),
+            (Ok(()), CheckSet::Bond) if rig.opens() => book.make(&mut rig, &bond::CHECKS),
+            (Ok(()), checks) => book.make(&mut rig, surface::checks(checks)),
         }
         if k == 0 {
             book.partner.clear();

@@ -1,9 +1,8 @@
 //! A law with its partners on the bench, and the opening at which it does something.
 
 use crate::laws::bench::{Answer, Bench, Motion, State};
-use crate::laws::{AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath};
+use crate::laws::{Interface, Kind, LawError, Loaded, Plugin, SearchPath};
 use rand::{RngExt, SeedableRng};
-use std::sync::Arc;
 
 /// Reduced radius of the contacts on the bench (m); the area is pi r^2 in 3D.
 const RADIUS: f64 = 1e-5;
@@ -24,84 +23,41 @@ pub struct Rig {
     pub kind: Kind,
 }
 
-fn loaded(plugin: Plugin, parameters: Vec<f64>) -> Loaded {
-    Loaded {
-        plugin: Arc::new(plugin),
-        parameters,
-        first_variable: 0,
-    }
-}
-
 fn by_default(path: &SearchPath, kind: Kind, name: &str) -> Result<Loaded, LawError> {
-    let plugin = path.find(kind, name)?;
-    let values = plugin.parameters.iter().map(|p| p.default).collect();
-    Ok(loaded(plugin, values))
+    Ok(Loaded::with_defaults(path.find(kind, name)?))
 }
 
 impl Rig {
-    /// The law in its slot; a damage law with this cohesion, or once with a linear bond (m = 1), once with MAC's
-    /// (m = 2).
+    /// The law in its slot, beside each set of partners of its kind: a damage law with this cohesion, or once with a linear
+    /// bond (m = 1), once with MAC's (m = 2).
     pub fn all(
         plugin: &Plugin,
         parameters: &[f64],
         cohesion: Option<&Loaded>,
         path: &SearchPath,
     ) -> Result<Vec<Self>, LawError> {
-        let own = || loaded(plugin.clone(), parameters.to_vec());
-        let plain = Interface {
-            name: "bench".into(),
-            contact: by_default(path, Kind::Contact, "frictionless")?,
-            cohesion: None,
-            damage: None,
-            wear: None,
-            bonds: BondRule::Start,
-            healing: None,
-            area: AreaRule::default(),
-        };
-        let mut laws = Vec::new();
-        match plugin.kind {
-            Kind::Contact => laws.push((
-                String::new(),
-                Interface {
-                    contact: own(),
-                    ..plain
-                },
-            )),
-            Kind::Cohesion => laws.push((
-                String::new(),
-                Interface {
-                    cohesion: Some(own()),
-                    ..plain
-                },
-            )),
-            Kind::Damage => {
-                let partners = match cohesion {
-                    Some(own) => vec![own.clone()],
-                    None => ["elastic-bond", "mac"]
-                        .map(|name| by_default(path, Kind::Cohesion, name))
-                        .into_iter()
-                        .collect::<Result<_, _>>()?,
+        let own = Loaded::new(plugin.clone(), parameters.to_vec());
+        let mut laws: Vec<(String, Vec<Loaded>)> = Vec::new();
+        for set in plugin.kind.spec().certificate.partners {
+            let mut slots = vec![own.clone()];
+            let mut partner = String::new();
+            for (kind, name) in *set {
+                let law = match cohesion.filter(|_| *kind == Kind::COHESION) {
+                    Some(given) => given.clone(),
+                    None => by_default(path, *kind, name)?,
                 };
-                for partner in partners {
-                    let name = partner.plugin.name.clone();
-                    let cohesion = Some(partner);
-                    let damage = Some(own());
-                    let law = Interface {
-                        cohesion,
-                        damage,
-                        ..plain.clone()
-                    };
-                    laws.push((name, law));
+                if *kind == Kind::COHESION {
+                    partner.clone_from(&law.plugin.name);
                 }
+                slots.push(law);
             }
-            Kind::Wear => laws.push((
-                String::new(),
-                Interface {
-                    contact: by_default(path, Kind::Contact, "coulomb")?,
-                    wear: Some(own()),
-                    ..plain
-                },
-            )),
+            if !slots.iter().any(|l| l.plugin.kind == Kind::CONTACT) {
+                slots.push(by_default(path, Kind::CONTACT, "frictionless")?);
+            }
+            // One with the given cohesion is enough.
+            if cohesion.is_none() || !laws.iter().any(|(known, _)| *known == partner) {
+                laws.push((partner, slots));
+            }
         }
         let dimension = if plugin.flags & fretwork_abi::FLAG_2D_ONLY != 0 {
             2
@@ -110,7 +66,7 @@ impl Rig {
         };
         laws.into_iter()
             .map(|(partner, law)| {
-                let law = law.compose()?;
+                let law = Interface::new("bench", law)?;
                 Ok(Self {
                     bench: Bench::new(law.clone(), dimension, RADIUS).lenient(),
                     law,
@@ -147,13 +103,7 @@ impl Rig {
 
     /// The law under test.
     pub fn tested(&self) -> &Loaded {
-        match self.kind {
-            Kind::Contact => Some(&self.law.contact),
-            Kind::Cohesion => self.law.cohesion.as_ref(),
-            Kind::Damage => self.law.damage.as_ref(),
-            Kind::Wear => self.law.wear.as_ref(),
-        }
-        .unwrap_or(&self.law.contact)
+        self.law.law(self.kind).unwrap_or(self.law.contact())
     }
 
     /// A second bench with the same laws.
@@ -169,14 +119,8 @@ impl Rig {
     /// A second bench on which the law under test has other parameters.
     pub fn with_parameters(&self, parameters: &[f64]) -> Bench {
         let mut law = self.law.clone();
-        let tested = match self.kind {
-            Kind::Contact => Some(&mut law.contact),
-            Kind::Cohesion => law.cohesion.as_mut(),
-            Kind::Damage => law.damage.as_mut(),
-            Kind::Wear => law.wear.as_mut(),
-        };
-        if let Some(tested) = tested {
-            tested.parameters = parameters.to_vec();
+        if let Some(tested) = law.parameters_mut(self.kind) {
+            *tested = parameters.to_vec();
         }
         Bench::new(law, self.dimension, RADIUS).lenient()
     }

@@ -2,17 +2,22 @@
 
 use super::rig::{PRESSURE, Rig};
 use super::{Check, Line};
+use crate::laws::LawError;
 use crate::laws::bench::{Answer, Motion};
-use crate::laws::{Kind, LawError};
+use crate::laws::kind::CheckSet;
 
-/// The checks of a kind.
-pub fn checks(kind: Kind) -> &'static [(&'static str, Check)] {
+/// The checks of a set.
+pub fn checks(set: CheckSet) -> &'static [(&'static str, Check)] {
     const ALL: [(&str, Check); 3] = [
         ("dissipation", signs),
         ("objectivity", objectivity),
         ("convergence", convergence),
     ];
-    if kind == Kind::Wear { &ALL } else { &ALL[..2] }
+    if set == CheckSet::Removal {
+        &ALL
+    } else {
+        &ALL[..2]
+    }
 }
 
 /// Friction, strengths and wear are not negative, restitution gives back no more than came: so no

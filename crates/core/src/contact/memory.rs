@@ -51,6 +51,20 @@ impl<S: Space> Bond<S> {
     }
 }
 
+/// The state of the bond of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BondState {
+    /// There is no bond, and was none.
+    None,
+    /// It holds.
+    Intact {
+        /// Its damage, 0 to 1.
+        damage: f64,
+    },
+    /// It broke.
+    Broken,
+}
+
 /// Openings and rotations of all slots.
 #[derive(Debug)]
 pub struct Openings<S: Space> {

@@ -1,11 +1,13 @@
 //! The contact network: who touches whom, where, and what each contact remembers.
 pub mod detect;
 pub mod events;
+pub mod id;
 pub mod memory;
 pub mod network;
 pub mod step_size;
 
 pub use events::{Break, ContactDissipation, Life, Loss};
-pub use memory::{Bond, Memory};
+pub use id::{ContactId, ContactNames, Contactor, ContactorKind};
+pub use memory::{Bond, BondState, Memory};
 pub use network::{Contact, Key, Network};
 pub use step_size::StepSizeDiagnostics;

@@ -1,7 +1,7 @@
 //! Contacts of the current step and what carries over from the last one.
 
 use super::events::{Break, ContactDissipation, Loss};
-use super::memory::Memory;
+use super::memory::{BondState, Memory};
 use super::step_size::StepSizeDiagnostics;
 use crate::bodies::Bodies;
 use crate::geometry::space::{Space, VectorLike};
@@ -221,6 +221,17 @@ impl<S: Space> Network<S> {
         contact
             .memory()
             .map(|slot| &self.memory[contact.law as usize].bonds[slot])
+    }
+
+    /// The state of the bond of a contact.
+    pub fn bond_state(&self, contact: &Contact<S>) -> BondState {
+        match self.bond(contact) {
+            Some(bond) if bond.intact() => BondState::Intact {
+                damage: bond.damage,
+            },
+            _ if contact.broken => BondState::Broken,
+            _ => BondState::None,
+        }
     }
 
     /// The gap of a contact less what its bond fills, while it holds (m).

@@ -4,7 +4,8 @@ pub mod scale;
 
 use super::bonds::Held;
 use super::columns::StepInfo;
-use super::interface::Interface;
+use super::interface::{Interface, Loaded};
+use super::kind::Kind;
 use super::library::{Call, LawError};
 use super::pass::{Care, LawEvaluator};
 use serde::Serialize;
@@ -226,7 +227,7 @@ impl Bench {
         answers: &mut [Answer],
     ) -> Result<(), LawError> {
         self.fill(states, motions, info, false);
-        let contact = self.law.contact.clone();
+        let contact = self.law.contact().clone();
         self.passes.run(&contact, info, 0.0, Call::Prepare)?;
         let out = &self.passes.columns.out;
         for (k, answer) in answers.iter_mut().enumerate() {
@@ -262,7 +263,7 @@ impl Bench {
         held: &Held,
         answers: &mut [Answer],
     ) -> Result<(), LawError> {
-        let Some(cohesion) = self.law.cohesion.clone() else {
+        let Some(cohesion) = self.law.cohesion().cloned() else {
             return Ok(());
         };
         self.fill(states, motions, info, true);
@@ -305,29 +306,38 @@ impl Bench {
         damage: &[f64],
         answers: &mut [Answer],
     ) -> Result<(), LawError> {
-        let cohesion = self.law.cohesion.clone().filter(|_| !self.law.opens());
-        let acting = [Some(self.law.contact.clone()), cohesion];
-        for loaded in acting.into_iter().flatten().filter(|l| l.variables() > 0) {
-            self.fill(states, motions, info, true);
-            self.passes.run(&loaded, info, 0.0, Call::Commit)?;
-            self.keep(states);
-        }
-        if let Some(wear) = self.law.wear.clone() {
-            self.fill(states, motions, info, true);
-            let c = &mut self.passes.columns;
-            c.damage.copy_from_slice(damage);
-            for (k, answer) in answers.iter().enumerate() {
-                let slip = info.h * c.velocity[1][k].hypot(c.velocity[2][k]);
-                let force = (motions[k].pressure * self.area).max(0.0);
-                c.slip.push(slip);
-                c.friction_work.push(answer.mu * force * slip);
+        let on_contacts = self.law.loaded().filter(|l| !self.law.acts_on_bonds(l));
+        let acting: Vec<Loaded> = on_contacts.cloned().collect();
+        for loaded in acting {
+            // Laws whose answers are taken at the start of a step move their variables; the others see the slip.
+            let answers_first = loaded.plugin.kind.spec().functions.contains(&Call::Prepare);
+            if answers_first && loaded.variables() == 0 {
+                continue;
             }
-            self.passes.run(&wear, info, 0.0, Call::Commit)?;
-            for (answer, volume) in answers.iter_mut().zip(&self.passes.columns.out.volume) {
-                answer.worn = *volume;
+            self.fill(states, motions, info, true);
+            if !answers_first {
+                self.slide(motions, info, damage, answers);
+            }
+            self.passes.run(&loaded, info, 0.0, Call::Commit)?;
+            if loaded.plugin.kind == Kind::WEAR {
+                for (answer, volume) in answers.iter_mut().zip(&self.passes.columns.out.volume) {
+                    answer.worn = *volume;
+                }
             }
             self.keep(states);
         }
         Ok(())
+    }
+
+    /// Damage, slip and friction work at the end of a step.
+    fn slide(&mut self, motions: &[Motion], info: &StepInfo, damage: &[f64], answers: &[Answer]) {
+        let c = &mut self.passes.columns;
+        c.damage.copy_from_slice(damage);
+        for (k, answer) in answers.iter().enumerate() {
+            let slip = info.h * c.velocity[1][k].hypot(c.velocity[2][k]);
+            let force = (motions[k].pressure * self.area).max(0.0);
+            c.slip.push(slip);
+            c.friction_work.push(answer.mu * force * slip);
+        }
     }
 }

@@ -25,7 +25,7 @@ pub(super) struct Held {
 impl Held {
     /// Energy per area stored at the new opening and damage (J/m^2).
     pub fn stored(&self, law: &Interface, k: usize) -> f64 {
-        let m = law.cohesion.as_ref().map_or(0.0, |c| c.plugin.degradation);
+        let m = law.cohesion().map_or(0.0, |c| c.plugin.degradation);
         let share = if law.damages() {
             left(self.damage[k], m)
         } else {
@@ -126,7 +126,7 @@ impl LawEvaluator {
         info: &StepInfo,
         held: &mut Held,
     ) -> Result<(), LawError> {
-        let Some(cohesion) = &law.cohesion else {
+        let Some(cohesion) = law.cohesion() else {
             return Ok(());
         };
         self.columns.size_outputs();
@@ -138,7 +138,7 @@ impl LawEvaluator {
         }
         self.run(cohesion, info, 0.0, Call::Energy)?;
         held.intact.clone_from(&self.columns.out.energy);
-        if law.damage.is_some() {
+        if law.damage().is_some() {
             self.run(cohesion, info, 0.0, Call::Prepare)?;
         }
         self.columns.damage.clone_from(&held.damage);
@@ -149,7 +149,7 @@ impl LawEvaluator {
                 raise(&mut held.damage, &self.columns.out.damage);
             }
         }
-        if let Some(damage) = &law.damage {
+        if let Some(damage) = law.damage() {
             // The damage law sees what the undamaged bond would carry and store.
             self.columns.expose_intact();
             self.run(damage, info, m, Call::Commit)?;
@@ -237,7 +237,7 @@ impl LawEvaluator {
         held: &Held,
         totals: &mut Totals,
     ) {
-        let m = law.cohesion.as_ref().map_or(0.0, |c| c.plugin.degradation);
+        let m = law.cohesion().map_or(0.0, |c| c.plugin.degradation);
         let damages = law.damages();
         let share = |damage: f64| if damages { left(damage, m) } else { 1.0 };
         for (k, at) in self.members.iter().enumerate() {

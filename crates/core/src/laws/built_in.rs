@@ -1,7 +1,8 @@
 //! Laws that are linked into the program, for where their libraries are not beside it. The program hands their tables over:
 //! the core knows none by name.
 
-use super::library::{Kind, LawError, Plugin};
+use super::kind::Kind;
+use super::library::{LawError, Plugin};
 use fretwork_abi::FwPlugin;
 use sha2::{Digest, Sha256};
 use std::ffi::CStr;

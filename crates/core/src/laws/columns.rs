@@ -1,7 +1,7 @@
 //! The columns of a batch: gathered from the network, handed to plugins, read back.
 
 use super::interface::Loaded;
-use super::library::{Call, Kind};
+use super::kind::Output;
 use fretwork_abi::FwBatch;
 use std::ptr::{null, null_mut};
 
@@ -136,47 +136,12 @@ impl Outputs {
         let triples = [&mut self.traction, &mut self.moment];
         single.into_iter().chain(triples.into_iter().flatten())
     }
+}
 
-    /// The first contact for which a call of this kind gave a value that is not finite.
-    pub fn not_finite(&self, kind: Kind, call: Call) -> Option<usize> {
-        let [n, t1, t2] = &self.traction;
-        let [m, m1, m2] = &self.moment;
-        let written: &[&Vec<f64>] = match (kind, call) {
-            (Kind::Contact, Call::Prepare) => &[
-                &self.friction,
-                &self.restitution_n,
-                &self.restitution_t,
-                &self.tension_strength,
-                &self.shear_cohesion,
-                &self.rolling,
-                &self.spinning,
-            ],
-            (Kind::Cohesion, Call::Prepare) => &[
-                n,
-                t1,
-                t2,
-                &self.stiffness_n,
-                &self.stiffness_t,
-                &self.damping_n,
-                &self.damping_t,
-                &self.tension_strength,
-                &self.shear_cohesion,
-                m,
-                m1,
-                m2,
-                &self.stiffness_twist,
-                &self.stiffness_bend,
-            ],
-            (Kind::Cohesion, Call::Energy) => &[&self.energy],
-            (Kind::Damage | Kind::Cohesion, Call::Commit) => &[&self.damage],
-            (Kind::Wear, Call::Commit) => &[&self.volume],
-            _ => &[],
-        };
-        written
-            .iter()
-            .filter_map(|column| first_not_finite(column))
-            .min()
-    }
+/// The first contact for which a call gave a value that is not finite.
+pub(super) fn not_finite(outputs: &[Output<'_>]) -> Option<usize> {
+    let columns = outputs.iter();
+    columns.filter_map(|o| first_not_finite(o.values)).min()
 }
 
 /// Nearly always none: all are looked at, without a branch each, before the first is searched for.

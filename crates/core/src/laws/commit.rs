@@ -1,13 +1,12 @@
 //! Commit: what the laws make of a step that was solved.
 
-use super::columns::StepInfo;
+use super::columns::{Columns, StepInfo};
 use super::interface::{Interface, Loaded};
+use super::kind::Domain;
 use super::library::{Call, LawError};
 use super::pass::{ContactStep, LawEvaluator, MomentStep, Totals};
-use crate::contact::network::Key;
-use crate::contact::{ContactDissipation, Loss, Network};
+use crate::contact::{ContactDissipation, Network};
 use crate::geometry::space::{Space, VectorLike};
-use std::collections::HashSet;
 
 impl LawEvaluator {
     /// Ends the step: `sites` are what the contacts did, in the network's order, `turns` the moments of
@@ -84,46 +83,30 @@ impl LawEvaluator {
                     self.commit_bonds(index, law, network, sites, turns, info, &mut totals)?;
                 }
             }
-            self.select(network, |c| c.law as usize == index);
-            if self.members.is_empty() {
-                continue;
-            }
-            if law.contact.variables() > 0 {
-                self.commit_state(index, law, &law.contact, network, sites, info)?;
-            }
-            self.select(network, |c| c.law as usize == index && !c.beyond);
-            if self.members.is_empty() {
-                continue;
-            }
-            if let (Some(cohesion), false) = (&law.cohesion, law.opens())
-                && cohesion.variables() > 0
-            {
-                self.commit_state(index, law, cohesion, network, sites, info)?;
-            }
-            if let Some(wear) = &law.wear {
-                self.commit_wear(index, law, wear, network, sites, info, &mut totals)?;
+            for loaded in law.loaded().filter(|l| !law.acts_on_bonds(l)) {
+                let spec = loaded.plugin.kind.spec();
+                let Some(commit) = spec.commit.of::<S>() else {
+                    continue;
+                };
+                let all = spec.domain == Domain::All;
+                self.select(network, |c| c.law as usize == index && (all || !c.beyond));
+                if self.members.is_empty() {
+                    continue;
+                }
+                commit(&mut SlotCommit {
+                    interface: law,
+                    law: loaded,
+                    network,
+                    sites,
+                    info,
+                    totals: &mut totals,
+                    passes: self,
+                    index,
+                })?;
             }
         }
         totals.fracture += std::mem::take(&mut network.torn_energy);
         Ok(totals)
-    }
-
-    /// Moves the internal variables of a law that acts on all contacts.
-    fn commit_state<S: Space>(
-        &mut self,
-        index: usize,
-        law: &Interface,
-        loaded: &Loaded,
-        network: &mut Network<S>,
-        sites: &[ContactStep<S>],
-        info: &StepInfo,
-    ) -> Result<(), LawError> {
-        self.gather_after(law, network, sites, info);
-        self.columns.size_outputs();
-        self.run(loaded, info, 0.0, Call::Commit)
-            .map_err(|e| self.at(law, network, e))?;
-        self.keep_state(index, network);
-        Ok(())
     }
 
     /// Stores the new internal variables of the members.
@@ -148,69 +131,90 @@ impl LawEvaluator {
                 .retain(|pair, _| near(pair).is_ok());
         }
     }
+}
 
-    #[allow(clippy::too_many_arguments)]
-    fn commit_wear<S: Space>(
-        &mut self,
-        index: usize,
-        law: &Interface,
-        wear: &Loaded,
-        network: &mut Network<S>,
-        sites: &[ContactStep<S>],
-        info: &StepInfo,
-        totals: &mut Totals,
-    ) -> Result<(), LawError> {
-        self.gather_after(law, network, sites, info);
-        self.forget_debts(network);
-        for at in &self.members {
-            let (contact, site) = (&network.contacts[*at], &sites[*at]);
+/// The end of a step for one law of an interface that acts on contacts: what a [`CommitHook`](super::kind::CommitHook) works
+/// on.
+#[derive(Debug)]
+pub struct SlotCommit<'a, S: Space> {
+    /// The interface.
+    pub interface: &'a Interface,
+    /// The law, one of its slots.
+    pub law: &'a Loaded,
+    /// All contacts.
+    pub network: &'a mut Network<S>,
+    /// What each contact did, in the order of the network.
+    pub sites: &'a [ContactStep<S>],
+    /// Time and scheme.
+    pub info: &'a StepInfo,
+    /// Energies and volumes of the step.
+    pub totals: &'a mut Totals,
+    pub(super) passes: &'a mut LawEvaluator,
+    index: usize,
+}
+
+impl<S: Space> SlotCommit<'_, S> {
+    /// The contacts that the law acts on, as places in the network; values of columns are in their order.
+    pub fn contacts(&self) -> &[usize] {
+        &self.passes.members
+    }
+
+    /// The columns, as the last call left them.
+    pub fn columns(&self) -> &Columns {
+        &self.passes.columns
+    }
+
+    /// Fills the columns by the end of the step.
+    pub fn gather(&mut self) {
+        let Self { passes, .. } = self;
+        passes.gather_after(self.interface, self.network, self.sites, self.info);
+        passes.columns.size_outputs();
+    }
+
+    /// Adds the columns of slip (m) and friction work (J) over the step, negative where friction gave back.
+    pub fn add_slip(&mut self) {
+        let Self { passes, .. } = self;
+        for at in &passes.members {
+            let (contact, site) = (&self.network.contacts[*at], &self.sites[*at]);
             let ut = S::tangential(&contact.normal, &site.average);
-            self.columns.slip.push(info.h * ut.norm());
+            passes.columns.slip.push(self.info.h * ut.norm());
             let work = -site.solution.unilateral_t.dot(&ut);
-            // Where the velocity turns within a step, friction gives work back: later steps owe it to the law.
-            let pair = contact.key.pair();
-            let owed = match self.negative_friction_work.is_empty() {
+            passes.columns.friction_work.push(work);
+        }
+    }
+
+    /// The same with friction work that is not negative: where the velocity turns within a step, friction gives work back,
+    /// and later steps owe it to the law.
+    pub(super) fn add_slip_and_owed_work(&mut self) {
+        self.passes.forget_debts(self.network);
+        self.add_slip();
+        let Self { passes, .. } = self;
+        let works = &mut passes.columns.friction_work;
+        for (at, work) in passes.members.iter().zip(works) {
+            let pair = self.network.contacts[*at].key.pair();
+            let owed = match passes.negative_friction_work.is_empty() {
                 true => 0.0,
-                false => self.negative_friction_work.remove(&pair).unwrap_or(0.0),
+                false => passes.negative_friction_work.remove(&pair).unwrap_or(0.0),
             };
-            let work = work + owed;
-            if work < 0.0 {
-                self.negative_friction_work.insert(pair, work);
+            *work += owed;
+            if *work < 0.0 {
+                passes.negative_friction_work.insert(pair, *work);
             }
-            self.columns.friction_work.push(work.max(0.0));
+            *work = work.max(0.0);
         }
-        self.columns.size_outputs();
-        self.run(wear, info, 0.0, Call::Commit)
-            .map_err(|e| self.at(law, network, e))?;
-        // What a bond gives when it breaks it gives once, also in a cycle that stands for many.
-        let breaks = network
-            .bond_breaks
-            .iter()
-            .filter(|_| network.cycle_multiplier > 1.0);
-        let broke: HashSet<Key> = breaks.map(|b| b.key).collect();
-        for (k, at) in self.members.iter().enumerate() {
-            let times = if broke.contains(&network.contacts[*at].key) {
-                1.0
-            } else {
-                network.cycle_multiplier
-            };
-            let volume = times * self.columns.out.volume[k];
-            if let Some(surface) = network.contacts[*at].key.surface() {
-                totals.worn_first += volume;
-                if volume > 0.0 {
-                    *network.worn.entry(surface).or_default() += volume;
-                }
-                if let (Some(losses), true) = (&mut network.losses, volume > 0.0) {
-                    let contact = *at as u32;
-                    losses.push(Loss { contact, volume });
-                }
-            } else {
-                totals.worn_third += volume;
-            }
-        }
-        if wear.variables() > 0 {
-            self.keep_state(index, network);
-        }
-        Ok(())
+    }
+
+    /// Calls the law.
+    ///
+    /// # Errors
+    /// Its own error, with the contact at fault.
+    pub fn call(&mut self) -> Result<(), LawError> {
+        let called = self.passes.run(self.law, self.info, 0.0, Call::Commit);
+        called.map_err(|e| self.passes.at(self.interface, self.network, e))
+    }
+
+    /// Stores the new internal variables.
+    pub fn keep_state(&mut self) {
+        self.passes.keep_state(self.index, self.network);
     }
 }

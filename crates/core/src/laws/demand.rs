@@ -4,7 +4,8 @@
 //! time: a law that is constant is asked once, any other on a bench of trial contacts.
 
 use super::bench::{Bench, Motion, State};
-use super::interface::{BondRule, Interface};
+use super::interface::{BondRule, Interface, Loaded};
+use super::kind::Kind;
 use super::library::LawError;
 
 /// Whether a law asks for something, from the least to the most.
@@ -53,16 +54,14 @@ impl Interface {
     /// What a law said to the trial.
     pub fn demand(&self, dimension: u32, radii: &[f64]) -> Result<LawRequirements, LawError> {
         let bonds = self.opens() && (self.bonds != BondRule::Never || self.healing.is_some());
-        let acting = Self {
-            cohesion: self.cohesion.clone().filter(|_| !self.opens()),
-            damage: None,
-            wear: None,
-            healing: None,
-            ..self.clone()
-        }
-        .compose()?;
+        let acting = self.clone().with_bonds(self.bonds, None)?;
+        let tried = |l: &Loaded| {
+            let bonds = self.acts_on_bonds(l);
+            !bonds && [Kind::CONTACT, Kind::COHESION].contains(&l.plugin.kind)
+        };
+        let acting = acting.retain(tried)?;
         let constant = acting.constant_contact();
-        let simple = constant && acting.cohesion.is_none();
+        let simple = constant && acting.cohesion().is_none();
         let (mut rubs, mut turns, mut grips) = (Vec::new(), Vec::new(), Vec::new());
         for radius in radii {
             let mut bench = Bench::new(acting.clone(), dimension, *radius);

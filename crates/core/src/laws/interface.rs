@@ -1,5 +1,6 @@
-//! An interface law: one plugin in each of four slots, with parameters.
+//! An interface law: a list of slots, at most one law of each kind, with parameters.
 
+use super::kind::{Domain, Kind};
 use super::library::{LawError, Plugin};
 use fretwork_abi::{
     FLAG_BREAKS, FLAG_CONSTANT, FLAG_FORMS, FLAG_MOMENT, FLAG_OPENING, FLAG_TENSION_ONLY,
@@ -19,6 +20,21 @@ pub struct Loaded {
 }
 
 impl Loaded {
+    /// A plugin with these values of its parameters, in the order of its schema.
+    pub fn new(plugin: Plugin, parameters: Vec<f64>) -> Self {
+        Self {
+            plugin: Arc::new(plugin),
+            parameters,
+            first_variable: 0,
+        }
+    }
+
+    /// A plugin with the defaults of its parameters.
+    pub fn with_defaults(plugin: Plugin) -> Self {
+        let parameters = plugin.parameters.iter().map(|p| p.default).collect();
+        Self::new(plugin, parameters)
+    }
+
     /// Number of internal variables.
     pub fn variables(&self) -> usize {
         self.plugin.variables.len()
@@ -68,55 +84,106 @@ impl AreaRule {
     }
 }
 
-/// The law of a pair of materials.
+/// The law of a pair of materials: slots of laws, in the order of their kinds.
 #[derive(Clone, Debug)]
 pub struct Interface {
     /// Name in the case.
     pub name: String,
-    /// Friction, restitution, rolling.
-    pub contact: Loaded,
-    /// Traction against opening.
-    pub cohesion: Option<Loaded>,
-    /// Growth of damage.
-    pub damage: Option<Loaded>,
-    /// What is removed.
-    pub wear: Option<Loaded>,
     /// When bonds are made.
     pub bonds: BondRule,
     /// Time under compression after which a contact bonds, also again after its bond broke (s).
     pub healing: Option<f64>,
     /// Area of a contact.
     pub area: AreaRule,
+    /// One law a kind, sorted by kind; a contact law first.
+    slots: Vec<Loaded>,
+    /// What the cohesion law has, by flags.
+    cohesion_flags: u64,
 }
 
 impl Interface {
-    /// The plugins in use.
-    pub fn loaded(&self) -> impl Iterator<Item = &Loaded> {
-        std::iter::once(&self.contact)
-            .chain(self.cohesion.iter())
-            .chain(self.damage.iter())
-            .chain(self.wear.iter())
-    }
-
-    /// Numbers the internal variables and checks that the slots fit together.
+    /// An interface of these laws, in any order, with the default rules: bonds from the start where the laws make bonds, no
+    /// healing, and the default area.
     ///
     /// # Errors
-    /// A damage law without a cohesion law that has an opening.
-    pub fn compose(mut self) -> Result<Self, LawError> {
+    /// No contact law, two laws of one kind, or slots that do not fit together.
+    pub fn new(
+        name: impl Into<String>,
+        laws: impl IntoIterator<Item = Loaded>,
+    ) -> Result<Self, LawError> {
+        let mut law = Self {
+            name: name.into(),
+            bonds: BondRule::default(),
+            healing: None,
+            area: AreaRule::default(),
+            slots: laws.into_iter().collect(),
+            cohesion_flags: 0,
+        };
+        law.arrange()?;
+        Ok(law)
+    }
+
+    /// The same with another law, in the place of that of its kind where there is one.
+    ///
+    /// # Errors
+    /// Slots that do not fit together.
+    pub fn with(mut self, law: Loaded) -> Result<Self, LawError> {
+        self.slots.retain(|l| l.plugin.kind != law.plugin.kind);
+        self.slots.push(law);
+        self.arrange()?;
+        Ok(self)
+    }
+
+    /// The same without the laws that a test refuses.
+    ///
+    /// # Errors
+    /// No contact law is left, or slots that do not fit together.
+    pub fn retain(mut self, keep: impl FnMut(&Loaded) -> bool) -> Result<Self, LawError> {
+        self.slots.retain(keep);
+        self.arrange()?;
+        Ok(self)
+    }
+
+    /// The same with another rule for when bonds are made, and a healing time (s).
+    ///
+    /// # Errors
+    /// Healing without a cohesion law that forms bonds in contact.
+    pub fn with_bonds(mut self, bonds: BondRule, healing: Option<f64>) -> Result<Self, LawError> {
+        (self.bonds, self.healing) = (bonds, healing);
+        self.check()?;
+        Ok(self)
+    }
+
+    /// Sorts the slots, numbers the internal variables and checks that the slots fit together.
+    fn arrange(&mut self) -> Result<(), LawError> {
+        self.slots.sort_by_key(|l| l.plugin.kind);
+        let kinds = self.slots.windows(2);
+        let twice = kinds
+            .filter(|w| w[0].plugin.kind == w[1].plugin.kind)
+            .next();
+        let reason = match (twice, self.slots.first().map(|l| l.plugin.kind)) {
+            (Some(w), _) => Some(format!(
+                "interface `{}` has two {} laws, `{}` and `{}`; it takes one of each kind",
+                self.name, w[0].plugin.kind, w[0].plugin.name, w[1].plugin.name
+            )),
+            (_, Some(kind)) if kind == Kind::CONTACT => None,
+            _ => Some(format!("interface `{}` has no contact law", self.name)),
+        };
+        if let Some(reason) = reason {
+            return Err(LawError::Pairing { reason });
+        }
         let mut next = 0;
-        for loaded in [
-            Some(&mut self.contact),
-            self.cohesion.as_mut(),
-            self.damage.as_mut(),
-            self.wear.as_mut(),
-        ]
-        .into_iter()
-        .flatten()
-        {
+        for loaded in &mut self.slots {
             loaded.first_variable = next;
             next += loaded.variables();
         }
-        if let (Some(_), Some(cohesion)) = (self.healing, &self.cohesion)
+        self.cohesion_flags = self.cohesion().map_or(0, |c| c.plugin.flags);
+        self.check()
+    }
+
+    /// Whether the slots fit together.
+    fn check(&self) -> Result<(), LawError> {
+        if let (Some(_), Some(cohesion)) = (self.healing, self.cohesion())
             && !(cohesion.has(FLAG_OPENING) && cohesion.has(FLAG_FORMS))
         {
             return Err(LawError::Pairing {
@@ -126,28 +193,55 @@ impl Interface {
                 ),
             });
         }
-        if let Some(damage) = &self.damage {
-            match &self.cohesion {
-                None => {
-                    return Err(LawError::Pairing {
-                        reason: format!(
-                            "the damage law `{}` of interface `{}` has no cohesion to damage; give the interface a cohesion law",
-                            damage.plugin.name, self.name
-                        ),
-                    });
-                }
-                Some(c) if !c.has(FLAG_OPENING) || c.plugin.degradation <= 0.0 => {
-                    return Err(LawError::Pairing {
-                        reason: format!(
-                            "the cohesion law `{}` of interface `{}` has no opening that the damage law `{}` could follow; choose another cohesion or drop the damage",
-                            c.plugin.name, self.name, damage.plugin.name
-                        ),
-                    });
-                }
-                Some(_) => {}
-            }
+        let mut slots = self.slots.iter();
+        slots.try_for_each(|l| (l.plugin.kind.spec().fits)(self))
+    }
+
+    /// The law of a kind.
+    pub fn law(&self, kind: Kind) -> Option<&Loaded> {
+        self.slots.iter().find(|l| l.plugin.kind == kind)
+    }
+
+    /// The contact law.
+    pub fn contact(&self) -> &Loaded {
+        // `arrange` refuses an interface whose first slot is none.
+        &self.slots[0]
+    }
+
+    /// Traction against opening.
+    pub fn cohesion(&self) -> Option<&Loaded> {
+        self.law(Kind::COHESION)
+    }
+
+    /// Growth of damage.
+    pub fn damage(&self) -> Option<&Loaded> {
+        self.law(Kind::DAMAGE)
+    }
+
+    /// What is removed.
+    pub fn wear(&self) -> Option<&Loaded> {
+        self.law(Kind::WEAR)
+    }
+
+    /// The parameters of the law of a kind, in the order of its schema.
+    pub fn parameters_mut(&mut self, kind: Kind) -> Option<&mut Vec<f64>> {
+        let mut slots = self.slots.iter_mut();
+        let found = slots.find(|l| l.plugin.kind == kind);
+        found.map(|l| &mut l.parameters)
+    }
+
+    /// The laws, in the order in which they are evaluated.
+    pub fn loaded(&self) -> impl Iterator<Item = &Loaded> {
+        self.slots.iter()
+    }
+
+    /// Whether a law acts on intact bonds; else on contacts.
+    pub fn acts_on_bonds(&self, law: &Loaded) -> bool {
+        match law.plugin.kind.spec().domain {
+            Domain::Bonds => true,
+            Domain::ByOpening => law.has(FLAG_OPENING),
+            Domain::All | Domain::Near => false,
         }
-        Ok(self)
     }
 
     /// Number of internal variables over all slots.
@@ -157,19 +251,14 @@ impl Interface {
 
     /// Those of the laws that act on every contact, bonded or not.
     pub fn variables_of_contacts(&self) -> usize {
-        let cohesion = self.cohesion.as_ref().filter(|_| !self.opens());
-        [Some(&self.contact), cohesion, self.wear.as_ref()]
-            .into_iter()
-            .flatten()
-            .map(Loaded::variables)
-            .sum()
+        let on_contacts = self.loaded().filter(|l| !self.acts_on_bonds(l));
+        on_contacts.map(Loaded::variables).sum()
     }
 
     /// The columns of the laws that act on bonds.
     pub fn variables_of_bonds(&self) -> impl Iterator<Item = usize> {
-        let cohesion = self.cohesion.as_ref().filter(|_| self.opens());
-        let bonds = cohesion.into_iter().chain(self.damage.as_ref());
-        bonds.flat_map(|l| l.first_variable..l.first_variable + l.variables())
+        let on_bonds = self.loaded().filter(|l| self.acts_on_bonds(l));
+        on_bonds.flat_map(|l| l.first_variable..l.first_variable + l.variables())
     }
 
     /// Initial values of the internal variables.
@@ -191,28 +280,26 @@ impl Interface {
 
     /// Whether the cohesion law has an opening, so that it makes bonds; without one it acts on every contact.
     pub fn opens(&self) -> bool {
-        self.cohesion.as_ref().is_some_and(|c| c.has(FLAG_OPENING))
+        self.cohesion_flags & FLAG_OPENING != 0
     }
 
     /// Whether bonds resist bending and twist.
     pub fn rotates(&self) -> bool {
-        self.cohesion.as_ref().is_some_and(|c| c.has(FLAG_MOMENT))
+        self.cohesion_flags & FLAG_MOMENT != 0
     }
 
     /// Whether damage grows: by a damage law, or by the cohesion itself.
     pub fn damages(&self) -> bool {
-        self.damage.is_some() || self.cohesion.as_ref().is_some_and(|c| c.has(FLAG_BREAKS))
+        self.cohesion_flags & FLAG_BREAKS != 0 || self.damage().is_some()
     }
 
     /// Whether the normal stiffness only pulls.
     pub fn tension_only(&self) -> bool {
-        self.cohesion
-            .as_ref()
-            .is_some_and(|c| c.has(FLAG_TENSION_ONLY))
+        self.cohesion_flags & FLAG_TENSION_ONLY != 0
     }
 
     /// Whether friction and restitution are the same for all contacts and steps.
     pub fn constant_contact(&self) -> bool {
-        self.contact.has(FLAG_CONSTANT)
+        self.contact().has(FLAG_CONSTANT)
     }
 }

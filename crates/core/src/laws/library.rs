@@ -1,6 +1,7 @@
 //! A plugin: a shared library opened at run time, checked, and called.
 
 use super::built_in::hex;
+use super::kind::Kind;
 use super::range::Range;
 use super::{child, watch};
 use fretwork_abi as abi;
@@ -8,51 +9,7 @@ use sha2::{Digest, Sha256};
 use std::ffi::{CStr, c_char};
 use std::mem::{MaybeUninit, offset_of};
 use std::path::{Path, PathBuf};
-use std::{fmt, ptr};
-
-/// What a plugin is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Kind {
-    /// Friction, restitution, rolling.
-    Contact,
-    /// Traction against opening.
-    Cohesion,
-    /// Growth of damage.
-    Damage,
-    /// What is removed.
-    Wear,
-}
-
-impl Kind {
-    /// All kinds.
-    pub const ALL: [Self; 4] = [Self::Contact, Self::Cohesion, Self::Damage, Self::Wear];
-
-    /// The word used in cases and file names.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Contact => "contact",
-            Self::Cohesion => "cohesion",
-            Self::Damage => "damage",
-            Self::Wear => "wear",
-        }
-    }
-
-    pub(super) fn from_code(code: i32) -> Option<Self> {
-        match code {
-            abi::KIND_CONTACT => Some(Self::Contact),
-            abi::KIND_COHESION => Some(Self::Cohesion),
-            abi::KIND_DAMAGE => Some(Self::Damage),
-            abi::KIND_WEAR => Some(Self::Wear),
-            _ => None,
-        }
-    }
-}
-
-impl fmt::Display for Kind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.word())
-    }
-}
+use std::ptr;
 
 /// Why a law cannot be used, or failed.
 #[derive(Debug, thiserror::Error)]
@@ -102,6 +59,12 @@ pub enum LawError {
     /// Slots that do not fit together.
     #[error("{reason}")]
     Pairing {
+        /// Why.
+        reason: String,
+    },
+    /// A kind that cannot be registered.
+    #[error("{reason}")]
+    Kind {
         /// Why.
         reason: String,
     },
@@ -203,7 +166,8 @@ impl LawError {
             Self::Unusable { .. }
             | Self::Pinned { .. }
             | Self::Unknown { .. }
-            | Self::Pairing { .. } => None,
+            | Self::Pairing { .. }
+            | Self::Kind { .. } => None,
         }
     }
 
@@ -278,6 +242,28 @@ pub enum Call {
     Commit,
     /// Stored energy.
     Energy,
+}
+
+impl Call {
+    /// The function of the plugin table.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Initialise => "initialise",
+            Self::Prepare => "prepare",
+            Self::Commit => "commit",
+            Self::Energy => "energy",
+        }
+    }
+}
+
+/// The codes of kinds in words: those of the plugin interface, and those registered beside them.
+fn known_codes() -> String {
+    let more = Kind::all()
+        .into_iter()
+        .filter(|k| !Kind::BUILT_IN.contains(k));
+    more.fold("1 to 4".to_owned(), |codes, kind| {
+        format!("{codes}, or {}", kind.code())
+    })
 }
 
 /// A checked plugin. Its library stays open for the life of the program.
@@ -402,8 +388,13 @@ impl Plugin {
         }
         // SAFETY: the table begins with its size and version, checked before anything else is read.
         let table = unsafe { read_table(table) }.map_err(&refuse)?;
-        let kind = Kind::from_code(table.kind)
-            .ok_or_else(|| refuse(format!("its kind {} is unknown; use 1 to 4", table.kind)))?;
+        let kind = Kind::from_code(table.kind).ok_or_else(|| {
+            refuse(format!(
+                "its kind {} is unknown; use {}",
+                table.kind,
+                known_codes()
+            ))
+        })?;
         // SAFETY: the ABI promises NUL-terminated static text.
         let text =
             |p, what: &str| unsafe { text(p) }.map_err(|e| refuse(format!("its {what} {e}")));
@@ -438,18 +429,12 @@ impl Plugin {
     }
 
     fn check(&self) -> Result<(), String> {
-        let needed: &[(&str, bool)] = match self.kind {
-            Kind::Contact => &[("prepare", self.table.prepare.is_some())],
-            Kind::Cohesion => &[
-                ("prepare", self.table.prepare.is_some()),
-                ("energy", self.table.energy.is_some()),
-            ],
-            Kind::Damage | Kind::Wear => &[("commit", self.table.commit.is_some())],
-        };
-        if let Some((function, _)) = needed.iter().find(|n| !n.1) {
+        let needed = self.kind.spec().functions;
+        if let Some(call) = needed.iter().find(|call| !self.has_function(**call)) {
             return Err(format!(
-                "a {} law needs the function `{function}`, which is null; set it in the table",
-                self.kind
+                "a {} law needs the function `{}`, which is null; set it in the table",
+                self.kind,
+                call.name()
             ));
         }
         if !(self.degradation.is_finite() && self.degradation >= 0.0) {
@@ -480,14 +465,24 @@ impl Plugin {
         Ok(())
     }
 
+    fn has_function(&self, call: Call) -> bool {
+        let function = match call {
+            Call::Initialise => self.table.initialise,
+            Call::Prepare => self.table.prepare,
+            Call::Commit => self.table.commit,
+            Call::Energy => self.table.energy,
+        };
+        function.is_some()
+    }
+
     /// Whether the law has something to do at the end of a step.
     pub fn commits(&self) -> bool {
-        self.table.commit.is_some()
+        self.has_function(Call::Commit)
     }
 
     /// Whether the law sets the internal variables of new contacts itself.
     pub fn initialises(&self) -> bool {
-        self.table.initialise.is_some()
+        self.has_function(Call::Initialise)
     }
 }
 

@@ -4,12 +4,12 @@
 //! form; commit moves openings, lets damage grow, breaks bonds, removes matter, and books the energy.
 
 use super::bonds::Held;
-use super::columns::{Columns, StepInfo};
+use super::columns::{Columns, StepInfo, not_finite};
 use super::gather::contact_area;
 use super::guarded::{self, Guarded};
 use super::interface::{Interface, Loaded};
 use super::library::{Call, LawError};
-use super::range::Largest;
+use super::range::{Largest, settle};
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
@@ -285,7 +285,7 @@ impl LawEvaluator {
             } else {
                 self.select(network, |c| c.law as usize == index && !c.beyond);
                 // Without an opening the cohesion acts on every contact, but not on those that are there for their speed.
-                let head = law.cohesion.as_ref().map_or(0, |_| self.members.len());
+                let head = law.cohesion().map_or(0, |_| self.members.len());
                 self.select_more(network, |c| c.law as usize == index && c.beyond);
                 head
             };
@@ -300,7 +300,7 @@ impl LawEvaluator {
                 self.gather(law, network, &before.relative, info);
             }
             self.columns.size_outputs();
-            self.run(&law.contact, info, 0.0, Call::Prepare)
+            self.run(law.contact(), info, 0.0, Call::Prepare)
                 .map_err(|e| self.at(law, network, e))?;
             let answer = |out: &super::columns::Outputs, k: usize| Friction {
                 mu: out.friction[k],
@@ -341,7 +341,7 @@ impl LawEvaluator {
                     });
                 }
             }
-            let Some(cohesion) = &law.cohesion else {
+            let Some(cohesion) = law.cohesion() else {
                 continue;
             };
             if head == 0 {
@@ -440,7 +440,8 @@ impl LawEvaluator {
             Call::Commit | Call::Initialise => self.columns.state_not_finite(),
             _ => None,
         };
-        if let Some(contact) = self.columns.out.not_finite(plugin.kind, call).or(state) {
+        let mut outputs = (plugin.kind.spec().outputs)(&mut self.columns.out, call);
+        if let Some(contact) = not_finite(&outputs).or(state) {
             return Err(LawError::NotFinite {
                 kind: plugin.kind,
                 name: plugin.name.clone(),
@@ -451,11 +452,7 @@ impl LawEvaluator {
         if matches!(self.care, Care::Lenient | Care::Repeated) {
             return Ok(());
         }
-        match self
-            .columns
-            .out
-            .settle(plugin.kind, call, &mut self.largest)
-        {
+        match settle(&mut outputs, plugin.kind, &mut self.largest) {
             None => Ok(()),
             Some(outside) => Err(LawError::OutOfRange {
                 kind: plugin.kind,

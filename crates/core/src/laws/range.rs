@@ -1,7 +1,6 @@
 //! The range in which an output of a law can lie, where physics or the plugin interface gives one.
 
-use super::columns::Outputs;
-use super::library::{Call, Kind};
+use super::kind::{Kind, Output};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -49,13 +48,23 @@ impl Range {
     }
 }
 
-/// The largest value that each column has had so far, by kind of law and place of the column: what round-off is measured by.
-/// One contact alone has no other to be compared with at the end of its life.
+/// The largest value that each column has had so far, by code of the kind of law and place of the column: what round-off is
+/// measured by. One contact alone has no other to be compared with at the end of its life.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Largest([[f64; COLUMNS]; Kind::ALL.len()]);
+pub(super) struct Largest(Vec<(i32, Vec<f64>)>);
 
-/// The most columns that a law writes in a call.
-const COLUMNS: usize = 8;
+impl Largest {
+    fn of(&mut self, kind: Kind, columns: usize) -> &mut [f64] {
+        let known = self.0.iter().position(|(code, _)| *code == kind.code());
+        let at = known.unwrap_or_else(|| {
+            self.0.push((kind.code(), Vec::new()));
+            self.0.len() - 1
+        });
+        let values = &mut self.0[at].1;
+        values.resize(values.len().max(columns), 0.0);
+        values
+    }
+}
 
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -75,86 +84,28 @@ pub(super) struct Outside {
     pub range: Range,
 }
 
-impl Outputs {
-    /// The first column in which a call of this kind gave a value that cannot be; values beyond an end by round-off are put on
-    /// it. Values are finite. Tractions, moments and stored energies may have any sign; that damage falls is no error, as the
-    /// host holds it up.
-    pub(super) fn settle(
-        &mut self,
-        kind: Kind,
-        call: Call,
-        largest: &mut Largest,
-    ) -> Option<Outside> {
-        let largest = &mut largest.0[kind as usize];
-        let columns =
-            self.ranged(kind, call)
-                .into_iter()
-                .zip(largest)
-                .flat_map(|(column, largest)| {
-                    column.map(|(name, values, range)| (name, values, range, largest))
-                });
-        for (column, values, range, largest) in columns {
-            if let Some(contact) = range.settle(values, largest) {
-                return Some(Outside {
-                    contact,
-                    column,
-                    value: values[contact],
-                    range,
-                });
-            }
-        }
-        None
-    }
-
-    /// The columns that a call writes and that have a range.
-    fn ranged(
-        &mut self,
-        kind: Kind,
-        call: Call,
-    ) -> [Option<(&'static str, &mut Vec<f64>, Range)>; COLUMNS] {
-        use Range::{NotNegative, Share, Signed};
-        let tension = Some((
-            "out_tension_strength",
-            &mut self.tension_strength,
-            NotNegative,
-        ));
-        let shear = Some(("out_shear_cohesion", &mut self.shear_cohesion, NotNegative));
-        match (kind, call) {
-            (Kind::Contact, Call::Prepare) => [
-                Some(("out_friction", &mut self.friction, NotNegative)),
-                Some(("out_restitution_n", &mut self.restitution_n, Share)),
-                Some(("out_restitution_t", &mut self.restitution_t, Signed)),
-                Some(("out_rolling", &mut self.rolling, NotNegative)),
-                Some(("out_spinning", &mut self.spinning, NotNegative)),
-                tension,
-                shear,
-                None,
-            ],
-            (Kind::Cohesion, Call::Prepare) => [
-                Some(("out_stiffness_n", &mut self.stiffness_n, NotNegative)),
-                Some(("out_stiffness_t", &mut self.stiffness_t, NotNegative)),
-                Some(("out_damping_n", &mut self.damping_n, NotNegative)),
-                Some(("out_damping_t", &mut self.damping_t, NotNegative)),
-                Some((
-                    "out_stiffness_twist",
-                    &mut self.stiffness_twist,
-                    NotNegative,
-                )),
-                Some(("out_stiffness_bend", &mut self.stiffness_bend, NotNegative)),
-                tension,
-                shear,
-            ],
-            (Kind::Damage | Kind::Cohesion, Call::Commit) => {
-                alone(("out_damage", &mut self.damage, Share))
-            }
-            (Kind::Wear, Call::Commit) => alone(("out_volume", &mut self.volume, NotNegative)),
-            _ => [const { None }; COLUMNS],
+/// The first column in which a call gave a value that cannot be; values beyond an end by round-off are put on it. Values are
+/// finite. Tractions, moments and stored energies may have any sign; that damage falls is no error, as the host holds it up.
+pub(super) fn settle(
+    outputs: &mut [Output<'_>],
+    kind: Kind,
+    largest: &mut Largest,
+) -> Option<Outside> {
+    let largest = largest.of(kind, outputs.len());
+    for (output, largest) in outputs.iter_mut().zip(largest) {
+        let Some(range) = output.range else {
+            continue;
+        };
+        if let Some(contact) = range.settle(output.values, largest) {
+            return Some(Outside {
+                contact,
+                column: output.name,
+                value: output.values[contact],
+                range,
+            });
         }
     }
-}
-
-fn alone<T>(column: T) -> [Option<T>; COLUMNS] {
-    [Some(column), None, None, None, None, None, None, None]
+    None
 }
 
 #[cfg(test)]

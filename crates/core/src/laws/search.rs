@@ -1,7 +1,8 @@
 //! Where plugins are found: by kind and name, on a search path. A case cannot name a file.
 
 use super::built_in::BuiltInLaws;
-use super::library::{Kind, LawError, Plugin};
+use super::kind::Kind;
+use super::library::{LawError, Plugin};
 use super::{child, trust};
 use std::path::{Path, PathBuf};
 
@@ -293,7 +294,7 @@ fn parse(path: &Path) -> Option<(Kind, String)> {
         .strip_prefix(DLL_PREFIX)?
         .strip_suffix(DLL_SUFFIX)?
         .strip_prefix("fretwork_")?;
-    Kind::ALL.into_iter().find_map(|kind| {
+    Kind::all().into_iter().find_map(|kind| {
         let name = stem.strip_prefix(kind.word())?.strip_prefix('_')?;
         // No law's file has a dash: cargo's names with a hash do.
         (name_is_valid(name) && !name.contains('-')).then(|| (kind, name.replace('_', "-")))
@@ -336,12 +337,12 @@ mod tests {
 
     #[test]
     fn file_names_are_read_back() {
-        let path = PathBuf::from(file_name(Kind::Damage, "mohr-coulomb-brittle"));
+        let path = PathBuf::from(file_name(Kind::DAMAGE, "mohr-coulomb-brittle"));
         assert_eq!(
             parse(&path),
-            Some((Kind::Damage, "mohr-coulomb-brittle".into()))
+            Some((Kind::DAMAGE, "mohr-coulomb-brittle".into()))
         );
-        let hashed = file_name(Kind::Damage, "mac").replace("mac", "mac-0a1b2c");
+        let hashed = file_name(Kind::DAMAGE, "mac").replace("mac", "mac-0a1b2c");
         assert_eq!(parse(&PathBuf::from(hashed)), None);
     }
 }

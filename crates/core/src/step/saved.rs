@@ -9,6 +9,7 @@ use crate::bodies::Bodies;
 use crate::contact::Network;
 use crate::energy::Energy;
 use crate::geometry::space::Space;
+use crate::laws::Kind;
 use crate::laws::pass::Carried;
 use crate::solve::AutoState;
 use crate::wear::{Scar, WornThrough};
@@ -55,14 +56,14 @@ impl<S: Space> Saved<'_, S> {
             && self.received.len() == s.received.len()
             && self.scars.len() == s.scars.len()
             && self.network.memory.len() == s.network.memory.len()
-            && parameters.eq(s.laws.iter().map(|l| l.contact.parameters.len()))
+            && parameters.eq(s.laws.iter().map(|l| l.contact().parameters.len()))
     }
 }
 
 impl<S: Space> Simulation<S> {
     /// Its state, to be kept.
     pub fn save(&self) -> Saved<'_, S> {
-        let parameters = self.laws.iter().map(|l| l.contact.parameters.clone());
+        let parameters = self.laws.iter().map(|l| l.contact().parameters.clone());
         Saved {
             bodies: Cow::Borrowed(&self.bodies),
             network: Cow::Borrowed(&self.network),
@@ -99,7 +100,9 @@ impl<S: Space> Simulation<S> {
         self.gravity = saved.gravity;
         self.solver.tolerance = saved.tolerance;
         for (law, values) in self.laws.iter_mut().zip(saved.contact_parameters) {
-            law.contact.parameters = values;
+            if let Some(parameters) = law.parameters_mut(Kind::CONTACT) {
+                *parameters = values;
+            }
         }
         (self.time, self.steps) = (saved.time, saved.steps);
         self.time_excess = saved.time_excess;

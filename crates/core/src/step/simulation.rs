@@ -98,6 +98,8 @@ pub struct Simulation<S: Space> {
     pub scars: Vec<Scar<S>>,
     /// The first surface that was worn as deep as it is thick.
     pub worn_through: Option<WornThrough>,
+    /// What grains and contacts carry for output, by name.
+    pub fields: crate::fields::Fields<S>,
     /// What acts from outside and changes in time.
     pub control: super::control::Control<S>,
     /// What the sum of the steps in `time` has too much by rounding (s).
@@ -163,6 +165,7 @@ impl<S: Space> Simulation<S> {
             started: Vec::new(),
             scars: Vec::new(),
             worn_through: None,
+            fields: Default::default(),
             control: Default::default(),
             time_excess: 0.0,
             habit: solve::AutoState::default(),

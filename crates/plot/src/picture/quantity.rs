@@ -1,7 +1,8 @@
 //! The quantity that colours the grains of a frame: their speed, or the damage of their bonds where there are bonds.
 
 use crate::{Paint, Scale, round_top};
-use fretwork_core::contact::Key;
+use fretwork_core::contact::{BondState, Key};
+use fretwork_core::fields::Field;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use fretwork_observe::placement::is_first;
@@ -42,7 +43,7 @@ pub(super) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<Scale>) {
         }
         Scale {
             label: "speed |v|".to_owned(),
-            unit: "m/s".to_owned(),
+            unit: unit(s.fields.grains.get("velocity_x")),
             top: round_top(high),
             bonds: false,
         }
@@ -52,6 +53,11 @@ pub(super) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<Scale>) {
         false => Paint::Grey,
     };
     (of.iter().zip(&grain).map(paint).collect(), Some(scale))
+}
+
+/// The unit of a field as its registry has it.
+fn unit<S: Space, T>(field: Option<&Field<S, T>>) -> String {
+    field.map_or_else(String::new, |f| f.unit.to_owned())
 }
 
 fn damage_scale(bonds: bool) -> Scale {
@@ -75,9 +81,12 @@ fn damage<S: Space>(s: &Simulation<S>) -> Vec<f64> {
         let (sum, count) = &mut sums[body as usize];
         (*sum, *count) = (*sum + damage, *count + 1.0);
     };
+    let field = s.fields.contacts.get("damage");
     for contact in &s.network.contacts {
-        if let Some(bond) = s.network.bond(contact).filter(|b| b.intact()) {
-            contact.bodies.iter().for_each(|b| add(*b, bond.damage));
+        let intact = matches!(s.network.bond_state(contact), BondState::Intact { .. });
+        if let Some(field) = field.filter(|_| intact) {
+            let damage = field.get(s, contact);
+            contact.bodies.iter().for_each(|b| add(*b, damage));
         }
     }
     for &(candidate, antagonist) in &s.network.broken_pairs {

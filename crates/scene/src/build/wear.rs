@@ -3,6 +3,7 @@
 use super::{Builder, Dimensional};
 use crate::case::{BodySpec, InterfaceSpec};
 use crate::source::InputError;
+use fretwork_core::laws::Kind;
 use fretwork_core::wear::Scar;
 
 impl<S: Dimensional> Builder<'_, S> {
@@ -75,7 +76,8 @@ impl<S: Dimensional> Builder<'_, S> {
                 continue;
             }
             let of = |i: &&InterfaceSpec| {
-                i.wear.is_some() && (i.between.0 == body.material || i.between.1 == body.material)
+                i.law(Kind::WEAR).is_some()
+                    && (i.between.0 == body.material || i.between.1 == body.material)
             };
             let laws: Vec<&InterfaceSpec> = self.case.interfaces.iter().filter(of).collect();
             let wrong = if laws.is_empty() {
@@ -96,13 +98,10 @@ impl<S: Dimensional> Builder<'_, S> {
             }
         }
         for (k, law) in self.case.interfaces.iter().enumerate() {
-            let by_friction = matches!(law.wear.as_deref(), Some("dissipated-energy" | "t-gamma"));
-            let smooth = law.contact == "frictionless"
-                || law
-                    .parameters
-                    .contact
-                    .get("mu")
-                    .is_some_and(|mu| mu.value == 0.0);
+            let by_friction = matches!(law.law(Kind::WEAR), Some("dissipated-energy" | "t-gamma"));
+            let contact = law.law(Kind::CONTACT).unwrap_or_default();
+            let mu = law.parameter(Kind::CONTACT, "mu");
+            let smooth = contact == "frictionless" || mu.is_some_and(|mu| mu.value == 0.0);
             let worn = |m: &String| {
                 let mut bodies = self.case.bodies.iter();
                 bodies.any(|b| b.wears.is_some() && b.material == *m)
@@ -110,8 +109,8 @@ impl<S: Dimensional> Builder<'_, S> {
             if by_friction && smooth && (worn(&law.between.0) || worn(&law.between.1)) {
                 let message = format!(
                     "the wear law `{}` takes its volume from the work of friction, and the contact law `{}` leaves none; give it friction, or take `archard`",
-                    law.wear.as_deref().unwrap_or_default(),
-                    law.contact
+                    law.law(Kind::WEAR).unwrap_or_default(),
+                    contact
                 );
                 return Err(self.fail(format!("interfaces.{k}.wear"), message));
             }

@@ -1,8 +1,9 @@
 //! Interfaces made in Rust.
 
+use crate::case::slots::BySlot;
 use crate::case::{InterfaceSpec, SlotValues};
 use crate::material::Given;
-use fretwork_core::laws::BondRule;
+use fretwork_core::laws::{BondRule, Kind};
 use std::collections::BTreeMap;
 
 fn values(parameters: &[(&str, f64)]) -> BTreeMap<String, Given> {
@@ -21,46 +22,45 @@ impl InterfaceSpec {
         contact: impl Into<String>,
         parameters: &[(&str, f64)],
     ) -> Self {
-        Self {
+        let spec = Self {
             name: name.into(),
             between: (between.0.to_owned(), between.1.to_owned()),
             parameters_from: None,
-            contact: contact.into(),
-            cohesion: None,
-            damage: None,
-            wear: None,
-            parameters: SlotValues {
-                contact: values(parameters),
-                ..SlotValues::default()
-            },
+            laws: BySlot::default(),
+            parameters: SlotValues::default(),
             bonds: BondRule::default(),
             healing: None,
             area_factor: 1.0,
+        };
+        spec.with(Kind::CONTACT, contact, parameters)
+    }
+
+    /// With a law of a kind and its parameters in the law's units.
+    #[must_use]
+    pub fn with(mut self, kind: Kind, law: impl Into<String>, parameters: &[(&str, f64)]) -> Self {
+        self.laws.set(kind, law.into());
+        if !parameters.is_empty() {
+            self.parameters.set(kind, values(parameters));
         }
+        self
     }
 
     /// With a cohesion law and its parameters in the law's units.
     #[must_use]
-    pub fn cohesion(mut self, law: impl Into<String>, parameters: &[(&str, f64)]) -> Self {
-        self.cohesion = Some(law.into());
-        self.parameters.cohesion = values(parameters);
-        self
+    pub fn cohesion(self, law: impl Into<String>, parameters: &[(&str, f64)]) -> Self {
+        self.with(Kind::COHESION, law, parameters)
     }
 
     /// With a damage law and its parameters in the law's units.
     #[must_use]
-    pub fn damage(mut self, law: impl Into<String>, parameters: &[(&str, f64)]) -> Self {
-        self.damage = Some(law.into());
-        self.parameters.damage = values(parameters);
-        self
+    pub fn damage(self, law: impl Into<String>, parameters: &[(&str, f64)]) -> Self {
+        self.with(Kind::DAMAGE, law, parameters)
     }
 
     /// With a wear law and its parameters in the law's units.
     #[must_use]
-    pub fn wear(mut self, law: impl Into<String>, parameters: &[(&str, f64)]) -> Self {
-        self.wear = Some(law.into());
-        self.parameters.wear = values(parameters);
-        self
+    pub fn wear(self, law: impl Into<String>, parameters: &[(&str, f64)]) -> Self {
+        self.with(Kind::WEAR, law, parameters)
     }
 
     /// When bonds are made; at the first step by default.

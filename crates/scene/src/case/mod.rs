@@ -1,21 +1,23 @@
 //! A case file: what the user writes.
 
 mod grains;
+mod interface;
 mod shapes;
+pub(crate) mod slots;
 pub(crate) mod text;
 mod wear;
 
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
+pub use interface::{InterfaceSpec, SlotValues};
 pub use shapes::{Coordinates, ShapeSpec, Side, StandardName};
+pub use slots::BySlot;
 pub use wear::WearSpec;
 
 use super::circuit::CircuitSpec;
 use super::jump::JumpSpec;
-use super::material::Given;
 use super::measures::MeasureSpec;
 use super::phases::PhaseSpec;
 use fretwork_core::bodies::Dof;
-use fretwork_core::laws::{BondRule, Kind};
 use fretwork_core::solve::error::Norm;
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::step::control::GravityDrive;
@@ -117,6 +119,10 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
+fn one() -> f64 {
+    1.0
+}
+
 fn half() -> f64 {
     0.5
 }
@@ -186,76 +192,6 @@ impl Default for SolverSpec {
             projection: 0.0,
         }
     }
-}
-
-/// The law between two materials: four slots, each a plugin's name.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct InterfaceSpec {
-    /// Name.
-    pub name: String,
-    /// The two materials, by their names in this case.
-    pub between: (String, String),
-    /// File in `materials/` with parameters of laws.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub parameters_from: Option<String>,
-    /// Contact law.
-    pub contact: String,
-    /// Cohesion law.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub cohesion: Option<String>,
-    /// Damage law.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub damage: Option<String>,
-    /// Wear law.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub wear: Option<String>,
-    /// Parameters given here win over those of the file.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub parameters: SlotValues,
-    /// When bonds are made.
-    #[serde(default)]
-    pub bonds: BondRule,
-    /// Time under compression after which a contact bonds, also again after its bond broke (s).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub healing: Option<f64>,
-    /// Factor of the contact's area, see `AreaRule`.
-    #[serde(default = "one")]
-    pub area_factor: f64,
-}
-
-fn one() -> f64 {
-    1.0
-}
-
-impl InterfaceSpec {
-    /// The law in a slot.
-    pub fn law(&self, kind: Kind) -> Option<&str> {
-        match kind {
-            Kind::Contact => Some(&self.contact),
-            Kind::Cohesion => self.cohesion.as_deref(),
-            Kind::Damage => self.damage.as_deref(),
-            Kind::Wear => self.wear.as_deref(),
-        }
-    }
-}
-
-/// Values by slot and parameter: numbers in the unit of the law, or `(value: 5, unit: "um")`.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct SlotValues {
-    /// Of the contact law.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub contact: BTreeMap<String, Given>,
-    /// Of the cohesion law.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub cohesion: BTreeMap<String, Given>,
-    /// Of the damage law.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub damage: BTreeMap<String, Given>,
-    /// Of the wear law.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub wear: BTreeMap<String, Given>,
 }
 
 /// A first body.

@@ -2,6 +2,7 @@
 
 use super::reader::Reader;
 use super::shapes::Shaped;
+use fretwork_core::fields::ORIENTATION;
 pub use fretwork_scene::recorded::{Grain, Motion, ShapedGrain, State, StateError};
 use std::collections::HashMap;
 use std::path::Path;
@@ -59,14 +60,6 @@ pub fn read(path: &Path, frame: Option<usize>, dimension: usize) -> Result<State
 
 /// Where the view of the grains stands.
 const ROOT: &str = "views/grains";
-
-/// The columns of orientations in space.
-pub const ORIENTATION: [&str; 4] = [
-    "orientation_w",
-    "orientation_x",
-    "orientation_y",
-    "orientation_z",
-];
 
 struct Grains {
     reader: Reader,

@@ -5,13 +5,12 @@ use super::super::{all_used, named, values};
 use super::DriveArgs;
 use crate::geometry::space::Space;
 use crate::laws::bench::Bench;
-use crate::laws::{AreaRule, BondRule, Interface, Kind, Loaded, Plugin};
+use crate::laws::{Interface, Kind, Loaded, Plugin};
 use crate::scene::bond_sites::BondSites;
 use crate::scene::build::Built;
 use crate::scene::source::nearest;
 use crate::scene::{Scene, load};
 use std::path::Path;
-use std::sync::Arc;
 
 /// Reduced radius of the contact, where neither the user nor a scene says (m).
 const RADIUS: f64 = 1e-5;
@@ -81,51 +80,29 @@ fn site<S: Space>(built: &Built<S>, place: usize) -> (Interface, Option<f64>) {
 
 fn compose(args: &DriveArgs, plugins: &PluginArgs) -> Result<Interface, Failure> {
     let path = plugins.search()?;
-    let mut slots: [Option<Plugin>; 4] = [None, None, None, None];
-    let place = |kind: Kind| Kind::ALL.iter().position(|k| *k == kind).unwrap_or(0);
+    let mut plugins: Vec<Plugin> = Vec::new();
     for name in &args.laws {
         for plugin in named(&path, name)? {
-            let slot = &mut slots[place(plugin.kind)];
-            if let Some(other) = slot {
+            if let Some(other) = plugins.iter().find(|p| p.kind == plugin.kind) {
                 return Err(Failure::Usage(format!(
                     "`{}` and `{}` are both {} laws; an interface has one of each kind",
                     other.name, plugin.name, plugin.kind
                 )));
             }
-            *slot = Some(plugin);
+            plugins.push(plugin);
         }
     }
-    if slots[0].is_none() {
-        slots[0] = Some(path.find(Kind::Contact, "frictionless")?);
+    if !plugins.iter().any(|p| p.kind == Kind::CONTACT) {
+        plugins.push(path.find(Kind::CONTACT, "frictionless")?);
     }
+    plugins.sort_by_key(|p| p.kind);
     let mut used = vec![false; args.sets.len()];
     let mut loaded = Vec::new();
-    for plugin in slots {
-        loaded.push(match plugin {
-            None => None,
-            Some(plugin) => Some(Loaded {
-                parameters: values(&plugin, &args.sets, &mut used)?,
-                plugin: Arc::new(plugin),
-                first_variable: 0,
-            }),
-        });
+    for plugin in plugins {
+        let parameters = values(&plugin, &args.sets, &mut used)?;
+        loaded.push(Loaded::new(plugin, parameters));
     }
-    let laws: Vec<&Plugin> = loaded.iter().flatten().map(|l| &*l.plugin).collect();
+    let laws: Vec<&Plugin> = loaded.iter().map(|l| &*l.plugin).collect();
     all_used(&args.sets, &used, &laws)?;
-    let mut next = loaded.into_iter();
-    let mut slot = || next.next().flatten();
-    let Some(contact) = slot() else {
-        return Err(Failure::Usage("there is no contact law".into()));
-    };
-    let law = Interface {
-        name: "bench".into(),
-        contact,
-        cohesion: slot(),
-        damage: slot(),
-        wear: slot(),
-        bonds: BondRule::Start,
-        healing: None,
-        area: AreaRule::default(),
-    };
-    Ok(law.compose()?)
+    Ok(Interface::new("bench", loaded)?)
 }

@@ -12,6 +12,7 @@ pub use foresee::{Motion, foresee, is_calm, overlooked, report_first_move, repor
 
 use super::network::{Contact, Key, Network};
 use crate::bodies::Bodies;
+use crate::geometry::convex::ConvexCollider;
 use crate::geometry::grid;
 use crate::geometry::shape::{Ball, Shapes};
 use crate::geometry::space::{Space, VectorLike};
@@ -228,6 +229,12 @@ fn rebuild<S: Space>(
     network.seen_at.clear();
     network.seen_at.extend(watched(shapes, bodies, centres));
     network.rebuilds += 1;
+}
+
+/// Where the centre of a piece stands (m).
+pub fn piece_centre<S: Space>(piece: &ConvexCollider<S>, bodies: &Bodies<S>) -> S::Vector {
+    let b = piece.body as usize;
+    bodies.position[b] + S::rotate(&bodies.rotation[b], &piece.offset)
 }
 
 /// Origin and rotation of a surface carried by a body.

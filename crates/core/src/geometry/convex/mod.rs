@@ -157,6 +157,9 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
         }
     }
 
+    /// The name that a feature of a pair of cores has where the antagonist is taken for the candidate.
+    fn feature_from_other_side(feature: u64) -> u64;
+
     /// Signed distance of a point from the core (m, negative inside) and the unit normal at the nearest point of it.
     fn outward(&self, point: &S::Vector) -> (f64, S::Vector);
 

@@ -230,6 +230,10 @@ impl Core<Dim2> for Polygon {
         polygon_pair::meet(self, other, apart, roundings, gauge, out);
     }
 
+    fn feature_from_other_side(feature: u64) -> u64 {
+        feature ^ 1
+    }
+
     fn outward(&self, point: &Vector2<f64>) -> (f64, Vector2<f64>) {
         let (distance, normal, _) = self.distance(point);
         (distance, normal)

@@ -430,6 +430,10 @@ impl Core<Dim3> for Polyhedron {
         polyhedron_pair::meet(self, other, apart, roundings, gauge, out);
     }
 
+    fn feature_from_other_side(feature: u64) -> u64 {
+        super::polyhedron_clip::name::from_other_side(feature)
+    }
+
     fn outward(&self, point: &V) -> (f64, V) {
         self.distance(point)
     }

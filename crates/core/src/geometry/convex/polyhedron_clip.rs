@@ -18,6 +18,15 @@ pub mod name {
     pub fn crossing(of_candidate: usize, of_antagonist: usize) -> u64 {
         4 * (of_candidate * MAX_EDGES + of_antagonist) as u64 + 2
     }
+
+    /// The name where the antagonist is taken for the candidate.
+    pub fn from_other_side(feature: u64) -> u64 {
+        if feature % 4 < 2 {
+            return feature ^ 1;
+        }
+        let (edges, most) = (feature / 4, MAX_EDGES as u64);
+        4 * ((edges % most) * most + edges / most) + 2
+    }
 }
 
 /// A face and what faces it. Vectors are relative to the leading polyhedron's centre.

@@ -11,6 +11,7 @@ pub use phases::{Begun, Changes, Phase, Until};
 use super::Simulation;
 use crate::bodies::pressure::Servo;
 use crate::geometry::space::{Space, VectorLike};
+use crate::laws::Kind;
 use phases::Clock;
 use serde::{Deserialize, Serialize};
 
@@ -120,7 +121,9 @@ impl<S: Space> Simulation<S> {
             self.control.gravity_drive = Some(drive.delayed(time));
         }
         for (law, parameter, value) in changes.contact {
-            self.laws[law].contact.parameters[parameter] = value;
+            if let Some(parameters) = self.laws[law].parameters_mut(Kind::CONTACT) {
+                parameters[parameter] = value;
+            }
         }
         for place in changes.open {
             self.bodies.remove(place);

@@ -1,0 +1,144 @@
+//! Names of contacts that do not depend on where bodies stand in memory: the identities of the bodies, which contactor of each
+//! body touches, and with which feature.
+//!
+//! A [`Key`] numbers the contactors of one scene as they are listed; it sorts the contacts of a step, and is compared often. A
+//! [`ContactId`] names the same contact in another listing of the same bodies, such as a run that is resumed, a scene from
+//! which other bodies were taken, or another machine's part of it. [`ContactNames`] translates.
+
+use super::network::{Contact, Key, Network};
+use crate::bodies::Bodies;
+use crate::geometry::convex::Core;
+use crate::geometry::shape::Shapes;
+use crate::geometry::space::Space;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What kind of part of a body touches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum ContactorKind {
+    /// A disk or sphere.
+    Ball,
+    /// A convex piece.
+    ConvexCollider,
+    /// A surface of a first body.
+    Surface,
+}
+
+/// A part of a body that can touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct Contactor {
+    /// What it is.
+    pub kind: ContactorKind,
+    /// Identity of the body, [`Bodies::id`].
+    pub body: u64,
+    /// Its number among the body's contactors of this kind, from 0.
+    pub number: u32,
+}
+
+/// The name of a contact: both contactors, in their own order, and the feature that is touched, 0 between balls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct ContactId {
+    /// The contactors, the smaller first: what detection takes for the candidate may be either.
+    pub sides: [Contactor; 2],
+    /// The feature as [`Key::feature`], with the first side as the candidate.
+    pub feature: u64,
+}
+
+/// The contactors of a scene by the places that keys have for them.
+#[derive(Clone, Debug, Default)]
+pub struct ContactNames {
+    balls: Vec<Contactor>,
+    pieces: Vec<Contactor>,
+    surfaces: Vec<Contactor>,
+}
+
+impl ContactNames {
+    /// Of these shapes and bodies; to be made anew where either is listed anew.
+    pub fn of<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>) -> Self {
+        let numbered = |kind: ContactorKind, of: &mut dyn Iterator<Item = u32>| {
+            let mut count = vec![0u32; bodies.len()];
+            of.map(|body| {
+                let number = count[body as usize];
+                count[body as usize] += 1;
+                Contactor {
+                    kind,
+                    body: bodies.id[body as usize],
+                    number,
+                }
+            })
+            .collect()
+        };
+        Self {
+            balls: numbered(
+                ContactorKind::Ball,
+                &mut shapes.balls.iter().map(|b| b.body),
+            ),
+            pieces: numbered(
+                ContactorKind::ConvexCollider,
+                &mut shapes.pieces.iter().map(|p| p.body),
+            ),
+            surfaces: numbered(
+                ContactorKind::Surface,
+                &mut shapes.surfaces.iter().map(|s| s.body),
+            ),
+        }
+    }
+
+    /// The contactor of a part of a key.
+    fn contactor(&self, part: u32) -> Option<Contactor> {
+        let index = (part & !(Key::SURFACE | Key::PIECE)) as usize;
+        let list = match (part & Key::SURFACE != 0, part & Key::PIECE != 0) {
+            (true, _) => &self.surfaces,
+            (false, true) => &self.pieces,
+            (false, false) => &self.balls,
+        };
+        list.get(index).copied()
+    }
+
+    /// The name of the contact of a key; none where the scene has no such contactors.
+    pub fn id<S: Space>(&self, key: &Key) -> Option<ContactId> {
+        let sides = [
+            self.contactor(key.candidate)?,
+            self.contactor(key.antagonist)?,
+        ];
+        if sides[0] <= sides[1] {
+            let feature = key.feature;
+            return Some(ContactId { sides, feature });
+        }
+        let both = sides
+            .iter()
+            .all(|s| s.kind == ContactorKind::ConvexCollider);
+        let feature = if both {
+            S::Core::feature_from_other_side(key.feature)
+        } else {
+            key.feature
+        };
+        let sides = [sides[1], sides[0]];
+        Some(ContactId { sides, feature })
+    }
+
+    /// All contacts of a network by their names, as places in [`Network::contacts`].
+    pub fn places<S: Space>(&self, network: &Network<S>) -> BTreeMap<ContactId, usize> {
+        let contacts = network.contacts.iter().enumerate();
+        contacts
+            .filter_map(|(k, c)| Some((self.id::<S>(&c.key)?, k)))
+            .collect()
+    }
+
+    /// Pairs of contacts of two networks that have one name, in the order of the names. `other` are the names of the second
+    /// scene.
+    pub fn matched<'a, S: Space>(
+        &self,
+        network: &'a Network<S>,
+        other: &Self,
+        second: &'a Network<S>,
+    ) -> Vec<(&'a Contact<S>, &'a Contact<S>)> {
+        let theirs = other.places(second);
+        let ours = self.places(network).into_iter();
+        ours.filter_map(|(id, k)| {
+            let at = theirs.get(&id)?;
+            Some((&network.contacts[k], &second.contacts[*at]))
+        })
+        .collect()
+    }
+}

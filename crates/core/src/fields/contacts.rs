@@ -1,0 +1,201 @@
+//! Fields of contacts.
+
+use super::Field;
+use crate::contact::{BondState, Contact, ContactNames};
+use crate::geometry::space::{Space, VectorLike};
+use crate::step::Simulation;
+
+/// Force of the last step on the candidate (N; N/m in 2D).
+fn force<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> S::Vector {
+    contact.impulse * (1.0 / s.scheme.h)
+}
+
+/// 0 contact, 1 intact bond, 2 broken bond.
+fn state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> f64 {
+    match s.network.bond_state(contact) {
+        BondState::None => 0.0,
+        BondState::Intact { .. } => 1.0,
+        BondState::Broken => 2.0,
+    }
+}
+
+fn status<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> f64 {
+    let state = state(s, contact);
+    if state == 1.0 {
+        3.0
+    } else if contact.impulse == S::Vector::zero() {
+        2.0 * state
+    } else {
+        1.0 + f64::from(u8::from(contact.slides))
+    }
+}
+
+/// Fields that all simulations have.
+pub(super) fn standard<S: Space>() -> Vec<Field<S, Contact<S>>> {
+    let (newton, joule) = if S::D == 2 {
+        ("N/m", "J/m")
+    } else {
+        ("N", "J")
+    };
+    let mut fields = vec![
+        Field::number(
+            "state",
+            "",
+            "0 contact, 1 intact bond, 2 broken bond",
+            state::<S>,
+        ),
+        Field::number(
+            "status",
+            "",
+            "0 carries nothing, 1 sticks, 2 slides (friction is at its bound), 3 an intact bond holds, 4 carries nothing and its bond broke",
+            status::<S>,
+        ),
+        Field::number(
+            "damage",
+            "",
+            "damage D; 1 where there is no bond",
+            |s: &Simulation<S>, c: &Contact<S>| match s.network.bond_state(c) {
+                BondState::Intact { damage } => damage,
+                _ => 1.0,
+            },
+        ),
+        Field::number("gap", "m", "gap", |_, c: &Contact<S>| c.gap),
+    ];
+    fields.extend(forces(newton));
+    fields.extend(frame());
+    let bond = |name, doc, get: fn(&crate::contact::Bond<S>) -> f64| {
+        Field::number(name, "m", doc, move |s: &Simulation<S>, c: &Contact<S>| {
+            s.network.bond(c).map_or(0.0, get)
+        })
+    };
+    fields.extend([
+        Field::number(
+            "friction_work",
+            joule,
+            "energy that friction took at this contact since it formed",
+            |_, c: &Contact<S>| c.friction_work,
+        ),
+        bond("opening_normal", "elongation of the bond", |b| b.opening_n),
+        bond(
+            "opening_tangential",
+            "norm of its tangential opening",
+            |b| b.opening_t.norm(),
+        ),
+        Field::number("law", "", "index of the interface", |_, c: &Contact<S>| {
+            f64::from(c.law)
+        }),
+    ]);
+    let body = |name, doc, side: usize| {
+        Field::whole(name, doc, move |s: &Simulation<S>, c: &Contact<S>| {
+            s.bodies.id[c.bodies[side] as usize] as i64
+        })
+    };
+    fields.extend([
+        body(
+            "body_1",
+            "identity of the candidate, as `id` of grains and `body` of bodies",
+            0,
+        ),
+        body("body_2", "identity of the antagonist", 1),
+    ]);
+    fields
+}
+
+/// The force on the candidate in the local frame.
+fn forces<S: Space>(newton: &'static str) -> Vec<Field<S, Contact<S>>> {
+    let along = |name, doc, k: usize| {
+        Field::number(
+            name,
+            newton,
+            doc,
+            move |s: &Simulation<S>, c: &Contact<S>| S::tangents(&c.normal)[k].dot(&force(s, c)),
+        )
+    };
+    let mut fields = vec![
+        Field::number(
+            "force_normal",
+            newton,
+            "normal force, positive in compression",
+            |s: &Simulation<S>, c: &Contact<S>| c.normal.dot(&force(s, c)),
+        ),
+        Field::number(
+            "force_tangential",
+            newton,
+            "norm of the tangential force",
+            |s: &Simulation<S>, c: &Contact<S>| S::tangential(&c.normal, &force(s, c)).norm(),
+        ),
+        along(
+            "force_tangential_1",
+            "tangential force on body_1 along the tangent t1; in 2D t1 is the normal turned by +90 degrees",
+            0,
+        ),
+    ];
+    if S::D == 3 {
+        fields.push(along(
+            "force_tangential_2",
+            "tangential force on body_1 along t2 = normal x t1",
+            1,
+        ));
+    }
+    fields
+}
+
+/// Normal and tangent.
+fn frame<S: Space>() -> Vec<Field<S, Contact<S>>> {
+    let normal = |name, axis: usize| {
+        Field::number(
+            name,
+            "",
+            "unit normal, from body_2 to body_1; a positive normal force pushes body_1 along it",
+            move |_: &Simulation<S>, c: &Contact<S>| c.normal.padded()[axis],
+        )
+    };
+    let tangent = |name, axis: usize| {
+        Field::number(
+            name,
+            "",
+            "unit tangent t1",
+            move |_: &Simulation<S>, c: &Contact<S>| S::tangents(&c.normal)[0].padded()[axis],
+        )
+    };
+    let mut fields = vec![normal("normal_x", 0), normal("normal_y", 1)];
+    if S::D == 3 {
+        fields.push(normal("normal_z", 2));
+        let tangents = ["tangent_1_x", "tangent_1_y", "tangent_1_z"].into_iter();
+        fields.extend(tangents.enumerate().map(|(k, name)| tangent(name, k)));
+    }
+    fields
+}
+
+/// The parts of a [`ContactId`](crate::contact::ContactId) that `body_1` and `body_2` do not give: number of each contactor
+/// within its body, and the feature, each seen from the side that stands there. For programs that match contacts of several
+/// files; of the shapes and bodies at hand.
+pub fn id_fields<S: Space>(s: &Simulation<S>) -> Vec<Field<S, Contact<S>>> {
+    let names = std::sync::Arc::new(ContactNames::of(&s.shapes, &s.bodies));
+    let part = |name, doc, part: usize| {
+        let names = names.clone();
+        Field::whole(name, doc, move |_: &Simulation<S>, c: &Contact<S>| {
+            names.id::<S>(&c.key).map_or(-1, |id| match part {
+                2 => id.feature as i64,
+                side => i64::from(id.sides[side].number),
+            })
+        })
+    };
+    vec![
+        part(
+            "contactor_1",
+            "number of the first contactor of the contact's name within its body",
+            0,
+        ),
+        part(
+            "contactor_2",
+            "number of the second contactor of the contact's name within its body",
+            1,
+        ),
+        part(
+            "feature",
+            "feature that is touched, of the contact's name",
+            2,
+        ),
+    ]
+}

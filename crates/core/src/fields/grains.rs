@@ -1,0 +1,157 @@
+//! Fields of grains.
+
+use super::Field;
+use crate::contact::detect::{centre, piece_centre};
+use crate::geometry::convex::Core;
+use crate::geometry::space::{Space, VectorLike};
+use crate::step::Simulation;
+
+/// A ball or piece of a body, one point of the view of grains.
+#[derive(Clone, Copy, Debug)]
+pub struct GrainPart<S: Space> {
+    /// Index of the body.
+    pub body: u32,
+    /// Index of the material.
+    pub material: u16,
+    /// Radius; of other shapes that of the ball (2D: disk) of the same volume (m).
+    pub radius: f64,
+    /// Corners of a polygon or polyhedron, 2 of a capsule, 0 of a ball.
+    pub corners: u32,
+    /// Its centre (m).
+    pub centre: S::Vector,
+}
+
+impl<S: Space> GrainPart<S> {
+    /// All balls and then all pieces of a simulation.
+    pub fn all(s: &Simulation<S>) -> impl Iterator<Item = Self> {
+        let balls = s.shapes.balls.iter().map(|ball| Self {
+            body: ball.body,
+            material: ball.material,
+            radius: ball.radius,
+            corners: 0,
+            centre: centre(ball, &s.bodies),
+        });
+        let pieces = s.shapes.pieces.iter().map(|piece| Self {
+            body: piece.body,
+            material: piece.material,
+            radius: piece.size,
+            corners: piece.core.boundary().corners.len() as u32,
+            centre: piece_centre(piece, &s.bodies),
+        });
+        balls.chain(pieces)
+    }
+
+    fn index(&self) -> usize {
+        self.body as usize
+    }
+}
+
+/// Fields that all simulations have.
+pub(super) fn standard<S: Space>() -> Vec<Field<S, GrainPart<S>>> {
+    let velocity = |name, axis: usize| {
+        Field::number(
+            name,
+            "m/s",
+            "velocity",
+            move |s: &Simulation<S>, g: &GrainPart<S>| s.bodies.velocity[g.index()].padded()[axis],
+        )
+    };
+    let spin = |name, axis: usize| {
+        Field::number(
+            name,
+            "rad/s",
+            "angular velocity",
+            move |s: &Simulation<S>, g: &GrainPart<S>| s.bodies.spin[g.index()].padded()[axis],
+        )
+    };
+    let mut fields = vec![
+        Field::number(
+            "id",
+            "",
+            "identity of the body",
+            |s: &Simulation<S>, g: &GrainPart<S>| s.bodies.id[g.index()] as f64,
+        ),
+        Field::number(
+            "radius",
+            "m",
+            "radius; of other shapes that of the ball (2D: disk) of the same volume",
+            |_, g: &GrainPart<S>| g.radius,
+        ),
+        Field::number(
+            "material",
+            "",
+            "index of the material",
+            |_, g: &GrainPart<S>| f64::from(g.material),
+        ),
+        Field::number(
+            "first_body",
+            "",
+            "1 for parts of a first body",
+            |s: &Simulation<S>, g: &GrainPart<S>| {
+                let first = s.bodies.driven.iter().any(|d| d.body == g.body);
+                f64::from(u8::from(first))
+            },
+        ),
+        velocity("velocity_x", 0),
+        velocity("velocity_y", 1),
+        velocity("velocity_z", 2),
+        Field::number(
+            "spin",
+            "rad/s",
+            "angular velocity, its norm in 3D",
+            |s: &Simulation<S>, g: &GrainPart<S>| {
+                let spin = &s.bodies.spin[g.index()];
+                if S::D == 2 { spin[0] } else { spin.norm() }
+            },
+        ),
+        Field::number(
+            "corners",
+            "",
+            "corners of a polygon or polyhedron, 2 of a capsule, 0 for a ball",
+            |_, g: &GrainPart<S>| f64::from(g.corners),
+        ),
+    ];
+    if S::D == 3 {
+        fields.extend([spin("spin_x", 0), spin("spin_y", 1), spin("spin_z", 2)]);
+    }
+    fields
+}
+
+/// Names of the components of an orientation in space.
+pub const ORIENTATION: [&str; 4] = [
+    "orientation_w",
+    "orientation_x",
+    "orientation_y",
+    "orientation_z",
+];
+
+/// Orientations, for simulations with grains that are no lone balls.
+pub fn orientation<S: Space>() -> Vec<Field<S, GrainPart<S>>> {
+    let number = |name, unit, doc, k: usize| {
+        Field::number(
+            name,
+            unit,
+            doc,
+            move |s: &Simulation<S>, g: &GrainPart<S>| {
+                S::rotation_numbers(&s.bodies.rotation[g.index()])[k]
+            },
+        )
+    };
+    if S::D == 2 {
+        return vec![number("angle", "rad", "orientation", 0)];
+    }
+    let names = ORIENTATION.into_iter().enumerate();
+    names
+        .map(|(k, name)| number(name, "", "orientation, a unit quaternion", k))
+        .collect()
+}
+
+/// Whether a grain was taken out, for simulations from which grains go.
+pub fn removed<S: Space>() -> Field<S, GrainPart<S>> {
+    Field::number(
+        "gone",
+        "",
+        "1 for grains that were taken out",
+        |s: &Simulation<S>, g: &GrainPart<S>| f64::from(u8::from(s.bodies.removed[g.index()])),
+    )
+}

@@ -1,0 +1,162 @@
+//! What grains and contacts carry for output, each field registered once with its name, unit and a line of explanation.
+//!
+//! The views of `results.h5`, pictures and the test of the documentation draw from the list; a program adds its own fields to
+//! [`Simulation::fields`] before the first state is written:
+//!
+//! ```
+//! use fretwork_core::fields::Field;
+//! use fretwork_core::geometry::space::Plane;
+//! use fretwork_core::step::Simulation;
+//!
+//! fn watch_age(simulation: &mut Simulation<Plane>) {
+//!     let age = Field::number("age", "s", "time since the contact formed", |s: &Simulation<Plane>, c| {
+//!         s.time - c.born
+//!     });
+//!     simulation.fields.contacts.add(age);
+//! }
+//! ```
+
+mod contacts;
+mod grains;
+
+pub use contacts::id_fields;
+pub use grains::{GrainPart, ORIENTATION, orientation, removed};
+
+use crate::contact::Contact;
+use crate::geometry::space::Space;
+use crate::step::Simulation;
+use std::fmt;
+use std::sync::Arc;
+
+/// The function behind a field.
+type Get<S, T, V> = Arc<dyn Fn(&Simulation<S>, &T) -> V + Send + Sync>;
+
+/// How a value is read.
+pub enum Value<S: Space, T> {
+    /// A number.
+    Number(Get<S, T, f64>),
+    /// A whole number, such as an identity.
+    Whole(Get<S, T, i64>),
+}
+
+/// A quantity that each thing of a kind (`T`: [`GrainPart`], [`Contact`]) carries.
+pub struct Field<S: Space, T> {
+    /// Name: a-z, 0-9 and _.
+    pub name: &'static str,
+    /// SI unit, empty for a pure number.
+    pub unit: &'static str,
+    /// One line.
+    pub doc: &'static str,
+    /// The value.
+    pub value: Value<S, T>,
+}
+
+impl<S: Space, T> Field<S, T> {
+    /// A field of numbers.
+    pub fn number(
+        name: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        get: impl Fn(&Simulation<S>, &T) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            name,
+            unit,
+            doc,
+            value: Value::Number(Arc::new(get)),
+        }
+    }
+
+    /// A field of whole numbers.
+    pub fn whole(
+        name: &'static str,
+        doc: &'static str,
+        get: impl Fn(&Simulation<S>, &T) -> i64 + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            name,
+            unit: "",
+            doc,
+            value: Value::Whole(Arc::new(get)),
+        }
+    }
+
+    /// Its value as a number.
+    pub fn get(&self, s: &Simulation<S>, of: &T) -> f64 {
+        match &self.value {
+            Value::Number(get) => get(s, of),
+            Value::Whole(get) => get(s, of) as f64,
+        }
+    }
+
+    /// Whether its values are whole numbers.
+    pub fn is_whole(&self) -> bool {
+        matches!(self.value, Value::Whole(_))
+    }
+}
+
+impl<S: Space, T> Clone for Field<S, T> {
+    fn clone(&self) -> Self {
+        let value = match &self.value {
+            Value::Number(get) => Value::Number(get.clone()),
+            Value::Whole(get) => Value::Whole(get.clone()),
+        };
+        Self { value, ..*self }
+    }
+}
+
+impl<S: Space, T> fmt::Debug for Field<S, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} [{}]", self.name, self.unit)
+    }
+}
+
+/// Fields of one kind of things, in the order in which they are written.
+#[derive(Clone, Debug)]
+pub struct FieldList<S: Space, T>(Vec<Field<S, T>>);
+
+impl<S: Space, T> FieldList<S, T> {
+    /// A list; of two fields of one name the later one.
+    pub fn new(fields: impl IntoIterator<Item = Field<S, T>>) -> Self {
+        let mut list = Self(Vec::new());
+        fields.into_iter().for_each(|f| list.add(f));
+        list
+    }
+
+    /// Adds a field, in the place of that of its name where there is one.
+    pub fn add(&mut self, field: Field<S, T>) {
+        match self.0.iter_mut().find(|f| f.name == field.name) {
+            Some(same) => *same = field,
+            None => self.0.push(field),
+        }
+    }
+
+    /// The field of a name.
+    pub fn get(&self, name: &str) -> Option<&Field<S, T>> {
+        self.0.iter().find(|f| f.name == name)
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = &Field<S, T>> {
+        self.0.iter()
+    }
+}
+
+/// What grains and contacts carry; see the [module](self).
+#[derive(Clone, Debug)]
+pub struct Fields<S: Space> {
+    /// Of grains, and of the balls and pieces of first bodies.
+    pub grains: FieldList<S, GrainPart<S>>,
+    /// Of contacts.
+    pub contacts: FieldList<S, Contact<S>>,
+}
+
+impl<S: Space> Default for Fields<S> {
+    /// The fields that every simulation has.
+    fn default() -> Self {
+        Self {
+            grains: FieldList::new(grains::standard()),
+            contacts: FieldList::new(contacts::standard()),
+        }
+    }
+}

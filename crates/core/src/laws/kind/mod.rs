@@ -1,0 +1,342 @@
+//! Kinds of interface laws: a registry with one entry a kind.
+//!
+//! An interface is a list of slots, at most one law of each kind. All that depends on the kind stands in its
+//! [`KindSpec`]: the word that cases, file names and the command line use, the code of the plugin table, the functions a law
+//! must have, at which contacts it acts, what it writes, what it needs of the other slots, what the host does with it at the
+//! end of a step, how it is certified, and the text that `fretwork law new` begins with. A further kind is one such
+//! entry, here or in another crate by [`Kind::register`].
+
+pub mod cohesion;
+pub mod contact;
+pub mod damage;
+pub mod wear;
+
+use super::columns::Outputs;
+use super::commit::SlotCommit;
+use super::interface::Interface;
+use super::library::{Call, LawError};
+use super::range::Range;
+use crate::geometry::space::{Dim2, Dim3, Space};
+use std::any::Any;
+use std::fmt;
+use std::hash::{Hash, Hasher};
+use std::sync::{PoisonError, RwLock};
+
+/// A kind of interface law. Kinds are ordered by their codes; the laws of an interface are evaluated in this order.
+#[derive(Clone, Copy)]
+pub struct Kind(&'static KindSpec);
+
+/// What is known of a kind.
+pub struct KindSpec {
+    /// The word used in cases, file names and on the command line: a-z.
+    pub word: &'static str,
+    /// Code in the plugin table; also the place in the order of evaluation.
+    pub code: i32,
+    /// What laws of this kind are for, in one line.
+    pub doc: &'static str,
+    /// Functions that a law of this kind must have.
+    pub functions: &'static [Call],
+    /// At which contacts laws of this kind act.
+    pub domain: Domain,
+    /// The columns that a call writes.
+    pub outputs: for<'a> fn(&'a mut Outputs, Call) -> Vec<Output<'a>>,
+    /// What it needs of the other slots of its interface.
+    pub fits: fn(&Interface) -> Result<(), LawError>,
+    /// What the host does at the end of a step with a law of this kind that acts on contacts, not on bonds.
+    pub commit: CommitHook,
+    /// How laws of this kind are certified.
+    pub certificate: CertificateSpec,
+    /// What `fretwork law new` begins with, if it knows the kind.
+    pub templates: Option<Templates>,
+}
+
+/// At which contacts laws of a kind act.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Domain {
+    /// All, also those that are there for their speed only.
+    All,
+    /// Those within the alert distance or held by a bond.
+    Near,
+    /// Intact bonds.
+    Bonds,
+    /// Intact bonds where the law has an opening (`FLAG_OPENING`), else as [`Domain::Near`].
+    ByOpening,
+}
+
+/// A column that a call of a law writes.
+#[derive(Debug)]
+pub struct Output<'a> {
+    /// As the plugin interface names it.
+    pub name: &'static str,
+    /// One value a contact.
+    pub values: &'a mut Vec<f64>,
+    /// What is accepted; any finite value without it.
+    pub range: Option<Range>,
+}
+
+impl<'a> Output<'a> {
+    /// A column with a range.
+    pub fn ranged((name, values, range): (&'static str, &'a mut Vec<f64>, Range)) -> Self {
+        Self {
+            name,
+            values,
+            range: Some(range),
+        }
+    }
+
+    /// A column of any finite values.
+    pub fn finite((name, values): (&'static str, &'a mut Vec<f64>)) -> Self {
+        Self {
+            name,
+            values,
+            range: None,
+        }
+    }
+}
+
+/// What the host does with a law at the end of a step.
+pub type CommitFn<S> = for<'a, 'b> fn(&'a mut SlotCommit<'b, S>) -> Result<(), LawError>;
+
+/// A [`CommitFn`] for each dimension; made by [`commit_hook!`](crate::commit_hook).
+#[derive(Clone, Copy)]
+pub struct CommitHook {
+    /// In two dimensions.
+    pub plane: CommitFn<Dim2>,
+    /// In three.
+    pub solid: CommitFn<Dim3>,
+}
+
+impl CommitHook {
+    /// The function for a space.
+    pub(super) fn of<S: Space>(&self) -> Option<CommitFn<S>> {
+        let known: [&dyn Any; 2] = [&self.plane, &self.solid];
+        let mut fitting = known.into_iter().filter_map(|f| f.downcast_ref());
+        fitting.next().copied()
+    }
+}
+
+/// A [`CommitHook`] of a function that is generic over the space.
+#[macro_export]
+macro_rules! commit_hook {
+    ($function:path) => {
+        $crate::laws::kind::CommitHook {
+            plane: |slot| $function(slot),
+            solid: |slot| $function(slot),
+        }
+    };
+}
+
+/// How a law is certified.
+#[derive(Clone, Copy, Debug)]
+pub struct CertificateSpec {
+    /// Laws that stand beside it, by kind and name; the certificate is made with each of these sets. Where a set has no
+    /// contact law, and the law under test is none, a frictionless one is added.
+    pub partners: &'static [&'static [(Kind, &'static str)]],
+    /// What is checked.
+    pub checks: CheckSet,
+}
+
+/// Checks of a certificate, beside those of the plugin interface that all laws pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CheckSet {
+    /// Signs and objectivity of laws of contacts.
+    Contact,
+    /// Work, damage and convergence of bonds, where the laws make bonds; else as [`CheckSet::Contact`].
+    Bond,
+    /// As [`CheckSet::Contact`], and that the volume removed does not depend on the number of steps.
+    Removal,
+}
+
+/// What `fretwork law new` writes, by language. `@NAME@`, `@TYPE@`, `@KIND@`, `@KINDUP@` and `@VERSION@` are filled in.
+#[derive(Clone, Copy, Debug)]
+pub struct Templates {
+    /// Rust, with the crate `fretwork-law`.
+    pub rust: &'static str,
+    /// C.
+    pub c: &'static str,
+    /// Fortran.
+    pub fortran: &'static str,
+}
+
+/// The templates of a kind that has a set of files in this folder.
+macro_rules! templates {
+    ($word:literal) => {
+        Some($crate::laws::kind::Templates {
+            rust: include_str!(concat!("templates/", $word, ".rs.txt")),
+            c: include_str!(concat!("templates/", $word, ".c")),
+            fortran: include_str!(concat!("templates/", $word, ".f90")),
+        })
+    };
+}
+use templates;
+
+/// For laws that need nothing of the other slots.
+///
+/// # Errors
+/// Never.
+pub fn fits_always(_: &Interface) -> Result<(), LawError> {
+    Ok(())
+}
+
+/// For laws that write nothing but their internal variables.
+pub fn no_outputs(_: &mut Outputs, _: Call) -> Vec<Output<'_>> {
+    Vec::new()
+}
+
+/// Moves the internal variables of a law, where it has any, by what the contacts did in the step: the commit of laws whose
+/// answers the host takes at the start of a step.
+///
+/// # Errors
+/// The law's own.
+pub fn commit_state<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
+    if slot.law.variables() == 0 {
+        return Ok(());
+    }
+    slot.gather();
+    slot.call()?;
+    slot.keep_state();
+    Ok(())
+}
+
+/// The same with the slip and the friction work of the step, also for laws without internal variables: for kinds that only
+/// watch contacts.
+///
+/// # Errors
+/// The law's own.
+pub fn commit_record<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
+    slot.gather();
+    slot.add_slip();
+    slot.call()?;
+    slot.keep_state();
+    Ok(())
+}
+
+/// Kinds that other crates have registered.
+static REGISTERED: RwLock<Vec<Kind>> = RwLock::new(Vec::new());
+
+impl Kind {
+    /// Friction, restitution, rolling.
+    pub const CONTACT: Self = Self(&contact::SPEC);
+    /// Traction against opening.
+    pub const COHESION: Self = Self(&cohesion::SPEC);
+    /// Growth of damage.
+    pub const DAMAGE: Self = Self(&damage::SPEC);
+    /// What is removed.
+    pub const WEAR: Self = Self(&wear::SPEC);
+
+    /// The kinds of the plugin interface 1.0, in the order of evaluation.
+    pub const BUILT_IN: [Self; 4] = [Self::CONTACT, Self::COHESION, Self::DAMAGE, Self::WEAR];
+
+    /// Adds a kind, for the life of the program: from here on its word is one of the case's slots, and plugins may have
+    /// its code. A kind that is registered already is returned as it is.
+    ///
+    /// # Errors
+    /// A word that is none, or a word or code that another kind has.
+    pub fn register(spec: &'static KindSpec) -> Result<Self, LawError> {
+        let refuse = |reason: String| Err(LawError::Kind { reason });
+        if spec.word.is_empty() || !spec.word.chars().all(|c| c.is_ascii_lowercase()) {
+            return refuse(format!("the kind `{}` must be named by a-z", spec.word));
+        }
+        let mut registered = REGISTERED.write().unwrap_or_else(PoisonError::into_inner);
+        if let Some(same) = registered.iter().find(|k| std::ptr::eq(k.0, spec)) {
+            return Ok(*same);
+        }
+        for other in Self::BUILT_IN.iter().chain(registered.iter()) {
+            if other.word() == spec.word || other.code() == spec.code {
+                return refuse(format!(
+                    "the kind `{}` of code {} cannot be registered: `{other}` has code {}",
+                    spec.word,
+                    spec.code,
+                    other.code()
+                ));
+            }
+        }
+        let kind = Self(spec);
+        registered.push(kind);
+        registered.sort_unstable();
+        Ok(kind)
+    }
+
+    /// All kinds, in the order of evaluation.
+    pub fn all() -> Vec<Self> {
+        let registered = REGISTERED.read().unwrap_or_else(PoisonError::into_inner);
+        let mut all: Vec<Self> = Self::BUILT_IN
+            .into_iter()
+            .chain(registered.iter().copied())
+            .collect();
+        all.sort_unstable();
+        all
+    }
+
+    /// The kind of a word.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::all().into_iter().find(|k| k.word() == word)
+    }
+
+    /// The kind of a code of the plugin table.
+    pub fn from_code(code: i32) -> Option<Self> {
+        Self::all().into_iter().find(|k| k.code() == code)
+    }
+
+    /// The word used in cases and file names.
+    pub fn word(self) -> &'static str {
+        self.0.word
+    }
+
+    /// The code in the plugin table.
+    pub fn code(self) -> i32 {
+        self.0.code
+    }
+
+    /// What is known of it.
+    pub fn spec(self) -> &'static KindSpec {
+        self.0
+    }
+
+    /// The words of all kinds as a list in a sentence: `a, b or c`.
+    pub fn words() -> String {
+        let words: Vec<&str> = Self::all().into_iter().map(Self::word).collect();
+        match words.split_last() {
+            Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+            _ => words.join(""),
+        }
+    }
+}
+
+impl PartialEq for Kind {
+    fn eq(&self, other: &Self) -> bool {
+        self.code() == other.code()
+    }
+}
+
+impl Eq for Kind {}
+
+impl PartialOrd for Kind {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Kind {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.code().cmp(&other.code())
+    }
+}
+
+impl Hash for Kind {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.code().hash(state);
+    }
+}
+
+impl fmt::Debug for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Kind({})", self.word())
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word())
+    }
+}

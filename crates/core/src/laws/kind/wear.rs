@@ -1,0 +1,72 @@
+//! Wear laws: the volume that a contact loses in a step, from slip, force, friction work and broken bonds.
+
+use super::{CertificateSpec, CheckSet, Domain, Kind, KindSpec, Output, fits_always, templates};
+use crate::contact::Loss;
+use crate::contact::network::Key;
+use crate::geometry::space::Space;
+use crate::laws::columns::Outputs;
+use crate::laws::commit::SlotCommit;
+use crate::laws::library::{Call, LawError};
+use crate::laws::range::Range::NotNegative;
+use std::collections::HashSet;
+
+/// The entry of the registry.
+pub static SPEC: KindSpec = KindSpec {
+    word: "wear",
+    code: fretwork_abi::KIND_WEAR,
+    doc: "what is removed",
+    functions: &[Call::Commit],
+    domain: Domain::Near,
+    outputs,
+    fits: fits_always,
+    commit: crate::commit_hook!(commit),
+    certificate: CertificateSpec {
+        partners: &[&[(Kind::CONTACT, "coulomb")]],
+        checks: CheckSet::Removal,
+    },
+    templates: templates!("wear"),
+};
+
+fn outputs(out: &mut Outputs, call: Call) -> Vec<Output<'_>> {
+    match call {
+        Call::Commit => vec![Output::ranged(("out_volume", &mut out.volume, NotNegative))],
+        _ => Vec::new(),
+    }
+}
+
+fn commit<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
+    slot.gather();
+    slot.add_slip_and_owed_work();
+    slot.call()?;
+    // What a bond gives when it breaks it gives once, also in a cycle that stands for many.
+    let network = &mut *slot.network;
+    let breaks = network
+        .bond_breaks
+        .iter()
+        .filter(|_| network.cycle_multiplier > 1.0);
+    let broke: HashSet<Key> = breaks.map(|b| b.key).collect();
+    for (k, at) in slot.passes.members.iter().enumerate() {
+        let times = if broke.contains(&network.contacts[*at].key) {
+            1.0
+        } else {
+            network.cycle_multiplier
+        };
+        let volume = times * slot.passes.columns.out.volume[k];
+        if let Some(surface) = network.contacts[*at].key.surface() {
+            slot.totals.worn_first += volume;
+            if volume > 0.0 {
+                *network.worn.entry(surface).or_default() += volume;
+            }
+            if let (Some(losses), true) = (&mut network.losses, volume > 0.0) {
+                let contact = *at as u32;
+                losses.push(Loss { contact, volume });
+            }
+        } else {
+            slot.totals.worn_third += volume;
+        }
+    }
+    if slot.law.variables() > 0 {
+        slot.keep_state();
+    }
+    Ok(())
+}
