@@ -21,6 +21,7 @@ mod scenes;
 mod solids;
 mod solvers;
 mod sweep;
+mod systems;
 mod third_body;
 mod verification;
 mod wear;

@@ -15,7 +15,7 @@ pub struct Energy {
     pub kinetic: f64,
     /// Potential energy in gravity now, zero at the start.
     pub potential: f64,
-    /// Energy stored in bonds now.
+    /// Energy stored in bonds and in dynamical systems now.
     pub elastic: f64,
     /// Released by damage.
     pub fracture: f64,
@@ -25,7 +25,7 @@ pub struct Energy {
     pub impact: f64,
     /// Spent against cohesion without opening.
     pub adhesion: f64,
-    /// Dissipated by damping of bonds.
+    /// Dissipated by damping of bonds and in dynamical systems.
     pub viscous: f64,
     /// Given by taking overlaps out, negative; see `solver.correction` and `solver.projection`.
     pub correction: f64,
@@ -50,6 +50,8 @@ pub struct BodyWork {
     pub potential: f64,
     /// Work of imposed forces and motions.
     pub external: f64,
+    /// Dissipated by damping in dynamical systems.
+    pub damping: f64,
     /// Dissipated by the scheme.
     pub scheme: f64,
 }
@@ -66,7 +68,7 @@ impl Energy {
         self.friction += totals.friction;
         self.impact += totals.impact;
         self.adhesion += totals.adhesion;
-        self.viscous += totals.viscous;
+        self.viscous += totals.viscous + work.damping;
         self.correction += totals.correction;
         let sinks = self.fracture
             + self.friction

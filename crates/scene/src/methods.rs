@@ -2,8 +2,8 @@
 
 use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::demand::{LawRequirements, Requirement};
-use fretwork_core::solve::choose::refusal;
 use fretwork_core::solve::local::solver::Method;
+use fretwork_core::solve::{Features, refusal};
 use fretwork_core::step::Simulation;
 
 /// Whether a method serves a case.
@@ -47,20 +47,26 @@ impl Demands {
 
     /// Whether a method serves them.
     pub fn service(&self, method: Method) -> Service {
+        let refusal = |rotation, cohesion| {
+            let features = Features {
+                rotation,
+                cohesion,
+                ..Features::default()
+            };
+            refusal(method, &features)
+        };
         let mut may = None;
         for (name, demand) in &self.0 {
             // The reason of a refusal, and how surely it will come.
             let (asked, reason) = match demand {
                 Some(demand) => {
                     let (rotation, cohesion) = (demand.rotation, demand.cohesion);
-                    let turns =
-                        refusal(method, true, false).map_or(Requirement::Never, |_| rotation);
-                    let pulls =
-                        refusal(method, false, true).map_or(Requirement::Never, |_| cohesion);
+                    let turns = refusal(true, false).map_or(Requirement::Never, |_| rotation);
+                    let pulls = refusal(false, true).map_or(Requirement::Never, |_| cohesion);
                     let most = turns.max(pulls);
-                    (most, refusal(method, most == turns, most == pulls))
+                    (most, refusal(most == turns, most == pulls))
                 }
-                None => (Requirement::Unseen, refusal(method, true, true)),
+                None => (Requirement::Unseen, refusal(true, true)),
             };
             let Some(reason) = reason else { continue };
             match asked {

@@ -3,7 +3,7 @@
 
 use fretwork_abi as abi;
 use fretwork_core::certify::certify;
-use fretwork_core::geometry::space::VectorLike;
+use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::laws::commit::SlotCommit;
 use fretwork_core::laws::kind::{CertificateSpec, CheckSet, Domain, commit_record};
 use fretwork_core::laws::kind::{fits_always, no_outputs};

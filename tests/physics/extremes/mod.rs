@@ -2,7 +2,7 @@
 //! table: `cargo run --release --example extremes`.
 
 #[path = "../../../examples/extremes/bench/mod.rs"]
-mod bench;
+pub(crate) mod bench;
 mod passing;
 #[path = "../../../examples/extremes/rows/mod.rs"]
 mod rows;

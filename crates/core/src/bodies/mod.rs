@@ -1,13 +1,20 @@
-//! Rigid bodies: their state, inertia, and the degrees of freedom that are driven.
+//! Rigid bodies: their state, inertia, and the degrees of freedom that are driven; and dynamical systems that are more than
+//! rigid.
 pub mod delay;
 pub mod drive;
+pub mod dynamical_system;
 pub mod integral;
 pub mod path;
 pub mod pressure;
 pub mod stages;
 pub mod state;
+pub mod systems;
 pub mod tensor;
 
 pub use drive::{Dof, Driven, TimeFunction};
+pub use dynamical_system::{
+    Contactor, ContactorMotion, DynamicalSystem, Nodes, SystemStep, SystemWork,
+};
 pub use stages::Stage;
 pub use state::Bodies;
+pub use systems::{Carrier, Systems};

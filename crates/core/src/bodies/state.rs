@@ -2,6 +2,7 @@
 
 use super::drive::{Dof, Driven};
 use super::path::Paths;
+use super::systems::Carrier;
 use super::tensor::{self, Tensor};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use serde::{Deserialize, Serialize};
@@ -40,6 +41,9 @@ pub struct Bodies<S: Space> {
     pub removed: Vec<bool>,
     /// Motion of each body that rounding took away (m); empty while there is none.
     pub lost: Vec<S::Vector>,
+    /// Which bodies stand for contactors of dynamical systems: they follow these and have no inertia of their own. Empty where
+    /// there are no systems.
+    pub carriers: Vec<Option<Carrier>>,
 }
 
 impl<S: Space> Default for Bodies<S> {
@@ -60,6 +64,7 @@ impl<S: Space> Default for Bodies<S> {
             paths: Vec::new(),
             removed: Vec::new(),
             lost: Vec::new(),
+            carriers: Vec::new(),
         }
     }
 }
@@ -74,6 +79,12 @@ impl<S: Space> Bodies<S> {
 
     /// What a user calls a body: a first body by its name, a grain by its number.
     pub fn name(&self, body: u32) -> String {
+        if let Some(carrier) = self.carrier(body as usize) {
+            let Carrier {
+                system, contactor, ..
+            } = carrier;
+            return format!("contactor {contactor} of system {system}");
+        }
         match self.driven.iter().find(|d| d.body == body) {
             Some(driven) => format!("body `{}`", driven.name),
             None => format!("grain {}", self.id[body as usize]),
@@ -103,6 +114,7 @@ impl<S: Space> Bodies<S> {
         columns.iter().all(|rows| *rows == n)
             && self.tensors.len() <= n
             && self.lost.len() <= n
+            && self.carriers.len() <= n
             && self.paths.len() == self.driven.len()
             && self.driven.iter().all(|d| (d.body as usize) < n)
     }
@@ -131,6 +143,31 @@ impl<S: Space> Bodies<S> {
         self.inverse_inertia.push(one_over(inertia));
         self.removed.push(false);
         index as u32
+    }
+
+    /// Adds a body for a contactor of a dynamical system: without inertia, where the system has it. `length` is its size (m).
+    pub(super) fn add_carried(&mut self, at: S::Vector, length: f64, carrier: Carrier) -> u32 {
+        let body = self.add(at, 0.0, 0.0, length);
+        let b = body as usize;
+        self.inverse_mass[b] = S::Vector::zero();
+        self.carriers.resize(b + 1, None);
+        self.carriers[b] = Some(carrier);
+        body
+    }
+
+    /// The contactor that a body stands for, if it does.
+    #[inline]
+    pub fn carrier(&self, body: usize) -> Option<Carrier> {
+        self.carriers.get(body).copied().flatten()
+    }
+
+    /// Whether two bodies are contactors of one system that cannot touch each other.
+    #[inline]
+    pub fn belong_together(&self, a: usize, b: usize) -> bool {
+        match (self.carrier(a), self.carrier(b)) {
+            (Some(a), Some(b)) => a.system == b.system && !a.touches_itself,
+            _ => false,
+        }
     }
 
     /// The same with moments of inertia by axis, in the body's own axes (kg m^2).
@@ -224,9 +261,12 @@ impl<S: Space> Bodies<S> {
         self.inverse_inertia[body] = 0.0;
     }
 
-    /// Which bodies are grains: those that are not driven, and are still there.
+    /// Which bodies are grains: those that are not driven or carried by a system, and are still there.
     pub fn grain_flags(&self) -> Vec<bool> {
         let mut grain: Vec<bool> = self.removed.iter().map(|g| !g).collect();
+        for (grain, carrier) in grain.iter_mut().zip(&self.carriers) {
+            *grain &= carrier.is_none();
+        }
         for driven in &self.driven {
             grain[driven.body as usize] = false;
         }

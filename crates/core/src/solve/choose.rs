@@ -12,6 +12,7 @@ use super::form::{ContactForm, Problem};
 use super::local::auto::sweeps_per_factorisation;
 use super::local::solver::Method;
 use super::nlgs::{self, Options, Report};
+use super::requirements::{Features, Operator, refusal};
 use super::row::MomentForm;
 use super::standard::{self, Standard};
 use crate::geometry::space::Space;
@@ -175,7 +176,12 @@ impl<S: Space> SolveContext<'_, S> {
             .any(|m| m.rolling > 0.0 || m.spinning > 0.0);
         let sweeps = worth * per * habit.patience;
         let sweeps = sweeps.clamp(200.0, f64::from(u32::MAX / 2)) as u32;
-        let without = if refusal(Method::Newton, rolls, false).is_some() {
+        let mut features = Features {
+            rotation: rolls,
+            cohesion: false,
+            operator: problem.operator(),
+        };
+        let without = if refusal(Method::Newton, &features).is_some() {
             Some(SolvePath::Unserved)
         } else {
             (unknowns > LARGEST).then_some(SolvePath::Large)
@@ -200,9 +206,9 @@ impl<S: Space> SolveContext<'_, S> {
             report.chosen = SolvePath::Longer { hyperstaticity };
         }
         let after = report.iterations;
-        let cohesion = self.forms.iter().any(|f| f.cohesion > 0.0);
+        features.cohesion = self.forms.iter().any(|f| f.cohesion > 0.0);
         let mut interior = hyperstaticity < DETERMINED
-            && refusal(Method::Interior, rolls, cohesion).is_none()
+            && refusal(Method::Interior, &features).is_none()
             && habit.interior_is_due();
         let (mut newton, mut inside) = (Attempt::No, Attempt::No);
         let mut round = 0;
@@ -297,25 +303,16 @@ impl<S: Space> SolveContext<'_, S> {
     }
 }
 
-/// Why a method cannot solve a case with these moments and laws, if it cannot.
-pub fn refusal(method: Method, rotation: bool, cohesion: bool) -> Option<&'static str> {
-    match method {
-        Method::Newton if rotation => Some(
-            "friction against rotation is bounded by another unknown, which newton does not follow; use auto, anderson or a gradient",
-        ),
-        Method::Interior if rotation || cohesion => Some(
-            "interior solves Coulomb's cone and bonds, without shear cohesion or friction against rotation; use auto, newton or anderson",
-        ),
-        _ => None,
-    }
-}
-
-/// The local form of a problem of Coulomb contacts: W, q, mu; none where another law is at work.
+/// The local form of a problem of Coulomb contacts: W, q, mu; none where another law is at work, or where W cannot be had as a
+/// matrix.
 pub fn coulomb<S: Space>(
     problem: &Problem<S>,
     forms: &[ContactForm<S>],
     moments: &[MomentForm<S>],
 ) -> Option<super::local::LocalProblem> {
+    if problem.operator() < Operator::Matrix {
+        return None;
+    }
     let (w, q, mu) = if S::D == 2 {
         Standard::<S, 2>::new(problem, forms, moments).coulomb()?
     } else {

@@ -37,7 +37,7 @@ pub enum SolvePath {
         /// What the interior point did.
         interior: Attempt,
     },
-    /// Sweeps had taken their share, and went on: Newton does not serve friction against rotation.
+    /// Sweeps had taken their share, and went on: Newton does not serve friction against rotation, nor dynamical systems.
     Unserved,
     /// Sweeps had taken their share, and went on: the set is too large to factorise.
     Large,

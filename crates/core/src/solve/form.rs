@@ -1,8 +1,10 @@
 //! What the stepper hands to a solver: bodies as lines of velocity, contacts in the standard form.
 
 use super::colour::Order;
+use super::nodal::NodalSystem;
 use super::row::{
     FullRow, GeneralRow, MomentForm, MomentRow, MomentSolution, PlainRow, Row, SolverBody,
+    SystemRow,
 };
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
@@ -162,6 +164,7 @@ pub(super) enum Place {
     Plain(u32),
     Full(u32),
     General(u32),
+    System(u32),
 }
 
 /// The contact problem of one step. Push the bodies, then the contacts.
@@ -213,6 +216,10 @@ pub struct Problem<S: Space> {
     pub(super) full: Vec<FullRow<S>>,
     /// Contacts with levers or bodies that are free along some axes only.
     pub(super) general: Vec<GeneralRow<S>>,
+    /// Contacts with dynamical systems; they run after those above, in order.
+    pub(super) of_systems: Vec<SystemRow<S>>,
+    /// The dynamical systems, as far as contacts see them.
+    pub(super) systems: Vec<NodalSystem<S>>,
     /// Moments of contacts that resist rotation; they run last, in order.
     pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<Place>,
@@ -233,6 +240,8 @@ impl<S: Space> Default for Problem<S> {
             plain: Vec::new(),
             full: Vec::new(),
             general: Vec::new(),
+            of_systems: Vec::new(),
+            systems: Vec::new(),
             moments: Vec::new(),
             places: Vec::new(),
             orders: Default::default(),
@@ -275,6 +284,8 @@ impl<S: Space> Problem<S> {
         self.plain.clear();
         self.full.clear();
         self.general.clear();
+        self.of_systems.clear();
+        self.systems.clear();
         self.moments.clear();
         self.places.clear();
     }
@@ -357,6 +368,7 @@ impl<S: Space> Problem<S> {
             Place::Plain(r) => self.plain[r as usize].normal(),
             Place::Full(r) => self.full[r as usize].normal(),
             Place::General(r) => self.general[r as usize].normal(),
+            Place::System(r) => self.of_systems[r as usize].contact().normal(),
         }
     }
 
@@ -381,6 +393,7 @@ impl<S: Space> Problem<S> {
             Place::Plain(r) => self.solved(&self.plain[r as usize]),
             Place::Full(r) => self.solved(&self.full[r as usize]),
             Place::General(r) => self.solved(&self.general[r as usize]),
+            Place::System(r) => self.of_systems[r as usize].solution(&self.lines, &self.systems),
         }
     }
 

@@ -17,6 +17,11 @@ pub(super) fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sum
     measure_rows(&mut problem.plain, &lines, 0, parallel, &mut sums);
     measure_rows(&mut problem.full, &lines, a, parallel, &mut sums);
     measure_rows(&mut problem.general, &lines, a + b, parallel, &mut sums);
+    let first = a + b + problem.general.len();
+    for (k, row) in problem.of_systems.iter().enumerate() {
+        sums.add(&row.residual(&problem.lines, &problem.systems), first + k);
+    }
+    let lines = Lines::new(&mut problem.lines);
     for row in &problem.moments {
         let (i, j) = lines.read(row.bodies);
         sums.add_moment(&row.residual(problem.normal(row.place), &i, &j));
@@ -57,6 +62,9 @@ pub(super) fn scale<S: Space>(problem: &Problem<S>, free: Scale) -> Scale {
     for ((line, (v, w)), (mobility, length)) in bodies {
         work += mobility.energy(&(line.v - *v), &(line.s * (1.0 / length) - *w));
     }
+    if !problem.systems.is_empty() {
+        work += problem.work_on_systems();
+    }
     Scale { work, ..free }
 }
 
@@ -70,6 +78,12 @@ pub(super) fn free_velocity<S: Space>(problem: &mut Problem<S>) -> Scale {
     squared(&mut problem.general, &lines, &mut free[2]);
     let mut out = Scale::default();
     for part in free.map(|f| f.scale()) {
+        out.free += part.free;
+        out.energy += part.energy;
+        out.noise += part.noise;
+    }
+    for row in &problem.of_systems {
+        let part = row.scale(&problem.lines, &problem.systems);
         out.free += part.free;
         out.energy += part.energy;
         out.noise += part.noise;
@@ -89,5 +103,6 @@ impl<S: Space> Problem<S> {
             line.v = free.0;
             line.s = free.1 * *length;
         }
+        self.free_systems();
     }
 }

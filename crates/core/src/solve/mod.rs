@@ -17,11 +17,17 @@ pub mod form;
 pub mod local;
 mod measure;
 pub mod nlgs;
+pub mod nodal;
+pub mod requirements;
 pub mod row;
+pub mod side;
 pub mod standard;
 
 pub use choose::{AutoState, solve};
 pub use chosen::{Attempt, SolvePath};
 pub use form::{ContactForm, Problem};
 pub use nlgs::{Options, Report};
+pub use nodal::NodalSystem;
+pub use requirements::{Features, Operator, refusal};
 pub use row::{MomentForm, MomentSolution};
+pub use side::Side;

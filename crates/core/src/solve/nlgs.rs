@@ -243,6 +243,9 @@ impl<S: Space> Problem<S> {
         self.plain.iter().for_each(|row| row.store(out));
         self.full.iter().for_each(|row| row.store(out));
         self.general.iter().for_each(|row| row.store(out));
+        for row in &self.of_systems {
+            row.contact().store(out);
+        }
         self.moments.iter().for_each(|row| row.store(out));
     }
 
@@ -252,6 +255,9 @@ impl<S: Space> Problem<S> {
         self.plain.iter_mut().for_each(|row| row.restore(from));
         self.full.iter_mut().for_each(|row| row.restore(from));
         self.general.iter_mut().for_each(|row| row.restore(from));
+        for row in &mut self.of_systems {
+            row.contact_mut().restore(from);
+        }
         self.moments.iter_mut().for_each(|row| row.restore(from));
         self.reload(false);
     }
@@ -264,6 +270,13 @@ impl<S: Space> Problem<S> {
                 Place::Plain(r) => take(&mut self.plain[r as usize], impulse, &mut self.lines),
                 Place::Full(r) => take(&mut self.full[r as usize], impulse, &mut self.lines),
                 Place::General(r) => take(&mut self.general[r as usize], impulse, &mut self.lines),
+                Place::System(r) => {
+                    let row = &mut self.of_systems[r as usize];
+                    match impulse {
+                        Some(impulse) => row.contact_mut().set(impulse),
+                        None => row.update(&mut self.lines, &mut self.systems, 1.0),
+                    }
+                }
             }
         }
         for (k, moment) in moments.iter().enumerate() {
@@ -291,6 +304,10 @@ impl<S: Space> Problem<S> {
         for row in &self.general {
             lines.alone(row.bodies(), |a, b| row.load(a, b));
         }
+        for row in &self.of_systems {
+            row.load(&mut self.lines, &mut self.systems);
+        }
+        let lines = Lines::new(&mut self.lines);
         for row in &self.moments {
             lines.alone(row.bodies, |a, b| row.load(a, b));
         }
@@ -298,13 +315,15 @@ impl<S: Space> Problem<S> {
 
     /// The index by which the contact at a place of the sweep was pushed.
     fn pushed(&self, at: usize) -> Option<usize> {
-        let (a, b) = (self.plain.len(), self.full.len());
+        let (a, b, c) = (self.plain.len(), self.full.len(), self.general.len());
         let place = if at < a {
             Place::Plain(at as u32)
         } else if at < a + b {
             Place::Full((at - a) as u32)
-        } else {
+        } else if at < a + b + c {
             Place::General((at - a - b) as u32)
+        } else {
+            Place::System((at - a - b - c) as u32)
         };
         self.places.iter().position(|p| *p == place)
     }
@@ -330,7 +349,7 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
         *place = match *place {
             Place::Plain(r) => Place::Plain(moved_plain[r as usize]),
             Place::Full(r) => Place::Full(moved_full[r as usize]),
-            general => general,
+            in_order => in_order,
         };
     }
     for row in &mut problem.moments {
@@ -368,6 +387,9 @@ fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
     // First bodies have many contacts, which share them: these run in order.
     for row in &mut problem.general {
         lines.alone(row.bodies(), |a, b| row.update(a, b, relaxation));
+    }
+    for row in &mut problem.of_systems {
+        row.update(&mut problem.lines, &mut problem.systems, relaxation);
     }
     for k in 0..problem.moments.len() {
         let pn = problem.normal(problem.moments[k].place);

@@ -29,6 +29,9 @@ impl<S: Space> Default for Solved<S> {
 impl<S: Space> Simulation<S> {
     /// Velocity of a contact's candidate relative to its antagonist, at the velocities at hand.
     fn relative_velocity(&self, contact: &Contact<S>) -> S::Vector {
+        if !self.systems.is_empty() {
+            return self.relative_velocity_of_sides(contact);
+        }
         let [i, j] = contact.bodies.map(|b| b as usize);
         let bodies = &self.bodies;
         bodies.velocity[i] + S::spin_velocity(&bodies.spin[i], &contact.arms[0])
@@ -38,7 +41,7 @@ impl<S: Space> Simulation<S> {
 
     /// Relative velocities and spins at the start of the step.
     pub(super) fn relative_velocities(&mut self) {
-        let mut before = std::mem::take(&mut self.solved.before);
+        let mut before = std::mem::take(&mut self.workspace.solved.before);
         let contacts = &self.network.contacts;
         before.relative.clear();
         let relative = contacts.iter().map(|c| self.relative_velocity(c));
@@ -50,18 +53,18 @@ impl<S: Space> Simulation<S> {
                 |c: &Contact<S>| spins[c.bodies[0] as usize] - spins[c.bodies[1] as usize];
             before.turning.extend(contacts.iter().map(relative));
         }
-        self.solved.before = before;
+        self.workspace.solved.before = before;
     }
 
     /// What the contacts did.
     pub(super) fn sites(&mut self) {
-        let mut sites = std::mem::take(&mut self.solved.sites);
+        let mut sites = std::mem::take(&mut self.workspace.solved.sites);
         sites.clear();
         let theta = self.scheme.theta;
-        let before = &self.solved.before.relative;
+        let before = &self.workspace.solved.before.relative;
         let contacts = self.network.contacts.iter().zip(before).enumerate();
         sites.extend(contacts.map(|(k, (contact, before))| {
-            let (form, solution) = (&self.forms[k], self.problem.solution(k));
+            let (form, solution) = (&self.workspace.forms[k], self.workspace.problem.solution(k));
             let average = *before * (1.0 - theta) + self.relative_velocity(contact) * theta;
             let n = &contact.normal;
             let lost = form.elastic.map_or(0.0, |e| {
@@ -91,12 +94,12 @@ impl<S: Space> Simulation<S> {
                 solution,
             }
         }));
-        self.solved.sites = sites;
+        self.workspace.solved.sites = sites;
     }
 
     /// What the contacts that resist rotation did.
     pub(super) fn turns(&mut self, start: &StepStart<S>) {
-        let mut turns = std::mem::take(&mut self.solved.turns);
+        let mut turns = std::mem::take(&mut self.workspace.solved.turns);
         turns.clear();
         let theta = self.scheme.theta;
         let average = |b: u32| {
@@ -114,8 +117,12 @@ impl<S: Space> Simulation<S> {
                 moment,
             }
         };
-        let solved = self.moments.iter().zip(self.problem.moments());
+        let solved = self
+            .workspace
+            .moments
+            .iter()
+            .zip(self.workspace.problem.moments());
         turns.extend(solved.map(turn));
-        self.solved.turns = turns;
+        self.workspace.solved.turns = turns;
     }
 }

@@ -48,6 +48,19 @@ pub enum StepError {
         /// Identity of the body.
         body: u64,
     },
+    /// A velocity of a dynamical system is not finite.
+    #[error(
+        "step {step} at t = {time:.6e} s: a velocity of the system `{system}` is not finite; use a smaller step or softer \
+         parameters"
+    )]
+    SystemNotFinite {
+        /// Number of the step.
+        step: u64,
+        /// Time at its start (s).
+        time: f64,
+        /// Name of the system.
+        system: String,
+    },
     /// A quantity of the state or of the ledger is not finite.
     #[error(
         "step {step} at t = {time:.6e} s: {quantity} is {value}, beyond what can be computed with; check the units of sizes, \

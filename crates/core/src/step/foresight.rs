@@ -61,7 +61,7 @@ impl<S: Space> Simulation<S> {
     /// Reports impacts with restitution that were only kept from closing, since others of the step came before them.
     fn report_held_back(&mut self) {
         for k in &self.passes.held_back {
-            if self.solved.sites[*k].solution.impulse != S::Vector::zero() {
+            if self.workspace.solved.sites[*k].solution.impulse != S::Vector::zero() {
                 let pair = self.network.contacts[*k].bodies;
                 let step_size = &mut self.network.step_size;
                 step_size.hold_back(self.time, &self.bodies, pair);
@@ -108,7 +108,7 @@ impl<S: Space> Simulation<S> {
         for solves in 1.. {
             self.relative_velocities();
             self.geometry_of_forms(info.h);
-            for (form, contact) in self.forms.iter_mut().zip(&self.network.contacts) {
+            for (form, contact) in self.workspace.forms.iter_mut().zip(&self.network.contacts) {
                 // From the solve before.
                 if let Ok(at) = last.binary_search_by_key(&contact.key, |c| c.0) {
                     form.impulse = last[at].1;
@@ -135,10 +135,11 @@ impl<S: Space> Simulation<S> {
             if found.is_empty() {
                 return Ok(());
             }
-            let solved = network.contacts.iter().zip(&self.solved.sites);
+            let solved = network.contacts.iter().zip(&self.workspace.solved.sites);
             last = solved.map(|(c, s)| (c.key, s.solution.impulse)).collect();
             network.take_in(found);
             start.restore(&mut self.bodies);
+            self.restart_systems();
             let remembered = self.passes.remember(&self.laws, &mut self.network, info);
             remembered.map_err(|e| self.law_error(e))?;
         }

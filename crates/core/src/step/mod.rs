@@ -28,6 +28,7 @@ mod removal;
 mod run;
 mod saved;
 pub mod simulation;
+mod systems;
 
 pub use columns::ContactRow;
 pub use compiled::Steps;

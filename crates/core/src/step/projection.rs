@@ -48,7 +48,7 @@ impl<S: Space> Simulation<S> {
         if before <= self.projection {
             return None;
         }
-        pose(&mut self.problem, &self.bodies, &self.network);
+        pose(&mut self.workspace.problem, &self.bodies, &self.network);
         let options = Options {
             tolerance: TOLERANCE,
             norm: Norm::Velocity,
@@ -56,9 +56,9 @@ impl<S: Space> Simulation<S> {
             parallel: self.solver.parallel,
             ..Options::default()
         };
-        let solved = nlgs::solve(&mut self.problem, &options);
+        let solved = nlgs::solve(&mut self.workspace.problem, &options);
         let moves: Vec<Move<S>> = (0..self.bodies.len())
-            .map(|b| self.problem.velocity(b))
+            .map(|b| self.workspace.problem.velocity(b))
             .collect();
         if !moves.iter().all(|(x, w)| x.is_finite() && w.is_finite()) {
             return None;

@@ -21,6 +21,8 @@ use std::borrow::Cow;
 #[serde(bound = "")]
 pub struct Saved<'a, S: Space> {
     bodies: Cow<'a, Bodies<S>>,
+    /// What each dynamical system saves of itself.
+    systems: Vec<Vec<u8>>,
     network: Cow<'a, Network<S>>,
     gravity: S::Vector,
     tolerance: f64,
@@ -63,24 +65,59 @@ impl<S: Space> Saved<'_, S> {
 impl<S: Space> Simulation<S> {
     /// Its state, to be kept.
     pub fn save(&self) -> Saved<'_, S> {
-        let parameters = self.laws.iter().map(|l| l.contact().parameters.clone());
+        // Named one by one: a new field does not compile before it is state here or known to be none.
+        let Self {
+            // State.
+            bodies,
+            systems,
+            laws,
+            network,
+            gravity,
+            solver,
+            time,
+            time_excess,
+            steps,
+            lifted,
+            energy,
+            received,
+            scars,
+            worn_through,
+            control,
+            habit,
+            passes,
+            // Follows from the state.
+            started: _,
+            // The case gives it; of the laws and the solver phases change a part.
+            shapes: _,
+            table: _,
+            scheme: _,
+            correction: _,
+            projection: _,
+            coupling: _,
+            // What carries the fields is registered by the program.
+            fields: _,
+            // Of one step alone.
+            workspace: _,
+        } = self;
+        let parameters = laws.iter().map(|l| l.contact().parameters.clone());
         Saved {
-            bodies: Cow::Borrowed(&self.bodies),
-            network: Cow::Borrowed(&self.network),
-            gravity: self.gravity,
-            tolerance: self.solver.tolerance,
+            bodies: Cow::Borrowed(bodies),
+            systems: systems.save(),
+            network: Cow::Borrowed(network),
+            gravity: *gravity,
+            tolerance: solver.tolerance,
             contact_parameters: parameters.collect(),
-            time: self.time,
-            time_excess: self.time_excess,
-            steps: self.steps,
-            lifted: self.lifted,
-            energy: self.energy,
-            received: self.received.clone(),
-            scars: Cow::Borrowed(&self.scars),
-            worn_through: self.worn_through.clone(),
-            control: self.control.clone(),
-            habit: self.habit,
-            carried: self.passes.carried(),
+            time: *time,
+            time_excess: *time_excess,
+            steps: *steps,
+            lifted: *lifted,
+            energy: *energy,
+            received: received.clone(),
+            scars: Cow::Borrowed(scars),
+            worn_through: worn_through.clone(),
+            control: control.clone(),
+            habit: *habit,
+            carried: passes.carried(),
         }
     }
 
@@ -92,6 +129,10 @@ impl<S: Space> Simulation<S> {
         if !saved.fits(self) {
             return false;
         }
+        let Some(systems) = self.systems.restored(&saved.systems) else {
+            return false;
+        };
+        self.systems = systems;
         self.bodies = saved.bodies.into_owned();
         let kept = std::mem::replace(&mut self.network, saved.network.into_owned());
         // What is told of each step is told again where something asked for it.

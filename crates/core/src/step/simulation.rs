@@ -5,7 +5,7 @@ use super::answers::Solved;
 use super::coupling::{Coupling, CouplingReport, Progress};
 use super::motion::{self, StepStart};
 use super::projection::Projected;
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Systems};
 use crate::contact::detect::{self, LawTable, detect};
 use crate::contact::{Contact, Network};
 use crate::energy::Energy;
@@ -61,6 +61,8 @@ pub struct StepReport {
 pub struct Simulation<S: Space> {
     /// Grains and first bodies.
     pub bodies: Bodies<S>,
+    /// Bodies that are more than rigid; see [`Simulation::add_system`].
+    pub systems: Systems<S>,
     /// What can touch.
     pub shapes: Shapes<S>,
     /// Interface laws.
@@ -106,10 +108,31 @@ pub struct Simulation<S: Space> {
     pub(super) time_excess: f64,
     pub(super) habit: solve::AutoState,
     pub(super) passes: LawEvaluator,
-    pub(super) problem: Problem<S>,
-    pub(super) forms: Vec<ContactForm<S>>,
-    pub(super) moments: Vec<MomentForm<S>>,
-    pub(super) solved: Solved<S>,
+    pub(super) workspace: Workspace<S>,
+}
+
+/// What a step makes for itself and throws away; its memory is kept from step to step, nothing else.
+#[derive(Debug)]
+pub(super) struct Workspace<S: Space> {
+    /// The contact problem.
+    pub problem: Problem<S>,
+    /// Its contacts in the standard form, in the network's order.
+    pub forms: Vec<ContactForm<S>>,
+    /// Those that resist rotation.
+    pub moments: Vec<MomentForm<S>>,
+    /// What contacts did in the step.
+    pub solved: Solved<S>,
+}
+
+impl<S: Space> Default for Workspace<S> {
+    fn default() -> Self {
+        Self {
+            problem: Problem::default(),
+            forms: Vec::new(),
+            moments: Vec::new(),
+            solved: Solved::default(),
+        }
+    }
 }
 
 impl<S: Space> Simulation<S> {
@@ -140,6 +163,7 @@ impl<S: Space> Simulation<S> {
         let received = vec![(S::Vector::zero(), S::Spin::zero()); bodies.driven.len()];
         let mut simulation = Self {
             bodies,
+            systems: Systems::default(),
             shapes,
             laws,
             table,
@@ -170,10 +194,7 @@ impl<S: Space> Simulation<S> {
             time_excess: 0.0,
             habit: solve::AutoState::default(),
             passes: LawEvaluator::default(),
-            problem: Problem::default(),
-            forms: Vec::new(),
-            moments: Vec::new(),
-            solved: Solved::default(),
+            workspace: Workspace::default(),
         };
         simulation.started = simulation.motion_of_driven();
         simulation
@@ -198,6 +219,7 @@ impl<S: Space> Simulation<S> {
         let mut start = StepStart::new(&self.bodies);
         let clock = Instant::now();
         motion::advance(&mut self.bodies, (1.0 - theta) * h);
+        self.begin_systems((1.0 - theta) * h);
         detect(
             &mut self.network,
             &self.shapes,
@@ -209,7 +231,8 @@ impl<S: Space> Simulation<S> {
         report.projected = self.project();
         start.coasted(&self.bodies);
         self.started = start.of_driven(&self.bodies);
-        let free = motion::free_velocities(&self.bodies, &self.gravity, self.time, h, theta);
+        let mut free = motion::free_velocities(&self.bodies, &self.gravity, self.time, h, theta);
+        self.free_systems(&mut free);
         self.foresee(&free);
         let remembered = self.passes.remember(&self.laws, &mut self.network, &info);
         remembered.map_err(|e| self.law_error(e))?;
@@ -218,7 +241,7 @@ impl<S: Space> Simulation<S> {
         self.solve(&start, &free, &info, &mut report)?;
 
         let clock = Instant::now();
-        let Solved { sites, turns, .. } = &self.solved;
+        let Solved { sites, turns, .. } = &self.workspace.solved;
         let committed = self
             .passes
             .commit(&self.laws, &mut self.network, sites, turns, &info);
@@ -229,7 +252,8 @@ impl<S: Space> Simulation<S> {
 
         self.book(&start, &report.totals);
         motion::advance(&mut self.bodies, theta * h);
-        let sites = self.solved.sites.iter();
+        self.systems.carry(&mut self.bodies);
+        let sites = self.workspace.solved.sites.iter();
         report.active = sites
             .filter(|s| s.solution.impulse != S::Vector::zero())
             .count();
@@ -257,10 +281,10 @@ impl<S: Space> Simulation<S> {
             let prepared = self.passes.prepare(
                 &self.laws,
                 &self.network,
-                &self.solved.before,
+                &self.workspace.solved.before,
                 info,
-                &mut self.forms,
-                &mut self.moments,
+                &mut self.workspace.forms,
+                &mut self.workspace.moments,
             );
             prepared.map_err(|e| self.law_error(e))?;
             report.timing.laws += clock.elapsed();
@@ -269,14 +293,15 @@ impl<S: Space> Simulation<S> {
             self.pose(free);
             self.served()?;
             let solved = solve::solve(
-                &mut self.problem,
-                &self.forms,
-                &self.moments,
+                &mut self.workspace.problem,
+                &self.workspace.forms,
+                &self.workspace.moments,
                 &self.solver,
                 &mut self.habit,
             );
             report.solver.add(&solved);
             self.adopt_velocities()?;
+            self.adopt_system_velocities()?;
             report.timing.solve += clock.elapsed();
 
             self.sites();
@@ -285,7 +310,7 @@ impl<S: Space> Simulation<S> {
                 return Ok(());
             };
             let clock = Instant::now();
-            let Solved { sites, turns, .. } = &self.solved;
+            let Solved { sites, turns, .. } = &self.workspace.solved;
             let change = self
                 .passes
                 .trial(&self.laws, &mut self.network, sites, turns, info);
@@ -296,7 +321,12 @@ impl<S: Space> Simulation<S> {
                 return Ok(());
             }
             self.passes.adopt(&mut self.network);
-            for (form, site) in self.forms.iter_mut().zip(&self.solved.sites) {
+            for (form, site) in self
+                .workspace
+                .forms
+                .iter_mut()
+                .zip(&self.workspace.solved.sites)
+            {
                 form.impulse = site.solution.impulse;
             }
         }
@@ -304,16 +334,22 @@ impl<S: Space> Simulation<S> {
 
     /// Whether the method serves the forms at hand; what a law asks for shows only in a step.
     fn served(&self) -> Result<(), StepError> {
-        let method = self.solver.method;
-        if !matches!(method, Method::Newton | Method::Interior) {
+        let (method, operator) = (self.solver.method, self.workspace.problem.operator());
+        let by_law = matches!(method, Method::Newton | Method::Interior);
+        if !by_law && method.operator() <= operator {
             return Ok(());
         }
-        let rolls = self
+        let rotation = self
+            .workspace
             .moments
             .iter()
             .any(|m| m.rolling > 0.0 || m.spinning > 0.0);
-        let cohesion = self.forms.iter().any(|f| f.cohesion > 0.0);
-        match solve::choose::refusal(method, rolls, cohesion) {
+        let features = solve::Features {
+            rotation,
+            cohesion: self.workspace.forms.iter().any(|f| f.cohesion > 0.0),
+            operator,
+        };
+        match solve::refusal(method, &features) {
             None => Ok(()),
             Some(reason) => Err(StepError::Method {
                 step: self.steps + 1,
@@ -324,9 +360,13 @@ impl<S: Space> Simulation<S> {
     }
 
     /// The problem of the last step solved, in the form of the field's collection; none where a bond,
-    /// cohesion or friction against rotation was at work, which that form does not hold.
+    /// cohesion, friction against rotation or a dynamical system was at work, which that form does not hold.
     pub fn local_problem(&self) -> Option<solve::local::LocalProblem> {
-        solve::choose::coulomb(&self.problem, &self.forms, &self.moments)
+        solve::choose::coulomb(
+            &self.workspace.problem,
+            &self.workspace.forms,
+            &self.workspace.moments,
+        )
     }
 
     pub(super) fn law_error(&self, source: LawError) -> StepError {
@@ -339,7 +379,7 @@ impl<S: Space> Simulation<S> {
 
     /// The part of the forms that geometry gives.
     pub(super) fn geometry_of_forms(&mut self, h: f64) {
-        let mut forms = std::mem::take(&mut self.forms);
+        let mut forms = std::mem::take(&mut self.workspace.forms);
         forms.clear();
         let contacts = self.network.contacts.iter();
         forms.extend(contacts.map(|contact| ContactForm {
@@ -355,7 +395,7 @@ impl<S: Space> Simulation<S> {
             elastic: None,
             impulse: contact.impulse,
         }));
-        self.forms = forms;
+        self.workspace.forms = forms;
     }
 
     /// The velocity at which a step may close a gap; of a penetration that at which the correction takes its share back, below
@@ -371,7 +411,7 @@ impl<S: Space> Simulation<S> {
 
     /// Hands bodies and contacts to the solver.
     fn pose(&mut self, free: &[(S::Vector, S::Spin)]) {
-        let (bodies, problem) = (&self.bodies, &mut self.problem);
+        let (bodies, problem) = (&self.bodies, &mut self.workspace.problem);
         problem.clear();
         for (b, (v, w)) in free.iter().enumerate() {
             problem.push_body(
@@ -382,17 +422,22 @@ impl<S: Space> Simulation<S> {
                 bodies.length[b],
             );
         }
-        for form in &self.forms {
-            problem.push(form);
+        if self.systems.is_empty() {
+            for form in &self.workspace.forms {
+                problem.push(form);
+            }
+        } else {
+            self.pose_with_systems();
         }
-        for form in &self.moments {
-            problem.push_moment(form, &self.forms[form.contact as usize]);
+        for form in &self.workspace.moments {
+            let contact = &self.workspace.forms[form.contact as usize];
+            self.workspace.problem.push_moment(form, contact);
         }
     }
 
     fn adopt_velocities(&mut self) -> Result<(), StepError> {
         for b in 0..self.bodies.len() {
-            let (v, w) = self.problem.velocity(b);
+            let (v, w) = self.workspace.problem.velocity(b);
             if !(v.is_finite() && w.is_finite()) {
                 return Err(StepError::NotFinite {
                     step: self.steps + 1,
@@ -406,7 +451,7 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
-    /// Books the step in the energy ledger.
+    /// Ends the step of dynamical systems and books the step in the energy ledger.
     fn book(&mut self, start: &StepStart<S>, totals: &Totals) {
         let mut received = vec![(S::Vector::zero(), S::Spin::zero()); self.bodies.driven.len()];
         let mut place = vec![usize::MAX; self.bodies.len()];
@@ -425,8 +470,13 @@ impl<S: Space> Simulation<S> {
             }
         }
         let Scheme { h, theta } = self.scheme;
-        let work = start.work(&self.bodies, &received, &self.gravity, self.time, h, theta);
-        let (kinetic, elastic) = (self.bodies.kinetic_energy(), self.network.elastic_energy());
+        let mut work = start.work(&self.bodies, &received, &self.gravity, self.time, h, theta);
+        let (moving, stored) = self.end_systems(theta * h, &mut work);
+        let (mut kinetic, mut elastic) =
+            (self.bodies.kinetic_energy(), self.network.elastic_energy());
+        if !self.systems.is_empty() {
+            (kinetic, elastic) = (kinetic + moving, elastic + stored);
+        }
         self.energy.book(totals, &work, kinetic, elastic);
         self.received = received;
     }

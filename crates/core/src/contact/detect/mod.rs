@@ -181,8 +181,10 @@ fn rebuild<S: Space>(
     };
     let still = bodies.still();
     let gone = |i: u32| bodies.removed[i as usize];
-    let never =
-        |i: u32, j: u32| i == j || gone(i) || gone(j) || (still[i as usize] && still[j as usize]);
+    let never = |i: u32, j: u32| {
+        let (a, b) = (i as usize, j as usize);
+        i == j || gone(i) || gone(j) || (still[a] && still[b]) || bodies.belong_together(a, b)
+    };
     let touch = |i: u32, j: u32| !never(i, j);
     let mut pairs = grid::pairs(centres, &radii, reach, &shapes.periodic, |a, b| {
         let (a, b) = (owner(a), owner(b));

@@ -89,5 +89,7 @@ pub(super) fn mark_later<S: Space>(
 }
 
 fn is_movable<S: Space>(bodies: &Bodies<S>, b: usize) -> bool {
-    bodies.inverse_mass[b] != S::Vector::zero() || bodies.inverse_inertia[b] > 0.0
+    bodies.inverse_mass[b] != S::Vector::zero()
+        || bodies.inverse_inertia[b] > 0.0
+        || bodies.carrier(b).is_some()
 }

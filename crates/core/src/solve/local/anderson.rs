@@ -93,7 +93,9 @@ impl<const D: usize> WithSimd for Adopt<'_, D> {
 
 impl<const D: usize> Solver<D> for Anderson {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
-        let mut sweep = Sweep::new(form);
+        let Some(mut sweep) = Sweep::new(form) else {
+            return;
+        };
         let mut sequence: Option<Extrapolation> = None;
         let mut best = Best::of(state);
         let mut tests = Tests::default();

@@ -58,7 +58,10 @@ impl<const D: usize> Solver<D> for Auto {
         const LOOSE: f64 = 40.0;
         const TIGHT: f64 = 20.0;
         self.used.borrow_mut().clear();
-        let blocks = form.w.matrix().others() + form.len();
+        let Some(w) = form.w.matrix() else {
+            return;
+        };
+        let blocks = w.others() + form.len();
         let per = sweeps_per_factorisation((blocks * D * D) as f64, form.len() as f64);
         let worth = if budget.tolerance >= 1e-5 {
             LOOSE

@@ -144,7 +144,7 @@ impl<const D: usize> Prox<'_, D> {
 
     /// Newton's direction.
     fn direction(&self, p: &[[f64; D]], u: &[[f64; D]], f: &[[f64; D]]) -> Option<Vec<[f64; D]>> {
-        let w = self.form.w.matrix();
+        let w = self.form.w.matrix()?;
         let n = p.len();
         let mut place = vec![usize::MAX; n];
         let mut active = Vec::with_capacity(n);

@@ -54,10 +54,10 @@ pub struct Sweep<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Sweep<'a, D> {
-    /// Forms the inverses of the diagonal.
-    pub fn new(form: &Form<'a, D>) -> Self {
-        let w = form.w.matrix();
-        Self {
+    /// Forms the inverses of the diagonal; none where W cannot be had as a matrix.
+    pub fn new(form: &Form<'a, D>) -> Option<Self> {
+        let w = form.w.matrix()?;
+        Some(Self {
             w,
             q: form.q,
             laws: form.laws,
@@ -80,7 +80,7 @@ impl<'a, const D: usize> Sweep<'a, D> {
                 })
                 .collect(),
             change: f64::INFINITY,
-        }
+        })
     }
 
     /// Solves one contact.
@@ -202,7 +202,9 @@ impl<const D: usize> Solver<D> for Nlgs {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
         /// Tests without a better error after which there is to be less relaxation.
         const PATIENCE: u32 = 20;
-        let mut sweep = Sweep::new(form);
+        let Some(mut sweep) = Sweep::new(form) else {
+            return;
+        };
         let order = match self.order {
             Order::Shuffled(seed) => shuffled(seed, form.len()),
             _ => Vec::new(),

@@ -3,6 +3,7 @@
 //! A contact of two balls has W_nt = 0, W_nn = 1/m_i + 1/m_j and an isotropic W_tt, so its problem is
 //! solved in closed form: first the normal part, then the tangential one within the cone.
 
+mod block;
 mod full;
 mod general;
 #[cfg(target_arch = "x86_64")]
@@ -10,6 +11,7 @@ mod lanes;
 mod lines;
 mod moment;
 mod plain;
+mod system;
 mod visit;
 
 pub(super) use full::FullRow;
@@ -18,6 +20,7 @@ pub(super) use lines::Lines;
 pub(super) use moment::MomentRow;
 pub use moment::{MomentForm, MomentSolution};
 pub(super) use plain::PlainRow;
+pub(super) use system::{SystemRow, Term};
 pub(super) use visit::{Free, Load, Measure, Update, Visit, visit};
 
 use super::form::ContactSolution;

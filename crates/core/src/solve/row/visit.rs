@@ -176,6 +176,13 @@ impl Visit for Measure {
     }
 }
 
+/// Squared rounding of the relative velocity of a contact, by the squared velocities of its sides and its friction.
+#[inline(always)]
+pub fn noise(own: f64, friction: f64) -> f64 {
+    let mu = least(friction, MAX_FRICTION);
+    own * (1.0 + mu * mu) * ROUNDINGS
+}
+
 /// Sums what the free velocities, which are those at hand, give to measure against.
 #[derive(Default)]
 pub struct Free {
@@ -213,8 +220,7 @@ impl Visit for Free {
         self.free[k] += speed;
         self.energy[k] += row.rho() * speed;
         let own = a.v.dot(&a.v) + a.s.dot(&a.s) + b.v.dot(&b.v) + b.s.dot(&b.s);
-        let mu = least(row.friction(), MAX_FRICTION);
-        self.noise[k] += own * (1.0 + mu * mu) * ROUNDINGS;
+        self.noise[k] += noise(own, row.friction());
     }
 
     #[cfg(target_arch = "x86_64")]

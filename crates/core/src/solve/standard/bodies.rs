@@ -146,6 +146,36 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
         }
         out
     }
+
+    /// W as a matrix, assembled at the first call.
+    pub fn assembled(&self) -> &BlockMatrix<D> {
+        self.matrix.get_or_init(|| {
+            let mut of_body: Vec<Vec<u32>> = vec![Vec::new(); self.masses.len()];
+            for (c, unknown) in self.unknowns.iter().enumerate() {
+                for body in unknown.bodies {
+                    of_body[body as usize].push(c as u32);
+                }
+            }
+            let moves = |b: u32| self.masses[b as usize].moves();
+            let mut out = BlockMatrix::new(self.diagonal.clone());
+            for (c, unknown) in self.unknowns.iter().enumerate() {
+                let mut near: Vec<u32> = unknown
+                    .bodies
+                    .iter()
+                    .filter(|b| moves(**b))
+                    .flat_map(|b| of_body[*b as usize].iter().copied())
+                    .filter(|d| *d as usize != c)
+                    .collect();
+                near.sort_unstable();
+                near.dedup();
+                for d in near {
+                    out.push(d as usize, &self.coupling(c, d as usize));
+                }
+                out.end_row();
+            }
+            out
+        })
+    }
 }
 
 impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
@@ -177,36 +207,11 @@ impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
         if self.pattern().rows() < D * self.len() {
             self.factor(shift)
         } else {
-            factored::factor(self.matrix(), shift)
+            factored::factor(self.assembled(), shift)
         }
     }
 
-    fn matrix(&self) -> &BlockMatrix<D> {
-        self.matrix.get_or_init(|| {
-            let mut of_body: Vec<Vec<u32>> = vec![Vec::new(); self.masses.len()];
-            for (c, unknown) in self.unknowns.iter().enumerate() {
-                for body in unknown.bodies {
-                    of_body[body as usize].push(c as u32);
-                }
-            }
-            let moves = |b: u32| self.masses[b as usize].moves();
-            let mut out = BlockMatrix::new(self.diagonal.clone());
-            for (c, unknown) in self.unknowns.iter().enumerate() {
-                let mut near: Vec<u32> = unknown
-                    .bodies
-                    .iter()
-                    .filter(|b| moves(**b))
-                    .flat_map(|b| of_body[*b as usize].iter().copied())
-                    .filter(|d| *d as usize != c)
-                    .collect();
-                near.sort_unstable();
-                near.dedup();
-                for d in near {
-                    out.push(d as usize, &self.coupling(c, d as usize));
-                }
-                out.end_row();
-            }
-            out
-        })
+    fn matrix(&self) -> Option<&BlockMatrix<D>> {
+        Some(self.assembled())
     }
 }

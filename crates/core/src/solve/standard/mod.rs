@@ -11,7 +11,7 @@ mod motion;
 use super::error::Norm;
 use super::form::{ContactForm, Problem};
 use super::local::csr::Csr;
-use super::local::form::{Delassus, Form};
+use super::local::form::Form;
 use super::local::law::Law;
 use super::local::solver::Method;
 use super::local::state::{Budget, State};
@@ -347,7 +347,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             })
             .collect();
         Some((
-            self.w.matrix().to_csr(),
+            self.w.assembled().to_csr(),
             self.q.as_flattened().to_vec(),
             mu?,
         ))

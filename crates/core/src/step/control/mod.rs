@@ -160,15 +160,16 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// What a condition of rest looks at: the grains, and first bodies of which nothing is imposed.
+    /// What a condition of rest looks at: the grains, first bodies of which nothing is imposed, and dynamical systems.
     fn motion_of_free(&self) -> phases::Motion {
         let bodies = &self.bodies;
         let free = |b: &usize| (0..S::D).all(|k| bodies.inverse_mass[*b][k] > 0.0);
         let moving = || (0..bodies.len()).filter(free);
         // The work that gravity does on a grain over its own diameter.
         let weight = |b: usize| bodies.mass[b] * 2.0 * bodies.length[b];
+        let systems = self.systems.energies().0;
         phases::Motion {
-            kinetic: moving().map(|b| bodies.energy_of(b)).sum(),
+            kinetic: moving().map(|b| bodies.energy_of(b)).sum::<f64>() + systems,
             scale: moving().map(weight).sum::<f64>() * self.gravity.norm(),
         }
     }

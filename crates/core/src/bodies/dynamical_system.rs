@@ -1,0 +1,240 @@
+//! What the time step asks of a body that is more than rigid.
+//!
+//! Rigid bodies are the fast case and stay in the columns of [`super::Bodies`]. Anything else (an elastic half-space, a mesh,
+//! a grain in a floating frame) is a [`DynamicalSystem`]: it has generalised coordinates of its own, and contacts see it
+//! through its *nodes*, points whose velocities are linear in its generalised velocities, u_a = P_a v.
+//!
+//! Over a step of the theta scheme, with q and v at its start,
+//!
+//! ```text
+//! A = M + h theta C + h^2 theta^2 K
+//! v_free = v + A^-1 h (F - C v - K (q + h theta v))
+//! v+ = v_free + A^-1 sum_a P_a^T p_a          p_a the impulse on node a
+//! ```
+//!
+//! so that a contact solver needs two things of it only: the free velocities of the nodes, and their compliance
+//! P_a A^-1 P_b^T, the change of velocity at one node by an impulse at another.
+//!
+//! Sources: J. J. Moreau, "Numerical aspects of the sweeping process", Comput. Methods Appl. Mech. Eng. 177 (1999); M. Jean,
+//! "The non-smooth contact dynamics method", same volume.
+
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use std::fmt::Debug;
+
+/// The step that a system is taken through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SystemStep<S: Space> {
+    /// Time at its start (s).
+    pub time: f64,
+    /// Its length (s).
+    pub h: f64,
+    /// Theta in \[1/2, 1\].
+    pub theta: f64,
+    /// Acceleration of gravity (m/s^2).
+    pub gravity: S::Vector,
+}
+
+/// Work over a step (J; J/m in 2D), at the velocities v_theta = (1 - theta) v + theta v+.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SystemWork {
+    /// Change of the potential energy in gravity, -h v_theta . M g.
+    pub potential: f64,
+    /// Work of imposed forces and motions.
+    pub external: f64,
+    /// Dissipated by damping, h v_theta . C v_theta.
+    pub damping: f64,
+    /// Dissipated by the scheme, (theta - 1/2) (|v+ - v|_M^2 + h^2 |v_theta|_K^2); zero at theta = 1/2.
+    pub scheme: f64,
+}
+
+/// A part of a system that can touch: it stands as a body of its own among [`super::Bodies`], which follows the system and has
+/// no inertia of its own. Detection, laws, bonds and files treat it as any other body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contactor {
+    /// The nodes that carry its origin.
+    pub nodes: Nodes,
+    /// Radius of the ball about the origin (m); of other shapes a length of their size, see [`Contactor::ball`].
+    pub radius: f64,
+    /// Whether it touches as a ball. Other shapes are given to its body by the caller.
+    pub ball: bool,
+    /// Index of the material of the ball.
+    pub material: u16,
+}
+
+/// Where a contactor stands and how it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactorMotion<S: Space> {
+    /// Origin of its frame (m).
+    pub position: S::Vector,
+    /// Its orientation.
+    pub rotation: S::Rotation,
+    /// Velocity of the origin (m/s).
+    pub velocity: S::Vector,
+    /// Angular velocity of the frame (rad/s).
+    pub spin: S::Spin,
+}
+
+/// A point of a system as a weighted sum of nodes: u = sum w_a u_a, and an impulse p there is w_a p on each of them. The
+/// weights are shape functions, or the affine coordinates of a point in a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nodes {
+    ids: [u32; Self::MAX],
+    weights: [f64; Self::MAX],
+    count: u8,
+}
+
+impl Nodes {
+    /// Nodes of a point at most: those of a facet with quadratic shape functions.
+    pub const MAX: usize = 8;
+
+    /// A node itself.
+    pub fn one(node: u32) -> Self {
+        let mut nodes = Self {
+            ids: [0; Self::MAX],
+            weights: [0.0; Self::MAX],
+            count: 1,
+        };
+        (nodes.ids[0], nodes.weights[0]) = (node, 1.0);
+        nodes
+    }
+
+    /// A weighted sum of different nodes; none of more than [`Nodes::MAX`], or of no node.
+    pub fn sum(terms: &[(u32, f64)]) -> Option<Self> {
+        if terms.is_empty() || terms.len() > Self::MAX {
+            return None;
+        }
+        let mut nodes = Self::one(0);
+        for (k, (node, weight)) in terms.iter().enumerate() {
+            (nodes.ids[k], nodes.weights[k]) = (*node, *weight);
+        }
+        nodes.count = terms.len() as u8;
+        Some(nodes)
+    }
+
+    /// The nodes and their weights.
+    pub fn terms(&self) -> impl Iterator<Item = (u32, f64)> {
+        let terms = self.ids.iter().copied().zip(self.weights.iter().copied());
+        terms.take(usize::from(self.count))
+    }
+}
+
+/// A body with generalised coordinates of its own.
+///
+/// In each step it is called in this order: [`begin_step`](Self::begin_step) at the state of its start,
+/// [`advance`](Self::advance) by (1 - theta) h, [`free_velocity`](Self::free_velocity) and
+/// [`compliance`](Self::compliance) at q_m, [`set_velocity`](Self::set_velocity) with v+ (several times where a step is solved
+/// again), `advance` by theta h, and [`work`](Self::work) at the end. Velocities have [`freedoms`](Self::freedoms) entries, in the
+/// system's own units.
+///
+/// What it computes must depend on nothing but its state: the same state gives the same bits.
+pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
+    /// What a user calls it.
+    fn name(&self) -> &str;
+
+    /// Number of generalised velocities.
+    fn freedoms(&self) -> usize;
+
+    /// The generalised velocities at hand.
+    fn velocity(&self) -> &[f64];
+
+    /// Takes generalised velocities, as many as [`Self::freedoms`].
+    fn set_velocity(&mut self, velocity: &[f64]);
+
+    /// Begins a step at the state at hand, which it remembers as its start; A is formed here where it has changed.
+    fn begin_step(&mut self, step: &SystemStep<S>);
+
+    /// Moves the coordinates by a time (s) at the velocities at hand.
+    fn advance(&mut self, time: f64);
+
+    /// v_free, the velocities at the end of the step without contacts; those of an imposed motion as they are imposed.
+    fn free_velocity(&self, step: &SystemStep<S>) -> Vec<f64>;
+
+    /// Replaces a generalised impulse by the change of velocity that it gives, A^-1 times it; zero where motion is imposed.
+    fn solve(&self, impulse: &mut [f64]);
+
+    /// The work of the step, at its end.
+    fn work(&self, step: &SystemStep<S>) -> SystemWork;
+
+    /// Kinetic energy now (J; J/m in 2D).
+    fn kinetic_energy(&self) -> f64;
+
+    /// Energy stored in deformation now (J; J/m in 2D).
+    fn stored_energy(&self) -> f64;
+
+    /// Where a node is (m).
+    fn node_position(&self, node: u32) -> S::Vector;
+
+    /// P_a v: the velocity of a node at generalised velocities (m/s).
+    fn node_velocity(&self, node: u32, velocity: &[f64]) -> S::Vector;
+
+    /// Adds P_a^T p to a generalised impulse: that of an impulse on a node (N s).
+    fn add_impulse(&self, node: u32, impulse: &S::Vector, generalised: &mut [f64]);
+
+    /// What of it can touch.
+    fn contactors(&self) -> Vec<Contactor>;
+
+    /// The nodes that a contact acts on, at an arm from the contactor's origin, in world axes (m): those of the origin, of a
+    /// contactor that does not turn.
+    fn contact_nodes(&self, contactor: &Contactor, _arm: &S::Vector) -> Nodes {
+        contactor.nodes
+    }
+
+    /// Where a contactor stands and how it moves: as the nodes of its origin, without turning.
+    fn contactor_motion(&self, contactor: &Contactor) -> ContactorMotion<S> {
+        let mut motion = ContactorMotion {
+            position: S::Vector::zero(),
+            rotation: S::identity(),
+            velocity: S::Vector::zero(),
+            spin: S::Spin::zero(),
+        };
+        for (node, weight) in contactor.nodes.terms() {
+            motion.position += self.node_position(node) * weight;
+            motion.velocity += self.node_velocity(node, self.velocity()) * weight;
+        }
+        motion
+    }
+
+    /// Whether its contactors can touch each other.
+    fn touches_itself(&self) -> bool {
+        false
+    }
+
+    /// The blocks P_a A^-1 P_b^T of some nodes (1/kg), row by row: a square of them. Here by solving for each node; systems
+    /// of which A stays as it is keep the blocks of their surface instead.
+    fn compliance(&self, nodes: &[u32]) -> Vec<S::Matrix> {
+        let zero = S::Matrix::diagonal(&S::Vector::zero());
+        let mut blocks = vec![zero; nodes.len() * nodes.len()];
+        let mut response = vec![0.0; self.freedoms()];
+        for (b, node) in nodes.iter().enumerate() {
+            for k in 0..S::D {
+                let mut unit = S::Vector::zero();
+                unit[k] = 1.0;
+                response.fill(0.0);
+                self.add_impulse(*node, &unit, &mut response);
+                self.solve(&mut response);
+                for (a, seen) in nodes.iter().enumerate() {
+                    let block = &mut blocks[a * nodes.len() + b];
+                    *block = *block + S::Matrix::dyad(&self.node_velocity(*seen, &response), &unit);
+                }
+            }
+        }
+        blocks
+    }
+
+    /// Its state between two steps, as bytes that [`Self::restore`] understands: coordinates, velocities, and what else
+    /// the next step depends on.
+    fn save(&self) -> Vec<u8>;
+
+    /// Takes a state that the same system saved; false, and unchanged, where the bytes are none.
+    #[must_use]
+    fn restore(&mut self, saved: &[u8]) -> bool;
+
+    /// A copy.
+    fn clone_box(&self) -> Box<dyn DynamicalSystem<S>>;
+}
+
+impl<S: Space> Clone for Box<dyn DynamicalSystem<S>> {
+    fn clone(&self) -> Self {
+        self.clone_box()
+    }
+}

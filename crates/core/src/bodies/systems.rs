@@ -1,0 +1,248 @@
+//! The dynamical systems of a scene, and the bodies that stand for their contactors.
+
+use super::dynamical_system::{Contactor, DynamicalSystem, Nodes, SystemStep, SystemWork};
+use super::state::Bodies;
+use crate::geometry::space::{Space, VectorLike};
+use serde::{Deserialize, Serialize};
+
+/// Which contactor of which system a body stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Carrier {
+    /// Index of the system.
+    pub system: u32,
+    /// Index of the contactor in it.
+    pub contactor: u32,
+    /// Whether contactors of the system can touch each other.
+    pub touches_itself: bool,
+}
+
+/// A system with what the step keeps of it.
+#[derive(Clone, Debug)]
+struct Entry<S: Space> {
+    system: Box<dyn DynamicalSystem<S>>,
+    contactors: Vec<Contactor>,
+    /// The bodies that stand for its contactors, in their order.
+    bodies: Vec<u32>,
+    /// Velocities at the start of the step, and without contacts at its end.
+    start: Vec<f64>,
+    free: Vec<f64>,
+}
+
+/// All systems of a scene that are not rigid bodies.
+#[derive(Clone, Debug)]
+pub struct Systems<S: Space> {
+    entries: Vec<Entry<S>>,
+}
+
+impl<S: Space> Default for Systems<S> {
+    fn default() -> Self {
+        Self {
+            entries: Vec::new(),
+        }
+    }
+}
+
+impl<S: Space> Systems<S> {
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// Number of systems.
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// A system by its index, in the order in which they were added.
+    pub fn get(&self, system: usize) -> Option<&dyn DynamicalSystem<S>> {
+        self.entries.get(system).map(|e| e.system.as_ref())
+    }
+
+    /// The bodies that stand for the contactors of a system, in their order.
+    pub fn bodies(&self, system: usize) -> &[u32] {
+        self.entries.get(system).map_or(&[], |e| &e.bodies)
+    }
+
+    /// Adds a system, and a body for each of its contactors; gives its index.
+    pub fn add(&mut self, system: Box<dyn DynamicalSystem<S>>, bodies: &mut Bodies<S>) -> usize {
+        let index = self.entries.len();
+        let contactors = system.contactors();
+        let carried = contactors.iter().enumerate().map(|(k, contactor)| {
+            let carrier = Carrier {
+                system: index as u32,
+                contactor: k as u32,
+                touches_itself: system.touches_itself(),
+            };
+            let at = system.contactor_motion(contactor).position;
+            let length = if contactor.radius > 0.0 {
+                contactor.radius
+            } else {
+                1.0
+            };
+            bodies.add_carried(at, length, carrier)
+        });
+        let carried = carried.collect();
+        let velocity = system.velocity().to_vec();
+        self.entries.push(Entry {
+            bodies: carried,
+            contactors,
+            start: velocity.clone(),
+            free: velocity,
+            system,
+        });
+        self.carry(bodies);
+        index
+    }
+
+    /// Puts the bodies of all contactors where their systems have them.
+    pub fn carry(&self, bodies: &mut Bodies<S>) {
+        for entry in &self.entries {
+            for (contactor, body) in entry.contactors.iter().zip(&entry.bodies) {
+                let motion = entry.system.contactor_motion(contactor);
+                let b = *body as usize;
+                bodies.position[b] = motion.position;
+                bodies.rotation[b] = motion.rotation;
+                bodies.velocity[b] = motion.velocity;
+                bodies.spin[b] = motion.spin;
+                // The coordinates of the system are what moves: nothing is lost where its place rounds.
+                if let Some(lost) = bodies.lost.get_mut(b) {
+                    *lost = S::Vector::zero();
+                }
+            }
+        }
+    }
+
+    /// Begins a step with all systems.
+    pub fn begin_step(&mut self, step: &SystemStep<S>) {
+        for entry in &mut self.entries {
+            entry.start.clear();
+            entry.start.extend_from_slice(entry.system.velocity());
+            entry.system.begin_step(step);
+        }
+    }
+
+    /// Moves all systems by a time (s).
+    pub fn advance(&mut self, time: f64) {
+        for entry in &mut self.entries {
+            entry.system.advance(time);
+        }
+    }
+
+    /// Finds all velocities without contacts, and those of the contactors' bodies in `free`, which is by body.
+    pub fn free_velocities(&mut self, step: &SystemStep<S>, free: &mut [(S::Vector, S::Spin)]) {
+        for entry in &mut self.entries {
+            entry.free = entry.system.free_velocity(step);
+            for (contactor, body) in entry.contactors.iter().zip(&entry.bodies) {
+                let terms = contactor.nodes.terms();
+                free[*body as usize].0 = terms.fold(S::Vector::zero(), |sum, (node, weight)| {
+                    sum + entry.system.node_velocity(node, &entry.free) * weight
+                });
+            }
+        }
+    }
+
+    /// The velocity without contacts of a node of a system (m/s).
+    pub fn free_velocity_of(&self, system: usize, node: u32) -> S::Vector {
+        let entry = &self.entries[system];
+        entry.system.node_velocity(node, &entry.free)
+    }
+
+    /// Compliance of nodes of a system, see [`DynamicalSystem::compliance`].
+    pub fn compliance(&self, system: usize, nodes: &[u32]) -> Vec<S::Matrix> {
+        self.entries[system].system.compliance(nodes)
+    }
+
+    /// The nodes that a contact with a contactor's body acts on, at an arm from its centre (m).
+    pub fn contact_nodes(&self, carrier: Carrier, arm: &S::Vector) -> Nodes {
+        let entry = &self.entries[carrier.system as usize];
+        let contactor = &entry.contactors[carrier.contactor as usize];
+        entry.system.contact_nodes(contactor, arm)
+    }
+
+    /// Velocity of the point of a system that a contact acts on, at the velocities at hand (m/s).
+    pub fn contact_velocity(&self, carrier: Carrier, arm: &S::Vector) -> S::Vector {
+        let system = &self.entries[carrier.system as usize].system;
+        let terms = self.contact_nodes(carrier, arm);
+        terms
+            .terms()
+            .fold(S::Vector::zero(), |sum, (node, weight)| {
+                sum + system.node_velocity(node, system.velocity()) * weight
+            })
+    }
+
+    /// Gives a system the velocity that impulses on its nodes (N s) lead to.
+    pub fn apply(&mut self, system: usize, impulses: impl Iterator<Item = (u32, S::Vector)>) {
+        let entry = &mut self.entries[system];
+        let mut impulses = impulses.peekable();
+        if impulses.peek().is_none() {
+            return entry.system.set_velocity(&entry.free);
+        }
+        let mut change = vec![0.0; entry.system.freedoms()];
+        for (node, impulse) in impulses {
+            entry.system.add_impulse(node, &impulse, &mut change);
+        }
+        entry.system.solve(&mut change);
+        for (change, free) in change.iter_mut().zip(&entry.free) {
+            *change += free;
+        }
+        entry.system.set_velocity(&change);
+    }
+
+    /// Gives all systems the velocities back that they began the step with.
+    pub fn restart(&mut self) {
+        for entry in &mut self.entries {
+            entry.system.set_velocity(&entry.start);
+        }
+    }
+
+    /// Kinetic and stored energy of all systems (J; J/m in 2D).
+    pub fn energies(&self) -> (f64, f64) {
+        self.entries.iter().fold((0.0, 0.0), |sum, entry| {
+            let system = &entry.system;
+            (
+                sum.0 + system.kinetic_energy(),
+                sum.1 + system.stored_energy(),
+            )
+        })
+    }
+
+    /// The work of the step over all systems.
+    pub fn work(&self, step: &SystemStep<S>) -> SystemWork {
+        let mut sum = SystemWork::default();
+        for entry in &self.entries {
+            let work = entry.system.work(step);
+            sum.potential += work.potential;
+            sum.external += work.external;
+            sum.damping += work.damping;
+            sum.scheme += work.scheme;
+        }
+        sum
+    }
+
+    /// The name of the first system with a velocity that is not finite.
+    pub fn not_finite(&self) -> Option<&str> {
+        let bad = |e: &&Entry<S>| e.system.velocity().iter().any(|v| !v.is_finite());
+        self.entries.iter().find(bad).map(|e| e.system.name())
+    }
+
+    /// The states of all systems.
+    pub fn save(&self) -> Vec<Vec<u8>> {
+        self.entries.iter().map(|e| e.system.save()).collect()
+    }
+
+    /// The same systems in states that they saved; none where they are not theirs.
+    pub fn restored(&self, saved: &[Vec<u8>]) -> Option<Self> {
+        if saved.len() != self.entries.len() {
+            return None;
+        }
+        let mut systems = self.clone();
+        for (entry, bytes) in systems.entries.iter_mut().zip(saved) {
+            if !entry.system.restore(bytes) {
+                return None;
+            }
+            entry.start = entry.system.velocity().to_vec();
+            entry.free.clone_from(&entry.start);
+        }
+        Some(systems)
+    }
+}

@@ -1,0 +1,163 @@
+//! What each method needs of a problem, and what a problem has: a method that cannot serve a problem is refused with a
+//! sentence, and `auto` passes it over.
+
+use super::form::Problem;
+use super::local::solver::Method;
+use crate::geometry::space::Space;
+
+/// How W = H A^-1 H^T can be had, from the least to the most.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Operator {
+    /// Contact by contact, velocities updated in place, with the diagonal blocks.
+    Sweep,
+    /// Products with all impulses at a time.
+    Products,
+    /// The matrix, or a factorisation of it.
+    #[default]
+    Matrix,
+}
+
+/// What of a problem not every method serves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Features {
+    /// Rolling or spinning friction: a bound that is another unknown.
+    pub rotation: bool,
+    /// Shear cohesion: friction without pressure.
+    pub cohesion: bool,
+    /// The most that can be had of W.
+    pub operator: Operator,
+}
+
+impl Method {
+    /// The least of W that it works with in a step.
+    pub fn operator(self) -> Operator {
+        match self {
+            Self::Auto | Self::Nlgs | Self::Anderson => Operator::Sweep,
+            Self::Pg | Self::Cpg | Self::Pcpg | Self::Apgd => Operator::Products,
+            // The backward sweep of a step goes over the rows of the matrix.
+            Self::NlgsSymmetric | Self::Newton | Self::Interior => Operator::Matrix,
+        }
+    }
+
+    /// The same of a problem in local form, where sweeps go over the rows of the matrix.
+    pub fn operator_in_local_form(self) -> Operator {
+        match self.operator() {
+            Operator::Products => Operator::Products,
+            _ => Operator::Matrix,
+        }
+    }
+}
+
+impl<S: Space> Problem<S> {
+    /// The most of W that can be had: dynamical systems are swept over alone.
+    pub fn operator(&self) -> Operator {
+        if self.of_systems.is_empty() {
+            Operator::Matrix
+        } else {
+            Operator::Sweep
+        }
+    }
+}
+
+/// Why a method cannot solve a problem with these features, if it cannot: what to take instead.
+pub fn refusal(method: Method, features: &Features) -> Option<&'static str> {
+    if method.operator() > features.operator {
+        return Some(
+            "contacts with dynamical systems are solved contact by contact, without products with W or its matrix; use auto, anderson or nlgs",
+        );
+    }
+    match method {
+        Method::Newton if features.rotation => Some(
+            "friction against rotation is bounded by another unknown, which newton does not follow; use auto, anderson or a gradient",
+        ),
+        Method::Interior if features.rotation || features.cohesion => Some(
+            "interior solves Coulomb's cone and bonds, without shear cohesion or friction against rotation; use auto, newton or anderson",
+        ),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::error::Norm;
+    use crate::solve::local::block::{Block, BlockMatrix};
+    use crate::solve::local::form::{Delassus, Form};
+    use crate::solve::local::law::Law;
+    use crate::solve::local::state::{Budget, State};
+
+    /// An operator that gives products alone, as a transform would.
+    struct Products(BlockMatrix<2>);
+
+    impl Delassus<2> for Products {
+        fn len(&self) -> usize {
+            self.0.len()
+        }
+
+        fn diagonal(&self, c: usize) -> &Block<2> {
+            self.0.diagonal(c)
+        }
+
+        fn velocity(&self, p: &[[f64; 2]], q: &[[f64; 2]], u: &mut [[f64; 2]]) {
+            self.0.velocity(p, q, u);
+        }
+
+        fn matrix(&self) -> Option<&BlockMatrix<2>> {
+            None
+        }
+    }
+
+    /// Two contacts that press on each other a little: methods that say that products are enough for them solve it without the
+    /// matrix, the others leave it as it is.
+    #[test]
+    fn methods_work_with_what_they_ask_for() {
+        let mut matrix = BlockMatrix::new(vec![[[1.0, 0.1], [0.1, 2.0]]; 2]);
+        for other in [1, 0] {
+            matrix.push(other, &[[0.2, 0.0], [0.0, 0.3]]);
+            matrix.end_row();
+        }
+        let q = [[-1.0, 0.5], [-2.0, -3.0]];
+        let laws = [Law::Coulomb(0.4); 2];
+        let products = Products(matrix.clone());
+        for method in Method::ALL {
+            let error = |w: &dyn Delassus<2>| {
+                let form = Form::new(w, &q, &laws, Norm::Velocity);
+                let mut state = State::new(&form, vec![[0.0; 2]; 2]);
+                let mut budget = Budget::new(1e-8, 10_000, f64::INFINITY);
+                method.solver().solve(&form, &mut state, &mut budget);
+                state.error
+            };
+            let enough = method.operator_in_local_form() <= Operator::Products;
+            assert!(error(&matrix) <= 1e-8, "{}", method.name());
+            assert_eq!(error(&products) <= 1e-8, enough, "{}", method.name());
+        }
+    }
+
+    #[test]
+    fn sweeps_serve_every_problem_and_matrices_those_that_have_one() {
+        let swept = Features {
+            operator: Operator::Sweep,
+            ..Features::default()
+        };
+        let products = Features {
+            operator: Operator::Products,
+            ..Features::default()
+        };
+        let served = |features: &Features| -> Vec<&str> {
+            let methods = Method::ALL.iter().copied();
+            let served = methods.filter(|m| refusal(*m, features).is_none());
+            served.map(Method::name).collect()
+        };
+        assert_eq!(served(&swept), ["auto", "nlgs", "anderson"]);
+        assert_eq!(
+            served(&products),
+            ["auto", "nlgs", "anderson", "pg", "cpg", "pcpg", "apgd"]
+        );
+        assert_eq!(served(&Features::default()).len(), Method::ALL.len());
+        let rolls = Features {
+            rotation: true,
+            ..Features::default()
+        };
+        assert!(refusal(Method::Newton, &rolls).is_some_and(|r| r.contains("rotation")));
+    }
+}

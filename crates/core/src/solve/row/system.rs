@@ -1,0 +1,162 @@
+//! A contact of which a side is a dynamical system: solved as a block, its impulse changes the velocities of all nodes of the
+//! system that are touched.
+
+use super::block::BlockContact;
+use super::{Residual, SolverBody};
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use crate::solve::error::Scale;
+use crate::solve::form::{ContactForm, ContactSolution, Mobility};
+use crate::solve::nodal::NodalSystem;
+
+/// A node that a contact acts on, with its weight: positive on the side of the candidate.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solve) struct Term {
+    pub system: u32,
+    /// Its place in the list of the system.
+    pub node: u32,
+    pub weight: f64,
+}
+
+/// The rigid body of a side.
+#[derive(Clone, Debug)]
+struct RigidSide<S: Space> {
+    body: u32,
+    /// Arm over the length of the body.
+    arm: S::Vector,
+    inverse_mass: S::Vector,
+    /// Inverse inertia times the length squared (1/kg).
+    inverse_spin: S::Tensor,
+}
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub(in crate::solve) struct SystemRow<S: Space> {
+    rigid: [Option<RigidSide<S>>; 2],
+    terms: Vec<Term>,
+    contact: BlockContact<S>,
+}
+
+/// Body, arm (m), mobility and length (m) of a rigid side.
+type Rigid<'a, S> = (u32, <S as Space>::Vector, &'a Mobility<S>, f64);
+
+impl<S: Space> SystemRow<S> {
+    pub fn new(
+        contact: &ContactForm<S>,
+        block: S::Matrix,
+        rigid: [Option<Rigid<S>>; 2],
+        terms: Vec<Term>,
+    ) -> Self {
+        let rigid = rigid.map(|side| {
+            let (body, arm, mobility, length) = side?;
+            Some(RigidSide {
+                body,
+                arm: arm * (1.0 / length),
+                inverse_mass: mobility.mass,
+                inverse_spin: mobility.inertia.scaled(length).scaled(length),
+            })
+        });
+        Self {
+            rigid,
+            terms,
+            contact: BlockContact::new(contact, block),
+        }
+    }
+
+    /// The rigid sides, with 1 for the candidate's and -1 for the antagonist's.
+    fn rigid_sides(&self) -> impl Iterator<Item = (&RigidSide<S>, f64)> {
+        let signed = self.rigid.iter().zip([1.0, -1.0]);
+        signed.filter_map(|(side, sign)| Some((side.as_ref()?, sign)))
+    }
+
+    fn relative(&self, lines: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> S::Vector {
+        let mut u = S::Vector::zero();
+        for (side, sign) in self.rigid_sides() {
+            let line = &lines[side.body as usize];
+            u += (line.v + S::spin_velocity(&line.s, &side.arm)) * sign;
+        }
+        for term in &self.terms {
+            u += systems[term.system as usize].velocity[term.node as usize] * term.weight;
+        }
+        u
+    }
+
+    fn push(&self, p: &S::Vector, lines: &mut [SolverBody<S>], systems: &mut [NodalSystem<S>]) {
+        for (side, sign) in self.rigid_sides() {
+            let line = &mut lines[side.body as usize];
+            let p = *p * sign;
+            line.v += p.scaled_by(&side.inverse_mass);
+            line.s += side.inverse_spin.apply(&S::moment(&side.arm, &p));
+        }
+        for term in &self.terms {
+            systems[term.system as usize].push(term.node, &(*p * term.weight));
+        }
+    }
+
+    /// Solves the contact for the velocities at hand, goes `relaxation` times as far, and updates them.
+    pub fn update(
+        &mut self,
+        lines: &mut [SolverBody<S>],
+        systems: &mut [NodalSystem<S>],
+        relaxation: f64,
+    ) {
+        let u = self.relative(lines, systems);
+        let change = self.contact.update(u, relaxation);
+        self.push(&change, lines, systems);
+    }
+
+    /// Adds what the stored impulse does to the velocities.
+    pub fn load(&self, lines: &mut [SolverBody<S>], systems: &mut [NodalSystem<S>]) {
+        self.push(self.contact.impulse(), lines, systems);
+    }
+
+    /// Adds its impulse to those on the nodes of a system.
+    pub fn add_impulses(&self, system: usize, impulses: &mut [S::Vector]) {
+        let own = self.terms.iter().filter(|t| t.system as usize == system);
+        for term in own {
+            impulses[term.node as usize] += *self.contact.impulse() * term.weight;
+        }
+    }
+
+    /// The law and the impulse, which need no bodies.
+    pub fn contact(&self) -> &BlockContact<S> {
+        &self.contact
+    }
+
+    /// See [`Self::contact`].
+    pub fn contact_mut(&mut self) -> &mut BlockContact<S> {
+        &mut self.contact
+    }
+
+    pub fn residual(&self, lines: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> Residual {
+        self.contact.residual(&self.relative(lines, systems))
+    }
+
+    pub fn solution(
+        &self,
+        lines: &[SolverBody<S>],
+        systems: &[NodalSystem<S>],
+    ) -> ContactSolution<S> {
+        self.contact.solution(&self.relative(lines, systems))
+    }
+
+    /// What the free velocities, which are those at hand, give to measure against.
+    pub fn scale(&self, lines: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> Scale {
+        let u = self.relative(lines, systems);
+        let speed = u.dot(&u);
+        let rigid = self.rigid_sides().map(|(side, _)| {
+            let line = &lines[side.body as usize];
+            line.v.dot(&line.v) + line.s.dot(&line.s)
+        });
+        let nodes = self.terms.iter().map(|term| {
+            let v = systems[term.system as usize].velocity[term.node as usize] * term.weight;
+            v.dot(&v)
+        });
+        let own: f64 = rigid.chain(nodes).sum();
+        Scale {
+            free: speed,
+            energy: self.contact.rho() * speed,
+            noise: super::visit::noise(own, self.contact.friction()),
+            work: 0.0,
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! The sides of a contact: what an impulse on it acts on.
+
+use crate::bodies::Nodes;
+use crate::geometry::space::Space;
+
+/// One side of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Side<S: Space> {
+    /// A point of a rigid body, at an arm from its centre in world axes (m).
+    Rigid {
+        /// Index of the body.
+        body: u32,
+        /// From its centre to the contact (m).
+        arm: S::Vector,
+    },
+    /// A point of a dynamical system, a weighted sum of its nodes.
+    Nodes {
+        /// Index of the system among those of the problem.
+        system: u32,
+        /// The nodes and their weights.
+        nodes: Nodes,
+    },
+}
