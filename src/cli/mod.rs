@@ -4,6 +4,7 @@
 
 mod again;
 mod check;
+mod ending;
 mod law;
 mod number;
 mod output;
@@ -14,7 +15,7 @@ mod trade;
 
 use crate::certify::{CERTIFY_APART, certify_asked};
 use crate::laws::watch::{Saved, watch};
-use crate::laws::{LawError, SearchPath, child, ending};
+use crate::laws::{LawError, SearchPath, child};
 use crate::record::RunError;
 use crate::scene::InputError;
 use crate::shipped::built_in;

@@ -5,13 +5,14 @@ use super::progress::Display;
 use super::{CaseArgs, Failure, again};
 use crate::interrupt;
 use crate::record::checkpoint::Found;
-use crate::record::{self, RunError, RunOptions, Summary};
+use crate::record::{self, Run, RunError, RunOptions, Summary};
 use crate::scene::build::{Dimensional, Origin};
 use crate::scene::interfaces::without_interface;
 use crate::scene::source::clean;
 use crate::scene::{Built, Loaded, Scene, load};
 use crate::step::StepError;
 use clap::Args;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
@@ -143,12 +144,24 @@ fn go<S: Dimensional>(
     let mut built = built;
     let origins = std::mem::take(&mut built.origins);
     let mut display = Display::new(args.json);
-    let mut step = |p: &record::Progress| display.step(p);
-    let summary = match stop {
-        Some(stop) => record::resume(loaded, built, options, stop, &mut step),
-        None => record::run(loaded, built, options, &mut step),
-    };
+    let mut run = Run::new(loaded, built, options);
+    if let Some(stop) = stop {
+        run = run.resume(stop);
+    }
+    let summary = run.execute(&mut |progress| {
+        display.step(progress);
+        match interrupt::asked() {
+            Some(signal) => ControlFlow::Break(format!("interrupted by {signal}")),
+            None => ControlFlow::Continue(()),
+        }
+    });
     display.finish();
+    if matches!(summary, Err(RunError::TakenOver)) {
+        // The handler of the watch over laws ends the program.
+        loop {
+            std::thread::park();
+        }
+    }
     summary
         .map(Some)
         .map_err(|error| match place(loaded, &origins, &error) {

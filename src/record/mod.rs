@@ -4,11 +4,13 @@ pub mod run;
 
 pub use fretwork_observe::{
     biaxial, choice, code, coordination, first_bodies, fretting, friction, jump, layer, loops,
-    measure, output, placement, scars, scatter, solving, statistics, steady, strain, stress,
+    measure, observer, output, placement, scars, scatter, solving, statistics, steady, strain,
+    stress,
 };
-pub use fretwork_plot::{figures, picture};
+pub use fretwork_plot::picture;
 pub use fretwork_store::{checkpoint, fclib, results, series, shapes, summary, views, warnings};
 
-pub use run::{Progress, RunError, RunOptions, resume, run, statistics_columns, stopped};
+pub use observer::{Observer, Observers, RunEnd};
+pub use run::{OnProgress, Progress, Run, RunError, RunOptions, run, statistics_columns, stopped};
 pub use summary::Summary;
 pub use warnings::Missed;

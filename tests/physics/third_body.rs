@@ -3,11 +3,11 @@
 
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::SearchPath;
-use fretwork::record::measure::Measures;
+use fretwork::record::measure::measures;
 use fretwork::record::run::write_outputs;
 use fretwork::record::statistics::Table;
 use fretwork::record::stress::love_weber;
-use fretwork::record::{RunOptions, Summary, run};
+use fretwork::record::{RunEnd, RunOptions, Summary, run};
 use fretwork::scene::build::{Built, Dimensional};
 use fretwork::scene::{Loaded, load};
 use fretwork::step::Simulation;
@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
 
 fn own(name: &str) -> PathBuf {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
@@ -88,18 +89,24 @@ fn seen<S: Dimensional>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> 
     let loaded = opened(text).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<S>(&SearchPath::new(&[]));
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
-    let mut measures = Measures::<S>::new(&loaded.case.measures, loaded.case.inertia_scaling);
-    measures.begin(&mut s);
+    let mut observers = measures::<S>(&loaded.case.measures, loaded.case.inertia_scaling);
+    observers.begin(&mut s);
     change(&mut s);
     s.time += 1.0;
-    let values = measures.sample(&s);
-    let columns = measures.columns();
+    let values = observers.sample(&s);
+    let columns = observers.columns();
     let out = own("");
     std::fs::create_dir_all(&out).unwrap_or_else(|e| panic!("{e}"));
     let names: Vec<String> = columns.iter().map(|c| c.name.clone()).collect();
     let row = names.into_iter().zip(values).collect();
     let table = Table::create(&out.join("t.csv"), columns).unwrap_or_else(|e| panic!("{e}"));
-    let drawn = write_outputs(&out, &measures.outputs("test", &table));
+    let end = RunEnd {
+        simulation: &s,
+        table: &table,
+        title: "test",
+        wall: Duration::ZERO,
+    };
+    let drawn = write_outputs(&out, &observers.figures(&end));
     drawn.unwrap_or_else(|e| panic!("{e}"));
     // Slice 0 is all of the time.
     let mut profile = read(&out.join("layer.csv"));
@@ -108,7 +115,9 @@ fn seen<S: Dimensional>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> 
         let mut kept = first.iter();
         column.retain(|_| *kept.next().unwrap_or(&false));
     }
-    let regime = measures.verdict(&table)["layer_regime"].clone();
+    let mut summary = Summary::default();
+    observers.summarise(&end, &mut summary);
+    let regime = summary.findings["layer_regime"].clone();
     let _ = std::fs::remove_dir_all(out);
     Seen {
         row,

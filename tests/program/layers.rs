@@ -19,7 +19,6 @@ const LAYERS: [(&str, &[&str], &[&str]); 5] = [
             "ron",
             "ariadne",
             "csv",
-            "postcard",
             "fretwork-shipped",
         ],
     ),

@@ -4,7 +4,7 @@
 //! Modules in the order in which they build on each other: [`geometry`] (dimension, algebra, shapes, distances), [`bodies`],
 //! [`contact`] (detection and what each contact remembers), [`solve`] (the contact problem and its solvers), [`laws`] (the
 //! plugin host), [`certify`] (what a law promises, tested), [`wear`], [`energy`] (the ledger of a step), [`step`] (the time
-//! step), and [`process`] (what acts on a simulation between its steps).
+//! step), and [`process`] (what acts on a simulation at the named moments of a step). State goes to bytes and back by [`code`].
 //!
 //! A [`Simulation`](step::Simulation) steps; its [`contacts`](step::Simulation::contacts),
 //! [`positions`](step::Simulation::positions) and [`energies`](step::Simulation::energies) are read between steps:
@@ -14,15 +14,15 @@
 //! use fretwork_core::contact::detect::LawTable;
 //! use fretwork_core::geometry::periodic::Periodic;
 //! use fretwork_core::geometry::shape::{Ball, Shapes};
-//! use fretwork_core::geometry::space::{Plane, VectorLike};
+//! use fretwork_core::geometry::space::{Dim2, VectorLike};
 //! use fretwork_core::step::{Scheme, Simulation};
 //! use nalgebra::Vector2;
 //! use std::ops::ControlFlow;
 //!
 //! // A disk of 1 cm and 2000 kg/m^3 falls; materials without an interface law pass through each other.
-//! let mut bodies = Bodies::<Plane>::default();
+//! let mut bodies = Bodies::<Dim2>::default();
 //! let body = bodies.add_ball(Vector2::new(0.0, 1.0), 0.01, 2000.0);
-//! let ball = Ball { body, radius: 0.01, offset: Vector2::null(), material: 0 };
+//! let ball = Ball { body, radius: 0.01, offset: Vector2::zero(), material: 0 };
 //! let shapes = Shapes {
 //!     balls: vec![ball],
 //!     pieces: Vec::new(),
@@ -50,6 +50,7 @@
 
 pub mod bodies;
 pub mod certify;
+pub mod code;
 pub mod contact;
 pub mod energy;
 pub mod fields;

@@ -21,9 +21,8 @@ pub struct BodyWear {
     pub specific_rate: Option<f64>,
 }
 
-/// What each first body lost: volume, depths of its scars, and the specific wear rate over `load_path`, the integral of P |ds|
-/// (N m; N in 2D), where there is one.
-pub fn wear<S: Space>(s: &Simulation<S>, load_path: Option<f64>) -> Vec<BodyWear> {
+/// What each first body lost: volume and depths of its scars. A friction test adds the specific wear rate.
+pub fn wear<S: Space>(s: &Simulation<S>) -> Vec<BodyWear> {
     let mut bodies: BTreeMap<u32, Worn> = BTreeMap::new();
     for (surface, volume) in &s.network.worn {
         if let Some(carried) = s.shapes.surfaces.get(*surface) {
@@ -47,7 +46,7 @@ pub fn wear<S: Space>(s: &Simulation<S>, load_path: Option<f64>) -> Vec<BodyWear
         volume: worn.volume,
         depth_mean: (worn.area > 0.0).then(|| worn.put / worn.area),
         depth_max: worn.scarred.then_some(worn.depth),
-        specific_rate: load_path.filter(|p| *p > 0.0).map(|p| worn.volume / p),
+        specific_rate: None,
     };
     bodies.into_iter().map(summary).collect()
 }

@@ -5,6 +5,7 @@ use super::layer::Balance;
 use super::loops::Loop;
 use super::scatter::{self, Scatter};
 use super::steady::BLOCKS;
+use fretwork_core::process::cycle::CycleClock;
 use serde::{Deserialize, Serialize};
 
 /// What one step of the test measured.
@@ -69,8 +70,7 @@ pub struct Cycle {
 /// Follows the cycles of a test.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Cycles {
-    start: f64,
-    period: Option<f64>,
+    clock: CycleClock,
     end: f64,
     /// Cycles so far, the current one last.
     pub list: Vec<Cycle>,
@@ -107,16 +107,15 @@ impl Cycle {
 
 impl Cycles {
     /// Cycles of length `period` from `start` on; without a period the second half of what remains
-    /// until `end` is one cycle.
+    /// until `end` is one cycle (s).
     pub fn new(start: f64, period: Option<f64>, end: f64) -> Self {
-        let start = if period.is_some() {
-            start
-        } else {
-            0.5 * (start + end)
-        };
+        Self::of(CycleClock::new(start, period, end), end)
+    }
+
+    /// Cycles by a clock, of a run until `end` (s).
+    pub fn of(clock: CycleClock, end: f64) -> Self {
         Self {
-            start,
-            period,
+            clock,
             end,
             list: Vec::new(),
             pressure_path: 0.0,
@@ -128,7 +127,7 @@ impl Cycles {
             before: None,
             shape: Loop::default(),
             place: 0.0,
-            blocks: vec![(0.0, 0.0); if period.is_some() { 0 } else { BLOCKS }],
+            blocks: vec![(0.0, 0.0); if clock.period.is_some() { 0 } else { BLOCKS }],
         }
     }
 
@@ -137,45 +136,24 @@ impl Cycles {
         if self.oscillates() {
             return scatter::over_cycles(&self.list, |c| c.friction_coefficient);
         }
-        let width = (self.end - self.start) / BLOCKS as f64;
+        let width = (self.end - self.clock.start) / BLOCKS as f64;
         let done = (self.time / width + 1e-6).floor() as usize;
         scatter::over_blocks(&self.blocks[..done.min(self.blocks.len())])
     }
 
-    /// Number of the cycle at a time, from 1; 0 before the start.
+    /// Number of the cycle at a time (s), from 1; 0 before the start.
     pub fn number(&self, time: f64) -> u32 {
-        if time <= self.start {
-            return 0;
-        }
-        match self.period {
-            // A step that ends on the border belongs to the cycle it closes.
-            Some(period) => ((time - self.start) / period - 1e-9).floor().max(0.0) as u32 + 1,
-            None => 1,
-        }
-    }
-
-    /// Share of its cycle that is done at a time; 1 at its end.
-    pub fn share(&self, time: f64) -> f64 {
-        let before = f64::from(self.number(time).saturating_sub(1));
-        let cycles = |period: f64| (time - self.start) / period - before;
-        let share = self.period.map_or(0.0, cycles).max(0.0);
-        if share > 1.0 - 1e-6 { 1.0 } else { share }
+        self.clock.number(time)
     }
 
     /// When a cycle begins and ends (s); none without cycles.
     pub fn span(&self, number: u32) -> Option<[f64; 2]> {
-        let begun = self.start + f64::from(number.saturating_sub(1)) * self.period?;
-        Some([begun, begun + self.period?])
-    }
-
-    /// Length of a cycle (s); none without cycles.
-    pub fn period(&self) -> Option<f64> {
-        self.period
+        self.clock.span(number)
     }
 
     /// Whether the motion goes to and fro.
     pub fn oscillates(&self) -> bool {
-        self.period.is_some()
+        self.clock.period.is_some()
     }
 
     /// Goes on to a later end (s).
@@ -212,9 +190,9 @@ impl Cycles {
         };
         self.pressure_path += sample.p * sample.slide.abs();
         self.pressure_time += sample.p * h;
-        if self.period.is_none() {
+        if self.clock.period.is_none() {
             // The step belongs to the block that its middle lies in.
-            let share = (self.time + 0.5 * h) / (self.end - self.start);
+            let share = (self.time + 0.5 * h) / (self.end - self.clock.start);
             let block = (share * BLOCKS as f64) as usize;
             if let Some(block) = self.blocks.get_mut(block) {
                 block.0 += sample.work;
@@ -250,9 +228,10 @@ impl Cycles {
         };
         cycle.reversal_ratio = self.shape.reversal();
         cycle.regime = Regime::of(cycle.energy_ratio);
-        let end = self
+        let clock = &self.clock;
+        let end = clock
             .period
-            .map_or(self.end, |p| self.start + f64::from(number) * p);
+            .map_or(self.end, |p| clock.start + f64::from(number) * p);
         cycle.complete = sample.time >= end - 1e-6 * h;
     }
 

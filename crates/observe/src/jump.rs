@@ -1,7 +1,57 @@
 //! What a run says of its jumps over cycles.
 
+use super::figures;
+use super::observer::{Observer, RunEnd};
+use super::output::Output;
+use super::statistics::Column;
+use super::summary::Summary;
 use super::warning::{NOT_REACHED, Warning};
+use fretwork_core::geometry::space::Space;
+use fretwork_core::process::jump::Jumps;
 pub use fretwork_core::process::jump::{Jump, JumpSummary, Point};
+use fretwork_core::step::Simulation;
+
+/// Observes the jumps over cycles, which are a process of the simulation.
+#[derive(Clone, Copy, Debug)]
+pub struct CycleJumps;
+
+impl<S: Space> Observer<S> for CycleJumps {
+    fn name(&self) -> String {
+        "cycle jumps".to_owned()
+    }
+
+    fn reads_statistics(&self) -> bool {
+        false
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        vec![Column::new("cycles", "", "cycles with those jumped over")]
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        let jumps = s.process::<Jumps>();
+        vec![jumps.map_or(f64::NAN, |j| j.cycles_at(s.time))]
+    }
+
+    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+        let s = end.simulation;
+        summary.jump = s.process::<Jumps>().map(|j| j.outcome(s));
+    }
+
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let s = end.simulation;
+        let jumps = s.process::<Jumps>().into_iter();
+        let draw = |j: &Jumps| figures::jump::charts(end.title, &j.outcome(s), S::D);
+        jumps.map(draw).collect()
+    }
+
+    fn set_end(&mut self, _: f64, later: bool) -> Result<(), &'static str> {
+        match later {
+            true => Err("its jumps over cycles are as long as what was left of it let them be"),
+            false => Ok(()),
+        }
+    }
+}
 
 /// A jump over which the work of a cycle changes by more than this has led, or passed, into another state.
 const CHANGED: f64 = 0.2;

@@ -38,13 +38,6 @@ impl<S: Space> Layer<S> {
         }
     }
 
-    /// Velocity of a driven body over the last step, v_theta.
-    pub fn velocity(s: &Simulation<S>, place: usize) -> S::Vector {
-        let theta = s.scheme.theta;
-        let now = s.bodies.velocity[s.bodies.driven[place].body as usize];
-        s.started[place].0 * (1.0 - theta) + now * theta
-    }
-
     /// Takes in the last step. `test` is the driven body and the axis whose work is kept apart.
     pub fn follow(&mut self, s: &Simulation<S>, test: (usize, usize)) {
         let (h, theta) = (s.scheme.h, s.scheme.theta);

@@ -1,8 +1,11 @@
 //! Wear scars: columns of the statistics, what the summary says and `scar_NAME.csv`.
 
+use super::figures;
+use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::quantity::quantity;
 use super::statistics::Column;
+use super::summary::Summary;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use fretwork_core::wear::{Form, Scar, shape};
@@ -71,34 +74,65 @@ impl ScarSummary {
     }
 }
 
-/// What the summary says of the scars.
-pub fn outcome<S: Space>(s: &Simulation<S>) -> Vec<ScarSummary> {
-    s.scars.iter().map(ScarSummary::of).collect()
+/// Observes the scars.
+#[derive(Clone, Debug)]
+pub struct Scars {
+    /// Their names.
+    names: Vec<String>,
 }
 
-/// Columns of the statistics.
-pub fn columns<S: Space>(s: &Simulation<S>) -> Vec<Column> {
-    let volume = if S::D == 2 { "m^3/m" } else { "m^3" };
-    let two = |scar: &Scar<S>| {
-        [
-            Column::new(
-                format!("{}_worn", scar.name),
-                volume,
-                "volume worn off the body",
-            ),
-            Column::new(
-                format!("{}_depth", scar.name),
-                "m",
-                "largest depth of its scar",
-            ),
-        ]
-    };
-    s.scars.iter().flat_map(two).collect()
+impl Scars {
+    /// Of the surfaces of a simulation that follow their wear.
+    pub fn of<S: Space>(s: &Simulation<S>) -> Self {
+        Self {
+            names: s.scars.iter().map(|scar| scar.name.clone()).collect(),
+        }
+    }
 }
 
-/// Values of [`columns`].
-pub fn row<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = f64> + '_ {
-    s.scars.iter().flat_map(|c| [c.volume(), c.deepest()])
+impl<S: Space> Observer<S> for Scars {
+    fn name(&self) -> String {
+        "scars".to_owned()
+    }
+
+    fn reads_statistics(&self) -> bool {
+        false
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        let volume = if S::D == 2 { "m^3/m" } else { "m^3" };
+        let two = |name: &String| {
+            let (worn, depth) = (format!("{name}_worn"), format!("{name}_depth"));
+            [
+                Column::new(worn, volume, "volume worn off the body"),
+                Column::new(depth, "m", "largest depth of its scar"),
+            ]
+        };
+        self.names.iter().flat_map(two).collect()
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        let two = |scar: &Scar<S>| [scar.volume(), scar.deepest()];
+        s.scars.iter().flat_map(two).collect()
+    }
+
+    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+        summary.scars = end.simulation.scars.iter().map(ScarSummary::of).collect();
+    }
+
+    /// The tables of all scars, `scar_NAME.csv`.
+    fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let s = end.simulation;
+        let file = |scar: &Scar<S>| Output::Text {
+            file: format!("{}.csv", file_name(&scar.name)),
+            text: table(s, scar),
+        };
+        s.scars.iter().map(file).collect()
+    }
+
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        figures::scars::charts(end.title, end.simulation)
+    }
 }
 
 /// The scar as a table: places in the body's frame, height now and at first, depth (m). A run reads it again as the
@@ -124,15 +158,6 @@ pub fn table<S: Space>(s: &Simulation<S>, scar: &Scar<S>) -> String {
         text += &(numbers.join(",") + "\n");
     }
     text
-}
-
-/// The tables of all scars, `scar_NAME.csv`.
-pub fn tables<S: Space>(s: &Simulation<S>) -> Vec<Output> {
-    let file = |scar: &Scar<S>| Output::Text {
-        file: format!("{}.csv", file_name(&scar.name)),
-        text: table(s, scar),
-    };
-    s.scars.iter().map(file).collect()
 }
 
 /// Names of files take letters, digits, `-` and `_` of the name of a body.

@@ -5,6 +5,11 @@
 //! smallest stretches a and b, singular values of F, give the shear g = (a - b)/sqrt(a b): the amount of simple shear
 //! that has the same ratio of stretches, whatever its size. Rotation and dilation do not count.
 
+use super::observer::{Observer, RunEnd};
+use super::picture::{Picture, Shows};
+use super::statistics::Column;
+use super::summary::Summary;
+use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::detect::centre;
 use fretwork_core::geometry::grid::pairs;
 use fretwork_core::geometry::space::Space;
@@ -75,6 +80,70 @@ impl<S: Space> Strain<S> {
             shear::<S>(pairs)
         };
         all.map(of).collect()
+    }
+}
+
+/// Observes the local shear since the second phase began, or the start: a column of the grains, and a picture.
+#[derive(Clone, Debug)]
+pub struct LocalShear<S: Space> {
+    strain: Strain<S>,
+    /// The shear that is drawn darkest.
+    top: f64,
+}
+
+impl<S: Space> LocalShear<S> {
+    /// Counts from the state at hand, with the shear that is drawn darkest.
+    pub fn new(s: &Simulation<S>, top: f64) -> Self {
+        Self {
+            strain: Strain::new(s),
+            top,
+        }
+    }
+}
+
+impl<S: Space> Observer<S> for LocalShear<S> {
+    fn name(&self) -> String {
+        "local shear".to_owned()
+    }
+
+    fn reads_statistics(&self) -> bool {
+        false
+    }
+
+    fn begin(&mut self, s: &Simulation<S>) {
+        self.strain = Strain::new(s);
+    }
+
+    fn grain_columns(&self) -> Vec<Column> {
+        let doc =
+            "local shear since the second phase began, or the start; not a number on first bodies";
+        vec![Column::new("shear", "", doc)]
+    }
+
+    fn grain_values(&self, s: &Simulation<S>) -> Vec<Vec<f64>> {
+        vec![self.strain.shear(s)]
+    }
+
+    fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
+        vec![Picture {
+            name: "shear",
+            shows: Shows::Values {
+                values: self.strain.shear(s),
+                label: "local shear",
+                top: self.top,
+            },
+        }]
+    }
+
+    fn summarise(&self, _: &RunEnd<'_, S>, _: &mut Summary) {}
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        encode(&self.strain)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        self.strain = decode(from)?;
+        Ok(())
     }
 }
 

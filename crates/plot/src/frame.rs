@@ -8,8 +8,9 @@ use super::canvas::{Canvas, INK, ReportError, Rgb, SOFT_INK, mix};
 use super::chart::{PAGE, TEXT};
 use super::font::{Anchor, TextStyle, text_width};
 use super::furniture::{self, caption_lines, centroid, push_bar};
-use super::paint::{self, DAMAGED, Paint, SOUND, Scale};
+use super::paint::{self, Coloured, DAMAGED, SOUND, Scale};
 use super::scene::{Place, Scene};
+use fretwork_observe::picture::Paint;
 
 /// A first body (rail, wheel), or a grain with corners.
 #[derive(Clone, Debug, Default)]

@@ -1,5 +1,4 @@
-//! Charts and pictures as PNG files: axes with units, curves, disks, polygons and spheres; the [`picture`] of a simulation and
-//! the [`figures`] of a run.
+//! Charts and pictures as PNG files: axes with units, curves, disks, polygons and spheres; the [`picture`] of a simulation.
 //!
 //! ```
 //! use fretwork_plot::{Axis, Chart, DrawChart, Series};
@@ -21,7 +20,6 @@ mod axis;
 mod canvas;
 mod chart;
 mod curve;
-pub mod figures;
 mod font;
 mod frame;
 mod furniture;
@@ -38,8 +36,9 @@ pub use canvas::ReportError;
 pub use chart::DrawChart;
 pub use frame::{Arrow, Disk, Frame, Link, LinkState, Outline};
 pub use fretwork_observe::chart::{Axis, Chart, Series, Style, quantity};
+pub use fretwork_observe::picture::Paint;
 pub use notice::noted;
-pub use paint::{Paint, Scale, round_top};
+pub use paint::{Scale, round_top};
 pub use panels::draw_panels;
 pub use scene::{Faces, Scene, Sphere};
 pub use view::View;

@@ -4,25 +4,7 @@ use super::canvas::{Canvas, INK, ReportError, Rgb, mix};
 use super::chart::TEXT;
 use super::font::{Anchor, TextStyle, text_width};
 use fretwork_observe::chart::Axis;
-use serde::{Deserialize, Serialize};
-
-/// What the colour of a grain says.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub enum Paint {
-    /// Nothing: grey, from light to dark by its shade.
-    #[default]
-    Grey,
-    /// The layer it belongs to: four colours in turn, as dyed sands.
-    Layer(i64),
-    /// Part of a first body, by its number: warm, undamaged.
-    Tied(usize),
-    /// Loose third body: blue.
-    Loose,
-    /// Ejected: light blue.
-    Out,
-    /// A value, 0 light to 1 dark; grey where there is none.
-    Value(f64),
-}
+use fretwork_observe::picture::Paint;
 
 /// What the colours of [`Paint::Value`], or of bonds, mean.
 #[derive(Clone, Debug)]
@@ -60,9 +42,14 @@ const VALUES: [Rgb; 5] = [
     [66, 14, 84],
 ];
 
-impl Paint {
+/// Has a colour on a picture.
+pub(super) trait Coloured {
     /// The colour of a grain of this shade, 0 light to 1 dark.
-    pub(super) fn colour(self, shade: f64) -> Rgb {
+    fn colour(self, shade: f64) -> Rgb;
+}
+
+impl Coloured for Paint {
+    fn colour(self, shade: f64) -> Rgb {
         let dim = |colour| mix(colour, [60, 60, 64], 0.45 * shade);
         match self {
             Self::Grey => mix(GREY[0], GREY[1], shade),

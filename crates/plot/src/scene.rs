@@ -1,9 +1,10 @@
 //! A scene in space as pixels: grains, and first bodies as walls that are seen through where grains stand behind them.
 
 use super::canvas::{Canvas, Rgb, WHITE, mix};
-use super::paint::Paint;
+use super::paint::Coloured;
 use super::raster::{Corner, Cover, Raster};
 use super::view::View;
+use fretwork_observe::picture::Paint;
 use std::collections::HashMap;
 
 /// A sphere.

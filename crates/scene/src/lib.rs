@@ -21,6 +21,7 @@ pub mod measures;
 pub mod mesh_file;
 pub mod methods;
 pub mod phases;
+pub mod processes;
 pub mod profile;
 pub mod profile_file;
 pub mod recorded;

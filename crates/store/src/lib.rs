@@ -6,10 +6,9 @@
 pub mod checkpoint;
 pub mod fclib;
 pub mod results;
-pub mod series;
 pub mod shapes;
-pub mod summary;
 pub mod views;
 pub mod warnings;
 
+pub use fretwork_observe::{series, summary};
 pub use summary::Summary;

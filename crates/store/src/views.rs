@@ -22,21 +22,17 @@ pub struct Made<'a, S: Space> {
     pub densities: &'a [f64],
 }
 
-/// What the file says before the first step.
+/// What the file says before the first step, with the columns of the statistics and those of the grains that observers have.
 pub fn header<S: Space>(
     loaded: &Loaded,
     built: &Made<'_, S>,
     summary: &Summary,
     statistics: &[Column],
+    grain_columns: &[Column],
 ) -> Header {
     let dimension = S::D;
     let fields = fields(built.simulation, loaded.case.circuit.is_some());
     let c = Column::new;
-    let shear = loaded.case.output.shear.map(|_| {
-        let doc =
-            "local shear since the second phase began, or the start; not a number on first bodies";
-        c("shear", "", doc)
-    });
     let joule = if dimension == 2 { "J/m" } else { "J" };
     let area = if dimension == 2 { "m" } else { "m^2" };
     let kg = if dimension == 2 { "kg/m" } else { "kg" };
@@ -112,7 +108,9 @@ pub fn header<S: Space>(
         version: summary.version.clone(),
         statistics: statistics.to_vec(),
         fields: [
-            columns(&fields.grains, false).chain(shear).collect(),
+            columns(&fields.grains, false)
+                .chain(grain_columns.iter().cloned())
+                .collect(),
             columns(&fields.contacts, false).collect(),
             vec![c("body", "", "identity of the body")],
         ],
@@ -168,7 +166,7 @@ pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
     [8 * (3 + 2 + grain), 8 * (6 + 3 + contact)]
 }
 
-/// Appends the state at hand of a case; `shear` is a column of the grains where the header has it.
+/// Appends the state at hand of a case, with the values of the observers' columns of the grains, in the order of the header.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -176,11 +174,15 @@ pub fn append<S: Space>(
     results: &mut Results,
     s: &Simulation<S>,
     loaded: &Loaded,
-    shear: Option<Vec<f64>>,
+    values: Vec<Vec<f64>>,
 ) -> Result<(), ResultsError> {
     let fields = fields(s, loaded.case.circuit.is_some());
     let mut grains = grains(s, &fields);
-    grains.data.extend(shear);
+    let count = grains.cells.len();
+    grains.data.extend(values.into_iter().map(|mut column| {
+        column.resize(count, f64::NAN);
+        column
+    }));
     results.append_views(s.time, &[grains, contacts(s, &fields), bodies(s)])
 }
 

@@ -10,7 +10,7 @@ impl<S: Dimensional> Recorder<'_, S> {
     pub(super) fn dump(&mut self, step: u64, report: &StepReport) -> Result<(), RunError> {
         let problem = self.simulation.local_problem();
         let Some(mut problem) = problem.filter(|p| p.check().is_ok()) else {
-            self.summary.solver.fclib_skipped += 1;
+            self.problems.1 += 1;
             return Ok(());
         };
         // The field's error adds impulses to velocities: of like size neither hides the other.
@@ -36,7 +36,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         );
         fclib::write_local(&path, &problem, &title, &description)
             .map_err(|e| unwritable(&path, &e))?;
-        self.summary.solver.fclib_written += 1;
+        self.problems.0 += 1;
         Ok(())
     }
 }

@@ -29,17 +29,28 @@ pub enum RunError {
         /// Why.
         reason: String,
     },
-    /// No bond ties a grain to a first body of the circuit.
+    /// Two columns of the statistics have one name.
     #[error(
-        "at t = {time:.6e} s, when the circuit begins, no bond ties a grain to `{body}`: let bonds be made before \
-         (circuit.start), let them reach it (detection.alert, the places of grains), or leave it out of circuit.bases"
+        "two columns of the statistics are named `{name}`; give a measure or an observer another name"
     )]
-    NoBonds {
-        /// Name of the body.
-        body: String,
-        /// Time (s).
-        time: f64,
+    ColumnTwice {
+        /// The name.
+        name: String,
     },
+    /// An observer gave another number of values than it has columns.
+    #[error(
+        "the observers gave {values} values for {columns} columns of the statistics; each must give one value a column"
+    )]
+    Row {
+        /// Number of values.
+        values: usize,
+        /// Number of columns.
+        columns: usize,
+    },
+    /// A law did not come back in time from a call, and the watch over laws has written what there was. The handler that was given
+    /// to [`crate::laws::watch::watch`] decides what becomes of the program.
+    #[error("a law did not come back in time; what was recorded until then is on disk")]
+    TakenOver,
     /// The results file.
     #[error(transparent)]
     Results(#[from] ResultsError),

@@ -4,8 +4,10 @@ use super::{Recorder, RunError};
 use crate::record::picture::Subject;
 use crate::report::{noted, quantity};
 use crate::scene::build::Dimensional;
+use fretwork_observe::picture::{Picture, Shows};
+use fretwork_observe::run_state::damage_ratio;
 
-/// Names of pictures: `frames/NAME_STEP.png`.
+/// Names of pictures of the program itself: `frames/NAME_STEP.png`.
 pub(super) const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "chains"];
 
 impl<S: Dimensional> Recorder<'_, S> {
@@ -18,43 +20,24 @@ impl<S: Dimensional> Recorder<'_, S> {
         if let Some(phase) = self.simulation.control.begun().last() {
             caption.push(phase.name.clone());
         }
-        if let Some((cycles, _)) = &self.cycles {
-            let number = cycles.number(self.simulation.time);
-            if number > 0 && cycles.oscillates() {
-                caption.push(format!("cycle {number} of {}", cycles.total()));
-            }
-            if let Some(c) = cycles.list.last() {
-                caption.push(format!(
-                    "friction coefficient {:.3}",
-                    c.friction_coefficient
-                ));
-            }
-        }
+        caption.extend(self.observers.caption(&self.simulation));
         if self.simulation.network.bonds_made() > 0 {
-            caption.push(format!("damage ratio {:.3}", self.damage_ratio()));
+            caption.push(format!(
+                "damage ratio {:.3}",
+                damage_ratio(&self.simulation)
+            ));
         }
         self.camera.follow(&self.simulation);
-        let shear = self
-            .strain
-            .as_ref()
-            .map(|strain| strain.shear(&self.simulation));
-        let [frame, sheared, bonds, circuit, forces] = PICTURES;
-        let mut subjects = vec![(frame, Subject::Scene)];
-        if let (Some(values), Some(top)) = (&shear, self.loaded.case.output.shear) {
-            let label = "local shear";
-            subjects.push((sheared, Subject::Values { values, label, top }));
-        }
+        let pictures = self.observers.pictures(&self.simulation);
+        let mut subjects = vec![("frame", Subject::Scene)];
         if self.loaded.case.output.layers.is_some() && self.simulation.network.bonds_made() > 0 {
-            subjects.push((bonds, Subject::Bonds));
+            subjects.push(("bonds", Subject::Bonds));
         }
-        let paints = self.account.paints(&self.simulation);
-        if !paints.is_empty() {
-            subjects.push((circuit, Subject::Painted(&paints)));
-        }
-        let chains = self.measures.chains(&self.simulation).filter(|_| S::D == 2);
-        if let Some(pairs) = &chains {
-            subjects.push((forces, Subject::Chains(pairs)));
-        }
+        subjects.extend(
+            pictures
+                .iter()
+                .filter_map(|p| Some((p.name, subject::<S>(p)?))),
+        );
         let notice = self.notice();
         for (name, subject) in subjects {
             let path = self
@@ -70,4 +53,18 @@ impl<S: Dimensional> Recorder<'_, S> {
         }
         Ok(())
     }
+}
+
+/// How a picture of an observer is drawn; none where the dimension has no such picture.
+fn subject<S: Dimensional>(picture: &Picture) -> Option<Subject<'_>> {
+    Some(match &picture.shows {
+        Shows::Paints(paints) => Subject::Painted(paints),
+        Shows::Chains(pairs) if S::D == 2 => Subject::Chains(pairs),
+        Shows::Chains(_) => return None,
+        Shows::Values { values, label, top } => Subject::Values {
+            values,
+            label,
+            top: *top,
+        },
+    })
 }

@@ -1,20 +1,14 @@
 //! Checkpoints of a run: what is kept, and how a run that was stopped takes it up.
 
-use super::account::Account;
 use super::clear;
-use super::flows::Flows;
-use super::jumps::Jumps;
 use super::{Recorder, RunError, unwritable};
 use crate::geometry::space::Space;
 use crate::record::checkpoint::{Kind, LAST, ResumeError, ResumePoint};
 use crate::record::code::{CodeError, decode, encode};
-use crate::record::friction::Cycles;
-use crate::record::layer::Layer;
-use crate::record::solving::SolverSummary;
-use crate::record::strain::Strain;
 use crate::report::Paint;
 use crate::scene::build::Dimensional;
-use crate::step::Saved;
+use crate::step::{ProcessState, Saved};
+use fretwork_observe::observer::ObserverState;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::path::Path;
@@ -31,21 +25,10 @@ struct Carried<'a, S: Space> {
     /// Rows of each growing dataset of the results, in the order of their declarations.
     rows: Vec<(u64, u32)>,
     paints: Cow<'a, [Paint]>,
-    strain: Option<Cow<'a, Strain<S>>>,
-    cycles: Option<Cow<'a, Cycles>>,
-    /// Lengths from which the strains of a biaxial test count (m).
-    reference: Option<[f64; 2]>,
-    measures: Vec<Vec<u8>>,
-    account: Cow<'a, Account<S>>,
-    jumps: Option<Cow<'a, Jumps>>,
-    layer: Cow<'a, Layer<S>>,
-    slide: f64,
-    worn: (f64, f64),
-    load_path: f64,
-    flows: Flows,
-    iterations: u64,
-    couplings: u64,
-    solver: Cow<'a, SolverSummary>,
+    processes: Vec<ProcessState>,
+    observers: Vec<ObserverState>,
+    problems: (u64, u64),
+    unconverged: u64,
     wall: Duration,
     processor: Duration,
 }
@@ -97,20 +80,10 @@ impl<S: Dimensional> Recorder<'_, S> {
             spread: self.spread,
             rows,
             paints: Cow::Borrowed(self.camera.paints()),
-            strain: self.strain.as_ref().map(Cow::Borrowed),
-            cycles: self.cycles.as_ref().map(|(c, _)| Cow::Borrowed(c)),
-            reference: self.biaxial.as_ref().map(|b| b.reference()),
-            measures: self.measures.save()?,
-            account: Cow::Borrowed(&self.account),
-            jumps: self.jumps.as_ref().map(Cow::Borrowed),
-            layer: Cow::Borrowed(&self.layer),
-            slide: self.slide,
-            worn: self.worn,
-            load_path: self.load_path,
-            flows: self.flows,
-            iterations: self.iterations,
-            couplings: self.couplings,
-            solver: Cow::Borrowed(&self.summary.solver),
+            processes: self.simulation.save_processes()?,
+            observers: self.observers.save()?,
+            problems: self.problems,
+            unconverged: self.unconverged,
             wall: self.spent.0 + self.clock.elapsed(),
             processor: self.spent.1 + self.processor.elapsed(),
         })?)
@@ -124,38 +97,16 @@ impl<S: Dimensional> Recorder<'_, S> {
             source,
         };
         let kept: Carried<'_, S> = decode(&stop.state).map_err(refused)?;
-        let pairs = [
-            (kept.strain.is_some(), self.strain.is_some()),
-            (kept.cycles.is_some(), self.cycles.is_some()),
-            (kept.reference.is_some(), self.biaxial.is_some()),
-            (kept.jumps.is_some(), self.jumps.is_some()),
-        ];
-        let same = pairs.iter().all(|(a, b)| a == b);
-        if !same || !self.simulation.restore(kept.simulation) {
-            return Err(refused(CodeError::other("bodies, laws or tests")).into());
+        if !self.simulation.restore(kept.simulation) {
+            return Err(refused(CodeError::other("bodies or laws")).into());
         }
-        self.lengthen(kept.spread, &path)?;
-        self.measures.restore(&kept.measures).map_err(refused)?;
+        let processes = self.simulation.restore_processes(&kept.processes);
+        processes.map_err(refused)?;
+        self.observers.restore(&kept.observers).map_err(refused)?;
+        self.set_end(kept.spread, &path)?;
         self.camera.paint(kept.paints.into_owned());
-        self.strain = kept.strain.map(Cow::into_owned);
-        if let (Some((cycles, _)), Some(kept)) = (&mut self.cycles, kept.cycles) {
-            *cycles = kept.into_owned();
-            cycles.lengthen(self.loaded.case.time.end);
-        }
-        if let (Some(test), Some(reference)) = (&mut self.biaxial, kept.reference) {
-            test.refer_to(reference);
-        }
-        self.account = kept.account.into_owned();
-        self.jumps = kept.jumps.map(Cow::into_owned);
-        self.layer = kept.layer.into_owned();
-        self.slide = kept.slide;
-        self.worn = kept.worn;
-        self.load_path = kept.load_path;
         self.resumed_at = self.simulation.steps;
-        self.flows = kept.flows;
-        self.iterations = kept.iterations;
-        self.couplings = kept.couplings;
-        self.summary.solver = kept.solver.into_owned();
+        (self.problems, self.unconverged) = (kept.problems, kept.unconverged);
         self.spent = (kept.wall, kept.processor);
         self.results.take_over(&stop.kept, &kept.rows)?;
         let names: Vec<String> = self.table.columns.iter().map(|c| c.name.clone()).collect();
@@ -169,23 +120,13 @@ impl<S: Dimensional> Recorder<'_, S> {
     }
 
     /// Goes on with the spacing of states and pictures that the run was begun with, also beyond its end.
-    fn lengthen(&mut self, spread: u64, path: &Path) -> Result<(), ResumeError> {
-        let aperiodic = |(c, _): &(Cycles, usize)| !c.oscillates();
-        let why = if self.total <= spread {
-            None
-        } else if self.jumps.is_some() {
-            Some("its jumps over cycles are as long as what was left of it let them be")
-        } else if self.cycles.as_ref().is_some_and(aperiodic) {
-            Some("a friction test without a period counts the second half of the whole run")
-        } else {
-            None
-        };
+    fn set_end(&mut self, spread: u64, path: &Path) -> Result<(), ResumeError> {
         self.spread = spread;
-        why.map_or(Ok(()), |why| {
-            Err(ResumeError::Longer {
-                path: path.to_owned(),
-                why,
-            })
+        let end = self.loaded.case.time.end;
+        let set = self.observers.set_end(end, self.total > spread);
+        set.map_err(|why| ResumeError::Longer {
+            path: path.to_owned(),
+            why,
         })
     }
 }

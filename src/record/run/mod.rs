@@ -1,52 +1,41 @@
 //! Runs a scene to its end and records it.
 
-mod account;
 mod clear;
 mod dump;
+mod emergency;
 mod end;
 mod error;
-mod flows;
 mod frame;
-mod jumps;
 mod keep;
 mod notice;
-mod rescue;
-mod row;
-mod sample;
 mod stamps;
 
 pub use self::end::write_outputs;
 pub use self::error::RunError;
-pub use self::row::statistics_columns;
 
-use self::account::Account;
+use self::emergency::EmergencySave;
 use self::error::unwritable;
-use self::flows::Flows;
-use self::jumps::Jumps;
-use self::rescue::EmergencySave;
 use self::stamps::{density_of, stamps};
-use super::biaxial::Biaxial;
 use super::checkpoint::{CheckpointWriter, Found, Identity, Kind, ResumePoint, find};
-use super::friction::{Cycles, Sample, State as Cumulated};
-use super::layer::Layer;
-use super::measure::Measures;
 use super::picture::Camera;
 use super::results::Results;
-use super::statistics::Table;
-use super::strain::Strain;
-use super::summary::{SolverSummary, Summary};
+use super::statistics::{Column, Table};
+use super::summary::Summary;
 use super::views;
-use crate::bodies::TimeFunction;
 use crate::geometry::space::Space;
-use crate::interrupt;
 use crate::scene::build::{Built, Dimensional, Loaded, Scene};
-use crate::scene::sampling;
+use crate::scene::case::Case;
+use crate::scene::{processes, sampling};
 use crate::step::{Simulation, StepReport};
 use cpu_time::ProcessTime;
-use std::path::PathBuf;
+use fretwork_observe::run_state::damage_ratio;
+use fretwork_observe::standard;
+use fretwork_observe::{Observer, Observers};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// What a run tells of itself as it goes.
+/// Progress of a run, after a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
     /// Steps done and in all.
@@ -76,20 +65,112 @@ pub struct RunOptions {
     pub threads: usize,
 }
 
+/// What is done with the progress of a run: [`ControlFlow::Break`] with a reason stops it after the step, with a checkpoint from
+/// which it may be resumed and all files written.
+pub type OnProgress<'a> = dyn FnMut(&Progress) -> ControlFlow<String> + 'a;
+
+/// A run of a case that is about to begin, with what a user of the library adds to it. Processes are added to the simulation
+/// itself ([`Simulation::add_process`]) before.
+///
+/// ```no_run
+/// use fretwork::geometry::space::Dim2;
+/// use fretwork::laws::SearchPath;
+/// use fretwork::record::{Run, RunOptions};
+/// use fretwork::scene::load;
+/// use std::ops::ControlFlow;
+/// use std::path::Path;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let loaded = load(Path::new("cases/block_tower.ron"), &[])?;
+/// let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]))?;
+/// let options = RunOptions { out: "results/tower".into(), threads: 1 };
+/// let summary = Run::new(&loaded, built, &options).execute(&mut |progress| {
+///     if progress.damage_ratio > 0.5 {
+///         return ControlFlow::Break("half of the bonds are broken".to_owned());
+///     }
+///     ControlFlow::Continue(())
+/// })?;
+/// println!("{} J of friction", summary.energy.friction);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct Run<'a, S: Space> {
+    loaded: &'a Loaded,
+    built: Built<S>,
+    options: &'a RunOptions,
+    stop: Option<ResumePoint>,
+    observers: Observers<S>,
+}
+
+impl<'a, S: Dimensional> Run<'a, S> {
+    /// A run of a case from its start.
+    pub fn new(loaded: &'a Loaded, built: Built<S>, options: &'a RunOptions) -> Self {
+        Self {
+            loaded,
+            built,
+            options,
+            stop: None,
+            observers: Observers::default(),
+        }
+    }
+
+    /// Has one more observer look at it: its columns stand after all others.
+    #[must_use]
+    pub fn observe(mut self, observer: impl Observer<S> + 'static) -> Self {
+        self.observers.push(Box::new(observer));
+        self
+    }
+
+    /// Has it go on from where a run of the same case, with the same observers and processes, was [`stopped`]: the bits are those
+    /// of a run that was not.
+    #[must_use]
+    pub fn resume(mut self, stop: ResumePoint) -> Self {
+        self.stop = Some(stop);
+        self
+    }
+
+    /// Runs to the end, or until `progress`, which is called after every step, asks for one.
+    ///
+    /// # Errors
+    /// A failed step, an unwritable file, or a state that the case cannot take up; the summary is written even then, but where
+    /// nothing had begun.
+    pub fn execute(self, progress: &mut OnProgress<'_>) -> Result<Summary, RunError> {
+        let mut recorder = Recorder::new(self)?;
+        let outcome = recorder.run_steps(progress).map(|stopped| {
+            recorder.summary.interrupted = stopped.is_some();
+            recorder.summary.stopped = stopped;
+        });
+        if let Err(e) = &outcome {
+            if matches!(e, RunError::TakenOver) {
+                return Err(RunError::TakenOver);
+            }
+            recorder.summary.stopped = Some(e.to_string());
+        }
+        let finished = recorder.finish();
+        outcome.and(finished)?;
+        Ok(recorder.summary)
+    }
+}
+
 /// Runs to the end. `progress` is called after every step.
 ///
 /// # Errors
-/// A failed step or an unwritable file; the summary is written even then.
+/// As [`Run::execute`].
 pub fn run<S: Dimensional>(
     loaded: &Loaded,
     built: Built<S>,
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
+    let progress: &mut OnProgress<'_> = &mut |p| {
+        progress(p);
+        ControlFlow::Continue(())
+    };
     // Compiled here, once for each dimension.
     match S::scene(built) {
-        Scene::Dim2(built) => execute(Recorder::new(loaded, *built, options, None)?, progress),
-        Scene::Dim3(built) => execute(Recorder::new(loaded, *built, options, None)?, progress),
+        Scene::Dim2(built) => Run::new(loaded, *built, options).execute(progress),
+        Scene::Dim3(built) => Run::new(loaded, *built, options).execute(progress),
     }
 }
 
@@ -105,65 +186,24 @@ pub fn stopped<S: Space>(
     Ok(find(&options.out, &Identity::of(loaded, built)?)?)
 }
 
-/// Goes on to the end from where a run of the same case was [`stopped`]: the bits are those of a run that was not.
-/// `progress` is called after every step.
-///
-/// # Errors
-/// As [`run`], or a state that the case cannot take up.
-pub fn resume<S: Dimensional>(
-    loaded: &Loaded,
-    built: Built<S>,
-    options: &RunOptions,
-    stop: ResumePoint,
-    progress: &mut dyn FnMut(&Progress),
-) -> Result<Summary, RunError> {
-    let from = Some(stop);
-    match S::scene(built) {
-        Scene::Dim2(built) => execute(Recorder::new(loaded, *built, options, from)?, progress),
-        Scene::Dim3(built) => execute(Recorder::new(loaded, *built, options, from)?, progress),
-    }
+/// The columns of the statistics that a run of a case has.
+pub fn statistics_columns<S: Dimensional>(case: &Case, s: &Simulation<S>) -> Vec<Column> {
+    standard::observers(case, s, 0.0).columns()
 }
 
-fn execute<S: Dimensional>(
-    mut recorder: Recorder<'_, S>,
-    progress: &mut dyn FnMut(&Progress),
-) -> Result<Summary, RunError> {
-    let outcome = recorder.go(progress).map(|interrupted| {
-        recorder.summary.interrupted = interrupted.is_some();
-        recorder.summary.stopped = interrupted;
-    });
-    if let Err(e) = &outcome {
-        recorder.summary.stopped = Some(e.to_string());
-    }
-    let finished = recorder.finish();
-    outcome.and(finished)?;
-    Ok(recorder.summary)
-}
-
+/// A run as it goes.
 struct Recorder<'a, S: Space> {
     loaded: &'a Loaded,
     out: PathBuf,
     simulation: Simulation<S>,
+    observers: Observers<S>,
     table: Table,
     results: Results,
     camera: Camera,
-    /// Shear since the second phase began, where the case asks for it.
-    strain: Option<Strain<S>>,
-    cycles: Option<(Cycles, usize)>,
-    biaxial: Option<Biaxial>,
-    measures: Measures<S>,
-    account: Account<S>,
-    /// Jumps over cycles, where the case has them.
-    jumps: Option<Jumps>,
-    layer: Layer<S>,
-    sample: Option<Sample>,
-    slide: f64,
-    worn: (f64, f64),
-    /// Normal force times sliding distance of the friction test, over the run and what it jumped over (N m; N).
-    load_path: f64,
-    flows: Flows,
-    iterations: u64,
-    couplings: u64,
+    /// Steps written as FCLIB problems, and those that hold what that form does not.
+    problems: (u64, u64),
+    /// Steps that missed the tolerance.
+    unconverged: u64,
     /// Steps that were done when the run was resumed.
     resumed_at: u64,
     /// Steps of the run, and over how many of them states and pictures are spread: those it was begun with.
@@ -173,131 +213,68 @@ struct Recorder<'a, S: Space> {
     /// Time that the run took before it was stopped, of the clock and of processors; and since when it runs now.
     spent: (Duration, Duration),
     /// Where the watch over plugins finds the files during a step.
-    refuge: EmergencySave,
+    emergency: EmergencySave<S>,
     clock: Instant,
     processor: ProcessTime,
-    density: f64,
     summary: Summary,
 }
 
 impl<'a, S: Dimensional> Recorder<'a, S> {
     /// From the start, or from where a run was stopped.
-    fn new(
-        loaded: &'a Loaded,
-        built: Built<S>,
-        options: &RunOptions,
-        stop: Option<ResumePoint>,
-    ) -> Result<Self, RunError> {
+    fn new(run: Run<'a, S>) -> Result<Self, RunError> {
+        let (loaded, mut built, options) = (run.loaded, run.built, run.options);
         let frames = options.out.join("frames");
         std::fs::create_dir_all(&frames).map_err(|e| unwritable(&frames, &e))?;
         let case = &loaded.case;
-        let number = stop.as_ref().map_or(0, |s| s.number + 1);
-        let keeper = CheckpointWriter::new(
-            case.output.checkpoint,
-            &Identity::of(loaded, &built)?,
-            number,
-        )?;
-        let mut simulation = built.simulation;
+        let number = run.stop.as_ref().map_or(0, |s| s.number + 1);
+        let identity = Identity::of(loaded, &built)?;
+        let keeper = CheckpointWriter::new(case.output.checkpoint, &identity, number)?;
+        let simulation = &mut built.simulation;
         simulation.solver.parallel = options.threads > 1;
-        let cycles = case.friction.as_ref().and_then(|test| {
-            let place = simulation
-                .bodies
-                .driven
-                .iter()
-                .position(|d| d.name == test.body)?;
-            let dof = &simulation.bodies.driven[place].dofs[test.along];
-            let period = test
-                .period
-                .or(dof.function().and_then(TimeFunction::period));
-            let start = match dof.function() {
-                Some(TimeFunction::Sine { start, .. }) => test.start.max(*start),
-                _ => test.start,
-            };
-            let cycles = Cycles::new(start, period, case.time.end);
-            Some(((cycles, place), start))
-        });
-        let (cycles, start) = cycles.unzip();
-        let spec = case.biaxial.as_ref();
-        let biaxial = spec.and_then(|spec| Biaxial::new(spec, &simulation));
-        let measures = Measures::new(&case.measures, case.inertia_scaling);
-        let jumps = cycles
-            .as_ref()
-            .and_then(|(cycles, _)| jumps::begin(case, cycles, &simulation));
-        let mut columns = row::columns(&simulation, cycles.is_some(), biaxial.is_some());
-        columns.extend(jumps.is_some().then(jumps::column));
-        columns.extend(Account::<S>::columns(case));
-        columns.extend(measures.columns());
-        let plugins = stamps(&simulation.laws);
+        processes::install(case, simulation);
+        let any = !(simulation.shapes.surfaces.is_empty() && simulation.bodies.driven.is_empty());
+        let mut observers = standard::observers(case, simulation, density_of(loaded, any));
+        observers.append(run.observers);
         let summary = Summary {
             case: case.name.clone(),
             dimension: S::D,
-            plugins,
+            plugins: stamps(&simulation.laws),
             threads: options.threads,
             seed: case.seed,
             identity: keeper.name(),
             unresolved_drives: sampling::unresolved(case),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            solver: SolverSummary {
-                tolerance: case.solver.tolerance,
-                error_formula: case.solver.norm.formula().to_owned(),
-                method: case.solver.method.name().to_owned(),
-                ..SolverSummary::default()
-            },
             ..Summary::default()
         };
-        let header = {
-            let made = views::Made {
-                simulation: &simulation,
-                materials: &built.materials,
-                densities: &built.densities,
-            };
-            views::header(loaded, &made, &summary, &columns)
-        };
+        let columns = observers.columns();
+        check_names(&columns)?;
         // The file of results comes first: it alone says what the folder holds.
         let part = options.out.join("results.h5.part");
-        let results = Results::create(&part, &header)?;
-        let table = Table::new(columns);
+        let results = create_results(&part, loaded, &built, &summary, &observers)?;
+        let simulation = built.simulation;
         let total = (case.time.end / case.time.step - 1e-6).ceil().max(1.0) as u64;
-        let first = simulation
-            .shapes
-            .surfaces
-            .first()
-            .map(|s| s.body)
-            .or(simulation.bodies.driven.first().map(|d| d.body));
         let mut recorder = Self {
             camera: Camera::new(&simulation, &case.output),
-            strain: case.output.shear.map(|_| Strain::new(&simulation)),
             out: options.out.clone(),
-            table,
+            table: Table::new(columns),
             results,
-            cycles,
-            biaxial,
-            measures,
-            account: Account::new(case),
-            jumps,
-            layer: Layer::new(&simulation),
-            sample: None,
-            slide: 0.0,
-            worn: (0.0, 0.0),
-            load_path: 0.0,
-            flows: Flows::since(start.unwrap_or(0.0)),
-            iterations: 0,
-            couplings: 0,
+            observers,
+            problems: (0, 0),
+            unconverged: 0,
             resumed_at: 0,
             total,
             spread: total,
             keeper,
             spent: (Duration::ZERO, Duration::ZERO),
-            refuge: EmergencySave::new(options.out.clone()),
+            emergency: EmergencySave::new(options.out.clone()),
             clock: Instant::now(),
             processor: ProcessTime::now(),
-            density: density_of(loaded, first.is_some()),
             summary,
             simulation,
             loaded,
         };
-        recorder.measures.begin(&mut recorder.simulation);
-        let begun = match stop {
+        recorder.observers.begin(&mut recorder.simulation);
+        let begun = match run.stop {
             Some(stop) => recorder.take_up(stop),
             None => recorder.publish(Kind::Begun, Vec::new()),
         };
@@ -311,65 +288,37 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         }
     }
 
-    /// Steps to the end, or until a signal asks for one: why, then.
-    fn go(&mut self, progress: &mut dyn FnMut(&Progress)) -> Result<Option<String>, RunError> {
-        let output = &self.loaded.case.output;
+    /// Steps to the end, or until one is asked for: why, then.
+    fn run_steps(&mut self, progress: &mut OnProgress<'_>) -> Result<Option<String>, RunError> {
         if self.simulation.steps == 0 {
             self.views()?;
             self.frame(0)?;
         }
         for step in self.simulation.steps + 1..=self.total {
-            let (before, phase) = (self.cumulated(), self.simulation.control.phase());
+            let phase = self.simulation.control.phase();
             let recurs = self.simulation.control.recurs();
             let report = self.step()?;
-            self.follow(&report, before);
-            self.measures.follow(&self.simulation);
+            self.unconverged += u64::from(!report.solver.converged);
+            self.observers.after_step(&self.simulation, &report);
             if phase == 1 && self.simulation.control.phase() == 2 {
                 self.camera.dye(&self.simulation);
-                self.measures.begin(&mut self.simulation);
-                self.strain = self.strain.take().map(|_| Strain::new(&self.simulation));
+                self.observers.begin(&mut self.simulation);
             }
-            let whole = self.simulation.whole();
-            let reached = self.jump();
-            let finished = self.simulation.control.finished() || whole.is_err() || reached;
+            self.simulation.between_steps()?;
+            let worn_through = self.simulation.check_worn_through();
+            let finished = self.simulation.finished() || worn_through.is_err();
             let last = step == self.total || finished;
-            self.account(last)?;
-            if output.fclib > 0 && step % output.fclib == 0 {
-                self.dump(step, &report)?;
-            }
-            if last {
-                self.simulation.show_wear();
-            }
-            if step % output.every == 0 || last {
-                let mut row = self.row(&report);
-                row.extend(self.cycles_represented());
-                if self.loaded.case.circuit.is_some() {
-                    row.extend(self.account.row());
-                }
-                row.extend(self.measures.sample(&self.simulation));
-                self.table
-                    .push(&row)
-                    .map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
-                self.results.append_statistics(&row)?;
-            }
-            if due(step, self.spread, output.views) || finished {
-                self.views()?;
-            }
             let turned = phase > 0 && self.simulation.control.phase() > phase && !recurs;
-            if due(step, self.spread, output.frames) || finished || turned {
-                self.frame(step)?;
-            }
-            progress(&self.progress(step, &report));
-            whole?;
+            self.record(&report, last, finished, turned)?;
+            let wish = progress(&self.progress(step, &report));
+            worn_through?;
             if last {
                 break;
             }
-            if let Some(signal) = interrupt::asked() {
+            if let ControlFlow::Break(reason) = wish {
                 self.keep()?;
                 let total = self.total;
-                return Ok(Some(format!(
-                    "interrupted by {signal} after step {step} of {total}"
-                )));
+                return Ok(Some(format!("{reason} after step {step} of {total}")));
             }
             if self.keeper.due(step) {
                 self.keep()?;
@@ -378,77 +327,99 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         Ok(None)
     }
 
-    fn follow(&mut self, report: &StepReport, before: Cumulated) {
-        self.sample = self.sample();
-        if let (Some((_, place)), Some(test)) = (&self.cycles, &self.loaded.case.friction) {
-            self.layer.follow(&self.simulation, (*place, test.along));
+    /// Records a step: its events, and its problem, row, state and pictures where they are due. `last` is the last step of the run,
+    /// `finished` the one that ended it, `turned` one after which another phase begins.
+    fn record(
+        &mut self,
+        report: &StepReport,
+        last: bool,
+        finished: bool,
+        turned: bool,
+    ) -> Result<(), RunError> {
+        let (output, step) = (&self.loaded.case.output, self.simulation.steps);
+        if last {
+            self.simulation.end()?;
         }
-        if let Some(test) = &mut self.biaxial {
-            test.follow(&self.simulation);
+        for event in self.observers.after_processes(&self.simulation) {
+            self.results.append_event(&event)?;
         }
-        self.worn.0 += report.totals.worn_first;
-        self.worn.1 += report.totals.worn_third;
-        let after = self.cumulated();
-        let damage = self.damage_ratio();
-        let s = &self.simulation;
-        let h = s.scheme.h;
-        if let (Some(sample), Some((cycles, _))) = (self.sample, &mut self.cycles) {
-            self.slide += sample.slide;
-            self.load_path += s.network.cycle_multiplier * sample.p * sample.slide.abs();
-            cycles.add(&sample, h, before, after, damage);
+        if output.fclib > 0 && step.is_multiple_of(output.fclib) {
+            self.dump(step, report)?;
         }
-        let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
-        let scaling = self.loaded.case.inertia_scaling;
-        self.flows.add(s, along, scaling, self.worn.0);
-        let solver = &mut self.summary.solver;
-        self.iterations += u64::from(report.solver.iterations);
-        solver.iterations_max = solver.iterations_max.max(report.solver.iterations);
-        solver.error_max = solver.error_max.max(report.solver.error);
-        let used = report.solver.used.name().to_owned();
-        *solver.steps_by_method.entry(used).or_default() += 1;
-        solver.choice.add(&report.solver);
-        self.couplings += u64::from(report.coupling.iterations);
-        solver.uncoupled_steps += u64::from(report.coupling.missed);
-        if let Some(p) = &report.projected {
-            solver.projected_steps += 1;
-            solver.overlap_before = solver.overlap_before.max(p.before);
-            solver.overlap_after = solver.overlap_after.max(p.after);
+        if step.is_multiple_of(output.every) || last {
+            self.row()?;
         }
-        if !report.solver.converged {
-            if solver.unconverged_steps == 0 {
-                solver.first_unconverged = s.steps;
-            }
-            solver.unconverged_steps += 1;
+        if due(step, self.spread, output.views) || finished {
+            self.views()?;
         }
+        if due(step, self.spread, output.frames) || finished || turned {
+            self.frame(step)?;
+        }
+        Ok(())
     }
 
+    /// Writes a row of the statistics.
+    fn row(&mut self) -> Result<(), RunError> {
+        let row = self.observers.sample(&self.simulation);
+        if row.len() != self.table.columns.len() {
+            return Err(RunError::Row {
+                values: row.len(),
+                columns: self.table.columns.len(),
+            });
+        }
+        let written = self.table.push(&row);
+        written.map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
+        Ok(self.results.append_statistics(&row)?)
+    }
+
+    /// Writes the state at hand.
     fn views(&mut self) -> Result<(), RunError> {
-        let shear = self
-            .strain
-            .as_ref()
-            .map(|strain| strain.shear(&self.simulation));
-        Ok(views::append(
-            &mut self.results,
-            &self.simulation,
-            self.loaded,
-            shear,
-        )?)
+        let values = self.observers.grain_values(&self.simulation);
+        let (results, s) = (&mut self.results, &self.simulation);
+        Ok(views::append(results, s, self.loaded, values)?)
     }
 
     fn progress(&self, step: u64, report: &StepReport) -> Progress {
+        let s = &self.simulation;
         Progress {
             steps: (step, self.total),
             resumed_at: self.resumed_at,
-            cycle: self
-                .cycles
-                .as_ref()
-                .map_or((0, 0), |(c, _)| (c.number(self.simulation.time), c.total())),
-            contacts: self.simulation.network.contact_count(),
+            cycle: self.observers.cycle(s.time).unwrap_or((0, 0)),
+            contacts: s.network.contact_count(),
             iterations: report.solver.iterations,
             error: report.solver.error,
-            unconverged: self.summary.solver.unconverged_steps,
-            damage_ratio: self.damage_ratio(),
+            unconverged: self.unconverged,
+            damage_ratio: damage_ratio(s),
         }
+    }
+}
+
+/// Begins the file of results, under a name that it has until there is something in it.
+fn create_results<S: Dimensional>(
+    part: &Path,
+    loaded: &Loaded,
+    built: &Built<S>,
+    summary: &Summary,
+    observers: &Observers<S>,
+) -> Result<Results, RunError> {
+    let made = views::Made {
+        simulation: &built.simulation,
+        materials: &built.materials,
+        densities: &built.densities,
+    };
+    let (statistics, grains) = (observers.columns(), observers.grain_columns());
+    let header = views::header(loaded, &made, summary, &statistics, &grains);
+    Ok(Results::create(part, &header)?)
+}
+
+/// Refuses two columns of one name.
+fn check_names(columns: &[Column]) -> Result<(), RunError> {
+    let twice = |k: &usize| columns[..*k].iter().any(|c| c.name == columns[*k].name);
+    match (0..columns.len()).find(twice) {
+        None => Ok(()),
+        Some(k) => Err(RunError::ColumnTwice {
+            name: columns[k].name.clone(),
+        }),
     }
 }
 

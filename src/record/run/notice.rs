@@ -23,7 +23,8 @@ pub(super) fn band(list: &[Warning]) -> Option<String> {
 impl<S: Space> Recorder<'_, S> {
     /// The band over a picture of the moment: what is known so far.
     pub(super) fn notice(&mut self) -> Option<String> {
-        self.count();
+        self.observers.before_step(&self.simulation);
+        self.observers.summarise_so_far(&mut self.summary);
         band(&warnings::of(&self.summary, None))
     }
 

@@ -5,13 +5,15 @@ use super::{close, driven, scene, step};
 use fretwork::contact::Key;
 use fretwork::geometry::convex::Core;
 use fretwork::geometry::space::Dim3;
-use fretwork::record::measure::Measures;
+use fretwork::record::RunEnd;
+use fretwork::record::measure::measures;
 use fretwork::record::run::write_outputs;
 use fretwork::record::statistics::Table;
 use fretwork::scene::measures::MeasureSpec;
 use fretwork::step::Simulation;
 use nalgebra::Vector3;
 use std::collections::HashMap;
+use std::time::Duration;
 
 type V = Vector3<f64>;
 
@@ -200,8 +202,8 @@ fn blocks_are_measured() {
         above: 0.2,
         start: 0.0,
     };
-    let mut scaled = Measures::new(std::slice::from_ref(&mass), 1e3);
-    let mut mass = Measures::new(&[mass], 1.0);
+    let mut scaled = measures::<Dim3>(std::slice::from_ref(&mass), 1e3);
+    let mut mass = measures::<Dim3>(&[mass], 1.0);
     let mut s = scene::<Dim3>("block_wall", &WALL);
     let whole: f64 = s.bodies.mass[..22].iter().sum();
     // Centres of three of the five courses are above.
@@ -220,11 +222,17 @@ fn blocks_are_measured() {
         turned: 0.0,
         start: 0.0,
     };
-    let mut profile = Measures::new(&[profile], 1.0);
+    let mut profile = measures::<Dim3>(&[profile], 1.0);
     step(&mut s);
     profile.sample(&s);
     let table = Table::create(&folder.join("t.csv"), Vec::new()).unwrap();
-    write_outputs(&folder, &profile.outputs("", &table)).unwrap();
+    let end = RunEnd {
+        simulation: &s,
+        table: &table,
+        title: "",
+        wall: Duration::ZERO,
+    };
+    write_outputs(&folder, &profile.figures(&end)).unwrap();
     let text = std::fs::read_to_string(folder.join("m.csv")).unwrap();
     std::fs::remove_dir_all(&folder).ok();
     for row in text.lines().skip(1) {
@@ -256,6 +264,6 @@ fn blocks_are_measured() {
     };
     // In three columns the highest of three, two and three blocks.
     let known = f64::atan((0.17 - 0.12) / (0.8 * 2.0 / 3.0));
-    let found = Measures::new(&[slope], 1.0).sample(&s)[0];
+    let found = measures::<Dim3>(&[slope], 1.0).sample(&s)[0];
     assert!((found - known).abs() < 1e-6, "{found} {known}");
 }

@@ -7,6 +7,7 @@ mod faults;
 mod folder;
 mod kills;
 mod laws;
+mod library;
 #[cfg(unix)]
 mod signals;
 mod state;

@@ -5,11 +5,11 @@
 //!
 //! ```
 //! use fretwork_core::fields::Field;
-//! use fretwork_core::geometry::space::Plane;
+//! use fretwork_core::geometry::space::Dim2;
 //! use fretwork_core::step::Simulation;
 //!
-//! fn watch_age(simulation: &mut Simulation<Plane>) {
-//!     let age = Field::number("age", "s", "time since the contact formed", |s: &Simulation<Plane>, c| {
+//! fn watch_age(simulation: &mut Simulation<Dim2>) {
+//!     let age = Field::number("age", "s", "time since the contact formed", |s: &Simulation<Dim2>, c| {
 //!         s.time - c.born
 //!     });
 //!     simulation.fields.contacts.add(age);

@@ -7,7 +7,6 @@ pub mod child;
 pub mod columns;
 pub mod commit;
 pub mod demand;
-pub mod ending;
 mod gather;
 mod guarded;
 pub mod interface;

@@ -81,8 +81,7 @@ impl Slot {
 }
 
 /// Whom this thread calls, and what, while a call goes on. It takes no lock and no memory.
-#[cfg(unix)]
-pub(super) fn inside() -> Option<(&'static str, &'static str)> {
+pub fn inside() -> Option<(&'static str, &'static str)> {
     let mine = MINE.try_with(|slot| *slot).ok()?;
     let called = mine.turns.load(Ordering::Relaxed) % 2 == 1;
     called.then(|| mine.named())
@@ -137,10 +136,10 @@ impl Saved {
 }
 
 /// A thread that is stuck may hold what a rescue needs, such as the lock of the allocator: it is not waited for longer.
-pub(super) const RESCUED_WITHIN: Duration = Duration::from_secs(10);
+pub const RESCUED_WITHIN: Duration = Duration::from_secs(10);
 
 /// Lets all rescues save what they can, beside a thread that is stuck or was stopped.
-pub(super) fn save(who: &str) -> Saved {
+pub fn save(who: &str) -> Saved {
     let rescues = {
         let mut all = RESCUES.lock().unwrap_or_else(|e| e.into_inner());
         std::mem::take(&mut *all)

@@ -1,10 +1,13 @@
 //! Jumps over cycles: which cycle stands for how many, and the control of each jump.
 
+use super::cycle::{CycleClock, RubbedBody};
+use super::{Process, ProcessError};
+use crate::code::{CodeError, decode, encode};
 use crate::contact::Bond;
 use crate::contact::events::Life;
 use crate::geometry::recede::Vertex;
 use crate::geometry::space::Space;
-use crate::step::Simulation;
+use crate::step::{Simulation, StepReport};
 use crate::wear::jump::{Amounts, carried, error, growth, left, misplaced, next_length, parts};
 use serde::{Deserialize, Serialize};
 
@@ -117,6 +120,12 @@ struct Pending {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Jumps {
     spec: JumpSpec,
+    clock: CycleClock,
+    test: RubbedBody,
+    /// Volume worn off first bodies and off grains (m^3; m^3/m).
+    worn: (f64, f64),
+    /// Number of the cycle whose work is summed up, and the work of the rubbed body in it so far (J; J/m).
+    current: (u32, f64),
     /// Steps of a cycle, and of the whole run.
     steps: [u64; 2],
     /// Work of the last cycle that was computed as one (J; J/m).
@@ -150,14 +159,24 @@ pub struct Jumps {
 }
 
 impl Jumps {
-    /// Begins at the state at hand: with the steps of a cycle and of the whole run, and the number of the cycle that the next step
-    /// belongs to.
-    pub fn new<S: Space>(spec: JumpSpec, steps: [u64; 2], number: u32, s: &Simulation<S>) -> Self {
+    /// Begins at the state at hand: with the cycles of the test, the body that is rubbed, and the steps of a cycle and of the whole
+    /// run.
+    pub fn new<S: Space>(
+        spec: JumpSpec,
+        clock: CycleClock,
+        test: RubbedBody,
+        steps: [u64; 2],
+        s: &Simulation<S>,
+    ) -> Self {
         let first = amounts(s, 0.0);
         Self {
+            clock,
+            test,
+            worn: (0.0, 0.0),
+            current: (0, 0.0),
             steps,
             work: 0.0,
-            number,
+            number: clock.number(s.time + s.scheme.h),
             cycle_multiplier: 1,
             computed: 0,
             represented: 0,
@@ -181,57 +200,56 @@ impl Jumps {
         }
     }
 
-    /// Number of the cycle at hand among those computed, 0 before the first.
-    pub fn number(&self) -> u32 {
-        self.number
-    }
-
-    /// Cycles that the one at hand stands for.
-    pub fn cycle_multiplier(&self) -> u32 {
-        self.cycle_multiplier
-    }
-
     /// Cycles so far, those jumped over included, when a share of the cycle at hand is done.
-    pub fn cycles(&self, share: f64) -> f64 {
+    fn cycles(&self, share: f64) -> f64 {
         f64::from(self.represented) + share * f64::from(self.cycle_multiplier)
     }
 
     /// Cycles that were jumped over, when a share of the cycle at hand is done.
-    pub fn jumped(&self, share: f64) -> f64 {
+    fn jumped(&self, share: f64) -> f64 {
         f64::from(self.represented - self.computed) + share * f64::from(self.cycle_multiplier - 1)
     }
 
-    /// Takes in a step, with the number of the cycle that the next one belongs to, what was worn off first bodies and grains, and
-    /// the work of the cycle at hand. Whether the cycles asked for are reached.
-    pub fn follow<S: Space>(
-        &mut self,
-        s: &mut Simulation<S>,
-        next: u32,
-        worn: (f64, f64),
-        work: f64,
-    ) -> bool {
-        if next == self.number {
-            return false;
+    /// Cycles so far, those jumped over and the part of the one at hand included, at a time (s).
+    pub fn cycles_at(&self, time: f64) -> f64 {
+        self.cycles(self.open_share(time))
+    }
+
+    /// Cycles that were jumped over by a time (s).
+    pub fn jumped_at(&self, time: f64) -> f64 {
+        self.jumped(self.open_share(time))
+    }
+
+    /// Length of a cycle (s).
+    pub fn period(&self) -> f64 {
+        self.clock.period.unwrap_or(0.0)
+    }
+
+    /// Share of the cycle at hand that is done. A cycle that was closed with the last step is among those represented.
+    fn open_share(&self, time: f64) -> f64 {
+        let share = self.clock.share(time);
+        if share < 1.0 { share } else { 0.0 }
+    }
+
+    /// Adds the work of the last step to that of its cycle.
+    fn add_work<S: Space>(&mut self, s: &Simulation<S>) {
+        let cycle = self.clock.number(s.time);
+        if self.current.0 != cycle {
+            self.current = (cycle, 0.0);
         }
-        if self.number > 0 {
-            self.close(s, worn, work);
-        }
-        self.number = next;
-        self.opened = amounts(s, worn.1);
-        s.network.cycle_multiplier = f64::from(self.cycle_multiplier);
-        self.spec.cycles.is_some_and(|n| self.represented >= n)
+        self.current.1 += self.test.tangential_force(s) * self.test.slide(s);
     }
 
     /// Ends a cycle, and says what the next one stands for.
-    fn close<S: Space>(&mut self, s: &Simulation<S>, worn: (f64, f64), work: f64) {
-        let now = amounts(s, worn.1);
+    fn close<S: Space>(&mut self, s: &Simulation<S>, work: f64) {
+        let now = amounts(s, self.worn.1);
         let grown = growth(&now, &self.opened);
         self.computed += 1;
         self.represented = self.represented.saturating_add(self.cycle_multiplier);
         self.summary.points.push(Point {
             cycles: self.represented,
             cycle_multiplier: self.cycle_multiplier,
-            wear_volume: worn.0,
+            wear_volume: self.worn.0,
             mean_damage: s.network.mean_damage(),
         });
         if self.cycle_multiplier > 1 {
@@ -359,8 +377,8 @@ impl Jumps {
     }
 
     /// What the summary says at the end of the run.
-    pub fn outcome<S: Space>(&self, s: &Simulation<S>, worn: (f64, f64)) -> JumpSummary {
-        let grown = growth(&amounts(s, worn.1), &self.first);
+    pub fn outcome<S: Space>(&self, s: &Simulation<S>) -> JumpSummary {
+        let grown = growth(&amounts(s, self.worn.1), &self.first);
         let share = |((off, form), grown): ((&f64, &f64), &Vec<f64>)| {
             let (off, all) = (off + form, grown.iter().sum::<f64>());
             match (off > 0.0, all > 0.0) {
@@ -382,9 +400,56 @@ impl Jumps {
             represented_cycles: self.represented,
             error_estimate: shares.map(|list| list.into_iter().fold(0.0, f64::max)),
             unchecked_cycles: waiting + at_hand,
-            wear_volume: worn.0,
+            wear_volume: self.worn.0,
             ..self.summary.clone()
         }
+    }
+}
+
+impl<S: Space> Process<S> for Jumps {
+    fn name(&self) -> &str {
+        "cycle jumps"
+    }
+
+    fn after_move(
+        &mut self,
+        _: &mut Simulation<S>,
+        report: &StepReport,
+    ) -> Result<(), ProcessError> {
+        self.worn.0 += report.totals.worn_first;
+        self.worn.1 += report.totals.worn_third;
+        Ok(())
+    }
+
+    /// Closes the cycle that the step ended, and begins the next one.
+    fn between_steps(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
+        self.add_work(s);
+        let next = self.clock.number(s.time + s.scheme.h);
+        if next == self.number {
+            return Ok(());
+        }
+        if self.number > 0 {
+            let (cycle, work) = self.current;
+            self.close(s, if cycle == self.number { work } else { 0.0 });
+        }
+        self.number = next;
+        self.opened = amounts(s, self.worn.1);
+        s.network.cycle_multiplier = f64::from(self.cycle_multiplier);
+        Ok(())
+    }
+
+    /// Whether the cycles asked for are there.
+    fn finished(&self) -> bool {
+        self.spec.cycles.is_some_and(|n| self.represented >= n)
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        encode(self)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        *self = decode(from)?;
+        Ok(())
     }
 }
 

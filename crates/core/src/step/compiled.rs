@@ -25,7 +25,8 @@ impl Steps for Dim3 {
 }
 
 impl<S: Steps> Simulation<S> {
-    /// One step of h.
+    /// One step of h. Processes act at its named moments, see [`crate::process`]; those that are due between the last step and
+    /// this one first, where [`Simulation::between_steps`] was not called.
     ///
     /// # Errors
     /// A law's error, or velocities that are not finite; the state is then that of the failed step. Or a surface that

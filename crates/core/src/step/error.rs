@@ -1,6 +1,7 @@
 //! Why a step could not be done.
 
 use crate::laws::LawError;
+use crate::process::ProcessError;
 use crate::wear::WornThrough;
 
 /// Why a step could not be done.
@@ -35,6 +36,18 @@ pub enum StepError {
         time: f64,
         /// Which and where.
         source: WornThrough,
+    },
+    /// A process refused.
+    #[error("step {step} at t = {time:.6e} s: {process}: {source}")]
+    Process {
+        /// Number of the last step that was done.
+        step: u64,
+        /// Time at its end (s).
+        time: f64,
+        /// Name of the process.
+        process: String,
+        /// What it said.
+        source: ProcessError,
     },
     /// A velocity is not finite.
     #[error(

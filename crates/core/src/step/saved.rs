@@ -96,6 +96,9 @@ impl<S: Space> Simulation<S> {
             coupling: _,
             // What carries the fields is registered by the program.
             fields: _,
+            // Processes save themselves; a state is kept when they have acted.
+            processes: _,
+            settled: _,
             // Of one step alone.
             workspace: _,
         } = self;

@@ -14,6 +14,7 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
 use crate::laws::pass::LawEvaluator;
 use crate::laws::{ContactStep, Interface, LawError, Totals};
+use crate::process::Process;
 use crate::solve::local::solver::Method;
 use crate::solve::{self, ContactForm, MomentForm, Problem};
 use crate::wear::{Scar, WornThrough};
@@ -104,6 +105,10 @@ pub struct Simulation<S: Space> {
     pub fields: crate::fields::Fields<S>,
     /// What acts from outside and changes in time.
     pub control: super::control::Control<S>,
+    /// What acts at the named moments of a step, in this order.
+    pub(super) processes: Vec<Box<dyn Process<S>>>,
+    /// Whether the processes have acted on the state since the last step.
+    pub(super) settled: bool,
     /// What the sum of the steps in `time` has too much by rounding (s).
     pub(super) time_excess: f64,
     pub(super) habit: solve::AutoState,
@@ -191,6 +196,8 @@ impl<S: Space> Simulation<S> {
             worn_through: None,
             fields: Default::default(),
             control: Default::default(),
+            processes: Vec::new(),
+            settled: true,
             time_excess: 0.0,
             habit: solve::AutoState::default(),
             passes: LawEvaluator::default(),
@@ -202,7 +209,8 @@ impl<S: Space> Simulation<S> {
 
     /// See [`Simulation::step`].
     pub(super) fn one_step(&mut self) -> Result<StepReport, StepError> {
-        self.whole()?;
+        self.between_steps()?;
+        self.check_worn_through()?;
         let mut report = StepReport::default();
         let Scheme { h, theta } = self.scheme;
         let info = StepInfo {
@@ -216,6 +224,7 @@ impl<S: Space> Simulation<S> {
         let driven = self.motion_of_driven();
         self.begin_motion();
         self.watch_first_move(&driven);
+        self.act(|process, simulation| process.before_detection(simulation))?;
         let mut start = StepStart::new(&self.bodies);
         let clock = Instant::now();
         motion::advance(&mut self.bodies, (1.0 - theta) * h);
@@ -246,7 +255,7 @@ impl<S: Space> Simulation<S> {
             .passes
             .commit(&self.laws, &mut self.network, sites, turns, &info);
         report.totals = committed.map_err(|e| self.law_error(e))?;
-        self.put_losses();
+        self.act(|process, simulation| process.after_solve(simulation))?;
         self.network.locate_breaks(&self.bodies);
         report.timing.laws += clock.elapsed();
 
@@ -262,7 +271,8 @@ impl<S: Space> Simulation<S> {
         self.finite()?;
         self.watch_rounding();
         self.end_phase();
-        self.recede();
+        self.act(|process, simulation| process.after_move(simulation, &report))?;
+        self.settled = false;
         Ok(report)
     }
 

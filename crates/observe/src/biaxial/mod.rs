@@ -8,10 +8,15 @@ mod outcome;
 pub use outcome::Outcome;
 
 use super::coordination::{Coordination, coordination};
+use super::figures;
+use super::observer::{Observer, RunEnd};
+use super::output::Output;
 use super::statistics::Column;
 use super::stress::{love_weber, plane_invariants};
+use super::summary::Summary;
+use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::step::{Simulation, StepReport};
 use fretwork_scene::case::BiaxialSpec;
 
 /// A flat wall square to an axis.
@@ -117,16 +122,6 @@ impl Biaxial {
         }
     }
 
-    /// Lengths from which strains count (m).
-    pub fn reference(&self) -> [f64; 2] {
-        self.reference
-    }
-
-    /// Has strains count from other lengths (m).
-    pub fn refer_to(&mut self, reference: [f64; 2]) {
-        self.reference = reference;
-    }
-
     /// Volume of the grains (m^3; m^2 in 2D).
     pub fn solid(&self) -> f64 {
         self.solid
@@ -192,6 +187,42 @@ impl Biaxial {
             c("coordination_carried", "", "the same without rattlers"),
             c("rattlers", "", "share of grains that carry nothing"),
         ]
+    }
+}
+
+impl<S: Space> Observer<S> for Biaxial {
+    fn name(&self) -> String {
+        "biaxial test".to_owned()
+    }
+
+    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
+        self.follow(s);
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        Self::columns()
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        self.state(s).row()
+    }
+
+    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+        let mass = self.grain_mass(end.simulation);
+        summary.biaxial = Some(Outcome::new(end.table, self.start, mass));
+    }
+
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        vec![figures::biaxial::charts(end.title, end.table, self.start)]
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        encode(&self.reference)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        self.reference = decode(from)?;
+        Ok(())
     }
 }
 

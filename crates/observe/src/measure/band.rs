@@ -4,7 +4,7 @@
 //! as wide as their quartiles are apart, which is the width where they fill it evenly; a few stray grains do not
 //! count. A straight line through the rows gives the angle; across that line the width is the rows' mean.
 
-use super::{Measure, grains, line};
+use super::{Observer, RunEnd, grains, line};
 use crate::chart::{Axis, Chart, Series};
 use crate::code::{self, CodeError};
 use crate::output::Output;
@@ -67,7 +67,11 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
     sorted[k] + (place - k as f64) * (next - sorted[k])
 }
 
-impl<S: Space> Measure<S> for Band<S> {
+impl<S: Space> Observer<S> for Band<S> {
+    fn name(&self) -> String {
+        super::name_of("band", &self.name)
+    }
+
     fn begin(&mut self, s: &Simulation<S>) {
         self.strain = Some(Strain::new(s));
     }
@@ -134,7 +138,8 @@ impl<S: Space> Measure<S> for Band<S> {
         Ok(())
     }
 
-    fn outputs(&self, title: &str, table: &Table) -> Vec<Output> {
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let RunEnd { title, table, .. } = *end;
         let chart = |part: &str, name: &str, unit: &'static str, factor: f64| {
             let points = super::since(table, &format!("{}_{part}", self.name), 0.0);
             let points = points.into_iter().map(|(t, v)| (t, factor * v)).collect();

@@ -1,8 +1,7 @@
 //! Mass above a level: what a silo still holds.
 
-use super::{Measure, grains, line, since};
+use super::{Observer, RunEnd, grains, line, since};
 use crate::chart::{Axis, Chart, Series};
-use crate::code::CodeError;
 use crate::output::Output;
 use crate::statistics::{Column, Table};
 use fretwork_core::geometry::space::Space;
@@ -18,7 +17,11 @@ pub struct Mass {
     pub(super) inertia_scaling: f64,
 }
 
-impl<S: Space> Measure<S> for Mass {
+impl<S: Space> Observer<S> for Mass {
+    fn name(&self) -> String {
+        super::name_of("mass", &self.name)
+    }
+
     fn columns(&self) -> Vec<Column> {
         let unit = if S::D == 2 { "kg/m" } else { "kg" };
         vec![Column::new(
@@ -47,15 +50,8 @@ impl<S: Space> Measure<S> for Mass {
         vec![(format!("{}_rate", self.name), unit)]
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
-        Ok(Vec::new())
-    }
-
-    fn restore(&mut self, _: &[u8]) -> Result<(), CodeError> {
-        Ok(())
-    }
-
-    fn outputs(&self, title: &str, table: &Table) -> Vec<Output> {
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let RunEnd { title, table, .. } = *end;
         let unit = if S::D == 2 { "kg/m" } else { "kg" };
         let mut chart = Chart::new(
             format!("Mass, {}", self.name),

@@ -7,209 +7,89 @@ mod shear;
 mod slope;
 mod third_body;
 
-use super::code::CodeError;
-use super::output::Output;
-use super::statistics::{Column, Table};
+use super::observer::{Observer, Observers, RunEnd};
+use super::statistics::Table;
 use fretwork_core::geometry::convex::{ConvexCollider, Core};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use fretwork_scene::measures::MeasureSpec;
-use std::collections::BTreeMap;
-use std::fmt::Debug;
 
-/// One measure.
-pub trait Measure<S: Space>: Debug {
-    /// The state at hand is the one from which deformations count.
-    fn begin(&mut self, _: &Simulation<S>) {}
-    /// Whether it is told of every step, and of what each contact dissipated in it.
-    fn follows(&self) -> bool {
-        false
+/// Measures of these words of a case, and its `inertia_scaling`, by which the bodies' masses are too large.
+pub fn measures<S: Space>(specs: &[MeasureSpec], inertia_scaling: f64) -> Observers<S> {
+    let mut all = Observers::default();
+    for spec in specs {
+        all.push(measure(spec.clone(), inertia_scaling));
     }
-    /// Takes in the last step, where [`Measure::follows`].
-    fn follow(&mut self, _: &Simulation<S>) {}
-    /// Its columns in the statistics.
-    fn columns(&self) -> Vec<Column>;
-    /// Values of its columns at the end of a step; it may keep what it needs for the end.
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64>;
-    /// What it says in the summary, by name.
-    fn outcome(&self, table: &Table) -> Vec<(String, f64)>;
-    /// Units of what it says in the summary that is no mean of a column; what is not named is a pure number.
-    fn units(&self) -> Vec<(String, &'static str)> {
-        Vec::new()
-    }
-    /// What it says in the summary in words, by name.
-    fn verdict(&self, _: &Table) -> Vec<(String, String)> {
-        Vec::new()
-    }
-    /// Force chains as sorted pairs of bodies, the lower first, where it finds them.
-    fn chains(&self, _: &Simulation<S>) -> Option<Vec<[u32; 2]>> {
-        None
-    }
-    /// What it carries from step to step, as bytes for a checkpoint; none where it carries nothing.
-    ///
-    /// # Errors
-    /// It cannot be put into bytes.
-    fn save(&self) -> Result<Vec<u8>, CodeError>;
-    /// Goes on from what [`Measure::save`] gave.
-    ///
-    /// # Errors
-    /// The bytes are of something else.
-    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError>;
-    /// Its files and figures at the end of a run with this title.
-    fn outputs(&self, title: &str, table: &Table) -> Vec<Output>;
+    all
 }
 
-/// All measures of a run.
-#[derive(Debug)]
-pub struct Measures<S: Space> {
-    list: Vec<Box<dyn Measure<S>>>,
+/// Name of a measure among the observers of a run.
+fn name_of(kind: &str, name: &str) -> String {
+    format!("{kind} {name}")
 }
 
-impl<S: Space> Measures<S> {
-    /// From the words of the case, and its `inertia_scaling`, by which the bodies' masses are too large.
-    pub fn new(specs: &[MeasureSpec], inertia_scaling: f64) -> Self {
-        let make = |spec: &MeasureSpec| -> Box<dyn Measure<S>> {
-            match spec.clone() {
-                MeasureSpec::Mass {
-                    name,
-                    axis,
-                    above,
-                    start,
-                } => Box::new(mass::Mass {
-                    name,
-                    axis,
-                    above,
-                    start,
-                    inertia_scaling,
-                }),
-                MeasureSpec::Slope {
-                    name,
-                    from,
-                    to,
-                    start,
-                } => Box::new(slope::Slope {
-                    name,
-                    from,
-                    to,
-                    start,
-                }),
-                MeasureSpec::Profile {
-                    name,
-                    axis,
-                    low,
-                    high,
-                    bins,
-                    turned,
-                    start,
-                } => Box::new(profile::Profile::<S>::new(
-                    name, axis, &low, &high, bins, turned, start,
-                )),
-                MeasureSpec::Band {
-                    name,
-                    low,
-                    high,
-                    above,
-                } => Box::new(band::Band::<S> {
-                    name,
-                    low: S::Vector::from_slice(&low),
-                    high: S::Vector::from_slice(&high),
-                    above,
-                    strain: None,
-                }),
-                MeasureSpec::ThirdBody(spec) => {
-                    Box::new(third_body::ThirdBody::<S>::new(spec, inertia_scaling))
-                }
-                MeasureSpec::Shear {
-                    name,
-                    low,
-                    high,
-                    start,
-                } => Box::new(shear::Shear {
-                    name,
-                    low,
-                    high,
-                    start,
-                }),
-            }
-        };
-        Self {
-            list: specs.iter().map(make).collect(),
+fn measure<S: Space>(spec: MeasureSpec, inertia_scaling: f64) -> Box<dyn Observer<S>> {
+    match spec {
+        MeasureSpec::Mass {
+            name,
+            axis,
+            above,
+            start,
+        } => Box::new(mass::Mass {
+            name,
+            axis,
+            above,
+            start,
+            inertia_scaling,
+        }),
+        MeasureSpec::Slope {
+            name,
+            from,
+            to,
+            start,
+        } => Box::new(slope::Slope {
+            name,
+            from,
+            to,
+            start,
+        }),
+        MeasureSpec::Profile {
+            name,
+            axis,
+            low,
+            high,
+            bins,
+            turned,
+            start,
+        } => Box::new(profile::Profile::<S>::new(
+            name, axis, &low, &high, bins, turned, start,
+        )),
+        MeasureSpec::Band {
+            name,
+            low,
+            high,
+            above,
+        } => Box::new(band::Band::<S> {
+            name,
+            low: S::Vector::from_slice(&low),
+            high: S::Vector::from_slice(&high),
+            above,
+            strain: None,
+        }),
+        MeasureSpec::ThirdBody(spec) => {
+            Box::new(third_body::ThirdBody::<S>::new(spec, inertia_scaling))
         }
-    }
-
-    /// The state at hand is the one from which deformations count.
-    pub fn begin(&mut self, s: &mut Simulation<S>) {
-        if self.list.iter().any(|m| m.follows()) {
-            s.network.spent.get_or_insert_default();
-        }
-        self.list.iter_mut().for_each(|m| m.begin(s));
-    }
-
-    /// Takes in the last step.
-    pub fn follow(&mut self, s: &Simulation<S>) {
-        let list = self.list.iter_mut().filter(|m| m.follows());
-        list.for_each(|m| m.follow(s));
-    }
-
-    /// What each carries, see [`Measure::save`].
-    ///
-    /// # Errors
-    /// One cannot be put into bytes.
-    pub fn save(&self) -> Result<Vec<Vec<u8>>, CodeError> {
-        self.list.iter().map(|m| m.save()).collect()
-    }
-
-    /// Goes on from what [`Measures::save`] gave.
-    ///
-    /// # Errors
-    /// The bytes are of other measures.
-    pub fn restore(&mut self, from: &[Vec<u8>]) -> Result<(), CodeError> {
-        if from.len() != self.list.len() {
-            return Err(CodeError::other("measures"));
-        }
-        let mut pairs = self.list.iter_mut().zip(from);
-        pairs.try_for_each(|(measure, bytes)| measure.restore(bytes))
-    }
-
-    /// Columns of all, in the order of the case.
-    pub fn columns(&self) -> Vec<Column> {
-        self.list.iter().flat_map(|m| m.columns()).collect()
-    }
-
-    /// Values of [`Measures::columns`].
-    pub fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        self.list.iter_mut().flat_map(|m| m.sample(s)).collect()
-    }
-
-    /// What stands in the summary.
-    pub fn outcome(&self, table: &Table) -> BTreeMap<String, f64> {
-        self.list.iter().flat_map(|m| m.outcome(table)).collect()
-    }
-
-    /// Units of what stands in the summary, by name.
-    pub fn units(&self) -> BTreeMap<String, &'static str> {
-        let columns = self.columns().into_iter().map(|c| (c.name, c.unit));
-        let others = self.list.iter().flat_map(|m| m.units());
-        columns
-            .chain(others)
-            .filter(|(_, unit)| !unit.is_empty())
-            .collect()
-    }
-
-    /// What stands in the summary in words.
-    pub fn verdict(&self, table: &Table) -> BTreeMap<String, String> {
-        self.list.iter().flat_map(|m| m.verdict(table)).collect()
-    }
-
-    /// Force chains of the first measure that finds them.
-    pub fn chains(&self, s: &Simulation<S>) -> Option<Vec<[u32; 2]>> {
-        self.list.iter().find_map(|m| m.chains(s))
-    }
-
-    /// Files and figures of all.
-    pub fn outputs(&self, title: &str, table: &Table) -> Vec<Output> {
-        let outputs = self.list.iter().map(|m| m.outputs(title, table));
-        outputs.flatten().collect()
+        MeasureSpec::Shear {
+            name,
+            low,
+            high,
+            start,
+        } => Box::new(shear::Shear {
+            name,
+            low,
+            high,
+            start,
+        }),
     }
 }
 

@@ -2,11 +2,11 @@
 //!
 //! A grain counts in the slice of its centre, with its mass where velocities are averaged.
 
-use super::{Measure, grains};
+use super::{Observer, RunEnd, grains};
 use crate::chart::{Axis, Chart, Series, Style};
 use crate::code::{self, CodeError};
 use crate::output::Output;
-use crate::statistics::{Column, Table};
+use crate::statistics::Column;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
@@ -106,7 +106,11 @@ impl<S: Space> Profile<S> {
     }
 }
 
-impl<S: Space> Measure<S> for Profile<S> {
+impl<S: Space> Observer<S> for Profile<S> {
+    fn name(&self) -> String {
+        super::name_of("profile", &self.name)
+    }
+
     fn columns(&self) -> Vec<Column> {
         Vec::new()
     }
@@ -138,10 +142,6 @@ impl<S: Space> Measure<S> for Profile<S> {
         Vec::new()
     }
 
-    fn outcome(&self, _: &Table) -> Vec<(String, f64)> {
-        Vec::new()
-    }
-
     fn save(&self) -> Result<Vec<u8>, CodeError> {
         code::encode(&(self.samples, &self.slices))
     }
@@ -151,7 +151,8 @@ impl<S: Space> Measure<S> for Profile<S> {
         Ok(())
     }
 
-    fn outputs(&self, title: &str, _: &Table) -> Vec<Output> {
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let title = end.title;
         let rows = self.rows();
         let mut text = self.header().join(",") + "\n";
         for row in &rows {

@@ -5,9 +5,8 @@
 //! inertial number is rate sqrt(m/p) with the mean mass in 2D (da Cruz et al., Phys. Rev. E 72 (2005) 021309),
 //! rate d sqrt(density/p) in 3D. In the summary mu and I are those of the mean stresses and of the mean rate.
 
-use super::{Measure, grains, line, mean, since};
+use super::{Observer, RunEnd, grains, line, mean, since};
 use crate::chart::{Axis, Chart, Series};
-use crate::code::CodeError;
 use crate::output::Output;
 use crate::statistics::{Column, Table};
 use fretwork_core::geometry::space::Space;
@@ -45,7 +44,11 @@ impl Shear {
     }
 }
 
-impl<S: Space> Measure<S> for Shear {
+impl<S: Space> Observer<S> for Shear {
+    fn name(&self) -> String {
+        super::name_of("shear", &self.name)
+    }
+
     fn columns(&self) -> Vec<Column> {
         let column = |(part, unit, doc)| Column::new(self.column(part), unit, doc);
         PARTS.into_iter().map(column).collect()
@@ -127,15 +130,8 @@ impl<S: Space> Measure<S> for Shear {
         named.collect()
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
-        Ok(Vec::new())
-    }
-
-    fn restore(&mut self, _: &[u8]) -> Result<(), CodeError> {
-        Ok(())
-    }
-
-    fn outputs(&self, title: &str, table: &Table) -> Vec<Output> {
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let RunEnd { title, table, .. } = *end;
         let chart = |part: &str, heading: &str, name: &str, unit: &'static str| {
             let points = since(table, &self.column(part), 0.0);
             let mut chart = Chart::new(heading, Axis::new("time t", "s"), Axis::new(name, unit))

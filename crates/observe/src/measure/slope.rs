@@ -1,8 +1,7 @@
 //! The angle of a free surface: a straight line through the tops of the grains, column by column.
 
-use super::{Measure, grains, line, mean, since};
+use super::{Observer, RunEnd, grains, line, mean, since};
 use crate::chart::{Axis, Chart, Series};
-use crate::code::CodeError;
 use crate::output::Output;
 use crate::statistics::{Column, Table};
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -17,7 +16,11 @@ pub struct Slope {
     pub(super) start: f64,
 }
 
-impl<S: Space> Measure<S> for Slope {
+impl<S: Space> Observer<S> for Slope {
+    fn name(&self) -> String {
+        super::name_of("slope", &self.name)
+    }
+
     fn columns(&self) -> Vec<Column> {
         vec![Column::new(
             self.name.clone(),
@@ -68,15 +71,8 @@ impl<S: Space> Measure<S> for Slope {
         mean.map(|m| (self.name.clone(), m)).into_iter().collect()
     }
 
-    fn save(&self) -> Result<Vec<u8>, CodeError> {
-        Ok(Vec::new())
-    }
-
-    fn restore(&mut self, _: &[u8]) -> Result<(), CodeError> {
-        Ok(())
-    }
-
-    fn outputs(&self, title: &str, table: &Table) -> Vec<Output> {
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let RunEnd { title, table, .. } = *end;
         let degrees = since(table, &self.name, 0.0);
         let degrees = degrees
             .into_iter()

@@ -32,6 +32,7 @@ use super::summary::PluginStamp;
 use dataset::{Growing, Slot};
 use declare::MANY;
 use events::Events;
+use fretwork_observe::observer::Event;
 use fretwork_observe::statistics::Column;
 use shapes::Shaped;
 use std::path::Path;
@@ -257,23 +258,23 @@ impl Results {
         self.write_in_time(self.held.first().map_or(0, Vec::len))
     }
 
-    /// Appends a bond that broke.
+    /// Appends an event to its table; one of a table that the file does not have is left out.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn append_break(&mut self, row: &[f64]) -> Result<(), ResultsError> {
-        self.broken.hold(row);
-        self.write_in_time(self.broken.rows())
-    }
-
-    /// Appends a piece of debris, and the identities of its grains.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn append_debris(&mut self, row: &[f64], grains: &[f64]) -> Result<(), ResultsError> {
-        self.debris.hold(row);
-        self.held_grains.extend_from_slice(grains);
-        Ok(())
+    pub fn append_event(&mut self, event: &Event) -> Result<(), ResultsError> {
+        match event.table {
+            "broken" => {
+                self.broken.hold(&event.row);
+                self.write_in_time(self.broken.rows())
+            }
+            "debris" => {
+                self.debris.hold(&event.row);
+                self.held_grains.extend_from_slice(&event.grains);
+                Ok(())
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Flushes the file if enough time has passed; many rows are not held back until then.

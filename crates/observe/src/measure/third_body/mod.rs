@@ -12,14 +12,15 @@ mod regime;
 mod spent;
 mod tables;
 
-use super::{Measure, grains, mean, since};
+use super::{Observer, RunEnd, grains, mean, since};
 use crate::code::{self, CodeError};
 use crate::output::Output;
+use crate::picture::{Picture, Shows};
 use crate::statistics::{Column, Table};
 use cells::{Block, History, MECHANISMS};
 use clusters::Clusters;
 use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::step::{Simulation, StepReport};
 use fretwork_scene::measures::ThirdBodySpec;
 use gap::Faces;
 use instant::Instant;
@@ -211,7 +212,11 @@ impl<S: Space> ThirdBody<S> {
     }
 }
 
-impl<S: Space> Measure<S> for ThirdBody<S> {
+impl<S: Space> Observer<S> for ThirdBody<S> {
+    fn name(&self) -> String {
+        super::name_of("third body", &self.spec.name)
+    }
+
     fn begin(&mut self, s: &Simulation<S>) {
         if self.faces.is_some() {
             return;
@@ -229,11 +234,11 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
         self.seen = self.seen.max(s.time);
     }
 
-    fn follows(&self) -> bool {
+    fn needs_dissipation(&self) -> bool {
         true
     }
 
-    fn follow(&mut self, s: &Simulation<S>) {
+    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
         for body in s.network.bond_breaks.iter().flat_map(|b| b.bodies) {
             self.lost[body as usize] += 1.0;
         }
@@ -347,8 +352,11 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
         vec![(self.column("regime"), format!("{said}; {over}"))]
     }
 
-    fn chains(&self, s: &Simulation<S>) -> Option<Vec<[u32; 2]>> {
-        Some(instant::links(s))
+    fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
+        vec![Picture {
+            name: "chains",
+            shows: Shows::Chains(instant::links(s)),
+        }]
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {
@@ -360,7 +368,8 @@ impl<S: Space> Measure<S> for ThirdBody<S> {
         Ok(())
     }
 
-    fn outputs(&self, title: &str, table: &Table) -> Vec<Output> {
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let RunEnd { title, table, .. } = *end;
         let name = &self.spec.name;
         let (whole, slices) = (self.history.whole(), self.history.slices(self.spec.slices));
         let text = |part: &str, text: String| Output::Text {

@@ -1,10 +1,10 @@
 //! What the end of a run prints: warnings, friction, damage, wear, energies. What else there is, see `details`.
 
 use super::{BodyWear, Summary};
-use fretwork_observe::biaxial::Outcome;
-use fretwork_observe::friction::Cycle;
-use fretwork_observe::jump;
-use fretwork_observe::quantity::{number, quantity, wear_rate};
+use crate::biaxial::Outcome;
+use crate::friction::Cycle;
+use crate::jump;
+use crate::quantity::{number, quantity, wear_rate};
 use std::fmt::Write as _;
 
 /// Most values of measures that are printed unasked.

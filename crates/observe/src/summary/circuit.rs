@@ -1,7 +1,7 @@
 //! The tribological circuit in the summary.
 
+use crate::steady::Flow;
 use fretwork_core::wear::ledger::{Contents, Flows};
-use fretwork_observe::steady::Flow;
 use serde::Serialize;
 
 /// Mean flows over the second half of the account, with their intervals (kg/s; kg/(m s) in 2D); null where it was brought up

@@ -26,7 +26,7 @@ impl<T> Default for Series<T> {
 
 impl<T> Series<T> {
     /// Most points; half as many remain at least.
-    pub const MAX_POINTS: usize = 2048;
+    pub const MAX: usize = 2048;
 
     /// Takes a point in.
     pub fn add(&mut self, point: T) {
@@ -36,7 +36,7 @@ impl<T> Series<T> {
             self.last = Some(point);
             return;
         }
-        if self.points.len() == Self::MAX_POINTS {
+        if self.points.len() == Self::MAX {
             let mut k = 0;
             self.points.retain(|_| {
                 k += 1;
@@ -72,13 +72,12 @@ mod tests {
             let points: Vec<u64> = series.points().copied().collect();
             assert_eq!(series.last().copied(), count.checked_sub(1));
             assert_eq!(points.last(), series.last());
-            if count <= Series::<u64>::MAX_POINTS as u64 {
+            if count <= Series::<u64>::MAX as u64 {
                 assert_eq!(points, (0..count).collect::<Vec<_>>());
                 continue;
             }
             assert!(
-                points.len() > Series::<u64>::MAX_POINTS / 2
-                    && points.len() <= Series::<u64>::MAX_POINTS + 1
+                points.len() > Series::<u64>::MAX / 2 && points.len() <= Series::<u64>::MAX + 1
             );
             let apart: Vec<u64> = points.windows(2).map(|w| w[1] - w[0]).collect();
             let (end, rest) = apart.split_last().unwrap();

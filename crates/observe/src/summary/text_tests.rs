@@ -1,7 +1,7 @@
 use super::*;
+use crate::fretting::{self, Regime};
+use crate::scatter;
 use crate::summary::Uncertainty;
-use fretwork_observe::fretting::{self, Regime};
-use fretwork_observe::scatter;
 
 /// Fifty cycles of a fretting test with damage and wear, partial slip at first and gross slip in the end.
 fn fretting() -> Summary {

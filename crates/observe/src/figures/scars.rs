@@ -1,18 +1,18 @@
-//! The figure of a wear scar.
+//! The figures of wear scars.
 
-use crate::{ReportError, draw_panels};
+use crate::chart::{Axis, Chart, Series, Style};
+use crate::output::Output;
+use crate::scars::file_name;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use fretwork_core::wear::{Form, shape};
-use fretwork_observe::chart::{Axis, Chart, Series, Style};
-use fretwork_observe::scars::file_name;
-use std::path::Path;
 
-/// Draws the scars: the profile at first and now, and the depth; in space as means across the sliding.
+/// One figure a scar, `scar_NAME.png`: the profile at first and now, and the depth; in space as means across the sliding.
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn draw<S: Space>(dir: &Path, title: &str, s: &Simulation<S>) -> Result<(), ReportError> {
+pub(crate) fn charts<S: Space>(title: &str, s: &Simulation<S>) -> Vec<Output> {
+    let mut out = Vec::new();
     for scar in s.scars.iter().filter(|c| c.deepest() > 0.0) {
         let rows = scar.along();
         let o = shape::outline(&rows);
@@ -47,8 +47,9 @@ pub fn draw<S: Space>(dir: &Path, title: &str, s: &Simulation<S>) -> Result<(), 
                     .with(Series::new("worn", now.collect())),
             );
         }
-        let path = dir.join(format!("{}.png", file_name(&scar.name)));
-        draw_panels(&charts, charts.len(), &path)?;
+        let columns = charts.len();
+        let file = format!("{}.png", file_name(&scar.name));
+        out.push(Output::charts(file, charts, columns));
     }
-    Ok(())
+    out
 }

@@ -1,19 +1,17 @@
-//! The figures of a finished run, from its table of statistics.
+//! The figures of a finished run as charts, from its table of statistics.
 
-pub mod biaxial;
-pub mod circuit;
-pub mod jump;
-pub mod scars;
+pub(crate) mod biaxial;
+pub(crate) mod circuit;
+pub(crate) mod jump;
+pub(crate) mod scars;
 
-use crate::DrawChart;
-use crate::{ReportError, draw_panels};
+use crate::chart::{Axis, Chart, Series, Style, quantity};
+use crate::friction::{Cycle, Cycles};
+use crate::output::Output;
+use crate::statistics::Table;
 use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
-use fretwork_observe::chart::{Axis, Chart, Series, Style, quantity};
-use fretwork_observe::friction::{Cycle, Cycles};
-use fretwork_observe::statistics::Table;
-use std::path::Path;
 
 /// Loops of a test that are drawn at most: the first, the last, and some of those between.
 const LOOPS: usize = 40;
@@ -22,7 +20,7 @@ const DRIVES: usize = 6;
 
 /// An axis along which a body is driven.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drive {
+pub(crate) struct Drive {
     /// Name of the body.
     pub body: String,
     /// Axis: 0, 1 or 2.
@@ -30,7 +28,7 @@ pub struct Drive {
 }
 
 /// The axes along which bodies are driven, the ones of the friction test apart.
-pub fn drives<S: Space>(s: &Simulation<S>, test: Option<(&str, usize)>) -> Vec<Drive> {
+pub(crate) fn drives<S: Space>(s: &Simulation<S>, test: Option<(&str, usize)>) -> Vec<Drive> {
     let mut out = Vec::new();
     for driven in &s.bodies.driven {
         for (axis, dof) in driven.dofs.iter().take(S::D).enumerate() {
@@ -54,30 +52,51 @@ fn driven_along(dof: &Dof) -> bool {
     }
 }
 
-/// Draws what the run has data for. A figure with nothing to show is left out.
-///
-/// # Errors
-/// A file cannot be written.
-pub fn draw(
-    dir: &Path,
+/// Unit of forces in so many dimensions.
+fn newton(dimension: usize) -> &'static str {
+    if dimension == 2 { "N/m" } else { "N" }
+}
+
+/// Broken bonds and mean damage against time.
+pub(crate) fn damage_ratio(title: &str, table: &Table) -> Output {
+    Output::charts("damage_ratio.png".into(), [damage(title, table)], 1)
+}
+
+/// The loops of a fretting test, and its friction coefficient.
+pub(crate) fn friction_test(
     title: &str,
     table: &Table,
-    cycles: Option<&Cycles>,
+    cycles: &Cycles,
+    dimension: usize,
+) -> Vec<Output> {
+    let mut out = Vec::new();
+    if cycles.oscillates() {
+        let panels = loops(title, table, cycles, newton(dimension));
+        out.push(Output::charts("fretting_loops.png".into(), panels, 2));
+    }
+    let chart = friction(title, table, cycles);
+    out.push(Output::charts(
+        "friction_coefficient.png".into(),
+        [chart],
+        1,
+    ));
+    out
+}
+
+/// Forces of driven bodies against their displacements.
+pub(crate) fn force_displacement(
+    title: &str,
+    table: &Table,
     drives: &[Drive],
     dimension: usize,
-) -> Result<(), ReportError> {
-    let newton = if dimension == 2 { "N/m" } else { "N" };
-    damage(title, table).draw(&dir.join("damage_ratio.png"))?;
-    if let Some(cycles) = cycles {
-        if cycles.oscillates() {
-            let panels = loops(title, table, cycles, newton);
-            draw_panels(&panels, 2, &dir.join("fretting_loops.png"))?;
-        }
-        friction(title, table, cycles).draw(&dir.join("friction_coefficient.png"))?;
-    }
-    let panels = forces(title, table, drives, newton);
-    draw_panels(&panels, 2, &dir.join("force_displacement.png"))?;
-    energy(title, table, dimension).draw(&dir.join("energy.png"))
+) -> Output {
+    let panels = forces(title, table, drives, newton(dimension));
+    Output::charts("force_displacement.png".into(), panels, 2)
+}
+
+/// The energy balance against time.
+pub(crate) fn energy_balance(title: &str, table: &Table, dimension: usize) -> Output {
+    Output::charts("energy.png".into(), [energy(title, table, dimension)], 1)
 }
 
 /// (x, y) of two columns.
@@ -311,7 +330,7 @@ fn energy(title: &str, table: &Table, dimension: usize) -> Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_observe::statistics::Column;
+    use crate::statistics::Column;
 
     fn table(names: &[&str], rows: Vec<f64>) -> Table {
         let mut table = Table::new(names.iter().map(|n| Column::new(*n, "", "")).collect());
@@ -418,9 +437,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_nothing_to_show_leaves_no_file() {
-        let dir = std::env::temp_dir().join(format!("fretwork-figures-{}", std::process::id()));
-        std::fs::create_dir_all(&dir).unwrap();
+    fn what_has_nothing_to_show_has_no_data() {
         let names = [
             "time",
             "external_work",
@@ -439,14 +456,25 @@ mod tests {
             body: "lid".to_owned(),
             axis: 0,
         }];
+        let shown = |table: &Table, cycles: Option<&Cycles>| -> Vec<String> {
+            let mut all = vec![
+                damage_ratio("case", table),
+                force_displacement("case", table, &lid, 2),
+                energy_balance("case", table, 2),
+            ];
+            all.extend(cycles.map_or(Vec::new(), |c| friction_test("case", table, c, 2)));
+            let file = |output: Output| match output {
+                Output::Charts { file, charts, .. } if charts.iter().any(Chart::has_data) => {
+                    Some(file)
+                }
+                _ => None,
+            };
+            all.into_iter().filter_map(file).collect()
+        };
         let cycles = Cycles::new(0.0, None, 4.0);
-        draw(&dir, "case", &table(&names, still), Some(&cycles), &lid, 2).unwrap();
-        let files = || std::fs::read_dir(&dir).unwrap().count();
-        assert_eq!(files(), 0);
+        assert_eq!(shown(&table(&names, still), Some(&cycles)), [""; 0]);
         let moved = (0..5).flat_map(|k| [f64::from(k), 1., 0., 0., 0., 0., 0., f64::from(k), 7.]);
-        draw(&dir, "case", &table(&names, moved.collect()), None, &lid, 2).unwrap();
-        assert!(dir.join("force_displacement.png").exists() && dir.join("energy.png").exists());
-        assert_eq!(files(), 2);
-        std::fs::remove_dir_all(dir).unwrap();
+        let files = shown(&table(&names, moved.collect()), None);
+        assert_eq!(files, ["force_displacement.png", "energy.png"]);
     }
 }

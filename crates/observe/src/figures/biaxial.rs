@@ -1,16 +1,12 @@
 //! The figure of a biaxial test: four panels against axial strain.
 
-use crate::{ReportError, draw_panels};
-use fretwork_observe::chart::{Axis, Chart, Series, Style};
-use fretwork_observe::statistics::Table;
-use std::path::Path;
+use crate::chart::{Axis, Chart, Series, Style};
+use crate::output::Output;
+use crate::statistics::Table;
 
-/// Draws the stress ratio, the volumetric strain, the coordination and the compacity against axial strain,
+/// `biaxial.png`: the stress ratio, the volumetric strain, the coordination and the compacity against axial strain,
 /// from the start of the test (s) on.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn draw(path: &Path, title: &str, table: &Table, start: f64) -> Result<(), ReportError> {
+pub(crate) fn charts(title: &str, table: &Table, start: f64) -> Output {
     let time = table.column("time");
     let first = time
         .partition_point(|t| *t <= start * (1.0 + 1e-9))
@@ -42,5 +38,6 @@ pub fn draw(path: &Path, title: &str, table: &Table, start: f64) -> Result<(), R
     .with(Series::new("without rattlers", against("coordination_carried")).style(Style::Dashed));
     let compacity = chart("Solid fraction", "solid fraction φ")
         .with(Series::new(String::new(), against("compacity")));
-    draw_panels(&[ratio, volume, neighbours, compacity], 2, path)
+    let panels = [ratio, volume, neighbours, compacity];
+    Output::charts("biaxial.png".into(), panels, 2)
 }

@@ -1,20 +1,11 @@
 //! The figure of jumps over cycles.
 
-use crate::{ReportError, draw_panels};
-use fretwork_observe::chart::{Axis, Chart, Series, Style};
-use fretwork_observe::jump::{JumpSummary, Point};
-use std::path::Path;
+use crate::chart::{Axis, Chart, Series, Style};
+use crate::output::Output;
+use fretwork_core::process::jump::{JumpSummary, Point};
 
-/// Draws `jump.png`: wear volume and mean damage against cycles, computed and jumped.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn draw(
-    dir: &Path,
-    title: &str,
-    jump: &JumpSummary,
-    dimension: usize,
-) -> Result<(), ReportError> {
+/// `jump.png`: wear volume and mean damage against cycles, computed and jumped.
+pub(crate) fn charts(title: &str, jump: &JumpSummary, dimension: usize) -> Output {
     let unit = if dimension == 2 { "m^3/m" } else { "m^3" };
     let mut charts = Vec::new();
     type Value = fn(&Point) -> f64;
@@ -48,8 +39,6 @@ pub fn draw(
                 ),
         );
     }
-    if charts.is_empty() {
-        return Ok(());
-    }
-    draw_panels(&charts, charts.len(), &dir.join("jump.png"))
+    let columns = charts.len();
+    Output::charts("jump.png".into(), charts, columns)
 }

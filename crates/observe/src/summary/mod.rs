@@ -8,16 +8,17 @@ mod text;
 pub use self::circuit::{Base, CircuitSummary, Rates};
 pub use self::estimate::{Estimate, Uncertainty};
 
+use crate::biaxial::Outcome;
+pub use crate::first_bodies::BodyWear;
+use crate::fretting;
+use crate::friction::Cycle;
+use crate::jump::JumpSummary;
+use crate::scars::ScarSummary;
+use crate::scatter::Scatter;
+pub use crate::solving::SolverSummary;
 use fretwork_core::contact::StepSizeDiagnostics;
 use fretwork_core::energy::Energy;
 use fretwork_core::step::control::Begun;
-use fretwork_observe::biaxial::Outcome;
-pub use fretwork_observe::first_bodies::BodyWear;
-use fretwork_observe::fretting;
-use fretwork_observe::friction::Cycle;
-use fretwork_observe::jump::JumpSummary;
-use fretwork_observe::scars::ScarSummary;
-pub use fretwork_observe::solving::SolverSummary;
 use fretwork_scene::sampling::UnresolvedDrive;
 use serde::Serialize;
 
@@ -86,7 +87,7 @@ pub const FROM_THE_CLOCK: [&str; 4] = [
 pub struct Summary {
     /// Title of the case.
     pub case: String,
-    /// Whether all checks passed; see [`super::warnings`].
+    /// Whether all checks passed; see `warnings` of the layer that stores it.
     pub trustworthy: bool,
     /// Why it is not trustworthy, in sentences, worst first.
     pub reasons: Vec<String>,
@@ -122,6 +123,9 @@ pub struct Summary {
     pub friction_from_dissipation: Option<f64>,
     /// Largest |Q| over the mean P of the same cycle.
     pub peak_friction: Option<f64>,
+    /// How the friction coefficient scatters over cycles or blocks, for its interval.
+    #[serde(skip)]
+    pub friction_scatter: Option<Scatter>,
     /// How well the main results are known from this run alone.
     pub uncertainty: Uncertainty,
     /// Cycle by cycle.
@@ -172,4 +176,11 @@ pub struct Summary {
     pub stopped: Option<String>,
     /// Whether a signal stopped it: it goes on with `--resume`.
     pub interrupted: bool,
+}
+
+impl Summary {
+    /// Puts in what follows from the other entries.
+    pub fn complete(&mut self) {
+        self.uncertainty = Uncertainty::new(self, self.friction_scatter.as_ref());
+    }
 }

@@ -38,8 +38,8 @@ pub const FAILED: u8 = 1;
 
 #[cfg(unix)]
 mod posix {
-    use super::super::watch::{self, RESCUED_WITHIN, Saved};
     use super::FAILED;
+    use crate::laws::watch::{self, RESCUED_WITHIN, Saved};
     use libc::c_int;
     use std::io::Read;
     use std::mem::MaybeUninit;

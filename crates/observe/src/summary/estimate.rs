@@ -1,7 +1,7 @@
 //! How well the main results are known.
 
 use super::Summary;
-use fretwork_observe::scatter::{self, Scatter};
+use crate::scatter::{self, Scatter};
 use serde::Serialize;
 
 /// A result with what it may be off by, each as a half-width of an interval of 95 %, in the unit of the value; null where it

@@ -1,21 +1,11 @@
 //! The figure of the tribological circuit: what passed against time, and what is in the contact.
 
-use crate::{ReportError, draw_panels};
-use fretwork_observe::chart::{Axis, Chart, Series, Style};
-use fretwork_observe::statistics::Table;
-use std::path::Path;
+use crate::chart::{Axis, Chart, Series, Style};
+use crate::output::Output;
+use crate::statistics::Table;
 
-/// Draws `circuit.png` from the columns of the statistics; `window` is the one of the mean flows (s).
-///
-/// # Errors
-/// The file cannot be written.
-pub fn draw(
-    dir: &Path,
-    title: &str,
-    table: &Table,
-    window: [f64; 2],
-    dimension: usize,
-) -> Result<(), ReportError> {
+/// `circuit.png` from the columns of the statistics; `window` is the one of the mean flows (s).
+pub(crate) fn charts(title: &str, table: &Table, window: [f64; 2], dimension: usize) -> Output {
     let unit = if dimension == 2 { "kg/m" } else { "kg" };
     let time = table.column("time");
     let series =
@@ -43,5 +33,5 @@ pub fn draw(
     if contact.has_data() {
         contact = contact.with(Series::new("means from here on", from).style(Style::Dashed));
     }
-    draw_panels(&[passed, contact], 2, &dir.join("circuit.png"))
+    Output::charts("circuit.png".into(), [passed, contact], 2)
 }

@@ -2,7 +2,7 @@
 
 use super::Summary;
 use super::text::Lines;
-use fretwork_observe::quantity::{number, quantity};
+use crate::quantity::{number, quantity};
 
 impl Summary {
     pub(super) fn details(&self, lines: &mut Lines) {

@@ -1,0 +1,96 @@
+//! Surfaces follow their wear.
+//!
+//! What a step wears off is put on the scars with the feet of its contacts, at q_m. The surfaces fall after the step's
+//! motion: the gap that opens is met by the next step's detection. Nobody does work in between: a load that
+//! sinks into the gap gives its potential energy in the next step, as it does over any open gap.
+
+use super::{Process, ProcessError};
+use crate::geometry::space::Space;
+use crate::step::{Simulation, StepError, StepReport};
+use crate::wear::scar::{Scar, WornThrough, closest_point};
+
+/// Puts what contacts wear off on the scars of a simulation, and lowers its surfaces. It carries nothing: the scars are part of
+/// the state of the simulation.
+#[derive(Clone, Copy, Debug)]
+pub struct Recession;
+
+impl<S: Space> Process<S> for Recession {
+    fn name(&self) -> &str {
+        "wear recession"
+    }
+
+    fn after_solve(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
+        put_losses(s);
+        Ok(())
+    }
+
+    /// Lowers the surfaces whose turn it is.
+    fn after_move(&mut self, s: &mut Simulation<S>, _: &StepReport) -> Result<(), ProcessError> {
+        let steps = s.steps;
+        // A step that wears for many is followed at once: the contact must find what stands proud.
+        let many = s.network.cycle_multiplier > 1.0;
+        lower(s, |scar| many || steps.is_multiple_of(scar.every));
+        Ok(())
+    }
+
+    /// Lowers all surfaces to the depth of their scars, whatever their interval.
+    fn at_end(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
+        lower(s, |_| true);
+        Ok(())
+    }
+}
+
+impl<S: Space> Simulation<S> {
+    /// Has a surface worn by its contacts; the network keeps their losses from now on.
+    pub fn follow_wear(&mut self, scar: Scar<S>) {
+        if self.process::<Recession>().is_none() {
+            self.add_process(Recession);
+        }
+        self.network.losses.get_or_insert_default();
+        self.scars.push(scar);
+    }
+
+    /// Whether no surface is worn through.
+    ///
+    /// # Errors
+    /// Which is, and where.
+    pub fn check_worn_through(&self) -> Result<(), StepError> {
+        let error = |source: &WornThrough| StepError::WornThrough {
+            step: self.steps,
+            time: self.time,
+            source: source.clone(),
+        };
+        self.worn_through.as_ref().map_or(Ok(()), |w| Err(error(w)))
+    }
+}
+
+/// Puts what the step wore off on the scars.
+fn put_losses<S: Space>(s: &mut Simulation<S>) {
+    let Some(losses) = &s.network.losses else {
+        return;
+    };
+    for loss in losses {
+        let contact = &s.network.contacts[loss.contact as usize];
+        let surface = contact.key.surface();
+        let mut scars = s.scars.iter_mut();
+        let Some(scar) = scars.find(|s| Some(s.surface) == surface) else {
+            continue;
+        };
+        let carried = &s.shapes.surfaces[scar.surface];
+        let rotation = &s.bodies.rotation[carried.body as usize];
+        let closest_point = closest_point(carried, rotation, &contact.arms[1]);
+        let put = scar.put(&s.shapes, &closest_point, loss.volume);
+        s.worn_through = s.worn_through.take().or(put.err());
+    }
+}
+
+fn lower<S: Space>(s: &mut Simulation<S>, due: impl Fn(&Scar<S>) -> bool) {
+    let bound = 0.5 * s.network.skin;
+    let mut far = false;
+    for scar in s.scars.iter_mut().filter(|scar| due(scar)) {
+        far |= scar.show(&mut s.shapes, bound);
+    }
+    if far {
+        s.network.forget_neighbours();
+    }
+}

@@ -1,0 +1,304 @@
+//! The tribological circuit as an observer: its columns, its events, and what it sums up. The account itself is a process,
+//! [`fretwork_core::process::circuit`].
+
+use super::figures;
+use super::observer::{Event, Observer, RunEnd};
+use super::output::Output;
+use super::picture::{Paint, Picture, Shows};
+use super::series::Series;
+use super::statistics::Column;
+use super::steady;
+use super::summary::{Base, CircuitSummary, Rates, Summary, Wear};
+use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::process::circuit::{Circuit, CircuitProcess, Debris};
+use fretwork_core::step::Simulation;
+use fretwork_core::wear::ledger::{Flows, Ledger, Place};
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// Observes the bonds that break: an event each.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BrokenBonds {
+    count: u64,
+}
+
+impl<S: Space> Observer<S> for BrokenBonds {
+    fn name(&self) -> String {
+        "broken bonds".to_owned()
+    }
+
+    fn reads_statistics(&self) -> bool {
+        false
+    }
+
+    fn after_processes(&mut self, s: &Simulation<S>) -> Vec<Event> {
+        let mut events = Vec::new();
+        for b in &s.network.bond_breaks {
+            let at = s.shapes.periodic.wrapped(b.place).padded();
+            let id = |k: usize| s.bodies.id[b.bodies[k] as usize] as f64;
+            self.count += 1;
+            let row = vec![
+                self.count as f64,
+                s.time,
+                id(0),
+                id(1),
+                f64::from(b.law),
+                at[0],
+                at[1],
+                at[2],
+                b.life.mode_mix(),
+                b.opening[0],
+                b.opening[1],
+                b.area,
+                b.life.work.iter().sum(),
+                b.life.fracture,
+                b.life.viscous,
+                b.life.friction,
+                f64::from(u8::from(!b.damaged)),
+            ];
+            events.push(Event {
+                table: "broken",
+                row,
+                grains: Vec::new(),
+            });
+        }
+        events
+    }
+
+    fn summarise(&self, _: &RunEnd<'_, S>, _: &mut Summary) {}
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        encode(&self.count)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        self.count = decode(from)?;
+        Ok(())
+    }
+}
+
+/// Observes the circuit.
+#[derive(Clone, Debug)]
+pub struct CircuitAccount {
+    start: f64,
+    state: Followed,
+}
+
+/// What it carries from step to step.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Followed {
+    /// Pieces that came loose, and grains of the largest.
+    pieces: u64,
+    largest: usize,
+    /// Time, what passed by then, and the mass in the contact, at each update.
+    series: Series<(f64, Flows, f64)>,
+}
+
+/// The circuit of a simulation; none before it begins.
+fn circuit<S: Space>(s: &Simulation<S>) -> Option<&Circuit<S>> {
+    s.process::<CircuitProcess<S>>()?.circuit()
+}
+
+impl CircuitAccount {
+    /// Of a circuit whose account begins at a time (s).
+    pub fn new(start: f64) -> Self {
+        Self {
+            start,
+            state: Followed::default(),
+        }
+    }
+
+    /// A piece of debris as an event.
+    fn event<S: Space>(&mut self, s: &Simulation<S>, d: &Debris<S>) -> Event {
+        self.state.pieces += 1;
+        self.state.largest = self.state.largest.max(d.grains.len());
+        let at = d.place.padded();
+        Event {
+            table: "debris",
+            row: vec![
+                self.state.pieces as f64,
+                d.time,
+                d.grains.len() as f64,
+                d.mass,
+                at[0],
+                at[1],
+                at[2],
+                s.bodies.id[d.base as usize] as f64,
+                d.mode_mix,
+                d.energy,
+                d.bonds as f64,
+            ],
+            grains: d.grains.iter().map(|g| *g as f64).collect(),
+        }
+    }
+
+    /// The colours of balls and pieces by where they are; none before the account begins.
+    fn paints<S: Space>(s: &Simulation<S>) -> Vec<Paint> {
+        let Some(circuit) = circuit(s) else {
+            return Vec::new();
+        };
+        let balls = s.shapes.balls.iter().map(|b| b.body);
+        let bodies = balls.chain(s.shapes.pieces.iter().map(|p| p.body));
+        let paint = |body: u32| match circuit.place(body as usize) {
+            Some(Place::Tied(base)) => {
+                Paint::Tied(circuit.bases().iter().position(|b| *b == base).unwrap_or(0))
+            }
+            Some(Place::Contact) => Paint::Loose,
+            Some(_) => Paint::Out,
+            None => Paint::Grey,
+        };
+        bodies.map(paint).collect()
+    }
+
+    /// What the summary says.
+    fn summary<S: Space>(&self, s: &Simulation<S>, wall: Duration) -> Option<CircuitSummary> {
+        let circuit = circuit(s)?;
+        let end = self.state.series.last().map_or(self.start, |p| p.0);
+        let middle = 0.5 * (self.start + end);
+        let flow = |of: &dyn Fn(&Flows, f64) -> f64| {
+            let points: Vec<(f64, f64)> = self
+                .state
+                .series
+                .points()
+                .map(|(t, f, m)| (*t, of(f, *m)))
+                .collect();
+            steady::flow(&points, middle, end)
+        };
+        let name = |b: u32| {
+            s.bodies
+                .driven
+                .iter()
+                .find(|d| d.body == b)
+                .map(|d| d.name.clone())
+        };
+        let bases = circuit.bases().iter().map(|b| Base {
+            name: name(*b).unwrap_or_default(),
+            grains: circuit.tied_to(*b),
+        });
+        Some(CircuitSummary {
+            start: self.start,
+            window: [middle, end],
+            contents: circuit.ledger.contents,
+            flows: circuit.ledger.flows,
+            residual: circuit.ledger.residual(),
+            rates_unit: Wear::unit(S::D),
+            rates: Rates {
+                Qs: flow(&|f, _| f.source.mass),
+                Qa: flow(&|f, _| f.attached.mass),
+                Qe: flow(&|f, _| f.ejected.mass),
+                Qr: flow(&|f, _| f.recirculated.mass),
+                Qw: flow(&|f, _| f.wear.mass),
+                Qs_less_Qw: flow(&|f, _| f.source.mass - f.attached.mass - f.wear.mass),
+                M: flow(&|_, m| m),
+            },
+            bases: bases.collect(),
+            pieces: self.state.pieces,
+            largest_piece: self.state.largest,
+            cost_share: circuit.cost.as_secs_f64() / wall.as_secs_f64().max(1e-9),
+        })
+    }
+}
+
+impl<S: Space> Observer<S> for CircuitAccount {
+    fn name(&self) -> String {
+        "tribological circuit".to_owned()
+    }
+
+    fn reads_statistics(&self) -> bool {
+        false
+    }
+
+    fn after_processes(&mut self, s: &Simulation<S>) -> Vec<Event> {
+        let process = s.process::<CircuitProcess<S>>();
+        let circuit = process.filter(|p| p.is_up_to_date(s));
+        let Some(circuit) = circuit.and_then(CircuitProcess::circuit) else {
+            return Vec::new();
+        };
+        let ledger = &circuit.ledger;
+        let contact = ledger.contents.contact.mass;
+        self.state.series.add((s.time, ledger.flows, contact));
+        let pieces = circuit.debris.iter();
+        pieces.map(|d| self.event(s, d)).collect()
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        let kg = if S::D == 2 { "kg/m" } else { "kg" };
+        let c = Column::new;
+        vec![
+            c("tied_grains", "", "grains tied to first bodies"),
+            c("M_grains", "", "grains in the contact"),
+            c(
+                "source_grains",
+                "",
+                "grains that came loose, since the start",
+            ),
+            c("attached_grains", "", "grains that bonds tied again"),
+            c("ejected_grains", "", "grains that left the contact"),
+            c("recirculated_grains", "", "grains that came back"),
+            c("lost_grains", "", "grains that wore: out for good"),
+            c("M", kg, "mass in the contact"),
+            c("source", kg, "mass that came loose, since the start"),
+            c("attached", kg, "mass that bonds tied again"),
+            c("ejected", kg, "mass that left the contact"),
+            c("recirculated", kg, "mass that came back"),
+            c("lost", kg, "mass that wore: out for good"),
+            c("ledger_grains", "", "grains that do not add up; 0"),
+            c("ledger_mass", kg, "mass that does not add up; rounding"),
+        ]
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        let none = Ledger::default();
+        let ledger = circuit(s).map_or(&none, |c| &c.ledger);
+        let (c, f, r) = (&ledger.contents, &ledger.flows, ledger.residual());
+        let rest = [r.tied, r.contact, r.ejected, r.lost];
+        let flows = [f.source, f.attached, f.ejected, f.recirculated, f.wear];
+        let mut row = vec![c.tied.grains as f64, c.contact.grains as f64];
+        row.extend(flows.iter().map(|a| a.grains as f64));
+        row.push(c.contact.mass);
+        row.extend(flows.iter().map(|a| a.mass));
+        row.push(rest.iter().map(|a| a.grains.abs()).sum::<i64>() as f64);
+        row.push(rest.iter().map(|a| a.mass.abs()).sum());
+        row
+    }
+
+    fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
+        let paints = Self::paints(s);
+        if paints.is_empty() {
+            return Vec::new();
+        }
+        vec![Picture {
+            name: "circuit",
+            shows: Shows::Paints(paints),
+        }]
+    }
+
+    /// Grains that came loose from first bodies are a source beside the wear law.
+    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+        let s = end.simulation;
+        summary.circuit = self.summary(s, end.wall);
+        if let Some(circuit) = &summary.circuit {
+            let span = (s.time - circuit.start).max(f64::MIN_POSITIVE);
+            summary.wear.Qs += circuit.flows.source.mass / span;
+            summary.wear.Qe = Some(circuit.flows.ejected.mass / span);
+            summary.wear.Qw = Some(circuit.flows.wear.mass / span);
+        }
+    }
+
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let summary = self.summary(end.simulation, end.wall);
+        let draw =
+            |c: CircuitSummary| figures::circuit::charts(end.title, end.table, c.window, S::D);
+        summary.map(draw).into_iter().collect()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        encode(&self.state)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        self.state = decode(from)?;
+        Ok(())
+    }
+}

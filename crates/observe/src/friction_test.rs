@@ -1,0 +1,207 @@
+//! The friction test as an observer: forces and sliding of the rubbed body, its cycles, and what they say together.
+
+use super::figures;
+use super::fretting;
+use super::friction::{Cycle, Cycles, Sample, State};
+use super::layer::Layer;
+use super::observer::{Observer, RunEnd};
+use super::output::Output;
+use super::run_state::damage_ratio;
+use super::statistics::Column;
+use super::summary::Summary;
+use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::process::cycle::RubbedBody;
+use fretwork_core::step::{Simulation, StepReport};
+use serde::{Deserialize, Serialize};
+
+/// Observes a friction test.
+#[derive(Debug)]
+pub struct FrictionTest<S: Space> {
+    body: RubbedBody,
+    sample: Sample,
+    before: State,
+    state: Followed<S>,
+}
+
+/// What the test carries from step to step.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+struct Followed<S: Space> {
+    cycles: Cycles,
+    layer: Layer<S>,
+    /// Displacement of the body so far (m).
+    slide: f64,
+    /// Volume worn off first bodies (m^3; m^3/m).
+    worn: f64,
+    /// Normal force times sliding distance, over the run and what it jumped over (N m; N).
+    load_path: f64,
+}
+
+impl<S: Space> FrictionTest<S> {
+    /// A test of a body with these cycles, from the state at hand on.
+    pub fn new(body: RubbedBody, cycles: Cycles, s: &Simulation<S>) -> Self {
+        Self {
+            body,
+            sample: Sample::default(),
+            before: State::default(),
+            state: Followed {
+                cycles,
+                layer: Layer::new(s),
+                slide: 0.0,
+                worn: 0.0,
+                load_path: 0.0,
+            },
+        }
+    }
+
+    /// What was cumulated so far.
+    fn cumulated(&self, s: &Simulation<S>) -> State {
+        State {
+            balance: self.state.layer.balance(s),
+            broken: s.network.bonds_broken(),
+            worn: self.state.worn,
+        }
+    }
+
+    /// Q, P and the slide of the last step.
+    fn measure(&self, s: &Simulation<S>) -> Sample {
+        let RubbedBody { place, normal, .. } = self.body;
+        let slide = self.body.slide(s);
+        let q = self.body.tangential_force(s);
+        Sample {
+            time: s.time,
+            q,
+            p: s.received[place].0[normal] * facing(s, place, normal) / s.scheme.h,
+            slide,
+            work: q * slide,
+        }
+    }
+}
+
+/// The side on which the contacts of a driven body push it along an axis: 1 or -1.
+fn facing<S: Space>(s: &Simulation<S>, place: usize, axis: usize) -> f64 {
+    let body = s.bodies.driven[place].body;
+    let push: f64 = s
+        .network
+        .contacts
+        .iter()
+        .filter(|c| c.impulse.norm() > 0.0)
+        .map(|c| match c.bodies {
+            [i, _] if i == body => c.normal[axis],
+            [_, j] if j == body => -c.normal[axis],
+            _ => 0.0,
+        })
+        .sum();
+    if push < 0.0 { -1.0 } else { 1.0 }
+}
+
+impl<S: Space> Observer<S> for FrictionTest<S> {
+    fn name(&self) -> String {
+        "friction test".to_owned()
+    }
+
+    fn reads_statistics(&self) -> bool {
+        false
+    }
+
+    fn before_step(&mut self, s: &Simulation<S>) {
+        self.before = self.cumulated(s);
+    }
+
+    fn after_step(&mut self, s: &Simulation<S>, report: &StepReport) {
+        self.sample = self.measure(s);
+        self.state
+            .layer
+            .follow(s, (self.body.place, self.body.along));
+        self.state.worn += report.totals.worn_first;
+        let after = self.cumulated(s);
+        let (sample, state) = (&self.sample, &mut self.state);
+        state.slide += sample.slide;
+        state.load_path += s.network.cycle_multiplier * sample.p * sample.slide.abs();
+        state
+            .cycles
+            .add(sample, s.scheme.h, self.before, after, damage_ratio(s));
+        // The cycle at hand may stand for others, see the process of cycle jumps.
+        let number = state.cycles.number(s.time);
+        if let Some(cycle) = state.cycles.list.last_mut().filter(|c| c.cycle == number) {
+            cycle.jumped = s.network.cycle_multiplier as u32 - 1;
+        }
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        let newton = if S::D == 2 { "N/m" } else { "N" };
+        let c = |name, unit, doc| Column::new(name, unit, doc);
+        vec![
+            c("delta", "m", "displacement of the body under test"),
+            c("Q", newton, "tangential force that moves it"),
+            c("P", newton, "normal force"),
+            c("mu", "", "|Q|/P"),
+        ]
+    }
+
+    fn sample(&mut self, _: &Simulation<S>) -> Vec<f64> {
+        let Sample { q, p, .. } = self.sample;
+        let ratio = if p > 0.0 { q.abs() / p } else { 0.0 };
+        vec![self.state.slide, q, p, ratio]
+    }
+
+    fn cycle(&self, time: f64) -> Option<(u32, u32)> {
+        let cycles = &self.state.cycles;
+        Some((cycles.number(time), cycles.total()))
+    }
+
+    fn caption(&self, s: &Simulation<S>) -> Vec<String> {
+        let cycles = &self.state.cycles;
+        let mut caption = Vec::new();
+        let number = cycles.number(s.time);
+        if number > 0 && cycles.oscillates() {
+            caption.push(format!("cycle {number} of {}", cycles.total()));
+        }
+        if let Some(c) = cycles.list.last() {
+            let mu = c.friction_coefficient;
+            caption.push(format!("friction coefficient {mu:.3}"));
+        }
+        caption
+    }
+
+    fn summarise(&self, _: &RunEnd<'_, S>, summary: &mut Summary) {
+        let path = self.state.load_path;
+        summary.wear.load_path = Some(path);
+        for body in &mut summary.wear.bodies {
+            body.specific_rate = (path > 0.0).then(|| body.volume / path);
+        }
+        Observer::<S>::summarise_so_far(self, summary);
+    }
+
+    fn summarise_so_far(&self, summary: &mut Summary) {
+        let cycles = &self.state.cycles;
+        summary.friction_coefficient = cycles.last().map(|c| c.friction_coefficient);
+        summary.friction_from_dissipation = cycles.last().map(|c| c.friction_from_dissipation);
+        summary.peak_friction = cycles.last().and_then(Cycle::peak_ratio);
+        summary.cycles.clone_from(&cycles.list);
+        summary.fretting = fretting::Outcome::new(&cycles.list).filter(|_| cycles.oscillates());
+        summary.friction_scatter = cycles.scatter();
+    }
+
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        figures::friction_test(end.title, end.table, &self.state.cycles, S::D)
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        encode(&self.state)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        self.state = decode(from)?;
+        Ok(())
+    }
+
+    fn set_end(&mut self, end: f64, later: bool) -> Result<(), &'static str> {
+        if later && !self.state.cycles.oscillates() {
+            return Err("a friction test without a period counts the second half of the whole run");
+        }
+        self.state.cycles.lengthen(end);
+        Ok(())
+    }
+}

@@ -1,0 +1,322 @@
+//! Observers: everything that looks at a run. The run loop has a list of them and knows none by name; one that a user of the
+//! library writes is one more.
+//!
+//! After a step: `before_step` ─► the step ─► `after_step` ─► the processes act between the steps ─► `after_processes` ─► where
+//! a row of the statistics is due `sample`. At the end: `files`, `figures` and `summarise`.
+
+use super::output::Output;
+use super::picture::Picture;
+use super::statistics::{Column, Table};
+use super::summary::Summary;
+use fretwork_core::code::CodeError;
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::{Simulation, StepReport};
+use std::fmt::Debug;
+use std::time::Duration;
+
+/// A run at its end.
+#[derive(Clone, Copy, Debug)]
+pub struct RunEnd<'a, S: Space> {
+    /// The simulation, after its last step.
+    pub simulation: &'a Simulation<S>,
+    /// The rows of the statistics, read back.
+    pub table: &'a Table,
+    /// Title of the case.
+    pub title: &'a str,
+    /// Time that the run took by the clock.
+    pub wall: Duration,
+}
+
+/// An event for a table of events in `results.h5`, `/events/TABLE`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// The table: `broken` or `debris`.
+    pub table: &'static str,
+    /// One value a column.
+    pub row: Vec<f64>,
+    /// Identities of the grains it is of, where the table lists them.
+    pub grains: Vec<f64>,
+}
+
+/// Something that looks at a run and leaves columns, files, and what the summary says. All but its name may be left out.
+pub trait Observer<S: Space>: Debug + Send {
+    /// Its name: tells the observers of a run apart in checkpoints.
+    fn name(&self) -> String;
+
+    /// The state at hand is the one from which deformations count: that of the start, and again that at which the second phase
+    /// begins.
+    fn begin(&mut self, _: &Simulation<S>) {}
+
+    /// Whether the simulation is to keep what each contact dissipates in a step (`network.spent`).
+    fn needs_dissipation(&self) -> bool {
+        false
+    }
+
+    /// Whether what it says in the summary, or its files, are made of the rows of the statistics: they are read back at the end
+    /// where an observer says so, or where figures are drawn.
+    fn reads_statistics(&self) -> bool {
+        true
+    }
+
+    /// Before a step; it may be called more than once.
+    fn before_step(&mut self, _: &Simulation<S>) {}
+
+    /// After each step.
+    fn after_step(&mut self, _: &Simulation<S>, _: &StepReport) {}
+
+    /// After the processes have acted between two steps: the events of the step.
+    fn after_processes(&mut self, _: &Simulation<S>) -> Vec<Event> {
+        Vec::new()
+    }
+
+    /// Its columns in the statistics; the same over the run.
+    fn columns(&self) -> Vec<Column> {
+        Vec::new()
+    }
+
+    /// Values of its columns at the end of a step; it may keep what it needs for the end.
+    fn sample(&mut self, _: &Simulation<S>) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Its columns of the balls, and then of the pieces, in the recorded states of `results.h5`; the same over the run.
+    fn grain_columns(&self) -> Vec<Column> {
+        Vec::new()
+    }
+
+    /// Values of its grain columns, one list a column; what is missing at the end is not a number.
+    fn grain_values(&self, _: &Simulation<S>) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+
+    /// Number of the cycle at a time (s), and how many the run has, where it follows cycles.
+    fn cycle(&self, _: f64) -> Option<(u32, u32)> {
+        None
+    }
+
+    /// What stands under the pictures of a moment.
+    fn caption(&self, _: &Simulation<S>) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Its pictures of a moment; of two with the same name the first observer's is drawn.
+    fn pictures(&self, _: &Simulation<S>) -> Vec<Picture> {
+        Vec::new()
+    }
+
+    /// What it says in the summary, by name.
+    fn outcome(&self, _: &Table) -> Vec<(String, f64)> {
+        Vec::new()
+    }
+
+    /// Units of what it says in the summary that is no mean of a column; what is not named is a pure number.
+    fn units(&self) -> Vec<(String, &'static str)> {
+        Vec::new()
+    }
+
+    /// What it says in the summary in words, by name.
+    fn verdict(&self, _: &Table) -> Vec<(String, String)> {
+        Vec::new()
+    }
+
+    /// Puts what it found into the summary of a run: by default outcome, units and verdict as measures. Observers come in their
+    /// order, so that what earlier ones found is there.
+    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+        let columns = self.columns().into_iter().map(|c| (c.name, c.unit));
+        let units = columns.chain(self.units()).filter(|(_, u)| !u.is_empty());
+        let found = self.outcome(end.table);
+        let found_here = |name: &String| found.iter().any(|(n, _)| n == name);
+        summary
+            .measure_units
+            .extend(units.filter(|(name, _)| found_here(name)));
+        summary.measures.extend(found);
+        summary.findings.extend(self.verdict(end.table));
+    }
+
+    /// Puts what it knows without the simulation, as of its last [`Observer::before_step`], into a summary: of a run that a law
+    /// ends within a step, and for what is said of a run as it goes.
+    fn summarise_so_far(&self, _: &mut Summary) {}
+
+    /// Files that it leaves at the end of a run whatever the case says of figures.
+    fn files(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+        Vec::new()
+    }
+
+    /// Files and figures that it leaves at the end of a run where the case asks for figures (`output.figures`).
+    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+        Vec::new()
+    }
+
+    /// What it carries from step to step, as bytes for a checkpoint ([`fretwork_core::code::encode`]); none where it carries
+    /// nothing.
+    ///
+    /// # Errors
+    /// It cannot be put into bytes.
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        Ok(Vec::new())
+    }
+
+    /// Goes on from what [`Observer::save`] gave.
+    ///
+    /// # Errors
+    /// The bytes are of something else.
+    fn restore(&mut self, _: &[u8]) -> Result<(), CodeError> {
+        Ok(())
+    }
+
+    /// The run that it was restored in ends at a time (s), which is later than it was to end where `later` says so.
+    ///
+    /// # Errors
+    /// Why it cannot go on beyond the end that the run was begun with.
+    fn set_end(&mut self, _end: f64, _later: bool) -> Result<(), &'static str> {
+        Ok(())
+    }
+}
+
+/// The state of one observer: its name and its bytes.
+pub type ObserverState = (String, Vec<u8>);
+
+/// The observers of a run, in the order of their columns.
+#[derive(Debug)]
+pub struct Observers<S: Space> {
+    list: Vec<Box<dyn Observer<S>>>,
+}
+
+impl<S: Space> Default for Observers<S> {
+    fn default() -> Self {
+        Self { list: Vec::new() }
+    }
+}
+
+impl<S: Space> Observers<S> {
+    /// Adds one after those that are there.
+    pub fn push(&mut self, observer: Box<dyn Observer<S>>) {
+        self.list.push(observer);
+    }
+
+    /// Adds others after those that are there.
+    pub fn append(&mut self, others: Self) {
+        self.list.extend(others.list);
+    }
+
+    /// See [`Observer::begin`].
+    pub fn begin(&mut self, s: &mut Simulation<S>) {
+        if self.list.iter().any(|o| o.needs_dissipation()) {
+            s.network.spent.get_or_insert_default();
+        }
+        self.list.iter_mut().for_each(|o| o.begin(s));
+    }
+
+    /// Whether one reads the rows of the statistics at the end, see [`Observer::reads_statistics`].
+    pub fn read_statistics(&self) -> bool {
+        self.list.iter().any(|o| o.reads_statistics())
+    }
+
+    /// See [`Observer::before_step`].
+    pub fn before_step(&mut self, s: &Simulation<S>) {
+        self.list.iter_mut().for_each(|o| o.before_step(s));
+    }
+
+    /// See [`Observer::after_step`].
+    pub fn after_step(&mut self, s: &Simulation<S>, report: &StepReport) {
+        self.list.iter_mut().for_each(|o| o.after_step(s, report));
+    }
+
+    /// See [`Observer::after_processes`].
+    pub fn after_processes(&mut self, s: &Simulation<S>) -> Vec<Event> {
+        let list = self.list.iter_mut();
+        list.flat_map(|o| o.after_processes(s)).collect()
+    }
+
+    /// Columns of all, in their order.
+    pub fn columns(&self) -> Vec<Column> {
+        self.list.iter().flat_map(|o| o.columns()).collect()
+    }
+
+    /// Values of [`Observers::columns`].
+    pub fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        self.list.iter_mut().flat_map(|o| o.sample(s)).collect()
+    }
+
+    /// See [`Observer::grain_columns`].
+    pub fn grain_columns(&self) -> Vec<Column> {
+        self.list.iter().flat_map(|o| o.grain_columns()).collect()
+    }
+
+    /// See [`Observer::grain_values`].
+    pub fn grain_values(&self, s: &Simulation<S>) -> Vec<Vec<f64>> {
+        self.list.iter().flat_map(|o| o.grain_values(s)).collect()
+    }
+
+    /// Of the first that follows cycles, see [`Observer::cycle`].
+    pub fn cycle(&self, time: f64) -> Option<(u32, u32)> {
+        self.list.iter().find_map(|o| o.cycle(time))
+    }
+
+    /// See [`Observer::caption`].
+    pub fn caption(&self, s: &Simulation<S>) -> Vec<String> {
+        self.list.iter().flat_map(|o| o.caption(s)).collect()
+    }
+
+    /// The pictures of a moment, each name once.
+    pub fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
+        let mut all: Vec<Picture> = Vec::new();
+        for picture in self.list.iter().flat_map(|o| o.pictures(s)) {
+            if all.iter().all(|p| p.name != picture.name) {
+                all.push(picture);
+            }
+        }
+        all
+    }
+
+    /// See [`Observer::summarise`].
+    pub fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+        self.list.iter().for_each(|o| o.summarise(end, summary));
+    }
+
+    /// See [`Observer::summarise_so_far`].
+    pub fn summarise_so_far(&self, summary: &mut Summary) {
+        self.list.iter().for_each(|o| o.summarise_so_far(summary));
+    }
+
+    /// See [`Observer::files`].
+    pub fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        self.list.iter().flat_map(|o| o.files(end)).collect()
+    }
+
+    /// See [`Observer::figures`].
+    pub fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        self.list.iter().flat_map(|o| o.figures(end)).collect()
+    }
+
+    /// What each carries, see [`Observer::save`].
+    ///
+    /// # Errors
+    /// One cannot be put into bytes.
+    pub fn save(&self) -> Result<Vec<ObserverState>, CodeError> {
+        let one = |o: &Box<dyn Observer<S>>| Ok((o.name(), o.save()?));
+        self.list.iter().map(one).collect()
+    }
+
+    /// Goes on from what [`Observers::save`] gave.
+    ///
+    /// # Errors
+    /// The states are of other observers.
+    pub fn restore(&mut self, from: &[ObserverState]) -> Result<(), CodeError> {
+        let names = self.list.iter().map(|o| o.name());
+        if !names.eq(from.iter().map(|(name, _)| name.clone())) {
+            return Err(CodeError::other("observers"));
+        }
+        let mut pairs = self.list.iter_mut().zip(from);
+        pairs.try_for_each(|(observer, (_, bytes))| observer.restore(bytes))
+    }
+
+    /// See [`Observer::set_end`].
+    ///
+    /// # Errors
+    /// Why the first that cannot go on does not.
+    pub fn set_end(&mut self, end: f64, later: bool) -> Result<(), &'static str> {
+        let mut list = self.list.iter_mut();
+        list.try_for_each(|o| o.set_end(end, later))
+    }
+}

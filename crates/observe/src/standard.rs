@@ -1,0 +1,54 @@
+//! What a run of a case is observed by.
+
+use super::biaxial::Biaxial;
+use super::circuit::{BrokenBonds, CircuitAccount};
+use super::friction::Cycles;
+use super::friction_test::FrictionTest;
+use super::jump::CycleJumps;
+use super::measure::measures;
+use super::observer::Observers;
+use super::run_state::{DrivenBodies, Phases, RunState};
+use super::scars::Scars;
+use super::strain::LocalShear;
+use super::wear::Wear;
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::Simulation;
+use fretwork_scene::case::Case;
+use fretwork_scene::processes;
+
+/// The observers of a run of a case, from the state at hand of its simulation on, in the order of the columns of the
+/// statistics. `density` is that of the first bodies (kg/m^3).
+pub fn observers<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> {
+    let test = processes::FrictionTest::of(case, s);
+    let mut all = Observers::default();
+    all.push(Box::new(RunState::new(case, test.map(|t| t.clock))));
+    let start = test.map_or(0.0, |t| t.start);
+    let along = case.friction.as_ref().map_or(0, |t| t.along);
+    let wear = Wear::new(start, along, case.inertia_scaling, density);
+    all.push(Box::new(wear));
+    if let Some(test) = test {
+        let cycles = Cycles::of(test.clock, case.time.end);
+        all.push(Box::new(FrictionTest::new(test.body, cycles, s)));
+    }
+    if let Some(biaxial) = case.biaxial.as_ref().and_then(|b| Biaxial::new(b, s)) {
+        all.push(Box::new(biaxial));
+    }
+    all.push(Box::new(Scars::of(s)));
+    all.push(Box::new(Phases::of(s)));
+    let loops = test.filter(|t| t.clock.period.is_some());
+    let loops = loops.and(case.friction.as_ref());
+    let drawn = loops.map(|t| (t.body.clone(), t.along));
+    all.push(Box::new(DrivenBodies::of(s, drawn)));
+    if case.jump.is_some() {
+        all.push(Box::new(CycleJumps));
+    }
+    all.push(Box::new(BrokenBonds::default()));
+    if let Some(circuit) = &case.circuit {
+        all.push(Box::new(CircuitAccount::new(circuit.start)));
+    }
+    if let Some(top) = case.output.shear {
+        all.push(Box::new(LocalShear::new(s, top)));
+    }
+    all.append(measures(&case.measures, case.inertia_scaling));
+    all
+}

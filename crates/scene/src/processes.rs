@@ -1,0 +1,70 @@
+//! What a case asks for that acts on its simulation at the moments of a step, and the friction test that cycle jumps follow.
+
+use super::case::Case;
+use super::circuit;
+use fretwork_core::bodies::TimeFunction;
+use fretwork_core::geometry::space::Space;
+use fretwork_core::process::circuit::{CircuitProcess, Intervals};
+use fretwork_core::process::cycle::{CycleClock, RubbedBody};
+use fretwork_core::process::jump::Jumps;
+use fretwork_core::step::Simulation;
+
+/// The friction test of a case, in its scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrictionTest {
+    /// The body that is rubbed.
+    pub body: RubbedBody,
+    /// Its cycles.
+    pub clock: CycleClock,
+    /// When the motion starts to count (s); where it has no period its friction counts from later on.
+    pub start: f64,
+}
+
+impl FrictionTest {
+    /// Finds the test of a case in its scene; none where the case has none.
+    pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Self> {
+        let test = case.friction.as_ref()?;
+        let place = s.bodies.driven.iter().position(|d| d.name == test.body)?;
+        let dof = &s.bodies.driven[place].dofs[test.along];
+        let period = test
+            .period
+            .or(dof.function().and_then(TimeFunction::period));
+        let start = match dof.function() {
+            Some(TimeFunction::Sine { start, .. }) => test.start.max(*start),
+            _ => test.start,
+        };
+        Some(Self {
+            body: RubbedBody {
+                place,
+                along: test.along,
+                normal: test.normal,
+            },
+            clock: CycleClock::new(start, period, case.time.end),
+            start,
+        })
+    }
+}
+
+/// Has the processes of a case act in its simulation, which has not stepped: cycle jumps and the tribological circuit. Wear
+/// recession came with the surfaces that wear.
+pub fn install<S: Space>(case: &Case, s: &mut Simulation<S>) {
+    if let Some(jumps) = jumps(case, s) {
+        s.add_process(jumps);
+    }
+    if let (Some(spec), Some(words)) = (circuit::install(case, s), &case.circuit) {
+        let intervals = Intervals {
+            every: words.every,
+            rows: (case.output.every > 1).then_some(case.output.every),
+        };
+        s.add_process(CircuitProcess::new(spec, words.start, intervals));
+    }
+}
+
+/// Jumps over cycles, where the case jumps and its friction test has cycles.
+fn jumps<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Jumps> {
+    let spec = case.jump.clone()?;
+    let test = FrictionTest::of(case, s)?;
+    let count = |time: f64| (time / case.time.step).round() as u64;
+    let steps = [count(test.clock.period?), count(case.time.end)];
+    Some(Jumps::new(spec, test.clock, test.body, steps, s))
+}

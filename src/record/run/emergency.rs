@@ -1,0 +1,101 @@
+//! What is left for the watch over plugins to write when a law does not come back from a step.
+//!
+//! The thread that is stuck owns the simulation, half of a step done: nobody else may read it. The files and observers of the run
+//! it does not use during a step. So before a step they are laid where the watch finds them, with what was known then, and taken
+//! back after it. What happens then to the program is decided by whoever started the watch.
+
+use super::end::{self, LAST};
+use super::notice;
+use super::{Recorder, RunError};
+use crate::geometry::space::Space;
+use crate::laws::watch::{self, Ready};
+use crate::record::results::Results;
+use crate::record::statistics::Table;
+use crate::record::summary::Summary;
+use crate::record::warnings;
+use crate::step::StepReport;
+use crate::step::Steps;
+use cpu_time::ProcessTime;
+use fretwork_observe::Observers;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+/// All that can be written without the simulation.
+struct UnsavedOutputs<S: Space> {
+    table: Table,
+    results: Results,
+    observers: Observers<S>,
+    summary: Summary,
+    /// What parts of the run before this one took, by the clock and of processors.
+    spent: (Duration, Duration),
+}
+
+/// The place where it lies during a step.
+pub(super) struct EmergencySave<S: Space> {
+    outputs: Arc<Mutex<Option<UnsavedOutputs<S>>>>,
+    _ready: Ready,
+}
+
+impl<S: Space> EmergencySave<S> {
+    /// An empty place that the watch knows.
+    pub fn new(out: PathBuf) -> Self {
+        let outputs: Arc<Mutex<Option<UnsavedOutputs<S>>>> = Arc::new(Mutex::new(None));
+        let place = Arc::clone(&outputs);
+        let (clock, processor) = (Instant::now(), ProcessTime::now());
+        let ready = watch::rescue(move |who| {
+            let outputs = place.lock().ok().and_then(|mut l| l.take());
+            outputs.is_some_and(|mut outputs| {
+                let spent = outputs.spent;
+                outputs.summary.wall_seconds = (spent.0 + clock.elapsed()).as_secs_f64();
+                outputs.summary.cpu_seconds = (spent.1 + processor.elapsed()).as_secs_f64();
+                outputs.write(who, &out)
+            })
+        });
+        Self {
+            outputs,
+            _ready: ready,
+        }
+    }
+}
+
+impl<S: Space> UnsavedOutputs<S> {
+    /// Writes it; whether all of it is on disk.
+    fn write(&mut self, who: &str, out: &Path) -> bool {
+        let summary = &mut self.summary;
+        summary.stopped = Some(who.to_owned());
+        self.observers.summarise_so_far(summary);
+        summary.complete();
+        let list = warnings::of(summary, None);
+        notice::judge(summary, &list);
+        let text = serde_json::to_string_pretty(summary).unwrap_or_default();
+        let table = self.table.flush().is_ok();
+        let results = self.results.finish(out).is_ok();
+        end::write_atomic(&out.join(LAST), &(text + "\n")).is_ok() && table && results
+    }
+}
+
+impl<S: Steps> Recorder<'_, S> {
+    /// A step, during which the watch can save what was recorded.
+    pub(super) fn step(&mut self) -> Result<StepReport, RunError> {
+        self.observers.before_step(&self.simulation);
+        let outputs = UnsavedOutputs {
+            table: std::mem::take(&mut self.table),
+            results: std::mem::take(&mut self.results),
+            observers: std::mem::take(&mut self.observers),
+            summary: std::mem::take(&mut self.summary),
+            spent: self.spent,
+        };
+        let place = Arc::clone(&self.emergency.outputs);
+        let place = || place.lock().unwrap_or_else(|e| e.into_inner());
+        *place() = Some(outputs);
+        let report = self.simulation.step();
+        // The watch took it just before the law came back: it is written.
+        let outputs = place().take().ok_or(RunError::TakenOver)?;
+        self.table = outputs.table;
+        self.results = outputs.results;
+        self.observers = outputs.observers;
+        self.summary = outputs.summary;
+        Ok(report?)
+    }
+}

@@ -1,0 +1,234 @@
+//! A run of the library with an observer and a process that are written here: they stand in its files, its checkpoints and its
+//! summary, and a callback stops it.
+
+use super::common::{Folder, marked, same};
+use fretwork::geometry::space::{Dim3, Space, VectorLike};
+use fretwork::laws::SearchPath;
+use fretwork::process::{Process, ProcessError};
+use fretwork::record::checkpoint::Found;
+use fretwork::record::code::{CodeError, decode, encode};
+use fretwork::record::output::Output;
+use fretwork::record::results::PreviousResults;
+use fretwork::record::statistics::{Column, Table};
+use fretwork::record::{Observer, Run, RunEnd, RunError, RunOptions, Summary, stopped};
+use fretwork::scene::{Built, Loaded, load};
+use fretwork::step::{Simulation, StepReport};
+use std::ops::ControlFlow;
+use std::path::Path;
+
+/// The mean gap of all contacts, and its mean over the steps.
+#[derive(Debug, Default)]
+struct MeanGap {
+    sum: f64,
+    steps: u64,
+}
+
+fn mean_gap<S: Space>(s: &Simulation<S>) -> f64 {
+    let contacts = &s.network.contacts;
+    contacts.iter().map(|c| c.gap).sum::<f64>() / contacts.len().max(1) as f64
+}
+
+impl<S: Space> Observer<S> for MeanGap {
+    fn name(&self) -> String {
+        "mean gap".to_owned()
+    }
+
+    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
+        self.sum += mean_gap(s);
+        self.steps += 1;
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        vec![Column::new("mean_gap", "m", "mean gap of all contacts")]
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        vec![mean_gap(s)]
+    }
+
+    fn outcome(&self, _: &Table) -> Vec<(String, f64)> {
+        vec![("mean_gap_of_run".to_owned(), self.sum / self.steps as f64)]
+    }
+
+    fn units(&self) -> Vec<(String, &'static str)> {
+        vec![("mean_gap_of_run".to_owned(), "m")]
+    }
+
+    fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let text = format!("{} steps, {:e}\n", end.simulation.steps, self.sum);
+        let file = "mean_gap.txt".to_owned();
+        vec![Output::Text { file, text }]
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        encode(&(self.sum, self.steps))
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        (self.sum, self.steps) = decode(from)?;
+        Ok(())
+    }
+}
+
+/// Pushes a ball along x with a force that dies away with the impulse that it gave: F = F0 (1 - J/J0).
+#[derive(Debug)]
+struct Push {
+    body: usize,
+    given: f64,
+}
+
+const FORCE: f64 = 0.5;
+const LIMIT: f64 = 0.02;
+
+impl<S: Space> Process<S> for Push {
+    fn name(&self) -> &str {
+        "push"
+    }
+
+    fn before_detection(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
+        let mut impulse = S::Vector::zero();
+        impulse[0] = s.scheme.h * FORCE * (1.0 - self.given / LIMIT);
+        self.given += impulse[0];
+        s.apply_impulse(self.body, &impulse, &S::Spin::zero());
+        Ok(())
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        encode(&self.given)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        self.given = decode(from)?;
+        Ok(())
+    }
+}
+
+const SETS: [&str; 2] = ["output.checkpoint=Never", "output.frames=2"];
+
+/// Newton's cradle with a push on the ball in its middle.
+fn cradle() -> (Loaded, Built<Dim3>) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
+    let loaded = load(&path, &SETS.map(str::to_owned)).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<Dim3>(&SearchPath::new(&[]));
+    let mut built = built.unwrap_or_else(|e| panic!("{e}"));
+    built.simulation.add_process(Push {
+        body: 2,
+        given: 0.0,
+    });
+    (loaded, built)
+}
+
+fn options(folder: &Folder) -> RunOptions {
+    RunOptions {
+        out: folder.0.clone(),
+        threads: 1,
+    }
+}
+
+/// Stops the run in a folder after so many steps.
+fn stop_after(folder: &Folder, step: u64) -> Summary {
+    let (loaded, built) = cradle();
+    let options = options(folder);
+    let run = Run::new(&loaded, built, &options).observe(MeanGap::default());
+    let stopped = run.execute(&mut |p| match p.steps.0 == step {
+        true => ControlFlow::Break("had enough".to_owned()),
+        false => ControlFlow::Continue(()),
+    });
+    stopped.unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Runs on to the end from where the run in a folder was stopped.
+fn resume(folder: &Folder, observer: Option<MeanGap>) -> Result<Summary, RunError> {
+    let (loaded, built) = cradle();
+    let options = options(folder);
+    let Found::State(stop) = stopped(&loaded, &built, &options)? else {
+        panic!("no state to go on from");
+    };
+    let mut run = Run::new(&loaded, built, &options).resume(stop);
+    if let Some(observer) = observer {
+        run = run.observe(observer);
+    }
+    run.execute(&mut |_| ControlFlow::Continue(()))
+}
+
+#[test]
+fn an_observer_and_a_process_of_a_user_are_recorded() {
+    let folder = Folder::new("library-whole");
+    let (loaded, built) = cradle();
+    let mass = built.simulation.bodies.mass[0];
+    let options = options(&folder);
+    let run = Run::new(&loaded, built, &options).observe(MeanGap::default());
+    let summary = run.execute(&mut |_| ControlFlow::Continue(())).unwrap();
+    assert!(summary.stopped.is_none());
+    // Three pairs of balls half a millimetre apart are within reach of each other after the first step.
+    let kept = PreviousResults::open(&folder.0.join("results.h5")).unwrap();
+    let names = ["mean_gap", "kinetic", "external_work"].map(str::to_owned);
+    let columns = kept.statistics(&names, 600).unwrap();
+    assert!((columns[0][0] - 5e-4).abs() < 1e-7, "{}", columns[0][0]);
+    let text = std::fs::read_to_string(folder.0.join("statistics.csv")).unwrap();
+    assert!(text.lines().next().unwrap().ends_with(",mean_gap [m]"));
+    let found = summary.measures["mean_gap_of_run"];
+    let mean = columns[0].iter().sum::<f64>() / 600.0;
+    assert!((found / mean - 1.0).abs() < 1e-12);
+    assert_eq!(summary.measure_units["mean_gap_of_run"], "m");
+    assert!(folder.0.join("mean_gap.txt").exists());
+    // J = J0 (1 - (1 - h F0/J0)^n), and the work of the push is the gain of kinetic energy: impacts with e = 1 lose none.
+    let given = LIMIT * (1.0 - (1.0 - 1e-4 * FORCE / LIMIT).powi(600));
+    assert!(given > 0.5 * LIMIT && mass > 0.0);
+    let e = &summary.energy;
+    let gain = e.kinetic - mass;
+    assert!(
+        e.external_work > 0.0 && (gain / e.external_work - 1.0).abs() < 1e-6,
+        "{gain} {e:?}"
+    );
+    assert!(summary.energy_residual_relative < 1e-9);
+}
+
+#[test]
+fn a_callback_stops_a_run_with_all_its_files_and_it_goes_on_with_the_same_bits() {
+    let (whole, folder) = (Folder::new("library-one"), Folder::new("library-two"));
+    let (loaded, built) = cradle();
+    let options = options(&whole);
+    let run = Run::new(&loaded, built, &options).observe(MeanGap::default());
+    run.execute(&mut |_| ControlFlow::Continue(())).unwrap();
+
+    let summary = stop_after(&folder, 250);
+    let said = summary.stopped.unwrap();
+    assert_eq!(said, "had enough after step 250 of 600");
+    assert!(summary.interrupted && summary.steps == 250);
+    let text = std::fs::read_to_string(folder.0.join("summary.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(json["stopped"], said);
+    let rows = std::fs::read_to_string(folder.0.join("statistics.csv")).unwrap();
+    assert_eq!(rows.lines().count(), 251);
+    assert!(!marked(&folder.0.join("results.h5")));
+    for file in ["contacts.vtkhdf", "bodies.vtkhdf", "mean_gap.txt"] {
+        assert!(folder.0.join(file).exists(), "{file}");
+    }
+
+    resume(&folder, Some(MeanGap::default())).unwrap_or_else(|e| panic!("{e}"));
+    same(&whole.0, &folder.0);
+}
+
+#[test]
+fn a_run_does_not_go_on_without_its_observers() {
+    let folder = Folder::new("library-without");
+    stop_after(&folder, 20);
+    let error = resume(&folder, None).unwrap_err().to_string();
+    assert!(error.contains("observers"), "{error}");
+    resume(&folder, Some(MeanGap::default())).unwrap_or_else(|e| panic!("{e}"));
+}
+
+#[test]
+fn two_columns_of_one_name_are_refused() {
+    let folder = Folder::new("library-twice");
+    let (loaded, built) = cradle();
+    let options = options(&folder);
+    let run = Run::new(&loaded, built, &options);
+    let run = run.observe(MeanGap::default()).observe(MeanGap::default());
+    let error = run.execute(&mut |_| ControlFlow::Continue(())).unwrap_err();
+    assert!(
+        matches!(&error, RunError::ColumnTwice { name } if name == "mean_gap"),
+        "{error}"
+    );
+}
