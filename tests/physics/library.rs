@@ -18,11 +18,18 @@ fn axes<S: Dimensional>(up: f64) -> Vec<f64> {
 
 /// A bonded layer of grains between a floor and a lid that presses and slides.
 fn layer<S: Dimensional>() -> CaseBuilder<S> {
+    // Three rows of disks with 12 to the period, or a layer of 12 by 12 balls, and how high they stand.
+    let rise = 4e-3 * 0.75f64.sqrt();
+    let (count, top) = if S::D == 2 {
+        (36, 4e-3 + 2.0 * rise)
+    } else {
+        (144, 4e-3)
+    };
     let mut high = vec![0.05; S::D];
     high[S::D - 1] = 0.02;
     let mut down = axes::<S>(-1.0);
     let mut lid = BodySpec::new("lid", "steel", ShapeSpec::half_space(down.clone(), vec![]))
-        .position(axes::<S>(0.025))
+        .position(axes::<S>(top + 2e-6))
         .mass(1.0)
         .x(Dof::Velocity(TimeFunction::Constant(0.05)));
     let press = Dof::Force(TimeFunction::Ramp {
@@ -67,8 +74,8 @@ fn layer<S: Dimensional>() -> CaseBuilder<S> {
         .body(lid)
         .grains(GrainSpec::lattice(
             "powder",
-            40,
-            (2e-3, 2.5e-3),
+            count,
+            (2e-3, 2e-3),
             vec![0.0; S::D],
             high,
         ))
@@ -185,7 +192,7 @@ fn refusal<S: Dimensional>(builder: CaseBuilder<S>) -> InputError {
 fn mistakes_are_refused_in_the_sentences_of_case_files() {
     let ball = || GrainSpec::balls("powder", [OneGrain::new([0.0, 0.03], 1e-3)]);
     for (wrong, sentence) in [
-        (layer::<Dim2>().time(0.0, 1.0), "time.step"),
+        (layer::<Dim2>().time(0.0, 1.0), "must be positive, got 0"),
         (
             layer::<Dim2>().interface(InterfaceSpec::new("x", ("steel", "stel"), "coulomb", &[])),
             "the case has no material `stel`",

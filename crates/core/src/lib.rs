@@ -45,7 +45,6 @@
 //!
 //! It reads no case text and writes no result files: those are layers above it, which it does not know.
 
-#![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod bodies;

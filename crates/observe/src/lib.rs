@@ -4,7 +4,6 @@
 //! It reads the simulation of `fretwork-core` and the words of the case of `fretwork-scene`. Charts are data here
 //! ([`chart`], [`output`]): who writes and draws them is above.
 
-#![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod biaxial;

@@ -1,8 +1,9 @@
 //! An antialiased drawing surface in pixels, y downwards, saved as PNG.
 
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
-use plotters::prelude::{BitMapBackend, DrawingBackend};
 use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, StrokeDash,
     Transform,
@@ -280,8 +281,8 @@ impl Canvas {
         }
     }
 
-    /// Writes the surface, which is opaque, to a PNG file. The encoder of
-    /// plotters is some ten times as fast as that of tiny-skia.
+    /// Writes the surface, which is opaque, to a PNG file: without its alpha channel and compressed fast, some ten times
+    /// as fast as tiny-skia's own writer.
     pub fn save(&self, path: &Path) -> Result<(), ReportError> {
         match notice::current() {
             Some(text) => notice::banded(self, &text)?.write_file(path),
@@ -293,14 +294,23 @@ impl Canvas {
         let size = (self.pixmap.width(), self.pixmap.height());
         let pixels = self.pixmap.data().as_chunks::<4>().0.iter();
         let rgb: Vec<u8> = pixels.flat_map(|p| [p[0], p[1], p[2]]).collect();
-        let mut file = BitMapBackend::new(path, size);
-        file.blit_bitmap((0, 0), size, &rgb)
-            .and_then(|()| file.present())
-            .map_err(|e| ReportError::Write {
-                path: path.to_owned(),
-                reason: reason(&e),
-            })
+        write_png(path, size, &rgb).map_err(|e| ReportError::Write {
+            path: path.to_owned(),
+            reason: reason(&e),
+        })
     }
+}
+
+/// Rows of red, green and blue bytes as a PNG file.
+fn write_png(path: &Path, size: (u32, u32), rgb: &[u8]) -> Result<(), png::EncodingError> {
+    let file = BufWriter::new(File::create(path)?);
+    let mut encoder = png::Encoder::new(file, size.0, size.1);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(rgb)?;
+    writer.finish()
 }
 
 /// The innermost cause: what wraps it tells the user nothing.

@@ -3,7 +3,6 @@
 //! [`load`] reads a case file, [`Loaded::build`] makes of it a simulation of the layer below, `fretwork-core`. This layer knows
 //! nothing of results and pictures.
 
-#![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod biaxial;

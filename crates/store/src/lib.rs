@@ -1,6 +1,5 @@
 //! The files of a run of Fretwork: `results.h5`, checkpoints, problems of the FCLIB collection, and the summary.
 
-#![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod checkpoint;

@@ -11,7 +11,6 @@
 //! * calls are pure: no globals, any thread, any order, same input same bits;
 //! * a call answers with a status code and, when it fails, a message in the host's buffer.
 #![no_std]
-#![deny(missing_docs)]
 
 use core::ffi::c_char;
 

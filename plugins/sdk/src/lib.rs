@@ -26,8 +26,6 @@
 //!     }
 //! }
 //! ```
-#![deny(missing_docs)]
-#![deny(clippy::undocumented_unsafe_blocks)]
 
 pub mod border;
 pub mod table;

@@ -39,7 +39,7 @@ use std::path::PathBuf;
 ///
 /// // Mistakes are the errors of case files.
 /// let wrong = CaseBuilder::<Dim3>::new("no step").load().map(|_| ()).unwrap_err();
-/// assert!(wrong.to_string().contains("time.step"), "{wrong}");
+/// assert!(wrong.to_string().contains("must be positive, got 0"), "{wrong}");
 /// # Ok::<(), fretwork_scene::InputError>(())
 /// ```
 #[derive(Clone, Debug)]
