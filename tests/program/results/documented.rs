@@ -1,5 +1,7 @@
 //! Every column and every key that a run writes stands in docs/outputs.md.
 
+use fretwork::fields::{Fields, orientation, removed};
+use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::SearchPath;
 use fretwork::record::{Summary, statistics_columns};
 use fretwork::scene::build::{Built, Dimensional, Loaded};
@@ -63,6 +65,34 @@ fn every_column_of_the_shipped_cases_is_documented() {
             missing.is_empty(),
             "{case}: docs/outputs.md lacks {missing:?}"
         );
+    }
+}
+
+/// Fields whose row in the page lacks, or does not say their unit.
+fn undocumented<'a>(fields: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<&'a str> {
+    let path = format!("{}/docs/outputs.md", env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(path).unwrap();
+    let described = |(name, unit): &(&str, &str)| {
+        let mut rows = page.lines().filter(|l| l.starts_with('|'));
+        rows.any(|row| row.contains(&format!("`{name}`")) && row.contains(unit))
+    };
+    let missing = fields.filter(|f| !described(f));
+    missing.map(|(name, _)| name).collect()
+}
+
+#[test]
+fn every_field_of_the_views_is_documented() {
+    fn missing<S: Dimensional>() -> Vec<String> {
+        let mut fields = Fields::<S>::default();
+        let more = orientation().into_iter().chain([removed()]);
+        more.for_each(|f| fields.grains.add(f));
+        let grains = fields.grains.iter().map(|f| (f.name, f.unit));
+        let contacts = fields.contacts.iter().map(|f| (f.name, f.unit));
+        let missing = undocumented(grains.chain(contacts));
+        missing.into_iter().map(str::to_owned).collect()
+    }
+    for missing in [missing::<Dim2>(), missing::<Dim3>()] {
+        assert!(missing.is_empty(), "docs/outputs.md lacks {missing:?}");
     }
 }
 

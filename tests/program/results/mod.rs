@@ -2,6 +2,7 @@
 
 mod contacts;
 mod documented;
+mod fields;
 mod ledger;
 mod streams;
 

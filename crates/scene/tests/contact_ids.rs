@@ -1,0 +1,179 @@
+//! The same contact has the same name over a restart, without another grain, and in another listing of the grains.
+
+use fretwork_core::contact::{ContactId, ContactNames};
+use fretwork_core::geometry::space::{Dim2, Dim3, Space};
+use fretwork_core::laws::{BuiltInLaws, SearchPath};
+use fretwork_core::step::{Saved, Simulation};
+use fretwork_scene::{Scene, load};
+use std::collections::{BTreeMap, BTreeSet};
+
+fn path() -> SearchPath {
+    // SAFETY: tables of the shipped laws are static.
+    let laws = unsafe { BuiltInLaws::from_tables(fretwork_shipped::plugins()) };
+    SearchPath::new(&[]).with_built_in(laws)
+}
+
+/// A case of grains on a plane, which are listed as given.
+fn scene(name: &str, dimension: usize, group: &str, grains: &[String]) -> Scene {
+    let (normal, gravity) = match dimension {
+        2 => ("[0.0, 1.0]", "[0.0, -9.81]"),
+        _ => ("[0.0, 0.0, 1.0]", "[0.0, 0.0, -9.81]"),
+    };
+    let text = format!(
+        "(name: \"names\", dimension: {dimension}, time: (step: 1e-3, end: 1.0), gravity: {gravity},
+        solver: (tolerance: 1e-12, norm: Velocity, max_iterations: 100000),
+        detection: (alert: 2e-3, skin: 1e-2), materials: {{\"grain\": \"verification_grain\"}},
+        interfaces: [(name: \"joints\", between: (\"grain\", \"grain\"), contact: \"coulomb\", parameters: (contact: {{\"mu\": 0.5}}))],
+        bodies: [(name: \"ground\", material: \"grain\", shapes: [HalfSpace(normal: {normal})])],
+        grains: [{group}(material: \"grain\", grains: [{}])])",
+        grains.join(", ")
+    );
+    let file = std::env::temp_dir().join(format!("fretwork-{}-{name}.ron", std::process::id()));
+    std::fs::write(&file, text).unwrap();
+    let built = load(&file, &[]).and_then(|loaded| loaded.build(&path()));
+    std::fs::remove_file(&file).ok();
+    built.unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn plane(scene: Scene) -> Simulation<Dim2> {
+    match scene {
+        Scene::Dim2(built) => built.simulation,
+        Scene::Dim3(_) => panic!("the case has two dimensions"),
+    }
+}
+
+fn solid(scene: Scene) -> Simulation<Dim3> {
+    match scene {
+        Scene::Dim3(built) => built.simulation,
+        Scene::Dim2(_) => panic!("the case has three dimensions"),
+    }
+}
+
+fn steps<S: Space>(s: &mut Simulation<S>, count: u32) {
+    (0..count).for_each(|_| drop(s.step().unwrap()));
+}
+
+/// Gaps by the names of the contacts; all have one of their own.
+fn named<S: Space>(s: &Simulation<S>) -> BTreeMap<ContactId, f64> {
+    let names = ContactNames::of(&s.shapes, &s.bodies);
+    let places = names.places(&s.network);
+    assert_eq!(places.len(), s.network.contacts.len(), "two of one name");
+    let gap = |k: usize| s.network.contacts[k].gap;
+    places.into_iter().map(|(id, k)| (id, gap(k))).collect()
+}
+
+/// Four blocks of a stack, each a little aside and turned, so that corners and sides have no twin.
+fn blocks() -> Vec<String> {
+    let block = |k: usize| {
+        let (x, y) = (0.011 * k as f64 * k as f64, 0.05 + 0.1005 * k as f64);
+        let corners = "[(-0.1,-0.05), (0.1,-0.05), (0.1,0.05), (-0.1,0.05)]";
+        format!("(at: [{x}, {y}], points: {corners})")
+    };
+    (0..4).map(block).collect()
+}
+
+/// Three boxes on each other, turned about the vertical, so that edges cross.
+fn boxes() -> Vec<String> {
+    let one = |k: usize| {
+        let z = 0.05 + 0.1005 * k as f64;
+        let mut corners = Vec::new();
+        for x in [-0.1, 0.1] {
+            for y in [-0.1, 0.1] {
+                corners.extend([-0.05, 0.05].map(|z| format!("({x}, {y}, {z})")));
+            }
+        }
+        let corners = corners.join(", ");
+        let turned = 0.3 * k as f64;
+        format!("(at: [0.0, 0.0, {z}], points: [{corners}], turned: [0.0, 0.0, {turned}])")
+    };
+    (0..3).map(one).collect()
+}
+
+/// The scene with its grains listed backwards, under the identities they had.
+fn backwards<S: Space>(mut s: Simulation<S>, grains: usize) -> Simulation<S> {
+    let ids: Vec<u64> = s.bodies.id.clone();
+    let grain: Vec<usize> = (0..s.bodies.len())
+        .filter(|b| !s.bodies.driven.iter().any(|d| d.body as usize == *b))
+        .collect();
+    assert_eq!(grain.len(), grains);
+    for (k, b) in grain.iter().enumerate() {
+        s.bodies.id[*b] = ids[grain[grains - 1 - k]];
+    }
+    s
+}
+
+fn same_names<S: Space>(mut one: Simulation<S>, mut other: Simulation<S>) -> usize {
+    steps(&mut one, 20);
+    steps(&mut other, 20);
+    let (a, b) = (named(&one), named(&other));
+    let keys = |m: &BTreeMap<ContactId, f64>| m.keys().copied().collect::<BTreeSet<_>>();
+    assert_eq!(keys(&a), keys(&b));
+    for (id, gap) in &a {
+        assert!((gap - b[id]).abs() < 1e-6, "{id:?}: {gap:e} {:e}", b[id]);
+    }
+    a.len()
+}
+
+#[test]
+fn in_another_listing() {
+    let mut listed = blocks();
+    let one = plane(scene("one", 2, "Polygons", &listed));
+    listed.reverse();
+    let other = backwards(plane(scene("other", 2, "Polygons", &listed)), 4);
+    assert!(same_names(one, other) >= 8);
+    let mut listed = boxes();
+    let one = solid(scene("one-3d", 3, "Polyhedra", &listed));
+    listed.reverse();
+    let other = backwards(solid(scene("other-3d", 3, "Polyhedra", &listed)), 3);
+    assert!(same_names(one, other) >= 12);
+}
+
+#[test]
+fn without_another_grain() {
+    let all = blocks();
+    let mut whole = plane(scene("whole", 2, "Polygons", &all));
+    steps(&mut whole, 1);
+    let (a, ids) = (named(&whole), whole.bodies.id.clone());
+    // Of a stack without its top, or without its lowest block, the others keep their identities, and so does the ground.
+    for (name, gone) in [("top", 3), ("lowest", 0)] {
+        let mut left = all.clone();
+        left.remove(gone);
+        let mut short = plane(scene(name, 2, "Polygons", &left));
+        short.bodies.id = ids.clone();
+        short.bodies.id.remove(gone);
+        steps(&mut short, 1);
+        let b = named(&short);
+        let stays = |id: &&ContactId| id.sides.iter().all(|s| s.body != ids[gone]);
+        let kept: Vec<&ContactId> = a.keys().filter(stays).collect();
+        assert!(kept.len() >= 4 && kept.len() < a.len(), "{name}");
+        assert!(kept.iter().all(|id| b.contains_key(id)), "{name}: {b:?}");
+        // Keys count contactors as they are listed: they do not tell.
+        let names = |s: &Simulation<Dim2>| ContactNames::of(&s.shapes, &s.bodies);
+        let matched = names(&whole).matched(&whole.network, &names(&short), &short.network);
+        assert_eq!(matched.len(), kept.len(), "{name}");
+        assert!(matched.iter().all(|(x, y)| (x.gap - y.gap).abs() < 1e-6));
+        assert_eq!(matched.iter().any(|(x, y)| x.key != y.key), gone == 0);
+    }
+}
+
+#[test]
+fn over_a_restart() {
+    let mut whole = solid(scene("before", 3, "Polyhedra", &boxes()));
+    steps(&mut whole, 30);
+    let before = named(&whole);
+    let bytes = postcard::to_stdvec(&whole.save()).unwrap();
+    let mut resumed = solid(scene("after", 3, "Polyhedra", &boxes()));
+    let saved: Saved<'_, Dim3> = postcard::from_bytes(&bytes).unwrap();
+    assert!(resumed.restore(saved));
+    assert!(before.len() >= 12);
+    assert_eq!(named(&resumed), before);
+    steps(&mut whole, 10);
+    steps(&mut resumed, 10);
+    let (a, b) = (named(&whole), named(&resumed));
+    assert!(a.keys().eq(b.keys()));
+    assert!(
+        a.values()
+            .zip(b.values())
+            .all(|(x, y)| x.to_bits() == y.to_bits())
+    );
+}
