@@ -44,6 +44,14 @@ fn go<S: Steps>(s: &mut Simulation<S>, steps: usize) {
     }
 }
 
+/// The same where a heap is hyperstatic, which sweeps may not solve to the tolerance: the ledger closes and bits are equal all the
+/// same.
+fn falls<S: Space>(s: &mut Simulation<S>, steps: usize) {
+    for _ in 0..steps {
+        s.step().unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
 /// Positions of the contactors of the first system.
 fn contactors<S: Space>(s: &Simulation<S>) -> Vec<S::Vector> {
     let bodies = s.systems.bodies(0).iter();
@@ -209,8 +217,17 @@ fn strikes<S: Dimensional>(touching: Touching, theta: f64) {
         }
         near(before, momentum(&s, mass), 1e-12);
     }
-    assert!(struck > 0 && s.energy.impact > 0.0 && s.energy.elastic > 0.0);
-    assert!(theta == 0.5 || s.energy.scheme > 0.0);
+    assert!(struck > 0 && s.energy.elastic > 0.0);
+    // Velocities are averaged by theta: beyond 1/2 the scheme books a part of what the impact takes, and more.
+    let sinks = (s.energy.impact, s.energy.scheme);
+    assert!(
+        sinks.0 + sinks.1 > 0.0
+            && if theta == 0.5 {
+                sinks.1 == 0.0
+            } else {
+                sinks.1 > 0.0
+            }
+    );
     closes(&s, 1e-12);
 }
 
@@ -307,7 +324,8 @@ fn a_bond_holds_it_to_a_grain() {
     is_bonded::<Dim3>();
 }
 
-/// A heap of rough grains falls on a sprung body whose balls may touch each other, and on a second one, between walls.
+/// A heap of rough grains falls on a sprung body whose balls may touch each other, and on a second one that runs into it, between
+/// walls.
 fn heap<S: Dimensional>(theta: f64) -> Simulation<S> {
     let mut row = Vec::new();
     for k in 0..24u32 {
@@ -331,25 +349,25 @@ fn heap<S: Dimensional>(theta: f64) -> Simulation<S> {
         theta,
         bodies: walls.concat(),
         grains: grains("m0", &row),
-        solver: "tolerance: 1e-6, norm: Velocity, max_iterations: 100000,".to_owned(),
+        solver: "tolerance: 1e-6, max_iterations: 2000,".to_owned(),
         ..sketch()
     });
     let mut spring = Spring::<S>::new(
         [20.0, 30.0],
         1e4,
         R,
-        [at::<S>(0.15, 0.12), at::<S>(0.36, 0.12)],
+        [at::<S>(0.15, 0.12), at::<S>(0.3505, 0.12)],
     );
     spring.touching = Touching::EndsEachOther;
     spring.damping = 20.0;
-    s.add_system(Box::new(spring));
+    s.add_system(Box::new(spring.moving(0.1, 0.0)));
     let spring = Spring::<S>::new(
         [40.0, 30.0],
         1e4,
         R,
-        [at::<S>(0.65, 0.12), at::<S>(0.85, 0.12)],
+        [at::<S>(0.551, 0.12), at::<S>(0.8, 0.12)],
     );
-    s.add_system(Box::new(spring));
+    s.add_system(Box::new(spring.moving(-0.3, -0.3)));
     s
 }
 
@@ -367,11 +385,11 @@ fn kinds<S: Space>(s: &Simulation<S>, seen: &mut [bool; 3]) {
     }
 }
 
-fn falls<S: Dimensional>(theta: f64, steps: usize, tolerance: f64) {
+fn ledger_of_heap<S: Dimensional>(theta: f64, steps: usize, tolerance: f64) {
     let mut s = heap::<S>(theta);
     let mut seen = [false; 3];
     for _ in 0..steps {
-        go(&mut s, 1);
+        falls(&mut s, 1);
         kinds(&s, &mut seen);
     }
     assert_eq!(seen, [true; 3]);
@@ -381,9 +399,9 @@ fn falls<S: Dimensional>(theta: f64, steps: usize, tolerance: f64) {
 
 #[test]
 fn a_heap_on_two_of_them_closes_the_ledger() {
-    falls::<Dim2>(0.5, 600, 1e-9);
-    falls::<Dim2>(0.7, 600, 1e-9);
-    falls::<Dim3>(0.5, 600, 1e-9);
+    ledger_of_heap::<Dim2>(0.5, 600, 1e-11);
+    ledger_of_heap::<Dim2>(0.7, 600, 1e-11);
+    ledger_of_heap::<Dim3>(0.5, 600, 1e-11);
 }
 
 fn state<S: Space>(s: &Simulation<S>) -> Vec<u8> {
@@ -392,7 +410,7 @@ fn state<S: Space>(s: &Simulation<S>) -> Vec<u8> {
 
 fn goes_on<S: Dimensional>() {
     let (mut whole, mut resumed) = (heap::<S>(0.5), heap::<S>(0.5));
-    go(&mut whole, 300);
+    falls(&mut whole, 300);
     let bytes = state(&whole);
     let saved: Saved<'_, S> = decode(&bytes).unwrap();
     assert!(resumed.restore(saved));
@@ -400,8 +418,8 @@ fn goes_on<S: Dimensional>() {
         state(&resumed) == bytes,
         "what is put back is not what was kept"
     );
-    go(&mut whole, 100);
-    go(&mut resumed, 100);
+    falls(&mut whole, 100);
+    falls(&mut resumed, 100);
     assert!(
         state(&whole) == state(&resumed),
         "the steps after it differ"
@@ -432,7 +450,7 @@ fn threads_do_not_change_its_bits() {
         pool.unwrap().install(|| {
             let mut s = heap::<Dim2>(0.5);
             s.solver.parallel = threads > 1;
-            go(&mut s, 400);
+            falls(&mut s, 400);
             state(&s)
         })
     };
