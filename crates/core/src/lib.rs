@@ -1,12 +1,12 @@
-//! The computing core of Fretwork: rigid bodies in dry contact, stepped by non-smooth contact dynamics, with interface laws
-//! from plugins.
+//! The computing core of Fretwork: rigid bodies in dry contact, integrated in time by non-smooth contact
+//! dynamics, with interface laws from plugins.
 //!
-//! Modules in the order in which they build on each other: [`geometry`] (dimension, algebra, shapes, distances), [`bodies`],
-//! [`contact`] (detection and what each contact remembers), [`solve`] (the contact problem and its solvers), [`laws`] (the
-//! plugin host), [`certify`] (what a law promises, tested), [`wear`], [`energy`] (the ledger of a step), [`step`] (the time
-//! step), and [`process`] (what acts on a simulation between its steps).
+//! Modules, in the order of their dependencies: [`geometry`] (dimension, algebra, shapes, distances),
+//! [`bodies`], [`contact`] (detection and contact history), [`solve`] (the contact problem and its solvers),
+//! [`laws`] (the plugin host), [`certify`] (tests of what a law declares), [`wear`], [`energy`] (the ledger
+//! of a step), [`step`] (the time step), and [`process`] (actions on a simulation between steps).
 //!
-//! It reads no case text and writes no result files: those are layers above it, which it does not know.
+//! The core neither parses cases nor writes result files; the layers above it do.
 
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]

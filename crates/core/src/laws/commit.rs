@@ -1,4 +1,4 @@
-//! Commit: what the laws make of a step that was solved.
+//! Commit: the laws' update at the end of a solved step.
 
 use super::columns::StepInfo;
 use super::interface::{Interface, Loaded};
@@ -10,11 +10,11 @@ use crate::geometry::space::{Space, VectorLike};
 use std::collections::HashSet;
 
 impl LawEvaluator {
-    /// Ends the step: `sites` are what the contacts did, in the network's order, `turns` the moments of
-    /// those that resist rotation.
+    /// Completes the step. `sites` holds the results of the contacts in the network's order, `turns` the
+    /// moments of those that resist rotation.
     ///
     /// # Errors
-    /// A law's own error, with the contact at fault.
+    /// The law's error, with the contact.
     pub fn commit<S: Space>(
         &mut self,
         laws: &[Interface],
@@ -108,7 +108,7 @@ impl LawEvaluator {
         Ok(totals)
     }
 
-    /// Moves the internal variables of a law that acts on all contacts.
+    /// Updates the internal variables of a law that acts on all contacts.
     fn commit_state<S: Space>(
         &mut self,
         index: usize,
@@ -139,7 +139,7 @@ impl LawEvaluator {
         }
     }
 
-    /// Lets pairs that parted keep what they owe only while they are fewer than the contacts.
+    /// Drops the deferred negative friction work of separated pairs once they outnumber the contacts.
     fn forget_debts<S: Space>(&mut self, network: &Network<S>) {
         let contacts = &network.contacts;
         if self.negative_friction_work.len() > 2 * contacts.len() {
@@ -167,7 +167,8 @@ impl LawEvaluator {
             let ut = S::tangential(&contact.normal, &site.average);
             self.columns.slip.push(info.h * ut.norm());
             let work = -site.solution.unilateral_t.dot(&ut);
-            // Where the velocity turns within a step, friction gives work back: later steps owe it to the law.
+            // Where the slip direction reverses within a step the friction work can be negative; it is
+            // deferred to later steps of the law.
             let pair = contact.key.pair();
             let owed = match self.negative_friction_work.is_empty() {
                 true => 0.0,
@@ -182,7 +183,7 @@ impl LawEvaluator {
         self.columns.size_outputs();
         self.run(wear, info, 0.0, Call::Commit)
             .map_err(|e| self.at(law, network, e))?;
-        // What a bond gives when it breaks it gives once, also in a cycle that stands for many.
+        // Breakage happens once, even in a cycle that represents many: its energy is not multiplied.
         let breaks = network
             .bond_breaks
             .iter()

@@ -12,19 +12,19 @@ use std::sync::Arc;
 pub struct Loaded {
     /// The plugin.
     pub plugin: Arc<Plugin>,
-    /// Values, one a parameter.
+    /// Values, one per parameter.
     pub parameters: Vec<f64>,
-    /// Its first column among the interface's internal variables.
+    /// Index of its first column among the interface's internal variables.
     pub first_variable: usize,
 }
 
 impl Loaded {
-    /// Number of internal variables.
+    /// Returns the number of internal variables.
     pub fn variables(&self) -> usize {
         self.plugin.variables.len()
     }
 
-    /// Whether a flag is set.
+    /// Returns whether a flag is set.
     pub fn has(&self, flag: u64) -> bool {
         self.plugin.flags & flag != 0
     }
@@ -36,14 +36,14 @@ pub enum BondRule {
     /// Every contact within the alert distance at the first step.
     #[default]
     Start,
-    /// Every contact within the alert distance at this time (s): after a compaction, say.
+    /// Every contact within the alert distance at this time (s), for example after compaction.
     At(f64),
-    /// None.
+    /// No bonds.
     Never,
 }
 
-/// The area on which tractions act, from the reduced radius r = r1 r2/(r1 + r2): `factor` r times unit
-/// depth in 2D, `factor` pi r^2 in 3D. The factor 1 is what LMGC90's benchmark scene uses.
+/// Area on which tractions act, from the reduced radius r = r1 r2/(r1 + r2): `factor` r times unit depth in
+/// 2D, `factor` pi r^2 in 3D. LMGC90's benchmark scene uses the factor 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AreaRule {
     /// Factor.
@@ -57,7 +57,7 @@ impl Default for AreaRule {
 }
 
 impl AreaRule {
-    /// The area (m^2) of a contact of reduced radius `radius` (m).
+    /// Returns the area (m^2) of a contact of reduced radius `radius` (m).
     #[inline]
     pub fn area(&self, dimension: usize, radius: f64) -> f64 {
         if dimension == 2 {
@@ -68,7 +68,7 @@ impl AreaRule {
     }
 }
 
-/// The law of a pair of materials.
+/// The interface law of a pair of materials.
 #[derive(Clone, Debug)]
 pub struct Interface {
     /// Name in the case.
@@ -77,20 +77,20 @@ pub struct Interface {
     pub contact: Loaded,
     /// Traction against opening.
     pub cohesion: Option<Loaded>,
-    /// Growth of damage.
+    /// Damage evolution.
     pub damage: Option<Loaded>,
-    /// What is removed.
+    /// Wear volume.
     pub wear: Option<Loaded>,
     /// When bonds are made.
     pub bonds: BondRule,
-    /// Time under compression after which a contact bonds, also again after its bond broke (s).
+    /// Time under compression (s) after which a contact forms a bond, including after an earlier bond broke.
     pub healing: Option<f64>,
     /// Area of a contact.
     pub area: AreaRule,
 }
 
 impl Interface {
-    /// The plugins in use.
+    /// Iterates over the plugins in use.
     pub fn loaded(&self) -> impl Iterator<Item = &Loaded> {
         std::iter::once(&self.contact)
             .chain(self.cohesion.iter())
@@ -98,7 +98,7 @@ impl Interface {
             .chain(self.wear.iter())
     }
 
-    /// Numbers the internal variables and checks that the slots fit together.
+    /// Numbers the internal variables and checks that the laws are compatible.
     ///
     /// # Errors
     /// A damage law without a cohesion law that has an opening.
@@ -150,12 +150,12 @@ impl Interface {
         Ok(self)
     }
 
-    /// Number of internal variables over all slots.
+    /// Returns the number of internal variables over all slots.
     pub fn variables(&self) -> usize {
         self.loaded().map(Loaded::variables).sum()
     }
 
-    /// Those of the laws that act on every contact, bonded or not.
+    /// Returns the number of internal variables of the laws that act on every contact, bonded or not.
     pub fn variables_of_contacts(&self) -> usize {
         let cohesion = self.cohesion.as_ref().filter(|_| !self.opens());
         [Some(&self.contact), cohesion, self.wear.as_ref()]
@@ -165,21 +165,21 @@ impl Interface {
             .sum()
     }
 
-    /// The columns of the laws that act on bonds.
+    /// Iterates over the columns of the internal variables of bonds.
     pub fn variables_of_bonds(&self) -> impl Iterator<Item = usize> {
         let cohesion = self.cohesion.as_ref().filter(|_| self.opens());
         let bonds = cohesion.into_iter().chain(self.damage.as_ref());
         bonds.flat_map(|l| l.first_variable..l.first_variable + l.variables())
     }
 
-    /// Initial values of the internal variables.
+    /// Returns the initial values of the internal variables.
     pub fn initial(&self) -> Vec<f64> {
         self.loaded()
             .flat_map(|l| l.plugin.variables.iter().map(|v| v.default))
             .collect()
     }
 
-    /// When contacts become bonds (s), if they do.
+    /// Returns the time at which contacts become bonds (s), if they do.
     pub fn bonding_time(&self) -> Option<f64> {
         let time = match self.bonds {
             BondRule::Start => 0.0,
@@ -189,29 +189,30 @@ impl Interface {
         self.opens().then_some(time)
     }
 
-    /// Whether the cohesion law has an opening, so that it makes bonds; without one it acts on every contact.
+    /// Returns whether the cohesion law has an opening and so forms bonds; without one it acts on every
+    /// contact.
     pub fn opens(&self) -> bool {
         self.cohesion.as_ref().is_some_and(|c| c.has(FLAG_OPENING))
     }
 
-    /// Whether bonds resist bending and twist.
+    /// Returns whether bonds resist bending and twist.
     pub fn rotates(&self) -> bool {
         self.cohesion.as_ref().is_some_and(|c| c.has(FLAG_MOMENT))
     }
 
-    /// Whether damage grows: by a damage law, or by the cohesion itself.
+    /// Returns whether damage grows, by a damage law or by the cohesion law itself.
     pub fn damages(&self) -> bool {
         self.damage.is_some() || self.cohesion.as_ref().is_some_and(|c| c.has(FLAG_BREAKS))
     }
 
-    /// Whether the normal stiffness only pulls.
+    /// Returns whether the normal stiffness acts in tension only.
     pub fn tension_only(&self) -> bool {
         self.cohesion
             .as_ref()
             .is_some_and(|c| c.has(FLAG_TENSION_ONLY))
     }
 
-    /// Whether friction and restitution are the same for all contacts and steps.
+    /// Returns whether friction and restitution are the same for all contacts and steps.
     pub fn constant_contact(&self) -> bool {
         self.contact.has(FLAG_CONSTANT)
     }

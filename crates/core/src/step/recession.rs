@@ -1,24 +1,24 @@
-//! Surfaces follow their wear.
+//! Wear of surfaces during the run.
 //!
-//! What a step wears off is put on the scars with the feet of its contacts, at q_m. The surfaces fall after the step's
-//! motion: the gap that opens is met by the next step's detection. Nobody does work in between: a load that
-//! sinks into the gap gives its potential energy in the next step, as it does over any open gap.
+//! The volume worn in a step is added to the scars at the contact points at q_m. Surfaces recede after the
+//! motion of the step; detection in the next step sees the opened gap. Recession itself does no work: a load
+//! that sinks into the gap releases its potential energy in the next step, as over any open gap.
 
 use super::{Simulation, StepError};
 use crate::geometry::space::Space;
 use crate::wear::scar::{Scar, WornThrough, closest_point};
 
 impl<S: Space> Simulation<S> {
-    /// Has a surface worn by its contacts; the network keeps their losses from now on.
+    /// Lets the surface of a scar wear by its contacts; the network records their worn volumes from now on.
     pub fn follow_wear(&mut self, scar: Scar<S>) {
         self.network.losses.get_or_insert_default();
         self.scars.push(scar);
     }
 
-    /// Whether no surface is worn through.
+    /// Checks that no surface is worn through.
     ///
     /// # Errors
-    /// Which is, and where.
+    /// The first surface that is, and where.
     pub fn whole(&self) -> Result<(), StepError> {
         let error = |source: &WornThrough| StepError::WornThrough {
             step: self.steps,
@@ -28,7 +28,7 @@ impl<S: Space> Simulation<S> {
         self.worn_through.as_ref().map_or(Ok(()), |w| Err(error(w)))
     }
 
-    /// Puts what the step wore off on the scars.
+    /// Adds the volumes worn in the step to the scars.
     pub(super) fn put_losses(&mut self) {
         let Some(losses) = &self.network.losses else {
             return;
@@ -48,15 +48,16 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Lowers the surfaces whose turn it is.
+    /// Lowers the surfaces that are due.
     pub(super) fn recede(&mut self) {
         let steps = self.steps;
-        // A step that wears for many is followed at once: the contact must find what stands proud.
+        // A step that represents many cycles is applied at once: the next detection must see the changed
+        // profile.
         let many = self.network.cycle_multiplier > 1.0;
         self.lower(|scar| many || steps.is_multiple_of(scar.every));
     }
 
-    /// Lowers all surfaces to the depth of their scars, whatever their interval.
+    /// Lowers all surfaces to the depth of their scars, regardless of their interval.
     pub fn show_wear(&mut self) {
         self.lower(|_| true);
     }
