@@ -1,5 +1,5 @@
-//! A contact with levers or of a body that is free along some axes only: solved as a block, exactly where there is
-//! no shear cohesion.
+//! A contact with lever arms, or of a body that is free along some axes only: solved as a block, exactly
+//! where there is no shear cohesion.
 
 use super::{Residual, Row, SolverBody, inverse, inverse_along, natural_map};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
@@ -37,7 +37,7 @@ impl Exact {
         }
     }
 
-    /// The impulse that answers a free velocity, its normal and its tangential part.
+    /// Returns the impulse for a free velocity, and its normal and tangential part.
     fn solve<S: Space>(&mut self, n: &S::Vector, f: &S::Vector) -> (f64, S::Tangent) {
         let [t1, t2] = S::components(n, &S::tangential(n, f));
         match self {
@@ -79,12 +79,12 @@ impl<S: Space> Block<S> {
     }
 }
 
-/// A contact with levers, or of a body that is free along some axes only: a full block.
+/// A contact with lever arms, or of a body that is free along some axes only: a full block.
 #[derive(Clone, Debug)]
 pub(in crate::solve) struct GeneralRow<S: Space> {
     bodies: [u32; 2],
     n: S::Vector,
-    /// Arms over the lengths of the bodies.
+    /// Lever arms divided by the lengths of the bodies.
     arms: [S::Vector; 2],
     inverse_masses: [S::Vector; 2],
     /// Inverse inertia times the lengths squared (1/kg).
@@ -128,8 +128,8 @@ impl<S: Space> Terms<S> {
         (pn - self.tension, pt)
     }
 
-    /// The normal and the tangential part in turns. Two rounds: the sweeps that follow do the rest, since each
-    /// begins where the last one ended.
+    /// Alternates between the normal and the tangential part. Two rounds are enough, since each iteration of
+    /// the solver starts from the previous result.
     fn alternate(&self, block: &Block<S>, f: &S::Vector) -> (f64, S::Tangent) {
         const ALTERNATIONS: usize = 2;
         let n = &self.n;
@@ -196,7 +196,7 @@ impl<S: Space> GeneralRow<S> {
         b.s -= self.inverse_spins[1].apply(&S::moment(&self.arms[1], p));
     }
 
-    /// What is unilateral and what rubs, at a free velocity of the block.
+    /// Returns the unilateral and frictional terms.
     fn terms(&self) -> Terms<S> {
         Terms {
             n: self.n,
