@@ -1,4 +1,4 @@
-//! Rigid bodies: their state, inertia, and the degrees of freedom that are driven.
+//! Rigid bodies: state, inertia, and driven degrees of freedom.
 pub mod delay;
 pub mod drive;
 pub mod integral;

@@ -1,4 +1,5 @@
-//! A law keeps nothing in the static memory of its library: threads that call it at once would overwrite each other's.
+//! Checks that a law keeps no data in the static memory of its library, where concurrent calls would
+//! overwrite it.
 
 use super::Line;
 use super::border::together;
@@ -8,12 +9,13 @@ use crate::laws::static_memory::{StaticMemory, Unseen};
 
 const CHECK: &str = "static memory";
 
-/// Contacts a batch, round by round. Each round has a larger one than all before: what is allocated as large as needed
-/// and kept shows by its address.
+/// Contacts per batch, for each round. Each round has a larger batch than all before, so that a buffer that
+/// grows on demand and is kept changes its address.
 const ROUNDS: [&[usize]; 3] = [&[1, 5, 17], &[3, 64], &[2, 300]];
 
-/// Compares the static memory before and after calls with other numbers, parameters and sizes of batches. What changes in the
-/// first round only is set up at first use; what changes again in each round is kept from call to call.
+/// Compares the static memory before and after calls with other numbers, parameters and batch sizes. Data
+/// that change in the first round only are initialised at first use; data that change in each round are kept
+/// between calls.
 pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
     let plugin = rig.tested().plugin.clone();
     let memory = match StaticMemory::of(&plugin) {
@@ -41,7 +43,7 @@ pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
         calls(rig, round, sizes);
         seen.push(memory.read());
     }
-    // As a run would have it.
+    // As a run would call it.
     plugin.validate(&rig.tested().parameters)?;
     let [Some(first), Some(second), Some(third)] = seen.as_slice() else {
         return Ok(Line::skip(
@@ -63,7 +65,8 @@ pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
     Ok(Line::judged(CHECK, still, number as f64, text))
 }
 
-/// Every call of the law, with numbers, parameters and sizes of batches of this round. Errors are other checks'.
+/// Makes every call of the law with the numbers, parameters and batch sizes of this round. Errors are found
+/// by other checks.
 fn calls(rig: &Rig, round: usize, sizes: &[usize]) {
     let seed = 1000 * (round as u64 + 1);
     let plugin = &rig.tested().plugin;
@@ -77,7 +80,7 @@ fn calls(rig: &Rig, round: usize, sizes: &[usize]) {
     }
 }
 
-/// The parameters, each a few thousandths off within its range.
+/// Returns the parameters, each changed by a few thousandths within its range.
 fn other_parameters(rig: &Rig, round: usize) -> Vec<f64> {
     let share = 1e-3 * (round + 1) as f64;
     let tested = rig.tested();

@@ -1,11 +1,11 @@
-//! Promises of laws without opening: contact, attraction, wear.
+//! Checks of laws without opening: contact, attraction, wear.
 
 use super::rig::{PRESSURE, Rig};
 use super::{Check, Line};
 use crate::laws::bench::{Answer, Motion};
 use crate::laws::{Kind, LawError};
 
-/// The checks of a kind.
+/// Returns the checks for a kind of law.
 pub fn checks(kind: Kind) -> &'static [(&'static str, Check)] {
     const ALL: [(&str, Check); 3] = [
         ("dissipation", signs),
@@ -15,8 +15,8 @@ pub fn checks(kind: Kind) -> &'static [(&'static str, Check)] {
     if kind == Kind::Wear { &ALL } else { &ALL[..2] }
 }
 
-/// Friction, strengths and wear are not negative, restitution gives back no more than came: so no
-/// step makes energy or matter.
+/// Checks that friction, strengths and wear are not negative and restitution does not exceed one, so that no
+/// step creates energy or mass.
 fn signs(rig: &mut Rig) -> Result<Line, LawError> {
     let mut worst = 0.0f64;
     for seed in 0..24 {
@@ -48,7 +48,7 @@ fn signs(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// Turning the tangential axes changes nothing.
+/// Checks that rotating the tangential axes changes nothing.
 fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
     let motions = rig.walk(7, 200, 0.1);
     let planar = rig.dimension() == 2;
@@ -90,7 +90,7 @@ fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// The volume of a slide does not depend on the number of steps.
+/// Checks that the wear volume of a slide does not depend on the number of steps.
 fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
     let mut volumes = Vec::new();
     for n in [10u32, 100, 1000] {

@@ -1,3 +1,3 @@
-//! What acts on a simulation between its steps.
+//! Processes that act on a simulation between its steps.
 pub mod circuit;
 pub mod jump;
