@@ -127,7 +127,7 @@ fn face<S: Space>(
             },
         ))
     });
-    flat.ok_or_else(|| format!("the wall `{name}` has no HalfSpace that is square to an axis"))
+    flat.ok_or_else(|| format!("the wall `{name}` has no HalfSpace perpendicular to an axis"))
 }
 
 #[cfg(test)]

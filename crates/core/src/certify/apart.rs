@@ -96,7 +96,7 @@ pub fn certify_apart(
     }
     if told.end == End::Done && lines.is_empty() {
         return Err(refuse(
-            "the process that certifies it gave no line".to_owned(),
+            "the process that certifies it gave no result".to_owned(),
         ));
     }
     if let End::Early(why) = told.end {

@@ -24,7 +24,7 @@ fn stored_energy(rig: &mut Rig) -> Result<Line, LawError> {
     /// Number of intervals of Simpson's rule.
     const N: usize = 400;
     if rig.kind != Kind::Cohesion {
-        return Ok(Line::skip(NAME, "the energy is the cohesion's"));
+        return Ok(Line::skip(NAME, "the cohesion law defines the energy"));
     }
     // The onset is known to a tenth of a decade only.
     let reach = if rig.damages() { 0.5 } else { 1.0 } * rig.onset;
@@ -53,14 +53,14 @@ fn stored_energy(rig: &mut Rig) -> Result<Line, LawError> {
         tested += 1;
     }
     if tested == 0 {
-        return Ok(Line::skip(NAME, "the bond is damaged at any opening"));
+        return Ok(Line::skip(NAME, "the bond has damage at any opening"));
     }
     // The error of Simpson's rule is of the order of (1/400)^4 for a smooth law.
     Ok(Line::below(
         NAME,
         worst,
         1e-6,
-        "work on the undamaged bond in three directions and what it says it stores: relative difference",
+        "work on the undamaged bond in three directions and its declared stored energy: relative difference",
     ))
 }
 
@@ -75,7 +75,7 @@ fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
         .filter_map(|angle| declared(angle).map(|e| (angle, e)))
         .collect();
     if modes.is_empty() {
-        return Ok(Line::skip(NAME, "the law declares none"));
+        return Ok(Line::skip(NAME, "the law declares no fracture energy"));
     }
     // An unbounded tail is cut where it is negligible.
     let end = rig.end.unwrap_or(1e3 * rig.onset);
@@ -141,7 +141,7 @@ fn dissipation(rig: &mut Rig) -> Result<Line, LawError> {
         "dissipation",
         worst,
         5e-3,
-        "largest fall of work less stored energy on random walks and on loads let go and applied again, over the energy at play",
+        "largest decrease of work minus stored energy on random walks and in unloading and reloading, relative to the energy scale",
     ))
 }
 
@@ -165,11 +165,11 @@ fn loops(rig: &Rig) -> Vec<Vec<Motion>> {
 fn degradation(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "degradation";
     if rig.kind != Kind::Cohesion {
-        return Ok(Line::skip(NAME, "the traction is the cohesion's"));
+        return Ok(Line::skip(NAME, "the cohesion law defines the traction"));
     }
     let m = rig.tested().plugin.degradation;
     if m <= 0.0 {
-        return Ok(Line::skip(NAME, "damage does not enter"));
+        return Ok(Line::skip(NAME, "the law has no damage"));
     }
     let mut worst = 0.0f64;
     for angle in [0.0, FRAC_PI_4, FRAC_PI_2] {
@@ -223,7 +223,7 @@ fn damage_grows(rig: &mut Rig) -> Result<Line, LawError> {
     }
     // The check is not meaningful for a law that caused no damage on the path.
     let kept = worst <= 0.0 && raw <= 1e-12 && highest <= 1.0 && highest > 0.0;
-    let text = format!("largest fall of D on random walks, which reached D = {highest:.3}");
+    let text = format!("largest decrease of D on random walks, which reached D = {highest:.3}");
     Ok(Line::judged(NAME, kept, raw.max(worst), text))
 }
 
@@ -275,7 +275,7 @@ fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
         "objectivity",
         worst.max(off / scale),
         1e-8,
-        "largest change of D, traction and moment when the tangential axes turn",
+        "largest change of D, traction and moment when the tangential axes are rotated",
     ))
 }
 
@@ -316,7 +316,7 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
 fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "tangent";
     if rig.kind != Kind::Cohesion {
-        return Ok(Line::skip(NAME, "the traction is the cohesion's"));
+        return Ok(Line::skip(NAME, "the cohesion law defines the traction"));
     }
     let mut worst = 0.0f64;
     for (u, angle) in [(0.3, 0.0), (0.6, 0.7), (0.9, 1.4), (0.5, FRAC_PI_2)] {
@@ -351,7 +351,7 @@ fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
         NAME,
         worst,
         1e-3,
-        "largest distance of the stiffness from the slope of the traction or its secant",
+        "largest difference between the stiffness and the tangent or secant of the traction",
     ))
 }
 

@@ -43,7 +43,7 @@ pub fn together(
 
 /// Checks that a law writes to its outputs only, and returns equal results for equal inputs.
 fn columns(rig: &mut Rig) -> Result<Line, LawError> {
-    const KEPT: &str = "writes to inputs, to the state before the step, up to 256 kB beside the columns; second answers that differ";
+    const KEPT: &str = "writes to inputs, to the state before the step, up to 256 kB outside the columns; different results for equal inputs";
     // The scale of the law is not known yet.
     let onset = rig.onset;
     for scale in [1e-9, 1e-7, 1e-5, 1e-3] {
@@ -68,7 +68,7 @@ fn range(rig: &mut Rig) -> Result<Line, LawError> {
             "range",
             true,
             0.0,
-            "values that cannot be, such as a negative friction or stiffness, or a damage above one",
+            "values out of range, such as a negative friction or stiffness, or a damage above one",
         )),
     }
 }
@@ -120,7 +120,7 @@ fn batch(rig: &mut Rig) -> Result<Line, LawError> {
         "batch",
         f64::from(different),
         0.0,
-        "answers of a batch of 17 that differ from batches of one",
+        "results of a batch of 17 that differ from batches of one",
     ))
 }
 
@@ -147,7 +147,7 @@ fn threads(rig: &mut Rig) -> Result<Line, LawError> {
         "threads",
         f64::from(same + other),
         0.0,
-        "of 8 threads at once on the same contacts and 4 on others, those that could not be started or had other bits than alone",
+        "of 8 concurrent threads on the same contacts and 4 on others, those that could not be started or differed from a single thread",
     ))
 }
 

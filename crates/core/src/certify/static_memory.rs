@@ -23,18 +23,18 @@ pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
         Err(Unseen::BuiltIn) => {
             return Ok(Line::skip(
                 CHECK,
-                "the law is part of the program: the library with the same code is looked at",
+                "the law is part of the program: the library with the same code is tested instead",
             ));
         }
         Err(Unseen::TooLarge(bytes)) => {
-            let text = "bytes of writable static memory in its library, too many to be compared: a law keeps nothing between calls; \
+            let text = "bytes of writable static memory in its library, too many to be compared: a law must not keep data between calls; \
                         make tables `const` and work arrays local to the call";
             return Ok(Line::judged(CHECK, false, bytes as f64, text));
         }
         Err(Unseen::System) => {
             return Ok(Line::skip(
                 CHECK,
-                "this system does not show the memory of a library",
+                "the static memory of a library cannot be located on this system",
             ));
         }
     };
@@ -48,18 +48,18 @@ pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
     let [Some(first), Some(second), Some(third)] = seen.as_slice() else {
         return Ok(Line::skip(
             CHECK,
-            "this system does not let the memory of a library be read",
+            "the static memory of a library cannot be read on this system",
         ));
     };
     let changed = |a: &[u8], b: &[u8]| a.iter().zip(b).filter(|(a, b)| a != b).count();
     let (once, again) = (changed(first, second), changed(second, third));
     let still = once == 0 || again == 0;
     let text = if still {
-        "bytes of its library's static memory that calls go on changing"
+        "bytes of its library's static memory that change in every call"
     } else {
-        "bytes of its library's static memory that calls go on changing: it keeps something between calls outside its columns, \
-         and threads overwrite each other's; make static arrays, counters and saved variables local to the call, or declare \
-         what must last as an internal variable"
+        "bytes of its library's static memory that change in every call: it keeps data between calls outside its columns, \
+         and threads overwrite each other's data; make static arrays, counters and saved variables local to the call, or declare \
+         persistent data as an internal variable"
     };
     let number = if still { 0 } else { once.max(again) };
     Ok(Line::judged(CHECK, still, number as f64, text))

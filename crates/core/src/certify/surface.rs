@@ -86,7 +86,7 @@ fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
         "objectivity",
         worst,
         1e-6,
-        "largest relative change of the answer when the tangential axes turn",
+        "largest relative change of the result when the tangential axes are rotated",
     ))
 }
 

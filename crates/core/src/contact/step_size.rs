@@ -128,7 +128,7 @@ impl StepSizeDiagnostics {
     pub fn rounding_warning(&self) -> Option<String> {
         self.motion_lost.as_ref().map(|first| {
             format!(
-                "bodies moved less in a step than the spacing of numbers where they are, and stood still, {}; put the \
+                "bodies moved less in a step than the floating-point spacing of their coordinates, and did not move, {}; put the \
                  origin nearer to the scene, or take a larger time.step",
                 first.text()
             )
@@ -153,14 +153,14 @@ impl StepSizeDiagnostics {
         let first = |o: &Option<Occurrence>| o.as_ref().map_or(String::new(), Occurrence::text);
         let passed = (self.passed > 0).then(|| {
             format!(
-                "{} times two bodies went into or through each other within a step, {}",
+                "{} times two bodies penetrated or passed through each other within a step, {}",
                 self.passed,
                 first(&self.first_passed)
             )
         });
         let held_back = (self.held_back > 0).then(|| {
             format!(
-                "{} times impacts with restitution followed each other within a step, {}; the later ones lost more energy \
+                "{} times impacts with restitution followed each other within a step, {}; the later ones dissipated more energy \
                  than their restitution says",
                 self.held_back,
                 first(&self.first_held_back)

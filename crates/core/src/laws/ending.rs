@@ -49,13 +49,13 @@ mod posix {
 
     /// Fault signals and their descriptions.
     const FAULTS: [(c_int, &str); 7] = [
-        (libc::SIGSEGV, "SIGSEGV, an address that is not there"),
-        (libc::SIGBUS, "SIGBUS, memory that is not there"),
-        (libc::SIGFPE, "SIGFPE, a division of integers by zero"),
-        (libc::SIGILL, "SIGILL, an instruction that is none"),
+        (libc::SIGSEGV, "SIGSEGV, an invalid memory address"),
+        (libc::SIGBUS, "SIGBUS, an invalid memory access"),
+        (libc::SIGFPE, "SIGFPE, an integer division by zero"),
+        (libc::SIGILL, "SIGILL, an invalid instruction"),
         (libc::SIGABRT, "SIGABRT, it called abort"),
         (libc::SIGTRAP, "SIGTRAP, a trap"),
-        (libc::SIGSYS, "SIGSYS, a call of the system that is none"),
+        (libc::SIGSYS, "SIGSYS, an invalid system call"),
     ];
 
     static ARMED: AtomicBool = AtomicBool::new(false);

@@ -71,8 +71,7 @@ impl Guarded {
             call(&inside);
             if self.words != first {
                 wrong = Some(
-                    "gave two answers to the same call: it keeps something between calls"
-                        .to_owned(),
+                    "gave two answers to the same call: it keeps data between calls".to_owned(),
                 );
             }
         }
@@ -168,7 +167,7 @@ impl Guarded {
         })?;
         if let Some(input) = self.columns.iter().find(|c| c.holds(wrong)) {
             return Some(format!(
-                "wrote to the input `{}` (value {} of it)",
+                "wrote to the input `{}` (its value {})",
                 input.name,
                 wrong - input.start
             ));

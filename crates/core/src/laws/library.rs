@@ -121,8 +121,8 @@ pub enum LawError {
     },
     /// A function of the law wrote beyond the end of a column.
     #[error(
-        "the {kind} law `{name}` wrote behind the end of a column in {call:?}: a batch has n values a column, and memory that is not \
-         the law's may be spoiled; mend the law before it is used again"
+        "the {kind} law `{name}` wrote behind the end of a column in {call:?}: a batch has n values per column, and memory that is not \
+         the law's may be corrupted; fix the law before using it again"
     )]
     Overrun {
         /// Kind.
