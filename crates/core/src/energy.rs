@@ -6,9 +6,8 @@ use serde::{Deserialize, Serialize};
 /// Energies since the start (J; per metre of depth in 2D).
 ///
 /// With theta = 1/2 the balance closes to rounding and to the solver's tolerance:
-/// kinetic + potential + elastic + fracture + friction + impact + adhesion + viscous + correction
-/// + scheme + carried
-/// - external work = initial energy.
+/// kinetic + potential + elastic + fracture + friction + impact + adhesion + viscous + correction + scheme
+/// plus carried minus external work equals the initial energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
     /// Kinetic energy now.

@@ -1,11 +1,11 @@
 //! Imposed motion: degrees of freedom follow their functions of time to rounding.
 //!
 //! Over a step from t to t + h an imposed degree of freedom has an initial velocity v_s and a final velocity
-//! v_e, whose mean in the theta-scheme is exactly that of its path x(t): (1 - theta) v_s + theta v_e = (x(t
-//! + h) - x(t))/h, v_e - v_s = x'(t + h -) - x'(t +). Where x is smooth both equal its derivative to O(h^2)
-//! (O(h) with theta > 1/2). Between two steps the velocity jumps from v_e to the next v_s: by O(h^3) where x
-//! is smooth (O(h^2) with theta > 1/2), and by the full jump of x' at a kink. If a kink lies within a step,
-//! v_s and v_e stay between the slopes on its two sides.
+//! v_e, whose mean in the theta-scheme is exactly that of its path x(t):
+//! (1 - theta) v_s + theta v_e = (x(t + h) - x(t))/h, v_e - v_s = x'(t + h -) - x'(t +). Where x is smooth
+//! both equal its derivative to O(h^2) (O(h) with theta > 1/2). Between two steps the velocity jumps from
+//! v_e to the next v_s: by O(h^3) where x is smooth (O(h^2) with theta > 1/2), and by the full jump of x' at
+//! a kink. If a kink lies within a step, v_s and v_e stay between the slopes on its two sides.
 //!
 //! At the end of a step the position is set from the function, so that errors do not accumulate.
 

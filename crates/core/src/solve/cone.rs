@@ -3,8 +3,8 @@
 use crate::geometry::space::VectorLike;
 use std::hint::select_unpredictable;
 
-/// Projects onto { (P, t) : P >= 0, |t| <= mu P + c }: Coulomb's cone for c = 0, Tresca's cylinder for mu =
-/// 0. P = p_n + h c_n and c = h c_t. Returns the nearest point (Euclidean).
+/// Projects onto { (P, t) : P >= 0, |t| <= mu P + c }: Coulomb's cone (c = 0) or Tresca's cylinder (mu = 0),
+/// where P = p_n + h c_n and c = h c_t. Returns the nearest point (Euclidean).
 #[inline]
 pub fn project<T: VectorLike>(normal: f64, tangent: T, mu: f64, c: f64) -> (f64, T) {
     if T::N == 1 {

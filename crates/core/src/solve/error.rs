@@ -31,18 +31,19 @@ use serde::Deserialize;
 /// Norm in which the residual is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 pub enum Norm {
-    /// Against the load that the contacts carry, and globally in balance.
+    /// Relative to the velocities and the impulses of the contacts, combined with the global balance of
+    /// work.
     #[default]
     Balance,
-    /// Against the velocities at hand.
+    /// Relative to the current velocities.
     Velocity,
-    /// The field's figure, for problems from files.
+    /// The error measure of the literature, for problems from files.
     #[serde(skip)]
     Field,
 }
 
 impl Norm {
-    /// The formula, for reports.
+    /// Returns the formula, for reports.
     pub fn formula(self) -> &'static str {
         match self {
             Self::Balance => {
@@ -56,16 +57,16 @@ impl Norm {
     }
 }
 
-/// What the natural map does not see of a contact: it shrinks u_n < 0 by 1 + mu^2 where the contact slides,
-/// so that with a large mu no impulse at all would pass for a solution. What it loses of min(p_n/rho, u_n),
-/// which is 0 in Signorini's law.
+/// Returns the violation of Signorini's law that the natural map does not detect: it shrinks u_n < 0 by 1 +
+/// mu^2 where the contact slides, so that with a large mu even a zero impulse would pass for a solution.
+/// This is the missing part of min(p_n/rho, u_n), which is 0 in Signorini's law.
 #[inline(always)]
 pub fn lost(p_n: f64, u_n: f64, mu: f64) -> f64 {
     let squared = (mu * mu).min(f64::MAX);
     p_n.min(u_n) * (squared / (1.0 + squared))
 }
 
-/// The squared residual of a contact: what the natural map leaves, or [`lost`] where that is larger.
+/// Returns the squared residual of a contact: that of the natural map, or [`lost`] where that is larger.
 #[inline(always)]
 pub fn residual(natural: f64, p_n: f64, u_n: f64, mu: f64) -> f64 {
     let most = p_n.min(u_n);

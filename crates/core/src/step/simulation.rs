@@ -59,7 +59,7 @@ pub struct StepReport {
 /// A scene that is advanced in time.
 #[derive(Debug)]
 pub struct Simulation<S: Space> {
-    /// Grains and first bodies, in that order of contact pairs.
+    /// Grains and first bodies.
     pub bodies: Bodies<S>,
     /// Collision shapes.
     pub shapes: Shapes<S>,

@@ -1,11 +1,12 @@
 //! The mass ledger of the tribological circuit: the place of each grain, and the flows between the places.
 //!
 //! A grain is tied to a first body, in the contact, ejected, or lost. With M the mass in the contact, E that
-//! in the ejection zones, T that of the first bodies' grains and W the lost mass, over any interval dM = Qs
-//! - Qa + Qr - Qe, dE = Qe - Qr - Qw, dT = Qa - Qs, dW = Qw: source flow Qs, reattachment Qa, ejection Qe,
-//! recirculation Qr, wear flow Qw. The flows follow N. Fillot, I. Iordanoff, Y. Berthier, "Modelling third
-//! body flows with a discrete element method: a tool for understanding wear with adhesive particles",
-//! Tribol. Int. 40 (2007) 973; Qa is added here for bonds that heal.
+//! in the ejection zones, T that of the first bodies' grains and W the lost mass, over any interval
+//! dM = Qs - Qa + Qr - Qe, dE = Qe - Qr - Qw, dT = Qa - Qs, dW = Qw:
+//! source flow Qs, reattachment Qa, ejection Qe, recirculation Qr, wear flow Qw. The flows follow N. Fillot,
+//! I. Iordanoff, Y. Berthier, "Modelling third body flows with a discrete element method: a tool for
+//! understanding wear with adhesive particles", Tribol. Int. 40 (2007) 973; Qa is added here for bonds that
+//! heal.
 //!
 //! Flows are counted when grains change place, contents from the current places. The two are compared each
 //! time, exactly in grains and to rounding in mass.

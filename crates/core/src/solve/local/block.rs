@@ -123,12 +123,12 @@ impl<const D: usize> BlockMatrix<D> {
         Csr::from_triplets(n, n, &entries)
     }
 
-    /// Number of contacts.
+    /// Returns the number of contacts.
     pub fn len(&self) -> usize {
         self.diagonal.len()
     }
 
-    /// Whether there is no contact.
+    /// Returns whether there are no contacts.
     pub fn is_empty(&self) -> bool {
         self.diagonal.is_empty()
     }

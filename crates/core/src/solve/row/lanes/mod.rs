@@ -95,10 +95,10 @@ struct Four<W: Wide> {
 const AHEAD: usize = 16;
 
 impl<W: Wide> Four<W> {
-    /// Those from `first` on, of which no more than `end` belong to the group.
+    /// Loads the rows from `first` up to at most `end`, the end of the group.
     ///
     /// # Safety
-    /// There are `count` rows, of bodies of `lines`.
+    /// There are `count` rows, whose bodies are in `lines`.
     #[inline(always)]
     unsafe fn new(
         rows: *mut W,
