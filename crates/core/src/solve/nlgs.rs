@@ -57,7 +57,7 @@ pub struct Report {
     pub converged: bool,
     /// Index, as pushed, of the contact with the largest residual; `None` without contacts.
     pub worst: Option<usize>,
-    /// The method that converged last.
+    /// The method that ended the solve.
     pub used: Method,
     /// The choices of `auto`.
     pub chosen: SolvePath,
