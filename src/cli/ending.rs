@@ -1,11 +1,11 @@
-//! The end of the program: its own, or one that a law makes by `exit`, `abort` or a fault.
+//! Termination of the process: by the program itself, or by a law through `exit`, `abort` or a fault.
 
-/// From here on an end of the program that is not its own is told and has exit code 1, until this is dropped. Where the system
-/// has no signals of POSIX nothing is watched.
+/// Guard during whose lifetime an unexpected termination is reported and gets exit code 1. Has no effect on
+/// systems without POSIX signals.
 #[derive(Debug)]
 pub struct Armed(());
 
-/// See [`Armed`].
+/// Installs the handlers; see [`Armed`].
 pub fn arm() -> Armed {
     #[cfg(unix)]
     posix::arm();
@@ -19,13 +19,13 @@ impl Drop for Armed {
     }
 }
 
-/// Ends the program here and now. Nothing that libraries have registered for the end is run: a law that is stuck while it is
-/// loaded holds what those need.
+/// Terminates the process immediately, without running exit handlers of libraries: a law that hangs while it
+/// is loaded holds locks that these need.
 pub fn now(code: u8) -> ! {
     use std::io::Write;
     let _ = std::io::stdout().flush();
     #[cfg(unix)]
-    // SAFETY: it does not return, and runs nothing of the process.
+    // SAFETY: it does not return and runs no code of the process.
     unsafe {
         libc::_exit(code.into())
     }
@@ -33,7 +33,7 @@ pub fn now(code: u8) -> ! {
     std::process::exit(code.into())
 }
 
-/// The exit code of a run that failed.
+/// Exit code of a failed run.
 pub const FAILED: u8 = 1;
 
 #[cfg(unix)]
@@ -47,29 +47,29 @@ mod posix {
     use std::sync::atomic::{AtomicBool, AtomicI32, AtomicPtr, AtomicUsize, Ordering};
     use std::sync::{Once, OnceLock};
 
-    /// Signals of a fault, by name.
+    /// Fault signals and their descriptions.
     const FAULTS: [(c_int, &str); 7] = [
-        (libc::SIGSEGV, "SIGSEGV, an address that is not there"),
-        (libc::SIGBUS, "SIGBUS, memory that is not there"),
-        (libc::SIGFPE, "SIGFPE, a division of integers by zero"),
-        (libc::SIGILL, "SIGILL, an instruction that is none"),
+        (libc::SIGSEGV, "SIGSEGV, an invalid memory address"),
+        (libc::SIGBUS, "SIGBUS, an invalid memory access"),
+        (libc::SIGFPE, "SIGFPE, an integer division by zero"),
+        (libc::SIGILL, "SIGILL, an invalid instruction"),
         (libc::SIGABRT, "SIGABRT, it called abort"),
         (libc::SIGTRAP, "SIGTRAP, a trap"),
-        (libc::SIGSYS, "SIGSYS, a call of the system that is none"),
+        (libc::SIGSYS, "SIGSYS, an invalid system call"),
     ];
 
     static ARMED: AtomicBool = AtomicBool::new(false);
-    /// A fault is being told.
+    /// Whether a fault is being reported.
     static FAULT: AtomicBool = AtomicBool::new(false);
-    /// Where the thread that rescues is woken.
+    /// File descriptor that wakes the rescue thread.
     static WAKE: AtomicI32 = AtomicI32::new(-1);
-    /// Who was called where, for that thread.
+    /// The law and function being called, for that thread.
     static WHO: AtomicPtr<(&str, &str)> = AtomicPtr::new(std::ptr::null_mut());
     static SIGNAL: AtomicI32 = AtomicI32::new(0);
-    /// What it saved: 0 while it is at it.
+    /// Result of the rescue; 0 while it is running.
     static SAVED: AtomicUsize = AtomicUsize::new(0);
     const SAVED_AS: [Saved; 3] = [Saved::All, Saved::Some, Saved::Nothing];
-    /// What was done on each signal before.
+    /// Signal actions installed before.
     static BEFORE: OnceLock<[libc::sigaction; FAULTS.len()]> = OnceLock::new();
 
     pub fn arm() {
@@ -87,7 +87,7 @@ mod posix {
         ARMED.store(false, Ordering::SeqCst);
     }
 
-    /// Whoever called `exit`: not the program, which disarms first.
+    /// Runs when anything other than the program, which disarms first, calls `exit`.
     extern "C" fn at_exit() {
         if !ARMED.swap(false, Ordering::SeqCst) {
             return;
@@ -96,7 +96,7 @@ mod posix {
             Some((law, call)) => format!("{law} ended the program in {call} (it called exit)"),
             None => "something that a law loaded ended the program (it called exit)".to_owned(),
         };
-        // The thread that called has given up its own variables by now: another one saves.
+        // The calling thread's thread-local variables are already destroyed; another thread does the saving.
         let (done, saved) = std::sync::mpsc::sync_channel(1);
         let told = who.clone();
         let rescue = std::thread::Builder::new().spawn(move || done.send(watch::save(&told)));
@@ -108,7 +108,7 @@ mod posix {
         super::now(FAILED);
     }
 
-    /// A thread that saves what it can when a fault stops another one.
+    /// Starts a thread that saves the results when a fault stops another thread.
     fn wait_for_faults() {
         let Ok((mut reader, writer)) = std::io::pipe() else {
             return;
@@ -118,7 +118,7 @@ mod posix {
             if !matches!(reader.read(&mut byte), Ok(1)) {
                 return;
             }
-            // SAFETY: null, or what the handler points to while it waits.
+            // SAFETY: null, or a reference that stays valid while the handler waits.
             let who = unsafe { WHO.load(Ordering::SeqCst).as_ref() };
             let (law, call) = who.copied().unwrap_or(("a law", "a call"));
             let signal = name(SIGNAL.load(Ordering::SeqCst));
@@ -134,8 +134,8 @@ mod posix {
     fn catch_faults() {
         let before = FAULTS.map(|(signal, _)| {
             let mut old = MaybeUninit::<libc::sigaction>::zeroed();
-            // SAFETY: a handler that calls only what may be called in one, on the stack that the standard library keeps for
-            // handlers; zeros are a valid action.
+            // SAFETY: the handler calls only async-signal-safe functions, on the alternate stack of the
+            // standard library; an all-zero action is valid.
             unsafe {
                 let mut new = MaybeUninit::<libc::sigaction>::zeroed().assume_init();
                 let handler: extern "C" fn(c_int, *mut libc::siginfo_t, *mut libc::c_void) =
@@ -150,7 +150,8 @@ mod posix {
         let _ = BEFORE.set(before);
     }
 
-    /// A fault within a law is told and ends the program with exit code 1; any other goes where it went before.
+    /// Reports a fault within a law and ends the program with exit code 1; any other fault goes to the
+    /// previous handler.
     extern "C" fn on_fault(signal: c_int, _: *mut libc::siginfo_t, _: *mut libc::c_void) {
         let called = watch::inside().filter(|_| ARMED.load(Ordering::SeqCst));
         let Some(who) = called.filter(|_| !FAULT.swap(true, Ordering::SeqCst)) else {
@@ -168,7 +169,7 @@ mod posix {
         WHO.store(std::ptr::from_ref(&who).cast_mut(), Ordering::SeqCst);
         SIGNAL.store(signal, Ordering::SeqCst);
         let wake = WAKE.load(Ordering::SeqCst);
-        // SAFETY: writing to a pipe may be done in a handler.
+        // SAFETY: `write` is async-signal-safe.
         let woken = wake >= 0 && unsafe { libc::write(wake, [1u8].as_ptr().cast(), 1) } == 1;
         let mut waits = RESCUED_WITHIN.as_millis() / 5;
         while woken && waits > 0 && SAVED.load(Ordering::SeqCst) == 0 {
@@ -176,22 +177,22 @@ mod posix {
                 tv_sec: 0,
                 tv_nsec: 5_000_000,
             };
-            // SAFETY: sleeping may be done in a handler.
+            // SAFETY: `nanosleep` is async-signal-safe in practice.
             unsafe { libc::nanosleep(&pause, std::ptr::null_mut()) };
             waits -= 1;
         }
         let saved = SAVED.load(Ordering::SeqCst).checked_sub(1);
         let saved = saved.map_or(Saved::Some, |k| SAVED_AS[k.min(2)]);
         put(&[saved.words(), "\n"]);
-        // SAFETY: it may be called in a handler.
+        // SAFETY: `_exit` is async-signal-safe.
         unsafe { libc::_exit(FAILED.into()) }
     }
 
-    /// Lets the fault happen again as if nothing had been caught.
+    /// Restores the previous handler and lets the fault happen again.
     fn as_before(signal: c_int) {
         let place = FAULTS.iter().position(|(s, _)| *s == signal);
         let before = BEFORE.get().zip(place).map(|(all, k)| &all[k]);
-        // SAFETY: what stood there before, or the system's own way; both may be set in a handler.
+        // SAFETY: restores the previous or the default action, with async-signal-safe calls.
         unsafe {
             match before {
                 Some(action) => libc::sigaction(signal, action, std::ptr::null_mut()),
@@ -200,7 +201,8 @@ mod posix {
                     0
                 }
             };
-            // A fault comes again by itself, what was sent does not.
+            // A fault recurs by itself when the handler returns; a signal that was sent must be raised
+            // again.
             if matches!(signal, libc::SIGABRT | libc::SIGTRAP | libc::SIGSYS) {
                 libc::raise(signal);
             }
@@ -212,10 +214,10 @@ mod posix {
         found.map_or("a signal", |(_, name)| name)
     }
 
-    /// Writes to standard error, without locks or memory.
+    /// Writes to standard error without locks or allocation.
     fn put(parts: &[&str]) {
         for part in parts {
-            // SAFETY: the bytes of a text.
+            // SAFETY: pointer and length of a string slice.
             unsafe { libc::write(2, part.as_ptr().cast(), part.len()) };
         }
     }

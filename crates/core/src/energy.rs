@@ -1,4 +1,4 @@
-//! The energy ledger: what was put in, what is stored, what was dissipated, and what does not add up.
+//! The energy ledger of a run: supplied, stored and dissipated energy, and the residual of the balance.
 
 use crate::laws::Totals;
 use serde::{Deserialize, Serialize};
@@ -6,9 +6,8 @@ use serde::{Deserialize, Serialize};
 /// Energies since the start (J; per metre of depth in 2D).
 ///
 /// With theta = 1/2 the balance closes to rounding and to the solver's tolerance:
-/// kinetic + potential + elastic + fracture + friction + impact + adhesion + viscous + correction
-/// + scheme + carried
-/// - external work = initial energy.
+/// kinetic + potential + elastic + fracture + friction + impact + adhesion + viscous + correction + scheme
+/// plus carried minus external work equals the initial energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
     /// Kinetic energy now.
@@ -17,33 +16,34 @@ pub struct Energy {
     pub potential: f64,
     /// Energy stored in bonds and in dynamical systems now.
     pub elastic: f64,
-    /// Released by damage.
+    /// Energy released by damage.
     pub fracture: f64,
     /// Dissipated by friction.
     pub friction: f64,
     /// Dissipated by impacts.
     pub impact: f64,
-    /// Spent against cohesion without opening.
+    /// Work done against cohesion without an opening.
     pub adhesion: f64,
     /// Dissipated by damping of bonds and in dynamical systems.
     pub viscous: f64,
-    /// Given by taking overlaps out, negative; see `solver.correction` and `solver.projection`.
+    /// Work of removing penetrations, negative where energy is added; see `solver.correction` and
+    /// `solver.projection`.
     pub correction: f64,
     /// Dissipated by the scheme, (theta - 1/2) |v+ - v|_M^2; zero at theta = 1/2.
     pub scheme: f64,
-    /// Kinetic energy that bodies had when they were taken out of the scene.
+    /// Kinetic energy that bodies had when they were removed from the scene.
     pub carried: f64,
     /// Work of imposed forces and motions.
     pub external_work: f64,
-    /// What does not add up.
+    /// Residual of the balance.
     pub residual: f64,
     /// Kinetic energy at the start.
     pub initial_kinetic: f64,
-    /// Largest scale the balance has seen: the work done or the energy held.
+    /// Largest scale of the balance so far: the work done or the energy held.
     pub scale: f64,
 }
 
-/// What the bodies did over one step (J).
+/// Work of the bodies over one step (J).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BodyWork {
     /// Change of potential energy.
@@ -57,7 +57,7 @@ pub struct BodyWork {
 }
 
 impl Energy {
-    /// Books one step.
+    /// Adds one step to the ledger.
     pub fn book(&mut self, totals: &Totals, work: &BodyWork, kinetic: f64, elastic: f64) {
         self.kinetic = kinetic;
         self.elastic = elastic;
@@ -90,18 +90,19 @@ impl Energy {
         self.scale = seen.iter().fold(self.scale, |m, x| m.max(x.abs()));
     }
 
-    /// Books a move of bodies that leaves their velocities: the energy that it gives against gravity, and the work
-    /// of imposed forces along it (J). The step that is booked next closes the balance.
+    /// Records a displacement of bodies at constant velocity: the change of potential energy and the work of
+    /// imposed forces along it (J). The next recorded step closes the balance.
     pub fn lift(&mut self, potential: f64, external: f64) {
         self.potential += potential;
         self.external_work += external;
         self.correction -= potential - external;
     }
 
-    /// Every entry of the balance: name, what it is, value (J; J/m in 2D). The last is the sum of those before it, with external
-    /// work and the kinetic energy at the start taken off.
+    /// Returns every entry of the balance: name, description, value (J; J/m in 2D). The last entry is the
+    /// sum of all before it, minus external work and initial kinetic energy.
     pub fn entries(&self) -> [(&'static str, &'static str, f64); 14] {
-        // Named one by one: a new entry of the ledger does not compile before it is here too.
+        // Destructured field by field, so that a new entry of the ledger does not compile until it is listed
+        // here.
         let Self {
             kinetic,
             potential,
@@ -169,17 +170,18 @@ impl Energy {
         ]
     }
 
-    /// Counts an energy (J) that comes and goes within a step for the scale of the balance, which rounds by it.
+    /// Raises the scale of the balance to an energy (J) that is stored and released within one step, because
+    /// its rounding error enters the residual.
     pub fn see(&mut self, energy: f64) {
         self.scale = self.scale.max(energy.abs());
     }
 
-    /// Energy turned into heat and surfaces.
+    /// Returns the energy turned into heat and new surfaces.
     pub fn dissipated(&self) -> f64 {
         self.fracture + self.friction + self.impact + self.adhesion + self.viscous + self.correction
     }
 
-    /// Residual over the largest energy seen; zero when nothing moved.
+    /// Returns the residual divided by the largest energy so far; zero when nothing moved.
     pub fn relative_residual(&self) -> f64 {
         if self.scale > 0.0 {
             self.residual.abs() / self.scale

@@ -305,7 +305,7 @@ fn a_flap_that_starts_to_turn_hits_what_is_in_its_way() {
 
 fn passed<S: Space>(s: &Simulation<S>) {
     let told = s.network.step_size.warning().unwrap_or_default();
-    assert!(told.contains("into or through"), "{told}");
+    assert!(told.contains("penetrated or passed through"), "{told}");
 }
 
 /// What bodies go through before the first detection, and by a jump of an imposed velocity, is reported.

@@ -26,12 +26,12 @@ fn polygons_that_are_none() {
     of("(0.0, 0.0), (0.01, 0.0)", "at least three points, got 2");
     of(
         "(0.0, 0.0), (0.0, 0.01), (0.01, 0.0)",
-        "against the clock; turn their order",
+        "in anticlockwise order; reverse their order",
     );
     of("(0.0, 0.0), (0.01, 0.0), (0.02, 0.0)", "lie on one line");
     of(
         "(0.0, 0.0), (0.02, 0.0), (0.005, 0.005), (0.0, 0.02)",
-        "not convex at point 2; make it of several convex ones",
+        "not convex at point 2; divide it into convex ones",
     );
     of(
         "(0.0, 0.0), (0.01, 0.0), (0.01, 0.0), (0.0, 0.01)",
@@ -250,7 +250,7 @@ fn polyhedra_that_are_none() {
     );
     of(
         &format!("({at}, points: ‸[{cube}, (0.002, 0.002, 0.002)])"),
-        "point 4 of the polyhedron is no corner of the hull",
+        "point 4 of the polyhedron is not a corner of the convex hull",
     );
     of(
         &format!("({at}, points: ‸[{cube}, (0.0, 0.0, 0.01)])"),

@@ -1,10 +1,10 @@
-//! Drives that begin later: the drive of a phase runs on the time since the phase began.
+//! Drives shifted in time: the drive of a phase is a function of the time since the phase began.
 
 use super::drive::{Dof, TimeFunction};
 use super::stages::Stage;
 
 impl TimeFunction {
-    /// The same function, `by` seconds later.
+    /// Returns the same function, shifted to `by` seconds later.
     pub fn delayed(&self, by: f64) -> Self {
         let mut later = self.clone();
         match &mut later {
@@ -18,7 +18,7 @@ impl TimeFunction {
 }
 
 impl Dof {
-    /// The same drive, `by` seconds later.
+    /// Returns the same drive, shifted to `by` seconds later.
     pub fn delayed(&self, by: f64) -> Self {
         let mut later = self.clone();
         match &mut later {

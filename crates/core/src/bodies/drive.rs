@@ -5,13 +5,13 @@ use super::stages::{self, Stage};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// A function of time (s). What a degree of freedom makes of it over a step: [`super::path`].
+/// A function of time (s). [`super::path`] describes the motion of an imposed degree of freedom over a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum TimeFunction {
-    /// The same value for ever.
+    /// A constant value.
     Constant(f64),
-    /// Linear between two instants, constant outside.
+    /// Linear between two times, constant outside.
     Ramp {
         /// Value before `start`.
         from: f64,
@@ -22,8 +22,8 @@ pub enum TimeFunction {
         /// End of the ramp (s).
         end: f64,
     },
-    /// offset + amplitude sin(2 pi frequency (t - start) + phase) from `start` on, and the value at
-    /// `start` before.
+    /// offset + amplitude sin(2 pi frequency (t - start) + phase) from `start` on; constant before, at the
+    /// value for `start`.
     Sine {
         /// Amplitude.
         amplitude: f64,
@@ -35,16 +35,16 @@ pub enum TimeFunction {
         /// Mean value.
         #[serde(default)]
         offset: f64,
-        /// When the oscillation begins (s).
+        /// Start of the oscillation (s).
         #[serde(default)]
         start: f64,
     },
-    /// Points (time, value), linear between them, constant outside; times must rise.
+    /// Points (time, value), linear between them, constant outside; times must increase.
     Table(Vec<(f64, f64)>),
 }
 
 impl TimeFunction {
-    /// The value at a time.
+    /// Returns the value at a time.
     pub fn value(&self, t: f64) -> f64 {
         match self {
             Self::Constant(x) => *x,
@@ -65,7 +65,7 @@ impl TimeFunction {
         }
     }
 
-    /// The derivative at a time, from the left at a corner.
+    /// Returns the derivative at a time, from the left at a kink.
     pub fn rate(&self, t: f64) -> f64 {
         match self {
             Self::Constant(_) => 0.0,
@@ -97,7 +97,7 @@ impl TimeFunction {
         }
     }
 
-    /// The period of the motion, for a sine (s).
+    /// Returns the period of a sine (s).
     pub fn period(&self) -> Option<f64> {
         match self {
             Self::Sine { frequency, .. } if *frequency > 0.0 => Some(1.0 / frequency),
@@ -105,7 +105,7 @@ impl TimeFunction {
         }
     }
 
-    /// What is wrong with the numbers, if anything.
+    /// Returns the error in the numbers, if any.
     pub fn fault(&self) -> Option<String> {
         let finite = |values: &[f64]| values.iter().all(|v| v.is_finite());
         match self {
@@ -162,17 +162,18 @@ impl TimeFunction {
     }
 }
 
-/// How one degree of freedom of a first body moves.
+/// Motion of one degree of freedom of a first body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Dof {
-    /// Moves under its contacts, gravity and its inertia.
+    /// Free to move under contact forces, gravity and inertia.
     #[default]
     Free,
-    /// Does not move.
+    /// Fixed.
     Fixed,
     /// Imposed velocity (m/s or rad/s); the body follows its integral.
     Velocity(TimeFunction),
-    /// Imposed displacement (m or rad): the body follows the function's change since the drive took over.
+    /// Imposed displacement (m or rad): the body follows the change of the function since this drive took
+    /// effect.
     Displacement(TimeFunction),
     /// Imposed force (N; N/m of depth in 2D) or moment.
     Force(TimeFunction),
@@ -180,19 +181,19 @@ pub enum Dof {
     Pressure {
         /// The pressure (Pa), with the sign of the force along the axis.
         value: TimeFunction,
-        /// Walls that face each other, a pair for each other axis that is not periodic.
+        /// Names of opposite walls, one pair for each other axis that is not periodic.
         #[serde(default)]
         between: Vec<(String, String)>,
-        /// Current area (m^2; a length in 2D, m), measured at every step.
+        /// Current area (m^2; in 2D a length, m), measured in every step.
         #[serde(skip)]
         area: f64,
     },
-    /// One drive after another, see [`Stage`].
+    /// A sequence of drives, see [`Stage`].
     Stages(Vec<Stage>),
 }
 
 impl Dof {
-    /// The drive in force at a time; itself where there are no stages.
+    /// Returns the active drive at a time; `self` where there are no stages.
     pub fn at(&self, t: f64) -> &Self {
         match self {
             Self::Stages(stages) => stages::at(stages, t),
@@ -200,13 +201,13 @@ impl Dof {
         }
     }
 
-    /// The drive in force over a step of `h` from `time` on: a step belongs to the stage in which its middle
-    /// lies, so that the rounding of times does not matter.
+    /// Returns the active drive over a step of `h` from `time` on: a step belongs to the stage that contains
+    /// its midpoint, so that the rounding of times does not matter.
     pub fn over(&self, time: f64, h: f64) -> &Self {
         self.at(time + 0.5 * h)
     }
 
-    /// The place of the drive in force at a time among its stages; 0 where there are none.
+    /// Returns the index of the active stage at a time; 0 where there are no stages.
     pub fn stage_at(&self, t: f64) -> usize {
         match self {
             Self::Stages(stages) => stages::index_at(stages, t),
@@ -214,7 +215,7 @@ impl Dof {
         }
     }
 
-    /// All its drives, in their order; itself where there are no stages.
+    /// Iterates over all its drives, in order; only `self` where there are no stages.
     pub fn drives(&self) -> impl DoubleEndedIterator<Item = &Self> {
         let stages = match self {
             Self::Stages(stages) => stages.as_slice(),
@@ -224,19 +225,19 @@ impl Dof {
         stages.iter().map(|s| &s.drive).chain(simple)
     }
 
-    /// Whether contacts can move it at some time.
+    /// Returns whether contacts can move it at some time.
     pub fn yields(&self) -> bool {
         self.drives()
             .any(|d| matches!(d, Self::Free | Self::Force(_) | Self::Pressure { .. }))
     }
 
-    /// Whether its motion is imposed at some time.
+    /// Returns whether its motion is imposed at some time.
     pub fn imposes(&self) -> bool {
         self.drives()
             .any(|d| matches!(d, Self::Fixed | Self::Velocity(_) | Self::Displacement(_)))
     }
 
-    /// The velocity imposed at a time, if one is.
+    /// Returns the velocity imposed at a time, if any.
     pub fn imposed_velocity(&self, t: f64) -> Option<f64> {
         match self {
             Self::Free | Self::Force(_) | Self::Pressure { .. } => None,
@@ -247,7 +248,7 @@ impl Dof {
         }
     }
 
-    /// The force imposed at a time.
+    /// Returns the force imposed at a time.
     pub fn force(&self, t: f64) -> f64 {
         match self {
             Self::Force(f) => f.value(t),
@@ -257,7 +258,7 @@ impl Dof {
         }
     }
 
-    /// The time function, if there is one: that of the last stage where there are stages.
+    /// Returns the time function, if any: that of the last stage where there are stages.
     pub fn function(&self) -> Option<&TimeFunction> {
         match self {
             Self::Free | Self::Fixed => None,
@@ -267,7 +268,8 @@ impl Dof {
         }
     }
 
-    /// What is wrong with it, if anything, and where below it (an empty path for itself).
+    /// Returns the error of this drive, if any, and the path of its key relative to the drive (empty for the
+    /// drive itself).
     pub fn fault(&self) -> Option<(String, String)> {
         match self {
             Self::Stages(stages) => stages::fault(stages),
@@ -276,7 +278,7 @@ impl Dof {
     }
 }
 
-/// A first body whose degrees of freedom are driven: translations first, then rotations.
+/// A first body with driven degrees of freedom: translations first, then rotations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Driven {
     /// Name in the case.

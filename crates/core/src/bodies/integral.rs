@@ -1,20 +1,20 @@
-//! Functions of time over intervals: changes, integrals and means in closed form.
+//! Changes, integrals and means of functions of time over intervals, in closed form.
 
 use super::drive::TimeFunction;
 use std::f64::consts::TAU;
 
 type Points = [(f64, f64)];
 
-/// Times that differ by less than this are one: they are sums and differences of numbers of this size.
+/// Returns the tolerance for equal times, which are sums and differences of numbers of this size.
 fn rounding(t: f64) -> f64 {
     16.0 * f64::EPSILON * t.abs()
 }
 
 impl TimeFunction {
-    /// f(to) - f(from).
+    /// Returns f(to) - f(from).
     pub fn change(&self, from: f64, to: f64) -> f64 {
         match self {
-            // The mean value would only cost digits.
+            // Subtracting values with the mean included would lose digits.
             Self::Sine { amplitude, .. } => {
                 amplitude * (self.angle(to).sin() - self.angle(from).sin())
             }
@@ -22,7 +22,7 @@ impl TimeFunction {
         }
     }
 
-    /// The integral of f from one time to a later one.
+    /// Integrates f from one time to a later one.
     pub fn integral(&self, from: f64, to: f64) -> f64 {
         match self {
             Self::Constant(x) => x * (to - from),
@@ -40,7 +40,7 @@ impl TimeFunction {
         }
     }
 
-    /// The mean of f over [t, t + h].
+    /// Returns the mean of f over [t, t + h].
     pub fn mean(&self, t: f64, h: f64) -> f64 {
         match self {
             Self::Constant(x) => *x,
@@ -57,7 +57,7 @@ impl TimeFunction {
         }
     }
 
-    /// (f(t + h) - f(t))/h, without the digits that the difference of two large values loses.
+    /// Returns (f(t + h) - f(t))/h, without the cancellation error of the difference of two large values.
     pub fn mean_rate(&self, t: f64, h: f64) -> f64 {
         match self {
             Self::Constant(_) => 0.0,
@@ -80,12 +80,12 @@ impl TimeFunction {
         }
     }
 
-    /// The derivative at a time from the right; times that differ by rounding are one.
+    /// Returns the derivative at a time from the right; times that differ by rounding count as equal.
     pub fn rate_after(&self, t: f64) -> f64 {
         self.rate_beside(t, t + rounding(t))
     }
 
-    /// The derivative at a time from the left; times that differ by rounding are one.
+    /// Returns the derivative at a time from the left; times that differ by rounding count as equal.
     pub fn rate_before(&self, t: f64) -> f64 {
         self.rate_beside(t, t - rounding(t))
     }
@@ -109,7 +109,8 @@ impl TimeFunction {
         }
     }
 
-    /// Least and greatest derivative beside the corners within (t, t + h); none without corners.
+    /// Returns the smallest and largest derivative next to the kinks within (t, t + h); `None` without
+    /// kinks.
     pub fn rates_at_corners(&self, t: f64, h: f64) -> Option<(f64, f64)> {
         match self {
             Self::Constant(_) => None,
@@ -127,7 +128,7 @@ impl TimeFunction {
         }
     }
 
-    /// Least and greatest value at the corners within (t, t + h); none without corners.
+    /// Returns the smallest and largest value at the kinks within (t, t + h); `None` without kinks.
     pub fn values_at_corners(&self, t: f64, h: f64) -> Option<(f64, f64)> {
         match self {
             Self::Constant(_) => None,
@@ -139,7 +140,7 @@ impl TimeFunction {
         }
     }
 
-    /// The last point of a table in (from, to]: what lies before it need not be integrated again.
+    /// Returns the last point of a table in (from, to]: the part before it need not be integrated again.
     pub fn last_point(&self, from: f64, to: f64) -> Option<f64> {
         let Self::Table(points) = self else {
             return None;
@@ -148,7 +149,7 @@ impl TimeFunction {
         (points[last].0 > from).then_some(points[last].0)
     }
 
-    /// Where a sine begins, if that is within (t, t + h).
+    /// Returns the start of a sine, if it is within (t, t + h).
     fn corner(&self, t: f64, h: f64) -> Option<f64> {
         let Self::Sine { start, .. } = self else {
             return None;
@@ -157,7 +158,7 @@ impl TimeFunction {
         (t + eps < *start && *start < t + h - eps).then_some(*start)
     }
 
-    /// The angle of a sine (rad).
+    /// Returns the angle of a sine (rad).
     fn angle(&self, t: f64) -> f64 {
         match self {
             Self::Sine {
@@ -170,7 +171,7 @@ impl TimeFunction {
         }
     }
 
-    /// The mean of a sine over [t, t + h].
+    /// Returns the mean of a sine over [t, t + h].
     fn mean_of_sine(&self, t: f64, h: f64) -> f64 {
         let Self::Sine {
             amplitude,
@@ -186,7 +187,7 @@ impl TimeFunction {
         offset + amplitude * self.angle(t + 0.5 * h).sin() * share
     }
 
-    /// What a sine rises by over [t, t + h].
+    /// Returns the increase of a sine over [t, t + h].
     fn rise_of_sine(&self, t: f64, h: f64) -> f64 {
         let Self::Sine {
             amplitude,
@@ -199,7 +200,7 @@ impl TimeFunction {
         2.0 * amplitude * self.angle(t + 0.5 * h).cos() * (0.5 * TAU * frequency * h).sin()
     }
 
-    /// Calls with the points between which the function is linear: those of a ramp or a table.
+    /// Calls `f` with the points between which the function is linear: those of a ramp or a table.
     fn with_points<T>(&self, f: impl FnOnce(&Points) -> T) -> T {
         match self {
             Self::Ramp {
@@ -221,7 +222,7 @@ fn bounds(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     })
 }
 
-/// The points within (t, t + h); one at an end by rounding is not.
+/// Returns the points within (t, t + h), excluding one at an end to rounding.
 fn inside(points: &Points, t: f64, h: f64) -> &Points {
     let eps = rounding(t + h);
     let first = points.partition_point(|p| p.0 <= t + eps);
@@ -229,7 +230,7 @@ fn inside(points: &Points, t: f64, h: f64) -> &Points {
     points.get(first..last).unwrap_or_default()
 }
 
-/// The value at a time: linear between points, constant outside.
+/// Returns the value at a time: linear between points, constant outside.
 pub(super) fn value(points: &Points, t: f64) -> f64 {
     let k = points.partition_point(|p| p.0 <= t);
     if k == 0 {
@@ -242,17 +243,17 @@ pub(super) fn value(points: &Points, t: f64) -> f64 {
     }
 }
 
-/// The slope at a time, from the left at a point.
+/// Returns the slope at a time, from the left at a point.
 pub(super) fn slope(points: &Points, t: f64) -> f64 {
     slope_to(points, points.partition_point(|p| p.0 < t))
 }
 
-/// The slope at a time, from the right at a point.
+/// Returns the slope at a time, from the right at a point.
 fn slope_after(points: &Points, t: f64) -> f64 {
     slope_to(points, points.partition_point(|p| p.0 <= t))
 }
 
-/// The slope of the piece that ends with a point.
+/// Returns the slope of the segment that ends at a point.
 fn slope_to(points: &Points, k: usize) -> f64 {
     if k == 0 || k == points.len() {
         return 0.0;
@@ -299,7 +300,7 @@ mod tests {
         ]
     }
 
-    /// Simpson's rule between the corners of the functions.
+    /// Simpson's rule between the kinks of the functions.
     fn simpson(f: &dyn Fn(f64) -> f64, from: f64, to: f64) -> f64 {
         let corners = [from, 0.1, 0.5, 0.7, 0.7001, 1.23, 1.4, 1.5, to];
         let corners: Vec<f64> = corners
@@ -336,7 +337,7 @@ mod tests {
     #[test]
     fn corners_have_two_derivatives() {
         let f = TimeFunction::Table(vec![(0.0, 0.0), (0.3, 3.0), (0.5, 1.0)]);
-        // As a run sums it, and a hair before.
+        // As summed in a run, and slightly less.
         for t in [0.1 + 0.1 + 0.1, 0.3 - 5e-17] {
             assert!((f.rate_before(t) - 10.0).abs() < 1e-13);
             assert!((f.rate_after(t) + 10.0).abs() < 1e-13);

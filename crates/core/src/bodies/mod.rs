@@ -1,5 +1,4 @@
-//! Rigid bodies: their state, inertia, and the degrees of freedom that are driven; and dynamical systems that are more than
-//! rigid.
+//! Rigid bodies: state, inertia, and driven degrees of freedom.
 pub mod delay;
 pub mod drive;
 pub mod dynamical_system;

@@ -1,30 +1,30 @@
 //! Imposed motion: degrees of freedom follow their functions of time to rounding.
 //!
-//! Over a step from t to t + h an imposed degree of freedom has a velocity at the start, v_s, and one at the end, v_e,
-//! whose mean in the theta-scheme is that of its path x(t) exactly,
-//! (1 - theta) v_s + theta v_e = (x(t + h) - x(t))/h,    v_e - v_s = x'(t + h -) - x'(t +).
-//! Where x is smooth both are its derivative to O(h^2) (O(h) with theta > 1/2). Between two steps the velocity jumps
-//! from v_e to the next v_s: by O(h^3) where x is smooth (O(h^2)), and by all of the jump of x' where it has a corner.
-//! Where a corner lies within a step, v_s and v_e stay between the slopes beside it.
+//! Over a step from t to t + h an imposed degree of freedom has an initial velocity v_s and a final velocity
+//! v_e, whose mean in the theta-scheme is exactly that of its path x(t):
+//! (1 - theta) v_s + theta v_e = (x(t + h) - x(t))/h, v_e - v_s = x'(t + h -) - x'(t +). Where x is smooth
+//! both equal its derivative to O(h^2) (O(h) with theta > 1/2). Between two steps the velocity jumps from
+//! v_e to the next v_s: by O(h^3) where x is smooth (O(h^2) with theta > 1/2), and by the full jump of x' at
+//! a kink. If a kink lies within a step, v_s and v_e stay between the slopes on its two sides.
 //!
-//! At the end of a step the position is set from the function, so that nothing adds up over many steps.
+//! At the end of a step the position is set from the function, so that errors do not accumulate.
 
 use super::drive::{Dof, TimeFunction};
 use super::state::Bodies;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
-/// Velocities at the start and at the end of a step (m/s or rad/s).
+/// Velocities at the start and the end of a step (m/s or rad/s).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Speeds {
-    /// After the jump at the start of the step.
+    /// Velocity after the jump at the start of the step.
     pub start: f64,
-    /// At its end, before the jump of the next.
+    /// Velocity at the end, before the jump of the next step.
     pub end: f64,
 }
 
 impl Dof {
-    /// The velocities of a step of `h` from `t` on, if this drive, which is not stages, imposes them.
+    /// Returns the velocities of a step of `h` from `t` on, if this drive (other than stages) imposes them.
     pub fn speeds(&self, t: f64, h: f64, theta: f64) -> Option<Speeds> {
         let (mean, first, last, corners) = match self {
             Self::Fixed => return Some(Speeds::default()),
@@ -46,9 +46,9 @@ impl Dof {
         if let Some((low, high)) = corners {
             let low = low.min(first).min(last).min(mean);
             let high = high.max(first).max(last).max(mean);
-            // Room below and above the mean for the end that falls short of it, and the one that exceeds it.
+            // Distances from the mean to the lowest and highest admissible velocity.
             let (below, above) = (mean - low, high - mean);
-            // At theta = 1 the end is the mean, and `min` passes over 0/0.
+            // At theta = 1 the final velocity is the mean, and `min` ignores the NaN of 0/0.
             let most = if rise > 0.0 {
                 (below / theta).min(above / (1.0 - theta))
             } else {
@@ -62,22 +62,22 @@ impl Dof {
         })
     }
 
-    /// Whether it moves along a path of its own.
+    /// Returns whether it imposes a path.
     fn travels(&self) -> bool {
         matches!(self, Self::Velocity(_) | Self::Displacement(_))
     }
 }
 
-/// Where an imposed degree of freedom began its path, and how far it has come.
+/// Start of the path of an imposed degree of freedom, and the displacement so far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Path {
-    /// Place among the stages of the drive that it follows.
+    /// Index of the stage of the drive that it follows.
     stage: usize,
-    /// Coordinate at the beginning (m); zero for a rotation.
+    /// Initial coordinate (m); zero for a rotation.
     origin: f64,
-    /// Time up to which the way is summed (s).
+    /// Time up to which the displacement is summed (s).
     since: f64,
-    /// The way up to then (m or rad), and what its sum has lost by rounding.
+    /// Displacement up to that time (m or rad), and its rounding compensation.
     way: [f64; 2],
 }
 
@@ -91,7 +91,7 @@ impl Path {
         }
     }
 
-    /// The way at a time, which only grows from call to call (m or rad).
+    /// Returns the displacement at a time (m or rad); times must not decrease from call to call.
     fn way(&mut self, drive: &Dof, t: f64) -> f64 {
         match drive {
             Dof::Displacement(f) => f.change(self.since, t),
@@ -106,7 +106,7 @@ impl Path {
         }
     }
 
-    /// Sums up the way to a point of a table, compensated.
+    /// Adds the displacement up to a point of a table, with compensated summation.
     fn sum_up(&mut self, f: &TimeFunction, point: f64) {
         let part = f.integral(self.since, point) + self.way[1];
         let sum = self.way[0] + part;
@@ -115,12 +115,12 @@ impl Path {
     }
 }
 
-/// The paths of a driven body, in the order of its degrees of freedom.
+/// Paths of a driven body, in the order of its degrees of freedom.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Paths<S: Space> {
     along: Vec<Option<Path>>,
-    /// Orientation from which its imposed rotation counts.
+    /// Orientation relative to which the imposed rotation is measured.
     upright: S::Rotation,
 }
 
@@ -132,20 +132,20 @@ impl<S: Space> Paths<S> {
         }
     }
 
-    /// Has a degree of freedom begin a new path with the next step.
+    /// Starts a new path of a degree of freedom with the next step.
     pub(super) fn forget(&mut self, dof: usize) {
         self.along[dof] = None;
     }
 
-    /// Has all begin anew.
+    /// Starts new paths of all degrees of freedom.
     pub(super) fn forget_all(&mut self) {
         self.along.fill(None);
     }
 }
 
 impl<S: Space> Bodies<S> {
-    /// Begins the paths of the drives that take over with the step from `time` on, from where bodies are, and gives
-    /// all imposed degrees of freedom the velocities that the step starts with.
+    /// Starts the paths of the drives that take effect with the step from `time` on, at the current
+    /// positions, and sets the initial velocities of all imposed degrees of freedom.
     pub fn set_off(&mut self, time: f64, h: f64, theta: f64) {
         for place in 0..self.driven.len() {
             self.begin_paths(place, time, h);
@@ -189,10 +189,10 @@ impl<S: Space> Bodies<S> {
         }
     }
 
-    /// Puts what is imposed where its path is at the end of the step of `h` from `from` to `to` (s).
+    /// Sets imposed coordinates to their paths at the end of the step of `h` from `from` to `to` (s).
     ///
-    /// A rotation about one axis is on its path; where several axes are driven at once, whose turns do not commute,
-    /// the orientation is what the step's velocities gave.
+    /// A rotation about one axis follows its path; where rotations about several axes are imposed, which do
+    /// not commute, the orientation is that of the integrated velocities.
     pub fn arrive(&mut self, from: f64, to: f64, h: f64) {
         for (driven, paths) in self.driven.iter().zip(&mut self.paths) {
             let b = driven.body as usize;
@@ -218,7 +218,8 @@ impl<S: Space> Bodies<S> {
 mod tests {
     use super::*;
 
-    /// The mean over a step is that of the path, and the ends are the derivative: closer than h^2 of its third one.
+    /// The mean over a step is that of the path, and both ends equal the derivative within h^2 times the
+    /// third derivative.
     #[test]
     fn a_smooth_path_has_its_derivative_at_both_ends() {
         let f = TimeFunction::Sine {
@@ -243,7 +244,7 @@ mod tests {
         }
     }
 
-    /// However a step cuts a corner, velocities stay between the slopes, and the mean is that of the path.
+    /// Wherever a kink lies in a step, velocities stay between the slopes, and the mean is that of the path.
     #[test]
     fn corners_do_not_overshoot() {
         for part in [1e-9, 0.1, 0.4, 0.5, 0.6, 0.99] {

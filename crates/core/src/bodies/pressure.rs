@@ -1,4 +1,4 @@
-//! Servo pressure: the force on a wall is a pressure times the area that the sample offers it now.
+//! Servo pressure: the force on a wall is a pressure times the current area of the sample.
 
 use super::drive::Dof;
 use super::state::Bodies;
@@ -6,21 +6,21 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// A flat wall square to an axis: its body and where its face stands in its frame (m).
+/// A plane wall perpendicular to an axis: its body, and the coordinate of its face in the body's frame (m).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Face {
     body: usize,
     offset: f64,
 }
 
-/// A drive that needs the area between walls.
+/// A drive that depends on the area between walls.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Servo {
-    /// Place among the driven bodies.
+    /// Index among the driven bodies.
     place: usize,
-    /// Which degree of freedom.
+    /// Index of the degree of freedom.
     dof: usize,
-    /// Which of its drives, 0 where there are no stages.
+    /// Index of the stage, 0 where there are no stages.
     drive: usize,
     /// Product of the periodic lengths (m, m^2).
     fixed: f64,
@@ -29,10 +29,10 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// The servos of one drive of a degree of freedom, one for each of its stages that is a pressure.
+    /// Returns the servos of one degree of freedom, one for each stage that is a pressure.
     ///
     /// # Errors
-    /// Which wall is missing or not flat, or which axis nothing measures.
+    /// A wall is missing or not plane, or no length is defined along an axis.
     pub fn of<S: Space>(
         bodies: &Bodies<S>,
         shapes: &Shapes<S>,
@@ -80,7 +80,7 @@ impl Servo {
         Ok(servos)
     }
 
-    /// Measures the area as the walls stand and hands it to the drive.
+    /// Measures the area between the walls and passes it to the drive.
     pub fn measure<S: Space>(&self, bodies: &mut Bodies<S>) {
         let mut now = self.fixed;
         for (axis, faces) in &self.spans {
@@ -100,13 +100,13 @@ impl Servo {
         }
     }
 
-    /// Whether it serves this degree of freedom.
+    /// Returns whether it controls this degree of freedom.
     pub fn serves(&self, place: usize, dof: usize) -> bool {
         (self.place, self.dof) == (place, dof)
     }
 }
 
-/// The axis that a wall is square to, and its face.
+/// Returns the axis to which a wall is perpendicular, and its face.
 fn face<S: Space>(
     bodies: &Bodies<S>,
     shapes: &Shapes<S>,
@@ -127,7 +127,7 @@ fn face<S: Space>(
             },
         ))
     });
-    flat.ok_or_else(|| format!("the wall `{name}` has no HalfSpace that is square to an axis"))
+    flat.ok_or_else(|| format!("the wall `{name}` has no HalfSpace perpendicular to an axis"))
 }
 
 #[cfg(test)]
@@ -139,7 +139,7 @@ mod tests {
     use crate::geometry::space::Dim3;
     use nalgebra::Vector3;
 
-    /// In 3D with a periodic y the force on a lid is p (right - left) period, wherever the walls go.
+    /// In 3D with a periodic y the force on a lid is p (right - left) period, for any motion of the walls.
     #[test]
     fn the_force_follows_the_area() {
         let mut bodies = Bodies::<Dim3>::default();

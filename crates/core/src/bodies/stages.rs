@@ -1,27 +1,27 @@
-//! Drives that follow one another on one degree of freedom: pressed first, then moved.
+//! Sequences of drives on one degree of freedom, for example first pressing, then sliding.
 
 use super::drive::Dof;
 use serde::{Deserialize, Serialize};
 
-/// A drive and how long it holds. Functions of time run on the time of the case, not of the stage.
+/// A drive with its end time. Functions of time use the time of the case, not of the stage.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stage {
-    /// When the next stage takes over (s); the last stage has none and holds for ever.
+    /// Time at which the next stage takes over (s); `None` for the last stage.
     #[serde(default)]
     pub until: Option<f64>,
-    /// The drive, not stages again.
+    /// The drive; stages cannot be nested.
     pub drive: Dof,
 }
 
-/// The drive in force at a time.
+/// Returns the active drive at a time.
 pub(super) fn at(stages: &[Stage], t: f64) -> &Dof {
     stages
         .get(index_at(stages, t))
         .map_or(&Dof::Fixed, |s| &s.drive)
 }
 
-/// Its place among the stages.
+/// Returns the index of the active stage at a time.
 pub(super) fn index_at(stages: &[Stage], t: f64) -> usize {
     let found = stages
         .iter()
@@ -29,13 +29,13 @@ pub(super) fn index_at(stages: &[Stage], t: f64) -> usize {
     found.unwrap_or(stages.len().saturating_sub(1))
 }
 
-/// What is wrong with stages, if anything, and where below them.
+/// Returns the error in a list of stages, if any, and the path of its key.
 pub(super) fn fault(stages: &[Stage]) -> Option<(String, String)> {
     if stages.is_empty() {
         return Some((String::new(), "stages need at least one drive".into()));
     }
     let mut before = 0.0;
-    // In the text, stages hold one thing, their list.
+    // In the case file, stages have a single field, their list.
     for (k, stage) in stages.iter().enumerate() {
         let said = |field: &str, message: String| Some((format!("0.{k}.{field}"), message));
         if matches!(stage.drive, Dof::Stages(_)) {
@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn a_step_belongs_to_the_stage_of_its_middle() {
         let dof = pressed_then_moved();
-        // Times as a run sums them: 0.1 + 0.1 + 0.1 is above 0.3.
+        // Times as summed in a run: 0.1 + 0.1 + 0.1 is above 0.3.
         let end = 0.1 + 0.1 + 0.1;
         assert!(dof.over(end - 0.1, 0.1).imposed_velocity(end).is_none());
         assert_eq!(dof.over(end, 0.1).imposed_velocity(end + 0.1), Some(-0.5));

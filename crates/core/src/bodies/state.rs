@@ -1,4 +1,4 @@
-//! Positions, velocities and inertia of all bodies, in columns.
+//! Positions, velocities and inertia of all bodies, as a structure of arrays.
 
 use super::drive::{Dof, Driven};
 use super::path::Paths;
@@ -7,7 +7,8 @@ use super::tensor::{self, Tensor};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
-/// All bodies of a scene, in columns; grains and first bodies alike. In 2D masses are per metre.
+/// All bodies of a scene, grains and first bodies, as a structure of arrays. In 2D masses are per metre of
+/// depth.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Bodies<S: Space> {
@@ -17,29 +18,29 @@ pub struct Bodies<S: Space> {
     pub position: Vec<S::Vector>,
     /// Orientations.
     pub rotation: Vec<S::Rotation>,
-    /// Velocities of the centres (m/s).
+    /// Velocities of the centres of mass (m/s).
     pub velocity: Vec<S::Vector>,
     /// Angular velocities (rad/s).
     pub spin: Vec<S::Spin>,
     /// Masses (kg).
     pub mass: Vec<f64>,
-    /// Moments of inertia (kg m^2), the mean one where they differ by axis.
+    /// Moments of inertia (kg m^2); for anisotropic inertia the mean.
     pub inertia: Vec<f64>,
-    /// Moments of inertia that differ by axis; empty where no body has such.
+    /// Anisotropic inertia tensors; empty if there are none.
     pub tensors: Vec<Option<Tensor<S>>>,
-    /// A length that makes spins velocities in the solver (m): the radius of a grain.
+    /// Length that scales spins to velocities in the solver (m): the radius of a grain.
     pub length: Vec<f64>,
-    /// One over the mass, axis by axis; zero where the motion is imposed (1/kg).
+    /// Inverse mass along each axis; zero where the motion is imposed (1/kg).
     pub inverse_mass: Vec<S::Vector>,
-    /// One over the inertia; zero where the rotation is imposed (1/(kg m^2)).
+    /// Inverse moment of inertia; zero where the rotation is imposed (1/(kg m^2)).
     pub inverse_inertia: Vec<f64>,
     /// The driven first bodies.
     pub driven: Vec<Driven>,
-    /// Their paths where their motion is imposed, in their order.
+    /// Paths of their imposed motion, in the same order.
     pub paths: Vec<Paths<S>>,
-    /// Which bodies were taken away: they touch nothing and are not shown.
+    /// Whether each body has been removed: it then has no contacts and is not drawn.
     pub removed: Vec<bool>,
-    /// Motion of each body that rounding took away (m); empty while there is none.
+    /// Displacement of each body lost to rounding (m); empty while there is none.
     pub lost: Vec<S::Vector>,
     /// Which bodies stand for contactors of dynamical systems: they follow these and have no inertia of their own. Empty where
     /// there are no systems.
@@ -70,14 +71,14 @@ impl<S: Space> Default for Bodies<S> {
 }
 
 impl<S: Space> Bodies<S> {
-    /// Bytes of a body over all columns.
+    /// Bytes per body over all arrays.
     pub const BYTES: usize = size_of::<u64>()
         + 3 * size_of::<S::Vector>()
         + size_of::<S::Rotation>()
         + size_of::<S::Spin>()
         + 4 * size_of::<f64>();
 
-    /// What a user calls a body: a first body by its name, a grain by its number.
+    /// Returns the name of a body in messages: a first body's name, a grain's index.
     pub fn name(&self, body: u32) -> String {
         if let Some(carrier) = self.carrier(body as usize) {
             let Carrier {
@@ -91,12 +92,13 @@ impl<S: Space> Bodies<S> {
         }
     }
 
-    /// Number of bodies.
+    /// Returns the number of bodies.
     pub fn len(&self) -> usize {
         self.id.len()
     }
 
-    /// Whether every column has a value for each body, and each driven body is one of them and has its paths.
+    /// Returns whether all arrays have the length of the bodies, and the driven bodies are valid and have
+    /// paths.
     pub fn is_complete(&self) -> bool {
         let n = self.len();
         let columns = [
@@ -119,12 +121,12 @@ impl<S: Space> Bodies<S> {
             && self.driven.iter().all(|d| (d.body as usize) < n)
     }
 
-    /// Whether there is no body.
+    /// Returns whether there are no bodies.
     pub fn is_empty(&self) -> bool {
         self.id.is_empty()
     }
 
-    /// Adds a free body at rest; gives its index.
+    /// Adds a free body at rest; returns its index.
     pub fn add(&mut self, position: S::Vector, mass: f64, inertia: f64, length: f64) -> u32 {
         let index = self.len();
         self.id.push(index as u64);
@@ -186,14 +188,13 @@ impl<S: Space> Bodies<S> {
         body
     }
 
-    /// The moments of inertia by axis, where they differ and the body turns freely.
+    /// Returns the anisotropic inertia tensor of a body that rotates freely, if it has one.
     pub fn tensor(&self, body: usize) -> Option<&Tensor<S>> {
         let tensor = self.tensors.get(body)?.as_ref()?;
         (self.inverse_inertia[body] > 0.0).then_some(tensor)
     }
 
-    /// The inverse of the moments of inertia in the world's axes; zero where the rotation is imposed
-    /// (1/(kg m^2)).
+    /// Returns the inverse inertia tensor in world axes; zero where the rotation is imposed (1/(kg m^2)).
     pub fn inverse_tensor(&self, body: usize) -> S::Tensor {
         match self.tensor(body) {
             Some(tensor) => tensor.inverse(&self.rotation[body]),
@@ -201,7 +202,7 @@ impl<S: Space> Bodies<S> {
         }
     }
 
-    /// Angular momentum of a body at a spin (kg m^2/s).
+    /// Returns the angular momentum of a body at a spin (kg m^2/s).
     pub fn angular_momentum(&self, body: usize, spin: &S::Spin) -> S::Spin {
         match self.tensor(body) {
             Some(tensor) => tensor.momentum(&self.rotation[body], spin),
@@ -209,7 +210,7 @@ impl<S: Space> Bodies<S> {
         }
     }
 
-    /// Adds a homogeneous ball (kg/m^3).
+    /// Adds a homogeneous ball of a density (kg/m^3).
     pub fn add_ball(&mut self, position: S::Vector, radius: f64, density: f64) -> u32 {
         let mass = density * S::ball_volume(radius);
         self.add(
@@ -220,14 +221,14 @@ impl<S: Space> Bodies<S> {
         )
     }
 
-    /// Makes a body driven, by the drives of time zero.
+    /// Makes a body driven, with the drives of time zero.
     pub fn drive(&mut self, driven: Driven) {
         self.paths.push(Paths::new(driven.dofs.len()));
         self.driven.push(driven);
         self.update_constraints(self.driven.len() - 1, 0.0);
     }
 
-    /// Puts the drives in force at a time in charge of all bodies whose drives change.
+    /// Activates the drives at a time for all bodies whose drives change.
     pub fn engage_stages(&mut self, time: f64) {
         for place in 0..self.driven.len() {
             let mut dofs = self.driven[place].dofs.iter();
@@ -237,14 +238,14 @@ impl<S: Space> Bodies<S> {
         }
     }
 
-    /// Gives a driven body another drive on one degree of freedom, in force at a time.
+    /// Replaces the drive of one degree of freedom of a driven body, as active at a time.
     pub fn set_drive(&mut self, place: usize, dof: usize, drive: Dof, time: f64) {
         self.driven[place].dofs[dof] = drive;
         self.paths[place].forget(dof);
         self.update_constraints(place, time);
     }
 
-    /// Takes a driven body away for good.
+    /// Removes a driven body for good.
     pub fn remove(&mut self, place: usize) {
         let driven = &mut self.driven[place];
         self.removed[driven.body as usize] = true;
@@ -253,7 +254,7 @@ impl<S: Space> Bodies<S> {
         self.update_constraints(place, 0.0);
     }
 
-    /// Takes a grain away for good: it stands still.
+    /// Removes a grain for good; it is then at rest.
     pub fn remove_body(&mut self, body: usize) {
         self.removed[body] = true;
         (self.velocity[body], self.spin[body]) = (S::Vector::zero(), S::Spin::zero());
@@ -261,7 +262,7 @@ impl<S: Space> Bodies<S> {
         self.inverse_inertia[body] = 0.0;
     }
 
-    /// Which bodies are grains: those that are not driven or carried by a system, and are still there.
+    /// Returns which bodies are grains: neither driven nor removed.
     pub fn grain_flags(&self) -> Vec<bool> {
         let mut grain: Vec<bool> = self.removed.iter().map(|g| !g).collect();
         for (grain, carrier) in grain.iter_mut().zip(&self.carriers) {
@@ -273,19 +274,19 @@ impl<S: Space> Bodies<S> {
         grain
     }
 
-    /// The grains.
+    /// Iterates over the grains.
     pub fn grains(&self) -> impl Iterator<Item = usize> {
         let grain = self.grain_flags();
         (0..self.len()).filter(move |b| grain[*b])
     }
 
-    /// Kinetic energy of a body (J).
+    /// Returns the kinetic energy of a body (J).
     pub fn energy_of(&self, b: usize) -> f64 {
         let (v, w) = (&self.velocity[b], &self.spin[b]);
         0.5 * (self.mass[b] * v.dot(v) + w.dot(&self.angular_momentum(b, w)))
     }
 
-    /// Imposed degrees of freedom have no compliance, the others that of their inertia.
+    /// Updates inverse masses and inertias: zero for imposed degrees of freedom.
     fn update_constraints(&mut self, place: usize, time: f64) {
         let driven = &self.driven[place];
         let b = driven.body as usize;
@@ -304,12 +305,12 @@ impl<S: Space> Bodies<S> {
         };
     }
 
-    /// Whether contacts cannot move the body at all.
+    /// Returns whether contacts cannot move the body at all.
     pub fn immovable(&self, body: usize) -> bool {
         self.inverse_mass[body] == S::Vector::zero() && self.inverse_inertia[body] == 0.0
     }
 
-    /// Which bodies never move: all their degrees of freedom are fixed.
+    /// Returns which bodies never move: all their degrees of freedom are fixed.
     pub fn still(&self) -> Vec<bool> {
         let mut still = vec![false; self.len()];
         for driven in &self.driven {
@@ -318,13 +319,13 @@ impl<S: Space> Bodies<S> {
         still
     }
 
-    /// Kinetic energy (J). An imposed degree of freedom keeps its mass here.
+    /// Returns the kinetic energy (J). Imposed degrees of freedom are included.
     pub fn kinetic_energy(&self) -> f64 {
         (0..self.len()).map(|b| self.energy_of(b)).sum()
     }
 }
 
-/// One over an inertia; a body without one does not turn.
+/// Returns the inverse of an inertia; zero for a body without one, which does not rotate.
 fn one_over(inertia: f64) -> f64 {
     if inertia > 0.0 { 1.0 / inertia } else { 0.0 }
 }

@@ -1,20 +1,20 @@
-//! Inertia that differs by axis: bodies that are no balls, in space.
+//! Anisotropic inertia of non-spherical bodies in 3D.
 
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
-/// Moments of inertia of a body in its own axes (kg m^2), and their inverse.
+/// Inertia tensor of a body in its own axes (kg m^2), and its inverse.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Tensor<S: Space> {
     own: S::Tensor,
     inverse: S::Tensor,
-    /// Largest turn of a part of a step (rad).
+    /// Largest rotation per substep (rad).
     turn: f64,
 }
 
 impl<S: Space> Tensor<S> {
-    /// None where the tensor is the same about all axes, or has no inverse.
+    /// Creates a tensor; `None` if it is isotropic or singular.
     pub fn new(own: S::Tensor) -> Option<Self> {
         const ALIKE: f64 = 1e-12;
         let mean = mean::<S>(&own);
@@ -26,42 +26,43 @@ impl<S: Space> Tensor<S> {
             })
         });
         let inverse = (!alike).then(|| own.inverse())??;
-        // The iteration for the middle contracts by half the turn times the root of the ratio of inertias, which is
-        // at most that of the traces' product.
+        // The fixed-point iteration for the midpoint contracts by half the rotation times the root of the
+        // ratio of inertias, which is at most that of the product of the traces.
         let ratio = mean * self::mean::<S>(&inverse) * (n * n) as f64;
         let turn = f64::min(0.05, 0.5 / ratio.sqrt());
         Some(Self { own, inverse, turn })
     }
 
-    /// The tensor in the body's own axes (kg m^2).
+    /// Returns the tensor in the body's own axes (kg m^2).
     pub fn own(&self) -> &S::Tensor {
         &self.own
     }
 
-    /// The inverse in the world's axes (1/(kg m^2)).
+    /// Returns the inverse in world axes (1/(kg m^2)).
     pub fn inverse(&self, rotation: &S::Rotation) -> S::Tensor {
         S::turned_tensor(rotation, &self.inverse)
     }
 
-    /// Angular momentum at a spin (kg m^2/s).
+    /// Returns the angular momentum at a spin (kg m^2/s).
     pub fn momentum(&self, rotation: &S::Rotation, spin: &S::Spin) -> S::Spin {
         let own = self.own.apply(&S::unrotate_spin(rotation, spin));
         S::rotate_spin(rotation, &own)
     }
 
-    /// Orientation and spin after turning freely for `time` (s): angular momentum is kept to round-off, energy to
-    /// the tolerance of the iteration.
+    /// Returns orientation and spin after free rotation for `time` (s); angular momentum is conserved to
+    /// rounding, energy to the tolerance of the iteration.
     ///
-    /// The midpoint rule for the momentum in the body's axes, P' = P x (I^-1 P), with the rotation that takes it
-    /// along: Austin, Krishnaprasad and Wang, "Almost Poisson integration of rigid body systems", J. Comput. Phys.
-    /// 107 (1993). Second order; parts of the time are as short as the spin asks.
+    /// The midpoint rule for the momentum in body axes, P' = P x (I^-1 P), with the corresponding rotation:
+    /// Austin, Krishnaprasad and Wang, "Almost Poisson integration of rigid body systems", J. Comput. Phys.
+    /// 107 (1993). Second order; the length of the substeps follows from the spin.
     pub fn free_rotation(
         &self,
         rotation: &S::Rotation,
         spin: &S::Spin,
         time: f64,
     ) -> (S::Rotation, S::Spin) {
-        /// A body that turns by more than this (rad) in half a step, or takes more parts, is not followed closer.
+        /// Upper limit of the rotation in half a step (rad) that is resolved; it bounds the number of
+        /// substeps.
         const MAX_TURN: f64 = 100.0;
         const MAX_PARTS: f64 = 1e5;
         let parts = (spin.norm() * time.abs()).min(MAX_TURN) / self.turn;
@@ -78,7 +79,7 @@ impl<S: Space> Tensor<S> {
         (rotation, spin)
     }
 
-    /// The spin halfway, in the body's axes.
+    /// Returns the midpoint spin, in body axes.
     fn middle(&self, momentum: &S::Spin, time: f64) -> S::Spin {
         const MAX_ITERATIONS: usize = 50;
         let mut spin = self.inverse.apply(momentum);
@@ -95,13 +96,13 @@ impl<S: Space> Tensor<S> {
     }
 }
 
-/// Mean moment of inertia (kg m^2).
+/// Returns the mean moment of inertia (kg m^2).
 pub fn mean<S: Space>(tensor: &S::Tensor) -> f64 {
     let n = S::Spin::N;
     (0..n).map(|k| tensor.entry(k, k)).sum::<f64>() / n as f64
 }
 
-/// A vector seen from axes that turned by the Cayley map of `half`: (1 + [half])^-1 (1 - [half]) v.
+/// Returns a vector in axes rotated by the Cayley map of `half`: (1 + [half])^-1 (1 - [half]) v.
 fn turned_back<S: Space>(v: &S::Spin, half: &S::Spin) -> S::Spin {
     let once = *v - S::spin_cross(half, v);
     // (1 + [a])^-1 b = (b - a x b + (a . b) a)/(1 + a . a)
@@ -128,7 +129,8 @@ mod tests {
 
     #[test]
     fn a_symmetric_top_precesses_as_the_books_say() {
-        // Landau and Lifshitz, Mechanics, section 33: the axis goes round the momentum at L/I_1.
+        // Landau and Lifshitz, Mechanics, section 33: the axis precesses about the momentum at the rate
+        // L/I_1.
         let (i1, i3) = (2.0, 3.0);
         let top = diagonal(i1, i1, i3);
         let start = Vector3::new(0.4, 0.0, 1.1);
@@ -141,7 +143,7 @@ mod tests {
         let precession = UnitQuaternion::from_scaled_axis(momentum * (time / i1));
         let axis = precession * Vector3::z();
         assert!((rotation * Vector3::z() - axis).norm() < 1e-6);
-        // The spin follows from the momentum, which stays.
+        // The spin follows from the conserved momentum.
         let now = top.momentum(&rotation, &spin);
         assert!((now - momentum).norm() < 1e-12 * momentum.norm());
     }
@@ -169,7 +171,7 @@ mod tests {
 
     #[test]
     fn a_body_that_tumbles_keeps_energy_and_momentum() {
-        // About the middle axis: Dzhanibekov's turns.
+        // Rotation about the intermediate axis: the Dzhanibekov effect.
         let body = diagonal(1.0, 2.0, 3.0);
         let (mut rotation, mut spin) = (UnitQuaternion::identity(), Vector3::new(1e-3, 5.0, 1e-3));
         let momentum = body.momentum(&rotation, &spin);

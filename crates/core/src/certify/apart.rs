@@ -1,4 +1,5 @@
-//! A law certified in a process of its own: one that crashes, ends the program or hangs costs a line of its certificate.
+//! Certification of a law in a child process, so that a law that crashes, ends the program or hangs only
+//! fails a line of its certificate.
 
 use super::{Certificate, Event, Line, border, certify, certify_telling};
 use crate::laws::child::{self, End};
@@ -7,20 +8,20 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// The hidden word by which the program is asked to certify a law.
+/// Hidden subcommand that certifies a law.
 pub const CERTIFY_APART: &str = "__certify";
 
-/// What a crash is a line of.
+/// Name of the check that a crash fails.
 const COMES_BACK: &str = "comes back";
 
-/// A law with parameters, as one process names it to another.
+/// A law with parameters, as passed between processes.
 #[derive(Serialize, Deserialize)]
 struct Named {
-    /// Its library and the SHA-256 of that; none where it is built in.
+    /// Its library and SHA-256; `None` if it is built in.
     library: Option<(PathBuf, String)>,
     kind: String,
     name: String,
-    /// Values of the parameters, as bits: they must not be rounded.
+    /// Parameter values as bit patterns, so that they are not rounded.
     parameters: Vec<u64>,
 }
 
@@ -53,10 +54,11 @@ impl Named {
     }
 }
 
-/// As [`certify`], in a process of its own where the program can start one. What the law does to that process is a line.
+/// Certifies a law as [`certify`] does, in a child process where the program can start one. A crash of that
+/// process becomes a line of the certificate.
 ///
 /// # Errors
-/// As [`certify`]; and where no process can be started.
+/// As [`certify`]; and if the process cannot be started.
 pub fn certify_apart(
     plugin: &Plugin,
     parameters: &[f64],
@@ -90,7 +92,7 @@ pub fn certify_apart(
     }
     if told.end == End::Done && lines.is_empty() {
         return Err(refuse(
-            "the process that certifies it gave no line".to_owned(),
+            "the process that certifies it gave no result".to_owned(),
         ));
     }
     if let End::Early(why) = told.end {
@@ -100,10 +102,10 @@ pub fn certify_apart(
     Ok(Certificate::of(plugin, lines))
 }
 
-/// In the called process: certifies the law it is asked after, which may be one that is linked into the program.
+/// In the child process: certifies the requested law, which may be linked into the program.
 ///
 /// # Errors
-/// The question cannot be read.
+/// The request cannot be read.
 pub fn certify_asked(built_in: &BuiltInLaws) -> Result<(), String> {
     let question = child::asked()?;
     let (named, partner): (Named, Option<Named>) =

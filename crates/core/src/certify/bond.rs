@@ -1,4 +1,4 @@
-//! Promises of laws with an opening: cohesion and damage.
+//! Checks of laws with an opening: cohesion and damage.
 
 use super::rig::{Rig, pull, work};
 use super::{Check, Line};
@@ -18,15 +18,15 @@ pub const CHECKS: [(&str, Check); 9] = [
     ("degradation", degradation),
 ];
 
-/// What the undamaged bond says it stores is the work done on it.
+/// Checks that the stored energy declared for the undamaged bond is the work done on it.
 fn stored_energy(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "stored energy";
-    /// Intervals of Simpson's rule.
+    /// Number of intervals of Simpson's rule.
     const N: usize = 400;
     if rig.kind != Kind::COHESION {
         return Ok(Line::skip(NAME, "the energy is the cohesion's"));
     }
-    // The onset is known to a tenth of a decade.
+    // The onset is known to a tenth of a decade only.
     let reach = if rig.damages() { 0.5 } else { 1.0 } * rig.onset;
     let (mut worst, mut tested) = (0.0f64, 0);
     for angle in [0.0, FRAC_PI_4, FRAC_PI_2] {
@@ -53,18 +53,19 @@ fn stored_energy(rig: &mut Rig) -> Result<Line, LawError> {
         tested += 1;
     }
     if tested == 0 {
-        return Ok(Line::skip(NAME, "the bond is damaged at any opening"));
+        return Ok(Line::skip(NAME, "the bond has damage at any opening"));
     }
-    // Simpson's rule leaves the fourth power of 1/400 of a smooth law.
+    // The error of Simpson's rule is of the order of (1/400)^4 for a smooth law.
     Ok(Line::below(
         NAME,
         worst,
         1e-6,
-        "work on the undamaged bond in three directions and what it says it stores: relative difference",
+        "work on the undamaged bond in three directions and its declared stored energy: relative difference",
     ))
 }
 
-/// Declared = area under one slow pull to the end, in modes I, mixed and II.
+/// Checks that the declared fracture energy is the area under one slow pull to failure, in modes I, mixed
+/// and II.
 fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "fracture energy";
     let tested = rig.tested();
@@ -74,13 +75,13 @@ fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
         .filter_map(|angle| declared(angle).map(|e| (angle, e)))
         .collect();
     if modes.is_empty() {
-        return Ok(Line::skip(NAME, "the law declares none"));
+        return Ok(Line::skip(NAME, "the law declares no fracture energy"));
     }
-    // A tail without end is cut where it no longer counts.
+    // An unbounded tail is cut where it is negligible.
     let end = rig.end.unwrap_or(1e3 * rig.onset);
     let (mut worst, mut said) = (0.0f64, String::new());
     for (angle, declared) in modes {
-        // Fine to three times the onset, then geometrically until well past the end.
+        // Fine steps up to three times the onset, then geometric ones until well past the end.
         let near = (1..=20_000).map(|k| 3.0 * rig.onset * f64::from(k) / 20_000.0);
         let decades = (30.0 * end / (3.0 * rig.onset)).max(1.0).ln();
         let far = (1..=20_000).map(|k| 3.0 * rig.onset * (decades * f64::from(k) / 20_000.0).exp());
@@ -93,7 +94,8 @@ fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
             angle.to_degrees()
         );
     }
-    // A law may cut its tail where a thousandth is left; the trapezoidal rule loses 2e-4 where a bond snaps, 1e-6 elsewhere.
+    // A law may cut its tail at a thousandth of the energy; the error of the trapezoidal rule is 2e-4 for an
+    // abrupt failure, 1e-6 otherwise.
     Ok(Line::below(
         NAME,
         worst,
@@ -113,7 +115,7 @@ fn area(motions: &[Motion], answers: &[Answer]) -> f64 {
     sum
 }
 
-/// Work less what is stored, over random walks: what was dissipated never shrinks.
+/// Checks on random walks that dissipation, work minus stored energy, never decreases.
 fn dissipation(rig: &mut Rig) -> Result<Line, LawError> {
     let mut worst = 0.0f64;
     let walks = (0..24).map(|seed| rig.walk(seed, 800, 0.02));
@@ -133,16 +135,17 @@ fn dissipation(rig: &mut Rig) -> Result<Line, LawError> {
         }
         worst = worst.max(fall / scale.max(f64::MIN_POSITIVE));
     }
-    // The trapezoidal rule costs the square of the walk's step: 2e-3 where damage falls into it.
+    // The error of the trapezoidal rule is quadratic in the step of the walk: 2e-3 where damage starts
+    // within a step.
     Ok(Line::below(
         "dissipation",
         worst,
         5e-3,
-        "largest fall of work less stored energy on random walks and on loads let go and applied again, over the energy at play",
+        "largest decrease of work minus stored energy on random walks and in unloading and reloading, relative to the energy scale",
     ))
 }
 
-/// Loaded, let go, loaded again and let go, to several levels beyond the onset, in three directions.
+/// Loading, unloading, reloading and unloading to several levels beyond the onset, in three directions.
 fn loops(rig: &Rig) -> Vec<Vec<Motion>> {
     let mut out = Vec::new();
     for level in [1.2, 1.5, 2.0, 3.0] {
@@ -158,7 +161,7 @@ fn loops(rig: &Rig) -> Vec<Vec<Motion>> {
     out
 }
 
-/// The traction at D is (1 - D)^m times that of the undamaged bond.
+/// Checks that the traction at D is (1 - D)^m times that of the undamaged bond.
 fn degradation(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "degradation";
     if rig.kind != Kind::COHESION {
@@ -166,7 +169,7 @@ fn degradation(rig: &mut Rig) -> Result<Line, LawError> {
     }
     let m = rig.tested().plugin.degradation;
     if m <= 0.0 {
-        return Ok(Line::skip(NAME, "damage does not enter"));
+        return Ok(Line::skip(NAME, "the law has no damage"));
     }
     let mut worst = 0.0f64;
     for angle in [0.0, FRAC_PI_4, FRAC_PI_2] {
@@ -189,7 +192,7 @@ fn degradation(rig: &mut Rig) -> Result<Line, LawError> {
     Ok(Line::below(
         NAME,
         worst,
-        // A law without an onset damages a little at any opening.
+        // A law without an onset has a little damage at any opening.
         1e-5,
         format!(
             "largest distance of the traction at D = 0.3, 0.7 and 1 from (1 - D)^{m} of the undamaged one"
@@ -197,7 +200,7 @@ fn degradation(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// D never falls, stays in [0, 1], and broken stays broken.
+/// Checks that D never decreases, stays in [0, 1], and that broken bonds stay broken.
 fn damage_grows(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "damage grows";
     if !rig.damages() {
@@ -212,19 +215,19 @@ fn damage_grows(rig: &mut Rig) -> Result<Line, LawError> {
             let answer = rig
                 .bench
                 .step(&mut state, std::slice::from_ref(motion), 1e-3)?[0];
-            // The host holds D up: what the law itself said is what counts.
+            // The host enforces that D does not decrease: the law's own value is checked.
             raw = raw.max(before - rig.bench.said()[0]);
             worst = worst.max(before - answer.damage);
             highest = highest.max(answer.damage);
         }
     }
-    // A law that never damaged anything on the way was not tested.
+    // The check is not meaningful for a law that caused no damage on the path.
     let kept = worst <= 0.0 && raw <= 1e-12 && highest <= 1.0 && highest > 0.0;
-    let text = format!("largest fall of D on random walks, which reached D = {highest:.3}");
+    let text = format!("largest decrease of D on random walks, which reached D = {highest:.3}");
     Ok(Line::judged(NAME, kept, raw.max(worst), text))
 }
 
-/// Turning the tangential axes turns the answer and nothing else.
+/// Checks that rotating the tangential axes rotates the result and changes nothing else.
 fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
     let motions = rig.walk(7, 300, 0.1);
     let (c, s) = if rig.dimension() == 2 {
@@ -272,11 +275,11 @@ fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
         "objectivity",
         worst.max(off / scale),
         1e-8,
-        "largest change of D, traction and moment when the tangential axes turn",
+        "largest change of D, traction and moment when the tangential axes are rotated",
     ))
 }
 
-/// The order at which the energy of a pull in a given time converges with the step.
+/// Measures the order at which the energy of a pull of fixed duration converges with the step.
 fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
     let reach = rig.end.map_or(2.0 * rig.onset, |end| {
         (2.0 * rig.onset).min(0.5 * (rig.onset + end))
@@ -300,7 +303,7 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
             "the energy of a pull does not depend on the step",
         ));
     }
-    // A corner that falls between steps spoils single ratios: the slope over all of them.
+    // A kink within a step disturbs single ratios, so that the slope over all of them is used.
     let order = (differences[0] / differences[3]).log2() / 3.0;
     let text = format!(
         "order in the step of the energy of a pull, last relative change {:.1e}; at least 0.7",
@@ -309,7 +312,7 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
     Ok(Line::judged("convergence", order >= 0.7, order, text))
 }
 
-/// The stiffness is the slope of the traction, or the secant, at frozen damage and variables.
+/// Checks that the stiffness is the tangent or the secant of the traction, at frozen damage and variables.
 fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "tangent";
     if rig.kind != Kind::COHESION {
@@ -336,7 +339,7 @@ fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
             let slope = (slope[0] - slope[1]) / (2.0 * e);
             let secant = base.traction[k] / at.opening[k];
             let scale = slope.abs().max(secant.abs()).max(f64::MIN_POSITIVE);
-            // A falling traction has no stiffness to give: zero or the secant are right.
+            // A softening traction has no positive tangent: zero or the secant are accepted.
             let off = [slope.max(0.0), secant]
                 .into_iter()
                 .map(|right| (stiffness - right).abs() / scale)
@@ -348,11 +351,11 @@ fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
         NAME,
         worst,
         1e-3,
-        "largest distance of the stiffness from the slope of the traction or its secant",
+        "largest difference between the stiffness and the tangent or secant of the traction",
     ))
 }
 
-/// Unloaded half way and to nothing, and loaded again: through the origin, and back to where it was.
+/// Unloads half way and completely, and reloads: the path must point to the origin and return to its start.
 fn secant(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "secant";
     let mut worst = 0.0f64;
@@ -379,7 +382,7 @@ fn secant(rig: &mut Rig) -> Result<Line, LawError> {
         if up.damage >= 1.0 {
             continue;
         }
-        // Fatigue damages on the way: what is left of the bond is taken out.
+        // A fatigue law causes damage on the way: tractions are divided by the remaining stiffness.
         let left = |a: &Answer| (1.0 - a.damage).max(f64::MIN_POSITIVE);
         let same = |a: &Answer, b: &Answer| (left(a) / left(b) - 1.0).abs() < 1e-12;
         worst = worst.max(length(&none) / scale);

@@ -1,4 +1,4 @@
-//! Promises of every law at the border: batches, threads, memory, and bad numbers.
+//! Checks of every law at the plugin interface: batches, threads, memory, and invalid numbers.
 
 use super::rig::{PRESSURE, Rig};
 use super::static_memory::static_memory;
@@ -7,7 +7,7 @@ use crate::laws::LawError;
 use crate::laws::bench::{Answer, Bench, Motion, State};
 use std::sync::Barrier;
 
-/// Made first: what fails it may spoil the memory of all that comes after.
+/// The first check: a law that fails it may corrupt the memory of all later ones.
 pub const FIRST: (&str, Check) = ("columns", columns);
 
 pub const CHECKS: [(&str, Check); 7] = [
@@ -20,10 +20,11 @@ pub const CHECKS: [(&str, Check); 7] = [
     ("bad numbers", bad_numbers),
 ];
 
-/// Those that hang on parameters; the others are of the code alone.
+/// The checks that depend on parameters; the others depend on the code only.
 pub const OF_PARAMETERS: [(&str, Check); 2] = [CHECKS[0], CHECKS[6]];
 
-/// Moves a batch along walks, one a contact, some of them used more than once; the bits of all answers.
+/// Moves a batch along walks, one per contact, some of them used repeatedly; returns the bits of all
+/// outputs.
 pub fn together(
     bench: &mut Bench,
     walks: &[Vec<Motion>],
@@ -40,9 +41,9 @@ pub fn together(
     Ok(out)
 }
 
-/// A law writes to its outputs and nowhere else, and gives one answer to one question.
+/// Checks that a law writes to its outputs only, and returns equal results for equal inputs.
 fn columns(rig: &mut Rig) -> Result<Line, LawError> {
-    const KEPT: &str = "writes to inputs, to the state before the step, up to 256 kB beside the columns; second answers that differ";
+    const KEPT: &str = "writes to inputs, to the state before the step, up to 256 kB outside the columns; different results for equal inputs";
     // The scale of the law is not known yet.
     let onset = rig.onset;
     for scale in [1e-9, 1e-7, 1e-5, 1e-3] {
@@ -50,7 +51,7 @@ fn columns(rig: &mut Rig) -> Result<Line, LawError> {
         let walks: Vec<Vec<Motion>> = (0..17).map(|k| rig.walk(60 + k, 8, 0.5)).collect();
         let moved = together(&mut rig.strict().guarded(), &walks, 17, 0);
         rig.onset = onset;
-        // What else goes wrong is another check's.
+        // Other errors are found by other checks.
         if let Err(e @ LawError::Trespass { .. }) = moved {
             return Err(e);
         }
@@ -58,7 +59,7 @@ fn columns(rig: &mut Rig) -> Result<Line, LawError> {
     Ok(Line::judged("columns", true, 0.0, KEPT))
 }
 
-/// What a law gives can be.
+/// Checks that outputs are within their physical range.
 fn range(rig: &mut Rig) -> Result<Line, LawError> {
     let walks: Vec<Vec<Motion>> = (0..17).map(|k| rig.walk(80 + k, 200, 0.3)).collect();
     match together(&mut rig.strict(), &walks, 17, 0) {
@@ -67,7 +68,7 @@ fn range(rig: &mut Rig) -> Result<Line, LawError> {
             "range",
             true,
             0.0,
-            "values that cannot be, such as a negative friction or stiffness, or a damage above one",
+            "values out of range, such as a negative friction or stiffness, or a damage above one",
         )),
     }
 }
@@ -100,7 +101,7 @@ fn along(bench: &mut Bench, motions: &[Motion]) -> Result<Vec<u64>, LawError> {
     Ok(out)
 }
 
-/// A batch of n gives the bits of n batches of one.
+/// Checks that a batch of n gives the same bits as n batches of one.
 fn batch(rig: &mut Rig) -> Result<Line, LawError> {
     const N: usize = 17;
     let walks: Vec<Vec<Motion>> = (0..N as u64).map(|k| rig.walk(40 + k, 60, 0.3)).collect();
@@ -119,11 +120,11 @@ fn batch(rig: &mut Rig) -> Result<Line, LawError> {
         "batch",
         f64::from(different),
         0.0,
-        "answers of a batch of 17 that differ from batches of one",
+        "results of a batch of 17 that differ from batches of one",
     ))
 }
 
-/// The same bits from many threads at once, on the same contacts and on others.
+/// Checks that many threads at once get the same bits, on the same contacts and on others.
 fn threads(rig: &mut Rig) -> Result<Line, LawError> {
     let motions = rig.walk(3, 200, 0.3);
     let expected = along(&mut rig.bench, &motions)?;
@@ -136,7 +137,7 @@ fn threads(rig: &mut Rig) -> Result<Line, LawError> {
                 std::thread::Builder::new().spawn_scoped(scope, run)
             })
             .collect();
-        // A thread that the system does not give has shown nothing.
+        // A thread that could not be started counts as a failure.
         runs.into_iter()
             .map(|run| u32::from(!run.is_ok_and(|r| r.join().unwrap_or(false))))
             .sum()
@@ -146,12 +147,12 @@ fn threads(rig: &mut Rig) -> Result<Line, LawError> {
         "threads",
         f64::from(same + other),
         0.0,
-        "of 8 threads at once on the same contacts and 4 on others, those that could not be started or had other bits than alone",
+        "of 8 concurrent threads on the same contacts and 4 on others, those that could not be started or differed from a single thread",
     ))
 }
 
-/// Threads that differ when each has contacts of its own. Each makes every call over and over, so that calls overlap also
-/// where threads take turns on one processor.
+/// Returns the number of threads with different results when each has its own contacts. Each thread repeats
+/// every call, so that calls overlap even if threads share one processor.
 fn other_contacts(rig: &mut Rig) -> Result<u32, LawError> {
     const THREADS: usize = 4;
     const N: usize = 1024;
@@ -178,7 +179,7 @@ fn other_contacts(rig: &mut Rig) -> Result<u32, LawError> {
     }))
 }
 
-/// A contact saved in the middle of a path and taken up elsewhere goes on as it would have.
+/// Checks that a contact saved in the middle of a path and restored elsewhere continues unchanged.
 fn restore(rig: &mut Rig) -> Result<Line, LawError> {
     let motions = rig.walk(11, 200, 0.3);
     let mut state = [rig.bench.fresh()];
@@ -213,7 +214,7 @@ fn restore(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// Another contact's path in between changes nothing.
+/// Checks that another contact's path in between has no effect.
 fn hidden(rig: &mut Rig) -> Result<Line, LawError> {
     let (mine, other) = (rig.walk(21, 150, 0.3), rig.walk(22, 150, 0.5));
     let alone = along(&mut rig.bench, &mine)?;
@@ -237,7 +238,7 @@ fn hidden(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// Whatever comes in, a status or finite numbers come out.
+/// Checks that any input gives an error status or finite outputs.
 fn bad_numbers(rig: &mut Rig) -> Result<Line, LawError> {
     let bad = [
         f64::NAN,

@@ -1,8 +1,8 @@
-//! What a law promises, tested on the one-contact bench.
+//! Certification: tests of the declared properties of a law on the one-contact bench.
 //!
-//! A law is composed with plain partners (frictionless contact, a linear bond), driven along paths at the
-//! opening where it does something, and each promise gives a line: kept, broken or not made, with the
-//! number that decided.
+//! A law is combined with plain partners (frictionless contact, a linear bond) and driven along paths around
+//! its characteristic opening. Each property gives a line: pass, fail or not applicable, with the number
+//! that decided.
 
 mod apart;
 mod bond;
@@ -18,29 +18,29 @@ use crate::laws::{LawError, Loaded, Plugin, SearchPath};
 use rig::Rig;
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// How a promise came out.
+/// Result of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
-    /// Kept.
+    /// The law has the property.
     Pass,
-    /// Broken.
+    /// The law lacks the property.
     Fail,
-    /// Not made by this law.
+    /// The check does not apply to this law.
     Skip,
 }
 
-/// One promise.
+/// Result of one check.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Line {
-    /// Its name.
+    /// Name of the check.
     pub check: String,
-    /// How it came out.
+    /// Result.
     pub outcome: Outcome,
-    /// The number that decided; what it is, the text says. Infinity is written as null.
+    /// The number that decided, described by the text. Infinity is written as null.
     #[serde(deserialize_with = "null_is_infinite")]
     pub number: f64,
-    /// What was measured.
+    /// Description of the measured quantity.
     pub text: String,
 }
 
@@ -55,7 +55,7 @@ impl Line {
         }
     }
 
-    /// Kept when the number is at most `limit`.
+    /// Passes when the number is at most `limit`.
     fn below(check: &str, number: f64, limit: f64, text: impl Into<String>) -> Self {
         let text = format!("{}; at most {limit:e}", text.into());
         Self::judged(check, number <= limit, number, text)
@@ -79,18 +79,18 @@ fn null_is_infinite<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(from)?.unwrap_or(f64::INFINITY))
 }
 
-/// What happens while a law is tested.
+/// Progress of a certification.
 enum Event<'a> {
     /// A check begins.
     Begins(&'a str),
-    /// It gave this line.
+    /// A check gave this line.
     Line(&'a Line),
 }
 
-/// The lines of a certificate as they are written.
+/// The lines of a certificate while it is written.
 struct Book<'a> {
     lines: Vec<Line>,
-    /// Whom the law is tested with, at the end of each line.
+    /// Partner of the law under test, added to the text of each line.
     partner: String,
     tell: &'a mut dyn FnMut(Event<'_>),
 }
@@ -98,7 +98,7 @@ struct Book<'a> {
 type Check = fn(&mut Rig) -> Result<Line, LawError>;
 
 impl Book<'_> {
-    /// Makes checks, each whatever became of the one before it.
+    /// Runs checks, each regardless of the result of the previous one.
     fn make(&mut self, rig: &mut Rig, checks: &[(&str, Check)]) {
         for (name, check) in checks {
             (self.tell)(Event::Begins(name));
@@ -115,7 +115,7 @@ impl Book<'_> {
     }
 }
 
-/// What was found of a law.
+/// Certificate of a law.
 #[derive(Clone, Debug, Serialize)]
 pub struct Certificate {
     /// Kind of the law.
@@ -124,26 +124,28 @@ pub struct Certificate {
     pub name: String,
     /// Its version.
     pub version: String,
-    /// Hash of the library.
+    /// SHA-256 of the library.
     pub sha256: String,
     /// The library.
     pub library: String,
-    /// The promises.
+    /// Results of the checks.
     pub lines: Vec<Line>,
 }
 
 impl Certificate {
-    /// Whether no promise was broken.
+    /// Returns whether no check failed.
     pub fn certified(&self) -> bool {
         self.lines.iter().all(|l| l.outcome != Outcome::Fail)
     }
 }
 
-/// Tests a law with these parameters; partners are taken from the search path, with their defaults. A damage law meets
-/// `cohesion` where that is given: what it promises depends on the bond's stiffness.
+/// Tests a law with these parameters. Partner laws are taken from the search path, with their default
+/// parameters. A damage law is tested with `cohesion` if given, since its properties depend on the bond's
+/// stiffness.
 ///
 /// # Errors
-/// A partner is missing, or the parameters do not suit the law. What the law itself does wrong is a line.
+/// A partner is missing, or the law rejects the parameters. Errors of the law itself become lines of the
+/// certificate.
 pub fn certify(
     plugin: &Plugin,
     parameters: &[f64],
@@ -160,7 +162,8 @@ pub fn certify(
     )
 }
 
-/// As [`certify`], without what parameters cannot change: for laws whose code is known, such as the shipped ones.
+/// Certifies as [`certify`], without the checks that do not depend on parameters: for laws whose code is
+/// known, such as the shipped ones.
 ///
 /// # Errors
 /// As [`certify`].

@@ -1,4 +1,4 @@
-//! A law with its partners on the bench, and the opening at which it does something.
+//! A law with its partners on the bench, and the law's characteristic opening.
 
 use crate::laws::bench::{Answer, Bench, Motion, State};
 use crate::laws::{Interface, Kind, LawError, Loaded, Plugin, SearchPath};
@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng};
 
 /// Reduced radius of the contacts on the bench (m); the area is pi r^2 in 3D.
 const RADIUS: f64 = 1e-5;
-/// Compressive pressure where a law wants one (Pa).
+/// Compressive pressure for laws that need one (Pa).
 pub const PRESSURE: f64 = 1e6;
 
 /// See the module.
@@ -15,11 +15,11 @@ pub struct Rig {
     law: Interface,
     dimension: u32,
     partner: String,
-    /// Opening at which damage begins, or that stores 1 J/m^2 where none does (m).
+    /// Opening at which damage begins, or for a law without damage the one that stores 1 J/m^2 (m).
     pub onset: f64,
-    /// Opening at which the bond breaks, where it does (m).
+    /// Opening at which the bond breaks, if it does (m).
     pub end: Option<f64>,
-    /// Which slot is tested.
+    /// Kind of the law under test.
     pub kind: Kind,
 }
 
@@ -28,8 +28,8 @@ fn by_default(path: &SearchPath, kind: Kind, name: &str) -> Result<Loaded, LawEr
 }
 
 impl Rig {
-    /// The law in its slot, beside each set of partners of its kind: a damage law with this cohesion, or once with a linear
-    /// bond (m = 1), once with MAC's (m = 2).
+    /// Builds the rigs for a law; for a damage law either with the given cohesion, or with a linear bond (m
+    /// = 1) and with the MAC bond (m = 2).
     pub fn all(
         plugin: &Plugin,
         parameters: &[f64],
@@ -92,7 +92,7 @@ impl Rig {
         self.law.opens()
     }
 
-    /// Whether damage can grow.
+    /// Returns whether damage can grow.
     pub fn damages(&self) -> bool {
         self.law.damages()
     }
@@ -101,22 +101,22 @@ impl Rig {
         self.dimension
     }
 
-    /// The law under test.
+    /// Returns the law under test.
     pub fn tested(&self) -> &Loaded {
         self.law.law(self.kind).unwrap_or(self.law.contact())
     }
 
-    /// A second bench with the same laws.
+    /// Returns a second bench with the same laws.
     pub fn another(&self) -> Bench {
         self.strict().lenient()
     }
 
-    /// One on which values that cannot be are errors, as in a run.
+    /// Returns a bench that reports values out of range as errors, as in a run.
     pub fn strict(&self) -> Bench {
         Bench::new(self.law.clone(), self.dimension, RADIUS)
     }
 
-    /// A second bench on which the law under test has other parameters.
+    /// Returns a second bench on which the law under test has other parameters.
     pub fn with_parameters(&self, parameters: &[f64]) -> Bench {
         let mut law = self.law.clone();
         if let Some(tested) = law.parameters_mut(self.kind) {
@@ -125,13 +125,13 @@ impl Rig {
         Bench::new(law, self.dimension, RADIUS).lenient()
     }
 
-    /// Finds the opening at which damage begins and that at which the bond is broken, by single pulls in
-    /// mode I and, where that does nothing, mode II.
+    /// Finds the openings at which damage begins and at which the bond is broken, by single pulls in mode I
+    /// and, if that has no effect, mode II.
     pub fn find_scale(&mut self) -> Result<(), LawError> {
         if !self.opens() {
             return Ok(());
         }
-        // A tenth of a decade apart, from a picometre to ten metres, in one growing pull.
+        // A tenth of a decade apart, from a picometre to ten metres, in one increasing pull.
         let openings: Vec<f64> = (0..=130)
             .map(|k| 10f64.powf(-12.0 + 0.1 * f64::from(k)))
             .collect();
@@ -156,8 +156,8 @@ impl Rig {
         Ok(())
     }
 
-    /// A random walk of openings about the scale of the law, normal and tangential, as fine as `share` of
-    /// it; without opening, of gaps and slips.
+    /// Returns a random walk around the scale of the law, normal and tangential, with steps of the fraction
+    /// `share` of it; for a law without opening, of gaps and slips.
     pub fn walk(&self, seed: u64, steps: usize, share: f64) -> Vec<Motion> {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(seed);
         let reach = 3.0 * self.onset;
@@ -186,7 +186,7 @@ impl Rig {
             .collect()
     }
 
-    /// Drives one fresh contact along motions.
+    /// Drives one new contact along motions.
     pub fn drive(&mut self, motions: &[Motion], h: f64) -> Result<(Vec<Answer>, State), LawError> {
         let mut state = [self.bench.fresh()];
         let mut out = Vec::with_capacity(motions.len());
@@ -201,7 +201,7 @@ impl Rig {
     }
 }
 
-/// An opening of length `u` at an angle from the normal (rad).
+/// Returns an opening of length `u` at an angle from the normal (rad).
 pub fn pull(u: f64, angle: f64) -> Motion {
     let opening = [u * angle.cos(), u * angle.sin(), 0.0];
     Motion {
@@ -211,7 +211,7 @@ pub fn pull(u: f64, angle: f64) -> Motion {
     }
 }
 
-/// Work per area done on the bond from one opening to the next, by the trapezoidal rule (J/m^2).
+/// Returns the work per area done on the bond between two openings by the trapezoidal rule (J/m^2).
 pub fn work(from: &Motion, to: &Motion, a: &Answer, b: &Answer) -> f64 {
     let mut sum = 0.0;
     for k in 0..3 {

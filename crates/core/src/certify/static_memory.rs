@@ -1,4 +1,5 @@
-//! A law keeps nothing in the static memory of its library: threads that call it at once would overwrite each other's.
+//! Checks that a law keeps no data in the static memory of its library, where concurrent calls would
+//! overwrite it.
 
 use super::Line;
 use super::border::together;
@@ -8,12 +9,13 @@ use crate::laws::static_memory::{StaticMemory, Unseen};
 
 const CHECK: &str = "static memory";
 
-/// Contacts a batch, round by round. Each round has a larger one than all before: what is allocated as large as needed
-/// and kept shows by its address.
+/// Contacts per batch, for each round. Each round has a larger batch than all before, so that a buffer that
+/// grows on demand and is kept changes its address.
 const ROUNDS: [&[usize]; 3] = [&[1, 5, 17], &[3, 64], &[2, 300]];
 
-/// Compares the static memory before and after calls with other numbers, parameters and sizes of batches. What changes in the
-/// first round only is set up at first use; what changes again in each round is kept from call to call.
+/// Compares the static memory before and after calls with other numbers, parameters and batch sizes. Data
+/// that change in the first round only are initialised at first use; data that change in each round are kept
+/// between calls.
 pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
     let plugin = rig.tested().plugin.clone();
     let memory = match StaticMemory::of(&plugin) {
@@ -21,18 +23,18 @@ pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
         Err(Unseen::BuiltIn) => {
             return Ok(Line::skip(
                 CHECK,
-                "the law is part of the program: the library with the same code is looked at",
+                "the law is part of the program: the library with the same code is tested instead",
             ));
         }
         Err(Unseen::TooLarge(bytes)) => {
-            let text = "bytes of writable static memory in its library, too many to be compared: a law keeps nothing between calls; \
+            let text = "bytes of writable static memory in its library, too many to be compared: a law must not keep data between calls; \
                         make tables `const` and work arrays local to the call";
             return Ok(Line::judged(CHECK, false, bytes as f64, text));
         }
         Err(Unseen::System) => {
             return Ok(Line::skip(
                 CHECK,
-                "this system does not show the memory of a library",
+                "the static memory of a library cannot be located on this system",
             ));
         }
     };
@@ -41,29 +43,30 @@ pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
         calls(rig, round, sizes);
         seen.push(memory.read());
     }
-    // As a run would have it.
+    // As a run would call it.
     plugin.validate(&rig.tested().parameters)?;
     let [Some(first), Some(second), Some(third)] = seen.as_slice() else {
         return Ok(Line::skip(
             CHECK,
-            "this system does not let the memory of a library be read",
+            "the static memory of a library cannot be read on this system",
         ));
     };
     let changed = |a: &[u8], b: &[u8]| a.iter().zip(b).filter(|(a, b)| a != b).count();
     let (once, again) = (changed(first, second), changed(second, third));
     let still = once == 0 || again == 0;
     let text = if still {
-        "bytes of its library's static memory that calls go on changing"
+        "bytes of its library's static memory that change in every call"
     } else {
-        "bytes of its library's static memory that calls go on changing: it keeps something between calls outside its columns, \
-         and threads overwrite each other's; make static arrays, counters and saved variables local to the call, or declare \
-         what must last as an internal variable"
+        "bytes of its library's static memory that change in every call: it keeps data between calls outside its columns, \
+         and threads overwrite each other's data; make static arrays, counters and saved variables local to the call, or declare \
+         persistent data as an internal variable"
     };
     let number = if still { 0 } else { once.max(again) };
     Ok(Line::judged(CHECK, still, number as f64, text))
 }
 
-/// Every call of the law, with numbers, parameters and sizes of batches of this round. Errors are other checks'.
+/// Makes every call of the law with the numbers, parameters and batch sizes of this round. Errors are found
+/// by other checks.
 fn calls(rig: &Rig, round: usize, sizes: &[usize]) {
     let seed = 1000 * (round as u64 + 1);
     let plugin = &rig.tested().plugin;
@@ -77,7 +80,7 @@ fn calls(rig: &Rig, round: usize, sizes: &[usize]) {
     }
 }
 
-/// The parameters, each a few thousandths off within its range.
+/// Returns the parameters, each changed by a few thousandths within its range.
 fn other_parameters(rig: &Rig, round: usize) -> Vec<f64> {
     let share = 1e-3 * (round + 1) as f64;
     let tested = rig.tested();

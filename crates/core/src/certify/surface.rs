@@ -1,4 +1,4 @@
-//! Promises of laws without opening: contact, attraction, wear.
+//! Checks of laws without opening: contact, attraction, wear.
 
 use super::rig::{PRESSURE, Rig};
 use super::{Check, Line};
@@ -20,8 +20,8 @@ pub fn checks(set: CheckSet) -> &'static [(&'static str, Check)] {
     }
 }
 
-/// Friction, strengths and wear are not negative, restitution gives back no more than came: so no
-/// step makes energy or matter.
+/// Checks that friction, strengths and wear are not negative and restitution does not exceed one, so that no
+/// step creates energy or mass.
 fn signs(rig: &mut Rig) -> Result<Line, LawError> {
     let mut worst = 0.0f64;
     for seed in 0..24 {
@@ -53,7 +53,7 @@ fn signs(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// Turning the tangential axes changes nothing.
+/// Checks that rotating the tangential axes changes nothing.
 fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
     let motions = rig.walk(7, 200, 0.1);
     let planar = rig.dimension() == 2;
@@ -91,11 +91,11 @@ fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
         "objectivity",
         worst,
         1e-6,
-        "largest relative change of the answer when the tangential axes turn",
+        "largest relative change of the result when the tangential axes are rotated",
     ))
 }
 
-/// The volume of a slide does not depend on the number of steps.
+/// Checks that the wear volume of a slide does not depend on the number of steps.
 fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
     let mut volumes = Vec::new();
     for n in [10u32, 100, 1000] {

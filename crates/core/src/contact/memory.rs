@@ -1,4 +1,4 @@
-//! What bonded contacts remember: the opening, the damage, and the laws' internal variables.
+//! Memory of bonded contacts: opening, damage, and the laws' internal variables.
 
 use super::events::Life;
 use crate::geometry::space::{Space, VectorLike};
@@ -12,25 +12,25 @@ pub struct Bond<S: Space> {
     pub opening_n: f64,
     /// Tangential opening (m).
     pub opening_t: S::Tangent,
-    /// Gap that the bond fills, so that it is rigid in compression there (m): that at which it was made where its law
-    /// acts in tension only, zero where springs push too.
+    /// Rest gap of the bond, at which it is rigid in compression (m): the gap at formation for a
+    /// tension-only law, zero where springs also push.
     pub gap: f64,
     /// Damage D in \[0, 1\]; 1 is broken.
     pub damage: f64,
-    /// The damage with which the step's impulse is formed: D at its start, or the coupling's trial.
+    /// Damage used in the step's impulse: D at its start, or the coupling's trial value.
     pub used: f64,
     /// Area (m^2).
     pub area: f64,
-    /// Energy stored (J).
+    /// Stored energy (J).
     pub energy: f64,
-    /// What it went through.
+    /// Energy history.
     pub life: Life,
     /// Whether this slot is in use.
     pub live: bool,
 }
 
 impl<S: Space> Bond<S> {
-    /// No bond: a slot for internal variables only.
+    /// Returns a slot without a bond, for internal variables only.
     fn none(area: f64) -> Self {
         Self {
             opening_n: 0.0,
@@ -45,7 +45,7 @@ impl<S: Space> Bond<S> {
         }
     }
 
-    /// Whether it still holds.
+    /// Returns whether the bond is intact.
     pub fn intact(&self) -> bool {
         self.live && self.damage < 1.0
     }
@@ -76,23 +76,23 @@ pub struct Openings<S: Space> {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Memory<S: Space> {
-    /// Slots; a freed slot is used again.
+    /// Slots; freed slots are reused.
     pub bonds: Vec<Bond<S>>,
-    /// Internal variables, one column each, one value a slot.
+    /// Internal variables, one column each, with one value per slot.
     pub variables: Vec<Vec<f64>>,
-    /// Whether bonds remember their rotation.
+    /// Whether bonds store their rotation.
     pub rotates: bool,
-    /// Rotations of the bonds (rad), one a slot; empty unless `rotates`.
+    /// Rotations of the bonds (rad), one per slot; empty unless `rotates`.
     pub rotations: Vec<S::Spin>,
-    /// Bonds ever made.
+    /// Number of bonds formed so far.
     pub made: u64,
-    /// Bonds that broke.
+    /// Number of bonds broken so far.
     pub broken: u64,
     free: Vec<u32>,
 }
 
 impl<S: Space> Memory<S> {
-    /// A memory with so many internal variables.
+    /// Creates a memory with this number of internal variables.
     pub fn new(variables: usize) -> Self {
         Self {
             bonds: Vec::new(),
@@ -105,7 +105,7 @@ impl<S: Space> Memory<S> {
         }
     }
 
-    /// A slot for a contact with the given initial variables; an intact bond when `bonded`.
+    /// Allocates a slot for a contact with the given initial variables; with an intact bond if `bonded`.
     pub fn allocate(&mut self, bonded: bool, gap: f64, area: f64, initial: &[f64]) -> u32 {
         let slot = self.free.pop().unwrap_or_else(|| {
             self.bonds.push(Bond::none(area));
@@ -132,7 +132,7 @@ impl<S: Space> Memory<S> {
         }
     }
 
-    /// Makes an intact bond in a slot whose bond there is none, or broke; its internal variables go on.
+    /// Forms an intact bond in a slot without a bond or with a broken one; its internal variables are kept.
     pub fn bond(&mut self, slot: usize, gap: f64, area: f64) {
         self.bonds[slot] = Bond {
             gap,
@@ -146,7 +146,7 @@ impl<S: Space> Memory<S> {
         self.made += 1;
     }
 
-    /// Openings and rotations, to come back to after a trial.
+    /// Copies openings and rotations, to be restored after a trial.
     pub fn clone_openings(&self) -> Openings<S> {
         Openings {
             openings: self
@@ -158,7 +158,7 @@ impl<S: Space> Memory<S> {
         }
     }
 
-    /// Goes back to remembered openings.
+    /// Restores copied openings.
     pub fn restore_openings(&mut self, before: Openings<S>) {
         for (bond, (n, t)) in self.bonds.iter_mut().zip(before.openings) {
             (bond.opening_n, bond.opening_t) = (n, t);
@@ -166,13 +166,13 @@ impl<S: Space> Memory<S> {
         self.rotations = before.rotations;
     }
 
-    /// Gives a slot back.
+    /// Frees a slot.
     pub fn release(&mut self, slot: u32) {
         self.bonds[slot as usize].live = false;
         self.free.push(slot);
     }
 
-    /// Sum of the damage of the bonds that hold.
+    /// Returns the sum of the damage of the intact bonds.
     pub fn intact_damage(&self) -> f64 {
         self.bonds
             .iter()
@@ -181,7 +181,7 @@ impl<S: Space> Memory<S> {
             .sum()
     }
 
-    /// Energy stored (J).
+    /// Returns the stored energy (J).
     pub fn energy(&self) -> f64 {
         self.bonds
             .iter()

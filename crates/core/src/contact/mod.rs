@@ -1,4 +1,4 @@
-//! The contact network: who touches whom, where, and what each contact remembers.
+//! The contact network: contacts, their geometry, and their memory.
 pub mod detect;
 pub mod events;
 pub mod id;

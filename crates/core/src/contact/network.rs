@@ -1,4 +1,4 @@
-//! Contacts of the current step and what carries over from the last one.
+//! Contacts of the current step, and the state carried over from the previous one.
 
 use super::events::{Break, ContactDissipation, Loss};
 use super::memory::{BondState, Memory};
@@ -8,9 +8,8 @@ use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize, Serializer};
 use std::collections::{BTreeMap, HashSet};
 
-/// The name of a contact, stable in time: candidate (a ball, or a convex piece with [`Key::PIECE`] set),
-/// antagonist (the same, or a surface with [`Key::SURFACE`] set) and the face, edge or vertex that is
-/// touched.
+/// Key of a contact, stable in time: candidate (a ball, or a convex piece with [`Key::PIECE`] set),
+/// antagonist (the same, or a surface with [`Key::SURFACE`] set), and the face, edge or vertex in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Key {
     /// Index of the candidate.
@@ -27,18 +26,18 @@ impl Key {
     /// Marks a candidate or antagonist that is a convex piece.
     pub const PIECE: u32 = 1 << 30;
 
-    /// The candidate ball's index, when it is one.
+    /// Returns the index of the candidate if it is a ball.
     pub fn ball(&self) -> Option<usize> {
         (self.candidate & Self::PIECE == 0).then_some(self.candidate as usize)
     }
 
-    /// The surface's index, when the antagonist is one.
+    /// Returns the index of the antagonist if it is a surface.
     pub fn surface(&self) -> Option<usize> {
         (self.antagonist & Self::SURFACE != 0)
             .then_some((self.antagonist & !Self::SURFACE) as usize)
     }
 
-    /// The same pair, whatever the feature.
+    /// Returns the pair, without the feature.
     pub fn pair(&self) -> (u32, u32) {
         (self.candidate, self.antagonist)
     }
@@ -48,7 +47,7 @@ impl Key {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Contact<S: Space> {
-    /// Its name.
+    /// Key.
     pub key: Key,
     /// Bodies: candidate, antagonist.
     pub bodies: [u32; 2],
@@ -56,108 +55,110 @@ pub struct Contact<S: Space> {
     pub law: u16,
     /// See [`crate::solve::ContactForm::central`].
     pub central: bool,
-    /// A corner of a polygon touches, not a side: there is no face to bond over.
+    /// Whether the contact is at a corner of a polygon, so that there is no face for a bond.
     pub vertex_contact: bool,
-    /// Whether a bond of this pair broke.
+    /// Whether a bond of this pair has broken.
     pub broken: bool,
-    /// Place in the memory of its interface law, or [`Contact::NO_MEMORY`].
+    /// Index in the memory of its interface law, or [`Contact::NO_MEMORY`].
     pub slot: u32,
     /// Gap (m), positive when open.
     pub gap: f64,
     /// Unit normal, from the antagonist to the candidate.
     pub normal: S::Vector,
-    /// From each body's centre to the contact point (m).
+    /// Vectors from each body's centre to the contact point (m).
     pub arms: [S::Vector; 2],
     /// Reduced radius r1 r2/(r1 + r2) (m).
     pub radius: f64,
     /// Impulse of the last solve in world axes (N s).
     pub impulse: S::Vector,
-    /// Moment of the last solve on the candidate (N m s); zero where nothing resists rotation.
+    /// Moment of the last solve on the candidate (N m s); zero where the contact does not resist rotation.
     pub moment: S::Spin,
-    /// When the contact formed (s).
+    /// Time of formation of the contact (s).
     pub formed_at: f64,
-    /// Time under a compressive impulse without a break (s).
+    /// Uninterrupted time under a compressive impulse (s).
     pub pressed: f64,
-    /// It closes within this step, faster than detection at the start of the step can follow: its gap and normal are those
-    /// of the instant at which it closes, and an impact is one of this step.
+    /// Whether it closes within this step, too fast for detection at the start of the step: its gap and
+    /// normal are those at the time of closing, and its impact belongs to this step.
     pub closing: bool,
-    /// Of a closing one: an earlier impact of the same step changes the motion that it was foreseen from. Restitution does
-    /// not act on it in this step: it is only kept from closing, and bounces in the next.
+    /// For a closing contact: whether an earlier impact of the same step changes the motion from which it
+    /// was predicted. It is then only kept from closing, without restitution, and rebounds in the next step.
     pub later: bool,
-    /// Beyond the alert distance at the start of the step: nothing but the constraint that it must not open below zero acts
-    /// on it, no bond, no cohesion, no wear.
+    /// Whether it was beyond the alert distance at the start of the step: only the unilateral constraint
+    /// acts on it, no bond, no cohesion, no wear.
     pub beyond: bool,
-    /// Whether the last solve left friction at its bound.
+    /// Whether friction was at its bound in the last solve (slip).
     pub slides: bool,
-    /// Energy that friction took at this contact since it formed (J).
+    /// Energy dissipated by friction since the contact formed (J).
     pub friction_work: f64,
 }
 
 impl<S: Space> Contact<S> {
-    /// No memory: plain frictional contact.
+    /// Marks a frictional contact without memory.
     pub const NO_MEMORY: u32 = u32::MAX;
 
-    /// The slot of its memory, if any.
+    /// Returns the slot of its memory, if any.
     pub fn memory(&self) -> Option<usize> {
         (self.slot != Self::NO_MEMORY).then_some(self.slot as usize)
     }
 }
 
-/// All contacts, sorted by key, and the neighbour list they come from. What tells of the last step alone is not kept in
+/// All contacts, sorted by key, and their neighbour list. Data of the last step only are not part of
 /// checkpoints.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Network<S: Space> {
     /// Contacts of this step, sorted by key.
     pub contacts: Vec<Contact<S>>,
-    /// Bonds and internal variables, one memory for each interface law.
+    /// Bonds and internal variables, one memory per interface law.
     pub memory: Vec<Memory<S>>,
-    /// Pairs whose bond broke: they stay broken when they part and meet again.
+    /// Pairs whose bond broke; they remain in the set when they separate and meet again.
     #[serde(serialize_with = "in_order")]
     pub broken_pairs: HashSet<(u32, u32)>,
-    /// Distance within which a pair is a contact (m).
+    /// Distance within which a pair forms a contact (m).
     pub alert: f64,
-    /// How far the neighbour list looks beyond the alert distance (m).
+    /// Range of the neighbour list beyond the alert distance (m).
     pub skin: f64,
-    /// Energy of bonds torn because their contact left all reach (J); the ledger takes it.
+    /// Energy of bonds broken because their contact moved out of range (J); collected by the energy ledger.
     pub torn_energy: f64,
-    /// Bonds that broke in the last step, in its order.
+    /// Bonds broken in the last step, in order.
     #[serde(skip)]
     pub bond_breaks: Vec<Break<S>>,
-    /// Bodies, candidate and antagonist, and interface law of the bonds that were made in the last step.
+    /// Bodies (candidate, antagonist) and interface law of the bonds formed in the last step.
     #[serde(skip)]
     pub bonds_formed: Vec<([u32; 2], u16)>,
-    /// What the last step dissipated at its contacts, in their order; kept where something asked for it.
+    /// Energy dissipated at the contacts in the last step, in their order; `None` unless an output requests
+    /// it.
     #[serde(skip)]
     pub spent: Option<Vec<ContactDissipation>>,
-    /// What the last step wore off surfaces; kept where something asked for it.
+    /// Wear of surfaces in the last step; `None` unless requested.
     #[serde(skip)]
     pub losses: Option<Vec<Loss>>,
-    /// Times over that a step wears and damages: the cycles that the cycle at hand stands for, see
+    /// Factor on wear and damage in a step: the number of cycles that the current cycle represents, see
     /// [`crate::wear::jump`]; 1 without jumps.
     pub cycle_multiplier: f64,
-    /// Volume worn off each surface so far, by its index (m^3; m^3/m in 2D).
+    /// Worn volume of each surface so far, by index (m^3; m^3/m in 2D).
     pub worn: BTreeMap<usize, f64>,
-    /// What shows whether the step was small enough.
+    /// Diagnostics of the step size.
     pub step_size: StepSizeDiagnostics,
-    /// How often the neighbour list was rebuilt.
+    /// Number of rebuilds of the neighbour list.
     pub rebuilds: u64,
     /// Relative motion in a step (m) from which a pair is followed through the step.
     pub fast: f64,
     pub(super) candidates: Vec<(u32, u32)>,
     pub(super) seen_at: Vec<S::Vector>,
-    /// How much farther the neighbour list looks about each body that is fast (m); empty where none is.
+    /// Additional range of the neighbour list around each fast body (m); empty where there is none.
     pub(super) widened: Vec<f64>,
-    /// The spin of each surface for which the list was made (rad/s); zero where turning leaves it in place.
+    /// Spin of each surface for which the list was built (rad/s); zero where rotation leaves the surface in
+    /// place.
     pub(super) turning: Vec<f64>,
-    /// Half thicknesses and levers of what can touch.
+    /// Half thicknesses and extents of the collision shapes.
     #[serde(skip)]
     pub(crate) extents: super::detect::Extents,
     #[serde(skip)]
     pub(super) old: Vec<Contact<S>>,
 }
 
-/// The same pairs are the same bytes.
+/// Sorted, so that equal sets are serialised to equal bytes.
 fn in_order<T: Serializer>(pairs: &HashSet<(u32, u32)>, to: T) -> Result<T::Ok, T::Error> {
     let mut pairs: Vec<_> = pairs.iter().collect();
     pairs.sort_unstable();
@@ -165,19 +166,20 @@ fn in_order<T: Serializer>(pairs: &HashSet<(u32, u32)>, to: T) -> Result<T::Ok, 
 }
 
 impl<S: Space> Network<S> {
-    /// Whether all bodies of its contacts are among this many. Broken pairs name what touches, not bodies, and are only
-    /// compared.
+    /// Returns whether all bodies of its contacts have indices below this number. Broken pairs refer to
+    /// shapes, not bodies, and are only compared.
     pub(crate) fn names_bodies_below(&self, bodies: usize) -> bool {
         let below = |b: &u32| (*b as usize) < bodies;
         self.contacts.iter().all(|c| c.bodies.iter().all(below))
     }
 
-    /// Has the neighbour list made anew at the next step: what may touch has changed.
+    /// Forces a rebuild of the neighbour list in the next step, because the set of possible pairs has
+    /// changed.
     pub fn forget_neighbours(&mut self) {
         self.seen_at.clear();
     }
 
-    /// An empty network for so many interface laws.
+    /// Creates an empty network, with one entry of `variables` per interface law.
     pub fn new(alert: f64, skin: f64, variables: &[usize]) -> Self {
         Self {
             contacts: Vec::new(),
@@ -204,19 +206,19 @@ impl<S: Space> Network<S> {
         }
     }
 
-    /// How many contacts there are: those within the alert distance or held, and of those made ahead because of speed the
-    /// ones that carry an impulse.
+    /// Returns the number of contacts: those within the alert distance or bonded, and of the predicted ones
+    /// those with an impulse.
     pub fn contact_count(&self) -> usize {
         self.counted_contacts().count()
     }
 
-    /// The contacts that [`Self::contact_count`] counts.
+    /// Iterates over the contacts that [`Self::contact_count`] counts.
     pub fn counted_contacts(&self) -> impl Iterator<Item = &Contact<S>> {
         let counts = |c: &&Contact<S>| !c.beyond || c.impulse != S::Vector::zero();
         self.contacts.iter().filter(counts)
     }
 
-    /// The bond of a contact, broken or not.
+    /// Returns the bond of a contact, intact or broken.
     pub fn bond(&self, contact: &Contact<S>) -> Option<&super::Bond<S>> {
         contact
             .memory()
@@ -240,7 +242,7 @@ impl<S: Space> Network<S> {
         contact.gap - bond.map_or(0.0, |b| b.gap)
     }
 
-    /// Tells that the bond of a contact broke, with what it went through.
+    /// Records that the bond of a contact broke, with its energy history.
     pub(crate) fn record_break(&mut self, contact: &Contact<S>) {
         let Some(bond) = self.bond(contact) else {
             return;
@@ -258,24 +260,24 @@ impl<S: Space> Network<S> {
         });
     }
 
-    /// Says where breaks are, which are told with the arms of their contacts.
+    /// Completes the positions of breaks, which are recorded as lever arms.
     pub(crate) fn locate_breaks(&mut self, bodies: &Bodies<S>) {
         for b in &mut self.bond_breaks {
             b.place += bodies.position[b.bodies[0] as usize];
         }
     }
 
-    /// Bonds made so far.
+    /// Returns the number of bonds formed so far.
     pub fn bonds_made(&self) -> u64 {
         self.memory.iter().map(|m| m.made).sum()
     }
 
-    /// Bonds broken so far.
+    /// Returns the number of bonds broken so far.
     pub fn bonds_broken(&self) -> u64 {
         self.memory.iter().map(|m| m.broken).sum()
     }
 
-    /// Mean damage over all bonds ever made, broken ones counting 1.
+    /// Returns the mean damage over all bonds formed so far; broken ones count 1.
     pub fn mean_damage(&self) -> f64 {
         let made = self.bonds_made();
         if made == 0 {
@@ -285,7 +287,7 @@ impl<S: Space> Network<S> {
         (self.bonds_broken() as f64 + intact) / made as f64
     }
 
-    /// Energy stored in bonds (J).
+    /// Returns the energy stored in bonds (J).
     pub fn elastic_energy(&self) -> f64 {
         self.memory.iter().map(Memory::energy).sum()
     }

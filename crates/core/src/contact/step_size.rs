@@ -1,18 +1,19 @@
-//! Signs that the time step is too large for the motion: contacts found late, bodies that may have passed through others.
+//! Diagnostics of a time step that is too large for the motion: contacts found late, bodies that may have
+//! passed through others.
 
 use super::network::Contact;
 use crate::bodies::Bodies;
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// Overlap, in parts of a contact's radius, from which a contact counts as found late.
+/// Penetration, as a fraction of a contact's radius, from which a contact counts as found late.
 const LATE: f64 = 0.01;
-/// When and between which bodies something was first seen.
+/// Time and bodies of the first occurrence of an event.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Occurrence {
     /// Time at the start of the step (s).
     pub time: f64,
-    /// The bodies: names of first bodies, numbers of grains.
+    /// The bodies: names of first bodies, indices of grains.
     pub bodies: Vec<String>,
 }
 
@@ -33,45 +34,48 @@ impl Occurrence {
     }
 }
 
-/// What shows, over a run, whether the time step was small enough to see every contact in time.
+/// Indicators, over a run, of whether the time step was small enough to find every contact in time.
 ///
-/// Pairs whose motion in a step exceeds what detection covers are followed through the step, and get their contact before
-/// they meet. What is left to report is what that could not settle.
+/// Pairs whose motion in a step exceeds the range of detection are followed through the step and get their
+/// contact before they meet. The cases that this cannot resolve are reported here.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepSizeDiagnostics {
-    /// Contacts that were first seen overlapping by more than a hundredth of their radius.
+    /// Number of contacts first found with a penetration above a hundredth of their radius.
     pub late: u64,
-    /// The deepest of these overlaps, in parts of the radius.
+    /// Deepest of these penetrations, as a fraction of the radius.
     pub deepest: f64,
-    /// The first of them.
+    /// First occurrence.
     pub first_late: Option<Occurrence>,
-    /// Times that two bodies went deeper into each other within a step than a quarter of the thinner one's half thickness.
+    /// Number of times that two bodies penetrated within a step by more than a quarter of the thinner one's
+    /// half thickness.
     pub passed: u64,
-    /// The first of them.
+    /// First occurrence.
     pub first_passed: Option<Occurrence>,
-    /// Impacts with restitution that followed another of the same body within a step: the two were kept apart in that step
-    /// and bounced in the next, which takes more energy than two impacts one after the other.
+    /// Number of impacts with restitution that followed another impact of the same body within a step: they
+    /// were only kept from closing in that step and rebounded in the next, which dissipates more energy than
+    /// two successive impacts.
     pub held_back: u64,
-    /// The first of them.
+    /// First occurrence.
     pub first_held_back: Option<Occurrence>,
-    /// Steps in which a body moved so far that not all it may have met was looked at.
+    /// Number of steps in which a body moved too far for all possible contacts to be examined.
     pub unwatched_steps: u64,
-    /// The first of them.
+    /// First occurrence.
     pub first_unwatched: Option<Occurrence>,
-    /// The start of the last of them (s).
+    /// Start of the last such step (s).
     #[serde(skip)]
     last_unwatched: Option<f64>,
-    /// When the motion of a body was first lost to rounding, and which.
+    /// First occurrence of a displacement lost to rounding.
     pub motion_lost: Option<Occurrence>,
-    /// Contacts that were made ahead of the step in which they close.
+    /// Number of contacts created before they closed.
     pub foreseen: u64,
-    /// Solves repeated with contacts that only the velocities of the first solve would have closed.
+    /// Number of solves repeated for contacts found from the velocities of the first solve.
     pub repeated_solves: u64,
 }
 
 impl StepSizeDiagnostics {
-    /// Notes a contact that is seen for the first time, of a pair that overlaps by `known` elsewhere already (m): a body that
-    /// rests in a surface a little too deep meets its next facet as deep, which is no matter of speed.
+    /// Records a contact that is found for the first time, of a pair that already penetrates by `known` (m)
+    /// elsewhere: a body that rests slightly too deep in a surface meets the next facet at the same depth,
+    /// which is not due to its speed.
     pub(super) fn meet<S: Space>(
         &mut self,
         contact: &Contact<S>,
@@ -88,23 +92,23 @@ impl StepSizeDiagnostics {
         }
     }
 
-    /// Notes two bodies that the step could not keep apart.
+    /// Records two bodies that the step could not keep apart.
     pub(super) fn pass<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, pair: [u32; 2]) {
         self.passed += 1;
         self.first_passed
             .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
     }
 
-    /// Notes two bodies whose impact follows another of the same step.
+    /// Records two bodies whose impact follows another one of the same step.
     pub(crate) fn hold_back<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, pair: [u32; 2]) {
         self.held_back += 1;
         self.first_held_back
             .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
     }
 
-    /// Notes a body that moves farther in a step than others are looked for.
+    /// Records a body that moves farther in a step than the range in which contacts are searched.
     pub(super) fn leave_unwatched<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, body: u32) {
-        // A step may be looked at several times.
+        // A step may be examined several times.
         if self.last_unwatched == Some(time) {
             return;
         }
@@ -114,17 +118,17 @@ impl StepSizeDiagnostics {
             .get_or_insert_with(|| Occurrence::new(time, bodies, &[body]));
     }
 
-    /// Notes a body that moves less in a step than the spacing of numbers where it is.
+    /// Records a body whose displacement in a step is below the floating-point spacing of its position.
     pub(crate) fn lose_motion<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, body: u32) {
         self.motion_lost
             .get_or_insert_with(|| Occurrence::new(time, bodies, &[body]));
     }
 
-    /// What to tell the user of motion lost to rounding, if there is any.
+    /// Returns the warning about motion lost to rounding, if there was any.
     pub fn rounding_warning(&self) -> Option<String> {
         self.motion_lost.as_ref().map(|first| {
             format!(
-                "bodies moved less in a step than the spacing of numbers where they are, and stood still, {}; put the \
+                "bodies moved less in a step than the floating-point spacing of their coordinates, and did not move, {}; put the \
                  origin nearer to the scene, or take a larger time.step",
                 first.text()
             )
@@ -144,19 +148,19 @@ impl StepSizeDiagnostics {
         })
     }
 
-    /// What to tell the user; none where every contact was seen in time.
+    /// Returns the warning for the user; `None` if every contact was found in time.
     pub fn warning(&self) -> Option<String> {
         let first = |o: &Option<Occurrence>| o.as_ref().map_or(String::new(), Occurrence::text);
         let passed = (self.passed > 0).then(|| {
             format!(
-                "{} times two bodies went into or through each other within a step, {}",
+                "{} times two bodies penetrated or passed through each other within a step, {}",
                 self.passed,
                 first(&self.first_passed)
             )
         });
         let held_back = (self.held_back > 0).then(|| {
             format!(
-                "{} times impacts with restitution followed each other within a step, {}; the later ones lost more energy \
+                "{} times impacts with restitution followed each other within a step, {}; the later ones dissipated more energy \
                  than their restitution says",
                 self.held_back,
                 first(&self.first_held_back)

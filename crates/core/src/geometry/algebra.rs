@@ -5,13 +5,13 @@ use serde::{Serialize, de::DeserializeOwned};
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
-/// The greater of two numbers; of equal ones, or where `a` is none, `b`: what vector units do.
+/// Returns the greater of two numbers; `b` if they are equal or `a` is NaN, as vector instructions do.
 #[inline(always)]
 pub fn greatest(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The lesser of two numbers; of equal ones, or where `a` is none, `b`.
+/// Returns the lesser of two numbers; `b` if they are equal or `a` is NaN.
 #[inline(always)]
 pub fn least(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
@@ -38,15 +38,15 @@ pub trait VectorLike:
 {
     /// Number of components.
     const N: usize;
-    /// The null vector.
+    /// Returns the zero vector.
     fn zero() -> Self;
-    /// Scalar product.
+    /// Returns the scalar product.
     fn dot(&self, other: &Self) -> f64;
-    /// Euclidean norm.
+    /// Returns the Euclidean norm.
     fn norm(&self) -> f64;
-    /// The nearest vector not longer than `bound` (not negative).
+    /// Returns the nearest vector not longer than `bound` (not negative).
     fn limited(self, bound: f64) -> Self;
-    /// From a slice; missing components are zero.
+    /// Creates a vector from a slice; missing components are zero.
     fn from_slice(values: &[f64]) -> Self {
         let mut v = Self::zero();
         for (k, x) in values.iter().take(Self::N).enumerate() {
@@ -54,7 +54,7 @@ pub trait VectorLike:
         }
         v
     }
-    /// Component by component product.
+    /// Returns the component-wise product.
     fn scaled_by(&self, other: &Self) -> Self {
         let mut v = *self;
         for k in 0..Self::N {
@@ -62,7 +62,7 @@ pub trait VectorLike:
         }
         v
     }
-    /// The components padded with zeros to three.
+    /// Returns the components, padded with zeros to three.
     fn padded(&self) -> [f64; 3] {
         let mut out = [0.0; 3];
         for (k, slot) in out.iter_mut().enumerate().take(Self::N) {
@@ -70,7 +70,7 @@ pub trait VectorLike:
         }
         out
     }
-    /// Whether every component is finite.
+    /// Returns whether every component is finite.
     fn is_finite(&self) -> bool {
         (0..Self::N).all(|k| self[k].is_finite())
     }
@@ -100,7 +100,7 @@ macro_rules! vector_like {
             #[inline(always)]
             fn limited(mut self, bound: f64) -> Self {
                 if $n == 1 {
-                    // One number needs neither a root nor a branch.
+                    // A single component needs neither a root nor a branch.
                     self[0] = least(greatest(self[0], -bound), bound);
                     return self;
                 }
@@ -122,11 +122,11 @@ vector_like!(Vector3<f64>, 3);
 pub trait MatrixLike:
     Copy + Debug + Send + Sync + PartialEq + Add<Output = Self> + Sub<Output = Self> + 'static
 {
-    /// The vector it acts on.
+    /// Type of the vectors it acts on.
     type V: VectorLike;
-    /// Diagonal matrix.
+    /// Returns a diagonal matrix.
     fn diagonal(d: &Self::V) -> Self;
-    /// A number times the identity.
+    /// Returns a multiple of the identity.
     fn uniform(x: f64) -> Self {
         let mut d = Self::V::zero();
         for k in 0..Self::V::N {
@@ -134,19 +134,19 @@ pub trait MatrixLike:
         }
         Self::diagonal(&d)
     }
-    /// Matrix times vector.
+    /// Returns the matrix-vector product.
     fn apply(&self, v: &Self::V) -> Self::V;
-    /// Matrix times matrix.
+    /// Returns the matrix product.
     fn times(&self, other: &Self) -> Self;
-    /// Dyadic product a b^T.
+    /// Returns the dyadic product a b^T.
     fn dyad(a: &Self::V, b: &Self::V) -> Self;
-    /// Inverse, if there is one.
+    /// Returns the inverse, or `None` for a singular matrix.
     fn inverse(&self) -> Option<Self>;
-    /// Transpose.
+    /// Returns the transpose.
     fn transposed(&self) -> Self;
-    /// Matrix times number.
+    /// Returns the matrix times a number.
     fn scaled(&self, s: f64) -> Self;
-    /// Entry in row `i`, column `j`.
+    /// Returns the entry in row `i`, column `j`.
     fn entry(&self, i: usize, j: usize) -> f64;
 }
 

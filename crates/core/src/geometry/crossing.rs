@@ -1,4 +1,4 @@
-//! Where a chain of segments crosses itself.
+//! Self-intersections of a chain of segments.
 
 use nalgebra::Vector2;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -6,8 +6,8 @@ use rstar::{AABB, RTree};
 
 type V = Vector2<f64>;
 
-/// The first two segments of a chain that meet elsewhere than at the point they share, by the numbers of the points
-/// they begin at, and where (m). A chain that goes steadily to one side of x is known to have none.
+/// Returns the first two segments of a chain that intersect other than at a shared point, as the indices of
+/// their start points, and the position (m). A chain monotonic in x has none.
 pub fn first(points: &[V]) -> Option<(usize, usize, V)> {
     let steady = |sign: f64| points.windows(2).all(|w| sign * (w[1].x - w[0].x) > 0.0);
     if steady(1.0) || steady(-1.0) {
@@ -44,14 +44,14 @@ pub fn first(points: &[V]) -> Option<(usize, usize, V)> {
     None
 }
 
-/// Whether a chain turns straight back at b.
+/// Returns whether a chain reverses direction at b.
 fn folds(a: V, b: V, c: V) -> Option<V> {
     let (to, on) = (b - a, c - b);
     let back = to.perp(&on) == 0.0 && to.dot(&on) < 0.0;
     back.then_some(b)
 }
 
-/// Where two segments meet.
+/// Returns the intersection of two segments.
 fn meet([a, b]: [V; 2], [c, d]: [V; 2]) -> Option<V> {
     let (u, v, w) = (b - a, d - c, c - a);
     let cross = u.perp(&v);
@@ -59,7 +59,7 @@ fn meet([a, b]: [V; 2], [c, d]: [V; 2]) -> Option<V> {
         if u.perp(&w) != 0.0 {
             return None;
         }
-        // On one line: an end of one lies on the other.
+        // Collinear: an end of one lies on the other.
         let on = |p: &V| (0.0..=1.0).contains(&((p - a).dot(&u) / u.norm_squared()));
         return [c, d].into_iter().find(on);
     }

@@ -1,4 +1,4 @@
-//! The inside of a cylinder: a drum. A circle in 2D; in 3D an endless cylinder along an axis of its body.
+//! The inside of a cylinder (a drum): a circle in 2D, in 3D an infinite cylinder along an axis of its body.
 
 use super::shape::{ClosestPoint, Surface, about};
 use super::space::{Space, VectorLike};
@@ -12,12 +12,12 @@ pub struct Drum {
 }
 
 impl Drum {
-    /// A drum of this radius (m); `axis` is 0, 1 or 2 in 3D and counts for nothing in 2D.
+    /// Creates a drum of this radius (m); `axis` is 0, 1 or 2 in 3D and ignored in 2D.
     pub fn new(radius: f64, axis: usize) -> Self {
         Self { radius, axis }
     }
 
-    /// The part of a vector across the axis.
+    /// Returns the part of a vector perpendicular to the axis.
     fn across<S: Space>(&self, v: &S::Vector) -> S::Vector {
         let mut across = *v;
         if S::D == 3 {
@@ -26,7 +26,7 @@ impl Drum {
         across
     }
 
-    /// Two axes across the cylinder's.
+    /// Returns the two axes perpendicular to the cylinder's.
     fn plane<S: Space>(&self) -> [usize; 2] {
         if S::D == 2 {
             [0, 1]
@@ -47,7 +47,7 @@ impl<S: Space> Surface<S> for Drum {
         let normal = if r > 0.0 {
             across * (-1.0 / r)
         } else {
-            // On the axis all directions are as near; one of them.
+            // On the axis all directions are equally near; one of them is used.
             let mut n = S::Vector::zero();
             n[self.plane::<S>()[0]] = -1.0;
             n
@@ -77,7 +77,7 @@ impl<S: Space> Surface<S> for Drum {
             return vec![(0..=180).map(point).collect()];
         }
         let mut faces = Surface::<S>::faces_within(self, 0.5 * self.radius);
-        // Files hold them the other way round.
+        // Files use the opposite orientation.
         faces.iter_mut().for_each(|f| f.swap(1, 3));
         faces
     }
@@ -140,7 +140,7 @@ mod tests {
         // Behind the wall the distance is negative.
         let behind = touch::<Dim2>(&drum, Vector2::new(0.0, 2.25), 0.1)[0];
         assert!((behind.distance + 0.25).abs() < 1e-15);
-        // On the axis a wide reach still gives a unit normal.
+        // On the axis a large search distance still gives a unit normal.
         assert_eq!(touch::<Dim2>(&drum, Vector2::zeros(), 3.0)[0].distance, 2.0);
     }
 

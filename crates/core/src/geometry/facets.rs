@@ -1,4 +1,4 @@
-//! Triangles of a surface in space: where a ball touches them, without ghosts at their seams.
+//! Triangles of a surface in 3D, and contact points of a ball on them without ghost contacts at their seams.
 
 use super::shape::ClosestPoint;
 use nalgebra::Vector3;
@@ -6,28 +6,28 @@ use std::collections::HashMap;
 
 type V = Vector3<f64>;
 
-/// A triangle of a surface; its corners go round against the clock seen from the open side.
+/// A triangle of a surface; its corners are anticlockwise seen from the open side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facet<V> {
     /// Corners (m).
     pub corners: [V; 3],
-    /// Names of the corners, the same in all facets that share them.
+    /// Names of the corners, equal in all facets that share them.
     pub names: [u64; 3],
     /// Name of the facet.
     pub name: u32,
 }
 
-/// A part of a facet: its corners that are in it, by place.
+/// A part of a facet (corner, edge or face): which of its corners belong to it.
 type Part = [bool; 3];
 
 impl Facet<V> {
-    /// Unit normal, towards the open side.
+    /// Returns the unit normal, towards the open side.
     pub fn normal(&self) -> V {
         let [a, b, c] = self.corners;
         (b - a).cross(&(c - a)).normalize()
     }
 
-    /// The angle at a corner (rad).
+    /// Returns the angle at a corner (rad).
     pub fn angle(&self, k: usize) -> f64 {
         let (u, v) = (
             self.corners[(k + 1) % 3] - self.corners[k],
@@ -36,7 +36,7 @@ impl Facet<V> {
         u.cross(&v).norm().atan2(u.dot(&v))
     }
 
-    /// The names of a part, sorted, unused places last.
+    /// Returns the names of a part, sorted, with unused entries last.
     pub fn part(&self, part: Part) -> [u64; 3] {
         let mut names = [u64::MAX; 3];
         for k in 0..3 {
@@ -48,14 +48,14 @@ impl Facet<V> {
         names
     }
 
-    /// Whether all corners of a part are its own.
+    /// Returns whether all corners of a part belong to the facet.
     pub fn has(&self, part: &[u64; 3]) -> bool {
         part.iter()
             .all(|n| *n == u64::MAX || self.names.contains(n))
     }
 }
 
-/// What found a part: how many facets, from where, and through which facet first.
+/// A nearest part: the number of facets that found it, the vector from it, and the first such facet.
 struct Found {
     part: [u64; 3],
     corners: usize,
@@ -64,8 +64,8 @@ struct Found {
     first: usize,
 }
 
-/// All places where a ball centred at `centre` is nearest to the surface within `reach` (m), in the order of their
-/// features. `facets` are all that come into the box of that size about it.
+/// Finds all points where the surface is locally nearest to a ball centred at `centre` within `reach` (m),
+/// in the order of their features. `facets` are all that intersect the box of that size about it.
 pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
     let start = out.len();
     let mut found: Vec<Found> = Vec::new();
@@ -88,14 +88,14 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Closes
         }
     }
     let about = |part: [u64; 3]| facets.iter().filter(move |g| g.has(&part));
-    // An edge or a corner counts when all facets about it find it: else a face is nearer.
+    // An edge or a corner counts if all facets around it find it; otherwise a face is nearer.
     found.retain(|f| f.count >= about(f.part).count());
     let up = |f: &Found| pseudo_normal(about(f.part), &f.part, f.corners);
     let arm = |f: &Found| centre - f.closest_point;
     let nearest = |f: &&Found, g: &&Found| arm(f).norm_squared().total_cmp(&arm(g).norm_squared());
-    // A way of the size of rounding has no direction.
+    // A vector of the size of rounding errors has no direction.
     let tiny = 1e-13 * (centre.norm() + reach);
-    // The nearest part tells inside from outside: what lies behind it shows its back.
+    // The nearest part determines inside or outside: parts behind it are seen from their back.
     let inside = found
         .iter()
         .min_by(nearest)
@@ -113,7 +113,7 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Closes
             g.corners.iter().any(over)
         };
         if (inside || length <= tiny) && about(f.part).any(rises) {
-            // At the bottom of a crease or below it: behind the planes of all its sides.
+            // At or below the bottom of a crease: behind the planes of all its sides.
             out.extend(about(f.part).map(|g| {
                 let (normal, distance) = (g.normal(), arm.dot(&g.normal()));
                 ClosestPoint {
@@ -139,8 +139,9 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Closes
     out[start..].sort_by_key(|t| t.feature);
 }
 
-/// The mean normal about a part, weighed by the angles of the facets: it tells inside from outside. Baerentzen and
-/// Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG 11 (2005).
+/// Returns the mean normal at a part, weighted by the angles of the facets, which determines inside or
+/// outside. Baerentzen and Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE
+/// TVCG 11 (2005).
 fn pseudo_normal<'a>(
     about: impl Iterator<Item = &'a Facet<V>>,
     part: &[u64; 3],
@@ -157,7 +158,7 @@ fn pseudo_normal<'a>(
     sum.try_normalize(0.0).unwrap_or_else(V::z)
 }
 
-/// A name of a part: by the lowest name of the facets about it.
+/// Returns the name of a part, from the lowest name of the facets around it.
 fn feature(facets: &[Facet<V>], first: usize, part: &[u64; 3], corners: usize) -> u32 {
     let owner = facets
         .iter()
@@ -167,33 +168,33 @@ fn feature(facets: &[Facet<V>], first: usize, part: &[u64; 3], corners: usize) -
     let place = |name: u64| owner.names.iter().position(|n| *n == name).unwrap_or(0) as u32;
     owner.name * 8
         + match corners {
-            // An edge by the corner that is not on it.
+            // An edge is numbered by the corner opposite to it.
             2 => 1 + (3 - place(part[0]) - place(part[1])),
             1 => 4 + place(part[0]),
             _ => 0,
         }
 }
 
-/// An edge of a surface that stands out: a sharp one, or one with a facet on one side alone.
+/// A convex edge of a surface: a sharp one, or one with a facet on one side only.
 #[derive(Clone, Copy, Debug)]
 pub struct Ridge {
-    /// Its ends (m), along the side of its first facet.
+    /// Its ends (m), in the direction of the side of its first facet.
     pub ends: [V; 2],
     /// Their names.
     pub names: [u64; 2],
-    /// The first facet, and which of its sides it is.
+    /// The first facet.
     pub facet: u32,
-    /// See `facet`.
+    /// Index of the edge in that facet.
     pub side: u8,
-    /// Normals of the facets on both sides; behind an open border that of the first, turned round.
+    /// Normals of the facets on both sides; at an open border the second is the reverse of the first.
     normals: [V; 2],
 }
 
-/// How far, in parts of the distance, a facet may stand out before a normal and still count as behind it.
+/// Tolerance, relative to the distance, for a facet in front of a normal to count as behind it.
 const BEHIND: f64 = 1e-6;
 
 impl Ridge {
-    /// Whether a direction across the edge is between the normals of its facets.
+    /// Returns whether a direction perpendicular to the edge is between the normals of its facets.
     pub fn holds(&self, direction: &V) -> bool {
         let along = self.ends[1] - self.ends[0];
         let [m, n] = &self.normals;
@@ -201,7 +202,7 @@ impl Ridge {
     }
 }
 
-/// All edges that stand out.
+/// Returns all convex edges.
 pub fn ridges(facets: &[Facet<V>]) -> Vec<Ridge> {
     let mut out = Vec::new();
     let mut about: HashMap<[u64; 2], Vec<usize>> = HashMap::new();
@@ -242,7 +243,7 @@ pub fn ridges(facets: &[Facet<V>]) -> Vec<Ridge> {
     out
 }
 
-/// Whether all facets about a corner lie behind a normal there.
+/// Returns whether all facets around a corner lie behind a normal there.
 pub fn behind(facets: &[Facet<V>], name: u64, place: &V, normal: &V) -> bool {
     let height = |c: &V| (c - place).dot(normal);
     let about = facets.iter().filter(|f| f.names.contains(&name));
@@ -251,8 +252,8 @@ pub fn behind(facets: &[Facet<V>], name: u64, place: &V, normal: &V) -> bool {
         .all(|c| height(c) <= BEHIND * (c - place).norm())
 }
 
-/// Nearest point of a triangle and the corners involved (one: a corner, two: an edge, three: the face).
-/// Ericson, Real-Time Collision Detection (2005), section 5.1.5.
+/// Returns the nearest point of a triangle and the corners involved (one: a corner, two: an edge, three: the
+/// face). Ericson, Real-Time Collision Detection (2005), section 5.1.5.
 pub fn nearest(
     p: Vector3<f64>,
     a: Vector3<f64>,

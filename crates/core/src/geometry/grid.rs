@@ -1,16 +1,17 @@
-//! Pairs of balls that may touch: a uniform grid of cells, each a little wider than the widest reach.
+//! Neighbour search for balls: a uniform grid of cells, each slightly wider than the largest search
+//! distance.
 //!
-//! Where a few wide balls would crowd the cells of many small ones, balls are sorted by size into levels, each with a grid
-//! of its own, and a ball looks into the grids of its own level and of the wider ones (Ericson, Real-Time Collision
-//! Detection, 2005, section 7.2.1).
+//! Where a few large balls would put many small ones into each cell, balls are sorted by size into levels
+//! with a grid each, and a ball searches the grids of its own level and of the larger ones (Ericson,
+//! Real-Time Collision Detection, 2005, section 7.2.1).
 
 use super::periodic::Periodic;
 use super::space::VectorLike;
 
-/// All pairs (a, b), a < b, of balls with |x_a - x_b| < r_a + r_b + `reach`, sorted by (a, b).
+/// Returns all pairs (a, b), a < b, of balls with |x_a - x_b| < r_a + r_b + `reach`, sorted by (a, b).
 ///
-/// `keep(a, b)` says which pairs matter (balls of one body never touch each other). Cost is linear in
-/// the number of balls, whatever their sizes; memory is bounded whatever the extent (cells grow when the scene is sparse).
+/// `keep(a, b)` selects the relevant pairs (balls of one body never touch each other). The cost is linear in
+/// the number of balls, for any sizes; memory is bounded for any extent (cells grow if the scene is sparse).
 pub fn pairs<V: VectorLike>(
     centres: &[V],
     radii: &[f64],
@@ -42,19 +43,19 @@ pub fn pairs<V: VectorLike>(
     out
 }
 
-/// Balls that stand in one place.
+/// A cell with many balls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crowd {
     /// One of them.
     pub ball: u32,
-    /// How many there are,
+    /// Number of balls
     pub count: usize,
     /// within a cell of this size (m).
     pub size: f64,
 }
 
-/// Whether [`pairs`] would find more than `most`: then the cell that holds most balls. Stores no pair, and stops
-/// counting when it knows.
+/// Returns, if [`pairs`] would find more than `most` pairs, the cell with the most balls. Stores no pairs,
+/// and stops counting when the answer is known.
 pub fn more_than<V: VectorLike>(
     centres: &[V],
     radii: &[f64],
@@ -64,7 +65,7 @@ pub fn more_than<V: VectorLike>(
     keep: impl Fn(u32, u32) -> bool,
 ) -> Option<Crowd> {
     let n = centres.len();
-    // All of them together are fewer.
+    // All possible pairs together are fewer.
     if n < 2 || n.saturating_mul(n - 1) / 2 <= most {
         return None;
     }
@@ -82,7 +83,8 @@ pub fn more_than<V: VectorLike>(
     None
 }
 
-/// How many pairs [`pairs`] looks at: no fewer than it finds. Linear in the number of balls.
+/// Returns the number of pairs that [`pairs`] examines, an upper bound of those it finds. Linear in the
+/// number of balls.
 pub fn most_pairs<V: VectorLike>(
     centres: &[V],
     radii: &[f64],
@@ -105,15 +107,17 @@ pub fn most_pairs<V: VectorLike>(
     sum
 }
 
-/// Balls in a cell, as a ball sees them in the mean, above which they are sorted by size. Balls of one size have three.
+/// Mean number of balls per cell searched, above which balls are sorted by size. For balls of one size it is
+/// three.
 const CROWD: f64 = 8.0;
-/// The widest reach of a level is at most twice its narrowest, but in the last, a thousandth of a millionth of the widest.
+/// The largest search distance of a level is at most twice its smallest, except in the last level, which
+/// starts at 1e-9 of the largest.
 const MAX_LEVELS: usize = 31;
 
-/// Balls by size, each level with its grid; from narrow to wide.
+/// Balls sorted by size into levels with a grid each, from small to large.
 struct Levels {
     levels: Vec<Level>,
-    /// Place of each ball's level; empty where there is one.
+    /// Level of each ball; empty if there is only one.
     own: Vec<u8>,
 }
 
@@ -134,10 +138,10 @@ impl Levels {
         if grid.crowd() <= CROWD {
             return one(grid);
         }
-        // From wide to narrow, as far as there are balls.
+        // From large to small, as far as there are balls.
         let class = |radius: f64| {
             let ratio = width(widest) / width(radius);
-            // The exponent, since it never falls as the ratio rises: narrower levels hold no wider ball.
+            // The exponent is monotonic in the ratio: a lower level contains no larger ball.
             let exponent = (ratio.to_bits() >> 52) as usize;
             exponent.saturating_sub(1023).min(MAX_LEVELS - 1)
         };
@@ -170,13 +174,14 @@ impl Levels {
         }
     }
 
-    /// The levels that a ball looks into: its own, and the wider ones.
+    /// Returns the levels that a ball searches: its own and the larger ones.
     fn of(&self, ball: u32) -> &[Level] {
         let own = self.own.get(ball as usize).copied().unwrap_or(0);
         &self.levels[usize::from(own)..]
     }
 
-    /// Calls `each` with the balls within reach of `a` that it is paired with, until that says false.
+    /// Calls `each` with the balls within the search distance of `a` that it is paired with, until it
+    /// returns false.
     #[allow(clippy::too_many_arguments)]
     fn near<V: VectorLike>(
         &self,
@@ -194,7 +199,7 @@ impl Levels {
             let own = self.is_own(a, level);
             for &cell in cells.iter() {
                 for &b in level.grid.balls(cell) {
-                    // Two of one level see each other.
+                    // Two balls of one level find each other twice.
                     if own && b <= a {
                         continue;
                     }
@@ -208,7 +213,7 @@ impl Levels {
         }
     }
 
-    /// The cell that holds most balls.
+    /// Returns the cell with the most balls.
     fn crowd(&self) -> Option<Crowd> {
         let cells = self.levels.iter().flat_map(|level| {
             let grid = &level.grid;
@@ -242,7 +247,7 @@ struct Grid {
 }
 
 impl Grid {
-    /// Of all balls, or of some of them, in their order.
+    /// Builds a grid of all balls, or of some of them, in their order.
     fn new<V: VectorLike>(
         centres: &[V],
         some: Option<&[u32]>,
@@ -261,7 +266,7 @@ impl Grid {
                 (lo.min(x[k]), hi.max(x[k]))
             }),
         };
-        // A sparse scene gets wider cells rather than more memory.
+        // A sparse scene gets larger cells rather than more memory.
         loop {
             let mut total = 1.0;
             for k in 0..V::N {
@@ -313,7 +318,7 @@ impl Grid {
         grid
     }
 
-    /// Balls in a cell, as a ball sees them in the mean.
+    /// Returns the mean number of balls in the cell of a ball.
     fn crowd(&self) -> f64 {
         let of = |w: &[u32]| f64::from(w[1] - w[0]).powi(2);
         let sum: f64 = self.starts.windows(2).map(of).sum();
@@ -337,7 +342,8 @@ impl Grid {
         &self.sorted[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
-    /// The cells around a position, each once even where a periodic axis has one or two cells.
+    /// Iterates over the cells around a position, each once even if a periodic axis has only one or two
+    /// cells.
     fn around<V: VectorLike>(&self, x: &V, periodic: &Periodic, out: &mut Vec<usize>) {
         out.clear();
         let home = self.cell(&periodic.wrapped(*x));
@@ -424,7 +430,7 @@ mod tests {
         }
     }
 
-    /// Balls of sizes from one to `ratio` thrown into a box of which the widest is half as wide.
+    /// Balls of sizes from one to `ratio` in a box half as wide as the largest.
     fn mixed<const N: usize>(
         rng: &mut rand_pcg::Pcg64,
         count: usize,
@@ -451,7 +457,7 @@ mod tests {
                     let found = pairs(&x, &r, reach, &periodic, every);
                     assert_eq!(found, brute(&x, &r, reach, &periodic));
                     assert!(most_pairs(&x, &r, reach, &periodic) >= found.len() as f64);
-                    // One wide ball among many small ones of one size.
+                    // One large ball among many small ones of equal size.
                     r.fill(1.0 / ratio);
                     r[137] = 1.0;
                     let (x, _) = mixed(&mut rng, 400, ratio);
@@ -476,7 +482,7 @@ mod tests {
         x.push(Vector2::new(0.5, 1.5));
         r.push(0.6);
         let both = most_pairs(&x, &r, 0.0, &Periodic::default());
-        // Each looks at the wide one too.
+        // Each also examines the large one.
         assert!(both < 1.1 * alone + n as f64, "{both:e} {alone:e}");
     }
 
@@ -497,7 +503,7 @@ mod tests {
             assert!(found <= most && most > last, "{found} of {most}");
             last = most;
         }
-        // All see all.
+        // Every ball finds every other.
         assert_eq!(last, 500.0 * 499.0 / 2.0);
     }
 
@@ -522,7 +528,7 @@ mod tests {
                 "{crowd:?}"
             );
         }
-        // Pairs that do not matter do not count.
+        // Irrelevant pairs are not counted.
         let apart = |a: u32, b: u32| a / 1000 != b / 1000;
         let few = more_than(&x, &radii, 0.0, &Periodic::default(), 5000, apart);
         assert_eq!(few, None);

@@ -1,4 +1,4 @@
-//! A rough plane in space: heights over a regular grid, solid below.
+//! A rough surface in 3D: heights on a regular grid, solid below.
 
 use super::facets::{self, Facet};
 use super::recede::{Recede, Shares, Vertex};
@@ -6,8 +6,8 @@ use super::shape::{ClosestPoint, Surface};
 use super::space::Dim3;
 use nalgebra::Vector3;
 
-/// Heights z over a regular grid of `nx` by `ny` points, two triangles a cell. With `periodic` the
-/// grid repeats: then point nx stands for point 0 again and is not stored.
+/// Heights z on a regular grid of `nx` by `ny` points, with two triangles per cell. With `periodic` the grid
+/// repeats: point nx is then the image of point 0 and is not stored.
 #[derive(Debug, Clone)]
 pub struct HeightField {
     nx: usize,
@@ -17,11 +17,11 @@ pub struct HeightField {
     periodic: [bool; 2],
     lowest: f64,
     highest: f64,
-    /// Heights before any wear; empty where there was none.
+    /// Heights before any wear; empty without wear.
     first: Vec<f64>,
 }
 
-/// Why heights are no surface.
+/// Reason why heights do not form a surface.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum HeightFieldError {
     /// Too few points.
@@ -29,19 +29,19 @@ pub enum HeightFieldError {
         "a height field needs at least 2 by 2 points (3 along a periodic axis), got {0} by {1}"
     )]
     TooFew(usize, usize),
-    /// Sizes do not agree.
+    /// The number of heights does not match.
     #[error("a height field of {0} by {1} points needs {2} heights, got {3}")]
     Count(usize, usize, usize, usize),
-    /// A spacing or height that is not usable.
+    /// A spacing or height is invalid.
     #[error("spacings of a height field must be positive and all heights finite")]
     NotFinite,
 }
 
 impl HeightField {
-    /// Builds the surface; `heights[j * nx + i]` (m) stands at (i dx, j dy).
+    /// Builds the surface; `heights[j * nx + i]` (m) is at (i dx, j dy).
     ///
     /// # Errors
-    /// Wrong counts, spacings or heights that are not finite.
+    /// Wrong counts, and spacings or heights that are not finite.
     pub fn new(
         nx: usize,
         ny: usize,
@@ -80,7 +80,7 @@ impl HeightField {
         if self.periodic[axis] { n } else { n - 1 }
     }
 
-    /// Index of a grid point, images folded onto the one stored.
+    /// Returns the index of a grid point, with periodic images mapped to the stored one.
     fn vertex(&self, i: i64, j: i64) -> usize {
         let i = i.rem_euclid(self.nx as i64) as usize;
         let j = j.rem_euclid(self.ny as i64) as usize;
@@ -93,7 +93,7 @@ impl HeightField {
     }
 }
 
-/// A number of a row that tells its images apart.
+/// Returns a number that distinguishes the periodic images of a row.
 fn image(i: i64) -> u64 {
     (i + (1 << 30)) as u64
 }
@@ -121,7 +121,7 @@ impl Surface<Dim3> for HeightField {
         if low.z > self.highest || high.z < self.lowest {
             return;
         }
-        // One cell more: all that meet at a point of the box.
+        // One cell more, to include all triangles that meet at a point of the box.
         let range = |axis: usize| {
             let (low, high) = (
                 (low[axis] / self.spacing[axis]).floor() as i64 - 1,
@@ -209,7 +209,7 @@ impl Recede<Dim3> for HeightField {
     }
 
     fn shares(&self, closest_point: &Vector3<f64>) -> Shares {
-        // The cell, and the place in it.
+        // The cell, and the position in it.
         let place = |axis: usize| {
             let x = closest_point[axis] / self.spacing[axis];
             let cell = x.floor() as i64;
@@ -304,7 +304,7 @@ mod tests {
         assert!(HeightField::new(2, 2, [0.0, 1.0], vec![0.0; 4], [false; 2]).is_err());
     }
 
-    /// The volume under the triangles, each a prism under a plane.
+    /// Volume under the triangles, each a prism.
     fn volume(field: &HeightField) -> f64 {
         let prism = |t: &Vec<Vector3<f64>>| {
             let area = 0.5 * ((t[1] - t[0]).cross(&(t[2] - t[0]))).z;

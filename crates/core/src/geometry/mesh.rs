@@ -1,4 +1,4 @@
-//! A surface of triangles in space, solid behind them: a first body from a file.
+//! A triangulated surface in 3D, solid behind it: a first body from a file.
 
 use super::facets::{self, Facet};
 use super::shape::{ClosestPoint, Surface};
@@ -11,7 +11,7 @@ use std::collections::HashMap;
 type V = Vector3<f64>;
 type Placed = GeomWithData<Rectangle<[f64; 3]>, u32>;
 
-/// Triangles that share their corners; against the clock seen from the open side.
+/// Triangles with shared corners, anticlockwise seen from the open side.
 #[derive(Debug)]
 pub struct Mesh {
     points: Vec<V>,
@@ -19,41 +19,42 @@ pub struct Mesh {
     tree: RTree<Placed>,
 }
 
-/// Why triangles are no surface.
+/// Reason why triangles do not form a surface.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum MeshError {
-    /// No triangle.
+    /// No triangles.
     #[error("the mesh has no triangles")]
     Empty,
-    /// More than names can tell apart.
+    /// More triangles than names can distinguish.
     #[error(
-        "the mesh has {0} triangles; at most {MAX_TRIANGLES} are told apart: take a coarser one"
+        "the mesh has {0} triangles, more than the limit of {MAX_TRIANGLES}; use a coarser one"
     )]
     TooMany(usize),
-    /// Not a number.
+    /// A coordinate is not finite.
     #[error("point {0} of the mesh is not finite")]
     NotFinite(usize),
-    /// A corner that is not there.
-    #[error("triangle {0} of the mesh names a point that is not there")]
+    /// A corner that does not exist.
+    #[error("triangle {0} of the mesh refers to a point that does not exist")]
     NoPoint(usize),
-    /// No area.
+    /// A triangle without area.
     #[error("triangle {0} of the mesh has no area; remove it")]
     Flat(usize),
-    /// An edge passed twice in the same direction.
+    /// An edge used twice in the same direction.
     #[error(
-        "triangles {0} and {1} of the mesh go along their common edge in the same direction: one of them is turned over, or more than two meet there; mend the mesh"
+        "triangles {0} and {1} of the mesh have their common edge in the same direction: one of them has the wrong orientation, or more than two meet there; repair the mesh"
     )]
     Turned(usize, usize),
 }
 
-/// What the names of contacts can tell apart.
+/// Maximum number of triangles that the names of contacts can distinguish.
 pub const MAX_TRIANGLES: usize = 1 << 28;
 
 impl Mesh {
-    /// From points (m) and triangles of them.
+    /// Creates a mesh from points (m) and triangles of point indices.
     ///
     /// # Errors
-    /// No triangles, points that are not finite, triangles without area, turned over, or more than two at an edge.
+    /// No triangles, points that are not finite, triangles without area, inconsistent orientation, or more
+    /// than two triangles at an edge.
     pub fn new(points: Vec<V>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         if triangles.is_empty() {
             return Err(MeshError::Empty);
@@ -97,12 +98,12 @@ impl Mesh {
         })
     }
 
-    /// Number of triangles.
+    /// Returns the number of triangles.
     pub fn len(&self) -> usize {
         self.triangles.len()
     }
 
-    /// Whether there is none.
+    /// Returns whether there are no triangles.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
@@ -187,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_ball_touches_faces_edges_and_corners_once() {
-        // Over a face, on its diagonal seam too.
+        // Above a face, including its diagonal seam.
         for at in [[0.3, 0.1, 1.2], [0.25, 0.25, 1.2], [-0.5, 0.5, 1.2]] {
             let t = touches(at, 0.5);
             assert_eq!(t.len(), 1, "{t:?}");
@@ -200,14 +201,14 @@ mod tests {
         let t = touches([2.0, 3.0, 3.0], 3.1);
         assert_eq!(t.len(), 1);
         assert!((t[0].distance - 3.0).abs() < 1e-15);
-        // Inside, pushed out by the nearest faces alone.
+        // Inside, pushed out by the nearest faces only.
         let t = touches([0.9, 0.0, 0.0], 0.2);
         assert!(t.len() == 1 && (t[0].distance + 0.1).abs() < 1e-15 && t[0].normal == V::x());
     }
 
     #[test]
     fn a_thin_plate_has_one_side_at_a_time() {
-        // Two faces 0.1 apart, both within reach.
+        // Two faces 0.1 apart, both within the search distance.
         let points = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
         let mut all: Vec<V> = points.iter().map(|p| V::new(p.0, p.1, 0.0)).collect();
         all.extend(points.iter().map(|p| V::new(p.0, p.1, -0.1)));

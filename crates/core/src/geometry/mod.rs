@@ -1,4 +1,4 @@
-//! Shapes, distances and the search for neighbours.
+//! Shapes, distances and the neighbour search.
 pub mod algebra;
 pub mod convex;
 pub mod crossing;

@@ -2,8 +2,8 @@
 
 use super::space::VectorLike;
 
-/// Lengths of the periodic cell; an axis without period has none. Positions are never wrapped in the
-/// state (paths stay continuous): differences are.
+/// Lengths of the periodic cell; `None` for axes without a period. Positions in the state are never wrapped
+/// (paths stay continuous); only differences are.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Periodic {
     /// Period of each axis (m).
@@ -11,7 +11,7 @@ pub struct Periodic {
 }
 
 impl Periodic {
-    /// The shortest of the images of a difference of positions.
+    /// Returns the shortest periodic image of a difference of positions.
     #[inline(always)]
     pub fn shortest<V: VectorLike>(&self, difference: V) -> V {
         let mut d = difference;
@@ -23,7 +23,7 @@ impl Periodic {
         d
     }
 
-    /// The image of a position in the cell that begins at zero.
+    /// Returns the image of a position in the cell that starts at zero.
     pub fn wrapped<V: VectorLike>(&self, position: V) -> V {
         let mut x = position;
         for k in 0..V::N {
@@ -34,7 +34,7 @@ impl Periodic {
         x
     }
 
-    /// Whether any axis has a period.
+    /// Returns whether any axis has a period.
     pub fn any(&self) -> bool {
         self.period.iter().any(Option::is_some)
     }

@@ -1,4 +1,4 @@
-//! The profile of a first body in the plane: a chain of segments, solid on its right-hand side.
+//! The profile of a first body in 2D: a chain of segments, solid on its right-hand side.
 
 use super::recede::{Recede, Shares, Vertex};
 use super::shape::{ClosestPoint, Corner, Surface};
@@ -7,25 +7,25 @@ use nalgebra::Vector2;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
-/// A box that holds a segment, the segment's number and by how much it is shifted along x (m).
+/// Bounding box of a segment, with the segment's index and its shift along x (m).
 type Segment = GeomWithData<Rectangle<[f64; 2]>, (u32, f64)>;
 
-/// By how much the boxes of segments that wear are larger than these, in parts of a segment's mean length: so often
-/// they are made anew.
+/// Margin of the bounding boxes of wearing segments, relative to the mean segment length; it determines how
+/// often they are rebuilt.
 const MARGIN: f64 = 0.25;
 
-/// An open chain of segments. Travelling along it, the solid is on the right, the open side on the
-/// left. With a period the chain repeats along x and its last point is the first one's image.
+/// An open chain of segments. In the direction of the chain the solid is on the right, the open side on the
+/// left. With a period the chain repeats along x and its last point is the image of the first.
 #[derive(Debug)]
 pub struct Polyline {
     points: Vec<Vector2<f64>>,
     period: Option<f64>,
     tree: RTree<Segment>,
-    /// What a profile that wears remembers; none where it does not.
+    /// Data of a wearing profile; `None` without wear.
     worn: Option<Worn>,
 }
 
-/// Heights before any wear, and how far vertices have moved since the boxes were made, of what these allow (m).
+/// Heights before any wear, and the displacement of vertices since the boxes were built, and the margin (m).
 #[derive(Debug)]
 struct Worn {
     first: Vec<f64>,
@@ -33,7 +33,7 @@ struct Worn {
     margin: f64,
 }
 
-/// Why a chain of points is no profile.
+/// Reason why a chain of points is not a valid profile.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum ProfileError {
     /// Fewer than two points.
@@ -48,10 +48,10 @@ pub enum ProfileError {
          ({0:e}, {1:e}), ends at ({2:e}, {3:e}) and the period is {4:e} m"
     )]
     Period(f64, f64, f64, f64, f64),
-    /// Not a number.
+    /// A coordinate is not finite.
     #[error("point {0} of the profile is not finite")]
     NotFinite(usize),
-    /// Two of its segments meet.
+    /// Two of its segments intersect.
     #[error(
         "the profile crosses itself at ({2:.6e}, {3:.6e}) m: the segment after point {0} meets the one after \
          point {1}; order the points along the profile, or leave some out"
@@ -100,7 +100,7 @@ impl Polyline {
         Ok(out)
     }
 
-    /// Makes the boxes of the segments, larger than these by a margin (m).
+    /// Builds the bounding boxes of the segments, with a margin (m).
     fn index(&mut self, margin: f64) {
         let images: &[f64] = if self.period.is_some() {
             &[-1.0, 0.0, 1.0]
@@ -121,13 +121,14 @@ impl Polyline {
         self.tree = RTree::bulk_load(segments);
     }
 
-    /// The ends of a segment, shifted along x (m).
+    /// Returns the ends of a segment, shifted along x (m).
     fn segment(&self, k: usize, shift: f64) -> [Vector2<f64>; 2] {
         let image = |p: Vector2<f64>| Vector2::new(p.x + shift, p.y);
         [image(self.points[k]), image(self.points[k + 1])]
     }
 
-    /// 1 where the chain goes to the right, so that the solid is below it, -1 where it goes to the left.
+    /// Returns 1 if the chain goes to the right, so that the solid is below it, and -1 if it goes to the
+    /// left.
     fn direction(&self) -> f64 {
         let last = self.points[self.points.len() - 1];
         if last.x > self.points[0].x { 1.0 } else { -1.0 }
@@ -137,7 +138,7 @@ impl Polyline {
         self.points.len() - 1
     }
 
-    /// Into the period that begins at the first point.
+    /// Maps a position into the period that starts at the first point.
     fn wrapped(&self, centre: &Vector2<f64>) -> (Vector2<f64>, f64) {
         let Some(period) = self.period else {
             return (*centre, 0.0);
@@ -147,7 +148,7 @@ impl Polyline {
         (Vector2::new(centre.x - shift, centre.y), shift)
     }
 
-    /// The direction in which the chain goes on behind a segment; none at its end.
+    /// Returns the direction of the chain after a segment; `None` at its end.
     fn following(&self, segment: usize) -> Option<Vector2<f64>> {
         let next = match segment + 1 {
             next if next < self.segments() => next,
@@ -186,7 +187,7 @@ impl Surface<Dim2> for Polyline {
                 }
                 continue;
             }
-            // A vertex is touched once: by the segment that ends in it, or at the chain's start.
+            // A vertex gives one contact point: from the segment that ends in it, or at the chain's start.
             let at_end = s > 1.0;
             if !at_end && (k > 0 || self.period.is_some()) {
                 continue;
@@ -199,7 +200,7 @@ impl Surface<Dim2> for Polyline {
             };
             let from = c - vertex;
             let nearest = next.is_none_or(|next| from.dot(&next) <= 0.0);
-            // Beyond both faces of a valley is behind them.
+            // Beyond both faces of a valley means behind them.
             let valley = next.is_some_and(|next| along.perp(&next) > 0.0);
             let length = from.norm();
             if length < reach && length > 0.0 && nearest {
@@ -233,7 +234,7 @@ impl Surface<Dim2> for Polyline {
         high: &Vector2<f64>,
         out: &mut Vec<Corner<Vector2<f64>>>,
     ) {
-        // The chain's images are one period to each side of its own.
+        // The chain's images are one period to each side.
         let middle = (low + high) * 0.5;
         let (_, shift) = self.wrapped(&middle);
         let window = AABB::from_corners([low.x - shift, low.y], [high.x - shift, high.y]);
@@ -253,7 +254,7 @@ impl Surface<Dim2> for Polyline {
             let normals = [normal(before), normal(after)];
             let at = b + Vector2::new(shift, 0.0);
             let inside = (0..2).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis]);
-            // Solid on the right: a corner that points out turns to the right.
+            // With the solid on the right, a convex corner turns right.
             if inside && normals[0].perp(&normals[1]) < -1e-9 {
                 let feature = 2 * k as u32 + 1;
                 out.push(Corner {
@@ -337,7 +338,7 @@ impl Recede<Dim2> for Polyline {
         let wide = (self.points[n].x - self.points[0].x).abs();
         let worn = self.worn.get_or_insert_with(|| Worn {
             first: self.points.iter().map(|p| p.y).collect(),
-            // No box allows for wear yet.
+            // The boxes have no margin for wear yet.
             moved: f64::INFINITY,
             margin: MARGIN * wide / n as f64,
         });

@@ -1,4 +1,4 @@
-//! What can touch: balls, convex pieces, and surfaces carried by first bodies.
+//! Collision shapes: balls, convex pieces, and surfaces of first bodies.
 
 use super::convex::ConvexCollider;
 use super::facets::Facet;
@@ -14,83 +14,87 @@ pub struct Ball<S: Space> {
     pub body: u32,
     /// Radius (m).
     pub radius: f64,
-    /// Centre in the body's frame (m); null for a grain.
+    /// Centre in the body's frame (m); zero for a grain.
     pub offset: S::Vector,
     /// Index of the material.
     pub material: u16,
 }
 
-/// Where a ball is nearest to a surface, in the surface's frame.
+/// Nearest point of a surface to a ball, in the surface's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosestPoint<V> {
-    /// Nearest point of the surface (m).
+    /// Nearest point on the surface (m).
     pub closest_point: V,
     /// Unit normal, from the surface to the ball's centre.
     pub normal: V,
-    /// Distance from the surface to the centre (m), negative when the centre is inside the solid.
+    /// Distance from the surface to the centre (m), negative if the centre is inside the solid.
     pub distance: f64,
-    /// Name of the face, edge or vertex that is touched; stable in time.
+    /// Name of the face, edge or vertex; stable in time.
     pub feature: u32,
 }
 
-/// A corner of a surface that points to the open side (2D).
+/// A convex corner of a surface (2D).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner<V> {
-    /// Where it is (m).
+    /// Position (m).
     pub at: V,
-    /// Unit normals of the faces before and after it; the corner is nearest to what lies between them.
+    /// Unit normals of the faces before and after it; the corner is nearest to points in between.
     pub normals: [V; 2],
     /// Its name, stable in time.
     pub feature: u32,
 }
 
-/// A boundary of a first body: solid on one side, open on the other.
+/// The surface of a first body: solid on one side, open on the other.
 pub trait Surface<S: Space>: Debug + Send + Sync {
-    /// All places where a ball centred at `centre` is nearest to the surface within `reach` (m), in the
-    /// order of their features. No ghost contacts at seams between faces.
+    /// Finds all points where the surface is locally nearest to a ball centred at `centre` within `reach`
+    /// (m), in the order of their features, without ghost contacts at seams between faces.
     fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<ClosestPoint<S::Vector>>);
-    /// Whether a ball may be within `reach`: cheap, may say yes too often.
+    /// Returns whether a ball may be within `reach` (m): a cheap test that may return true too often.
     fn near(&self, centre: &S::Vector, reach: f64) -> bool;
-    /// Corners of the surface in the box from `low` to `high` (m) on which a flat side may come to lie, in
-    /// the order of their features; none for a plane.
+    /// Finds corners of the surface in the box from `low` to `high` (m) that a flat side may touch, in the
+    /// order of their features; none for a plane.
     fn corners(&self, _low: &S::Vector, _high: &S::Vector, _out: &mut Vec<Corner<S::Vector>>) {}
-    /// Triangles of the surface that come into the box from `low` to `high` (m), and all that share their corners
-    /// there (3D); none where a body's corners alone can touch: a plane, the inside of a drum.
+    /// Finds triangles of the surface that intersect the box from `low` to `high` (m), and all that share
+    /// their corners there (3D); none for surfaces that only corners of a body can touch: a plane, the
+    /// inside of a drum.
     fn facets(&self, _low: &S::Vector, _high: &S::Vector, _out: &mut Vec<Facet<S::Vector>>) {}
-    /// Corners for pictures and files (m): polylines in 2D, polygons in 3D, in the surface's frame.
+    /// Returns the outline for figures and files (m): polylines in 2D, polygons in 3D, in the surface's
+    /// frame.
     fn outline(&self) -> Vec<Vec<S::Vector>>;
-    /// Faces for pictures of it within `reach` (m) of the origin of its frame, anticlockwise seen from the open side (3D).
+    /// Returns its faces within `reach` (m) of the origin of its frame for figures, anticlockwise seen from
+    /// the open side (3D).
     fn faces_within(&self, _reach: f64) -> Vec<Vec<S::Vector>> {
         self.outline()
     }
-    /// Whether the outline shows all of it.
+    /// Returns whether the outline shows the whole surface.
     fn bounded(&self) -> bool {
         false
     }
-    /// The outward normal, if the surface is a plane.
+    /// Returns the outward normal, if the surface is a plane.
     fn flat(&self) -> Option<S::Vector> {
         None
     }
-    /// Whether what is behind it is seen at any depth: planes, the insides of drums. Behind a profile or facets something
-    /// else may be.
+    /// Returns whether points behind it are detected at any depth: true for planes and the insides of drums.
+    /// Behind a profile or facets there may be another part of the surface.
     fn any_depth(&self) -> bool {
         false
     }
-    /// The surface as one that wears; none where it cannot.
+    /// Returns the surface as a receding one; `None` if it cannot wear.
     fn receding(&self) -> Option<&dyn Recede<S>> {
         None
     }
-    /// The same, to wear it.
+    /// Returns the surface as a receding one, mutably.
     fn receding_mut(&mut self) -> Option<&mut dyn Recede<S>> {
         None
     }
-    /// Whether turning about the body's origin with this spin, in the body's axes, leaves the surface where it is.
+    /// Returns whether a rotation about the body's origin with this spin, in the body's axes, leaves the
+    /// surface in place.
     fn keeps_place(&self, spin: &S::Spin) -> bool {
         *spin == S::Spin::zero()
     }
 }
 
-/// Whether a spin is about an axis, up to what turning its axes rounds.
+/// Returns whether a spin is about an axis, within the rounding of the rotation to body axes.
 pub(super) fn about<S: Space>(axis: &S::Vector, spin: &S::Spin) -> bool {
     S::split_spin(axis, spin).1.norm() <= 1e-9 * spin.norm()
 }
@@ -100,7 +104,7 @@ pub(super) fn about<S: Space>(axis: &S::Vector, spin: &S::Spin) -> bool {
 pub struct HalfSpace<S: Space> {
     /// Outward unit normal.
     pub normal: S::Vector,
-    /// Half the side of what pictures show of it (m).
+    /// Half the side of the part shown in figures (m).
     pub shown: f64,
 }
 
@@ -154,12 +158,12 @@ impl<S: Space> Surface<S> for HalfSpace<S> {
     }
 }
 
-/// A surface and the body that carries it. Its frame is the body's.
+/// A surface and the body that carries it. Its axes are those of the body.
 #[derive(Debug)]
 pub struct Carried<S: Space> {
     /// Index of the body.
     pub body: u32,
-    /// Where the surface's frame stands in the body's (m).
+    /// Origin of the surface's frame in the body's frame (m).
     pub offset: S::Vector,
     /// The surface.
     pub shape: Box<dyn Surface<S>>,
@@ -167,7 +171,7 @@ pub struct Carried<S: Space> {
     pub material: u16,
 }
 
-/// Everything that can touch.
+/// All collision shapes of a scene.
 #[derive(Debug)]
 pub struct Shapes<S: Space> {
     /// Disks or spheres.

@@ -1,7 +1,7 @@
-//! One source for two and three dimensions.
+//! Dimension-independent formulation for 2D and 3D.
 //!
-//! Everything that steps, detects or solves is generic over [`Space`]; each dimension is compiled to
-//! its own code and carries none of the other's data.
+//! Time stepping, detection and solvers are generic over [`Space`]; each dimension is compiled to separate
+//! code without data of the other.
 
 pub use super::algebra::{MatrixLike, VectorLike, greatest, least};
 use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
@@ -16,7 +16,7 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     type Vector: VectorLike;
     /// Angular velocities and moments: one component in 2D, three in 3D.
     type Spin: VectorLike;
-    /// Moments of inertia: one number in 2D.
+    /// Inertia tensor: one number in 2D.
     type Tensor: MatrixLike<V = Self::Spin> + Serialize + DeserializeOwned;
     /// Contact blocks of the Delassus operator.
     type Matrix: MatrixLike<V = Self::Vector>;
@@ -28,91 +28,91 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     /// Cores of convex pieces.
     type Core: super::convex::Core<Self>;
 
-    /// Velocity of a point at `arm` from the centre of a body that turns: omega x arm.
+    /// Returns the velocity of a point at `arm` from the centre of a rotating body: omega x arm.
     fn spin_velocity(spin: &Self::Spin, arm: &Self::Vector) -> Self::Vector;
-    /// Moment of a force at `arm`: arm x force.
+    /// Returns the moment of a force at `arm`: arm x force.
     fn moment(arm: &Self::Vector, force: &Self::Vector) -> Self::Spin;
-    /// The matrix S with S p = (I^-1 moment(arm, p)) x arm.
+    /// Returns the matrix S with S p = (I^-1 moment(arm, p)) x arm.
     fn rotation_block(arm: &Self::Vector, inverse_inertia: &Self::Tensor) -> Self::Matrix;
-    /// Moment of inertia of a unit mass at `arm`.
+    /// Returns the moment of inertia of a unit mass at `arm`.
     fn steiner(arm: &Self::Vector) -> Self::Tensor;
-    /// A tensor of a body's axes in the world's.
+    /// Transforms a tensor from body axes to world axes.
     fn turned_tensor(rotation: &Self::Rotation, tensor: &Self::Tensor) -> Self::Tensor;
-    /// The rotation by a rotation vector in the body's own axes, then by `rotation`; a Cayley map: `half` is
-    /// the axis times tan(angle/2).
+    /// Returns `rotation` after a rotation in the body's own axes, by the Cayley map: `half` is the axis
+    /// times tan(angle/2).
     fn turned_within(rotation: &Self::Rotation, half: &Self::Spin) -> Self::Rotation;
-    /// A spin of the body's axes in the world's.
+    /// Transforms a spin from body axes to world axes.
     fn rotate_spin(rotation: &Self::Rotation, spin: &Self::Spin) -> Self::Spin;
-    /// A spin of the world's axes in the body's.
+    /// Transforms a spin from world axes to body axes.
     fn unrotate_spin(rotation: &Self::Rotation, spin: &Self::Spin) -> Self::Spin;
-    /// The vector product of two spins; null in 2D.
+    /// Returns the vector product of two spins; zero in 2D.
     fn spin_cross(a: &Self::Spin, b: &Self::Spin) -> Self::Spin;
-    /// Tangential part of a vector at a contact of unit normal `n`.
+    /// Returns the tangential part of a vector at a contact of unit normal `n`.
     fn tangential(n: &Self::Vector, v: &Self::Vector) -> Self::Tangent;
-    /// The vector of a tangential part.
+    /// Returns the vector of a tangential part.
     fn lift(n: &Self::Vector, t: &Self::Tangent) -> Self::Vector;
-    /// omega x n as a tangential part.
+    /// Returns omega x n as a tangential part.
     fn roll(spin: &Self::Spin, n: &Self::Vector) -> Self::Tangent;
-    /// n x p_t as a spin.
+    /// Returns n x p_t as a spin.
     fn twist(n: &Self::Vector, t: &Self::Tangent) -> Self::Spin;
-    /// Turns a tangential part with its contact: by the least rotation from one normal to the next, then
-    /// by an angle about the new one. In 2D it turns with its frame.
+    /// Rotates a tangential part with its contact: by the smallest rotation between the normals, then by an
+    /// angle about the new one. In 2D it rotates with its frame.
     fn transport(
         from: &Self::Vector,
         to: &Self::Vector,
         angle: f64,
         t: &Self::Tangent,
     ) -> Self::Tangent;
-    /// The same for a spin.
+    /// Rotates a spin like [`Space::transport`].
     fn transport_spin(
         from: &Self::Vector,
         to: &Self::Vector,
         angle: f64,
         w: &Self::Spin,
     ) -> Self::Spin;
-    /// A tangential part from its components along [`Space::tangents`].
+    /// Returns a tangential part from its components along [`Space::tangents`].
     fn from_components(n: &Self::Vector, t1: f64, t2: f64) -> Self::Tangent;
-    /// The components of a tangential part along [`Space::tangents`].
+    /// Returns the components of a tangential part along [`Space::tangents`].
     fn components(n: &Self::Vector, t: &Self::Tangent) -> [f64; 2];
-    /// No rotation.
+    /// Returns the identity rotation.
     fn identity() -> Self::Rotation;
-    /// Turns by the rotation vector `spin * time`.
+    /// Rotates by the rotation vector `angle` (rad).
     fn turned(rotation: &Self::Rotation, angle: &Self::Spin) -> Self::Rotation;
-    /// From the body's frame to the world.
+    /// Transforms a vector from the body's frame to the world.
     fn rotate(rotation: &Self::Rotation, v: &Self::Vector) -> Self::Vector;
-    /// From the world to the body's frame.
+    /// Transforms a vector from the world to the body's frame.
     fn unrotate(rotation: &Self::Rotation, v: &Self::Vector) -> Self::Vector;
-    /// The rotation back.
+    /// Returns the inverse rotation.
     fn inverse(rotation: &Self::Rotation) -> Self::Rotation;
-    /// The rotation as numbers: angle, or quaternion (w, x, y, z).
+    /// Returns the rotation as numbers: angle, or quaternion (w, x, y, z).
     fn rotation_numbers(rotation: &Self::Rotation) -> [f64; 4];
-    /// The rotation of such numbers, bit by bit; none where they are not those of a rotation.
+    /// Returns the rotation with exactly these numbers; `None` if they are not those of a rotation.
     fn rotation_from(numbers: &[f64; 4]) -> Option<Self::Rotation>;
-    /// Two tangents which with `n` make a right-handed frame; in 2D the first is n turned by +90
-    /// degrees and the second is null.
+    /// Returns two tangents that form a right-handed frame with `n`; in 2D the first is n rotated by +90
+    /// degrees and the second is zero.
     fn tangents(n: &Self::Vector) -> [Self::Vector; 2];
-    /// A spin as twist about `n` and the rest, bending. In 2D all is bending.
+    /// Splits a spin into twist about `n` and the rest, bending. In 2D all is bending.
     fn split_spin(n: &Self::Vector, spin: &Self::Spin) -> (f64, Self::Spin);
-    /// The spin of a twist about `n`.
+    /// Returns the spin of a twist about `n`.
     fn about(n: &Self::Vector, twist: f64) -> Self::Spin;
-    /// Components of a spin along n and [`Space::tangents`]; in 2D the second holds it all.
+    /// Returns the components of a spin along n and [`Space::tangents`]; in 2D the second contains the spin.
     fn spin_components(n: &Self::Vector, spin: &Self::Spin) -> [f64; 3];
-    /// A spin from its components.
+    /// Returns a spin from its components.
     fn spin_from(n: &Self::Vector, components: [f64; 3]) -> Self::Spin;
-    /// Volume of a ball (2D: area of a disk times unit depth).
+    /// Returns the volume of a ball (in 2D the area of a disk times unit depth).
     fn ball_volume(radius: f64) -> f64;
-    /// Radius of the ball of a volume.
+    /// Returns the radius of the ball of a volume.
     fn ball_radius(volume: f64) -> f64 {
         (volume / Self::ball_volume(1.0)).powf(1.0 / Self::D as f64)
     }
-    /// Moment of inertia of a homogeneous ball over m r^2: 1/2 for a disk, 2/5 for a sphere.
+    /// Moment of inertia of a homogeneous ball divided by m r^2: 1/2 for a disk, 2/5 for a sphere.
     const BALL_INERTIA: f64;
 }
 
-/// The plane; masses and forces are per metre of depth.
+/// Two dimensions; masses and forces are per metre of depth.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Dim2;
-/// Three-dimensional space.
+/// Three dimensions.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Dim3;
 
@@ -309,7 +309,7 @@ impl Space for Dim3 {
         angle: f64,
         t: &Self::Tangent,
     ) -> Self::Tangent {
-        // Rounding leaves a part along the normal, which is none of a tangent's.
+        // Rounding leaves a normal component, which a tangential part must not have.
         let turned = Self::transport_spin(from, to, angle, t);
         turned - to * to.dot(&turned)
     }
@@ -341,7 +341,7 @@ impl Space for Dim3 {
     }
     fn turned(rotation: &Self::Rotation, angle: &Self::Spin) -> Self::Rotation {
         let mut turned = nalgebra::UnitQuaternion::from_scaled_axis(*angle) * rotation;
-        // Rounding takes from the norm, always on the same side.
+        // Rounding changes the norm with a systematic sign.
         turned.renormalize_fast();
         turned
     }
@@ -360,7 +360,7 @@ impl Space for Dim3 {
     fn rotation_from(numbers: &[f64; 4]) -> Option<Self::Rotation> {
         let [w, x, y, z] = *numbers;
         let quaternion = nalgebra::Quaternion::new(w, x, y, z);
-        // A number that is none is not near one either.
+        // NaN fails this test.
         let unit = (quaternion.norm() - 1.0).abs() < 1e-6;
         unit.then(|| nalgebra::UnitQuaternion::new_unchecked(quaternion))
     }

@@ -1,4 +1,5 @@
-//! One contact without bodies: drives a composed interface law along a path, as a testing machine does.
+//! A test bench for interface laws: drives a single contact, without bodies, along a prescribed path, like a
+//! testing machine.
 
 pub mod scale;
 
@@ -10,7 +11,7 @@ use super::library::{Call, LawError};
 use super::pass::{Care, LawEvaluator};
 use serde::Serialize;
 
-/// What a contact on the bench remembers.
+/// State of a contact on the bench.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct State {
     /// Time (s).
@@ -27,7 +28,7 @@ pub struct State {
     pub variables: Vec<f64>,
 }
 
-/// Where a step goes.
+/// Prescribed motion over a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
     /// Opening at its end (m).
@@ -40,7 +41,7 @@ pub struct Motion {
     pub pressure: f64,
 }
 
-/// What the laws said at the end of a step.
+/// Outputs of the laws at the end of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Answer {
     /// Traction (Pa); a positive normal part pulls together.
@@ -90,33 +91,34 @@ impl Bench {
         }
     }
 
-    /// Lets laws give values that cannot be, such as a negative friction: for who judges them.
+    /// Accepts outputs outside their physical range, such as negative friction, for callers that check them.
     #[must_use]
     pub fn lenient(mut self) -> Self {
         self.passes.care = Care::Lenient;
         self
     }
 
-    /// Calls laws twice, where every wrong write is seen: slow.
+    /// Makes every law call twice in guarded memory, so that every invalid write is detected; slow.
     #[must_use]
     pub fn guarded(mut self) -> Self {
         self.passes.care = Care::Guarded(Box::default());
         self
     }
 
-    /// Makes each call of a law over and over and compares the answers: for races between threads.
+    /// Repeats every law call and compares the outputs, to detect data races between threads.
     #[must_use]
     pub fn repeating(mut self) -> Self {
         self.passes.care = Care::Repeated;
         self
     }
 
-    /// The law on it.
+    /// Returns the law under test.
     pub fn law(&self) -> &Interface {
         &self.law
     }
 
-    /// The damage that the laws gave in the last step, before the host held it up.
+    /// Returns the damage that the laws returned in the last step, before the host enforced that it does not
+    /// decrease.
     pub fn said(&self) -> &[f64] {
         &self.said
     }
@@ -126,7 +128,7 @@ impl Bench {
         self.area
     }
 
-    /// A new contact: an intact bond where the cohesion has an opening.
+    /// Returns the state of a new contact: an intact bond if the cohesion law has an opening.
     pub fn fresh(&self) -> State {
         State {
             time: 0.0,
@@ -138,10 +140,10 @@ impl Bench {
         }
     }
 
-    /// Moves a batch of contacts by one step of `h` seconds, one motion a contact.
+    /// Moves a batch of contacts by one step of `h` seconds, with one motion per contact.
     ///
     /// # Errors
-    /// What a law said, with the contact at fault.
+    /// The law's error, with the index of the contact.
     pub fn step(
         &mut self,
         states: &mut [State],
@@ -177,7 +179,7 @@ impl Bench {
         Ok(answers)
     }
 
-    /// The laws' columns: openings at the start or the end of the step.
+    /// Fills the input columns of the laws with the openings at the start or the end of the step.
     fn fill(&mut self, states: &[State], motions: &[Motion], info: &StepInfo, end: bool) {
         let c = &mut self.passes.columns;
         c.clear();
@@ -297,7 +299,7 @@ impl Bench {
         Ok(())
     }
 
-    /// The laws that act on every contact, and the wear.
+    /// Evaluates the laws that act on every contact, and wear.
     fn end(
         &mut self,
         states: &mut [State],

@@ -1,4 +1,4 @@
-//! The bonds' part of a commit: openings move, damage grows, energy is booked, bonds break.
+//! Commit of bonds: updates openings, damage and energies, and breaks bonds.
 
 use super::columns::StepInfo;
 use super::interface::Interface;
@@ -7,14 +7,14 @@ use super::pass::{ContactStep, LawEvaluator, MomentStep, Totals};
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 
-/// What bonds hold after a step, in the order of the members.
+/// State of the bonds after a step, in the order of the batch members.
 #[derive(Debug, Default)]
 pub(super) struct Held {
     /// Work done by the bond's impulse over the step (J).
     work: Vec<f64>,
-    /// What of it damping and the scheme took (J).
+    /// Part of it dissipated by damping and by the time scheme (J).
     lost: Vec<f64>,
-    /// The normal part came or went within the step.
+    /// Whether the tension-only normal part was switched on or off within the step.
     turned: Vec<bool>,
     /// Energy of the undamaged bond per area at the new opening (J/m^2).
     intact: Vec<f64>,
@@ -36,7 +36,7 @@ impl Held {
 }
 
 impl LawEvaluator {
-    /// Ends the step of the intact bonds of one interface, which are the members.
+    /// Completes the step of the intact bonds of one interface, given as members.
     #[allow(clippy::too_many_arguments)]
     pub(super) fn commit_bonds<S: Space>(
         &mut self,
@@ -67,11 +67,11 @@ impl LawEvaluator {
         Ok(())
     }
 
-    /// The largest distance between the damage that the step's impulses were formed with and the one
-    /// that their openings give, where that is larger; [`LawEvaluator::adopt`] takes it for the next solve.
+    /// Returns the largest increase from the damage used in the step's impulses to the damage that the
+    /// resulting openings give; [`LawEvaluator::adopt`] takes the latter for the next solve.
     ///
     /// # Errors
-    /// A law's own error, with the contact at fault.
+    /// The law's error, with the contact.
     pub fn trial<S: Space>(
         &mut self,
         laws: &[Interface],
@@ -101,7 +101,8 @@ impl LawEvaluator {
                     continue;
                 };
                 let bond = &network.memory[index].bonds[slot];
-                // Damage does not heal within a step either: so the solves go one way, and end.
+                // Damage does not decrease within a step either, so that the iteration is monotonic and
+                // ends.
                 let change = (held.damage[k] - bond.used).max(0.0);
                 worst = worst.max(change);
                 let next = bond.used + change;
@@ -112,14 +113,15 @@ impl LawEvaluator {
         Ok(worst)
     }
 
-    /// Takes the damage of the last trial as that with which impulses are formed.
+    /// Uses the damage of the last trial in the impulses of the next solve.
     pub fn adopt<S: Space>(&mut self, network: &mut Network<S>) {
         for (index, slot, damage) in self.trials.drain(..) {
             network.memory[index].bonds[slot].used = damage;
         }
     }
 
-    /// Damage at the openings in the columns, by the cohesion itself and by the damage law: the larger.
+    /// Computes damage at the current openings as the maximum of the cohesion law's and the damage law's
+    /// value.
     pub(super) fn grow(
         &mut self,
         law: &Interface,
@@ -132,7 +134,7 @@ impl LawEvaluator {
         self.columns.size_outputs();
         held.damage.clone_from(&self.columns.damage);
         let m = cohesion.plugin.degradation;
-        // What the damaged bond stores follows from the undamaged one, psi = (1 - D)^m psi_0.
+        // The stored energy of the damaged bond is psi = (1 - D)^m psi_0, with psi_0 of the undamaged one.
         if law.damages() {
             self.columns.damage.fill(0.0);
         }
@@ -158,7 +160,7 @@ impl LawEvaluator {
         Ok(())
     }
 
-    /// Moves the openings. What the bond's impulse does beyond storing energy is damping.
+    /// Updates the openings. Work of the bond's impulse that is not stored is damping.
     #[allow(clippy::too_many_arguments)]
     fn open<S: Space>(
         &self,
@@ -191,7 +193,7 @@ impl LawEvaluator {
             let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
             let before = bond.opening_n;
             bond.opening_n += info.h * un;
-            // A bond that only pulls is not linear across its zero: its energy there is a matter of the step.
+            // A tension-only bond is not linear across zero opening; its energy there depends on the step.
             turned.push(law.tension_only() && (before > 0.0) != (bond.opening_n > 0.0));
             lost.push(site.lost);
             bond.opening_t += ut * info.h;
@@ -209,7 +211,7 @@ impl LawEvaluator {
         if !memory.rotates {
             return;
         }
-        // Turns and members both follow the order of the contacts, members by interface.
+        // `turns` and `members` both follow the order of the contacts, members by interface.
         let mut place = vec![usize::MAX; contacts.len()];
         for (k, turn) in turns.iter().enumerate() {
             place[turn.moment.contact as usize] = k;
@@ -228,7 +230,7 @@ impl LawEvaluator {
         }
     }
 
-    /// Stores damage and energy; breaks what is wholly damaged.
+    /// Stores damage and energy; breaks fully damaged bonds.
     fn settle<S: Space>(
         &self,
         index: usize,
@@ -248,14 +250,15 @@ impl LawEvaluator {
             let memory = &mut network.memory[index];
             let bond = &mut memory.bonds[slot];
             let intact = held.intact[k] * bond.area;
-            // The step was done with D = `used`: what it stored at that damage, at its start and end.
+            // The impulses were computed with D = `used`: the stored energy at that damage, at start and end
+            // of the step.
             let (start, end) = if bond.used == bond.damage {
                 (bond.energy, intact * share(bond.damage))
             } else {
                 let ratio = share(bond.used) / share(bond.damage);
                 (bond.energy * ratio, intact * share(bond.used))
             };
-            // Without a say in it, what a law's energy does not account for shows in the residual.
+            // Where the energy is defined by the law, any imbalance appears in the residual.
             let viscous = if held.turned[k] {
                 -held.work[k] - (end - start)
             } else {
@@ -295,7 +298,7 @@ impl LawEvaluator {
     }
 }
 
-/// Damage never falls.
+/// Raises the damage where the new value is larger; damage never decreases.
 fn raise(damage: &mut [f64], new: &[f64]) {
     for (old, new) in damage.iter_mut().zip(new) {
         *old = old.max(*new).min(1.0);

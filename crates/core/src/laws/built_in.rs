@@ -1,5 +1,5 @@
-//! Laws that are linked into the program, for where their libraries are not beside it. The program hands their tables over:
-//! the core knows none by name.
+//! Laws linked into the program, for installations without the plugin libraries. The program passes their
+//! tables to the core, which refers to no law by name.
 
 use super::kind::Kind;
 use super::library::{LawError, Plugin};
@@ -22,7 +22,7 @@ unsafe impl Send for Entry {}
 // SAFETY: as above.
 unsafe impl Sync for Entry {}
 
-/// The laws linked into a program; none by default.
+/// The laws linked into a program; empty by default.
 #[derive(Clone, Default)]
 pub struct BuiltInLaws(Arc<[Entry]>);
 
@@ -33,14 +33,15 @@ impl std::fmt::Debug for BuiltInLaws {
 }
 
 impl BuiltInLaws {
-    /// The laws of these tables; one whose kind or name cannot be read is left out.
+    /// Collects the laws of these tables, leaving out those whose kind or name cannot be read.
     ///
     /// # Safety
-    /// Each table must be one that `plugin_table!` of the crate `fretwork-law` made, of the version of the interface that this
-    /// program is built with: its pointers are followed.
+    /// Each table must have been made by `plugin_table!` of the crate `fretwork-law`, for the interface
+    /// version this program is built with: its pointers are dereferenced.
     pub unsafe fn from_tables(tables: impl IntoIterator<Item = &'static FwPlugin>) -> Self {
         let known = tables.into_iter().filter_map(|table| {
-            // SAFETY: the caller promises tables of the wrapper, which makes names of NUL-terminated static text.
+            // SAFETY: the caller guarantees tables of the wrapper, whose names are NUL-terminated static
+            // text.
             let name = unsafe { CStr::from_ptr(table.name) };
             Some(Entry {
                 kind: Kind::from_code(table.kind)?,
@@ -51,12 +52,13 @@ impl BuiltInLaws {
         Self(known.collect())
     }
 
-    /// Kinds and names of all of them.
+    /// Iterates over the kinds and names of all laws.
     pub fn names(&self) -> impl Iterator<Item = (Kind, &str)> {
         self.0.iter().map(|e| (e.kind, e.name.as_str()))
     }
 
-    /// The law of this kind and name, where it is linked in. Its path and SHA-256 are those of the program.
+    /// Returns the law of this kind and name if it is linked in. Its path and SHA-256 are those of the
+    /// program.
     pub fn open(&self, kind: Kind, name: &str) -> Option<Result<Plugin, LawError>> {
         let entry = self.0.iter().find(|e| e.kind == kind && e.name == name)?;
         Some(executable().and_then(|(path, sha256)| {
@@ -66,7 +68,7 @@ impl BuiltInLaws {
     }
 }
 
-/// The program's own file and its SHA-256, read once.
+/// Returns the path of the program's own file and its SHA-256, computed once.
 fn executable() -> Result<(&'static Path, &'static str), LawError> {
     static KNOWN: OnceLock<Result<(PathBuf, String), String>> = OnceLock::new();
     let known = KNOWN.get_or_init(|| {
@@ -99,7 +101,7 @@ fn file_sum(path: &Path) -> std::io::Result<String> {
     Ok(hex(&sum.finalize()))
 }
 
-/// Bytes in hexadecimal.
+/// Formats bytes in hexadecimal.
 pub(super) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }

@@ -1,20 +1,21 @@
-//! Calls of a plugin's functions over the border.
+//! Calls of plugin functions across the C ABI.
 
 use super::library::{Call, LawError, Plugin};
 use super::watch;
 use fretwork_abi as abi;
 use std::ffi::c_char;
 
-/// Longest message a plugin can leave (bytes).
+/// Size of the buffer for a plugin's message (bytes).
 const MESSAGE: usize = 512;
 
 impl Plugin {
-    /// The fracture energy (J/m^2) that the law declares for a pull at an angle from the normal (rad).
+    /// Returns the fracture energy (J/m^2) that the law declares for an opening at an angle (rad) from the
+    /// normal.
     pub fn fracture_energy(&self, values: &[f64], angle: f64) -> Option<f64> {
         if values.len() != self.parameters.len() {
             return None;
         }
-        // SAFETY: the ABI's signature, and one value a parameter.
+        // SAFETY: the signature is that of the ABI, with one value per parameter.
         let energy = self
             .table
             .fracture_energy
@@ -22,10 +23,10 @@ impl Plugin {
         energy.filter(|e| e.is_finite())
     }
 
-    /// Checks values of the parameters against the schema and the law's own judgement.
+    /// Checks parameter values against the schema and with the law's own `validate` function.
     ///
     /// # Errors
-    /// A sentence naming the parameter.
+    /// A sentence that names the parameter.
     pub fn validate(&self, values: &[f64]) -> Result<(), LawError> {
         let refuse = |reason: String| LawError::Parameters {
             kind: self.kind,
@@ -63,10 +64,10 @@ impl Plugin {
         }
     }
 
-    /// Runs one of the law's functions; nothing happens where the law has none.
+    /// Calls one of the law's functions; does nothing where the law does not define it.
     ///
     /// # Errors
-    /// What the law said, with the index of the contact in the batch.
+    /// The law's message, with the index of the contact in the batch.
     ///
     /// # Safety
     /// The columns of the batch that the law uses hold `batch.n` values and outlive the call.
@@ -108,7 +109,7 @@ fn message_over(buffer: &mut [c_char; MESSAGE]) -> abi::FwMessage {
     }
 }
 
-/// The message, or what the status means.
+/// Returns the plugin's message, or the meaning of its status code if it left none.
 fn said(buffer: &[c_char; MESSAGE], status: i32) -> String {
     let bytes: Vec<u8> = buffer
         .iter()

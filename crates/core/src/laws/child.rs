@@ -1,6 +1,6 @@
-//! The program called by itself, to try in another process what may hang it or end it.
+//! Runs the program as its own child process, to try operations that may hang or terminate the process.
 //!
-//! Only the program calls itself, never what else uses this library: [`enable`] says that there is one to call.
+//! Only the command-line program does so, after [`enable`]; other users of the library are not affected.
 
 use super::library::{LawError, Plugin};
 use serde::{Deserialize, Serialize};
@@ -14,85 +14,86 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::{Mutex, OnceLock, mpsc};
 use std::time::Duration;
 
-/// The hidden word by which the program is asked to try libraries.
+/// Hidden subcommand that tries to open libraries.
 pub const TRY_LIBRARIES: &str = "__try-libraries";
 
-/// The program to call.
+/// The program to run as a child.
 #[derive(Debug)]
 struct Helper {
     program: PathBuf,
-    /// How long a call of a law may take; none for ever.
+    /// Time limit of a law call; `None` for no limit.
     limit: Option<Duration>,
 }
 
 static HELPER: OnceLock<Helper> = OnceLock::new();
 
-/// Says that this process is the program, which may call itself.
+/// Declares that this process is the command-line program, which may run itself as a child.
 pub fn enable(limit: Option<Duration>) {
     if let Ok(program) = std::env::current_exe() {
         let _ = HELPER.set(Helper { program, limit });
     }
 }
 
-/// Whether there is a program to call.
+/// Returns whether there is a program to run.
 pub fn enabled() -> bool {
     HELPER.get().is_some()
 }
 
-/// How a called process ended.
+/// How a child process ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum End {
-    /// It did all that it was asked.
+    /// It completed the whole request.
     Done,
-    /// It ended before, in words.
+    /// It ended early, for the given reason.
     Early(String),
 }
 
-/// What a called process told.
+/// Output of a child process.
 #[derive(Debug)]
 pub struct Told {
-    /// What it said, piece by piece.
+    /// Its messages in order.
     pub pieces: Vec<Value>,
     /// How it ended.
     pub end: End,
 }
 
-/// What is asked: the question, and the token by which the answers are known.
+/// A request, and the token that marks its answers.
 #[derive(Serialize, Deserialize)]
 struct Question {
     token: u64,
     question: Value,
 }
 
-/// In the called process: the token that it was given.
+/// In the child process: the token of the request.
 static TOKEN: OnceLock<u64> = OnceLock::new();
 
-/// What answers begin with, among whatever a law prints. The token is another one at each call, so that nothing printed by a
-/// law passes for an answer.
+/// Returns the prefix of answer lines, which separates them from anything a law prints. The token is
+/// different in each call, so that a law cannot forge an answer.
 fn mark(token: u64) -> String {
     format!("\u{1}fretwork {token:016x} ")
 }
 
-/// A number that cannot be foreseen: the standard library seeds its hash tables by the system's random numbers.
+/// Returns an unpredictable number: the standard library seeds its hash tables from the system's random
+/// source.
 fn new_token() -> u64 {
     std::hash::RandomState::new().hash_one(std::process::id())
 }
 
-/// In the called process: says one piece.
+/// In the child process: sends one message.
 pub fn tell(piece: &Value) {
     let mark = mark(TOKEN.get().copied().unwrap_or_default());
     let mut out = std::io::stdout().lock();
-    // A law may have left a line unended.
+    // A law may have printed an incomplete line.
     let _ = writeln!(out, "\n{mark}{piece}");
     let _ = out.flush();
 }
 
-/// In the called process: says that all is done.
+/// In the child process: reports that the request is complete.
 pub fn tell_done() {
     tell(&json!("done"));
 }
 
-/// In the called process: what it was asked.
+/// In the child process: reads the request.
 ///
 /// # Errors
 /// It cannot be read.
@@ -105,10 +106,10 @@ pub fn asked() -> Result<Value, String> {
     Ok(asked.question)
 }
 
-/// Calls the program with a hidden word, and hears it out.
+/// Runs the program with a hidden subcommand and collects its output.
 ///
 /// # Errors
-/// It cannot be called.
+/// The program cannot be started.
 pub fn ask(word: &str, question: &Value) -> Result<Told, String> {
     let helper = HELPER.get().ok_or("there is no program to call")?;
     let limit = helper.limit.map_or(0.0, |l| l.as_secs_f64());
@@ -130,13 +131,14 @@ pub fn ask(word: &str, question: &Value) -> Result<Told, String> {
         .take()
         .map(|err| std::thread::spawn(move || last_words(err)));
     if let Some(mut to) = child.stdin.take() {
-        // One that ended already does not read it; how it ended is told below.
+        // A process that has already ended does not read its request; the way it ended is reported below.
         let question = json!({ "token": token, "question": question });
         let _ = to.write_all(question.to_string().as_bytes());
     }
     let mut pieces = Vec::new();
     let hung = loop {
-        // The called process watches itself; this is for one that cannot. It may start slowly on a busy machine.
+        // The child enforces its own time limit; this longer one covers a child that cannot. Starting may be
+        // slow on a busy machine.
         let slack = Duration::from_secs(if pieces.is_empty() { 30 } else { 5 });
         let next = match helper.limit {
             Some(limit) => heard
@@ -151,7 +153,7 @@ pub fn ask(word: &str, question: &Value) -> Result<Told, String> {
     };
     let status = end(&mut child, hung);
     let said = match hung {
-        // What holds its output open may never end.
+        // A process that holds the output open may never end.
         true => String::new(),
         false => said.and_then(|s| s.join().ok()).unwrap_or_default(),
     };
@@ -187,7 +189,7 @@ fn listen(out: impl Read, token: u64, send: &mpsc::Sender<Value>) {
     }
 }
 
-/// The end of what a process says on standard error.
+/// Returns the end of a process's standard error.
 fn last_words(mut err: impl Read) -> String {
     const MAX_BYTES: usize = 4096;
     let (mut all, mut buffer) = (Vec::new(), [0; 1024]);
@@ -202,12 +204,12 @@ fn last_words(mut err: impl Read) -> String {
     String::from_utf8_lossy(&all).trim().to_owned()
 }
 
-/// Why a process ended before it was done.
+/// Describes why a process ended early.
 fn in_words(status: ExitStatus, said: &str) -> String {
-    // The program's own sentence names the law and the call.
+    // The program's own message names the law and the call.
     let sentence = said.lines().rev().find_map(|l| l.strip_prefix("error: "));
     if let Some(sentence) = sentence {
-        // What was saved is no concern of who asked.
+        // What was saved is of no interest to the parent.
         return sentence.split("; ").next().unwrap_or(sentence).to_owned();
     }
     #[cfg(unix)]
@@ -223,14 +225,15 @@ fn in_words(status: ExitStatus, said: &str) -> String {
     }
 }
 
-/// A library as it was when it was looked at.
+/// A library as it was when it was tried.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 struct Library {
     path: PathBuf,
     sha256: String,
 }
 
-/// What was found of libraries: nothing, or why they cannot be opened. The same bytes elsewhere may load others beside them.
+/// Results of the trials: `None` for success, otherwise the reason why the library cannot be opened. The
+/// path is part of the key, since the same bytes in another folder may load other dependencies.
 static FOUND: Mutex<Option<HashMap<Library, Option<String>>>> = Mutex::new(None);
 
 fn known(library: &Library) -> Option<Option<String>> {
@@ -244,7 +247,7 @@ fn remember(library: &Library, reason: Option<String>) {
     all.insert(library.clone(), reason);
 }
 
-/// Whether a library can be opened in another process and comes back.
+/// Checks in a child process that a library can be opened without hanging or ending the process.
 pub(super) fn survives(path: &Path, sha256: &str) -> Result<(), String> {
     if !enabled() {
         return Ok(());
@@ -263,7 +266,7 @@ pub(super) fn survives(path: &Path, sha256: &str) -> Result<(), String> {
     }
 }
 
-/// Tries several libraries in one process; a library of another SHA-256 than its pin is not opened.
+/// Tries several libraries in one child process; a library whose SHA-256 differs from its pin is not opened.
 pub(super) fn try_out(libraries: &[(PathBuf, Option<&str>)]) {
     if !enabled() {
         return;
@@ -288,16 +291,17 @@ pub(super) fn try_out(libraries: &[(PathBuf, Option<&str>)]) {
     }
 }
 
-const UNANSWERED: &str = "it was tried in a process of its own, which ended without a word on it; build or copy it again";
+const UNANSWERED: &str = "it was tried in a separate process, which ended without reporting on it; build or copy it again";
 
-/// Asks after libraries, and remembers what is told; how many of them it is known of, at least one.
+/// Tries libraries in a child process and stores the results; returns the number of libraries with a result,
+/// at least one.
 fn ask_after(libraries: &[Library]) -> usize {
     let question = serde_json::to_value(libraries).map_err(|e| e.to_string());
     let told = match question.and_then(|q| ask(TRY_LIBRARIES, &q)) {
         Ok(told) => told,
         Err(reason) => {
             let text = format!(
-                "it is tried in a process of its own first, and that cannot be made ({reason})"
+                "it must first be tried in a separate process, which could not be started ({reason})"
             );
             remember(&libraries[0], Some(text));
             return 1;
@@ -314,18 +318,18 @@ fn ask_after(libraries: &[Library]) -> usize {
         End::Early(why) => format!(
             "opening it ended a process that tried it: {why}; the file may be damaged or cut short: build or copy it again"
         ),
-        // A library of which nothing was said was not opened.
+        // A library without an answer was not opened.
         End::Done => UNANSWERED.to_owned(),
     };
     remember(library, Some(why));
     answered + 1
 }
 
-/// In the called process: opens the libraries it is asked after, one by one, each only if it is the one that was looked at.
-/// Why one is refused is told where it is opened again: what counts here is that it comes back.
+/// In the child process: opens the requested libraries one by one, each only if its SHA-256 is unchanged.
+/// Errors are reported later, when the parent opens the library; the trial only checks that opening returns.
 ///
 /// # Errors
-/// The question cannot be read.
+/// The request cannot be read.
 pub fn try_libraries() -> Result<(), String> {
     let libraries: Vec<Library> = serde_json::from_value(asked()?).map_err(|e| e.to_string())?;
     for library in libraries {
@@ -340,6 +344,6 @@ pub fn try_libraries() -> Result<(), String> {
     Ok(())
 }
 
-/// What is said of a library that is not the one any more that was looked at.
+/// Message for a library that changed after it was first read.
 pub(super) const CHANGED: &str =
     "the file changed while it was being opened; wait until it is written and try again";

@@ -1,11 +1,11 @@
-//! The columns of a batch: gathered from the network, handed to plugins, read back.
+//! The columns of a batch: collected from the network, passed to plugins, read back.
 
 use super::interface::Loaded;
 use super::kind::Output;
 use fretwork_abi::FwBatch;
 use std::ptr::{null, null_mut};
 
-/// Time and scheme of the step, as plugins see them.
+/// Time and scheme of the step, as passed to plugins.
 #[derive(Clone, Copy, Debug)]
 pub struct StepInfo {
     /// Dimension of space.
@@ -18,10 +18,10 @@ pub struct StepInfo {
     pub theta: f64,
 }
 
-/// Vectors in the local frame, one column a component.
+/// Vectors in the local frame, one column per component.
 pub type Triple = [Vec<f64>; 3];
 
-/// The columns of one batch; memory is kept from step to step.
+/// The columns of one batch; the buffers are reused from step to step.
 #[derive(Debug, Default)]
 pub struct Columns {
     /// Number of contacts.
@@ -62,16 +62,16 @@ pub struct Columns {
     pub state_next: Vec<Vec<f64>>,
     /// Outputs.
     pub out: Outputs,
-    /// Whether the last batch was written behind the end of a column.
+    /// Whether the last call wrote beyond the end of a column.
     pub overrun: bool,
 }
 
-/// Values behind the end of each column that a plugin writes, to see whether it went too far.
+/// Number of guard values behind each output column, which reveal an overrun.
 const FENCE: usize = 8;
-/// What stands there: a NaN that no law computes.
+/// Guard value: a NaN with a payload that no law computes.
 const CANARY: u64 = 0x7ff4_f37e_0b5e_55ed;
 
-/// Puts up the fence behind a column.
+/// Appends guard values to a column.
 fn guard(column: &mut Vec<f64>) {
     column.reserve(FENCE);
     for place in &mut column.spare_capacity_mut()[..FENCE] {
@@ -79,10 +79,10 @@ fn guard(column: &mut Vec<f64>) {
     }
 }
 
-/// Whether the fence of a column is broken.
+/// Returns whether the guard values of a column were overwritten, and removes them.
 fn overrun(column: &mut Vec<f64>) -> bool {
     let posts = column.spare_capacity_mut()[..FENCE].iter();
-    // SAFETY: `guard` wrote them, and nothing has moved the column since.
+    // SAFETY: `guard` wrote them, and the column has not been reallocated since.
     posts
         .into_iter()
         .any(|p| unsafe { p.assume_init_read() }.to_bits() != CANARY)
@@ -113,7 +113,7 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// All columns.
+    /// Iterates over all columns.
     fn all(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
         let single = [
             &mut self.friction,
@@ -144,7 +144,7 @@ pub(super) fn not_finite(outputs: &[Output<'_>]) -> Option<usize> {
     columns.filter_map(|o| first_not_finite(o.values)).min()
 }
 
-/// Nearly always none: all are looked at, without a branch each, before the first is searched for.
+/// Almost always `None`: all values are tested without branches before the first is searched for.
 fn first_not_finite(column: &[f64]) -> Option<usize> {
     if column.iter().fold(true, |all, x| all & x.is_finite()) {
         return None;
@@ -176,13 +176,13 @@ impl Columns {
         single.into_iter().chain(triples.into_iter().flatten())
     }
 
-    /// The first contact with a new internal variable that is not finite.
+    /// Returns the index of the first contact with a new internal variable that is not finite.
     pub fn state_not_finite(&self) -> Option<usize> {
         let columns = self.state_next.iter();
         columns.filter_map(|column| first_not_finite(column)).min()
     }
 
-    /// Empties the inputs.
+    /// Clears the inputs.
     pub fn clear(&mut self) {
         self.n = 0;
         self.inputs().for_each(Vec::clear);
@@ -198,19 +198,19 @@ impl Columns {
         states.for_each(|column| column.truncate(n));
     }
 
-    /// What the cohesion law said of the undamaged bond becomes an input of the damage law.
+    /// Copies the cohesion law's outputs for the undamaged bond to the inputs of the damage law.
     pub fn expose_intact(&mut self) {
         std::mem::swap(&mut self.energy_intact, &mut self.out.energy);
         std::mem::swap(&mut self.intact, &mut self.out.traction);
         std::mem::swap(&mut self.intact_moment, &mut self.out.moment);
-        // The outputs are columns again, whatever the inputs held.
+        // Restores the sizes of the outputs after the buffers were swapped.
         self.out.energy.resize(self.n, 0.0);
         for column in self.out.traction.iter_mut().chain(&mut self.out.moment) {
             column.resize(self.n, 0.0);
         }
     }
 
-    /// Sizes the outputs to `n` zeros.
+    /// Resizes the outputs to `n` zeros.
     pub fn size_outputs(&mut self) {
         let (n, out) = (self.n, &mut self.out);
         for column in out.all() {

@@ -1,4 +1,4 @@
-//! Commit: what the laws make of a step that was solved.
+//! Commit: the laws' update at the end of a solved step.
 
 use super::columns::{Columns, StepInfo};
 use super::interface::{Interface, Loaded};
@@ -9,11 +9,11 @@ use crate::contact::{ContactDissipation, Network};
 use crate::geometry::space::{Space, VectorLike};
 
 impl LawEvaluator {
-    /// Ends the step: `sites` are what the contacts did, in the network's order, `turns` the moments of
-    /// those that resist rotation.
+    /// Completes the step. `sites` holds the results of the contacts in the network's order, `turns` the
+    /// moments of those that resist rotation.
     ///
     /// # Errors
-    /// A law's own error, with the contact at fault.
+    /// The law's error, with the contact.
     pub fn commit<S: Space>(
         &mut self,
         laws: &[Interface],
@@ -122,7 +122,7 @@ impl LawEvaluator {
         }
     }
 
-    /// Lets pairs that parted keep what they owe only while they are fewer than the contacts.
+    /// Drops the deferred negative friction work of separated pairs once they outnumber the contacts.
     fn forget_debts<S: Space>(&mut self, network: &Network<S>) {
         let contacts = &network.contacts;
         if self.negative_friction_work.len() > 2 * contacts.len() {

@@ -1,29 +1,29 @@
-//! What the laws of an interface ask of a solver, found out before a step is done.
+//! Requirements of interface laws on the solver, determined before the first step.
 //!
-//! Flags tell of bonds. Friction against rotation and shear cohesion are numbers that a contact law gives at run
-//! time: a law that is constant is asked once, any other on a bench of trial contacts.
+//! Bonds are known from the laws' flags. Rolling friction and shear cohesion are values that a contact law
+//! returns at run time: a constant law is called once, any other is tried on a bench with trial contacts.
 
 use super::bench::{Bench, Motion, State};
 use super::interface::{BondRule, Interface, Loaded};
 use super::kind::Kind;
 use super::library::LawError;
 
-/// Whether a law asks for something, from the least to the most.
+/// Whether a law requires a feature, from never to always.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Requirement {
-    /// It cannot.
+    /// It never does.
     #[default]
     Never,
-    /// Not in the trials, but the law decides at run time.
+    /// It did not in the trials, but the law decides at run time.
     Unseen,
-    /// In some of the trials.
+    /// It did in some of the trials.
     Sometimes,
-    /// In every contact that touches.
+    /// It does in every closed contact.
     Always,
 }
 
 impl Requirement {
-    /// From what trials gave: whether the contact touched, and whether the law asked for it.
+    /// Evaluates trials, given as (contact closed, feature required).
     fn of(trials: &[(bool, bool)], constant: bool) -> Self {
         let any = trials.iter().any(|(_, asks)| *asks);
         let all = trials.iter().all(|(touches, asks)| *asks || !touches);
@@ -36,22 +36,22 @@ impl Requirement {
     }
 }
 
-/// What an interface asks of a solver beyond Coulomb's cone.
+/// Requirements of an interface on a solver, beyond Signorini's condition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LawRequirements {
-    /// Friction against sliding.
+    /// Sliding friction.
     pub friction: Requirement,
-    /// Friction against rotation.
+    /// Rolling or spinning friction.
     pub rotation: Requirement,
-    /// Shear cohesion; unseen of laws of bonds, which are tried in no trial.
+    /// Shear cohesion; `Unseen` for laws with bonds, which the trials do not cover.
     pub cohesion: Requirement,
 }
 
 impl Interface {
-    /// What it asks for between contacts of these reduced radii (m).
+    /// Returns the requirements between contacts of these reduced radii (m).
     ///
     /// # Errors
-    /// What a law said to the trial.
+    /// A law's error in a trial.
     pub fn demand(&self, dimension: u32, radii: &[f64]) -> Result<LawRequirements, LawError> {
         let bonds = self.opens() && (self.bonds != BondRule::Never || self.healing.is_some());
         let acting = self.clone().with_bonds(self.bonds, None)?;
@@ -86,10 +86,11 @@ impl Interface {
     }
 }
 
-/// Step of the trial (s).
+/// Time step of the trial (s).
 const STEP: f64 = 1e-4;
 
-/// Contacts young and old, whole and worn out, pressed and not, sliding slowly and fast.
+/// Returns trial contacts: new and old, intact and damaged, compressed and not, at low and high sliding
+/// speeds.
 fn trials(bench: &Bench, radius: f64) -> (Vec<State>, Vec<Motion>) {
     let (mut states, mut motions) = (Vec::new(), Vec::new());
     for pressure in [0.0, 1e3, 1e6, 1e9] {

@@ -1,4 +1,4 @@
-//! Columns of a batch from the network.
+//! Fills the columns of a batch from the network.
 
 use super::columns::{Columns, StepInfo, Triple};
 use super::interface::Interface;
@@ -7,7 +7,7 @@ use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 
 impl LawEvaluator {
-    /// Columns at the start of the step.
+    /// Fills the columns with the state at the start of the step.
     pub(super) fn gather<S: Space>(
         &mut self,
         law: &Interface,
@@ -32,7 +32,7 @@ impl LawEvaluator {
         self.gather_state(law, network);
     }
 
-    /// Columns at the end of the step: new openings, u_th, this step's impulses.
+    /// Fills the columns with the state at the end of the step: new openings, u_th, the step's impulses.
     pub(super) fn gather_after<S: Space>(
         &mut self,
         law: &Interface,
@@ -109,7 +109,7 @@ fn gather_contact<S: Space>(
     contact: &Contact<S>,
     velocity: &S::Vector,
     info: &StepInfo,
-    // At the start of a step laws see the damage that its impulse is formed with.
+    // At the start of a step laws see the damage used in its impulse.
     start: bool,
 ) {
     columns.gap.push(contact.gap);

@@ -1,17 +1,17 @@
-//! A batch copied to where every wrong write is seen: wide marks between the columns, inputs compared afterwards. Too
-//! slow for a run; certificates are made with it.
+//! Calls laws on a copy of the batch in guarded memory: wide marks between the columns, and a comparison of
+//! the inputs afterwards, detect every invalid write. Too slow for a run; used for certification.
 
 use fretwork_abi::FwBatch;
 use std::time::{Duration, Instant};
 
-/// Marks between columns, in values (4 kB).
+/// Guard values between columns (4 kB).
 const GAP: usize = 512;
-/// Marks before the first and behind the last column, in values (256 kB).
+/// Guard values before the first and after the last column (256 kB).
 const END: usize = 1 << 15;
-/// What stands there: a NaN that no law computes.
+/// Guard value: a NaN with a payload that no law computes.
 const MARK: u64 = 0x7ff4_6a2d_0c39_9e17;
 
-/// The memory in which a law works; kept from call to call.
+/// The memory in which a law works; reused between calls.
 #[derive(Debug, Default)]
 pub(super) struct Guarded {
     words: Vec<u64>,
@@ -24,11 +24,11 @@ struct Column {
     name: String,
     start: usize,
     len: usize,
-    /// Where the host has it; null for inputs.
+    /// Address of the host's column; null for inputs.
     home: *mut f64,
 }
 
-// SAFETY: the addresses are used during one call only, which the owner of the columns makes.
+// SAFETY: the addresses are used only during one call, made by the owner of the columns.
 unsafe impl Send for Guarded {}
 
 impl Column {
@@ -38,10 +38,10 @@ impl Column {
 }
 
 impl Guarded {
-    /// Makes the call twice on a copy of the batch: its answer, and what the law did that it must not.
+    /// Makes the call twice on a copy of the batch; returns the outputs and a description of any violation.
     ///
     /// # Safety
-    /// As the ABI says of the batch, for a law of so many parameters and variables.
+    /// As the ABI requires of the batch, for a law with these numbers of parameters and variables.
     pub unsafe fn call<R>(
         &mut self,
         batch: &FwBatch,
@@ -71,15 +71,14 @@ impl Guarded {
             call(&inside);
             if self.words != first {
                 wrong = Some(
-                    "gave two answers to the same call: it keeps something between calls"
-                        .to_owned(),
+                    "gave two answers to the same call: it keeps data between calls".to_owned(),
                 );
             }
         }
         (answer, wrong)
     }
 
-    /// Copies all columns in, and points the batch and lists of its internal variables to the copies.
+    /// Copies all columns in, and points the batch and its lists of internal variables to the copies.
     unsafe fn lay_out(
         &mut self,
         batch: &mut FwBatch,
@@ -90,7 +89,7 @@ impl Guarded {
         self.columns.clear();
         self.words.clear();
         self.words.resize(END, MARK);
-        // Room first: the addresses must stay.
+        // Reserves the memory first: addresses must not change.
         self.words
             .reserve(GAP * (80 + 2 * variables) + 80 * n + 2 * variables * n + parameters + END);
         let room = self.words.capacity();
@@ -129,7 +128,7 @@ impl Guarded {
         (state, next)
     }
 
-    /// Copies a column in, with marks behind it.
+    /// Copies a column in, followed by guard values.
     unsafe fn put(
         &mut self,
         name: &str,
@@ -159,7 +158,7 @@ impl Guarded {
         unsafe { self.words.as_ptr().add(start).cast() }
     }
 
-    /// What was written beside the outputs, if anything.
+    /// Returns a description of any write outside the outputs.
     fn trespass(&self) -> Option<String> {
         let mut changed = (0..self.words.len()).filter(|k| self.words[*k] != self.before[*k]);
         let wrong = changed.find(|k| {
@@ -168,7 +167,7 @@ impl Guarded {
         })?;
         if let Some(input) = self.columns.iter().find(|c| c.holds(wrong)) {
             return Some(format!(
-                "wrote to the input `{}` (value {} of it)",
+                "wrote to the input `{}` (its value {})",
                 input.name,
                 wrong - input.start
             ));
@@ -191,23 +190,23 @@ impl Guarded {
     }
 }
 
-/// Makes a call over and over for a while, each time with the outputs as they were: its first answer, and whether another
-/// one differs.
+/// Repeats a call for a while, each time with the original outputs; returns the first result, and whether
+/// any later one differs.
 ///
 /// # Safety
-/// As the ABI says of the batch, for a law of so many variables.
+/// As the ABI requires of the batch, for a law with this number of variables.
 pub(super) unsafe fn repeat<R>(
     batch: &FwBatch,
     variables: usize,
     mut call: impl FnMut(&FwBatch) -> R,
 ) -> (R, Option<String>) {
-    /// Several turns of a thread on a busy processor.
+    /// Several scheduler time slices on a busy processor.
     const WHILE: Duration = Duration::from_millis(25);
     const TIMES: u32 = 2000;
     let mut copy = *batch;
     let mut columns: Vec<*mut f64> = outputs(&mut copy).into_iter().map(|o| *o.1).collect();
     if !batch.state_next.is_null() {
-        // SAFETY: one column a variable.
+        // SAFETY: one column per variable.
         columns.extend((0..variables).map(|v| unsafe { *batch.state_next.add(v) }));
     }
     columns.retain(|c| !c.is_null());
@@ -240,7 +239,7 @@ pub(super) unsafe fn repeat<R>(
     (answer, None)
 }
 
-/// The batch as bytes, to compare.
+/// Returns the bytes of the batch, for comparison.
 fn bytes(batch: &FwBatch) -> Vec<u8> {
     let start = std::ptr::from_ref(batch).cast::<u8>();
     // SAFETY: a struct of numbers and addresses without padding.

@@ -13,9 +13,9 @@ use std::sync::Arc;
 pub struct Loaded {
     /// The plugin.
     pub plugin: Arc<Plugin>,
-    /// Values, one a parameter.
+    /// Values, one per parameter.
     pub parameters: Vec<f64>,
-    /// Its first column among the interface's internal variables.
+    /// Index of its first column among the interface's internal variables.
     pub first_variable: usize,
 }
 
@@ -40,7 +40,7 @@ impl Loaded {
         self.plugin.variables.len()
     }
 
-    /// Whether a flag is set.
+    /// Returns whether a flag is set.
     pub fn has(&self, flag: u64) -> bool {
         self.plugin.flags & flag != 0
     }
@@ -52,14 +52,14 @@ pub enum BondRule {
     /// Every contact within the alert distance at the first step.
     #[default]
     Start,
-    /// Every contact within the alert distance at this time (s): after a compaction, say.
+    /// Every contact within the alert distance at this time (s), for example after compaction.
     At(f64),
-    /// None.
+    /// No bonds.
     Never,
 }
 
-/// The area on which tractions act, from the reduced radius r = r1 r2/(r1 + r2): `factor` r times unit
-/// depth in 2D, `factor` pi r^2 in 3D. The factor 1 is what LMGC90's benchmark scene uses.
+/// Area on which tractions act, from the reduced radius r = r1 r2/(r1 + r2): `factor` r times unit depth in
+/// 2D, `factor` pi r^2 in 3D. LMGC90's benchmark scene uses the factor 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AreaRule {
     /// Factor.
@@ -73,7 +73,7 @@ impl Default for AreaRule {
 }
 
 impl AreaRule {
-    /// The area (m^2) of a contact of reduced radius `radius` (m).
+    /// Returns the area (m^2) of a contact of reduced radius `radius` (m).
     #[inline]
     pub fn area(&self, dimension: usize, radius: f64) -> f64 {
         if dimension == 2 {
@@ -84,14 +84,14 @@ impl AreaRule {
     }
 }
 
-/// The law of a pair of materials: slots of laws, in the order of their kinds.
+/// The interface law of a pair of materials.
 #[derive(Clone, Debug)]
 pub struct Interface {
     /// Name in the case.
     pub name: String,
     /// When bonds are made.
     pub bonds: BondRule,
-    /// Time under compression after which a contact bonds, also again after its bond broke (s).
+    /// Time under compression (s) after which a contact forms a bond, including after an earlier bond broke.
     pub healing: Option<f64>,
     /// Area of a contact.
     pub area: AreaRule,
@@ -244,31 +244,31 @@ impl Interface {
         }
     }
 
-    /// Number of internal variables over all slots.
+    /// Returns the number of internal variables over all slots.
     pub fn variables(&self) -> usize {
         self.loaded().map(Loaded::variables).sum()
     }
 
-    /// Those of the laws that act on every contact, bonded or not.
+    /// Returns the number of internal variables of the laws that act on every contact, bonded or not.
     pub fn variables_of_contacts(&self) -> usize {
         let on_contacts = self.loaded().filter(|l| !self.acts_on_bonds(l));
         on_contacts.map(Loaded::variables).sum()
     }
 
-    /// The columns of the laws that act on bonds.
+    /// Iterates over the columns of the internal variables of bonds.
     pub fn variables_of_bonds(&self) -> impl Iterator<Item = usize> {
         let on_bonds = self.loaded().filter(|l| self.acts_on_bonds(l));
         on_bonds.flat_map(|l| l.first_variable..l.first_variable + l.variables())
     }
 
-    /// Initial values of the internal variables.
+    /// Returns the initial values of the internal variables.
     pub fn initial(&self) -> Vec<f64> {
         self.loaded()
             .flat_map(|l| l.plugin.variables.iter().map(|v| v.default))
             .collect()
     }
 
-    /// When contacts become bonds (s), if they do.
+    /// Returns the time at which contacts become bonds (s), if they do.
     pub fn bonding_time(&self) -> Option<f64> {
         let time = match self.bonds {
             BondRule::Start => 0.0,
@@ -278,27 +278,28 @@ impl Interface {
         self.opens().then_some(time)
     }
 
-    /// Whether the cohesion law has an opening, so that it makes bonds; without one it acts on every contact.
+    /// Returns whether the cohesion law has an opening and so forms bonds; without one it acts on every
+    /// contact.
     pub fn opens(&self) -> bool {
         self.cohesion_flags & FLAG_OPENING != 0
     }
 
-    /// Whether bonds resist bending and twist.
+    /// Returns whether bonds resist bending and twist.
     pub fn rotates(&self) -> bool {
         self.cohesion_flags & FLAG_MOMENT != 0
     }
 
-    /// Whether damage grows: by a damage law, or by the cohesion itself.
+    /// Returns whether damage grows, by a damage law or by the cohesion law itself.
     pub fn damages(&self) -> bool {
         self.cohesion_flags & FLAG_BREAKS != 0 || self.damage().is_some()
     }
 
-    /// Whether the normal stiffness only pulls.
+    /// Returns whether the normal stiffness acts in tension only.
     pub fn tension_only(&self) -> bool {
         self.cohesion_flags & FLAG_TENSION_ONLY != 0
     }
 
-    /// Whether friction and restitution are the same for all contacts and steps.
+    /// Returns whether friction and restitution are the same for all contacts and steps.
     pub fn constant_contact(&self) -> bool {
         self.contact().has(FLAG_CONSTANT)
     }

@@ -1,4 +1,4 @@
-//! A plugin: a shared library opened at run time, checked, and called.
+//! A plugin: a shared library that is opened, validated and called at run time.
 
 use super::built_in::hex;
 use super::kind::Kind;
@@ -11,52 +11,52 @@ use std::mem::{MaybeUninit, offset_of};
 use std::path::{Path, PathBuf};
 use std::ptr;
 
-/// Why a law cannot be used, or failed.
+/// Error of loading or calling a law.
 #[derive(Debug, thiserror::Error)]
 pub enum LawError {
-    /// The library cannot be loaded, or is no plugin of ours.
+    /// The library cannot be loaded, or is not a Fretwork plugin.
     #[error("cannot use the plugin {}: {reason}", path.display())]
     Unusable {
         /// The library.
         path: PathBuf,
-        /// What is wrong and what to do.
+        /// The problem and its remedy.
         reason: String,
     },
-    /// The library is not the one that was asked for.
+    /// The library does not have the SHA-256 that is pinned.
     #[error("the plugin {} has the SHA-256 {sha256}, not {pin} as pinned; get the library that the case was made with, or pin this one if you trust it", path.display())]
     Pinned {
         /// The library.
         path: PathBuf,
-        /// What it must have.
+        /// Expected SHA-256.
         pin: String,
-        /// What it has.
+        /// Actual SHA-256.
         sha256: String,
     },
-    /// No such law on the search path.
+    /// No law of this name is on the search path.
     #[error("there is no {kind} law named `{name}` (available: {available}; looked in {looked}); {}", advice(name, nearest.as_deref()))]
     Unknown {
-        /// Kind asked for.
+        /// Requested kind.
         kind: Kind,
-        /// Name asked for.
+        /// Requested name.
         name: String,
-        /// What there is.
+        /// Available laws.
         available: String,
-        /// Where it was looked for.
+        /// Folders searched.
         looked: String,
-        /// The nearest name.
+        /// The most similar name.
         nearest: Option<String>,
     },
-    /// The parameters do not suit the law.
+    /// The law rejects the parameters.
     #[error("the {kind} law `{name}` refuses its parameters: {reason}")]
     Parameters {
         /// Kind.
         kind: Kind,
         /// Name.
         name: String,
-        /// What the law said.
+        /// The law's message.
         reason: String,
     },
-    /// Slots that do not fit together.
+    /// The laws of an interface are incompatible.
     #[error("{reason}")]
     Pairing {
         /// Why.
@@ -79,13 +79,13 @@ pub enum LawError {
         call: Call,
         /// Index in the batch.
         contact: Option<usize>,
-        /// What the law said.
+        /// The law's message.
         reason: String,
     },
-    /// A function of the law wrote behind the end of a column.
+    /// A function of the law wrote beyond the end of a column.
     #[error(
-        "the {kind} law `{name}` wrote behind the end of a column in {call:?}: a batch has n values a column, and memory that is not \
-         the law's may be spoiled; mend the law before it is used again"
+        "the {kind} law `{name}` wrote behind the end of a column in {call:?}: a batch has n values per column, and memory that is not \
+         the law's may be corrupted; fix the law before using it again"
     )]
     Overrun {
         /// Kind.
@@ -95,7 +95,7 @@ pub enum LawError {
         /// The call.
         call: Call,
     },
-    /// A function of the law said it was done and gave a value that is not finite.
+    /// A function of the law reported success but returned a value that is not finite.
     #[error("the {kind} law `{name}` gave a value that is not finite in {call:?}{}; check its parameters and the law", contact.map_or(String::new(), |c| format!(" at contact {c} of its batch")))]
     NotFinite {
         /// Kind.
@@ -107,7 +107,7 @@ pub enum LawError {
         /// Index in the batch.
         contact: Option<usize>,
     },
-    /// A function of the law said it was done and gave a value that cannot be.
+    /// A function of the law reported success but returned a value outside its physical range.
     #[error(
         "the {kind} law `{name}` gave {value:e} as `{column}` in {call:?}{}; it must lie in {range}: check its parameters and the law",
         contact.map_or(String::new(), |c| format!(" at contact {c} of its batch"))
@@ -121,15 +121,16 @@ pub enum LawError {
         call: Call,
         /// Index in the batch.
         contact: Option<usize>,
-        /// The column, as the plugin interface names it.
+        /// Column, named as in the plugin interface.
         column: &'static str,
-        /// What it gave.
+        /// Returned value.
         value: f64,
-        /// What is accepted.
+        /// Accepted range.
         range: Range,
     },
-    /// A function of the law wrote what is not its to write, or gave two answers to one question.
-    #[error("the {kind} law `{name}` {what} in {call:?}; mend the law before it is used again")]
+    /// A function of the law wrote to memory it must not write, or returned different results for equal
+    /// inputs.
+    #[error("the {kind} law `{name}` {what} in {call:?}; fix the law before using it again")]
     Trespass {
         /// Kind.
         kind: Kind,
@@ -137,23 +138,23 @@ pub enum LawError {
         name: String,
         /// The call.
         call: Call,
-        /// What it did.
+        /// Description of the violation.
         what: String,
     },
-    /// One of these, in an interface of a case.
+    /// An error in an interface of a case.
     #[error("{source} (interface `{interface}`{})", bodies.map_or(String::new(), |[i, j]| format!(", contact of bodies {i} and {j}")))]
     At {
         /// Name of the interface.
         interface: String,
-        /// Indices of the bodies, from 0, where one contact is at fault.
+        /// Indices of the bodies, from 0, if the error is in one contact.
         bodies: Option<[u32; 2]>,
-        /// What is wrong.
+        /// The error.
         source: Box<LawError>,
     },
 }
 
 impl LawError {
-    /// The law that failed in a call.
+    /// Returns the law whose call failed.
     pub fn law(&self) -> Option<(Kind, &str)> {
         match self {
             Self::Parameters { kind, name, .. }
@@ -171,7 +172,7 @@ impl LawError {
         }
     }
 
-    /// The interface whose law failed.
+    /// Returns the name of the interface whose law failed.
     pub fn interface(&self) -> Option<&str> {
         match self {
             Self::At { interface, .. } => Some(interface),
@@ -179,7 +180,7 @@ impl LawError {
         }
     }
 
-    /// Whether the law went wrong without saying so.
+    /// Returns whether the law misbehaved without reporting an error.
     pub fn is_silent(&self) -> bool {
         match self {
             Self::NotFinite { .. } | Self::Overrun { .. } => true,
@@ -188,7 +189,7 @@ impl LawError {
         }
     }
 
-    /// The contact at fault, as an index in the batch.
+    /// Returns the contact with the error, as an index in the batch.
     pub(super) fn contact(&self) -> Option<usize> {
         match self {
             Self::Failed { contact, .. }
@@ -219,13 +220,13 @@ pub struct Field {
     pub name: String,
     /// SI unit.
     pub unit: String,
-    /// One line.
+    /// One-line description.
     pub doc: String,
     /// Default or initial value.
     pub default: f64,
-    /// Smallest accepted.
+    /// Smallest accepted value.
     pub minimum: f64,
-    /// Largest accepted.
+    /// Largest accepted value.
     pub maximum: f64,
     /// Whether a variable is written to the results.
     pub output: bool,
@@ -271,23 +272,23 @@ fn known_codes() -> String {
 pub struct Plugin {
     /// Kind.
     pub kind: Kind,
-    /// Name by which cases ask for it.
+    /// Name used in cases.
     pub name: String,
     /// Its own version.
     pub version: String,
-    /// One line.
+    /// One-line description.
     pub doc: String,
-    /// Paper or DOI.
+    /// Paper or DOI of the model.
     pub reference: String,
     /// `FLAG_*` of the ABI.
     pub flags: u64,
-    /// m of psi = (1 - D)^m psi_0.
+    /// Exponent m of psi = (1 - D)^m psi_0.
     pub degradation: f64,
     /// Schema of the parameters.
     pub parameters: Vec<Field>,
     /// Schema of the internal variables.
     pub variables: Vec<Field>,
-    /// The library; the program where the law is built in.
+    /// File of the library, or of the program for a built-in law.
     pub path: PathBuf,
     /// SHA-256 of that file, in hexadecimal.
     pub sha256: String,
@@ -297,25 +298,25 @@ pub struct Plugin {
     pub(super) label: watch::Label,
 }
 
-// SAFETY: the table is read only, and the ABI requires that every function may be called from any
-// thread at any time (pure, no globals).
+// SAFETY: the table is read only, and the ABI requires every function to be callable from any thread at any
+// time (pure, no globals).
 unsafe impl Send for Plugin {}
 // SAFETY: as above.
 unsafe impl Sync for Plugin {}
 
 impl Plugin {
-    /// Opens a library and checks all that can be checked before its first call.
+    /// Opens a library and performs all checks possible before the first call.
     ///
     /// # Errors
-    /// A sentence with the file and what is wrong with it.
+    /// A sentence that names the file and the problem.
     pub fn open(path: &Path) -> Result<Self, LawError> {
         Self::open_pinned(path, None)
     }
 
-    /// The same, where the library must have a SHA-256 (in hexadecimal): none of another one is run.
+    /// Opens a library only if it has the given SHA-256 (in hexadecimal); otherwise no code of it runs.
     ///
     /// # Errors
-    /// As above; and [`LawError::Pinned`].
+    /// As for [`Self::open`]; and [`LawError::Pinned`].
     pub fn open_pinned(path: &Path, pin: Option<&str>) -> Result<Self, LawError> {
         let refuse = |reason: String| LawError::Unusable {
             path: path.to_owned(),
@@ -335,19 +336,19 @@ impl Plugin {
             });
         }
         child::survives(path, &sha256).map_err(&refuse)?;
-        // The trial may have taken seconds.
+        // The trial may have taken seconds, in which the file can change.
         if digest()? != sha256 {
             return Err(refuse(child::CHANGED.to_owned()));
         }
         let loading = watch::label(format!("the plugin {}", path.display()));
         let loading = watch::enter(loading, 5);
-        // SAFETY: opening runs the library's initialisers: the user put it on the search path.
+        // SAFETY: opening runs the library's initialisers; the user put it on the search path.
         let library = unsafe { open_local(path) }.map_err(|e| {
             refuse(format!(
                 "it is not a loadable library ({e}); build it as a `cdylib`"
             ))
         })?;
-        // SAFETY: the ABI gives this symbol this type; a library with another one breaks its promise.
+        // SAFETY: the ABI defines the type of this symbol; a library with another type violates it.
         let table = unsafe {
             let entry = library
                 .get::<abi::FwEntry>(abi::ENTRY_SYMBOL)
@@ -360,16 +361,16 @@ impl Plugin {
             entry()
         };
         drop(loading);
-        // Never unloaded: threads may hold its code or its thread-local data.
+        // Never unloaded: threads may be running its code or hold its thread-local data.
         std::mem::forget(library);
-        // SAFETY: the ABI promises a table that is static and whole.
+        // SAFETY: the ABI guarantees a complete static table.
         unsafe { Self::from_table(table, path, &sha256, false) }
     }
 
-    /// Checks a table and copies what both sides know of it.
+    /// Validates a table and copies the fields known to both versions of the ABI.
     ///
     /// # Safety
-    /// The table is null or one of the ABI, static, with static text.
+    /// The table is null or a static table of the ABI with static text.
     pub(super) unsafe fn from_table(
         table: *const abi::FwPlugin,
         path: &Path,
@@ -386,7 +387,8 @@ impl Plugin {
                 abi::ENTRY_SYMBOL
             )));
         }
-        // SAFETY: the table begins with its size and version, checked before anything else is read.
+        // SAFETY: the table begins with its size and version, which are checked before anything else is
+        // read.
         let table = unsafe { read_table(table) }.map_err(&refuse)?;
         let kind = Kind::from_code(table.kind).ok_or_else(|| {
             refuse(format!(
@@ -411,7 +413,7 @@ impl Plugin {
             reference: text(table.reference, "reference")?,
             flags: table.flags,
             degradation: table.degradation,
-            // SAFETY: counts and arrays come from one table.
+            // SAFETY: count and array belong to one table.
             parameters: unsafe { fields(table.parameters, table.n_parameters, "parameter") }
                 .map_err(&refuse)?,
             // SAFETY: as above.
@@ -480,7 +482,7 @@ impl Plugin {
         self.has_function(Call::Commit)
     }
 
-    /// Whether the law sets the internal variables of new contacts itself.
+    /// Returns whether the law sets the internal variables of new contacts itself.
     pub fn initialises(&self) -> bool {
         self.has_function(Call::Initialise)
     }
@@ -499,9 +501,9 @@ unsafe fn open_local(path: &Path) -> Result<libloading::Library, libloading::Err
     unsafe { libloading::Library::new(path) }
 }
 
-/// Copies what both sides know of the table.
+/// Copies the fields of the table known to both versions of the ABI.
 unsafe fn read_table(table: *const abi::FwPlugin) -> Result<abi::FwPlugin, String> {
-    // SAFETY: size and versions stand first in every version of the table.
+    // SAFETY: size and version come first in every version of the table.
     let (size, major) = unsafe {
         (
             ptr::addr_of!((*table).size).read(),
@@ -514,7 +516,7 @@ unsafe fn read_table(table: *const abi::FwPlugin) -> Result<abi::FwPlugin, Strin
             abi::ABI_MAJOR
         ));
     }
-    // Where the table of version 1.0 ended; later versions grow beyond.
+    // Size of the table of version 1.0; later versions only append fields.
     let least = offset_of!(abi::FwPlugin, energy) + size_of::<abi::FwCall>();
     if size < least {
         return Err(format!(
@@ -523,8 +525,8 @@ unsafe fn read_table(table: *const abi::FwPlugin) -> Result<abi::FwPlugin, Strin
     }
     let known = size.min(size_of::<abi::FwPlugin>());
     let mut copy = MaybeUninit::<abi::FwPlugin>::zeroed();
-    // SAFETY: the plugin says that this much is there, and it is no more than our struct; zeros are
-    // valid for every field (null pointers, absent functions).
+    // SAFETY: the plugin declares this size, capped at that of our struct; all-zero bytes are valid for
+    // every field (null pointers, absent functions).
     unsafe {
         ptr::copy_nonoverlapping(table.cast::<u8>(), copy.as_mut_ptr().cast(), known);
         Ok(copy.assume_init())

@@ -1,4 +1,4 @@
-//! Interface laws: libraries found by name, composed by the case, called in batches.
+//! Interface laws: plugins found by name, combined by the case, and called in batches.
 pub mod bench;
 mod bonds;
 pub mod built_in;

@@ -1,7 +1,7 @@
-//! Prepare and commit: the laws' part of a step.
+//! Prepare and commit: evaluation of the laws in a step.
 //!
-//! Prepare writes friction, cohesion and the linearised bond of every contact into its standard local
-//! form; commit moves openings, lets damage grow, breaks bonds, removes matter, and books the energy.
+//! Prepare writes friction, cohesion and the linearised bond of every contact into its standard local form.
+//! Commit updates openings and damage, breaks bonds, removes worn volume, and books the energies.
 
 use super::bonds::Held;
 use super::columns::{Columns, StepInfo, not_finite};
@@ -17,37 +17,37 @@ use crate::solve::{MomentForm, MomentSolution};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// What one contact did over the step.
+/// Result of one contact over the step.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactStep<S: Space> {
     /// Relative velocity u^- (m/s).
     pub before: S::Vector,
     /// Theta-averaged relative velocity u_th (m/s).
     pub average: S::Vector,
-    /// The unilateral part may pull (h c_n > 0).
+    /// Whether the unilateral part can carry tension (h c_n > 0).
     pub adheres: bool,
-    /// Work that the bond's damping and the scheme take (J).
+    /// Work dissipated by the bond's damping and by the time scheme (J).
     pub lost: f64,
-    /// Work that the position correction gives (J).
+    /// Work of the position correction (J).
     pub corrected: f64,
-    /// Friction is at its bound.
+    /// Whether friction is at its bound (slip).
     pub slides: bool,
-    /// The solver's answer.
+    /// The solver's solution.
     pub solution: ContactSolution<S>,
 }
 
-/// What a contact that resists rotation did over the step.
+/// Result of a contact that resists rotation over the step.
 #[derive(Clone, Copy, Debug)]
 pub struct MomentStep<S: Space> {
-    /// The solver's answer.
+    /// The solver's solution.
     pub moment: MomentSolution<S>,
     /// Theta-averaged relative spin (rad/s).
     pub spin: S::Spin,
-    /// Work that the scheme takes (J).
+    /// Work dissipated by the time scheme (J).
     pub lost: f64,
 }
 
-/// Relative velocities at the start of a step, contact by contact.
+/// Relative velocities at the start of a step, one per contact.
 #[derive(Clone, Debug)]
 pub struct Velocities<S: Space> {
     /// u^- (m/s).
@@ -72,60 +72,61 @@ pub struct Totals {
     pub friction: f64,
     /// Dissipated by impacts.
     pub impact: f64,
-    /// Spent against unilateral tension (cohesion without opening).
+    /// Dissipated against tensile strength (cohesion without opening).
     pub adhesion: f64,
     /// Dissipated by damping of bonds.
     pub viscous: f64,
-    /// Given by the position correction, negative: it lifts what has sunk in.
+    /// Work of the position correction, negative: it separates penetrating bodies.
     pub correction: f64,
-    /// Released by damage: fracture energy.
+    /// Fracture energy released by damage.
     pub fracture: f64,
-    /// Bonds that broke.
+    /// Number of bonds that broke.
     pub broken: u64,
     /// Volume worn off first bodies.
     pub worn_first: f64,
-    /// Volume worn between grains.
+    /// Volume worn in contacts between grains.
     pub worn_third: f64,
 }
 
-/// Working memory of the passes.
+/// Evaluates the laws; owns the working memory of prepare and commit.
 #[derive(Debug, Default)]
 pub struct LawEvaluator {
     pub(super) columns: Columns,
     pub(super) members: Vec<usize>,
     pub(super) held: Held,
-    /// Interface, slot and damage of the bonds of a coupling's last trial.
+    /// Interface, slot and damage of the bonds in the last trial of an implicit coupling.
     pub(super) trials: Vec<(usize, usize, f64)>,
-    /// Work that friction of a pair gave back and wear laws have not seen (J, negative).
+    /// Negative friction work of pairs, deferred to later steps of the wear laws (J).
     pub(super) negative_friction_work: HashMap<(u32, u32), f64>,
-    /// Contacts of the last solve that close within the step and were kept from it although their law has restitution.
+    /// Contacts of the last solve that close within the step and were kept from closing although their law
+    /// has restitution.
     pub(crate) held_back: Vec<usize>,
-    /// Interfaces whose bonds have been made.
+    /// Interfaces whose bonds have been formed.
     bonded: Vec<bool>,
-    /// How laws are watched.
+    /// Which checks are made on law calls.
     pub(super) care: Care,
-    /// By which round-off of their answers is judged.
+    /// Largest value of each output, the reference for its rounding errors.
     largest: Largest,
 }
 
-/// What is looked at when a law is called.
+/// Checks made on the outputs of law calls.
 #[derive(Debug, Default)]
 pub(super) enum Care {
-    /// Values that are not finite or cannot be, and writes just behind a column: errors.
+    /// Errors for values that are not finite or out of range, and for writes just beyond a column.
     #[default]
     Run,
-    /// The same but for values that cannot be: certificates judge them one by one.
+    /// As `Run`, but without the range check, which certification makes itself.
     Lenient,
-    /// As in a run; and every call is made twice, where every wrong write is seen.
+    /// As `Run`; in addition every call is made twice in guarded memory.
     Guarded(Box<Guarded>),
-    /// As in lenient care; and every call is made over and over.
+    /// As `Lenient`; in addition every call is repeated.
     Repeated,
 }
 
-/// What the passes carry from step to step.
+/// State that is carried from step to step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Carried {
-    /// Pairs and what friction gave back there, in the order of the pairs; see [`LawEvaluator`].
+    /// Deferred negative friction work by pair, sorted by pair; see [`LawEvaluator`].
     negative_friction_work: Vec<((u32, u32), f64)>,
     bonded: Vec<bool>,
     largest: Largest,
@@ -144,7 +145,7 @@ struct Friction {
 }
 
 impl LawEvaluator {
-    /// What they carry from step to step.
+    /// Returns the state carried from step to step.
     pub fn carried(&self) -> Carried {
         let mut negative_friction_work: Vec<_> = self
             .negative_friction_work
@@ -159,18 +160,18 @@ impl LawEvaluator {
         }
     }
 
-    /// Goes on from what others carried.
+    /// Restores the state of a saved run.
     pub fn carry_on(&mut self, from: Carried) {
         self.negative_friction_work = from.negative_friction_work.into_iter().collect();
         self.bonded = from.bonded;
         self.largest = from.largest;
     }
 
-    /// Gives contacts the memory their laws need, and makes the bonds whose time has come: those of the
-    /// case's rule, and those of contacts that were pressed long enough.
+    /// Allocates the internal variables of contacts and forms the bonds that are due: by the case's bond
+    /// rule, and by compression time (healing).
     ///
     /// # Errors
-    /// A law's own error in `initialise`.
+    /// The law's error in `initialise`.
     pub fn remember<S: Space>(
         &mut self,
         laws: &[Interface],
@@ -179,7 +180,7 @@ impl LawEvaluator {
     ) -> Result<(), LawError> {
         self.bonded.resize(laws.len(), false);
         for (index, law) in laws.iter().enumerate() {
-            // Times are sums of steps: half a step is on neither side of one.
+            // Times are sums of steps, so that comparing at half a step is safe from rounding.
             let reached = |now: f64, time: f64| now > time - 0.5 * info.h;
             let due =
                 !self.bonded[index] && law.bonding_time().is_some_and(|t| reached(info.time, t));
@@ -203,8 +204,9 @@ impl LawEvaluator {
                     .is_some_and(|time| contact.pressed > 0.0 && reached(contact.pressed, time));
                 let bonds =
                     !intact && !contact.vertex_contact && !contact.beyond && (due || healed);
-                // A bond that only pulls fills its gap; one that pushes too yields until the gap is closed. An overlap is
-                // filled by both: the bond is at rest where it is made.
+                // The rest position of a new bond: a tension-only bond starts without tension over its gap;
+                // one that also pushes yields until the gap is closed. Penetration is included in both, so
+                // that a bond is formed without stress.
                 let filled = if law.tension_only() {
                     contact.gap
                 } else {
@@ -213,7 +215,7 @@ impl LawEvaluator {
                 match contact.memory() {
                     Some(slot) if bonds => {
                         memory.bond(slot, filled, area);
-                        // A new bond has no history; the contact's own goes on.
+                        // A new bond has no history; the variables of the contact itself are kept.
                         for v in law.variables_of_bonds() {
                             memory.variables[v][slot] = initial[v];
                         }
@@ -237,7 +239,7 @@ impl LawEvaluator {
         Ok(())
     }
 
-    /// Lets laws that have a say in it set the internal variables of new contacts, the members.
+    /// Calls the laws that initialise internal variables, for new contacts given as members.
     fn initialise<S: Space>(
         &mut self,
         index: usize,
@@ -259,10 +261,10 @@ impl LawEvaluator {
         Ok(())
     }
 
-    /// Completes the contacts' forms, which hold the geometry, with what the laws say.
+    /// Completes the geometric forms of the contacts with the outputs of the laws.
     ///
     /// # Errors
-    /// A law's own error, with the contact at fault.
+    /// The law's error, with the contact.
     pub fn prepare<S: Space>(
         &mut self,
         laws: &[Interface],
@@ -275,7 +277,7 @@ impl LawEvaluator {
         moments.clear();
         self.held_back.clear();
         for (index, law) in laws.iter().enumerate() {
-            // Intact bonds first: the cohesion law then takes the head of the same columns.
+            // Intact bonds come first, so that the cohesion law takes the head of the same columns.
             let bonded = |c: &Contact<S>| network.bond(c).is_some_and(|b| b.intact());
             let head = if law.opens() {
                 self.select(network, |c| c.law as usize == index && bonded(c));
@@ -466,14 +468,14 @@ impl LawEvaluator {
         }
     }
 
-    /// An error of a law with the interface and the contact, which is one of the members.
+    /// Adds the interface and the contact, one of the members, to an error of a law.
     pub(super) fn at<S: Space>(
         &self,
         law: &Interface,
         network: &Network<S>,
         source: LawError,
     ) -> LawError {
-        // One answer for all contacts is no contact's.
+        // A single result for all contacts belongs to no particular contact.
         let single = self.columns.n == self.members.len();
         let member = source.contact().filter(|_| single);
         let contact = member.and_then(|k| network.contacts.get(*self.members.get(k)?));
@@ -511,13 +513,13 @@ impl LawEvaluator {
             b_n: h * area * (h * theta * theta * kn + theta * dn),
             b_t: h * area * (h * theta * theta * kt + theta * dt),
             tension_only: law.tension_only(),
-            // Damping, and what the theta scheme takes beyond the change of k x^2/2.
+            // Damping, and the dissipation of the theta-scheme beyond the change of k x^2/2.
             loss_n: h * area * (dn + h * (theta - 0.5) * kn),
             loss_t: h * area * (dt + h * (theta - 0.5) * kt),
         });
     }
 
-    /// The linearised bending and twist of a bond.
+    /// Applies the linearised bending and twist of a bond.
     fn apply_bending<S: Space>(
         &self,
         k: usize,
@@ -544,12 +546,13 @@ impl LawEvaluator {
     }
 }
 
-/// Whether the contact is one with restitution that is only kept from closing in this step.
+/// Applies friction and restitution; returns whether the contact has restitution and is only kept from
+/// closing in this step.
 fn apply_friction<S: Space>(
     form: &mut ContactForm<S>,
     friction: &Friction,
     contact: &Contact<S>,
-    // The gap less what an unbroken bond fills.
+    // The gap minus the rest gap of an unbroken bond.
     gap: f64,
     before: &S::Vector,
     area: f64,
@@ -561,9 +564,10 @@ fn apply_friction<S: Space>(
     if contact.beyond {
         (form.tension, form.cohesion) = (0.0, 0.0);
     }
-    // Newton's restitution: closed contacts bounce off the velocity they come with, and those that close within the step
-    // and would else pass through; other open ones are free (a quasi-shock would take the approach away before the impact).
-    // What closes only by an impact of this step is kept from closing, and bounces in the next.
+    // Newton's restitution acts on closed contacts and on those that would close and penetrate within the
+    // step, with their approach velocity; other open contacts are free (a quasi-shock would remove the
+    // approach velocity before the impact). A contact that closes only because of another impact of this
+    // step is kept from closing, and rebounds in the next step.
     let un = contact.normal.dot(before);
     let first = contact.closing && !contact.later && un < 0.0;
     let impact = gap <= 0.0 || first;

@@ -1,26 +1,26 @@
-//! The range in which an output of a law can lie, where physics or the plugin interface gives one.
+//! The valid range of a law's outputs, where physics or the plugin interface defines one.
 
 use super::kind::{Kind, Output};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What is accepted of a column.
+/// Accepted range of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Range {
-    /// No less than nothing: strengths, stiffnesses, damping, volumes, lengths.
+    /// Not negative: strengths, stiffnesses, damping, volumes, lengths.
     NotNegative,
-    /// From none to all: damage, normal restitution.
+    /// From 0 to 1: damage, normal restitution.
     Share,
-    /// Back or on, at most as much as came: tangential restitution.
+    /// From -1 to 1: tangential restitution.
     Signed,
 }
 
 impl Range {
-    /// Round-off is no error: what a law forms as a share may miss its end by some of it, and what it forms as a difference
-    /// may fall below zero by some of what it is the difference of.
+    /// Tolerance for rounding errors: a fraction may exceed its bound, and a difference may fall below zero,
+    /// by this relative amount.
     const ROUND_OFF: f64 = 1e-12;
 
-    /// The ends, and how far beyond them a value may lie by round-off, in a column whose largest value has been `largest`.
+    /// Returns the bounds, and the rounding tolerance for a column whose largest value so far is `largest`.
     fn bounds(self, largest: f64) -> ([f64; 2], f64) {
         match self {
             Self::NotNegative => ([0.0, f64::INFINITY], Self::ROUND_OFF * largest),
@@ -29,8 +29,8 @@ impl Range {
         }
     }
 
-    /// The first value of a column that is outside by more than round-off. The others are put on the end that they miss.
-    /// Nearly always there is none: all are looked at, without a branch each, before one is searched for.
+    /// Returns the first value outside the range by more than rounding, and clamps the others to it. Almost
+    /// always there is none: all values are tested without branches before one is searched for.
     fn settle(self, column: &mut [f64], largest: &mut f64) -> Option<usize> {
         if self == Self::NotNegative {
             *largest = column.iter().fold(*largest, |most, x| most.max(*x));
@@ -48,8 +48,8 @@ impl Range {
     }
 }
 
-/// The largest value that each column has had so far, by code of the kind of law and place of the column: what round-off is
-/// measured by. One contact alone has no other to be compared with at the end of its life.
+/// Largest value of each column so far, by kind of law and index of the column: the reference for rounding
+/// errors. A single contact near failure has no other value to compare with.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Largest(Vec<(i32, Vec<f64>)>);
 
@@ -76,7 +76,7 @@ impl fmt::Display for Range {
     }
 }
 
-/// A value that cannot be.
+/// A value outside its range.
 pub(super) struct Outside {
     pub contact: usize,
     pub column: &'static str,
@@ -124,7 +124,7 @@ mod tests {
         assert_eq!(settle(Range::NotNegative, &[0.0, -1e-300]), Some(1));
     }
 
-    /// A strength times (1 - D) whose D is one number above 1.
+    /// A strength times (1 - D), where D exceeds 1 by one unit in the last place.
     #[test]
     fn what_round_off_leaves_below_zero_is_zero() {
         let left = 1e6 * (1.0 - (1.0 + f64::EPSILON));
@@ -132,7 +132,7 @@ mod tests {
         let mut column = vec![1e6, left, 0.5];
         assert_eq!(Range::NotNegative.settle(&mut column, &mut 0.0), None);
         assert_eq!(column, [1e6, 0.0, 0.5]);
-        // A bond alone: what it was measures what it is.
+        // A single bond: its own earlier value is the reference.
         let mut largest = 0.0;
         for (value, found) in [(1e6, None), (left, None), (-1e-3, Some(0))] {
             let mut column = vec![value];

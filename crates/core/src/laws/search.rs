@@ -1,4 +1,4 @@
-//! Where plugins are found: by kind and name, on a search path. A case cannot name a file.
+//! Search for plugins by kind and name on a search path. A case cannot name a file.
 
 use super::built_in::BuiltInLaws;
 use super::kind::Kind;
@@ -6,20 +6,20 @@ use super::library::{LawError, Plugin};
 use super::{child, trust};
 use std::path::{Path, PathBuf};
 
-/// Environment variable with further folders.
+/// Environment variable with additional folders.
 pub const VARIABLE: &str = "FRETWORK_PLUGIN_PATH";
 
 /// Folders in which plugins are looked for, in order.
 #[derive(Clone, Debug)]
 pub struct SearchPath {
     folders: Vec<PathBuf>,
-    /// How many of them are the program's own.
+    /// Number of the program's own folders at the start of the list.
     shipped: usize,
     built_in: BuiltInLaws,
     trusting: bool,
 }
 
-/// Where a law is.
+/// Location of a law.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Place {
     /// In a library.
@@ -28,13 +28,13 @@ pub enum Place {
     BuiltIn,
 }
 
-/// Whether a law's name is made of a-z, 0-9, `-` and `_` and begins with a letter or digit.
+/// Returns whether a law's name consists of a-z, 0-9, `-` and `_` and begins with a letter or digit.
 pub fn name_is_valid(name: &str) -> bool {
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit();
     name.chars().next().is_some_and(plain) && name.chars().all(|c| plain(c) || c == '-' || c == '_')
 }
 
-/// The file that holds a law: `libfretwork_KIND_NAME.so`, with `-` in the name written `_`.
+/// Returns the file name of a law's library: `libfretwork_KIND_NAME.so`, with `-` in the name written `_`.
 pub fn file_name(kind: Kind, name: &str) -> String {
     use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
     format!(
@@ -44,7 +44,8 @@ pub fn file_name(kind: Kind, name: &str) -> String {
 }
 
 impl SearchPath {
-    /// The shipped folders beside the program, then `extra`, then the environment variable's.
+    /// Builds the search path: the shipped folders beside the program, then `extra`, then those of the
+    /// environment variable.
     pub fn new(extra: &[PathBuf]) -> Self {
         let mut folders = shipped();
         let shipped = folders.len();
@@ -60,7 +61,7 @@ impl SearchPath {
         }
     }
 
-    /// The same path, with laws that are linked into the program.
+    /// Adds laws that are linked into the program.
     #[must_use]
     pub fn with_built_in(self, laws: BuiltInLaws) -> Self {
         Self {
@@ -69,7 +70,7 @@ impl SearchPath {
         }
     }
 
-    /// The same path; libraries are opened even where anybody may write.
+    /// Allows libraries to be opened from locations where anybody may write.
     #[must_use]
     pub fn trusting(self) -> Self {
         Self {
@@ -78,24 +79,24 @@ impl SearchPath {
         }
     }
 
-    /// The folders, in order.
+    /// Returns the folders, in search order.
     pub fn folders(&self) -> &[PathBuf] {
         &self.folders
     }
 
-    /// Opens the law of this kind and name: the first that has it wins, of the folders beside the program, the laws built
-    /// into it, and the other folders. So no library takes the place of a shipped law.
+    /// Opens the law of this kind and name: the first found in the folders beside the program, then the
+    /// built-in laws, then the other folders. A library therefore cannot replace a shipped law.
     ///
     /// # Errors
-    /// No such law (with the nearest name), or a library that cannot be used.
+    /// No such law (with the most similar name), or an unusable library.
     pub fn find(&self, kind: Kind, name: &str) -> Result<Plugin, LawError> {
         self.find_pinned(kind, name, None)
     }
 
-    /// The same, where the library must have a SHA-256 (in hexadecimal).
+    /// As [`Self::find`], for a library with a required SHA-256 (in hexadecimal).
     ///
     /// # Errors
-    /// As above; and another SHA-256, before anything of the library is run.
+    /// As [`Self::find`]; and a different SHA-256, before any code of the library runs.
     pub fn find_pinned(
         &self,
         kind: Kind,
@@ -118,7 +119,7 @@ impl SearchPath {
         Ok(plugin)
     }
 
-    /// Where the law of this kind and name is, unopened.
+    /// Returns the location of the law of this kind and name, without opening it.
     fn place(&self, kind: Kind, name: &str) -> Option<Place> {
         if !name_is_valid(name) {
             return None;
@@ -148,10 +149,10 @@ impl SearchPath {
         }
     }
 
-    /// Opens what [`SearchPath::laws`] listed.
+    /// Opens a law listed by [`SearchPath::laws`].
     ///
     /// # Errors
-    /// Why it cannot be used.
+    /// The reason why it cannot be used.
     pub fn open_law(&self, kind: Kind, name: &str, place: &Place) -> Result<Plugin, LawError> {
         match place {
             Place::Library(path) => self.open(path),
@@ -159,8 +160,8 @@ impl SearchPath {
         }
     }
 
-    /// Tries the libraries of several laws in one process before they are opened one by one; laws that are not there, or
-    /// may not be opened, are left to what opens them.
+    /// Tries the libraries of several laws in one child process before they are opened one by one. Missing
+    /// or untrusted laws are skipped; opening them reports the error.
     pub fn try_out<'a>(&self, laws: impl IntoIterator<Item = (Kind, &'a str, Option<&'a str>)>) {
         let mut libraries = Vec::new();
         for (kind, name, pin) in laws {
@@ -173,7 +174,8 @@ impl SearchPath {
         child::try_out(&libraries);
     }
 
-    /// Whether a law is the program's own: who changes it may change the program.
+    /// Returns whether a law belongs to the program itself, so that whoever can change it can change the
+    /// program.
     pub fn is_own(&self, plugin: &Plugin) -> bool {
         plugin.built_in || self.own(&plugin.path)
     }
@@ -183,13 +185,13 @@ impl SearchPath {
         folder.is_some_and(|p| self.folders[..self.shipped].iter().any(|f| f == p))
     }
 
-    /// Why a library should not be opened, if it should not.
+    /// Returns why a library should not be opened, if there is a reason.
     fn doubt(&self, library: &Path) -> Option<String> {
         let asked = !self.own(library) && !self.trusting;
         asked.then(|| trust::doubt(library)).flatten()
     }
 
-    /// Opens a library, unless anybody may write to it or to its folder.
+    /// Opens a library, unless others may write to it or to its folder.
     ///
     /// # Errors
     /// Why it is not opened, or cannot be used.
@@ -205,8 +207,8 @@ impl SearchPath {
         Plugin::open_pinned(path, pin)
     }
 
-    /// All laws by the names under which they are found, unopened, sorted: libraries by their file names (with `_` as `-`),
-    /// and what is built in.
+    /// Lists all laws by the names under which they are found, unopened and sorted: libraries by their file
+    /// names (with `_` as `-`), and built-in laws.
     pub fn laws(&self) -> Vec<(Kind, String, Place)> {
         let mut out: Vec<(Kind, String, Place)> = Vec::new();
         let mut add = |kind: Kind, name: String, place: Place| {
@@ -238,7 +240,7 @@ impl SearchPath {
         out
     }
 
-    /// Those of them that are libraries.
+    /// Lists the laws that are libraries.
     pub fn available(&self) -> Vec<(Kind, String, PathBuf)> {
         let libraries = self.laws().into_iter().filter_map(|law| match law {
             (kind, name, Place::Library(path)) => Some((kind, name, path)),
@@ -247,7 +249,7 @@ impl SearchPath {
         libraries.collect()
     }
 
-    /// Where laws are looked for, in order, in words.
+    /// Describes where laws are searched for, in order.
     pub fn looked(&self) -> String {
         let folder = |f: &PathBuf| f.display().to_string();
         let (own, others) = self.folders.split_at(self.shipped);
@@ -296,12 +298,13 @@ fn parse(path: &Path) -> Option<(Kind, String)> {
         .strip_prefix("fretwork_")?;
     Kind::all().into_iter().find_map(|kind| {
         let name = stem.strip_prefix(kind.word())?.strip_prefix('_')?;
-        // No law's file has a dash: cargo's names with a hash do.
+        // File names of laws contain no dash; cargo's names with a hash do.
         (name_is_valid(name) && !name.contains('-')).then(|| (kind, name.replace('_', "-")))
     })
 }
 
-/// Beside the program, where cargo puts libraries, and where an installation would.
+/// Returns the folders of shipped laws: beside the program, where cargo puts libraries, and where an
+/// installation would.
 fn shipped() -> Vec<PathBuf> {
     let Some(here) = std::env::current_exe()
         .ok()
@@ -310,7 +313,7 @@ fn shipped() -> Vec<PathBuf> {
         return Vec::new();
     };
     let mut out = vec![here.clone(), here.join("deps")];
-    // Cargo's examples and tests stand beside or in the folder of the libraries.
+    // Cargo's examples and tests are in, or beside, the folder of the libraries.
     let of_cargo = here
         .file_name()
         .is_some_and(|n| n == "deps" || n == "examples");

@@ -1,23 +1,24 @@
-//! The static memory of a law's library (`.data` and `.bss`): what a law keeps there between calls, threads overwrite.
+//! The static memory of a law's library (`.data` and `.bss`). A law that stores values there between calls
+//! has data races.
 
 use super::library::Plugin;
 
-/// Why the static memory of a law cannot be looked at.
+/// Reason why the static memory of a law cannot be inspected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unseen {
-    /// The law is part of the program, whose memory changes all the time.
+    /// The law is part of the program, whose memory changes continually.
     BuiltIn,
-    /// It has so many bytes, more than are compared.
+    /// It has this many bytes, more than are compared.
     TooLarge(usize),
-    /// Not on this system.
+    /// Not supported on this system.
     System,
 }
 
-/// So many bytes are compared (256 MB): they are kept several times.
+/// Maximum number of bytes compared (256 MB); several copies are kept.
 #[cfg(target_os = "linux")]
 const MAX_BYTES: usize = 1 << 28;
 
-/// The writable segments of the library that holds a law's functions; never those of another library.
+/// The writable segments of the library that contains a law's functions, and of no other library.
 #[derive(Debug)]
 pub struct StaticMemory {
     #[cfg(target_os = "linux")]
@@ -29,10 +30,10 @@ pub struct StaticMemory {
 
 #[cfg(target_os = "linux")]
 impl StaticMemory {
-    /// That of a law.
+    /// Locates the static memory of a law.
     ///
     /// # Errors
-    /// It cannot be looked at.
+    /// It cannot be inspected.
     pub fn of(plugin: &Plugin) -> Result<Self, Unseen> {
         if plugin.built_in {
             return Err(Unseen::BuiltIn);
@@ -49,14 +50,15 @@ impl StaticMemory {
         Ok(Self { memory, segments })
     }
 
-    /// What stands there now; none where the system does not let it be read.
+    /// Reads the current contents; `None` where the system does not allow it.
     pub fn read(&self) -> Option<Vec<u8>> {
         use std::os::unix::fs::FileExt;
         let mut bytes = Vec::new();
         for (address, length) in &self.segments {
             let start = bytes.len();
             bytes.resize(start + length, 0);
-            // Through the system: a plain read of what native code may write meanwhile is not defined.
+            // Read through the operating system: a direct read of memory that native code may write
+            // concurrently is undefined behaviour.
             self.memory
                 .read_exact_at(&mut bytes[start..], *address)
                 .ok()?;
@@ -67,10 +69,10 @@ impl StaticMemory {
 
 #[cfg(not(target_os = "linux"))]
 impl StaticMemory {
-    /// That of a law.
+    /// Locates the static memory of a law.
     ///
     /// # Errors
-    /// It cannot be looked at: always on this system.
+    /// Always, on this system.
     pub fn of(plugin: &Plugin) -> Result<Self, Unseen> {
         Err(match plugin.built_in {
             true => Unseen::BuiltIn,
@@ -78,13 +80,13 @@ impl StaticMemory {
         })
     }
 
-    /// None on this system.
+    /// Returns `None` on this system.
     pub fn read(&self) -> Option<Vec<u8>> {
         None
     }
 }
 
-/// Addresses of the functions of a law.
+/// Returns the addresses of the functions of a law.
 #[cfg(target_os = "linux")]
 fn functions(plugin: &Plugin) -> Vec<usize> {
     let table = &plugin.table;
@@ -92,7 +94,7 @@ fn functions(plugin: &Plugin) -> Vec<usize> {
     calls.into_iter().flatten().map(|f| f as usize).collect()
 }
 
-/// What the dynamic linker tells of loaded libraries.
+/// Queries the dynamic linker for the loaded libraries.
 #[cfg(target_os = "linux")]
 mod elf {
     use std::ffi::{c_int, c_void};
@@ -102,13 +104,14 @@ mod elf {
         found: Vec<(u64, usize)>,
     }
 
-    /// Address and length of the writable segments of the libraries that hold one of these functions.
+    /// Returns address and length of the writable segments of the libraries that contain one of these
+    /// functions.
     pub fn writable_segments(functions: &[usize]) -> Vec<(u64, usize)> {
         let mut search = Search {
             functions,
             found: Vec::new(),
         };
-        // SAFETY: the callback gets this search and no other, for the time of this call.
+        // SAFETY: the callback receives this search object only, for the duration of the call.
         unsafe { libc::dl_iterate_phdr(Some(visit), (&raw mut search).cast()) };
         search.found
     }
@@ -118,12 +121,12 @@ mod elf {
         _size: usize,
         search: *mut c_void,
     ) -> c_int {
-        // SAFETY: the linker gives a valid record and the pointer that it was called with.
+        // SAFETY: the linker passes a valid record and the pointer given to it.
         let (info, search) = unsafe { (&*info, &mut *search.cast::<Search<'_>>()) };
         if info.dlpi_phdr.is_null() {
             return 0;
         }
-        // SAFETY: so many headers are there.
+        // SAFETY: the record declares this number of headers.
         let headers =
             unsafe { std::slice::from_raw_parts(info.dlpi_phdr, info.dlpi_phnum as usize) };
         let loaded: Vec<(usize, usize, bool)> = headers

@@ -1,20 +1,22 @@
-//! Whether a library may be opened: only who may change the user's own files may have put it there.
+//! Decides whether a library may be opened: only if nobody but the user and the administrator can have
+//! placed or changed it.
 
 use std::path::Path;
 
-/// Why a library should not be opened, if it should not: others can write to it, or to a folder or a link on the way to it.
+/// Returns why a library should not be opened, if others can write to it, or to a folder or link on its
+/// path.
 #[cfg(unix)]
 pub(super) fn doubt(library: &Path) -> Option<String> {
     on_the_way::doubt(library, on_the_way::me(), on_the_way::Place::of)
 }
 
-/// Rights are not looked at where they are not those of POSIX.
+/// Permissions are not checked on systems without POSIX permissions.
 #[cfg(not(unix))]
 pub(super) fn doubt(_: &Path) -> Option<String> {
     None
 }
 
-/// Owners and rights of all that leads to a file.
+/// Owners and permissions of all components of a path.
 #[cfg(unix)]
 mod on_the_way {
     use std::collections::VecDeque;
@@ -25,18 +27,18 @@ mod on_the_way {
     /// The administrator.
     const ROOT: u32 = 0;
 
-    /// Who runs the program, for the rights on files.
+    /// Returns the effective user id.
     pub fn me() -> u32 {
         // SAFETY: it has no arguments and cannot fail.
         unsafe { libc::geteuid() }
     }
 
-    /// What is known of a file, a folder or a link; a link is not followed.
+    /// Owner, permissions and target of a file, folder or link; links are not followed.
     #[derive(Clone, Debug)]
     pub struct Place {
         pub owner: u32,
         pub mode: u32,
-        /// Where a link leads.
+        /// Target of a link.
         pub link: Option<PathBuf>,
     }
 
@@ -52,23 +54,24 @@ mod on_the_way {
         }
 
         fn anybody_writes(&self) -> bool {
-            // The rights of a link say nothing.
+            // The permissions of a link itself have no effect.
             self.link.is_none() && self.mode & 0o002 != 0
         }
 
-        /// In a sticky folder only their owners, and its own, may rename or remove files.
+        /// In a sticky folder only the owners of the folder and of a file may rename or remove the file.
         fn sticky(&self) -> bool {
             self.mode & 0o1000 != 0
         }
     }
 
-    /// Follows a path from the root, link by link, and doubts what others than `me` and the administrator may change.
+    /// Follows a path from the root, link by link, and returns the first component that users other than
+    /// `me` and the administrator may change.
     pub fn doubt(
         library: &Path,
         me: u32,
         place: impl Fn(&Path) -> Option<Place>,
     ) -> Option<String> {
-        /// Links on the way; more are a circle, which opening will find.
+        /// Maximum number of links; a circular path fails when it is opened.
         const LINKS: usize = 40;
         let mut left: VecDeque<OsString> = VecDeque::new();
         let mut here = PathBuf::from("/");
@@ -89,7 +92,7 @@ mod on_the_way {
             if found.anybody_writes() && (end || !found.sticky()) {
                 return Some(open(&here, &found));
             }
-            // Others may lay further laws into a folder of laws, even if it is sticky.
+            // Others could add laws to a folder of laws, even if it is sticky.
             let folder = here.parent().filter(|_| end);
             if let Some((path, folder)) = folder.and_then(|p| Some((p, place(p)?)))
                 && folder.anybody_writes()
@@ -195,7 +198,7 @@ mod on_the_way {
             let said = with(&below(0o777), "/tmp/a/b/law.so").unwrap();
             assert!(said.contains("write to /tmp/a (mode 0777)"), "{said}");
             assert_eq!(with(&below(0o1777), "/tmp/a/b/law.so"), None);
-            // Its own folder may not even be sticky: others may lay further laws beside it.
+            // The folder itself may not even be sticky: others could add laws beside this one.
             let beside = [("/tmp/law.so", ME, 0o644, "")];
             for path in ["/tmp/law.so", "/tmp/../tmp/law.so"] {
                 assert!(with(&beside, path).unwrap().contains("/tmp (mode 1777)"));

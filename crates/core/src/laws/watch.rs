@@ -1,20 +1,20 @@
-//! A watch over plugins: native code that does not come back cannot be stopped, but it can be named.
+//! A watchdog for plugin calls: native code that hangs cannot be stopped, but it can be reported.
 
 use std::sync::atomic::{AtomicPtr, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, mpsc};
 use std::time::Duration;
 
-/// What a thread is at.
+/// The current call of a thread.
 struct Slot {
-    /// Counts the begins and the ends of its calls: odd while one goes on.
+    /// Counter of call begins and ends: odd during a call.
     turns: AtomicU64,
-    /// Whom it calls; never freed.
+    /// The law being called; never freed.
     who: AtomicPtr<String>,
-    /// What it calls of it: a place among the names.
+    /// Index of the called function in `CALLS`.
     call: AtomicUsize,
 }
 
-/// Threads beyond so many share the last slot, and are not watched.
+/// Threads beyond this number share the last slot and are not watched.
 const MAX_SLOTS: usize = 256;
 static SLOTS: [Slot; MAX_SLOTS] = [const {
     Slot {
@@ -30,7 +30,7 @@ thread_local! {
         &SLOTS[THREADS.fetch_add(1, Ordering::Relaxed).min(MAX_SLOTS - 1)];
 }
 
-/// Names of the calls, in the order of their numbers.
+/// Names of the calls, by index.
 const CALLS: [&str; 6] = [
     "initialise",
     "prepare",
@@ -40,11 +40,11 @@ const CALLS: [&str; 6] = [
     "loading",
 ];
 
-/// What a call is told by.
+/// Label of a law in reports.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Label(&'static String);
 
-/// A call that goes on until this is dropped.
+/// Guard for a call in progress.
 pub(super) struct Inside;
 
 impl Drop for Inside {
@@ -53,12 +53,12 @@ impl Drop for Inside {
     }
 }
 
-/// A label by which calls are told. It is kept for good, as what it names: so it can be read wherever a call ends.
+/// Creates a label. It is leaked on purpose, so that it can be read whenever a call ends.
 pub(super) fn label(text: String) -> Label {
     Label(Box::leak(Box::new(text)))
 }
 
-/// Begins a call, by its number among the names above.
+/// Marks the start of a call, by its index in `CALLS`.
 pub(super) fn enter(label: Label, call: usize) -> Inside {
     MINE.with(|slot| {
         let text = std::ptr::from_ref(label.0).cast_mut();
@@ -70,10 +70,10 @@ pub(super) fn enter(label: Label, call: usize) -> Inside {
 }
 
 impl Slot {
-    /// Whom it calls, and what.
+    /// Returns the called law and function.
     fn named(&self) -> (&'static str, &'static str) {
         let who = self.who.load(Ordering::Relaxed);
-        // SAFETY: null, or a label, which is never freed nor written again.
+        // SAFETY: null, or a label, which is never freed nor modified.
         let who = unsafe { who.as_ref() }.map_or("a law", String::as_str);
         let call = CALLS.get(self.call.load(Ordering::Relaxed));
         (who, call.copied().unwrap_or("a call"))
@@ -87,12 +87,12 @@ pub fn inside() -> Option<(&'static str, &'static str)> {
     called.then(|| mine.named())
 }
 
-/// What is to be done before the program ends; it gives whether it saved something.
+/// Action before the program ends; returns whether it saved something.
 type Rescue = Box<dyn FnOnce(&str) -> bool + Send>;
 
 static RESCUES: Mutex<Vec<(u64, Rescue)>> = Mutex::new(Vec::new());
 
-/// A rescue that stands ready until this is dropped.
+/// Guard that keeps a rescue action registered.
 #[derive(Debug)]
 pub struct Ready(u64);
 
@@ -103,8 +103,8 @@ impl Drop for Ready {
     }
 }
 
-/// Makes ready what saves a run when a law does not come back. It runs on a thread of its own, beside the one that is stuck,
-/// is given who is stuck where, and says whether it saved something.
+/// Registers an action that saves a run when a law hangs. It runs on a thread of its own while the law is
+/// stuck, receives a description of the stuck call, and returns whether it saved something.
 pub fn rescue(save: impl FnOnce(&str) -> bool + Send + 'static) -> Ready {
     static NUMBERS: AtomicU64 = AtomicU64::new(0);
     let number = NUMBERS.fetch_add(1, Ordering::Relaxed);
@@ -113,7 +113,7 @@ pub fn rescue(save: impl FnOnce(&str) -> bool + Send + 'static) -> Ready {
     Ready(number)
 }
 
-/// What became of what was computed, when the program ends early.
+/// What was saved when the program ended early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Saved {
     /// All rows and a summary are on disk.
@@ -125,7 +125,7 @@ pub enum Saved {
 }
 
 impl Saved {
-    /// In words.
+    /// Describes the result in a sentence fragment.
     pub fn words(self) -> &'static str {
         match self {
             Self::All => "all rows up to this step and a summary.json that says so are on disk",
@@ -155,11 +155,11 @@ pub fn save(who: &str) -> Saved {
     }
 }
 
-/// Watches from a thread of its own, for the rest of the program: once, who did not come back from a call within the limit
-/// is told, and what the rescues saved.
+/// Starts the watchdog thread, for the lifetime of the program. It reports, once, a call that exceeds the
+/// limit, and the result of the rescue actions.
 ///
 /// # Errors
-/// The system gives no more threads.
+/// The system cannot create a thread.
 pub fn watch(
     limit: Duration,
     stuck: impl FnOnce(&str, Saved) + Send + 'static,
@@ -178,8 +178,8 @@ pub fn watch(
     std::thread::Builder::new().spawn(rescuer)?;
     let looks = 20u32;
     let watcher = move || {
-        // What this thread keeps for itself is made now: a library that hangs while it is loaded holds the lock of the
-        // dynamic linker, which that takes.
+        // Initialises this thread's thread-local data now: a library that hangs while loading holds the
+        // dynamic linker's lock, which that initialisation needs.
         let _ = saved.recv_timeout(Duration::from_millis(20));
         let _ = std::io::Write::flush(&mut std::io::stderr().lock());
         let mut seen = vec![(0, 0); MAX_SLOTS];
@@ -187,7 +187,7 @@ pub fn watch(
         drop(begins);
         let (label, at) = loop {
             std::thread::sleep(limit / looks);
-            // The last slot is of all threads that found no other.
+            // The last slot is shared by all remaining threads.
             let slots = SLOTS[..MAX_SLOTS - 1].iter().zip(&mut seen);
             let mut late = slots.filter_map(|(slot, (turns, since))| {
                 let now = slot.turns.load(Ordering::Relaxed);
@@ -213,7 +213,7 @@ pub fn watch(
         stuck(&who, saved);
     };
     std::thread::Builder::new().spawn(watcher)?;
-    // On a busy machine a library could be loaded, and hang, before these threads have all that they need.
+    // On a busy machine a library could be loaded, and hang, before these threads are fully started.
     begun.iter().for_each(drop);
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! The tribological circuit of a run: ties, ejection zones, the mass ledger, and debris as it comes loose.
+//! The tribological circuit of a run: assignment of grains to first bodies, ejection zones, the mass ledger,
+//! and debris as it detaches.
 
 use super::{Process, ProcessError};
 use crate::bodies::Bodies;
@@ -13,38 +14,40 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// What becomes of a grain in an ejection zone.
+/// Fate of a grain in an ejection zone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Fate {
-    /// It stays ejected until it leaves the zone, and may come back.
+    /// It stays ejected until it leaves the zone, and may return to the contact.
     Stays,
-    /// It is lost, and taken out of the scene, when it has been there for so long (s).
+    /// It is lost, and removed from the scene, after this time in the zone (s).
     LostAfter(f64),
 }
 
-/// A region outside the contact.
+/// An ejection zone outside the contact.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Zone<S: Space> {
     /// Its name.
     pub name: String,
-    /// Lowest corner (m); minus infinity where it is open.
+    /// Lowest corner (m); minus infinity in unbounded directions.
     pub low: S::Vector,
-    /// Highest corner (m); infinity where it is open.
+    /// Highest corner (m); infinity in unbounded directions.
     pub high: S::Vector,
-    /// The body that carries it; its corners are then in that body's frame, which may move but not turn.
+    /// The body that carries it; its corners are then in the frame of that body, which may move but not
+    /// rotate.
     pub carrier: Option<u32>,
-    /// What becomes of a grain in it.
+    /// Fate of the grains in it.
     pub fate: Fate,
 }
 
 impl<S: Space> Zone<S> {
-    /// Whether a place, or one of its images along a period, is in it.
+    /// Returns whether a position, or one of its periodic images, is in the zone.
     fn holds(&self, bodies: &Bodies<S>, periodic: &Periodic, at: &S::Vector) -> bool {
         let origin = self.carrier.map(|b| bodies.position[b as usize]);
         let x = origin.map_or(*at, |o| *at - o);
         (0..S::D).all(|k| match periodic.period[k] {
-            // The first image above the low side; what is open along a period is all of it.
+            // The first image above the low side; a zone that is unbounded along a period contains all of
+            // it.
             Some(period) if self.low[k].is_finite() && self.high[k].is_finite() => {
                 (x[k] - self.low[k]).rem_euclid(period) < self.high[k] - self.low[k]
             }
@@ -54,24 +57,24 @@ impl<S: Space> Zone<S> {
     }
 }
 
-/// What a circuit is made of.
+/// Definition of a circuit.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Spec<S: Space> {
-    /// First bodies that grains can belong to: bodies to which bonds tie.
+    /// First bodies that grains can belong to: bodies with bonds to grains.
     pub bases: Vec<u32>,
-    /// Interfaces whose bonds tie, by index.
+    /// Indices of the interfaces whose bonds connect grains to first bodies.
     pub interfaces: Vec<u16>,
-    /// Ejection zones; a grain is in the first that holds its centre.
+    /// Ejection zones; a grain is in the first zone that contains its centre.
     pub zones: Vec<Zone<S>>,
-    /// Factor by which masses are larger than they are, see `inertia_scaling`.
+    /// Factor by which masses in the simulation exceed the real ones, see `inertia_scaling`.
     pub scaling: f64,
 }
 
-/// Debris: grains that came loose together.
+/// Debris: grains that detached together.
 #[derive(Clone, Debug)]
 pub struct Debris<S: Space> {
-    /// When it was noticed (s).
+    /// Time at which it was detected (s).
     pub time: f64,
     /// Identities of its grains.
     pub grains: Vec<u64>,
@@ -79,18 +82,18 @@ pub struct Debris<S: Space> {
     pub mass: f64,
     /// Centre of mass (m).
     pub place: S::Vector,
-    /// Index of the first body that lost it.
+    /// Index of the first body from which it detached.
     pub base: u32,
-    /// Share of sliding in the work done on the bonds whose breaking freed it; see
+    /// Fraction of sliding in the work on the bonds whose failure released it; see
     /// [`crate::contact::Life::mode_mix`].
     pub mode_mix: f64,
-    /// Energy that damage of these bonds released (J; J/m in 2D).
+    /// Fracture energy of these bonds (J; J/m in 2D).
     pub energy: f64,
-    /// Their number.
+    /// Number of these bonds.
     pub bonds: usize,
 }
 
-/// A bond that broke.
+/// A broken bond.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Cut {
     bodies: [u32; 2],
@@ -103,29 +106,29 @@ struct Cut {
 #[serde(bound = "")]
 pub struct Circuit<S: Space> {
     spec: Spec<S>,
-    /// The grains, by body.
+    /// Body indices of the grains.
     grains: Vec<u32>,
-    /// Place of a body among the grains.
+    /// Grain index of each body.
     number: Vec<Option<u32>>,
     ties: Ties,
     /// The mass ledger.
     pub ledger: Ledger,
-    /// Since when a grain has been in its zone (s).
+    /// Time since which each grain has been in its zone (s).
     since: Vec<f64>,
     made: Vec<[u32; 2]>,
-    /// Bonds that broke since the last update.
+    /// Bonds broken since the last update.
     cuts: Vec<[u32; 2]>,
-    /// Bonds that each body lost since it was tied, by body.
+    /// Bonds that each body lost since it was last connected, by body.
     past: BTreeMap<u32, Vec<Cut>>,
-    /// Grains and clusters that came loose in the last update.
+    /// Debris detached in the last update.
     #[serde(skip)]
     pub debris: Vec<Debris<S>>,
-    /// Time spent on it.
+    /// Wall-clock time spent on the circuit.
     pub cost: Duration,
 }
 
 impl<S: Space> Circuit<S> {
-    /// Begins with the bonds at hand.
+    /// Creates the circuit from the current bonds.
     pub fn new(spec: Spec<S>, s: &Simulation<S>) -> Self {
         let grains: Vec<u32> = s.bodies.grains().map(|b| b as u32).collect();
         let mut number = vec![None; s.bodies.len()];
@@ -154,30 +157,30 @@ impl<S: Space> Circuit<S> {
         };
         let mut places = circuit.places(s);
         for place in places.iter_mut().filter(|p| **p == Place::Lost) {
-            // The first update takes it out.
+            // The first update removes it.
             *place = Place::Ejected(0);
         }
         circuit.ledger = Ledger::new(masses, places);
         circuit
     }
 
-    /// The first bodies.
+    /// Returns the first bodies.
     pub fn bases(&self) -> &[u32] {
         &self.spec.bases
     }
 
-    /// Where a body is, if it is a grain.
+    /// Returns the place of a body, if it is a grain.
     pub fn place(&self, body: usize) -> Option<Place> {
         self.number[body].map(|k| self.ledger.places()[k as usize])
     }
 
-    /// Grains tied to a first body.
+    /// Returns the number of grains connected to a first body.
     pub fn tied_to(&self, base: u32) -> usize {
         let tied = |b: &&u32| self.ties.base(**b) == Some(base);
         self.grains.iter().filter(tied).count()
     }
 
-    /// Takes in the bonds that the last step made and broke. To be called after every step.
+    /// Records the bonds formed and broken in the last step. Must be called after every step.
     pub fn note(&mut self, s: &Simulation<S>) {
         let clock = Instant::now();
         let (number, spec) = (&self.number, &self.spec);
@@ -212,7 +215,7 @@ impl<S: Space> Circuit<S> {
         self.cost += clock.elapsed();
     }
 
-    /// Brings ties, zones and the ledger to the state at hand, and takes out of the scene what is lost.
+    /// Updates connections, zones and ledger to the current state, and removes lost grains from the scene.
     pub fn update(&mut self, s: &mut Simulation<S>) {
         let clock = Instant::now();
         let change = if self.made.is_empty() && self.cuts.is_empty() {
@@ -225,7 +228,8 @@ impl<S: Space> Circuit<S> {
             let debris = self.debris_of(s, *base, piece);
             self.debris.push(debris);
         }
-        // A grain's account of broken bonds ends where it comes loose, and begins anew where it is tied again.
+        // A grain's list of broken bonds is closed when it detaches, and starts again when it is
+        // reconnected.
         let loose = change.loose.iter().flat_map(|(_, piece)| piece);
         for body in loose.chain(change.tied.iter().map(|(body, _)| body)) {
             self.past.remove(body);
@@ -243,7 +247,7 @@ impl<S: Space> Circuit<S> {
         self.cost += clock.elapsed();
     }
 
-    /// Where each grain is at the state at hand.
+    /// Returns the current place of each grain.
     fn places(&mut self, s: &Simulation<S>) -> Vec<Place> {
         let mut places = Vec::with_capacity(self.grains.len());
         for (k, body) in self.grains.iter().enumerate() {
@@ -284,7 +288,7 @@ impl<S: Space> Circuit<S> {
             mass += m;
             moment += s.shapes.periodic.shortest(at - first) * m;
         }
-        // The bonds that joined the piece to what is not of it, whenever they broke since its grains were tied.
+        // The bonds between the piece and other bodies, broken at any time since its grains were connected.
         let of = |b: u32| piece.binary_search(&b).is_ok();
         let past = piece.iter().filter_map(|b| self.past.get(b)).flatten();
         let cuts = past.filter(|c| of(c.bodies[0]) != of(c.bodies[1]));
@@ -446,7 +450,7 @@ fn counts<S: Space>(body: u32, number: &[Option<u32>], spec: &Spec<S>) -> bool {
     number[body as usize].is_some() || spec.bases.contains(&body)
 }
 
-/// Bodies of the bonds that hold, of these interfaces.
+/// Iterates over the bodies of the intact bonds of these interfaces.
 fn bonds<'a, S: Space>(
     network: &'a Network<S>,
     interfaces: &'a [u16],

@@ -1,4 +1,4 @@
-//! Jumps over cycles: which cycle stands for how many, and the control of each jump.
+//! Cycle jumps in a run: how many cycles each computed cycle represents, and the error control of each jump.
 
 use super::cycle::{CycleClock, RubbedBody};
 use super::{Process, ProcessError};
@@ -15,18 +15,20 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct JumpSpec {
-    /// Cycles that are computed one by one before the first jump.
+    /// Number of cycles computed one by one before the first jump.
     pub after: u32,
-    /// Cycles that one computed cycle stands for, at most.
+    /// Maximum number of cycles that one computed cycle represents.
     pub at_most: u32,
-    /// Error of a jump that the length of the next one aims at: of what it adds, in parts of it, and of what it
-    /// misplaces, in parts of the scar after `cycles`; of the scar at hand without `cycles`.
+    /// Target error of a jump, from which the length of the next one follows: relative to what the jump
+    /// adds, and for misplaced volume relative to the scar after `cycles` (without `cycles`, to the current
+    /// scar).
     pub tolerance: f64,
-    /// Cycles computed one by one after each jump, against which it is checked.
+    /// Number of cycles computed one by one after each jump, which check it.
     pub control: u32,
-    /// How much the damage of a bond may grow in a jump.
+    /// Largest increase of the damage of a bond in a jump.
     pub growth: f64,
-    /// Cycles after which the run ends, those jumped over included; by default it ends at `time.end`.
+    /// Number of cycles after which the run ends, including those jumped over; by default it ends at
+    /// `time.end`.
     pub cycles: Option<u32>,
 }
 
@@ -43,26 +45,26 @@ impl Default for JumpSpec {
     }
 }
 
-/// A jump that was checked.
+/// A checked jump.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Jump {
-    /// Cycles before it, those jumped over included.
+    /// Cycles before it, including those jumped over.
     pub after: u32,
-    /// Cycles that its one computed cycle stood for.
+    /// Number of cycles that its computed cycle represents.
     pub cycles: u32,
-    /// By how much it is off: the worst of volumes and damage, in parts of what it added, and of what is misplaced
-    /// after it, in parts of the scar at the end of the run. See [`crate::wear::jump`].
+    /// Its error: the maximum over volumes and damage, relative to what it added, and over misplaced volume,
+    /// relative to the scar at the end of the run. See [`crate::wear::jump`].
     pub error: f64,
-    /// By how much the work of the cycles after it differs from that of the cycle before it, in parts of it.
+    /// Relative difference between the work of the cycles after it and that of the cycle before it.
     pub work_change: f64,
 }
 
-/// The state at the end of a computed cycle.
+/// State at the end of a computed cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
-    /// Cycles, those jumped over included.
+    /// Cycles, including those jumped over.
     pub cycles: u32,
-    /// Cycles that the last one stood for.
+    /// Number of cycles that the last one represents.
     pub cycle_multiplier: u32,
     /// Volume worn off first bodies (m^3; m^3/m in 2D).
     pub wear_volume: f64,
@@ -70,40 +72,41 @@ pub struct Point {
     pub mean_damage: f64,
 }
 
-/// The jumps of a run.
+/// Summary of the jumps of a run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct JumpSummary {
-    /// Cycles that were computed to their end, those that stand for many included.
+    /// Number of completed computed cycles, including those that represent many.
     pub computed_cycles: u32,
-    /// Cycles that they stand for.
+    /// Number of cycles that they represent.
     pub represented_cycles: u32,
-    /// Cycles that were asked for.
+    /// Requested number of cycles.
     pub asked_cycles: Option<u32>,
-    /// Error of a jump that was aimed at.
+    /// Target error of a jump.
     pub tolerance: f64,
-    /// What all jumps were off by and what is misplaced at the end, in parts of all wear, or of all growth of damage:
-    /// the worst; none where what jumps were off by has nothing to be set against.
+    /// Estimated total error of all jumps plus the misplaced volume at the end, relative to the total wear
+    /// or growth of damage, whichever is worse; `None` where there is no reference value.
     pub error_estimate: Option<f64>,
-    /// Cycles of a jump that the run ended before it was checked.
+    /// Number of cycles of a jump that the run ended before it was checked.
     pub unchecked_cycles: u32,
-    /// Internal variables of laws, which go on by the cycle that is computed only: they do not jump.
+    /// Internal variables of laws that advance with the computed cycles only, without jumping.
     pub not_jumped: Vec<String>,
-    /// Volume worn off first bodies, in all cycles (m^3; m^3/m in 2D).
+    /// Total volume worn off first bodies over all cycles (m^3; m^3/m in 2D).
     pub wear_volume: f64,
-    /// Jumps that were checked.
+    /// Checked jumps.
     pub jumps: Vec<Jump>,
-    /// Computed cycles.
+    /// States after the computed cycles.
     pub points: Vec<Point>,
 }
 
-/// The part of what is left of a run that a jump may take.
+/// Fraction of the remaining run that a jump may take.
 const TAPER: f64 = 1.0 / 3.0;
 
-/// The sum of what is seen to be off is multiplied by this: growth that bends within a jump is off by more than the parabola
-/// shows. Of the fatigue bond whole runs were off by up to 1.47 times the sum (docs/wear.md).
+/// Safety factor on the sum of the estimated errors: the parabola underestimates the error of growth that
+/// accelerates within a jump. For the fatigue bond the error of whole runs was up to 1.47 times the sum
+/// (docs/wear.md).
 const SAFETY: f64 = 1.5;
 
-/// A jump that waits for its control.
+/// A jump that waits for its control cycles.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Pending {
     cycles: u32,
@@ -112,11 +115,11 @@ struct Pending {
     /// Sum over the control cycles so far.
     control: Amounts,
     computed: u32,
-    /// Work of the cycle before it, and sum over those of its control (J; J/m).
+    /// Work of the cycle before it, and sum over its control cycles (J; J/m).
     work: [f64; 2],
 }
 
-/// The jumps of a run.
+/// Cycle jumps of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Jumps {
     spec: JumpSpec,
@@ -128,32 +131,32 @@ pub struct Jumps {
     current: (u32, f64),
     /// Steps of a cycle, and of the whole run.
     steps: [u64; 2],
-    /// Work of the last cycle that was computed as one (J; J/m).
+    /// Work of the last cycle that represents only itself (J; J/m).
     work: f64,
-    /// Number of the cycle at hand among those computed, 0 before the first.
+    /// Number of the current computed cycle, 0 before the first.
     number: u32,
-    /// Cycles that the one at hand stands for.
+    /// Number of cycles that the current one represents.
     cycle_multiplier: u32,
-    /// Cycles closed: computed, and with those jumped over.
+    /// Number of completed cycles: computed, and including those jumped over.
     computed: u32,
     represented: u32,
-    /// What cycles changed, at the start of the run and of the cycle at hand.
+    /// Accumulated quantities at the start of the run and of the current cycle.
     first: Amounts,
     opened: Amounts,
-    /// Growth over the last cycle that was computed as one.
+    /// Growth over the last cycle that represents only itself.
     rate: Amounts,
-    /// Length of the next jump, before it is rounded and bound.
+    /// Length of the next jump, before rounding and limits.
     length: f64,
     pending: Option<Pending>,
-    /// Growth over a cycle before the last jump, and how many cycles before the next one that was.
+    /// Growth over a cycle before the last jump, and its distance in cycles from the next jump.
     earlier: Option<(Amounts, f64)>,
-    /// How many cycles before the next jump the growth `rate` is of; 0 for the cycle just before it.
+    /// Distance in cycles of the growth `rate` from the next jump; 0 for the cycle just before it.
     centre: f64,
-    /// Sum of what jumps were off by, quantity by quantity.
+    /// Sum of the errors of the jumps, by quantity.
     off: Vec<f64>,
-    /// What is misplaced on each scar.
+    /// Misplaced volume on each scar.
     form: Vec<f64>,
-    /// What the last jump that was checked added.
+    /// Amounts added by the last checked jump.
     last: Option<Amounts>,
     summary: JumpSummary,
 }
@@ -293,14 +296,15 @@ impl Jumps {
         }
     }
 
-    /// Compares a jump with the cycles beside it, and learns the length of the next.
+    /// Compares a jump with the adjacent cycles, and computes the length of the next.
     fn judge<S: Space>(&mut self, s: &Simulation<S>, now: &Amounts, pending: &Pending) {
         let n = f64::from(pending.cycles);
-        // Cycles count from the one before the jump; the mean of those after it stands for their middle.
+        // Cycles are counted from the one before the jump; the mean of those after it represents their
+        // midpoint.
         let control = f64::from(pending.computed);
         let middle = 0.5 * (control - 1.0);
         let after = n + 1.0 + middle;
-        // Before the first jump the two cycles are the same, and a straight line goes through the others.
+        // Before the first jump the two cycles are the same, and a straight line is used instead.
         let (earlier, parts) = match self.earlier.take() {
             Some((rate, back)) => (rate, parts(pending.cycles, [-back, -self.centre, after])),
             None => {
@@ -311,7 +315,7 @@ impl Jumps {
         self.earlier = Some((pending.before.clone(), after + middle + self.centre));
         self.centre = middle;
         let grown = growth(now, &self.first);
-        // What is misplaced now is a smaller part of the scar that the run ends with.
+        // The misplaced volume is a smaller fraction of the final scar than of the current one.
         let to_come = self
             .spec
             .cycles
@@ -351,14 +355,15 @@ impl Jumps {
         self.length = next_length(n, worst, self.spec.tolerance);
     }
 
-    /// Cycles that the next cycle stands for: by the error, by the growth of damage, by what is left of the run.
+    /// Returns the number of cycles that the next cycle represents, limited by the error, the growth of
+    /// damage, and the remaining run.
     fn next<S: Space>(&mut self, s: &Simulation<S>) -> u32 {
-        // A jump and its control must fit before the end.
+        // A jump and its control cycles must fit before the end.
         let [cycle, run] = self.steps;
         if run.saturating_sub(s.steps) < cycle * (1 + u64::from(self.spec.control)) {
             return 1;
         }
-        // Two at least, so that lengths can grow again; `at_most` may be one.
+        // At least two, so that lengths can grow again; `at_most` may be one.
         self.length = self.length.max(2.0).min(f64::from(self.spec.at_most));
         let damage = self.rate.iter().skip(s.scars.len() + 1).flatten();
         let fastest = damage.fold(0.0, |m: f64, x| m.max(*x));
@@ -369,7 +374,8 @@ impl Jumps {
         };
         let mut most = self.length.min(by_damage);
         if let Some(cycles) = self.spec.cycles {
-            // The last jumps are ever shorter: each takes back what the one before it misplaced.
+            // The last jumps become shorter and shorter, since each corrects the volume misplaced by the one
+            // before it.
             let still = cycles.saturating_sub(self.represented + self.spec.control);
             most = most.min(f64::from(still) * TAPER);
         }
@@ -462,7 +468,7 @@ fn amounts<S: Space>(s: &Simulation<S>, worn_third: f64) -> Amounts {
         all.push(scar.vertices().map(volume).collect());
     }
     all.push(vec![worn_third]);
-    // What broke stays at one; a slot that never was a bond has no damage to grow.
+    // Broken bonds stay at one; a slot without a bond has no damage.
     let held = |b: &Bond<S>| match b.damage < 1.0 || b.life != Life::default() {
         true => b.damage,
         false => 0.0,
@@ -472,7 +478,7 @@ fn amounts<S: Space>(s: &Simulation<S>, worn_third: f64) -> Amounts {
     all
 }
 
-/// Internal variables of the laws at work, `law: variable`.
+/// Lists the internal variables of the laws in use, as `law: variable`.
 fn variables<S: Space>(s: &Simulation<S>) -> Vec<String> {
     let laws = s.laws.iter().flat_map(|law| law.loaded());
     let mut names: Vec<String> = laws

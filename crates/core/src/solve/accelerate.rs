@@ -1,22 +1,23 @@
-//! Anderson's acceleration of the sweeps over bodies: at a convergence test that was missed the impulses
-//! are extrapolated and the velocities formed again. What lies between two tests is one application of the
-//! map, so an extrapolation, which costs about three sweeps, is paid for by ten.
+//! Anderson acceleration of the Gauss-Seidel iteration over bodies. At each failed convergence test the
+//! impulses are extrapolated and the velocities recomputed. The iterations between two tests count as one
+//! application of the fixed-point map, so that the cost of an extrapolation, about three iterations, is
+//! spread over ten.
 
 use super::extrapolation::{Extrapolation, Safeguard};
 use super::form::Problem;
 use crate::geometry::space::Space;
 
-/// Differences remembered.
+/// Number of stored differences.
 const MEMORY: usize = 6;
-/// Sweeps before it begins: most warm steps need no more.
+/// Iterations before it starts: most warm-started steps need no more.
 const START: u32 = 20;
 
-/// Tests without a residual smaller by a tenth after which it is let be for a while.
+/// Number of tests without a reduction of the residual by a tenth, after which it is paused.
 const PATIENCE: u32 = 10;
-/// For so many tests at first; doubled each time.
+/// Length of the first pause in tests; doubled each time.
 const PAUSE: u32 = 6;
 
-/// The extrapolation at work in a solve.
+/// State of the acceleration in a solve.
 #[derive(Debug)]
 pub(super) struct Acceleration {
     sequence: Option<Extrapolation>,
@@ -41,7 +42,7 @@ impl Default for Acceleration {
 }
 
 impl Acceleration {
-    /// After a test that was missed, with its squared residual.
+    /// Extrapolates after a failed test with the given squared residual.
     pub fn extrapolate<S: Space>(&mut self, problem: &mut Problem<S>, done: u32, residual: f64) {
         if done < START {
             return;
@@ -75,7 +76,7 @@ impl Acceleration {
         }
     }
 
-    /// The map has changed: what was learnt of it is void.
+    /// Discards the stored differences, because the map has changed.
     pub fn forget(&mut self) {
         self.sequence = None;
     }

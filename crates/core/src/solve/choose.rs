@@ -1,11 +1,12 @@
-//! Which method solves a step.
+//! Choice of the method that solves a step.
 //!
-//! Sweeps over bodies are matrix-free and nearly always enough. [`Method::Auto`] lets them run for as long as
-//! twenty factorisations of W would take (twice as long at a loose tolerance), then tries Newton on the
-//! assembled W, once the interior point where that did not end it and the set is not hyperstatic, and takes turns of longer
-//! sweeps and Newton until one of them ends. On a hyperstatic set Newton comes ten times as late. Where neither helped they are tried half as early in
-//! the steps that follow, until one helps again. The lengths follow from sizes alone: the same case takes the same path on
-//! any machine.
+//! The Gauss-Seidel iteration over bodies is matrix-free and almost always sufficient. [`Method::Auto`] runs
+//! it for the estimated cost of twenty factorisations of W (forty at a loose tolerance), then tries Newton
+//! on the assembled W, then once the interior point if Newton failed and the contact set is not hyperstatic,
+//! and then alternates longer runs of Gauss-Seidel with Newton until one of them converges. For a
+//! hyperstatic set Newton starts ten times later. If neither helped, they start later in the following
+//! steps, until one of them helps again. All lengths follow from problem sizes, not from timings, so that a
+//! case takes the same path on any machine.
 
 use super::chosen::{Attempt, SolvePath, hyperstaticity};
 use super::form::{ContactForm, Problem};
@@ -18,14 +19,14 @@ use super::standard::{self, Standard};
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// What the last steps taught.
+/// What `auto` learned from previous steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AutoState {
-    /// Sweeps before Newton over what their costs say.
+    /// Factor on the number of iterations before Newton.
     patience: f64,
-    /// Whether the interior point ended the last step that Newton did not: it then comes first.
+    /// Whether the interior point converged in the last step in which Newton failed; it is then tried first.
     interior_first: bool,
-    /// How often the interior point is to be passed over, and was to be after its last failure.
+    /// How often the interior point is still to be skipped, and was to be skipped after its last failure.
     passed_over: [u32; 2],
 }
 
@@ -40,14 +41,15 @@ impl Default for AutoState {
 }
 
 impl AutoState {
-    /// Whether the interior point has its turn: after each failure it is passed over twice as often, 64 times at most.
+    /// Returns whether to try the interior point: after each failure it is skipped twice as often, at most
+    /// 64 times.
     fn interior_is_due(&mut self) -> bool {
         let due = self.passed_over[0] == 0;
         self.passed_over[0] = self.passed_over[0].saturating_sub(1);
         due
     }
 
-    /// Learns from an attempt of the interior point.
+    /// Records the result of an interior-point attempt.
     fn learn(&mut self, ended: bool) {
         self.interior_first = ended;
         let next = (2 * self.passed_over[1]).clamp(1, 64);
@@ -55,7 +57,7 @@ impl AutoState {
     }
 }
 
-/// Solves the problem in place from the impulses of its forms.
+/// Solves the problem in place, starting from the impulses of its forms.
 pub fn solve<S: Space>(
     problem: &mut Problem<S>,
     forms: &[ContactForm<S>],
@@ -83,7 +85,7 @@ struct SolveContext<'a, S: Space> {
 }
 
 impl<S: Space> SolveContext<'_, S> {
-    /// Sweeps over bodies, so many at most.
+    /// Runs the Gauss-Seidel iteration over bodies, with an iteration limit.
     fn sweep(&self, problem: &mut Problem<S>, accelerated: bool, most: u32) -> Report {
         let options = Options {
             accelerated,
@@ -100,7 +102,7 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Improves the problem by a method for matrices; its tolerance is that of the blocks' own error.
+    /// Improves the solution by a matrix method, whose tolerance applies to its own error measure.
     fn improve(
         &self,
         problem: &mut Problem<S>,
@@ -122,7 +124,8 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// One method alone. Bodies may find the error a little larger than the blocks did: then it goes on.
+    /// Solves by one method. If the error recomputed over bodies is slightly above the tolerance, the method
+    /// continues.
     fn by(&self, problem: &mut Problem<S>, method: Method) -> Report {
         const ATTEMPTS: u32 = 4;
         let mut report = nlgs::arrange(problem, self.options);
@@ -146,23 +149,24 @@ impl<S: Space> SolveContext<'_, S> {
     }
 
     fn auto(&self, problem: &mut Problem<S>, habit: &mut AutoState) -> Report {
-        /// Factorisations' worth of sweeps before Newton, at a loose and at a tight tolerance.
+        /// Cost of Gauss-Seidel before Newton in factorisations, at a loose and at a tight tolerance.
         const LOOSE: f64 = 40.0;
         const TIGHT: f64 = 20.0;
-        /// Times as many sweeps on a hyperstatic set, where Newton takes more steps and fails in every third.
+        /// Factor on the iterations for a hyperstatic set, where Newton takes more steps and fails in one
+        /// case of three.
         const HYPERSTATIC: u32 = 10;
-        /// More unknowns than this are not factorised.
+        /// Maximum number of unknowns to factorise.
         const LARGEST: usize = 60_000;
-        /// Newton's steps.
+        /// Maximum number of Newton steps.
         const NEWTON: u32 = 40;
-        /// Below this hyperstaticity what stops Newton is not a lack of rank but the length of the way, as in a column: the
-        /// interior point is tried. Above it, it failed in 7 attempts of 8.
+        /// Below this hyperstaticity Newton fails not for lack of rank but because of slow propagation, as
+        /// in a column, and the interior point is tried. Above it, that failed in 7 attempts of 8.
         const DETERMINED: f64 = 0.95;
-        /// Steps of the interior point.
+        /// Maximum number of interior-point steps.
         const INTERIOR: u32 = 120;
         let options = self.options;
         let unknowns = problem.contacts() * S::D;
-        // A contact of balls meets some eight others.
+        // Estimate: a contact between balls shares a body with about eight others.
         let entries = (9 * S::D * unknowns) as f64;
         let per = sweeps_per_factorisation(entries, problem.contacts() as f64);
         let worth = if options.tolerance >= 1e-5 {
@@ -200,7 +204,7 @@ impl<S: Space> SolveContext<'_, S> {
         }
         let hyperstaticity = hyperstaticity(problem, self.forms);
         if hyperstaticity > 1.0 {
-            // Newton is to have its turn before the iterations end.
+            // Leaves iterations for another attempt of Newton.
             let more = (left / 2).min(sweeps.saturating_mul(HYPERSTATIC - 1));
             report.add(&self.sweep(problem, true, more));
             report.chosen = SolvePath::Longer { hyperstaticity };
@@ -219,7 +223,8 @@ impl<S: Space> SolveContext<'_, S> {
                 interior = false;
             }
             let steps = NEWTON << round.min(16);
-            // What the sweeps came to may be a dead end for Newton: every other time it starts where they did.
+            // The iterate of Gauss-Seidel may be a poor start for Newton: every other attempt starts from
+            // the initial impulses.
             let anew = round % 2 == 1;
             if !report.converged {
                 newton = self.attempt(problem, &mut report, Method::Newton, steps, anew);
@@ -249,7 +254,7 @@ impl<S: Space> SolveContext<'_, S> {
         report
     }
 
-    /// The interior point; it starts from nowhere near, so impulses at hand do not matter to it.
+    /// Tries the interior point, which does not depend on the current impulses.
     fn interior(
         &self,
         problem: &mut Problem<S>,
@@ -262,7 +267,8 @@ impl<S: Space> SolveContext<'_, S> {
         tried
     }
 
-    /// A method that factorises, from the impulses at hand or from those of the forms; keeps those with the smaller error.
+    /// Tries a method that factorises, from the current impulses or from those of the forms; keeps the
+    /// solution with the smaller error.
     fn attempt(
         &self,
         problem: &mut Problem<S>,

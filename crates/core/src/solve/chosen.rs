@@ -1,9 +1,9 @@
-//! What `auto` chose in a step, and how far a contact set is from isostatic.
+//! The choices of `auto` in a step, and the hyperstaticity of a contact set.
 
 use super::form::{ContactForm, Problem};
 use crate::geometry::space::{Space, VectorLike};
 
-/// What came of a method in a step.
+/// Result of a method in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Attempt {
     /// It was not tried.
@@ -11,53 +11,54 @@ pub enum Attempt {
     No,
     /// It did not reach the tolerance.
     Failed,
-    /// It did.
+    /// It reached the tolerance.
     Ended,
 }
 
-/// What [`super::local::solver::Method::Auto`] did in a step.
+/// The choices of [`super::local::solver::Method::Auto`] in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum SolvePath {
-    /// Sweeps were enough, or another method was asked for.
+    /// Gauss-Seidel was enough, or another method was requested.
     #[default]
     Sweeps,
-    /// Sweeps had taken their share, and were given more, since the set is hyperstatic.
+    /// Gauss-Seidel used its initial allowance and was given more, since the set is hyperstatic.
     Longer {
         /// The set's [`hyperstaticity`].
         hyperstaticity: f64,
     },
-    /// Sweeps had taken their share, and methods that factorise were tried.
+    /// Gauss-Seidel used its allowance, and methods that factorise were tried.
     Factorised {
-        /// Sweeps before them.
+        /// Gauss-Seidel iterations before them.
         after: u32,
         /// The set's [`hyperstaticity`].
         hyperstaticity: f64,
-        /// What Newton did, the last time.
+        /// Result of Newton's last attempt.
         newton: Attempt,
-        /// What the interior point did.
+        /// Result of the interior point.
         interior: Attempt,
     },
-    /// Sweeps had taken their share, and went on: Newton does not serve friction against rotation, nor dynamical systems.
+    /// Gauss-Seidel used its allowance and continued, because Newton does not support rolling friction.
     Unserved,
-    /// Sweeps had taken their share, and went on: the set is too large to factorise.
+    /// Gauss-Seidel used its allowance and continued, because the set is too large to factorise.
     Large,
 }
 
 impl SolvePath {
-    /// What is to be told of a step of several solves: the first in which more than sweeps were asked for.
+    /// Combines the choices of several solves of a step: the first one with more than Gauss-Seidel.
     #[must_use]
     pub fn or(self, later: Self) -> Self {
         if self == Self::Sweeps { later } else { self }
     }
 }
 
-/// Unknown impulses of the contacts that carry, over the degrees of freedom of the bodies they move; above 1
-/// the set is hyperstatic: impulses are not determined by the motion.
+/// Returns the number of unknown impulses of active contacts divided by the number of degrees of freedom of
+/// the bodies they act on. Above 1 the set is hyperstatic: the motion does not determine the impulses.
 ///
-/// A contact without friction has one unknown. Rotation counts where a contact can turn the body: by friction
-/// or by a lever. What a bond carries follows from its opening and is no unknown. 0 where nothing is carried.
+/// A frictionless contact has one unknown. Rotations count where a contact can rotate the body, by friction
+/// or by a lever arm. The impulse of a bond follows from its opening and is no unknown. The result is 0
+/// without active contacts.
 pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) -> f64 {
-    /// A body that is touched, and one that can be turned.
+    /// Flags of a body with a contact, and of one that contacts can rotate.
     const TOUCHED: u8 = 1;
     const TURNED: u8 = 3;
     let mut state = vec![0u8; problem.masses.len()];
@@ -88,7 +89,7 @@ pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) 
     unknowns as f64 / freedoms.max(1) as f64
 }
 
-/// Degrees of freedom of a body that can move, with rotation or without.
+/// Returns the number of degrees of freedom of a movable body, with or without rotation.
 fn freedoms<S: Space>(problem: &Problem<S>, body: usize, turns: bool) -> usize {
     let mobility = &problem.masses[body];
     let shifts = (0..S::D).filter(|k| mobility.mass[*k] > 0.0).count();
@@ -102,7 +103,7 @@ mod tests {
     use crate::geometry::space::{Dim2, MatrixLike, Space};
     use nalgebra::Vector2;
 
-    /// A ball on `supports` fixed bodies, all of which carry.
+    /// Hyperstaticity of a ball on `supports` fixed bodies, all of them active.
     fn ball(supports: usize, friction: f64) -> f64 {
         let mut problem = Problem::<Dim2>::default();
         let body = |p: &mut Problem<Dim2>, inverse: f64| {
@@ -138,7 +139,7 @@ mod tests {
     #[test]
     fn unknowns_over_freedoms() {
         assert_eq!(ball(0, 0.3), 0.0);
-        // Two of three freedoms without friction: nothing turns the ball.
+        // One contact, two translations: without friction nothing rotates the ball.
         assert_eq!(ball(1, 0.0), 0.5);
         assert_eq!(ball(2, 0.0), 1.0);
         assert_eq!(ball(3, 0.3), 2.0);

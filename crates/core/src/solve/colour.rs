@@ -1,29 +1,30 @@
-//! The order of the sweep: groups of contacts that share no movable body, so that none waits for the one
-//! before and several are solved at once; and blocks that threads draw.
+//! Order of the Gauss-Seidel iteration: groups of contacts that share no movable body, so that several can
+//! be solved at once without data dependency, and blocks that are distributed over threads.
 //!
-//! Contacts come sorted along space and are coloured greedily in their own order, as in Box2D v3. A small
-//! problem is coloured as a whole; its blocks are pieces of a colour. A large one is cut into
-//! blocks of neighbours, coloured so that blocks of one colour share no movable body, and a block into
-//! parts, small enough for the velocities of a part to stay in the L1 cache, whose contacts are coloured
-//! in turn. Either way blocks of one colour can be solved in any order, by any number of threads, with
-//! the same bits.
+//! Contacts arrive sorted in space and are coloured greedily in that order, as in Box2D v3. A small problem
+//! is coloured as a whole, and its blocks are pieces of a colour. A large problem is cut into blocks of
+//! neighbouring contacts, which are coloured so that blocks of one colour share no movable body; a block is
+//! divided into parts whose velocities fit into the L1 cache, and the contacts of each part are coloured in
+//! turn. In both cases blocks of one colour can be solved in any order by any number of threads, with
+//! bitwise identical results.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Colours at most, of blocks and within a part.
+/// Maximum number of colours, of blocks and within a part.
 const COLOURS: usize = 32;
-/// Contacts of a problem that is small.
+/// Maximum number of contacts of a small problem.
 const SMALL: usize = 32_768;
-/// Contacts of a part, and of a block of a small problem.
+/// Number of contacts of a part, and of a block of a small problem.
 const PART: usize = 512;
-/// Parts of a block at most.
+/// Maximum number of parts of a block.
 const PARTS: usize = 8;
-/// Blocks there are to be, where blocks can be made small enough.
+/// Target number of blocks, where blocks can be small enough.
 const BLOCKS: usize = 128;
-/// A body touched by more blocks than this would keep them all apart: its contacts run by themselves.
+/// A body in more blocks than this would prevent their parallel solution; its contacts are solved
+/// separately.
 const HUB: u32 = 16;
 
-/// Groups, blocks of groups and colours of blocks, each by its starts and the end of the last.
+/// Groups, blocks of groups, and colours of blocks; each list holds the start indices and the final end.
 #[derive(Clone, Debug)]
 pub struct Schedule {
     groups: Vec<u32>,
@@ -42,26 +43,26 @@ impl Default for Schedule {
 }
 
 impl Schedule {
-    /// The blocks of each colour, in the order of the sweep.
+    /// Iterates over the ranges of blocks of each colour, in the order of the iteration.
     pub fn colours(&self) -> impl Iterator<Item = std::ops::Range<usize>> {
         ranges(&self.colours)
     }
 
-    /// The contacts of a block, as places in the new order.
+    /// Returns the range of contacts of a block, in the new order.
     pub fn block(&self, k: usize) -> std::ops::Range<usize> {
         let [from, to] = [k, k + 1].map(|k| self.groups[self.blocks[k] as usize] as usize);
         from..to
     }
 
-    /// The starts of the groups of a block, and the end of the last.
+    /// Returns the starts of the groups of a block, and the end of the last.
     pub fn groups(&self, k: usize) -> &[u32] {
         &self.groups[self.blocks[k] as usize..=self.blocks[k + 1] as usize]
     }
 
-    /// Runs every block once, colour by colour, on the threads at hand if `parallel`.
+    /// Runs every block once, colour by colour, on the current thread pool if `parallel`.
     ///
-    /// Threads draw blocks by ticket, in the order of the sweep, and wait only for what was drawn in
-    /// colours before: none waits for a thread that has not woken up.
+    /// Threads take blocks from a shared counter, in the order of the iteration, and wait only for the
+    /// blocks of earlier colours that were taken; nobody waits for a thread that has not started.
     pub fn run(&self, parallel: bool, block: impl Fn(usize) + Sync) {
         let blocks = self.blocks.len() - 1;
         let threads = rayon::current_num_threads().min(blocks);
@@ -93,7 +94,7 @@ impl Schedule {
         });
     }
 
-    /// Makes colours of groups, and blocks of pieces of them; small groups share a block.
+    /// Turns groups into coloured blocks; small groups share a block.
     fn cut(self) -> Self {
         let mut out = Self::default();
         for group in ranges(&self.groups) {
@@ -140,7 +141,7 @@ impl Schedule {
     }
 }
 
-/// Waits until so many blocks are done.
+/// Waits until `count` blocks are complete.
 fn await_count(done: &AtomicUsize, count: usize) {
     let mut turns = 0u32;
     while done.load(Ordering::Acquire) < count {
@@ -153,7 +154,7 @@ fn await_count(done: &AtomicUsize, count: usize) {
     }
 }
 
-/// Counts a block as done, even one that panics: others wait for it.
+/// Counts a block as complete on drop, even after a panic, since other threads wait for it.
 struct Done<'a>(&'a AtomicUsize);
 
 impl Drop for Done<'_> {
@@ -166,14 +167,14 @@ fn ranges(starts: &[u32]) -> impl Iterator<Item = std::ops::Range<usize>> {
     starts.windows(2).map(|w| w[0] as usize..w[1] as usize)
 }
 
-/// What is known of a body: a mark of whom it was last seen by, and what they took.
+/// Colouring state of a body: the last visitor, and the colours in use.
 #[derive(Clone, Copy, Default)]
 struct Seen {
     by: u32,
     taken: u32,
 }
 
-/// The order of contacts, kept from step to step: it is found anew where they are others.
+/// The order of contacts, reused from step to step and recomputed when the contacts change.
 #[derive(Clone, Debug, Default)]
 pub struct Order {
     bodies: Vec<[u32; 2]>,
@@ -184,7 +185,7 @@ pub struct Order {
 }
 
 impl Order {
-    /// That of contacts of these bodies.
+    /// Updates the order for contacts between these bodies.
     pub fn update(&mut self, bodies: impl ExactSizeIterator<Item = [u32; 2]>, movable: &[bool]) {
         let mut same = self.movable == movable && self.bodies.len() == bodies.len();
         self.bodies.resize(bodies.len(), [0, 0]);
@@ -204,24 +205,24 @@ impl Order {
         }
     }
 
-    /// The old index of each contact in the new order.
+    /// Returns the old index of each contact in the new order.
     pub fn sequence(&self) -> &[u32] {
         &self.sequence
     }
 
-    /// The new place of each contact.
+    /// Returns the new index of each contact.
     pub fn places(&self) -> &[u32] {
         &self.places
     }
 
-    /// The schedule of the new order.
+    /// Returns the schedule of the new order.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
     }
 }
 
-/// Sorts contacts for the sweep. Returns the permutation (`order[k]` is the old index of the k-th) and the
-/// schedule of the new order.
+/// Sorts contacts for the iteration. Returns the permutation (`order[k]` is the old index of the k-th) and
+/// the schedule of the new order.
 fn order(bodies: &[[u32; 2]], movable: &[bool]) -> (Vec<u32>, Schedule) {
     let count = movable.len();
     let span = PART * (bodies.len().div_ceil(PART * BLOCKS)).clamp(1, PARTS);
@@ -241,7 +242,7 @@ fn order(bodies: &[[u32; 2]], movable: &[bool]) -> (Vec<u32>, Schedule) {
         );
         return (order, schedule.cut());
     }
-    // Hubs.
+    // Find bodies shared by too many blocks.
     for (block, pairs) in bodies.chunks(span).enumerate() {
         for body in pairs.iter().flat_map(moved).flatten() {
             let seen = &mut seen[body];
@@ -254,7 +255,7 @@ fn order(bodies: &[[u32; 2]], movable: &[bool]) -> (Vec<u32>, Schedule) {
     let hub: Vec<bool> = seen.iter().map(|s| s.taken > HUB).collect();
     let of_hub = |pair: &[u32; 2]| moved(pair).iter().flatten().any(|b| hub[*b]);
     let hubs = hub.iter().any(|h| *h);
-    // Colours of blocks.
+    // Colour the blocks.
     seen.fill(Seen::default());
     let mut blocks: Vec<(u32, u32)> = Vec::new();
     for (block, pairs) in bodies.chunks(span).enumerate() {
@@ -263,7 +264,7 @@ fn order(bodies: &[[u32; 2]], movable: &[bool]) -> (Vec<u32>, Schedule) {
         for body in own().flat_map(moved).flatten() {
             taken |= seen[body].taken;
         }
-        // Without a colour left, a block gets one of its own.
+        // A block without a free colour gets a new one of its own.
         let colour = (!taken).trailing_zeros();
         for body in own().flat_map(moved).flatten() {
             seen[body].taken |= 1u32.checked_shl(colour).unwrap_or(0);
@@ -276,7 +277,7 @@ fn order(bodies: &[[u32; 2]], movable: &[bool]) -> (Vec<u32>, Schedule) {
         blocks.push((alone, block as u32));
     }
     blocks.sort_unstable();
-    // Groups.
+    // Form the groups.
     seen.fill(Seen::default());
     let mut mark = 0;
     for same in blocks.chunk_by(|a, b| a.0 == b.0) {
@@ -314,7 +315,7 @@ fn order(bodies: &[[u32; 2]], movable: &[bool]) -> (Vec<u32>, Schedule) {
     (order, schedule)
 }
 
-/// Appends the contacts of a part by groups.
+/// Appends the contacts of a part, grouped by colour.
 fn group(
     part: impl Iterator<Item = usize>,
     mark: u32,
@@ -352,7 +353,7 @@ fn group(
             at += *size as usize;
             schedule.end_group(at);
         } else {
-            // Those without a colour may share a body.
+            // Contacts without a colour may share a body and form groups of one.
             for _ in 0..*size {
                 at += 1;
                 schedule.end_group(at);
@@ -418,7 +419,7 @@ mod tests {
         lattice(10);
     }
 
-    /// A square lattice on a floor: the blocks of each colour.
+    /// Returns the blocks of each colour for a square lattice on a floor.
     fn lattice(side: u32) -> Vec<usize> {
         let mut bodies = Vec::new();
         for k in 0..side * side {
@@ -438,7 +439,7 @@ mod tests {
 
     #[test]
     fn a_hub_does_not_keep_others_apart() {
-        // A chain of which each link touches a movable plate.
+        // A chain whose links all touch one movable plate.
         let n = 20_000;
         let bodies: Vec<[u32; 2]> = (0..n).flat_map(|k| [[k, k + 1], [k, n + 1]]).collect();
         let schedule = check(&bodies, n + 2, n as usize + 3);

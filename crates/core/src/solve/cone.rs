@@ -3,8 +3,8 @@
 use crate::geometry::space::VectorLike;
 use std::hint::select_unpredictable;
 
-/// { (P, t) : P >= 0, |t| <= mu P + c }: Coulomb's cone for c = 0, Tresca's cylinder for mu = 0.
-/// P = p_n + h c_n and c = h c_t. Returns the nearest point (Euclidean).
+/// Projects onto { (P, t) : P >= 0, |t| <= mu P + c }: Coulomb's cone (c = 0) or Tresca's cylinder (mu = 0),
+/// where P = p_n + h c_n and c = h c_t. Returns the nearest point (Euclidean).
 #[inline]
 pub fn project<T: VectorLike>(normal: f64, tangent: T, mu: f64, c: f64) -> (f64, T) {
     if T::N == 1 {
@@ -17,7 +17,7 @@ pub fn project<T: VectorLike>(normal: f64, tangent: T, mu: f64, c: f64) -> (f64,
     (n, tangent * share(bound, length))
 }
 
-/// The same of (P, t...) in an array.
+/// Projects (P, t...) given as an array; see [`project`].
 #[inline(always)]
 pub fn project_array<const D: usize>(z: &[f64; D], mu: f64, c: f64) -> [f64; D] {
     if D == 2 {
@@ -35,8 +35,8 @@ pub fn project_array<const D: usize>(z: &[f64; D], mu: f64, c: f64) -> [f64; D] 
     std::array::from_fn(|k| if k == 0 { n } else { z[k] * scale })
 }
 
-/// The P and |t| of the nearest point to one of these; |t| = -1 of a point inside. All answers are formed
-/// and one is chosen: branches would be guessed wrong too often.
+/// Returns P and |t| of the projection; |t| = -1 for a point inside. All cases are computed and one is
+/// selected, because branches would be mispredicted too often.
 #[inline(always)]
 fn nearest(normal: f64, length: f64, mu: f64, c: f64) -> (f64, f64) {
     let inside = normal >= 0.0 && length <= mu * normal + c;
@@ -50,7 +50,7 @@ fn nearest(normal: f64, length: f64, mu: f64, c: f64) -> (f64, f64) {
     )
 }
 
-/// What a tangent of a length is multiplied by to have the length `bound`; 1 where it is inside.
+/// Returns the factor that limits a tangent of a given length to `bound`; 1 where it is inside.
 #[inline(always)]
 fn share(bound: f64, length: f64) -> f64 {
     let scale = select_unpredictable(length > 0.0, bound / length, 0.0);
@@ -63,7 +63,7 @@ mod tests {
     use nalgebra::{Vector1, Vector2};
     use rand::{RngExt, SeedableRng};
 
-    /// Brute force over a fine sampling of the set's border and inside.
+    /// Brute-force projection over a fine sampling of the set.
     fn nearest_by_sampling(normal: f64, s: f64, mu: f64, c: f64) -> f64 {
         let mut best = f64::INFINITY;
         for i in 0..4000 {

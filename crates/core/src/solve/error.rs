@@ -1,47 +1,49 @@
-//! The error of a solution: the natural map of the De Saxce form, free of scale.
+//! Error of a solution: the natural map of the De Saxce form, in a scale-free norm.
 //!
 //! The residual of a contact is a velocity,
 //! r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c| e_n))) / rho_c,   rho_c = 1 / lambda_max(W_cc).
 //!
-//! [`Norm::Velocity`]: error = |r| / max(|u|, |u_free|), Euclidean over all contacts. The strictest:
-//! it asks that velocities are right, whatever the load.
+//! [`Norm::Velocity`]: error = |r| / max(|u|, |u_free|), Euclidean over all contacts. The strictest norm:
+//! velocities must be right, whatever the load.
 //!
-//! [`Norm::Balance`]: error = max( |r| / max(|u|, |u_free|, |p/rho|), f^2 ),
-//! f = |sum_c p_c . r_c| / |v - v_free|_M^2. The first part is the field's figure (its maximum holds the
-//! impulses too) made free of scale. Averaged over contacts it looks small while the load has not yet
-//! crossed a packing; the second part sees that: f is the share of the step's work that is out of
-//! balance, so f^2 is the kinetic energy of what is not carried, relative to what is.
+//! [`Norm::Balance`]: error = max( |r| / max(|u|, |u_free|, |p/rho|), f^2 ), f = |sum_c p_c . r_c| / |v -
+//! v_free|_M^2. The first part is the usual error measure of the literature (whose maximum also contains the
+//! impulses), made scale-free. As an average over contacts it can be small before the load has been
+//! transmitted through a packing. The second part detects this: f is the unbalanced fraction of the step's
+//! work, so that f^2 is the kinetic energy of the part that is not supported, relative to the part that is.
 //!
-//! r_c is what the natural map leaves or [`lost`], whichever is larger. The work of the step counts for no
-//! less than sum_c rho_c |u_free,c|^2: where nothing is to be carried it is an error itself.
+//! r_c is the residual of the natural map or [`lost`], whichever is larger. The work of the step is bounded
+//! below by sum_c rho_c |u_free,c|^2: where no load is transmitted, the work itself is an error.
 //!
-//! Bodies that move fast together have relative velocities that are all rounding: what is below that of their
-//! own velocities counts as none.
+//! For bodies that move fast together the relative velocities are rounding errors; those below the rounding
+//! of the body velocities count as zero.
 //!
-//! A scene scaled in length, mass or time has the same figures.
+//! The error does not change when a scene is scaled in length, mass or time.
 //!
-//! [`Norm::Field`]: error = |r| / max(|u|, |u_free|, |p|) with rho = 1: the field's own figure (Siconos'
-//! `fc3d_compute_error`), for problems from files. It adds impulses and velocities, so it depends on units.
-//! Solvers meet it with two more that it does not hold: [`lost`], and |r| / max(|u|, |u_free|) where that is above a half, without
-//! which a problem that has no solution would be solved by impulses without bound.
+//! [`Norm::Field`]: error = |r| / max(|u|, |u_free|, |p|) with rho = 1: the error measure of the literature
+//! (`fc3d_compute_error` of Siconos), for problems from files. It adds impulses and velocities and therefore
+//! depends on units. Solvers also enforce two conditions that it does not contain: [`lost`], and |r| /
+//! max(|u|, |u_free|) where that exceeds one half; without the latter a problem without a solution would be
+//! "solved" by unbounded impulses.
 
 use serde::{Deserialize, Serialize};
 
 /// How the residual is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Norm {
-    /// Against the load that the contacts carry, and globally in balance.
+    /// Relative to the velocities and the impulses of the contacts, combined with the global balance of
+    /// work.
     #[default]
     Balance,
-    /// Against the velocities at hand.
+    /// Relative to the current velocities.
     Velocity,
-    /// The field's figure, for problems from files.
+    /// The error measure of the literature, for problems from files.
     #[serde(skip)]
     Field,
 }
 
 impl Norm {
-    /// The formula, for reports.
+    /// Returns the formula, for reports.
     pub fn formula(self) -> &'static str {
         match self {
             Self::Balance => {
@@ -55,20 +57,21 @@ impl Norm {
     }
 }
 
-/// What the natural map does not see of a contact: it shrinks u_n < 0 by 1 + mu^2 where the contact slides,
-/// so that with a large mu no impulse at all would pass for a solution. What it loses of min(p_n/rho, u_n),
-/// which is 0 in Signorini's law.
+/// Returns the violation of Signorini's law that the natural map does not detect: it shrinks u_n < 0 by 1 +
+/// mu^2 where the contact slides, so that with a large mu even a zero impulse would pass for a solution.
+/// This is the missing part of min(p_n/rho, u_n), which is 0 in Signorini's law.
 #[inline(always)]
 pub fn lost(p_n: f64, u_n: f64, mu: f64) -> f64 {
     let squared = (mu * mu).min(f64::MAX);
     p_n.min(u_n) * (squared / (1.0 + squared))
 }
 
-/// The squared residual of a contact: what the natural map leaves, or [`lost`] where that is larger.
+/// Returns the squared residual of a contact: that of the natural map, or [`lost`] where that is larger.
 #[inline(always)]
 pub fn residual(natural: f64, p_n: f64, u_n: f64, mu: f64) -> f64 {
     let most = p_n.min(u_n);
-    // Never more than this, and seldom anything: the division is spared.
+    // The result cannot exceed this bound, which is rarely above the natural residual; this saves the
+    // division.
     if most * most <= natural {
         return natural;
     }
@@ -76,39 +79,39 @@ pub fn residual(natural: f64, p_n: f64, u_n: f64, mu: f64) -> f64 {
     natural.max(lost * lost)
 }
 
-/// The residual over velocities alone, where it is of their size: impulses that grow without bound, since no
-/// answer exists, would hide it.
+/// Returns the residual relative to the velocities alone where that is of order one: it detects unbounded
+/// impulses of a problem without a solution.
 pub fn unbounded(residual: f64) -> f64 {
     if residual > 0.5 { residual } else { 0.0 }
 }
 
-/// What residuals are measured against.
+/// Reference values for the residual.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scale {
     /// |u_free|^2 (m^2/s^2).
     pub free: f64,
     /// Sum of rho |u_free|^2 (J).
     pub energy: f64,
-    /// Squared rounding of all relative velocities (m^2/s^2): a residual below it is none.
+    /// Squared rounding error of all relative velocities (m^2/s^2): residuals below it count as zero.
     pub noise: f64,
     /// |v - v_free|_M^2 (J).
     pub work: f64,
 }
 
-/// Sums over contacts; added in a fixed order, whatever the number of threads.
+/// Sums over contacts, added in a fixed order that does not depend on the number of threads.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sums {
     /// Sum of squared residuals (m^2/s^2).
     pub residual: f64,
     /// Sum of squared relative velocities (m^2/s^2).
     pub velocity: f64,
-    /// Sum of squared impulses in velocity (m^2/s^2).
+    /// Sum of squared impulses, as velocities |p/rho|^2 (m^2/s^2).
     pub impulse: f64,
     /// Sum of p . r (J).
     pub power: f64,
     /// Largest squared residual (m^2/s^2).
     pub worst: f64,
-    /// Index of the contact that has it (in the order of the sweep).
+    /// Index of the contact with that residual, in the order of the iteration.
     pub worst_at: usize,
 }
 
@@ -123,7 +126,7 @@ impl Sums {
         }
     }
 
-    /// Adds what is not searched for the worst.
+    /// Adds a residual that is excluded from the search for the worst contact.
     #[inline(always)]
     pub fn add_moment(&mut self, r: &super::row::Residual) {
         self.residual += r.squared;
@@ -144,12 +147,12 @@ impl Sums {
         }
     }
 
-    /// The part of the error that needs no sum over bodies.
+    /// Returns the part of the error that needs no sum over bodies.
     fn local(&self, norm: Norm, free: f64) -> f64 {
         over(self.residual.sqrt(), self.against(norm, free))
     }
 
-    /// What the residual is measured against.
+    /// Returns the reference value of the residual.
     pub fn against(&self, norm: Norm, free: f64) -> f64 {
         match norm {
             Norm::Velocity => self.velocity.max(free),
@@ -158,7 +161,7 @@ impl Sums {
         .sqrt()
     }
 
-    /// The error. Where there is nothing to measure against, the residual itself.
+    /// Returns the error; the absolute residual where the reference value is zero.
     pub fn error(&self, norm: Norm, scale: &Scale) -> f64 {
         if self.residual <= scale.noise {
             return 0.0;
@@ -170,7 +173,8 @@ impl Sums {
                 self.residual.sqrt(),
                 self.velocity.max(scale.free).sqrt(),
             ))),
-            // Where nothing is carried the work is itself an error: what contacts could take at most is not.
+            // Where no load is transmitted the work itself is an error, relative to the upper bound of the
+            // contacts' work.
             Norm::Balance => local.max(over(self.power, scale.work.max(scale.energy)).powi(2)),
         }
     }

@@ -1,15 +1,15 @@
-//! Anderson's extrapolation of a fixed-point iteration p -> g(p) (type II: Walker and Ni 2011),
-//! safeguarded against starts that the iteration itself finds worse: see [`Safeguard`].
+//! Anderson extrapolation of a fixed-point iteration p -> g(p) (type II: Walker and Ni 2011), with a
+//! safeguard against extrapolated points that increase the residual; see [`Safeguard`].
 
 use pulp::{Arch, Simd, WithSimd};
 
-/// Differences remembered at most.
+/// Maximum number of stored differences.
 const MAX_DIFFERENCES: usize = 8;
 
-/// A number by difference remembered, zero where there is none.
+/// One number per stored difference, zero for unused ones.
 type Lanes = [f64; MAX_DIFFERENCES];
 
-/// The last differences of the map, those of one unknown side by side, and their Gram matrix.
+/// The last differences of the map, stored side by side for each unknown, and their Gram matrix.
 #[derive(Debug)]
 struct Memory {
     /// Changes of g(p).
@@ -47,7 +47,7 @@ impl Memory {
         self.size == self.most
     }
 
-    /// Takes in the differences to g0 and f0.
+    /// Adds the differences to g0 and f0.
     #[inline(always)]
     fn push(&mut self, g: &[f64], g0: &[f64], f: &[f64], f0: &[f64]) {
         let k = self.next;
@@ -63,7 +63,8 @@ impl Memory {
                 gram[j] += d * df[j];
                 along[j] += f * df[j];
             }
-            // Written last: a vector read over a number just written waits for it.
+            // Written last, to avoid a store-forwarding stall: a vector load just after a scalar store waits
+            // for it.
             dg[k] = g - g0;
             df[k] = d;
             own.0 += d * d;
@@ -77,9 +78,9 @@ impl Memory {
         self.along = along;
     }
 
-    /// gamma that makes f - sum gamma_k df_k least; none where that fails.
+    /// Returns gamma that minimises |f - sum gamma_k df_k|; `None` if the system is singular.
     fn weights(&self) -> Option<Lanes> {
-        /// Keeps the sum of squares away from singular.
+        /// Regularisation of the least-squares system.
         const RIDGE: f64 = 1e-10;
         let n = self.size;
         let (mut a, mut b) = (self.gram, self.along);
@@ -87,7 +88,7 @@ impl Memory {
         for (k, row) in a.iter_mut().enumerate() {
             row[k] *= 1.0 + RIDGE;
         }
-        // Elimination without pivots: the matrix is positive.
+        // Gaussian elimination without pivoting: the matrix is positive definite.
         for k in 0..n {
             if a[k][k] <= 1e-15 * most {
                 return None;
@@ -124,7 +125,7 @@ impl Memory {
     }
 }
 
-/// x . y, by four partial sums in a fixed order.
+/// Returns x . y, using four partial sums in a fixed order.
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (xs, ys) = (x.chunks_exact(4), y.chunks_exact(4));
@@ -138,32 +139,32 @@ pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + tail
 }
 
-/// What becomes of a start that grew the change, and of a full memory.
+/// Reaction to an extrapolation that increased the residual, and to a full memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Safeguard {
-    /// The start is taken back, and the oldest difference makes room: where an application of the map is
-    /// long, so that none is to be spent on a bad start.
+    /// Go back to the point before the extrapolation, and drop the oldest difference when full: for
+    /// expensive maps, where no application should be wasted.
     Back,
-    /// The memory is begun anew, from where the map led: one application damps most of what a bad start
-    /// brought in, and differences across a change of contacts' branches do not stay for long.
+    /// Restart with an empty memory from the result of the map: one application damps most of the error of a
+    /// bad extrapolation, and differences across changes of contact status do not persist.
     Anew,
 }
 
-/// The sequence of starts.
+/// The sequence of points at which the map is applied.
 #[derive(Debug)]
 pub struct Extrapolation {
     memory: Memory,
     safeguard: Safeguard,
-    /// Where the next iteration starts.
+    /// The point of the next iteration.
     pub start: Vec<f64>,
     f: Vec<f64>,
-    /// Squared change of the iteration before.
+    /// Squared residual of the previous iteration.
     before: Option<f64>,
     g0: Vec<f64>,
     f0: Vec<f64>,
 }
 
-/// [`Extrapolation::next`] for the vectors at hand.
+/// [`Extrapolation::next`] for the vector instructions of this machine.
 struct Next<'a>(&'a mut Extrapolation, &'a [f64]);
 
 impl WithSimd for Next<'_> {
@@ -176,7 +177,7 @@ impl WithSimd for Next<'_> {
 }
 
 impl Extrapolation {
-    /// Begins at a point, remembering so many differences, eight at most.
+    /// Starts from a point, storing up to `memory` differences, at most eight.
     pub fn new(memory: usize, safeguard: Safeguard, start: &[f64]) -> Self {
         let zero = vec![0.0; start.len()];
         Self {
@@ -190,15 +191,15 @@ impl Extrapolation {
         }
     }
 
-    /// Takes in g(start) and chooses the next start.
+    /// Takes g(start) and chooses the next point.
     pub fn next(&mut self, g: &[f64]) {
-        // The same operations in the same order, with whatever vectors the machine has.
+        // The same operations in the same order for any vector width.
         Arch::new().dispatch(Next(self, g));
     }
 
     #[inline(always)]
     fn choose(&mut self, g: &[f64]) {
-        /// Growth of the squared change that an extrapolation may cause.
+        /// Largest accepted growth of the squared residual by an extrapolation.
         const GROWTH: f64 = 4.0;
         for ((f, g), start) in self.f.iter_mut().zip(g).zip(&self.start) {
             *f = g - start;
@@ -238,7 +239,7 @@ mod tests {
 
     const BOTH: [Safeguard; 2] = [Safeguard::Back, Safeguard::Anew];
 
-    /// A linear map is solved in as many steps as it has eigenvalues.
+    /// A linear map is solved in as many steps as it has distinct eigenvalues.
     #[test]
     fn ends_on_a_linear_map() {
         let rates = [0.99, 0.9, 0.5, -0.7];
@@ -257,8 +258,7 @@ mod tests {
         }
     }
 
-    /// A start that grew the change is taken back or followed by the map's own answer, as the safeguard
-    /// says.
+    /// A bad extrapolation is undone or followed by the map's result, depending on the safeguard.
     #[test]
     fn answers_a_bad_start() {
         for safeguard in BOTH {

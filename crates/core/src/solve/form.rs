@@ -1,4 +1,4 @@
-//! What the stepper hands to a solver: bodies as lines of velocity, contacts in the standard form.
+//! The input of a solver: bodies as velocity records, contacts in the standard form.
 
 use super::colour::Order;
 use super::nodal::NodalSystem;
@@ -25,18 +25,18 @@ pub struct ContactForm<S: Space> {
     pub shift_t: S::Tangent,
     /// Friction coefficient mu.
     pub friction: f64,
-    /// h c_n (N s).
+    /// Tensile strength impulse h c_n (N s).
     pub tension: f64,
-    /// h c_t (N s).
+    /// Shear cohesion impulse h c_t (N s).
     pub cohesion: f64,
-    /// The single-valued part, where there is one.
+    /// The single-valued (bond) part, if any.
     pub elastic: Option<Elastic<S>>,
-    /// The impulse to start from, in world axes (N s).
+    /// Initial impulse, in world axes (N s).
     pub impulse: S::Vector,
 }
 
 impl<S: Space> ContactForm<S> {
-    /// A contact that nothing moves.
+    /// Returns a contact between immovable bodies.
     #[cfg(target_arch = "x86_64")]
     pub(super) fn idle() -> Self {
         Self {
@@ -55,10 +55,10 @@ impl<S: Space> ContactForm<S> {
     }
 }
 
-/// p_el = -(a + B u), with the normal part switched off where it would push (`tension_only`).
+/// Bond impulse p_el = -(a + B u); with `tension_only` the normal part vanishes where it would push.
 #[derive(Clone, Copy, Debug)]
 pub struct Elastic<S: Space> {
-    /// Normal impulse of the bond at u = 0, positive pulls (N s).
+    /// Normal impulse of the bond at u = 0, positive in tension (N s).
     pub a_n: f64,
     /// Tangential impulse of the bond at u = 0 (N s).
     pub a_t: S::Tangent,
@@ -66,16 +66,17 @@ pub struct Elastic<S: Space> {
     pub b_n: f64,
     /// Tangential stiffness and damping over the step (kg).
     pub b_t: f64,
-    /// The normal part acts only while it pulls.
+    /// Whether the normal part acts in tension only.
     pub tension_only: bool,
-    /// What is lost over the step by damping and by the scheme: loss_n u_n,th^2 + loss_t |u_t,th|^2 (kg).
+    /// Normal dissipation of damping and time scheme over the step: loss_n u_n,th^2 + loss_t |u_t,th|^2
+    /// (kg).
     pub loss_n: f64,
-    /// See `loss_n` (kg).
+    /// Tangential dissipation; see `loss_n` (kg).
     pub loss_t: f64,
 }
 
 impl<S: Space> Elastic<S> {
-    /// No bond.
+    /// Returns a bond without effect.
     pub fn none() -> Self {
         Self {
             a_n: 0.0,
@@ -89,7 +90,7 @@ impl<S: Space> Elastic<S> {
     }
 }
 
-/// What a solver gives back for one contact.
+/// Solution of one contact.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactSolution<S: Space> {
     /// Total impulse p in world axes (N s).
@@ -100,23 +101,23 @@ pub struct ContactSolution<S: Space> {
     pub unilateral_t: S::Tangent,
 }
 
-/// What an impulse does to a body.
+/// Response of a body to impulses.
 #[derive(Clone, Copy, Debug)]
 pub struct Mobility<S: Space> {
-    /// Inverse mass, axis by axis (1/kg).
+    /// Inverse mass along each axis (1/kg).
     pub mass: S::Vector,
-    /// Inverse of the moments of inertia (1/(kg m^2)).
+    /// Inverse inertia tensor (1/(kg m^2)).
     pub inertia: S::Tensor,
 }
 
 impl<S: Space> Mobility<S> {
-    /// Velocity and angular velocity that an impulse and a moment give.
+    /// Returns the velocity and angular velocity caused by an impulse and a moment.
     #[inline]
     pub fn apply(&self, p: &S::Vector, moment: &S::Spin) -> (S::Vector, S::Spin) {
         (p.scaled_by(&self.mass), self.inertia.apply(moment))
     }
 
-    /// Inverse mass or inertia of a degree of freedom, zero where it cannot move.
+    /// Returns the inverse mass or inertia of a degree of freedom, zero where it is imposed.
     pub fn along(&self, k: usize) -> f64 {
         if k < S::D {
             self.mass[k]
@@ -125,24 +126,25 @@ impl<S: Space> Mobility<S> {
         }
     }
 
-    /// Whether moments turn it.
+    /// Returns whether moments can rotate the body.
     pub fn turns(&self) -> bool {
         self.inertia.entry(0, 0) > 0.0
     }
 
-    /// Whether anything moves it.
+    /// Returns whether the body can move.
     pub fn moves(&self) -> bool {
         self.turns() || (0..S::D).any(|k| self.mass[k] > 0.0)
     }
 
-    /// The largest inverse inertia about any axis, or more; exact where all axes are alike (1/(kg m^2)).
+    /// Returns the largest inverse inertia about any axis, or an upper bound; exact for isotropic inertia
+    /// (1/(kg m^2)).
     pub fn quickest(&self) -> f64 {
         let n = S::Spin::N;
         let row = |i: usize| (0..n).map(|j| self.inertia.entry(i, j).abs()).sum::<f64>();
         (0..n).map(row).fold(0.0, f64::max)
     }
 
-    /// Twice the kinetic energy of a change of velocity, imposed parts apart (J).
+    /// Returns twice the kinetic energy of a velocity change, without imposed degrees of freedom (J).
     pub fn energy(&self, dv: &S::Vector, dw: &S::Spin) -> f64 {
         let masses = (0..S::D).filter(|k| self.mass[*k] > 0.0);
         let shift: f64 = masses.map(|k| dv[k] * dv[k] / self.mass[k]).sum();
@@ -158,7 +160,7 @@ impl<S: Space> Mobility<S> {
     }
 }
 
-/// Where a contact's row stands.
+/// Location of a contact's row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     Plain(u32),
@@ -167,54 +169,20 @@ pub(super) enum Place {
     System(u32),
 }
 
-/// The contact problem of one step. Push the bodies, then the contacts.
-///
-/// # Examples
-/// A disk of 2 kg rests on an immovable plane; in a step of 1 ms gravity would give it 0.01 m/s downwards, and 0.001 m/s
-/// sideways, which is within what Coulomb friction with mu = 0.5 holds.
-/// ```
-/// use fretwork_core::geometry::space::{Dim2, Space, VectorLike};
-/// use fretwork_core::solve::{ContactForm, Options, Problem, nlgs};
-/// use nalgebra::{Matrix1, Vector1, Vector2};
-///
-/// let mut problem = Problem::<Dim2>::default();
-/// let (spin, turned) = (Vector1::new(0.0), Matrix1::new(0.0));
-/// let free = Vector2::new(1e-3, -1e-2);
-/// problem.push_body(free, spin, Vector2::new(0.5, 0.5), turned, 0.01);
-/// problem.push_body(Vector2::zero(), spin, Vector2::zero(), turned, 0.01);
-/// problem.push(&ContactForm {
-///     bodies: [0, 1],
-///     normal: Vector2::new(0.0, 1.0),
-///     arms: [Vector2::new(0.0, -0.01), Vector2::zero()],
-///     central: true,
-///     shift_n: 0.0,
-///     shift_t: <Dim2 as Space>::Tangent::zero(),
-///     friction: 0.5,
-///     tension: 0.0,
-///     cohesion: 0.0,
-///     elastic: None,
-///     impulse: Vector2::zero(),
-/// });
-/// let report = nlgs::solve(&mut problem, &Options { tolerance: 1e-10, ..Options::default() });
-/// assert!(report.converged);
-/// // The impulse that stops it: its mass times the change of velocity (N s).
-/// let impulse = problem.solution(0).impulse;
-/// assert!((impulse - Vector2::new(-2e-3, 2e-2)).norm() < 1e-9, "{impulse}");
-/// assert!(problem.velocity(0).0.norm() < 1e-9);
-/// ```
+/// The contact problem of one step. Push the bodies first, then the contacts.
 #[derive(Debug)]
 pub struct Problem<S: Space> {
-    /// Velocities in place, one line a body.
+    /// Velocities, updated in place, one record per body.
     pub lines: Vec<SolverBody<S>>,
-    /// Free velocities, as the lines.
+    /// Free velocities of the bodies.
     pub free: Vec<(S::Vector, S::Spin)>,
     pub(super) lengths: Vec<f64>,
     pub(super) masses: Vec<Mobility<S>>,
-    /// Contacts of two balls (or a ball and an immovable body), without memory: the fast path.
+    /// Contacts of two balls (or a ball and an immovable body), without bond: the fast path.
     pub(super) plain: Vec<PlainRow<S>>,
-    /// The same with bonds, cohesion or tangential restitution.
+    /// Contacts as in `plain`, but with bonds, cohesion or tangential restitution.
     pub(super) full: Vec<FullRow<S>>,
-    /// Contacts with levers or bodies that are free along some axes only.
+    /// Contacts with lever arms, or of bodies that are free along some axes only.
     pub(super) general: Vec<GeneralRow<S>>,
     /// Contacts with dynamical systems; they run after those above, in order.
     pub(super) of_systems: Vec<SystemRow<S>>,
@@ -223,9 +191,9 @@ pub struct Problem<S: Space> {
     /// Moments of contacts that resist rotation; they run last, in order.
     pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<Place>,
-    /// The order in which `plain` and `full` are swept.
+    /// The order in which `plain` and `full` are visited.
     pub(super) orders: [Order; 2],
-    /// Where `plain` and `full` are put in order.
+    /// Buffers for sorting `plain` and `full`.
     pub(super) spare_plain: Vec<PlainRow<S>>,
     pub(super) spare_full: Vec<FullRow<S>>,
 }
@@ -252,30 +220,30 @@ impl<S: Space> Default for Problem<S> {
 }
 
 impl<S: Space> Problem<S> {
-    /// Bytes of a body: its line, its free velocity, length and inverse masses.
+    /// Bytes per body: its record, free velocity, length and inverse masses.
     pub const BYTES_A_BODY: usize = size_of::<SolverBody<S>>()
         + size_of::<(S::Vector, S::Spin)>()
         + size_of::<f64>()
         + size_of::<Mobility<S>>();
 
-    /// Bytes of a contact's row: of two balls, the same with a bond, and with levers.
+    /// Bytes per row of a contact: of two balls, of two balls with a bond, and with lever arms.
     pub const BYTES_A_CONTACT: [usize; 3] = [
         size_of::<PlainRow<S>>(),
         size_of::<FullRow<S>>(),
         size_of::<GeneralRow<S>>(),
     ];
 
-    /// Bytes of a contact's place in the order of the sweep, and of the copy of its row, of the same kinds, from which it
-    /// is put there: contacts with levers stay where they are.
+    /// Bytes per contact for the order of the iteration and the copy of its row used in sorting, for the
+    /// same kinds; contacts with lever arms are not sorted.
     pub const BYTES_TO_SORT: [usize; 3] = [
         size_of::<PlainRow<S>>() + Self::BYTES_A_PLACE,
         size_of::<FullRow<S>>() + Self::BYTES_A_PLACE,
         size_of::<Place>(),
     ];
-    /// Its place as pushed, and in the order: bodies, sequence and place.
+    /// Bytes for a contact's index as pushed and in the order: bodies, sequence and place.
     const BYTES_A_PLACE: usize = size_of::<Place>() + size_of::<[u32; 2]>() + 2 * size_of::<u32>();
 
-    /// Empties the problem, keeping its memory.
+    /// Clears the problem, keeping its buffers.
     pub fn clear(&mut self) {
         self.lines.clear();
         self.free.clear();
@@ -290,7 +258,8 @@ impl<S: Space> Problem<S> {
         self.places.clear();
     }
 
-    /// Adds a body by its free velocity, inverse masses, inverse moments of inertia and length for spins.
+    /// Adds a body with its free velocity, inverse masses, inverse inertia tensor, and length that scales
+    /// spins.
     pub fn push_body(
         &mut self,
         v: S::Vector,
@@ -341,7 +310,7 @@ impl<S: Space> Problem<S> {
         }
     }
 
-    /// Adds the moments of a contact that was pushed, given again for its bodies and normal.
+    /// Adds the moments of a contact that was already pushed, given with its bodies and normal.
     pub fn push_moment(&mut self, form: &MomentForm<S>, contact: &ContactForm<S>) {
         let [i, j] = contact.bodies.map(|b| b as usize);
         self.moments.push(MomentRow::new(
@@ -354,7 +323,7 @@ impl<S: Space> Problem<S> {
         ));
     }
 
-    /// The moments, in the order pushed.
+    /// Iterates over the moments, in the order pushed.
     pub fn moments(&self) -> impl Iterator<Item = MomentSolution<S>> {
         self.moments.iter().map(|row| {
             let [i, j] = row.bodies.map(|b| &self.lines[b as usize]);
@@ -362,7 +331,7 @@ impl<S: Space> Problem<S> {
         })
     }
 
-    /// The normal impulse of a contact.
+    /// Returns the normal impulse of a contact (N s).
     pub(super) fn normal(&self, place: Place) -> f64 {
         match place {
             Place::Plain(r) => self.plain[r as usize].normal(),
@@ -372,7 +341,7 @@ impl<S: Space> Problem<S> {
         }
     }
 
-    /// The diagonal block of W in world axes.
+    /// Returns the diagonal block of W in world axes (1/kg).
     fn block(&self, contact: &ContactForm<S>) -> S::Matrix {
         let mut w = S::Matrix::diagonal(&S::Vector::zero());
         for (body, arm) in contact.bodies.iter().zip(&contact.arms) {
@@ -382,12 +351,12 @@ impl<S: Space> Problem<S> {
         w
     }
 
-    /// Number of contacts.
+    /// Returns the number of contacts.
     pub fn contacts(&self) -> usize {
         self.places.len()
     }
 
-    /// The solution of the `k`-th contact pushed.
+    /// Returns the solution of the `k`-th contact pushed.
     pub fn solution(&self, k: usize) -> ContactSolution<S> {
         match self.places[k] {
             Place::Plain(r) => self.solved(&self.plain[r as usize]),
@@ -402,7 +371,7 @@ impl<S: Space> Problem<S> {
         row.solution(i, j)
     }
 
-    /// Velocity and angular velocity of a body after the solve.
+    /// Returns velocity and angular velocity of a body after the solve.
     pub fn velocity(&self, body: usize) -> (S::Vector, S::Spin) {
         let line = &self.lines[body];
         (line.v, line.s * (1.0 / self.lengths[body]))

@@ -1,4 +1,4 @@
-//! What the error of a step's problem is formed from, at the velocities at hand.
+//! Sums for the error of a step's problem, at the current velocities.
 
 use super::error::{Scale, Sums};
 use super::form::Problem;
@@ -6,10 +6,10 @@ use super::row::{Free, Lines, Measure, Row, visit};
 use crate::geometry::space::Space;
 use rayon::prelude::*;
 
-/// Contacts a thread takes at a time. Sums are formed by chunk and added in order.
+/// Contacts per task. Sums are formed per chunk and added in order.
 const CHUNK: usize = 512;
 
-/// Sums over the contacts, the worst among those of rows in the order of the sweep.
+/// Sums over the contacts; the worst contact is searched among the rows in the order of the iteration.
 pub(super) fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sums {
     let lines = Lines::new(&mut problem.lines);
     let mut sums = Sums::default();
@@ -51,7 +51,7 @@ fn measure_rows<S: Space, R: Row<S>>(
     }
 }
 
-/// What the error is measured against.
+/// Computes the reference values of the error.
 pub(super) fn scale<S: Space>(problem: &Problem<S>, free: Scale) -> Scale {
     let mut work = 0.0;
     let bodies = problem
@@ -68,7 +68,7 @@ pub(super) fn scale<S: Space>(problem: &Problem<S>, free: Scale) -> Scale {
     Scale { work, ..free }
 }
 
-/// What the free velocities give to measure against; leaves them in the lines.
+/// Computes the reference values that depend on the free velocities; leaves these in the body records.
 pub(super) fn free_velocity<S: Space>(problem: &mut Problem<S>) -> Scale {
     problem.set_free();
     let lines = Lines::new(&mut problem.lines);
@@ -96,7 +96,7 @@ fn squared<S: Space, R: Row<S>>(rows: &mut [R], lines: &Lines<S>, free: &mut Fre
 }
 
 impl<S: Space> Problem<S> {
-    /// Gives every body its free velocity.
+    /// Sets every body to its free velocity.
     pub(super) fn set_free(&mut self) {
         let bodies = self.lines.iter_mut().zip(&self.free).zip(&self.lengths);
         for ((line, free), length) in bodies {

@@ -1,4 +1,4 @@
-//! Non-linear Gauss-Seidel: contact by contact, velocities updated in place, warm started.
+//! Non-linear Gauss-Seidel (NLGS): contact by contact, with velocities updated in place and warm start.
 
 use super::accelerate::Acceleration;
 use super::chosen::SolvePath;
@@ -10,24 +10,24 @@ use super::measure::{free_velocity, measure, scale};
 use super::row::{Lines, Load, Row, SolverBody, Update, Visit, visit};
 use crate::geometry::space::Space;
 
-/// When to stop.
+/// Solver options.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Error to reach.
     pub tolerance: f64,
-    /// How the error is measured, see [`super::error`].
+    /// Norm of the error, see [`super::error`].
     pub norm: Norm,
-    /// Sweeps at most.
+    /// Maximum number of iterations.
     pub max_iterations: u32,
-    /// Sweeps between two convergence tests; the first comes after half as many.
+    /// Iterations between two convergence tests; the first test comes after half as many.
     pub test_every: u32,
-    /// Over-relaxation in \[1, 2): how much farther than its own solution a contact goes.
+    /// Over-relaxation factor in \[1, 2) applied to the impulse increment of each contact.
     pub relaxation: f64,
-    /// Anderson's acceleration.
+    /// Whether Anderson acceleration is used.
     pub accelerated: bool,
-    /// The method.
+    /// Solution method.
     pub method: Method,
-    /// Split colours over threads.
+    /// Whether colours are distributed over threads.
     pub parallel: bool,
 }
 
@@ -46,24 +46,24 @@ impl Default for Options {
     }
 }
 
-/// What a solve reports.
+/// Report of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
-    /// Sweeps done.
+    /// Iterations done.
     pub iterations: u32,
     /// Error, recomputed from the impulses at the end.
     pub error: f64,
     /// Whether the error is within the tolerance.
     pub converged: bool,
-    /// The contact with the largest residual, as pushed; none when there is no contact.
+    /// Index, as pushed, of the contact with the largest residual; `None` without contacts.
     pub worst: Option<usize>,
-    /// The method that ended it.
+    /// The method that ended the solve.
     pub used: Method,
-    /// What `auto` chose.
+    /// The choices of `auto`.
     pub chosen: SolvePath,
 }
 
-/// Puts the rows in order, forms velocities from the impulses at hand, and judges them.
+/// Sorts the rows, computes velocities from the current impulses, and evaluates the error.
 pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     if problem.contacts() == 0 {
         return Report {
@@ -75,7 +75,7 @@ pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &Options) -> 
     judge(problem, options)
 }
 
-/// Forms velocities from the impulses at hand and judges them.
+/// Computes velocities from the current impulses and evaluates the error.
 pub(super) fn judge<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     let free = free_velocity(problem);
     problem.reload(options.parallel);
@@ -89,7 +89,7 @@ pub(super) fn judge<S: Space>(problem: &mut Problem<S>, options: &Options) -> Re
     }
 }
 
-/// Sweeps until the problem is solved, in place.
+/// Iterates in place until the problem is solved or the iteration limit is reached.
 pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     if problem.contacts() == 0 {
         return Report {
@@ -104,12 +104,12 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     let mut report = Report::default();
     let mut acceleration = options.accelerated.then(Acceleration::default);
     let (mut relaxation, mut caution) = (options.relaxation, Caution::default());
-    // A warm start needs few sweeps: the first test comes early.
+    // A warm start needs few iterations, so that the first test comes early.
     let mut next = every.div_ceil(2);
     loop {
         let last = next.min(options.max_iterations);
         while report.iterations < last {
-            // The sweep before a test is not relaxed: it leaves impulses that contacts can carry.
+            // The iteration before a test is not relaxed, so that its impulses are admissible.
             let plain = report.iterations + 1 == last;
             sweep(
                 problem,
@@ -119,8 +119,8 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
             report.iterations += 1;
         }
         let ended = report.iterations >= options.max_iterations;
-        // The velocities have gathered rounding: what ends a solve is judged by velocities formed from the
-        // impulses. The first tests often do, so they begin with them.
+        // The velocities have accumulated rounding errors: convergence is decided with velocities recomputed
+        // from the impulses. The first tests, which often succeed, recompute them at once.
         let fresh = report.iterations <= every;
         if fresh {
             problem.reload(options.parallel);
@@ -158,13 +158,13 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     }
 }
 
-/// Sorts the contacts and sets the velocities by their impulses: what comes before [`sweeps`].
+/// Sorts the contacts and computes velocities from their impulses, as needed before [`sweeps`].
 pub fn prepare<S: Space>(problem: &mut Problem<S>) {
     sort(problem);
     problem.reload(false);
 }
 
-/// Sweeps without a test: for measuring the sweep alone. The problem is to be [`prepare`]d.
+/// Runs iterations without convergence tests, for benchmarks. The problem must have been [`prepare`]d.
 pub fn sweeps<S: Space>(problem: &mut Problem<S>, count: u32, relaxation: f64, parallel: bool) {
     for _ in 0..count {
         sweep(problem, relaxation, parallel);
@@ -172,7 +172,7 @@ pub fn sweeps<S: Space>(problem: &mut Problem<S>, count: u32, relaxation: f64, p
 }
 
 impl Report {
-    /// Adds another solve of the same step: sweeps add up, the rest is the last one's.
+    /// Adds another solve of the same step: iterations are summed, the rest is taken from the last solve.
     pub fn add(&mut self, other: &Self) {
         *self = Self {
             iterations: self.iterations + other.iterations,
@@ -182,8 +182,8 @@ impl Report {
     }
 }
 
-/// Over-relaxation has no theorem under friction: where it drives the residual up, or round in circles,
-/// there is to be less of it.
+/// Controls the relaxation. Over-relaxation has no convergence proof with friction; where the residual grows
+/// or cycles, it is reduced.
 struct Caution {
     least: f64,
     tests: u32,
@@ -199,12 +199,12 @@ impl Default for Caution {
 }
 
 impl Caution {
-    /// Growth of the squared residual that is too much.
+    /// Growth of the squared residual that triggers a reduction.
     const GROWTH: f64 = 4.0;
-    /// Tests without a fall of the squared residual by a hundredth that are too many.
+    /// Number of tests without a reduction of the squared residual by a hundredth that triggers a reduction.
     const PATIENCE: u32 = 20;
 
-    /// The relaxation to go on with, by the squared residual at a test.
+    /// Returns the relaxation to continue with, given the squared residual at a test.
     fn judge(&mut self, residual: f64, relaxation: f64) -> f64 {
         if residual < 0.99 * self.least {
             (self.least, self.tests) = (residual, 0);
@@ -220,7 +220,7 @@ impl Caution {
     }
 }
 
-/// Gives a row its impulse, or lets it answer where nothing moves.
+/// Sets the impulse of a row, or solves the contact where none is given.
 fn take<S: Space, R: Row<S>>(
     row: &mut R,
     impulse: &Option<S::Vector>,
@@ -237,7 +237,7 @@ fn take<S: Space, R: Row<S>>(
 }
 
 impl<S: Space> Problem<S> {
-    /// The numbers of all impulses and moments, in the order of the sweep.
+    /// Stores the components of all impulses and moments, in the order of the iteration.
     pub(super) fn store(&self, out: &mut Vec<f64>) {
         out.clear();
         self.plain.iter().for_each(|row| row.store(out));
@@ -249,7 +249,7 @@ impl<S: Space> Problem<S> {
         self.moments.iter().for_each(|row| row.store(out));
     }
 
-    /// Takes them back, and the velocities with them.
+    /// Restores them, and recomputes the velocities.
     pub(super) fn restore(&mut self, mut from: &[f64]) {
         let from = &mut from;
         self.plain.iter_mut().for_each(|row| row.restore(from));
@@ -262,8 +262,8 @@ impl<S: Space> Problem<S> {
         self.reload(false);
     }
 
-    /// Takes impulses and moments in the order pushed, and the velocities with them. Where there is none
-    /// nothing moves, and the contact answers the velocities as they are.
+    /// Takes impulses and moments in the order pushed, and recomputes the velocities. A contact without one
+    /// (`None`, where both bodies are immovable) is solved for the current velocities.
     pub(super) fn adopt(&mut self, impulses: &[Option<S::Vector>], moments: &[Option<S::Spin>]) {
         for (k, impulse) in impulses.iter().enumerate() {
             match self.places[k] {
@@ -294,7 +294,7 @@ impl<S: Space> Problem<S> {
         self.reload(false);
     }
 
-    /// v = v_free + M^-1 H p.
+    /// Computes v = v_free + M^-1 H p.
     pub(super) fn reload(&mut self, parallel: bool) {
         self.set_free();
         let [plain, full] = &self.orders;
@@ -313,7 +313,7 @@ impl<S: Space> Problem<S> {
         }
     }
 
-    /// The index by which the contact at a place of the sweep was pushed.
+    /// Returns the index, as pushed, of the contact at a position in the iteration.
     fn pushed(&self, at: usize) -> Option<usize> {
         let (a, b, c) = (self.plain.len(), self.full.len(), self.general.len());
         let place = if at < a {
@@ -329,7 +329,7 @@ impl<S: Space> Problem<S> {
     }
 }
 
-/// Puts the rows of each kind in the order of their colours.
+/// Sorts the rows of each kind by colour.
 fn sort<S: Space>(problem: &mut Problem<S>) {
     let Problem {
         plain,
@@ -357,7 +357,7 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
     }
 }
 
-/// Returns where each row went.
+/// Returns the new position of each row.
 fn permute<'a, S: Space, R: Row<S>>(
     rows: &mut Vec<R>,
     spare: &mut Vec<R>,
@@ -384,7 +384,7 @@ fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
         update,
     );
     pass(&mut problem.full, full.schedule(), &lines, parallel, update);
-    // First bodies have many contacts, which share them: these run in order.
+    // First bodies have many contacts in common; these are visited in order.
     for row in &mut problem.general {
         lines.alone(row.bodies(), |a, b| row.update(a, b, relaxation));
     }
@@ -399,7 +399,7 @@ fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
     }
 }
 
-/// Does the same to all rows of a kind, block by block.
+/// Applies a visitor to all rows of a kind, block by block.
 fn pass<S: Space, R: Row<S>, V: Visit>(
     rows: &mut [R],
     schedule: &Schedule,
@@ -409,16 +409,16 @@ fn pass<S: Space, R: Row<S>, V: Visit>(
 ) {
     let rows = Rows(rows.as_mut_ptr());
     schedule.run(parallel, |block| {
-        // SAFETY: blocks are apart, and a block is run once.
+        // SAFETY: blocks are disjoint, and each is run once.
         let part = unsafe { rows.slice(schedule.block(block)) };
         visit(part, schedule.groups(block), lines, &mut what());
     });
 }
 
-/// Rows reached by several threads, each at blocks of its own.
+/// Rows accessed by several threads, each in its own blocks.
 struct Rows<R>(*mut R);
 
-// SAFETY: a block is run by one thread.
+// SAFETY: each block is run by one thread.
 unsafe impl<R: Send> Sync for Rows<R> {}
 
 impl<R> Rows<R> {

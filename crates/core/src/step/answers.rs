@@ -1,4 +1,5 @@
-//! What contacts did in a step: relative velocities before it, and the solver's answers as the laws commit them.
+//! Contact states of a step: the relative velocities before it, and the solver's results in the form in
+//! which the laws commit them.
 
 use super::motion::StepStart;
 use super::simulation::Simulation;
@@ -7,8 +8,8 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::laws::{ContactStep, Interface, MomentStep, Velocities};
 use crate::solve::{self, MomentForm};
 
-/// What the contacts did in a solved step. Its memory is kept from step to step: of many contacts the pages of a new
-/// list cost more than what is written there.
+/// Results of the contacts in a solved step. The buffers are reused from step to step, because allocating
+/// new ones for many contacts costs more than filling them.
 #[derive(Debug)]
 pub(super) struct Solved<S: Space> {
     pub before: Velocities<S>,
@@ -27,7 +28,7 @@ impl<S: Space> Default for Solved<S> {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Velocity of a contact's candidate relative to its antagonist, at the velocities at hand.
+    /// Returns the velocity of a contact's candidate relative to its antagonist, at the current velocities.
     fn relative_velocity(&self, contact: &Contact<S>) -> S::Vector {
         if !self.systems.is_empty() {
             return self.relative_velocity_of_sides(contact);
@@ -39,7 +40,7 @@ impl<S: Space> Simulation<S> {
             - S::spin_velocity(&bodies.spin[j], &contact.arms[1])
     }
 
-    /// Relative velocities and spins at the start of the step.
+    /// Computes the relative velocities and spins at the start of the step.
     pub(super) fn relative_velocities(&mut self) {
         let mut before = std::mem::take(&mut self.workspace.solved.before);
         let contacts = &self.network.contacts;
@@ -56,7 +57,7 @@ impl<S: Space> Simulation<S> {
         self.workspace.solved.before = before;
     }
 
-    /// What the contacts did.
+    /// Collects the results of all contacts.
     pub(super) fn sites(&mut self) {
         let mut sites = std::mem::take(&mut self.workspace.solved.sites);
         sites.clear();
@@ -73,7 +74,8 @@ impl<S: Space> Simulation<S> {
                 let normal = if pulls { e.loss_n * un * un } else { 0.0 };
                 normal + e.loss_t * ut.dot(&ut)
             });
-            // The correction's, unless the law's restitution took its place: a bounce gives nothing.
+            // The shift comes from the position correction unless restitution replaced it; a bounce does no
+            // correction work.
             let lifts = form.shift_n < 0.0
                 && n.dot(before) >= form.shift_n
                 && form.shift_n == self.shift_of_gap(contact, self.scheme.h);
@@ -82,7 +84,7 @@ impl<S: Space> Simulation<S> {
             } else {
                 0.0
             };
-            // Solvers that do not put a sliding contact on its bound leave it within their tolerance.
+            // Some solvers satisfy the friction bound of a sliding contact only within their tolerance.
             let bound = form.friction * (solution.unilateral_n + form.tension) + form.cohesion;
             ContactStep {
                 before: *before,
@@ -97,7 +99,7 @@ impl<S: Space> Simulation<S> {
         self.workspace.solved.sites = sites;
     }
 
-    /// What the contacts that resist rotation did.
+    /// Collects the results of the contacts that resist rotation.
     pub(super) fn turns(&mut self, start: &StepStart<S>) {
         let mut turns = std::mem::take(&mut self.workspace.solved.turns);
         turns.clear();

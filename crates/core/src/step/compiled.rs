@@ -1,11 +1,12 @@
-//! The step, compiled once for each dimension: a crate that steps a scene does not compile the solver again.
+//! The time step, compiled once for each dimension, so that dependent crates do not compile the solver
+//! again.
 
 use super::{Simulation, StepError, StepReport};
 use crate::geometry::space::{Dim2, Dim3, Space};
 
-/// A dimension whose time step is compiled in this crate.
+/// A dimension for which this crate compiles the time step.
 pub trait Steps: Space {
-    /// One step of a scene, see [`Simulation::step`].
+    /// Performs one step of a scene; see [`Simulation::step`].
     ///
     /// # Errors
     /// As [`Simulation::step`].
@@ -25,12 +26,11 @@ impl Steps for Dim3 {
 }
 
 impl<S: Steps> Simulation<S> {
-    /// One step of h. Processes act at its named moments, see [`crate::process`]; those that are due between the last step and
-    /// this one first, where [`Simulation::between_steps`] was not called.
+    /// Performs one step of length h.
     ///
     /// # Errors
-    /// A law's error, or velocities that are not finite; the state is then that of the failed step. Or a surface that
-    /// the step before wore through; the state is then that of its end.
+    /// A law failed or a velocity is not finite; the state is then that of the failed step. A surface was
+    /// worn through in the previous step; the state is then that at its end.
     pub fn step(&mut self) -> Result<StepReport, StepError> {
         S::step(self)
     }

@@ -1,31 +1,31 @@
-//! How damage and opening are brought together within a step.
+//! Coupling of damage and opening within a step.
 
 use serde::{Deserialize, Serialize};
 
 /// The coupling of damage and opening.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Coupling {
-    /// The step is done with the damage at its start; damage grows at its end. First order in h.
+    /// The step is solved with the damage at its start; damage grows at its end. First order in h.
     #[default]
     Explicit,
-    /// The step is solved again until its damage is the one that its openings give, or more: within a step
-    /// too damage only grows, so that the solves end.
+    /// The step is solved repeatedly until the damage used equals the damage that the resulting openings
+    /// give. Damage never decreases between iterations, so that the iteration ends.
     Implicit {
-        /// Largest change of a damage between two solves that ends it.
+        /// Largest change of damage between two iterations at convergence.
         tolerance: f64,
-        /// Solves at most in a step.
+        /// Maximum number of solves in a step.
         max_iterations: u32,
     },
 }
 
-/// How the coupling went in a step.
+/// Report of the coupling in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CouplingReport {
-    /// Solves; zero where the coupling is explicit.
+    /// Number of solves; zero where the coupling is explicit.
     pub iterations: u32,
-    /// Largest change of a damage in the last.
+    /// Largest change of damage in the last iteration.
     pub change: f64,
-    /// Whether the tolerance was missed.
+    /// Whether the iteration ended without reaching the tolerance.
     pub missed: bool,
 }
 
@@ -56,7 +56,7 @@ impl Progress {
         }
     }
 
-    /// Takes in the change of a solve; says whether it was the last.
+    /// Records the change of damage of an iteration; returns whether to stop.
     pub fn ends(&mut self, change: f64) -> bool {
         self.report.iterations += 1;
         self.report.change = change;

@@ -1,40 +1,40 @@
-//! Why a step could not be done.
+//! Errors of a time step.
 
 use crate::laws::LawError;
 use crate::process::ProcessError;
 use crate::wear::WornThrough;
 
-/// Why a step could not be done.
+/// Reason why a step failed.
 #[derive(Debug, thiserror::Error)]
 pub enum StepError {
-    /// A law refused.
+    /// A law reported an error.
     #[error("step {step} at t = {time:.6e} s: {source}")]
     Law {
         /// Number of the step.
         step: u64,
         /// Time at its start (s).
         time: f64,
-        /// What the law said.
+        /// The law's error.
         source: LawError,
     },
-    /// The method does not serve what the laws ask for.
+    /// The method does not support what the laws require.
     #[error("step {step}: solver.method {method}: {reason}")]
     Method {
         /// Number of the step.
         step: u64,
         /// The method.
         method: &'static str,
-        /// Why, and what to take instead.
+        /// The reason, and the method to use instead.
         reason: &'static str,
     },
-    /// A surface has worn as deep as it is thick.
+    /// Wear has reached the thickness of a surface.
     #[error("step {step} at t = {time:.6e} s: {source}")]
     WornThrough {
-        /// Number of the step that did it.
+        /// Number of the step in which it happened.
         step: u64,
         /// Time at its end (s).
         time: f64,
-        /// Which and where.
+        /// The surface and the position.
         source: WornThrough,
     },
     /// A process refused.
@@ -84,9 +84,9 @@ pub enum StepError {
         step: u64,
         /// Time at its end (s).
         time: f64,
-        /// The quantity, and the body it is of.
+        /// The quantity, with the body to which it belongs.
         quantity: String,
-        /// What it is.
+        /// Its value.
         value: f64,
     },
 }

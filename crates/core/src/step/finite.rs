@@ -1,16 +1,17 @@
-//! No step ends with a number that is none: what is not finite ends the run before anything is recorded of it.
+//! Checks that the state is finite at the end of each step, before any output is recorded.
 
 use super::{Simulation, StepError};
 use crate::geometry::space::{Space, VectorLike};
 
-/// Motion lost to rounding, in parts of the alert distance, from which it is reported: of balls a millionth of the radius.
+/// Motion lost to rounding from which a warning is issued, as a fraction of the alert distance: for spheres,
+/// a millionth of the radius.
 const LOST: f64 = 2e-5;
 
 impl<S: Space> Simulation<S> {
-    /// The state and the ledger are finite.
+    /// Checks that the state and the ledger are finite.
     ///
     /// # Errors
-    /// The first quantity that is not, and of which body.
+    /// Names the first quantity that is not finite, and its body.
     pub(super) fn finite(&self) -> Result<(), StepError> {
         let overflow = |quantity: String, value: f64| StepError::Overflow {
             step: self.steps,
@@ -19,7 +20,7 @@ impl<S: Space> Simulation<S> {
             value,
         };
         let bodies = &self.bodies;
-        // Velocities were looked at when they were solved for. Nothing but a number that is none times zero is not zero.
+        // Velocities were checked after the solve. The sum is zero unless a component is infinite or NaN.
         let zero = |sum: f64, x: &S::Vector| sum + (*x * 0.0).dot(x);
         if bodies.position.iter().fold(0.0, zero) != 0.0
             && let Some(b) = bodies.position.iter().position(|x| !x.is_finite())
@@ -56,7 +57,8 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Notes bodies whose motion is less than the spacing of numbers where they are: they do not move although they should.
+    /// Records bodies whose displacement in a step is below the floating-point spacing of their position, so
+    /// that they do not move although they should.
     pub(super) fn watch_rounding(&mut self) {
         if self.bodies.lost.is_empty() {
             return;

@@ -1,4 +1,5 @@
-//! Contacts that close within a step: known before it is solved, or found by its velocities, and then it is solved again.
+//! Contacts that close within a step, found before the solve or from its velocities; in the second case the
+//! step is solved again.
 
 use super::motion::StepStart;
 use super::{Simulation, StepError, StepReport};
@@ -7,15 +8,16 @@ use crate::contact::detect::{self, Motion};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
 
-/// Solves of a step at most: each may send bodies into others that the one before did not.
+/// Maximum number of solves of a step: each may close contacts that the previous one did not.
 const MAX_SOLVES: usize = 6;
-/// Change of a surface's spin, in parts of it, from which it is a jump.
+/// Relative change of a surface's spin from which it counts as a jump.
 const TURNS: f64 = 0.01;
 
 impl<S: Space> Simulation<S> {
-    /// Reports what bodies go through in the move before detection. The step before looked at the way of each body from
-    /// detection to detection at its last velocity: not at the first move of all, nor at what a jump of an imposed velocity
-    /// adds. `before` are velocities and spins of the driven bodies ahead of their jumps.
+    /// Reports tunnelling during the first half move. Each step checks the paths of the bodies between two
+    /// detections at its final velocities; this misses the very first move and the velocity added by a jump
+    /// of an imposed motion. `before` holds the velocities and spins of the driven bodies before their
+    /// jumps.
     pub(super) fn watch_first_move(&mut self, before: &[(S::Vector, S::Spin)]) {
         let length = (1.0 - self.scheme.theta) * self.scheme.h;
         let (network, bodies) = (&mut self.network, &self.bodies);
@@ -38,7 +40,7 @@ impl<S: Space> Simulation<S> {
         );
     }
 
-    /// Whether the jumps of imposed velocities move anything fast within a time (s).
+    /// Returns whether the jumps of imposed velocities give a body a large displacement within a time (s).
     fn velocities_jump(&self, before: &[(S::Vector, S::Spin)], time: f64) -> bool {
         let bodies = &self.bodies;
         let mut driven = bodies.driven.iter().zip(before);
@@ -48,7 +50,7 @@ impl<S: Space> Simulation<S> {
             let turn = (bodies.spin[b] - *w).norm();
             let lever = self.network.extents.lever(b);
             let surfaces = self.shapes.surfaces.iter();
-            // How far a surface reaches is not known.
+            // The extent of the surface is unknown.
             let sweeps = turn > TURNS * bodies.spin[b].norm().max(w.norm())
                 && surfaces.filter(|s| s.body as usize == b).any(|s| {
                     !s.shape
@@ -58,7 +60,8 @@ impl<S: Space> Simulation<S> {
         })
     }
 
-    /// Reports impacts with restitution that were only kept from closing, since others of the step came before them.
+    /// Reports impacts with restitution that were only kept from closing, because other impacts of the step
+    /// preceded them.
     fn report_held_back(&mut self) {
         for k in &self.passes.held_back {
             if self.workspace.solved.sites[*k].solution.impulse != S::Vector::zero() {
@@ -69,7 +72,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Adds the contacts that the velocities without contacts would close in the step.
+    /// Adds the contacts that the free velocities (without contact impulses) would close in the step.
     pub(super) fn foresee(&mut self, free: &[(S::Vector, S::Spin)]) {
         let motion = Motion {
             velocities: free,
@@ -84,7 +87,8 @@ impl<S: Space> Simulation<S> {
         detect::foresee(network, &self.shapes, bodies, &self.table, &motion);
     }
 
-    /// Solves the step, and again while its velocities send bodies into others that were not solved for.
+    /// Solves the step, and repeats while the resulting velocities close contacts that were not part of the
+    /// problem.
     pub(super) fn solve(
         &mut self,
         start: &StepStart<S>,

@@ -1,16 +1,16 @@
-//! The stepper's part of imposed motion: the jumps of velocity between steps, and what they cost.
+//! Imposed motion in the time step: the velocity jumps between steps and their work.
 //!
-//! Where the velocity of an imposed degree of freedom jumps (see [`crate::bodies::path`]) its drive gives the impulse
-//! and does the work m (v_s^2 - v_e^2)/2. At time zero there is no drive before: what moves then has moved before, and
-//! its energy is initial kinetic energy.
+//! Where the velocity of an imposed degree of freedom jumps (see [`crate::bodies::path`]), its drive
+//! supplies the impulse and does the work m (v_s^2 - v_e^2)/2. At time zero there is no previous drive: a
+//! body that starts moving is taken to have moved before, and its energy is initial kinetic energy.
 
 use super::Simulation;
 use crate::bodies::Dof;
 use crate::geometry::space::Space;
 
 impl<S: Space> Simulation<S> {
-    /// Gives bodies whose motion is imposed from time zero on their velocities, for what looks at the scene before the
-    /// first step. The drives of the first phase are in force with it.
+    /// Gives driven bodies their imposed velocities at time zero, for code that inspects the scene before
+    /// the first step. The drives of the first phase are included.
     pub fn set_in_motion(&mut self) {
         if self.steps > 0 {
             return;
@@ -28,7 +28,7 @@ impl<S: Space> Simulation<S> {
                     let mut drives = c.drives.iter().rev();
                     drives.find(|d| (d.0, d.1) == (place, k))
                 });
-                // A phase that begins at time zero is not delayed.
+                // A phase that begins at time zero is not shifted in time.
                 let dof: &Dof = given.map_or(own, |d| &d.2);
                 if let Some(speeds) = dof.over(time, h).speeds(time, h, theta) {
                     if k < S::D {
@@ -44,7 +44,7 @@ impl<S: Space> Simulation<S> {
         self.started = self.motion_of_driven();
     }
 
-    /// Puts in force what acts over the step, and has the imposed motion of the step begin.
+    /// Applies the schedule to the step and starts its imposed motion.
     pub(super) fn begin_motion(&mut self) {
         let before = self.energies_of_driven();
         self.apply_schedule();
@@ -60,17 +60,18 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Ends the step: the time goes on, and what is imposed is where its path is then.
+    /// Ends the step: advances the time and puts imposed degrees of freedom on their paths.
     pub(super) fn end_motion(&mut self) {
         let (from, h) = (self.time, self.scheme.h);
-        // Kahan's sum: the time after n steps is n h to rounding, so that functions of time do not drift.
+        // Kahan summation: the time after n steps equals n h to rounding, so that functions of time do not
+        // drift.
         let part = h - self.time_excess;
         self.time = from + part;
         self.time_excess = (self.time - from) - part;
         self.bodies.arrive(from, self.time, h);
     }
 
-    /// Velocities and spins of the driven bodies, in their order.
+    /// Returns the velocities and spins of the driven bodies, in their order.
     pub(super) fn motion_of_driven(&self) -> Vec<(S::Vector, S::Spin)> {
         let bodies = &self.bodies;
         let of = |b: usize| (bodies.velocity[b], bodies.spin[b]);

@@ -1,13 +1,13 @@
-//! The bodies' part of the Moreau-Jean theta-scheme: half moves, free velocities, work.
+//! Motion of the bodies in the Moreau-Jean theta-scheme: half moves, free velocities, work.
 //!
-//! Where inertia differs by axis the spin changes as the body turns: half moves follow the free motion, and the
-//! step's velocities are those at q_m.
+//! For anisotropic inertia the spin changes as the body rotates: half moves integrate the free rotation, and
+//! the velocities of the step are those at q_m.
 
 use crate::bodies::Bodies;
 use crate::energy::BodyWork;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
-/// Moves positions and orientations by `time` without forces.
+/// Advances positions and orientations by `time` (s) without forces.
 pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64) {
     for b in 0..bodies.len() {
         let v = bodies.velocity[b];
@@ -15,8 +15,8 @@ pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64) {
         bodies.position[b] += v * time;
         for k in 0..S::D {
             if bodies.position[b][k] == from[k] && v[k] != 0.0 {
-                // The way is less than the spacing of numbers here.
-                // What goes to and fro is not missed.
+                // The displacement is below the floating-point spacing of the position. The losses of an
+                // oscillating motion cancel.
                 bodies.lost.resize(bodies.position.len(), S::Vector::zero());
                 bodies.lost[b][k] += v[k] * time;
             }
@@ -32,8 +32,8 @@ pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64) {
     }
 }
 
-/// v_free = v + h M^-1 F, and the imposed velocities at the end of the step. Forces are taken at the
-/// step's theta-point, t + theta h.
+/// Computes v_free = v + h M^-1 F, and the imposed velocities at the end of the step. Forces are evaluated
+/// at the theta-point, t + theta h.
 pub fn free_velocities<S: Space>(
     bodies: &Bodies<S>,
     gravity: &S::Vector,
@@ -77,14 +77,14 @@ pub fn free_velocities<S: Space>(
     free
 }
 
-/// State of the bodies at the start of a step, kept to book the step's work.
+/// State of the bodies at the start of a step, used to compute the work of the step.
 pub struct StepStart<S: Space> {
     velocity: Vec<S::Vector>,
     spin: Vec<S::Spin>,
 }
 
 impl<S: Space> StepStart<S> {
-    /// Remembers the velocities.
+    /// Copies the velocities.
     pub fn new(bodies: &Bodies<S>) -> Self {
         Self {
             velocity: bodies.velocity.clone(),
@@ -92,7 +92,7 @@ impl<S: Space> StepStart<S> {
         }
     }
 
-    /// Takes the spins that bodies came to by turning freely over the first half move.
+    /// Takes the spins that bodies reach by free rotation over the first half move.
     pub fn coasted(&mut self, bodies: &Bodies<S>) {
         for b in 0..bodies.tensors.len() {
             if bodies.tensor(b).is_some() {
@@ -101,25 +101,25 @@ impl<S: Space> StepStart<S> {
         }
     }
 
-    /// Velocities and spins of the driven bodies at the start of the step, in their order.
+    /// Returns velocities and spins of the driven bodies at the start of the step, in their order.
     pub fn of_driven(&self, bodies: &Bodies<S>) -> Vec<(S::Vector, S::Spin)> {
         let of = |b: usize| (self.velocity[b], self.spin[b]);
         bodies.driven.iter().map(|d| of(d.body as usize)).collect()
     }
 
-    /// Gives the bodies the velocities back that they had.
+    /// Restores the velocities of the bodies.
     pub fn restore(&self, bodies: &mut Bodies<S>) {
         bodies.velocity.clone_from(&self.velocity);
         bodies.spin.clone_from(&self.spin);
     }
 
-    /// The spin of a body at the start of the step.
+    /// Returns the spin of a body at the start of the step.
     pub fn spin(&self, body: usize) -> S::Spin {
         self.spin[body]
     }
 
-    /// The work done over the step. `received` are contact impulses and moments on the driven bodies
-    /// in their order (N s, N m s).
+    /// Computes the work done over the step. `received` holds the contact impulses and moments on the driven
+    /// bodies in their order (N s, N m s).
     ///
     /// An imposed degree of freedom receives J = m (v+ - v) - h F - (H p), which works at v_theta.
     pub fn work(

@@ -1,13 +1,14 @@
-//! Overlaps are taken out by moving bodies, not by giving them velocity.
+//! Projection of positions: penetrations are removed by displacing bodies, without changing velocities.
 //!
-//! The least move that leaves no contact below zero,
-//! min 1/2 |dq|_M^2  with  g + n . (relative dq) >= 0,
-//! is the contact problem of bodies at rest over a unit of time, without friction: the sweep solves it. A bond that
-//! holds keeps its two sides together (u = 0). Moreau, "Numerical aspects of the sweeping process", Comput. Methods
-//! Appl. Mech. Eng. 177 (1999), projects every step; here one only that finds an overlap beyond a bound.
+//! The smallest displacement that leaves no penetration, min 1/2 |dq|_M^2 with g + n . (relative dq) >= 0,
+//! is the frictionless contact problem of bodies at rest over a unit of time, and is solved by the same
+//! solver. An intact bond keeps its two sides together (u = 0). Moreau, "Numerical aspects of the sweeping
+//! process", Comput. Methods Appl. Mech. Eng. 177 (1999), projects in every step; here a step is projected
+//! only when a penetration exceeds a bound.
 //!
-//! Velocities stay, so kinetic energy does; openings of bonds stay, so theirs does. What is moved against gravity or
-//! an imposed force gains what the ledger books as given by the correction.
+//! Velocities do not change, so that kinetic energy is kept; bond openings do not change, so that elastic
+//! energy is kept. Work against gravity and imposed forces is booked in the ledger as work of the
+//! correction.
 
 use super::Simulation;
 use crate::bodies::Bodies;
@@ -17,29 +18,29 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::solve::error::Norm;
 use crate::solve::{ContactForm, Options, Problem, nlgs};
 
-/// What a projection did.
+/// Result of a projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projected {
-    /// Deepest overlap found, in parts of the smaller body's length.
+    /// Deepest penetration before it, as a fraction of the smaller body's length.
     pub before: f64,
-    /// Deepest overlap left.
+    /// Deepest penetration left.
     pub after: f64,
-    /// Sweeps of the solver.
+    /// Iterations of the solver.
     pub sweeps: u32,
-    /// Energy given to driven bodies against imposed forces and moments (J; J/m in 2D).
+    /// Work done on driven bodies against imposed forces and moments (J; J/m in 2D).
     pub against_loads: f64,
 }
 
-/// A move of a body: of its centre (m), and its turn (rad).
+/// Displacement of a body's centre (m) and its rotation (rad).
 type Move<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
-/// Residual of the moves, over the moves. What is left is taken out by the next projection.
+/// Relative tolerance of the displacements. The remainder is removed by the next projection.
 const TOLERANCE: f64 = 1e-3;
-/// Between bodies that cannot make room no sweep ends.
+/// Iteration limit: no solution exists where bodies have no room to move apart.
 const MAX_SWEEPS: u32 = 5000;
 
 impl<S: Space> Simulation<S> {
-    /// Takes overlaps out where one is beyond the bound, detects again, and books what that gave.
+    /// Removes penetrations if one exceeds the bound, repeats detection, and books the work.
     pub(super) fn project(&mut self) -> Option<Projected> {
         if self.projection <= 0.0 {
             return None;
@@ -72,10 +73,10 @@ impl<S: Space> Simulation<S> {
             .iter()
             .any(|d| moves[d.body as usize].1 != S::Spin::zero())
         {
-            // A surface that turns sweeps more than its frame moves.
+            // A rotating surface moves more than its frame does.
             self.network.forget_neighbours();
         }
-        // No time passes: what bonds remember follows the normals, and is not turned by spins again.
+        // No time passes: bond openings follow the normals and are not rotated by spins again.
         detect(
             &mut self.network,
             &self.shapes,
@@ -93,8 +94,8 @@ impl<S: Space> Simulation<S> {
         })
     }
 
-    /// The deepest overlap that a move can take out, in parts of the smaller body's length: a grain's radius. Walls
-    /// have no size beside a grain.
+    /// Returns the deepest penetration that a displacement can remove, as a fraction of the smaller body's
+    /// length (a grain's radius; walls do not count).
     pub fn deepest_overlap(&self) -> f64 {
         let bodies = &self.bodies;
         let grain = bodies.grain_flags();
@@ -118,7 +119,7 @@ impl<S: Space> Simulation<S> {
         self.network.contacts.iter().map(depth).fold(0.0, f64::max)
     }
 
-    /// Books what moves give against gravity and imposed forces; returns the part of the latter (J).
+    /// Books the work of displacements against gravity and imposed forces; returns the latter (J).
     fn book_moves(&mut self, moves: &[Move<S>]) -> f64 {
         let bodies = &self.bodies;
         let (h, theta) = (self.scheme.h, self.scheme.theta);
@@ -139,7 +140,8 @@ impl<S: Space> Simulation<S> {
     }
 }
 
-/// Moves a body and turns it, with its spin where inertia differs by axis: energy is kept.
+/// Displaces and rotates a body. For anisotropic inertia its spin rotates with it, so that kinetic energy is
+/// kept.
 fn displace<S: Space>(bodies: &mut Bodies<S>, b: usize, shift: &S::Vector, turn: &S::Spin) {
     bodies.position[b] += *shift;
     if *turn == S::Spin::zero() {
@@ -153,9 +155,9 @@ fn displace<S: Space>(bodies: &mut Bodies<S>, b: usize, shift: &S::Vector, turn:
     }
 }
 
-/// Bodies at rest, and contacts whose gap is to be closed or opened in a unit of time.
+/// Sets up the problem of bodies at rest, with gaps to close or open in a unit of time.
 fn pose<S: Space>(problem: &mut Problem<S>, bodies: &Bodies<S>, network: &Network<S>) {
-    /// Times all mass moved by the deepest overlap: more than any impulse here.
+    /// Times total moved mass times deepest penetration: larger than any impulse of this problem.
     const UNBREAKABLE: f64 = 1e6;
     problem.clear();
     for b in 0..bodies.len() {

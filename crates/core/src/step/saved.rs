@@ -1,7 +1,7 @@
-//! What a simulation carries from step to step: all that a checkpoint keeps of it.
+//! State of a simulation between steps: the content of a checkpoint.
 //!
-//! The rest (shapes, laws, options) follows from the case and is built again. What a step makes for itself and throws
-//! away (forms, columns, the solver's problem and its colours) is not kept: it depends on nothing but this.
+//! Everything else (shapes, laws, options) follows from the case and is built again. Work arrays of a step
+//! (forms, columns, the solver's problem and its colouring) are not saved; they depend only on this state.
 
 use super::Simulation;
 use super::control::Control;
@@ -16,7 +16,7 @@ use crate::wear::{Scar, WornThrough};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// The state of a simulation between two steps.
+/// State of a simulation between two steps.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Saved<'a, S: Space> {
@@ -26,7 +26,7 @@ pub struct Saved<'a, S: Space> {
     network: Cow<'a, Network<S>>,
     gravity: S::Vector,
     tolerance: f64,
-    /// Parameters of the contact law of each interface, which phases change.
+    /// Parameters of the contact law of each interface, which phases may change.
     contact_parameters: Vec<Vec<f64>>,
     time: f64,
     time_excess: f64,
@@ -42,12 +42,12 @@ pub struct Saved<'a, S: Space> {
 }
 
 impl<S: Space> Saved<'_, S> {
-    /// Steps done.
+    /// Returns the number of completed steps.
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// Whether it is of a scene with these numbers of bodies, interfaces and scars.
+    /// Returns whether the state belongs to a scene with the same numbers of bodies, interfaces and scars.
     fn fits(&self, s: &Simulation<S>) -> bool {
         let parameters = self.contact_parameters.iter().map(Vec::len);
         self.bodies.len() == s.bodies.len()
@@ -63,7 +63,7 @@ impl<S: Space> Saved<'_, S> {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Its state, to be kept.
+    /// Returns the state to save.
     pub fn save(&self) -> Saved<'_, S> {
         // Named one by one: a new field does not compile before it is state here or known to be none.
         let Self {
@@ -124,9 +124,9 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Puts a simulation that was built from the same case, and has not stepped, into a state that was kept. The next
-    /// step gives the bits that it would have given there. Whether the state was of such a case; nothing has changed
-    /// where it was not.
+    /// Restores a saved state into a simulation that was built from the same case and has not stepped. The
+    /// next step gives the same bits as in the saved run. Returns false, and changes nothing, if the state
+    /// belongs to another case.
     #[must_use]
     pub fn restore(&mut self, saved: Saved<'_, S>) -> bool {
         if !saved.fits(self) {
@@ -138,7 +138,7 @@ impl<S: Space> Simulation<S> {
         self.systems = systems;
         self.bodies = saved.bodies.into_owned();
         let kept = std::mem::replace(&mut self.network, saved.network.into_owned());
-        // What is told of each step is told again where something asked for it.
+        // Results of a step are recorded again where an output requests them.
         self.network.spent = kept.spent;
         self.network.losses = kept.losses;
         self.gravity = saved.gravity;

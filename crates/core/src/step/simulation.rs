@@ -1,4 +1,4 @@
-//! The stepper: one step, as the data flows.
+//! The simulation and its time step, in the order of the data flow.
 
 use super::StepError;
 use super::answers::Solved;
@@ -29,35 +29,35 @@ pub struct Scheme {
     pub theta: f64,
 }
 
-/// Where the time of a step went.
+/// Wall-clock time of the parts of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Timing {
-    /// Detection, with the projection of overlaps.
+    /// Detection, including the projection of penetrations.
     pub detect: Duration,
-    /// The laws, prepare and commit.
+    /// Laws: prepare and commit.
     pub laws: Duration,
     /// The solver.
     pub solve: Duration,
 }
 
-/// What one step did.
+/// Report of one step.
 #[derive(Clone, Debug, Default)]
 pub struct StepReport {
     /// The solver's report.
     pub solver: solve::Report,
-    /// How the coupling of damage and opening went.
+    /// Report of the coupling of damage and opening.
     pub coupling: CouplingReport,
     /// Sums over contacts.
     pub totals: Totals,
-    /// Contacts that carry an impulse.
+    /// Number of contacts that carry an impulse.
     pub active: usize,
-    /// What the projection of overlaps did, where there was one.
+    /// Result of the projection of penetrations, if there was one.
     pub projected: Option<Projected>,
-    /// Time spent.
+    /// Wall-clock time.
     pub timing: Timing,
 }
 
-/// A scene that steps.
+/// A scene that is advanced in time.
 #[derive(Debug)]
 pub struct Simulation<S: Space> {
     /// Grains and first bodies.
@@ -68,7 +68,7 @@ pub struct Simulation<S: Space> {
     pub shapes: Shapes<S>,
     /// Interface laws.
     pub laws: Vec<Interface>,
-    /// Which law governs which materials.
+    /// Interface law of each pair of materials.
     pub table: LawTable,
     /// The contacts.
     pub network: Network<S>,
@@ -80,16 +80,16 @@ pub struct Simulation<S: Space> {
     pub solver: solve::Options,
     /// Time at the end of the last step (s).
     pub time: f64,
-    /// Steps done.
+    /// Steps completed.
     pub steps: u64,
-    /// Share of a penetration that a step takes back, 0 to 1: `solver.correction` of a case.
+    /// Fraction of a penetration removed per step, 0 to 1: `solver.correction` of a case.
     pub correction: f64,
-    /// Overlap in parts of the smaller body's length beyond which bodies are moved apart; 0 for never. See
-    /// [`super::projection`].
+    /// Penetration, as a fraction of the smaller body's length, beyond which bodies are moved apart; 0 for
+    /// never. See [`super::projection`].
     pub projection: f64,
-    /// Energy that projections gave to driven bodies against imposed forces (J).
+    /// Work of projections on driven bodies against imposed forces (J).
     pub lifted: f64,
-    /// How damage and opening are brought together within a step.
+    /// Coupling of damage and opening within a step.
     pub coupling: Coupling,
     /// The energy ledger.
     pub energy: Energy,
@@ -97,9 +97,9 @@ pub struct Simulation<S: Space> {
     pub received: Vec<(S::Vector, S::Spin)>,
     /// Velocities and spins of the driven bodies at the start of the last step, after the jumps of imposed motion.
     pub started: Vec<(S::Vector, S::Spin)>,
-    /// Surfaces that wear; none where nothing follows its wear.
+    /// Scars of the surfaces that wear.
     pub scars: Vec<Scar<S>>,
-    /// The first surface that was worn as deep as it is thick.
+    /// The first surface that was worn through, if any.
     pub worn_through: Option<WornThrough>,
     /// What grains and contacts carry for output, by name.
     pub fields: crate::fields::Fields<S>,
@@ -141,15 +141,15 @@ impl<S: Space> Default for Workspace<S> {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Bytes of a contact beside the solver's rows and its bond: it at this step and at the last, its pair in the
-    /// neighbour list, its form, and what it did.
+    /// Bytes per contact in addition to the solver's rows and the bond: this step's and the last step's
+    /// contact, its pair in the neighbour list, its form, and its results.
     pub const BYTES_A_CONTACT: usize = 2 * size_of::<Contact<S>>()
         + size_of::<(u32, u32)>()
         + size_of::<ContactForm<S>>()
         + size_of::<ContactStep<S>>()
         + size_of::<S::Vector>();
 
-    /// A scene at rest at time zero.
+    /// Builds a scene at rest at time zero.
     pub fn new(
         bodies: Bodies<S>,
         shapes: Shapes<S>,
@@ -276,8 +276,8 @@ impl<S: Space> Simulation<S> {
         Ok(report)
     }
 
-    /// Prepares and solves: once where damage is coupled explicitly, else until the damage that the
-    /// impulses are formed with is the one that their openings give.
+    /// Prepares and solves the step: once with explicit coupling, otherwise until the damage used in the
+    /// impulses is the one that the resulting openings give.
     pub(super) fn couple(
         &mut self,
         start: &StepStart<S>,
@@ -342,7 +342,8 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Whether the method serves the forms at hand; what a law asks for shows only in a step.
+    /// Checks that the method supports the current forms; some requirements of laws appear only during a
+    /// step.
     fn served(&self) -> Result<(), StepError> {
         let (method, operator) = (self.solver.method, self.workspace.problem.operator());
         let by_law = matches!(method, Method::Newton | Method::Interior);
@@ -369,8 +370,8 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// The problem of the last step solved, in the form of the field's collection; none where a bond,
-    /// cohesion, friction against rotation or a dynamical system was at work, which that form does not hold.
+    /// Returns the last solved problem in the form of public friction-contact collections; `None` if bonds,
+    /// cohesion or rolling friction were active, which that form cannot represent.
     pub fn local_problem(&self) -> Option<solve::local::LocalProblem> {
         solve::choose::coulomb(
             &self.workspace.problem,
@@ -387,7 +388,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// The part of the forms that geometry gives.
+    /// Computes the geometric part of the forms.
     pub(super) fn geometry_of_forms(&mut self, h: f64) {
         let mut forms = std::mem::take(&mut self.workspace.forms);
         forms.clear();
@@ -408,8 +409,8 @@ impl<S: Space> Simulation<S> {
         self.workspace.forms = forms;
     }
 
-    /// The velocity at which a step may close a gap; of a penetration that at which the correction takes its share back, below
-    /// zero (m/s).
+    /// Returns the velocity at which a step may close a gap; for a penetration, the (negative) velocity at
+    /// which the correction removes its share (m/s).
     pub(super) fn shift_of_gap(&self, contact: &Contact<S>, h: f64) -> f64 {
         let gap = self.network.open_gap(contact);
         if gap > 0.0 {
@@ -419,7 +420,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Hands bodies and contacts to the solver.
+    /// Sets up the solver's problem from bodies and contacts.
     fn pose(&mut self, free: &[(S::Vector, S::Spin)]) {
         let (bodies, problem) = (&self.bodies, &mut self.workspace.problem);
         problem.clear();
@@ -461,7 +462,7 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
-    /// Ends the step of dynamical systems and books the step in the energy ledger.
+    /// Adds the step to the energy ledger.
     fn book(&mut self, start: &StepStart<S>, totals: &Totals) {
         let mut received = vec![(S::Vector::zero(), S::Spin::zero()); self.bodies.driven.len()];
         let mut place = vec![usize::MAX; self.bodies.len()];

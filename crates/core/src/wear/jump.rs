@@ -1,30 +1,34 @@
-//! Jumps over cycles: what a computed cycle stands for, and how far off that is.
+//! Cycle jumps: one computed cycle represents many, with an estimate of the error.
 //!
-//! In a jump of N one cycle is computed in which each step wears and damages N times what its laws give: depths and
-//! damage go on as over N cycles, step by step, and contacts and bodies follow within the cycle. That is the way of
-//! J. J. Madge, S. B. Leen, I. R. McColl, P. H. Shipway, Wear 262 (2007) 1159, who scale the wear of each increment.
-//! It is not the extrapolation z + N dz of a field of depths: between rigid bodies what stands proud is all that
-//! touches, so an extrapolated field has the next cycle wear just what the extrapolation missed, and never widens.
+//! In a jump of N cycles one cycle is computed in which each step wears and damages N times the amounts that
+//! the laws give: depths and damage advance as over N cycles, step by step, and contacts and bodies respond
+//! within the cycle. This is the method of J. J. Madge, S. B. Leen, I. R. McColl, P. H. Shipway, Wear 262
+//! (2007) 1159, who scale the wear of each increment. It differs from extrapolating a field of depths, z + N
+//! dz: rigid bodies touch only at protruding places, so that after an extrapolation the next cycle wears
+//! exactly what the extrapolation missed, and the scar never widens.
 //!
-//! What adds up from cycle to cycle (the volume of a scar, the damage of a bond) is checked by the cycles beside the jump,
-//! which are computed one by one: through the increments of the cycles before the last jump, before this one and after
-//! it goes a parabola, which is summed over the cycles of the jump. The jump is off by the difference. The trapezium of
-//! the two increments beside it would miss what a growth that bends hides. Of z' = f(z) an error of z grows as f(z)
-//! does; so that of earlier jumps is multiplied by r'/r where increments grow.
+//! Quantities that accumulate from cycle to cycle (the volume of a scar, the damage of a bond) are checked
+//! by the cycles next to the jump, which are computed one by one: a parabola through the increments of the
+//! cycles before the last jump, before this one and after it is summed over the cycles of the jump. The
+//! difference is the error of the jump. The trapezium of the two adjacent increments would miss the
+//! curvature of the growth. For z' = f(z) an error of z grows like f(z), so that the errors of earlier jumps
+//! are multiplied by r'/r where increments grow.
 //!
-//! The form of a scar does not add up: what a jump misplaces is worn off where it stands proud. Between rigid bodies a
-//! single cycle says nothing about it, since it touches at some of the places only; a jump is long enough to. So
-//! jumps check each other: with a and b the volumes that the last one and this one wore off place by place, A and B
-//! their sums, e_0, e_1, e_2 what was misplaced before, between and after them, b - a B/A is about
-//! e_2 - (1 + B/A) e_1 + e_0 B/A. Of errors that do not know of each other that is sqrt(1 + (1 + B/A)^2 + (B/A)^2) times
-//! one of them, sqrt(6) for jumps of one length. What the scar truly changed in form is counted with it.
-//! What stands proud is worn off by what follows: S misplaced, as a sum of differences, leaves at most
-//! S exp(-W/(2 S)) after a volume W, which is an assumption, held against whole runs in `docs/wear.md`.
+//! The shape of a scar does not accumulate: material misplaced by a jump is worn off where it protrudes. A
+//! single cycle between rigid bodies says nothing about it, since they touch at only some of the places; a
+//! jump is long enough. Therefore jumps check each other: with a and b the volumes that the last jump and
+//! this one wore off at each place, A and B their sums, and e_0, e_1, e_2 the misplaced volumes before,
+//! between and after them, b - a B/A is about e_2 - (1 + B/A) e_1 + e_0 B/A. For independent errors its
+//! magnitude is sqrt(1 + (1 + B/A)^2 + (B/A)^2) times that of one of them, sqrt(6) for jumps of equal
+//! length. Real changes of the scar's shape are included in the estimate. Protruding material is worn off
+//! later: a misplaced volume S, as a sum of differences, is reduced to at most S exp(-W/(2 S)) after a
+//! further wear volume W. This is an assumption, compared with complete runs in `docs/wear.md`.
 
-/// What cycles change, or what they changed it by: one list for each quantity, of values that add up.
+/// Accumulated quantities, or their increments: one list of values per quantity.
 pub type Amounts = Vec<Vec<f64>>;
 
-/// now - before, value by value; what was not there before grew from zero, what fell did not grow.
+/// Returns now - before, value by value; new values grow from zero, and decreasing values count as
+/// unchanged.
 pub fn growth(now: &Amounts, before: &Amounts) -> Amounts {
     let list = |(now, before): (&Vec<f64>, &Vec<f64>)| {
         let of = |(k, x): (usize, &f64)| (x - before.get(k).copied().unwrap_or(0.0)).max(0.0);
@@ -33,7 +37,8 @@ pub fn growth(now: &Amounts, before: &Amounts) -> Amounts {
     now.iter().zip(before).map(list).collect()
 }
 
-/// The parts that increments at three cycles have in the sum over the cycles 1 to n of the parabola through them.
+/// Returns the weights of increments at three cycles in the sum over the cycles 1 to n of the parabola
+/// through them.
 pub fn parts(n: u32, at: [f64; 3]) -> [f64; 3] {
     let part = |k: usize| {
         let [i, j] = [(k + 1) % 3, (k + 2) % 3];
@@ -44,17 +49,17 @@ pub fn parts(n: u32, at: [f64; 3]) -> [f64; 3] {
     [part(0), part(1), part(2)]
 }
 
-/// By how much a jump that added `jumped` is off, against increments with their [`parts`].
+/// Returns the error of a jump that added `jumped`, from increments with their [`parts`].
 pub fn error(jumped: f64, rates: [f64; 3], parts: &[f64; 3]) -> f64 {
     let expected: f64 = rates.iter().zip(parts).map(|(r, p)| r * p).sum();
     (jumped - expected).abs()
 }
 
-/// More than this an increment does not grow over a jump whose error is worth carrying on.
+/// Largest growth of an increment over a jump for which errors are propagated.
 const MAX_CARRIED: f64 = 10.0;
 
-/// By how much an error grows while the increment of a cycle goes from one value to another: of z' = f(z) the error of
-/// z grows as f does. Increments that fall are not counted on.
+/// Returns the growth of an error while the increment of a cycle changes from one value to another: for z' =
+/// f(z) the error of z grows like f. Decreasing increments give no reduction.
 pub fn carried(from: f64, to: f64) -> f64 {
     if from > 0.0 {
         (to / from).clamp(1.0, MAX_CARRIED)
@@ -63,8 +68,8 @@ pub fn carried(from: f64, to: f64) -> f64 {
     }
 }
 
-/// What is misplaced after a jump, as the sum of differences of volume place by place, from the volumes that it and the
-/// jump `before` wore off.
+/// Returns the misplaced volume after a jump, as a sum of differences over the places, from the volumes that
+/// it and the jump `before` wore off.
 pub fn misplaced(now: &[f64], before: &[f64]) -> f64 {
     let (all, then): (f64, f64) = (now.iter().sum(), before.iter().sum());
     if then <= 0.0 {
@@ -76,7 +81,7 @@ pub fn misplaced(now: &[f64], before: &[f64]) -> f64 {
     differ / (1.0 + (1.0 + ratio).powi(2) + ratio * ratio).sqrt()
 }
 
-/// What is left of a misplaced volume when another was worn off after it.
+/// Returns the remainder of a misplaced volume after a further wear volume.
 pub fn left(misplaced: f64, worn: f64) -> f64 {
     if misplaced > 0.0 {
         misplaced * (-0.5 * worn / misplaced).exp()
@@ -85,7 +90,8 @@ pub fn left(misplaced: f64, worn: f64) -> f64 {
     }
 }
 
-/// The length of the next jump after one of `n` with an error, relative as the tolerance is.
+/// Returns the length of the next jump after one of `n` cycles with a given error; error and tolerance are
+/// relative to the same quantity.
 pub fn next_length(n: f64, error: f64, tolerance: f64) -> f64 {
     let factor = if error > 0.0 {
         (tolerance / error).sqrt()
@@ -99,7 +105,7 @@ pub fn next_length(n: f64, error: f64, tolerance: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Increments that are a parabola of the cycle, growth of the third order: nothing is off.
+    /// Increments that are a parabola in the cycle number (growth of third order) give no error.
     #[test]
     fn growth_of_third_order_is_summed_exactly() {
         let rate = |c: f64| 3.0 + 0.25 * c + 0.01 * c * c;
@@ -110,8 +116,8 @@ mod tests {
         }
     }
 
-    /// Of increments c^3 with c = 0, 1 and n + 1 the parabola is (n + 2) c^2 - (n + 1) c, and the sum of powers
-    /// gives what is left.
+    /// For increments c^3 with c = 0, 1 and n + 1 the parabola is (n + 2) c^2 - (n + 1) c, and sums of
+    /// powers give the remainder.
     #[test]
     fn growth_of_fourth_order_is_off_by_its_remainder() {
         for n in [3u32, 7, 50] {
@@ -131,8 +137,8 @@ mod tests {
         assert!(misplaced(&[10.0, 20.0, 30.0], &before) < 1e-12);
     }
 
-    /// Jumps that wear evenly but for errors that do not know of each other, each taken back by the next jump: what is
-    /// left after one is found. Errors are uniform in +-1, |e| is 1/2 on average.
+    /// Jumps that wear evenly apart from independent errors, each corrected by the next jump: the estimate
+    /// finds the remaining error. Errors are uniform in +-1, so that the mean of |e| is 1/2.
     #[test]
     fn errors_of_jumps_are_found_from_the_next() {
         let mut seed = 12345u64;
@@ -151,8 +157,8 @@ mod tests {
             pairs.map(|(e, before)| 10.0 + e - before).collect()
         };
         let found = misplaced(&worn(1), &worn(0)) / f64::from(places);
-        // Half, but for the form of the distribution: a sum of three is nearer to a Gaussian, whose mean |e| is smaller
-        // beside its deviation, sqrt(2/pi) against sqrt(3)/2.
+        // 1/2 times a factor for the distribution: a sum of three is nearer to a Gaussian, whose mean |e|
+        // relative to its deviation is sqrt(2/pi) instead of sqrt(3)/2.
         assert!((found / 0.5 - 0.93).abs() < 0.05, "{found}");
     }
 

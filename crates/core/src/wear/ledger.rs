@@ -1,31 +1,32 @@
-//! The mass ledger of a contact: where each grain is, and the flows between these places.
+//! The mass ledger of the tribological circuit: the place of each grain, and the flows between the places.
 //!
-//! A grain is tied to a first body, in the contact, ejected, or lost. With M the mass in the contact, E that in the
-//! ejection zones, T that of the first bodies' grains and W what is lost, over any interval
-//! dM = Qs - Qa + Qr - Qe,  dE = Qe - Qr - Qw,  dT = Qa - Qs,  dW = Qw:
-//! source Qs, what attaches again Qa, ejected Qe, recirculated Qr, wear Qw. After N. Fillot, I. Iordanoff,
-//! Y. Berthier, "Modelling third body flows with a discrete element method: a tool for understanding wear with adhesive
-//! particles", Tribol. Int. 40 (2007) 973, whose flows these are; Qa is ours, for bonds that heal.
+//! A grain is tied to a first body, in the contact, ejected, or lost. With M the mass in the contact, E that
+//! in the ejection zones, T that of the first bodies' grains and W the lost mass, over any interval
+//! dM = Qs - Qa + Qr - Qe, dE = Qe - Qr - Qw, dT = Qa - Qs, dW = Qw:
+//! source flow Qs, reattachment Qa, ejection Qe, recirculation Qr, wear flow Qw. The flows follow N. Fillot,
+//! I. Iordanoff, Y. Berthier, "Modelling third body flows with a discrete element method: a tool for
+//! understanding wear with adhesive particles", Tribol. Int. 40 (2007) 973; Qa is added here for bonds that
+//! heal.
 //!
-//! Flows are counted where grains change place, contents where they are: the two are compared each time, in whole
-//! grains, and in mass up to rounding.
+//! Flows are counted when grains change place, contents from the current places. The two are compared each
+//! time, exactly in grains and to rounding in mass.
 
 use serde::{Deserialize, Serialize};
 
-/// Where a grain is.
+/// Place of a grain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Place {
-    /// A path of bonds ties it to the first body of this number.
+    /// Connected by a path of bonds to the first body of this index.
     Tied(u32),
-    /// Loose between the first bodies.
+    /// Loose, between the first bodies.
     Contact,
-    /// In the ejection zone of this number.
+    /// In the ejection zone of this index.
     Ejected(u32),
-    /// Out for good.
+    /// Lost for good.
     Lost,
 }
 
-/// Grains and their mass.
+/// Number of grains and their mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Amount {
     /// Number of grains.
@@ -35,14 +36,14 @@ pub struct Amount {
 }
 
 impl Amount {
-    /// Adds so many grains of a mass in all.
+    /// Adds this number of grains with their total mass.
     pub fn add(&mut self, grains: i64, mass: f64) {
         self.grains += grains;
         self.mass += mass;
     }
 }
 
-/// What there is at each place.
+/// Contents of each place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Contents {
     /// Tied to first bodies.
@@ -75,18 +76,18 @@ impl Contents {
     }
 }
 
-/// What passed since the start.
+/// Flows accumulated since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flows {
     /// From first bodies to the contact, source.
     pub source: Amount,
-    /// From the contact to first bodies, by bonds that formed.
+    /// From the contact to first bodies, by newly formed bonds.
     pub attached: Amount,
     /// From the contact to ejection zones.
     pub ejected: Amount,
-    /// Back from them.
+    /// From ejection zones back to the contact.
     pub recirculated: Amount,
-    /// From them out for good, wear.
+    /// From ejection zones to lost, wear.
     pub wear: Amount,
 }
 
@@ -96,14 +97,14 @@ pub struct Ledger {
     masses: Vec<f64>,
     places: Vec<Place>,
     start: Contents,
-    /// What there is now, counted.
+    /// Current contents, counted.
     pub contents: Contents,
-    /// What passed.
+    /// Accumulated flows.
     pub flows: Flows,
 }
 
 impl Ledger {
-    /// Begins with grains of these masses (kg; kg/m in 2D) at these places.
+    /// Creates a ledger for grains of these masses (kg; kg/m in 2D) at these places.
     pub fn new(masses: Vec<f64>, places: Vec<Place>) -> Self {
         let start = Contents::count(&places, &masses);
         Self {
@@ -115,12 +116,12 @@ impl Ledger {
         }
     }
 
-    /// Where grains are.
+    /// Returns the places of the grains.
     pub fn places(&self) -> &[Place] {
         &self.places
     }
 
-    /// Books where the grains are now. Each passes through all places that lie between.
+    /// Updates the places of the grains. Each grain passes through all intermediate places.
     pub fn book(&mut self, places: &[Place]) {
         for (k, new) in places.iter().enumerate() {
             let old = std::mem::replace(&mut self.places[k], *new);
@@ -130,7 +131,7 @@ impl Ledger {
             let (from, to, mass) = (rank(old), rank(*new), self.masses[k]);
             let f = &mut self.flows;
             let out = [&mut f.source, &mut f.ejected, &mut f.wear];
-            // What was counted as lost and is found again did not wear.
+            // A lost grain that is found again did not wear.
             for step in out.into_iter().take(to).skip(from) {
                 step.add(1, mass);
             }
@@ -149,7 +150,7 @@ impl Ledger {
         self.contents = Contents::count(&self.places, &self.masses);
     }
 
-    /// What is counted less what flows give, place by place: zero in grains, rounding in mass.
+    /// Returns counted contents minus those from flows, by place: zero in grains, rounding in mass.
     pub fn residual(&self) -> Contents {
         let (now, start, f) = (&self.contents, &self.start, &self.flows);
         let rest = |now: Amount, start: Amount, enter: &[Amount], leave: &[Amount]| {
@@ -178,7 +179,7 @@ impl Ledger {
     }
 }
 
-/// Places in the order in which matter passes them.
+/// Places in the order in which mass passes them.
 fn rank(place: Place) -> usize {
     match place {
         Place::Tied(_) => 0,
@@ -219,7 +220,7 @@ mod tests {
             let r = ledger.residual();
             for a in [r.tied, r.contact, r.ejected, r.lost] {
                 assert_eq!(a.grains, 0);
-                // 200 sums of some thousand terms.
+                // 200 sums of a few thousand terms.
                 assert!(a.mass.abs() < 1e-11 * total, "{a:?}");
             }
         }
@@ -240,12 +241,12 @@ mod tests {
         assert_eq!([f.attached, f.recirculated], [Amount::default(); 2]);
     }
 
-    /// Qs = Cs (Mmax - M) and Qe = Qw = Ce M, the linear closure: M goes to Cs Mmax/(Cs + Ce) with the time constant
-    /// 1/(Cs + Ce), and Qw to Cs Ce Mmax/(Cs + Ce).
+    /// Qs = Cs (Mmax - M) and Qe = Qw = Ce M, the linear closure: M tends to Cs Mmax/(Cs + Ce) with the time
+    /// constant 1/(Cs + Ce), and Qw to Cs Ce Mmax/(Cs + Ce).
     #[test]
     fn imposed_linear_flows_give_their_closed_form() {
         let (cs, ce, most, dt) = (3.0, 2.0, 4_000usize, 1e-3);
-        // A first body that does not run out.
+        // A first body with sufficient mass.
         let n = 8 * most;
         let mut places = vec![Place::Tied(0); n];
         let mut ledger = Ledger::new(vec![1.0; n], places.clone());
@@ -267,7 +268,7 @@ mod tests {
             due = due.map(f64::fract);
             ledger.book(&places);
             let exact = level * (1.0 - (-(step as f64) * dt / tau).exp());
-            // Euler's step is off by dt/2 in the exponent, whole grains by a few.
+            // The error of Euler's method is dt/2 in the exponent, and counting whole grains adds a few.
             let off = (ledger.contents.contact.mass - exact).abs();
             assert!(off < 0.5 * dt / tau * level + 4.0, "step {step}: {off}");
             let worn = ce * level * (step as f64 * dt - tau * exact / level);

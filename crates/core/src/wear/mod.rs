@@ -1,4 +1,4 @@
-//! Wear: what first bodies lose, the scars it leaves, and where the mass goes.
+//! Wear: volumes lost by first bodies, the resulting scars, and the mass balance.
 pub mod jump;
 pub mod ledger;
 pub mod scar;

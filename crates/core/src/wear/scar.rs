@@ -1,40 +1,41 @@
-//! The scar of a surface: how deep each of its vertices was worn, from the volumes that contacts lose.
+//! The scar of a surface: worn depth of each vertex, from the volumes worn at contacts.
 //!
-//! A volume dV that is worn at a foot on a segment (triangle) goes to the ends (corners) by their linear functions N_i
-//! there, and lowers vertex i by N_i dV/A_i with A_i the integral of N_i over the surface: the integral of the
-//! depth is then the sum of all dV, and it is what is between the surface before and now ([`crate::geometry::recede`]).
+//! A volume dV worn at a contact point on a segment (triangle) is distributed to its ends (corners) by their
+//! linear shape functions N_i there, and lowers vertex i by N_i dV/A_i, where A_i is the integral of N_i
+//! over the surface. The integral of the depth is then the sum of all dV, and equals the volume between the
+//! initial and the current surface ([`crate::geometry::recede`]).
 
 use crate::geometry::recede::Vertex;
 use crate::geometry::shape::{Carried, Shapes};
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// A surface that wears, and by how much it did.
+/// A wearing surface and its worn depth.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Scar<S: Space> {
-    /// Name: of the body, with a number where several of its surfaces wear.
+    /// Name: that of the body, with an index where several of its surfaces wear.
     pub name: String,
     /// Index of the surface in [`Shapes::surfaces`].
     pub surface: usize,
     /// Depth at which it is worn through (m).
     pub thickness: f64,
-    /// Steps between two at which the surface follows its depth.
+    /// Number of steps between two updates of the surface.
     pub every: u64,
     vertices: Vec<Vertex<S::Vector>>,
     depth: Vec<f64>,
-    /// Depth that the surface shows, vertex by vertex (m).
+    /// Depth currently applied to the surface, by vertex (m).
     shown: Vec<f64>,
-    /// Volume put so far (m^3; m^3/m in 2D).
+    /// Accumulated wear volume (m^3; m^3/m in 2D).
     volume: f64,
     deepest: usize,
-    /// Vertices whose depth the surface does not show yet.
+    /// Vertices whose depth is not yet applied to the surface.
     pending: Vec<usize>,
-    /// How far the surface may have moved since the neighbour list was told (m).
+    /// Upper bound of the displacement of the surface since the neighbour list was rebuilt (m).
     moved: f64,
 }
 
-/// A surface that was worn as deep as it is thick.
+/// A surface whose wear has reached its thickness.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, Serialize, Deserialize)]
 #[error(
     "`{name}` is worn through at {at:?} m: {depth:.4e} m deep of a thickness of {thickness:.4e} m; give it more \
@@ -43,7 +44,7 @@ pub struct Scar<S: Space> {
 pub struct WornThrough {
     /// The scar.
     pub name: String,
-    /// Where the deepest vertex stood at first, in the surface's frame (m).
+    /// Initial position of the deepest vertex, in the surface's frame (m).
     pub at: Vec<f64>,
     /// Depth there (m).
     pub depth: f64,
@@ -52,7 +53,7 @@ pub struct WornThrough {
 }
 
 impl<S: Space> Scar<S> {
-    /// The scar of a surface that is whole; none where it cannot wear.
+    /// Creates the scar of an unworn surface; `None` if the surface cannot wear.
     pub fn new(
         name: String,
         surface: usize,
@@ -76,10 +77,10 @@ impl<S: Space> Scar<S> {
         })
     }
 
-    /// Takes a volume (m^3; m^3/m in 2D) off about a point of the surface, in its frame (m).
+    /// Removes a volume (m^3; m^3/m in 2D) at a point of the surface, in its frame (m).
     ///
     /// # Errors
-    /// That the surface is worn through; the volume is taken all the same.
+    /// The surface is worn through; the volume is removed nevertheless.
     pub fn put(
         &mut self,
         shapes: &Shapes<S>,
@@ -101,7 +102,7 @@ impl<S: Space> Scar<S> {
             }
         }
         self.volume += volume;
-        // A long interval names vertices again and again.
+        // Over a long interval vertices are listed repeatedly.
         if self.pending.len() > 4 * self.vertices.len() {
             self.pending.sort_unstable();
             self.pending.dedup();
@@ -118,7 +119,7 @@ impl<S: Space> Scar<S> {
         })
     }
 
-    /// Lets the surface follow its depth. Whether what it moved since the last time this said yes is more than a
+    /// Applies the depth to the surface. Returns whether the displacement since the last `true` exceeds a
     /// bound (m).
     pub fn show(&mut self, shapes: &mut Shapes<S>, bound: f64) -> bool {
         if self.pending.is_empty() {
@@ -140,7 +141,7 @@ impl<S: Space> Scar<S> {
         far
     }
 
-    /// Lets a surface that is whole show what this scar had it show: what was worn since waits still.
+    /// Applies to an unworn surface the depth that was applied before; later wear remains pending.
     pub fn show_again(&self, shapes: &mut Shapes<S>) {
         let all: Vec<usize> = (0..self.shown.len()).collect();
         let carried = shapes.surfaces.get_mut(self.surface);
@@ -149,28 +150,28 @@ impl<S: Space> Scar<S> {
         }
     }
 
-    /// Volume worn so far (m^3; m^3/m in 2D).
+    /// Returns the wear volume so far (m^3; m^3/m in 2D).
     pub fn volume(&self) -> f64 {
         self.volume
     }
 
-    /// The largest depth (m).
+    /// Returns the largest depth (m).
     pub fn deepest(&self) -> f64 {
         self.depth[self.deepest]
     }
 
-    /// Where the largest depth is, in the surface's frame before any wear (m).
+    /// Returns the position of the largest depth, in the surface's frame before any wear (m).
     pub fn deepest_at(&self) -> S::Vector {
         self.vertices[self.deepest].at
     }
 
-    /// Vertices as they were at first, and their depths (m).
+    /// Iterates over the initial vertices and their depths (m).
     pub fn vertices(&self) -> impl Iterator<Item = (&Vertex<S::Vector>, f64)> + Clone {
         self.vertices.iter().zip(self.depth.iter().copied())
     }
 
-    /// Depth along the sliding, x: in space the mean over what has the same x. Places (m), lengths (m; areas in
-    /// space) they stand for, and depths (m), from left to right.
+    /// Returns the depth along the sliding direction x, in 3D averaged over equal x: positions (m),
+    /// tributary lengths (m; areas in 3D), and depths (m), in order of x.
     pub fn along(&self) -> Vec<[f64; 3]> {
         let mut rows: Vec<[f64; 3]> = self
             .vertices()
@@ -194,7 +195,8 @@ impl<S: Space> Scar<S> {
     }
 }
 
-/// The foot of a contact in the frame of its surface: the arm from the centre of the body that carries it (m).
+/// Returns the contact point in the frame of its surface, from the lever arm of the body that carries it
+/// (m).
 pub fn closest_point<S: Space>(
     carried: &Carried<S>,
     rotation: &S::Rotation,
@@ -229,14 +231,15 @@ mod tests {
         }
     }
 
-    /// The integral of height along the chain, by trapezia: less where solid is lost, whichever way it goes.
+    /// Integral of height along the chain by the trapezoidal rule; it decreases where solid is removed, for
+    /// either orientation.
     fn under(shapes: &Shapes<Dim2>) -> f64 {
         let chain = shapes.surfaces[0].shape.outline().remove(0);
         let trapezium = |w: &[Vector2<f64>]| 0.5 * (w[1].x - w[0].x) * (w[0].y + w[1].y);
         chain.windows(2).map(trapezium).sum()
     }
 
-    /// A flank of 87 degrees, a gentle slope, a plateau; solid below, above, and repeating.
+    /// A flank of 87 degrees, a gentle slope, a plateau; solid below, above, and periodic.
     #[test]
     fn the_area_between_the_chains_is_the_volume_that_was_put() {
         let hill = [
@@ -259,7 +262,7 @@ mod tests {
             let mut scar = Scar::new("rail".into(), 0, &shapes.surfaces[0], 1e3, 1).unwrap();
             for k in 0..400 {
                 let x = 1.0 + 0.999 * (1.3 * f64::from(k)).sin();
-                // With a period what is one period away is the same place.
+                // With a period, positions one period apart are equivalent.
                 let x = x + period.map_or(0.0, |p| p * f64::from(k % 5 - 2));
                 let closest_point = Vector2::new(x, 0.0);
                 scar.put(&shapes, &closest_point, 1e-4).unwrap();
@@ -283,7 +286,7 @@ mod tests {
         assert!(error.to_string().contains("`rail` is worn through"));
     }
 
-    /// Boxes of the search follow a profile that wears, often and far.
+    /// The bounding boxes of the search follow a profile that wears often and deep.
     #[test]
     fn contacts_are_found_where_the_worn_profile_is() {
         let mut shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)], None);

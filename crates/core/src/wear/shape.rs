@@ -1,38 +1,38 @@
-//! The form of a scar: U or W.
+//! The shape of a scar: U or W.
 //!
-//! The scar reaches from the first to the last place that is deeper than a twentieth of its largest depth; in twenty
-//! slices of equal width its middle is the mean depth of the two central slices, its sides the deepest slice of
-//! each half. It is a W where the middle is below 0.9 of both sides, else a U. Means over slices keep the
-//! dents of single contacts out of it.
+//! The scar extends from the first to the last place deeper than a twentieth of its largest depth. It is
+//! divided into twenty slices of equal width. The depth of its middle is the mean of the two central slices,
+//! that of its sides the deepest slice of each half. The scar is a W where the middle is below 0.9 of both
+//! sides, otherwise a U. Averaging over slices suppresses the dents of single contacts.
 
 use serde::Serialize;
 
-/// Depth, in parts of the largest, from which on a place belongs to the scar.
+/// Fraction of the largest depth from which a place belongs to the scar.
 const EDGE: f64 = 0.05;
-/// Slices of the scar.
+/// Number of slices.
 const SLICES: usize = 20;
-/// A middle below this part of both sides makes a W.
+/// A middle below this fraction of both sides makes a W.
 const SHALLOW: f64 = 0.9;
 
-/// The form of a scar.
+/// Shape of a scar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Form {
-    /// Nothing was worn, or at a place or two only.
+    /// No wear, or at one or two places only.
     None,
-    /// Deepest in the middle, or as deep as anywhere.
+    /// Deepest in the middle, or equally deep.
     U,
     /// Deeper on both sides than in the middle.
     W,
 }
 
-/// Extent and form of a scar.
+/// Extent and shape of a scar.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Outline {
-    /// Its form.
+    /// Shape.
     pub form: Form,
-    /// Where it begins and ends (m); not a number where there is none.
+    /// Start of the scar (m); NaN where there is none.
     pub from: f64,
-    /// Its other end (m).
+    /// End of the scar (m).
     pub to: f64,
     /// Depth of the middle (m).
     pub middle: f64,
@@ -40,7 +40,8 @@ pub struct Outline {
     pub sides: [f64; 2],
 }
 
-/// Extent and form of depths (m) at places (m) from left to right; each row a place, what it stands for and its depth.
+/// Returns extent and shape from depths in order of position; each row holds position (m), tributary length,
+/// and depth (m).
 pub fn outline(rows: &[[f64; 3]]) -> Outline {
     let none = Outline {
         form: Form::None,
@@ -84,7 +85,7 @@ pub fn outline(rows: &[[f64; 3]]) -> Outline {
     }
 }
 
-/// Integral of the depth, linear between places, from one place to another.
+/// Integrates the depth, linear between places, over an interval.
 fn integral(rows: &[[f64; 3]], from: f64, to: f64) -> f64 {
     let piece = |w: &[[f64; 3]]| {
         let ([a, _, p], [b, _, q]) = (w[0], w[1]);

@@ -1,8 +1,9 @@
-//! Which first body each grain belongs to: the one to whose base a path of unbroken bonds ties it.
+//! Assignment of grains to first bodies: a grain belongs to the first body to whose base it is connected by
+//! a path of intact bonds.
 //!
-//! A forest grows from the bases along bonds. A bond that breaks outside the forest changes nothing; one of the
-//! forest cuts off a branch, which looks for another bond to what is tied: only the branch is walked. What finds
-//! none is loose, in pieces that hang together.
+//! A spanning forest grows from the bases along bonds. A broken bond outside the forest changes nothing; one
+//! of the forest disconnects a branch, which searches for another bond to a connected grain: only the branch
+//! is traversed. If there is none, the branch is loose and divided into connected pieces.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -13,26 +14,26 @@ const NONE: u32 = u32::MAX;
 /// The forest.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Ties {
-    /// Bodies at the other end of each body's bonds, once for each bond.
+    /// Neighbours of each body, once per bond.
     bonds: Vec<Vec<u32>>,
-    /// Base to which a body is tied; a base is tied to itself.
+    /// Base to which a body is connected; a base is connected to itself.
     base: Vec<u32>,
-    /// The body through which it is tied, one step nearer to the base.
+    /// Parent of a body in the forest, one bond nearer to the base.
     parent: Vec<u32>,
     bases: Vec<u32>,
 }
 
-/// What a change of bonds did to the grains.
+/// Effect of formed and broken bonds on the grains.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Change {
-    /// Pieces that came loose, each with the base that it was tied to and its bodies in their order.
+    /// Pieces that became loose, each with its former base and its bodies in order.
     pub loose: Vec<(u32, Vec<u32>)>,
-    /// Bodies that were tied, and the base to which they are now.
+    /// Bodies that became connected, with their new base.
     pub tied: Vec<(u32, u32)>,
 }
 
 impl Ties {
-    /// The forest of so many bodies from these bases, over these bonds.
+    /// Builds the forest of a number of bodies from these bases and bonds.
     pub fn new(bodies: usize, bases: &[u32], bonds: impl IntoIterator<Item = [u32; 2]>) -> Self {
         let mut ties = Self {
             bonds: vec![Vec::new(); bodies],
@@ -51,19 +52,19 @@ impl Ties {
         ties
     }
 
-    /// The base to which a body is tied.
+    /// Returns the base to which a body is connected.
     pub fn base(&self, body: u32) -> Option<u32> {
         let base = self.base[body as usize];
         (base != NONE).then_some(base)
     }
 
-    /// Bonds of a body.
+    /// Returns the number of bonds of a body.
     pub fn degree(&self, body: u32) -> usize {
         self.bonds[body as usize].len()
     }
 
-    /// The bodies that hang together with one over bonds, in their order; bases and what is tied to them are not
-    /// crossed when the body is loose, for then there is no way to them.
+    /// Returns the connected piece of a body, in order; for a loose body the search does not enter bases or
+    /// connected bodies, since no path leads there.
     pub fn piece(&self, body: u32) -> Vec<u32> {
         let mut piece = BTreeSet::from([body]);
         let mut open = vec![body];
@@ -91,7 +92,7 @@ impl Ties {
         out(a, b) && out(b, a)
     }
 
-    /// Bonds that were made and that broke since the last change; each pair of bodies once for each bond.
+    /// Applies the bonds formed and broken since the last call, with one pair of bodies per bond.
     pub fn change(&mut self, made: &[[u32; 2]], broken: &[[u32; 2]]) -> Change {
         for [a, b] in made {
             self.join(*a, *b);
@@ -109,7 +110,7 @@ impl Ties {
             }
         }
         let mut change = Change::default();
-        // What is tied may now reach what is not.
+        // Connected bodies may now reach loose ones.
         let grown = made
             .iter()
             .flatten()
@@ -124,7 +125,7 @@ impl Ties {
             (self.base[*b as usize], self.parent[*b as usize]) = (NONE, NONE);
         }
         let tied_still = |ties: &Self, b: u32| ties.base[b as usize] != NONE;
-        // From what stays tied beside the branch, along the bonds that are left.
+        // Search from the bodies that remain connected next to the branch, along the remaining bonds.
         let mut seeds: Vec<u32> = branch
             .iter()
             .flat_map(|b| self.bonds[*b as usize].iter().copied())
@@ -150,7 +151,7 @@ impl Ties {
             if self.base[*body as usize] != NONE || seen.contains(body) {
                 continue;
             }
-            // What came loose now; what was loose before and is bonded to it was debris already.
+            // Only the newly loose part; loose grains bonded to it were debris before.
             let piece: Vec<u32> = self.piece(*body);
             let now = piece.iter().filter(|b| before(**b) == Some(*base));
             let now: Vec<u32> = now.copied().collect();
@@ -160,7 +161,7 @@ impl Ties {
         change
     }
 
-    /// The bodies tied through these, with them, in their order.
+    /// Returns the bodies connected through `roots`, including them, in order.
     fn branch(&self, roots: Vec<u32>) -> Vec<u32> {
         let mut branch: BTreeSet<u32> = roots.iter().copied().collect();
         let mut open = roots;
@@ -174,7 +175,7 @@ impl Ties {
         branch.into_iter().collect()
     }
 
-    /// Ties what bonds reach from bodies that are tied, nearest first.
+    /// Connects the bodies reachable by bonds from connected bodies, breadth first.
     fn spread(&mut self, mut front: Vec<u32>, tied: &mut Vec<u32>) {
         while !front.is_empty() {
             let mut next = Vec::new();
@@ -229,7 +230,7 @@ mod tests {
         assert_eq!(ties.base(1), Some(3));
     }
 
-    /// Bodies that a path joins to a base, by walking all bonds.
+    /// Bodies connected to a base, by traversing all bonds.
     fn reached(bodies: usize, bases: &[u32], bonds: &[[u32; 2]]) -> Vec<bool> {
         let mut tied = vec![false; bodies];
         bases.iter().for_each(|b| tied[*b as usize] = true);
@@ -272,7 +273,7 @@ mod tests {
                 let change = ties.change(&made, &broken);
                 let after = tied(&ties);
                 assert_eq!(after, reached(bodies as usize, &bases, &bonds));
-                // The change tells exactly what is different.
+                // The reported change is exactly the difference.
                 let mut told = before;
                 for (_, piece) in &change.loose {
                     piece

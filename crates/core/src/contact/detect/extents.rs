@@ -1,19 +1,21 @@
-//! How thin and how long what can touch is: what decides whether a motion is fast.
+//! Thickness and extent of the collision shapes, which decide whether a motion is fast.
 
 use crate::bodies::Bodies;
 use crate::geometry::convex::Core;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 
-/// Part of the half thickness of the thinnest body from which a relative motion in a step is fast.
+/// Fraction of the half thickness of the thinnest body from which the relative motion in a step counts as
+/// fast.
 const FAST: f64 = 0.01;
 
-/// Half thicknesses of the pieces, and how far the points of each body are from its centre.
+/// Half thicknesses of the convex pieces, and the distance of each body's farthest point from its centre.
 #[derive(Clone, Debug, Default)]
 pub struct Extents {
-    /// Least half thickness of each piece, rounding included (m).
+    /// Smallest half thickness of each piece, rounding radius included (m).
     pub(super) pieces: Vec<f64>,
-    /// Farthest point of each body that moves when it turns (m); zero for centred balls. Surfaces do not count.
+    /// Farthest point of each body that moves when the body rotates (m); zero for centred balls. Surfaces
+    /// are not included.
     pub(super) levers: Vec<f64>,
 }
 
@@ -39,7 +41,7 @@ impl Extents {
         }
     }
 
-    /// The farthest point of a body that moves when it turns (m).
+    /// Returns the distance of the farthest point of a body that moves when the body rotates (m).
     pub(crate) fn lever(&self, body: usize) -> f64 {
         self.levers.get(body).copied().unwrap_or(0.0)
     }
@@ -48,7 +50,8 @@ impl Extents {
         self.levers.len() == bodies.len() && self.pieces.len() == shapes.pieces.len()
     }
 
-    /// The farthest that a point of each body moves in `h` seconds (m), a surface's by turning left out.
+    /// Returns the largest displacement of any point of each body in `h` seconds (m), excluding surfaces
+    /// that move by rotation.
     pub(super) fn travels<S: Space>(
         &self,
         bodies: &Bodies<S>,
@@ -68,8 +71,8 @@ impl Extents {
     }
 }
 
-/// The relative motion in a step (m) from which a pair is followed through the step: a part of the least half thickness, and
-/// no more than the alert distance sees.
+/// Returns the relative motion in a step (m) from which a pair is followed through the step: a fraction of
+/// the smallest half thickness, at most the range of the alert distance.
 pub fn fast_motion<S: Space>(shapes: &Shapes<S>, alert: f64) -> f64 {
     let pieces = shapes.pieces.iter();
     let pieces = pieces.map(|p| p.core.half_thickness() + p.rounding);

@@ -1,5 +1,6 @@
-//! Contacts that close within the step although their bodies are beyond the alert distance at its start: found before they
-//! close, for pairs whose relative motion in the step is fast. Scenes without fast motion do no more here than look at speeds.
+//! Contacts that close within the step although their bodies are beyond the alert distance at its start.
+//! They are predicted for pairs whose relative motion in the step is fast. Scenes without fast motion only
+//! pay for a comparison of speeds.
 
 use super::extents::Extents;
 use super::order::{PredictedMeeting, mark_later};
@@ -11,18 +12,18 @@ use crate::geometry::grid;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 
-/// Overlap, in parts of what is fast, from which a pair that has no contact gets one.
+/// Penetration, as a fraction of the fast motion, from which a pair without a contact gets one.
 pub(super) const TOLERATED: f64 = 0.05;
-/// Part of the half thickness that a pair may go deeper into each other before it is reported.
+/// Fraction of the half thickness by which a pair may penetrate before it is reported.
 const PASSED: f64 = 0.25;
-/// The neighbour list looks this many times as far as the motion asks, so that it lasts while bodies become faster.
+/// Factor on the required range of the neighbour list, so that the list stays valid while bodies accelerate.
 const HEADROOM: f64 = 1.5;
-/// Pairs that a widened neighbour list may look at, in parts of those of the plain one, and beside that.
+/// Limits on the pairs of a widened neighbour list: a multiple of those of the plain list, plus a constant.
 const MAX_PAIRS: (f64, f64) = (4.0, 5e6);
 
-/// The motion of a step: velocities (m/s, rad/s) of all bodies over it, its start and length (s).
+/// Motion of a step: velocities (m/s, rad/s) of all bodies, its start and length (s).
 pub struct Motion<'a, S: Space> {
-    /// What the bodies move with.
+    /// Velocities and spins of the bodies.
     pub velocities: &'a [(S::Vector, S::Spin)],
     /// Time at the start of the step (s).
     pub time: f64,
@@ -30,18 +31,19 @@ pub struct Motion<'a, S: Space> {
     pub h: f64,
 }
 
-/// When pairs are looked at.
+/// Stage of the step at which pairs are examined.
 #[derive(Clone, Copy, PartialEq)]
 enum Stage {
-    /// Before the solve, by the velocities that bodies would have without contacts.
+    /// Before the solve, with the free velocities.
     Before,
-    /// After it, by those that they have.
+    /// After the solve, with its velocities.
     After,
-    /// The same, to report.
+    /// After the solve, to report only.
     Report,
 }
 
-/// Whether no two bodies can move fast relative to each other in the step: then there is nothing to foresee. Cheap.
+/// Returns whether no two bodies can move fast relative to each other in the step, so that no contact has to
+/// be predicted. Cheap.
 pub fn is_calm<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -63,7 +65,8 @@ pub fn is_calm<S: Space>(
             turning = turning.max(lever * lever * w.dot(&w));
         }
     }
-    // Below what asks for a wider list, and for a look at pairs. A surface that turns is not calm.
+    // The bound is below what requires a wider list or a check of pairs. A rotating surface always requires
+    // them.
     let still = shapes.surfaces.iter().all(|s| {
         let b = s.body as usize;
         let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
@@ -72,7 +75,8 @@ pub fn is_calm<S: Space>(
     still && 2.0 * h * (fastest.sqrt() + turning.sqrt()) <= network.fast.min(network.alert)
 }
 
-/// Adds the contacts of the step that the free velocities close, and that detection at its start did not see.
+/// Adds the contacts that the free velocities close in the step and that detection at its start did not
+/// find.
 pub fn foresee<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -93,8 +97,8 @@ pub fn foresee<S: Space>(
     network.take_in(found);
 }
 
-/// The contacts that the velocities after a solve would close in the step and that were not solved for: where there are any
-/// the step is to be solved again with them, see [`Network::take_in`].
+/// Returns the contacts that the velocities after a solve would close in the step and that were not part of
+/// it. If there are any, the step must be solved again with them; see [`Network::take_in`].
 pub fn overlooked<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -116,7 +120,7 @@ pub fn overlooked<S: Space>(
     found
 }
 
-/// Reports the pairs that go into each other in the step whatever was solved for.
+/// Reports the pairs that penetrate in the step despite the contacts solved for.
 pub fn report_passing<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -136,8 +140,8 @@ pub fn report_passing<S: Space>(
     );
 }
 
-/// Reports the pairs that go into each other in a move at the velocities of the bodies before detection, which no step before
-/// has looked at.
+/// Reports the pairs that penetrate in a move before detection, at the current velocities, which no previous
+/// step has checked.
 pub fn report_first_move<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -160,7 +164,8 @@ pub fn report_first_move<S: Space>(
     report_passing(network, shapes, bodies, laws, &motion);
 }
 
-/// How far each body moves in the step, with a neighbour list that looks as far as the fast ones go.
+/// Computes the displacement of each body in the step, and widens the neighbour list around fast bodies
+/// accordingly.
 fn widen<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -180,7 +185,7 @@ fn widen<S: Space>(
     if farthest <= half && widest == 0.0 && !turn_faster {
         return travels;
     }
-    // Some room for all, so that a body that has just become fast does not ask for a new list.
+    // A margin for all bodies, so that a body that has just become fast does not require a new list.
     let room = network.alert;
     let wide = |travel: &f64| (HEADROOM * need(travel)).max(room);
     if farthest < 0.5 * half || 4.0 * wide(&farthest) < widest {
@@ -224,7 +229,7 @@ fn widen<S: Space>(
     travels
 }
 
-/// Whether a surface sweeps faster than the neighbour list was made for.
+/// Returns whether a surface moves by rotation faster than the neighbour list allows.
 fn surfaces_turn_faster<S: Space>(
     network: &Network<S>,
     shapes: &Shapes<S>,
@@ -235,7 +240,7 @@ fn surfaces_turn_faster<S: Space>(
     surfaces.any(|(surface, seen)| {
         let b = surface.body as usize;
         let spin = motion.velocities[b].1;
-        // One that turns in its place sweeps nothing.
+        // A surface that is invariant under its rotation does not move.
         spin.norm() > *seen
             && !surface
                 .shape
@@ -243,7 +248,7 @@ fn surfaces_turn_faster<S: Space>(
     })
 }
 
-/// Keeps the widened list within memory, and within a period.
+/// Limits the widened list to the memory limit and to a period.
 fn limit<S: Space>(network: &mut Network<S>, shapes: &Shapes<S>, centres: &[S::Vector]) {
     if network.widened.is_empty() {
         return;
@@ -263,7 +268,7 @@ fn limit<S: Space>(network: &mut Network<S>, shapes: &Shapes<S>, centres: &[S::V
     let radii: Vec<f64> = bodies.iter().map(|b| b.1).collect();
     let look_at = |radii: &[f64]| grid::most_pairs(centres, radii, reach, &shapes.periodic);
     let most = MAX_PAIRS.0 * look_at(&radii) + MAX_PAIRS.1;
-    // Halved a few times it is nothing.
+    // After some halvings the widening vanishes.
     for _ in 0..64 {
         let widened = &network.widened;
         let wide: Vec<f64> = bodies
@@ -278,7 +283,7 @@ fn limit<S: Space>(network: &mut Network<S>, shapes: &Shapes<S>, centres: &[S::V
     network.widened.iter_mut().for_each(|w| *w = 0.0);
 }
 
-/// The contacts of the pairs that meet in the step, in the order of the pairs; or reports the pairs.
+/// Finds the contacts of the pairs that meet in the step, in the order of the pairs, or reports the pairs.
 fn look<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -319,7 +324,8 @@ fn look<S: Space>(
     };
     for &names in &candidates {
         let turns = turning && names.1 & Key::SURFACE != 0;
-        // Two balls have one contact: where they go less than the alert distance, detection has seen it.
+        // Two balls have a single contact: if they move less than the alert distance, detection has found
+        // it.
         let balls = (names.0 | names.1) & (Key::PIECE | Key::SURFACE) == 0;
         let slow = if balls { network.alert } else { fast };
         if travels[body(names.0)] + travels[body(names.1)] <= slow && !turns {
@@ -355,7 +361,7 @@ fn look<S: Space>(
             });
         }
         if found.len() == known && stage == Stage::After {
-            // It cannot be followed, or not be held where it meets.
+            // The pair cannot be followed, or cannot be held at the point of meeting.
             network.step_size.pass(motion.time, bodies, pair.bodies());
         }
     }
@@ -367,15 +373,15 @@ fn look<S: Space>(
     found
 }
 
-/// How deep a pair may go into each other (m).
+/// Accepted penetration of a pair (m).
 struct Margin {
-    /// Before something is done about it.
+    /// Penetration from which the pair is treated.
     deepest: f64,
-    /// From where on it is held.
+    /// Penetration from which the pair is kept from closing.
     begins: f64,
 }
 
-/// How deep a pair may go into each other; none where it is not to be looked at.
+/// Returns the accepted penetration of a pair; `None` if the pair need not be examined.
 fn margin<S: Space>(
     network: &Network<S>,
     names: (u32, u32),
@@ -389,7 +395,7 @@ fn margin<S: Space>(
         .take_while(|c| c.key.pair() == names);
     let (mut any, mut overlap) = (false, 0.0f64);
     for contact in of_pair {
-        // A bond that holds keeps its gap.
+        // An intact bond keeps its gap.
         if network.bond(contact).is_some_and(|b| b.intact()) {
             return None;
         }
@@ -409,7 +415,8 @@ fn margin<S: Space>(
 }
 
 impl<S: Space> Network<S> {
-    /// Takes contacts that close in the step in among the others; of those that are there already it changes the geometry.
+    /// Merges contacts that close in the step into the network; contacts that already exist get the new
+    /// geometry.
     pub fn take_in(&mut self, found: Vec<Contact<S>>) {
         let there = self.contacts.len();
         self.step_size.foreseen += found.len() as u64;

@@ -1,4 +1,5 @@
-//! Detection at q_m: a neighbour list with a skin (broad), then gaps and normals (narrow).
+//! Contact detection at q_m: a neighbour list with a skin (broad phase), then gaps and normals (narrow
+//! phase).
 
 mod extents;
 mod foresee;
@@ -18,10 +19,11 @@ use crate::geometry::shape::{Ball, Shapes};
 use crate::geometry::space::{Space, VectorLike};
 use narrow::Narrow;
 
-/// Corners that stand nearer along a face than this part of the alert distance are seen as on it.
+/// Corners whose distance along a face is less than this fraction of the alert distance count as on the
+/// face.
 const SLACK: f64 = 0.01;
 
-/// Which interface law governs a pair of materials, row by row; `None` when none is given.
+/// Index of the interface law of each pair of materials, in row-major order; `None` where no law is given.
 #[derive(Clone, Debug)]
 pub struct LawTable {
     materials: usize,
@@ -29,7 +31,7 @@ pub struct LawTable {
 }
 
 impl LawTable {
-    /// No pair has a law yet.
+    /// Creates a table in which no pair has a law.
     pub fn new(materials: usize) -> Self {
         Self {
             materials,
@@ -44,14 +46,14 @@ impl LawTable {
         self.laws[b * self.materials + a] = Some(law);
     }
 
-    /// The law of a pair.
+    /// Returns the law of a pair.
     #[inline]
     pub fn get(&self, a: u16, b: u16) -> Option<u16> {
         self.laws[a as usize * self.materials + b as usize]
     }
 }
 
-/// Where a ball's centre stands (m).
+/// Returns the centre of a ball (m).
 #[inline]
 pub fn centre<S: Space>(ball: &Ball<S>, bodies: &Bodies<S>) -> S::Vector {
     let b = ball.body as usize;
@@ -62,10 +64,10 @@ pub fn centre<S: Space>(ball: &Ball<S>, bodies: &Bodies<S>) -> S::Vector {
     }
 }
 
-/// Finds the contacts of this step at the positions at hand and carries memories over.
+/// Finds the contacts of this step at the current positions and carries their memory over.
 ///
-/// Contacts that vanish lose their memory; a bond that holds keeps its contact whatever its gap. `h` is the
-/// time since the last detection.
+/// Contacts that separate lose their memory; an intact bond keeps its contact at any gap. `h` is the time
+/// since the last detection (s).
 pub fn detect<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -100,7 +102,7 @@ pub fn detect<S: Space>(
     }
 }
 
-/// Centres of the balls, then of the pieces (m).
+/// Returns the centres of the balls, then of the convex pieces (m).
 fn centres<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>) -> Vec<S::Vector> {
     let mut centres: Vec<S::Vector> = shapes.balls.iter().map(|b| centre(b, bodies)).collect();
     let pieces = shapes.pieces.iter();
@@ -108,7 +110,8 @@ fn centres<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>) -> Vec<S::Vector> {
     centres
 }
 
-/// Where the neighbour list watches: the centres of balls and pieces, then the frames of the surfaces.
+/// Returns the points that the neighbour list tracks: the centres of balls and pieces, then the frames of
+/// the surfaces.
 fn watched<'a, S: Space>(
     shapes: &'a Shapes<S>,
     bodies: &'a Bodies<S>,
@@ -121,7 +124,7 @@ fn watched<'a, S: Space>(
     centres.iter().copied().chain(frames)
 }
 
-/// The neighbour list is made for surfaces that turn so many times as fast as they do.
+/// The neighbour list is built for this multiple of the spin of rotating surfaces.
 const TURNING: f64 = 1.5;
 
 fn must_rebuild<S: Space>(
@@ -133,7 +136,7 @@ fn must_rebuild<S: Space>(
     if network.seen_at.len() != centres.len() + shapes.surfaces.len() {
         return true;
     }
-    // A surface that turns sweeps more than its frame moves.
+    // A rotating surface moves more than its frame does.
     if shapes.surfaces.iter().any(|s| {
         let b = s.body as usize;
         let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
@@ -161,7 +164,7 @@ fn rebuild<S: Space>(
 ) {
     let mut radii: Vec<f64> = shapes.balls.iter().map(|b| b.radius).collect();
     radii.extend(shapes.pieces.iter().map(|p| p.bound));
-    // About fast bodies the list looks as far as they go.
+    // Around fast bodies the list extends as far as these move.
     let wide = |body: u32| network.widened.get(body as usize).copied().unwrap_or(0.0);
     if !network.widened.is_empty() {
         let of = shapes.balls.iter().map(|b| b.body);
@@ -170,7 +173,7 @@ fn rebuild<S: Space>(
     }
     let reach = network.alert + network.skin;
     let balls = shapes.balls.len();
-    // Body, material and name of the ball or piece at a place of the list of centres.
+    // Body, material and key of the ball or piece at an index in the list of centres.
     let owner = |at: u32| match shapes.balls.get(at as usize) {
         Some(ball) => (ball.body, ball.material, at),
         None => {
@@ -219,7 +222,7 @@ fn rebuild<S: Space>(
             }
         }
     }
-    // A bond may be longer than the reach.
+    // A bond may be longer than the search distance.
     let held = |c: &&Contact<S>| {
         network.bond(c).is_some_and(|b| b.intact()) && !c.bodies.iter().any(|b| gone(*b))
     };
@@ -254,7 +257,7 @@ fn drop_contact<S: Space>(network: &mut Network<S>, k: usize) {
     let law = contact.law as usize;
     let bond = &mut network.memory[law].bonds[slot];
     if bond.intact() {
-        // A grain that left its surface's reach tears the bond.
+        // A grain beyond the end of its surface breaks the bond.
         let torn = bond.energy;
         bond.life.fracture += torn;
         network.torn_energy += torn;

@@ -1,4 +1,4 @@
-//! Gaps and normals of candidate pairs, and what their contacts remember.
+//! Narrow phase: gaps and normals of candidate pairs, and transfer of contact memory.
 
 use super::{LawTable, drop_contact, frame, held};
 use crate::bodies::Bodies;
@@ -7,18 +7,18 @@ use crate::geometry::convex::{ContactPoint, ConvexCollider, Core};
 use crate::geometry::shape::{Ball, ClosestPoint, Shapes};
 use crate::geometry::space::{Space, VectorLike};
 
-/// One pass over the candidates, in order, and over the old contacts beside them.
+/// One pass over the candidate pairs, in order, in parallel with the old contacts.
 pub(super) struct Narrow<'a, S: Space> {
     pub(super) shapes: &'a Shapes<S>,
     pub(super) bodies: &'a Bodies<S>,
-    /// Of the balls, then of the pieces (m).
+    /// Centres of the balls, then of the pieces (m).
     pub(super) centres: &'a [S::Vector],
-    /// Cores of the pieces in the world's axes.
+    /// Cores of the pieces in world axes.
     pub(super) cores: Vec<S::Core>,
     pub(super) laws: &'a LawTable,
     pub(super) time: f64,
     pub(super) h: f64,
-    /// Next old contact not yet met.
+    /// Index of the next old contact.
     at: usize,
     touches: Vec<ClosestPoint<S::Vector>>,
     pub(super) meetings: Vec<ContactPoint<S::Vector>>,
@@ -48,12 +48,12 @@ impl<'a, S: Space> Narrow<'a, S> {
         }
     }
 
-    /// The first old contact behind the last candidate.
+    /// Returns the index of the first old contact after the last candidate.
     pub(super) fn left(&self) -> usize {
         self.at
     }
 
-    /// The old contacts of a pair; drops those of pairs passed over.
+    /// Returns the old contacts of a pair; drops those of skipped pairs.
     pub(super) fn old_of(
         &mut self,
         network: &mut Network<S>,
@@ -145,7 +145,7 @@ impl<'a, S: Space> Narrow<'a, S> {
         self.admit(network, found, old);
     }
 
-    /// Whether a body answers impulses along all axes alike.
+    /// Returns whether a body's response to impulses is isotropic.
     fn isotropic(&self, b: usize) -> bool {
         let mass = &self.bodies.inverse_mass[b];
         self.bodies.tensor(b).is_none() && (1..S::D).all(|k| mass[k] == mass[0])
@@ -169,7 +169,7 @@ impl<'a, S: Space> Narrow<'a, S> {
         let mut taken = vec![false; old.len()];
         let (i, j) = (ball.body as usize, surface.body as usize);
         for touch in &touches {
-            // The same feature, or the nearest of those that are no longer touched.
+            // The contact of the same feature, or else the nearest of those no longer found.
             let same = old.clone().find(|k| {
                 !taken[k - old.start] && network.old[*k].key.feature == u64::from(touch.feature)
             });
@@ -229,8 +229,8 @@ impl<'a, S: Space> Narrow<'a, S> {
         self.touches = touches;
     }
 
-    /// How far the contacts of a pair are looked for (m): a bond reaches as far as it is stretched, again as far
-    /// within a step, and as far as its bodies moved in it.
+    /// Returns the search distance for contacts of a pair (m): it covers the stretched bond, the same
+    /// extension within a step, and the displacement of its bodies in the step.
     pub(super) fn reach(&self, network: &Network<S>, old: std::ops::Range<usize>) -> f64 {
         let stretch = |k: usize| {
             let old = &network.old[k];
@@ -246,7 +246,7 @@ impl<'a, S: Space> Narrow<'a, S> {
         network.alert + old.filter_map(stretch).fold(0.0, f64::max)
     }
 
-    /// Takes a contact in, with what an old one of the same name remembers.
+    /// Adds a contact, with the memory of an old one of the same key.
     pub(super) fn admit(
         &self,
         network: &mut Network<S>,
@@ -265,7 +265,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                 found.broken = old.broken;
                 let from = old.normal;
                 if let Some(slot) = found.memory() {
-                    // What a bond remembers turns with the pair.
+                    // The memory of a bond rotates with the pair.
                     let [i, j] = found.bodies.map(|b| self.bodies.spin[b as usize]);
                     let angle = 0.5 * self.h * S::split_spin(&found.normal, &(i + j)).0;
                     let memory = &mut network.memory[found.law as usize];
@@ -278,7 +278,7 @@ impl<'a, S: Space> Narrow<'a, S> {
             }
             None => {
                 found.broken = network.broken_pairs.contains(&found.key.pair());
-                // What overlaps from the start is the sample's.
+                // Penetrations in the initial state belong to the sample.
                 if self.time > 0.0 {
                     let pair = found.key.pair();
                     let before = network.old[..self.at].iter().rev();

@@ -1,5 +1,5 @@
-//! Which of the impacts that are foreseen in one step come first: an impact changes the motion from which later ones of the
-//! same bodies were foreseen.
+//! Order of the impacts predicted in one step. The first impact of a body changes the motion from which its
+//! later ones were predicted.
 
 use super::foresee::TOLERATED;
 use super::sweep::{Course, Sweep};
@@ -9,21 +9,22 @@ use crate::geometry::space::{Space, VectorLike};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// A pair that meets in the step.
+/// A pair that meets within the step.
 pub(super) struct PredictedMeeting {
-    /// Candidate and antagonist, and their bodies.
+    /// Keys of candidate and antagonist, and their bodies.
     pub names: (u32, u32),
     pub bodies: [u32; 2],
-    /// The part of the step that is over when they meet.
+    /// Fraction of the step after which they meet.
     pub at: f64,
-    /// The farthest that two of their points move in the step (m).
+    /// Largest relative displacement of two of their points in the step (m).
     pub travel: f64,
-    /// Its contacts among those found.
+    /// Range of its contacts among those found.
     pub contacts: Range<usize>,
 }
 
-/// Marks the contacts of meetings that come after an impact of one of their bodies, and of those before which a body would
-/// have to go through another that was stopped on its way. Meetings nearer to each other than `fast` (m) are simultaneous.
+/// Marks the contacts of meetings that follow an impact of one of their bodies, and of those that would
+/// require a body to pass through another one that was stopped on its way. Meetings closer together than
+/// `fast` (m) count as simultaneous.
 pub(super) fn mark_later<S: Space>(
     found: &mut [Contact<S>],
     meetings: &[PredictedMeeting],
@@ -37,7 +38,7 @@ pub(super) fn mark_later<S: Space>(
     }
     let mut order: Vec<&PredictedMeeting> = meetings.iter().collect();
     order.sort_by(|m, n| m.at.total_cmp(&n.at));
-    // The first impact of each movable body, among meetings that come first.
+    // Time of the first impact of each movable body, among the first meetings.
     let mut first: BTreeMap<u32, f64> = BTreeMap::new();
     for meeting in order {
         let after = |b: &u32| {
@@ -57,7 +58,7 @@ pub(super) fn mark_later<S: Space>(
             }
         }
     }
-    // Each body goes to the place of its first impact: those that would meet on the way do so before the later one is there.
+    // Each body is moved to its first impact: bodies in its way meet it before the later impact takes place.
     let mut velocities = sweep.velocities.to_vec();
     for (b, s) in &first {
         let (v, w) = &mut velocities[*b as usize];

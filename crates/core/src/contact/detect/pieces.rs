@@ -1,4 +1,4 @@
-//! Contacts of convex pieces: with balls, with each other and with surfaces, several points a pair.
+//! Contacts of convex pieces with balls, with each other and with surfaces, several contact points per pair.
 
 use super::narrow::Narrow;
 use super::{SLACK, drop_contact, frame, held};
@@ -6,7 +6,7 @@ use crate::contact::network::{Contact, Key, Network};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, Core};
 use crate::geometry::space::{Space, VectorLike};
 
-/// Who meets: bodies, materials, and the size where the meeting gives none (m).
+/// The pair: bodies, materials, and the size used where the contact point defines none (m).
 struct Pair {
     name: (u32, u32),
     bodies: [u32; 2],
@@ -15,7 +15,7 @@ struct Pair {
 }
 
 impl<S: Space> Narrow<'_, S> {
-    /// A pair of which one at least is a piece.
+    /// Processes a pair with at least one convex piece.
     pub(super) fn pieces(&mut self, network: &mut Network<S>, a: u32, b: u32) {
         let old = self.old_of(network, (a, b));
         let gauge = ContactTolerances {
@@ -39,8 +39,8 @@ impl<S: Space> Narrow<'_, S> {
         self.meetings = meetings;
     }
 
-    /// Finds the meetings of a pair in world axes, and where their origin stands from the centres of the
-    /// two bodies. None where the pair has no law.
+    /// Finds the contact points of a pair in world axes, and the vectors from the centres of the two bodies
+    /// to their origin. `None` if the pair has no law.
     fn meet(
         &self,
         a: u32,
@@ -106,13 +106,13 @@ impl<S: Space> Narrow<'_, S> {
                 radius: piece.size * other.size / (piece.size + other.size),
             };
         }
-        // The antagonist's centre as the candidate sees it may be an image.
+        // For the candidate, the antagonist's centre may be a periodic image.
         let to_candidate = own_centre - apart - of(pair.bodies[0]);
         let to_antagonist = centre - of(pair.bodies[1]);
         Some((pair, to_candidate, to_antagonist))
     }
 
-    /// Makes contacts of the meetings within the alert distance, with what old ones remember.
+    /// Creates contacts from the contact points within the alert distance, with the memory of old ones.
     fn keep(
         &mut self,
         network: &mut Network<S>,
@@ -126,7 +126,7 @@ impl<S: Space> Narrow<'_, S> {
         let mut met: Vec<_> = pairs
             .filter(|(m, before)| m.gap < network.alert || held(network, *before))
             .collect();
-        // A face in space may lose a corner; a bond that held there goes on at the nearest that is left.
+        // A face in 3D may lose a corner; a bond there continues at the nearest remaining one.
         for k in old.clone() {
             if held(network, Some(k)) && !met.iter().any(|m| m.1 == Some(k)) {
                 let at = network.old[k].arms[0] - origins[0];
@@ -175,9 +175,9 @@ impl<S: Space> Narrow<'_, S> {
     }
 }
 
-/// The old contact that each meeting goes on from: of the same corner first; then the nearest of those whose corner
-/// is met no more, the nearest pair before all others. Where only one is left of two, a new point at the other
-/// end of the face must not take it from the one beside it.
+/// Returns the old contact that each contact point continues: first that of the same corner, then the
+/// nearest of those whose corner is no longer found, in order of distance. If one of two old contacts is
+/// gone, a new point at the other end of the face must not take over the remaining one.
 fn matches<S: Space>(
     contacts: &[Contact<S>],
     meetings: &[ContactPoint<S::Vector>],
@@ -186,7 +186,7 @@ fn matches<S: Space>(
 ) -> Vec<Option<usize>> {
     let mut matched: Vec<Option<usize>> = Vec::with_capacity(meetings.len());
     for m in meetings {
-        // Around a period two points may have one name.
+        // With a period two points may have the same key.
         let same = |k: &usize| contacts[*k].key.feature == m.feature;
         let found = old
             .clone()
@@ -260,7 +260,8 @@ mod tests {
         }
     }
 
-    /// The bond at one end of a face broke and its contact went; at the other end the corner got another name.
+    /// The bond at one end of a face broke and its contact separated; at the other end the corner got
+    /// another key.
     #[test]
     fn a_bond_stays_at_its_end_of_the_face_when_names_change() {
         let of = |old: &[Contact<Dim2>], new: &[ContactPoint<Vector2<f64>>]| {
@@ -269,7 +270,7 @@ mod tests {
         let new = [meeting(-1.0, 4), meeting(1.0, 6)];
         assert_eq!(of(&[contact(1.0, 3)], &new), [None, Some(0)]);
         assert_eq!(of(&[contact(-1.0, 3)], &new), [Some(0), None]);
-        // The same name goes before the nearest place; the rest to the nearest that is left.
+        // Equal keys take precedence over distance; the others continue the nearest remaining contact.
         assert_eq!(
             of(&[contact(0.9, 4), contact(0.8, 3)], &new),
             [Some(0), Some(1)]

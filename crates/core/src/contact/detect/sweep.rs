@@ -1,8 +1,9 @@
-//! Two bodies that move fast, followed through a step: when they meet, and where.
+//! Continuous collision detection: follows two fast bodies through a step to find when and where they meet.
 //!
-//! Conservative advancement: the gap cannot close faster than the two approach, so that the time in which they cannot meet is
-//! passed over (Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996, section 2.3). Where that makes small
-//! steps, a part of the half thickness of the thinner one is gone on: what is missed so is shallower than that part.
+//! Conservative advancement: the gap cannot close faster than the bodies approach, so that the time in which
+//! they cannot meet is skipped (Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996,
+//! section 2.3). Where that gives small increments, the motion advances by a fraction of the half thickness
+//! of the thinner body; a penetration missed in this way is shallower than that.
 
 use super::extents::Extents;
 use crate::bodies::Bodies;
@@ -11,7 +12,7 @@ use crate::geometry::convex::{ContactPoint, ContactTolerances, ConvexCollider, C
 use crate::geometry::shape::{Ball, Carried, ClosestPoint, Shapes};
 use crate::geometry::space::{Space, VectorLike};
 
-/// Bodies, and the velocities that they have over the step.
+/// The bodies, and their velocities over the step.
 pub(super) struct Sweep<'a, S: Space> {
     pub shapes: &'a Shapes<S>,
     pub bodies: &'a Bodies<S>,
@@ -22,7 +23,7 @@ pub(super) struct Sweep<'a, S: Space> {
     pub alert: f64,
 }
 
-/// What of a body can touch.
+/// Collision shape of a body.
 #[derive(Clone, Copy)]
 enum Shape<'a, S: Space> {
     Ball(&'a Ball<S>),
@@ -55,7 +56,7 @@ impl<S: Space> Shape<'_, S> {
         }
     }
 
-    /// Radius of a ball about its centre that holds it (m).
+    /// Returns the radius of its bounding ball (m).
     fn bound(&self) -> f64 {
         match self {
             Self::Ball(b) => b.radius,
@@ -64,7 +65,7 @@ impl<S: Space> Shape<'_, S> {
         }
     }
 
-    /// Half of what it is thick at least (m).
+    /// Returns half of its smallest thickness (m).
     fn half_thickness(&self) -> f64 {
         match self {
             Self::Ball(b) => b.radius,
@@ -73,7 +74,7 @@ impl<S: Space> Shape<'_, S> {
         }
     }
 
-    /// The size that a contact of one point has by it (m).
+    /// Returns its size in the reduced radius of a single-point contact (m).
     fn size(&self) -> f64 {
         match self {
             Self::Ball(b) => b.radius,
@@ -83,45 +84,45 @@ impl<S: Space> Shape<'_, S> {
     }
 }
 
-/// Where a body and one of its shapes stand.
+/// Position and orientation of a body and one of its shapes.
 struct Pose<S: Space> {
     body: S::Vector,
     rotation: S::Rotation,
     centre: S::Vector,
 }
 
-/// What is known of a gap at an instant.
+/// A gap evaluated at one time.
 struct Probe<V> {
-    /// The gap, or what it is at least (m).
+    /// The gap, or a lower bound of it (m).
     gap: f64,
-    /// The normal where both are convex: along it the gap closes no faster than the bodies approach.
+    /// The normal if both shapes are convex: the gap closes along it no faster than the bodies approach.
     normal: Option<V>,
 }
 
-/// How a pair gets through the step.
+/// Result of following a pair through the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Course {
     /// They do not meet.
     Clear,
-    /// They meet when this part of the step is over.
+    /// They meet after this fraction of the step.
     Meets(f64),
-    /// They turn or move too far to be followed.
+    /// They rotate or move too far to be followed.
     Lost,
 }
 
-/// A pair of what can touch, and how it moves.
+/// A pair of collision shapes and its relative motion.
 pub(super) struct Pair<'a, S: Space> {
     names: (u32, u32),
     shapes: [Shape<'a, S>; 2],
     /// Velocity of the candidate's body relative to the antagonist's (m/s).
     approach: S::Vector,
-    /// What turning adds to the speed of any point at most (m/s).
+    /// Upper bound of the speed that rotation adds to any point (m/s).
     turning: f64,
-    /// The image of the antagonist that is nearest stands so far off (m).
+    /// Offset of the nearest periodic image of the antagonist (m).
     image: S::Vector,
-    /// Of the thinner one (m).
+    /// Half thickness of the thinner shape (m).
     pub half_thickness: f64,
-    /// The farthest that two of their points move in the step (m).
+    /// Largest relative displacement of two of their points in the step (m).
     pub travel: f64,
 }
 
@@ -135,11 +136,11 @@ impl<'a, S: Space> Pair<'a, S> {
     }
 }
 
-/// Parts of the half thickness that are gone on at least.
+/// Smallest increment of the motion, as a fraction of the half thickness.
 const STRIDE: f64 = 0.25;
-/// Instants of a step that are looked at for one pair.
+/// Maximum number of evaluations per pair and step.
 const MAX_INSTANTS: usize = 2000;
-/// How exactly the instant of a meeting is found, in parts of the half thickness.
+/// Accuracy of the time of a meeting, as a displacement relative to the half thickness.
 const EXACT: f64 = 1e-3;
 
 impl<'a, S: Space> Sweep<'a, S> {
@@ -154,7 +155,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         }
     }
 
-    /// Where a shape stands when part `s` of the step is over.
+    /// Returns the pose of a shape after the fraction `s` of the step.
     fn pose(&self, shape: &Shape<S>, s: f64) -> Pose<S> {
         let b = shape.body() as usize;
         let (v, w) = &self.velocities[b];
@@ -175,7 +176,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         }
     }
 
-    /// The pair of these names.
+    /// Returns the pair with these keys.
     pub fn pair(&self, names: (u32, u32)) -> Pair<'a, S> {
         let shapes = [self.shape(names.0), self.shape(names.1)];
         let [one, other] = [0, 1].map(|k: usize| self.pose(&shapes[k], 0.0));
@@ -215,7 +216,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         }
     }
 
-    /// How a pair gets through the step, where it meets when its gap falls below `-margin` (m).
+    /// Follows a pair through the step; it meets where its gap falls below `-margin` (m).
     pub fn course(&self, pair: &Pair<S>, margin: f64) -> Course {
         if !pair.travel.is_finite() {
             return Course::Lost;
@@ -245,7 +246,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         Course::Lost
     }
 
-    /// The instant at which a pair meets between two.
+    /// Bisects for the time at which a pair meets.
     fn instant(&self, pair: &Pair<S>, margin: f64, mut before: f64, mut after: f64) -> f64 {
         while (after - before) * pair.travel > EXACT * pair.half_thickness {
             let middle = 0.5 * (before + after);
@@ -261,16 +262,16 @@ impl<'a, S: Space> Sweep<'a, S> {
         after
     }
 
-    /// The gap of a pair at an instant; where it is beyond `range` that is all that is said of it.
+    /// Evaluates the gap of a pair at one time; beyond `range` only a lower bound.
     fn probe(&self, pair: &Pair<S>, s: f64, range: f64) -> Probe<S::Vector> {
         let [one, other] = [0, 1].map(|k: usize| self.pose(&pair.shapes[k], s));
         let bound = pair.shapes[0].bound();
         if let Shape::Surface(surface) = &pair.shapes[1] {
             let origin = other.centre;
             let place = S::unrotate(&other.rotation, &(one.centre - origin));
-            // Of a plane the gap closes along its normal alone.
+            // The gap to a plane closes along its normal only.
             let normal = surface.shape.flat().map(|n| S::rotate(&other.rotation, &n));
-            // First whether it is near at all: surfaces are looked at within a short reach alone.
+            // A cheap distance check first: surfaces are only evaluated within a short range.
             let near = |range: f64| surface.shape.near(&place, bound + range);
             let short = self.alert.max(pair.half_thickness);
             for range in [range, short] {
@@ -302,7 +303,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         Probe { gap, normal }
     }
 
-    /// Where a pair is near in these poses; points are seen from the centres of the two bodies.
+    /// Finds the contact points of a pair in these poses, relative to the centres of the two bodies.
     fn meetings(
         &self,
         pair: &Pair<S>,
@@ -364,7 +365,7 @@ impl<'a, S: Space> Sweep<'a, S> {
                 let core = turned(a, one).turned(&S::inverse(&other.rotation));
                 core.meet_surface(b.shape.as_ref(), &place, a.rounding, &gauge, out);
             }
-            // Candidates come before antagonists: balls, pieces, surfaces.
+            // Candidates precede antagonists in the order balls, pieces, surfaces.
             _ => {}
         }
         if let Shape::Surface(_) = &pair.shapes[1] {
@@ -382,8 +383,8 @@ impl<'a, S: Space> Sweep<'a, S> {
         }
     }
 
-    /// The contacts of a pair that meets when part `s` of the step is over, as the step's constraints: at the end of the
-    /// step the bodies are in front of each other's tangent planes.
+    /// Adds the contacts of a pair that meets after the fraction `s` of the step, as constraints of the
+    /// step: at its end the bodies must lie on their sides of the common tangent planes.
     pub fn contacts(&self, pair: &Pair<S>, s: f64, law: u16, out: &mut Vec<Contact<S>>) {
         let poses = [0, 1].map(|k: usize| self.pose(&pair.shapes[k], s));
         let mut met = Vec::new();
@@ -403,7 +404,7 @@ impl<'a, S: Space> Sweep<'a, S> {
             let velocity = v + S::spin_velocity(&w, &m.on_candidate)
                 - v_other
                 - S::spin_velocity(&w_other, &m.on_antagonist);
-            // What the two go on the way there.
+            // Approach of the two until they meet.
             let way = (-s * self.h * m.normal.dot(&velocity)).max(0.0);
             out.push(Contact {
                 key: Key {
@@ -435,7 +436,8 @@ impl<'a, S: Space> Sweep<'a, S> {
     }
 }
 
-/// A ball near a thin part is also behind its other side: leaves what is on the side of the nearest.
+/// A ball near a thin part is also behind the part's other side: keeps the points on the side of the nearest
+/// one.
 fn keep_same_side<V>(touches: &mut Vec<ClosestPoint<V>>) {
     let nearest = touches
         .iter()

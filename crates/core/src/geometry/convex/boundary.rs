@@ -1,20 +1,20 @@
-//! Cores as corners and faces, for files: what a core can be made of again.
+//! Convex cores as corners and faces, the form in which files store them.
 
 use super::polygon::Polygon;
 use super::polyhedron::Polyhedron;
 use nalgebra::{Vector2, Vector3};
 
-/// The corners of a core and, in space, its faces. Two corners are the segment of a capsule.
+/// Corners of a core and, in 3D, its faces. Two corners are the segment of a capsule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Boundary<V> {
-    /// Corners about the core's centre (m); in the plane they go round against the clock.
+    /// Corners relative to the core's centre (m); anticlockwise in 2D.
     pub corners: Vec<V>,
-    /// The corners of each face, against the clock seen from outside; none in the plane, or of a segment.
+    /// Corner indices of each face, anticlockwise seen from outside; empty in 2D and for a segment.
     pub faces: Vec<Vec<u32>>,
 }
 
 impl Polygon {
-    /// Its corners.
+    /// Returns its corners.
     pub(super) fn as_boundary(&self) -> Boundary<Vector2<f64>> {
         Boundary {
             corners: self.points().to_vec(),
@@ -22,28 +22,29 @@ impl Polygon {
         }
     }
 
-    /// From its corners.
+    /// Builds a polygon or segment from its corners.
     ///
     /// # Errors
-    /// Why they are none.
+    /// Why the corners are invalid.
     pub(super) fn of_boundary(boundary: Boundary<Vector2<f64>>) -> Result<Self, String> {
         if let [from, to] = boundary.corners[..] {
             let apart = (to - from).norm();
             return if apart.is_finite() && apart > 0.0 {
                 Ok(Self::segment(from, to))
             } else {
-                Err("the ends of a capsule are no two points".to_owned())
+                Err("the ends of a capsule are not two distinct points".to_owned())
             };
         }
         Self::new(boundary.corners).map_err(|e| e.to_string())
     }
 }
 
-/// How far a corner may stand out over a face, in parts of the size: corners of a face are in its plane up to round-off.
+/// Tolerance for corners outside the plane of a face, relative to the size: the corners of a face are
+/// coplanar to rounding.
 const OUT: f64 = 1e-6;
 
 impl Polyhedron {
-    /// Its corners and faces.
+    /// Returns its corners and faces.
     pub(super) fn as_boundary(&self) -> Boundary<Vector3<f64>> {
         Boundary {
             corners: self.points().to_vec(),
@@ -51,10 +52,10 @@ impl Polyhedron {
         }
     }
 
-    /// From its corners and faces.
+    /// Builds a polyhedron or segment from its corners and faces.
     ///
     /// # Errors
-    /// Why they are none.
+    /// Why they are invalid.
     pub(super) fn of_boundary(boundary: Boundary<Vector3<f64>>) -> Result<Self, String> {
         let Boundary { corners, faces } = boundary;
         if corners.iter().flatten().any(|x| !x.is_finite()) {
@@ -62,13 +63,13 @@ impl Polyhedron {
         }
         if let ([from, to], true) = (&corners[..], faces.is_empty()) {
             return if from == to {
-                Err("the ends of a capsule are no two points".to_owned())
+                Err("the ends of a capsule are not two distinct points".to_owned())
             } else {
                 Ok(Self::segment(*from, *to))
             };
         }
         if faces.iter().flatten().any(|c| *c as usize >= corners.len()) {
-            return Err("a face of a polyhedron has corners that are not there".to_owned());
+            return Err("a face of a polyhedron refers to corners that do not exist".to_owned());
         }
         let core = Self::from_faces(corners, faces).map_err(|e| e.to_string())?;
         let most = OUT * core.farthest();

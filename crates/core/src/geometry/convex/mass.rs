@@ -1,9 +1,9 @@
-//! Area, centre and moment of inertia of a rounded convex polygon: the polygon, a rectangle on each side
-//! and a sector of the disk at each corner.
+//! Area, centre and moment of inertia of a rounded convex polygon, composed of the polygon, a rectangle on
+//! each side and a disk sector at each corner.
 
 use nalgebra::Vector2;
 
-/// Mass properties at unit density and depth.
+/// Mass properties at unit density and unit depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassProperties {
     /// Area (m^2).
@@ -14,10 +14,10 @@ pub struct MassProperties {
     pub polar: f64,
 }
 
-/// Of the points within `rounding` (m) of the convex polygon with these corners (m), which go round against
-/// the clock. Two points are the core of a capsule.
+/// Computes the mass properties of the points within `rounding` (m) of the convex polygon with these corners
+/// (m), given anticlockwise. Two points are the core of a capsule.
 pub fn of(points: &[Vector2<f64>], rounding: f64) -> MassProperties {
-    // About the first corner, so that a place far from the origin costs no digits.
+    // Relative to the first corner, to avoid cancellation far from the origin.
     let origin = points[0];
     let n = points.len();
     let mut sum = Sum::default();
@@ -46,7 +46,7 @@ struct Sum {
 }
 
 impl Sum {
-    /// The triangle (origin, a, b).
+    /// Adds the triangle (origin, a, b).
     fn triangle(&mut self, a: Vector2<f64>, b: Vector2<f64>) {
         let area = 0.5 * a.perp(&b);
         self.area += area;
@@ -54,7 +54,7 @@ impl Sum {
         self.second += area * (a.norm_squared() + a.dot(&b) + b.norm_squared()) / 6.0;
     }
 
-    /// The rectangle of this height outside the side from a to b.
+    /// Adds the rectangle of this height outside the side from a to b.
     fn rectangle(&mut self, a: Vector2<f64>, b: Vector2<f64>, height: f64) {
         let along = b - a;
         let length = along.norm();
@@ -67,7 +67,7 @@ impl Sum {
         self.second += own + area * centre.norm_squared();
     }
 
-    /// The sector at a corner between the normals of the sides before and after it.
+    /// Adds the sector at a corner between the normals of the adjacent sides.
     fn sector(
         &mut self,
         corner: Vector2<f64>,
@@ -77,14 +77,14 @@ impl Sum {
     ) {
         let mut angle = before.perp(&after).atan2(before.dot(&after));
         if angle < 0.0 {
-            // Two points: the line turns back, by plus or minus pi.
+            // For two points the direction reverses, by plus or minus pi.
             angle += std::f64::consts::TAU;
         }
         if angle == 0.0 {
             return;
         }
         let area = 0.5 * angle * radius * radius;
-        // The normal of the side before, turned by half the angle.
+        // The normal of the previous side, rotated by half the angle.
         let normal = Vector2::new(before.y, -before.x) / before.norm();
         let (s, c) = (0.5 * angle).sin_cos();
         let middle = Vector2::new(c * normal.x - s * normal.y, s * normal.x + c * normal.y);
@@ -130,7 +130,8 @@ mod tests {
         let (l, r) = (3.0, 0.5);
         let m = of(&[Vector2::new(1.0, 0.0), Vector2::new(1.0, l)], r);
         let half = 0.5 * PI * r * r;
-        // A half disk has its centre 4 r/(3 pi) from the cut, and r^2/2 about the disk's centre.
+        // The centroid of a half disk is 4 r/(3 pi) from the cut, and its polar moment about the disk's
+        // centre is r^2/2 per area.
         let c = 4.0 * r / (3.0 * PI);
         let about = half * (0.5 * r * r - c * c + (0.5 * l + c).powi(2));
         let polar = 2.0 * r * l * (l * l + 4.0 * r * r) / 12.0 + 2.0 * about;

@@ -1,7 +1,7 @@
-//! Convex pieces: a convex core and a rounding about it, carried by a body.
+//! Convex pieces: a convex core with a rounding radius, carried by a body.
 //!
-//! Two points with a rounding are a capsule; several pieces on a body are a cluster. Cores are polygons in the
-//! plane and polyhedra in space.
+//! Two points with a rounding are a capsule; several pieces on a body are a cluster. Cores are polygons in
+//! 2D and polyhedra in 3D.
 
 mod boundary;
 pub mod mass;
@@ -23,48 +23,48 @@ use super::shape::Surface;
 use super::space::{Space, VectorLike};
 use std::fmt::Debug;
 
-/// A convex part of a body: all points within `rounding` of its core.
+/// A convex part of a body: all points within the distance `rounding` of its core.
 #[derive(Clone, Debug)]
 pub struct ConvexCollider<S: Space> {
     /// Index of the body.
     pub body: u32,
-    /// The core, about the piece's centre, in the body's axes.
+    /// The core relative to the piece's centre, in the body's axes.
     pub core: S::Core,
-    /// The piece's centre in the body's frame (m).
+    /// Position of the piece's centre in the body's frame (m).
     pub offset: S::Vector,
-    /// Radius of the rounding (m); zero for sharp corners.
+    /// Rounding radius (m); zero for sharp corners.
     pub rounding: f64,
-    /// Radius of a ball about the piece's centre that holds it all (m).
+    /// Radius of the bounding ball about the piece's centre (m).
     pub bound: f64,
-    /// Radius of the ball of the same volume (m): its size in a contact of one point.
+    /// Radius of the ball of equal volume (m): the size of the piece in a single-point contact.
     pub size: f64,
     /// Index of the material.
     pub material: u16,
 }
 
-/// How deep a corner may be behind a skin, a profile or facets, and still be pushed out, in parts of the size of its
-/// piece: [`ConvexCollider::bound`]. What is deeper may be in front of another part of it.
+/// Depth up to which a corner behind a skin, a profile or facets is still pushed out, relative to the size
+/// of its piece, [`ConvexCollider::bound`]. A deeper corner may be in front of another part of the surface.
 pub const DEEP: f64 = 0.25;
 
-/// The shape of a piece and its mass properties, before it has a body.
+/// Shape and mass properties of a piece that is not yet part of a body.
 #[derive(Clone, Debug)]
 pub struct ConvexPart<S: Space> {
-    /// The core, about its centre of mass.
+    /// The core relative to its centre of mass.
     pub core: S::Core,
-    /// The centre of mass (m).
+    /// Centre of mass (m).
     pub centre: S::Vector,
-    /// Radius of the rounding (m).
+    /// Rounding radius (m).
     pub rounding: f64,
-    /// Radius of a ball about the centre of mass that holds it all (m).
+    /// Radius of the bounding ball about the centre of mass (m).
     pub bound: f64,
-    /// Volume, rounding included (m^3; 2D: area times unit depth).
+    /// Volume including the rounding (m^3; in 2D area times unit depth).
     pub volume: f64,
-    /// Moments of inertia about the centre of mass at unit density (m^5).
+    /// Inertia tensor about the centre of mass at unit density (m^5).
     pub inertia: S::Tensor,
 }
 
 impl<S: Space> ConvexPart<S> {
-    /// A part of a body, its centre of mass at `offset` in the body's frame (m).
+    /// Places the part on a body, with its centre of mass at `offset` in the body's frame (m).
     pub fn carried(self, body: u32, offset: S::Vector, material: u16) -> ConvexCollider<S> {
         ConvexCollider {
             body,
@@ -78,7 +78,7 @@ impl<S: Space> ConvexPart<S> {
     }
 }
 
-/// Half of the least thickness of points across these normals (m); zero where there is none.
+/// Returns half of the smallest width of points along these normals (m); zero without normals.
 fn half_thickness<S: Space>(points: &[S::Vector], normals: &[S::Vector]) -> f64 {
     let across = |n: &S::Vector| {
         let along = points.iter().map(|p| p.dot(n));
@@ -91,48 +91,48 @@ fn half_thickness<S: Space>(points: &[S::Vector], normals: &[S::Vector]) -> f64 
     if least.is_finite() { least } else { 0.0 }
 }
 
-/// Where two bodies are near: one point of a contact.
+/// A contact point between two bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint<V> {
-    /// Point of the candidate's surface (m).
+    /// Point on the candidate's surface (m).
     pub on_candidate: V,
-    /// Point of the antagonist's surface (m).
+    /// Point on the antagonist's surface (m).
     pub on_antagonist: V,
     /// Unit normal, from the antagonist to the candidate.
     pub normal: V,
-    /// Gap (m), negative where they overlap.
+    /// Gap (m), negative for penetration.
     pub gap: f64,
-    /// Name of the corner that is touched; stable while the bodies slide along each other.
+    /// Key of the corner in contact; stable while the bodies slide along each other.
     pub feature: u64,
-    /// Length of the face that this point stands for (m); in space the radius of a disk of its area; zero for a
-    /// corner.
+    /// Length of the face represented by this point (m); in 3D the radius of a disk of equal area; zero for
+    /// a corner.
     pub share: f64,
-    /// Whether a bond can hold here: sides face each other, or a ball or an end of a capsule touches.
+    /// Whether a bond can form here: two opposite faces, a ball, or the end of a capsule.
     pub facing: bool,
 }
 
-/// How near is near.
+/// Tolerances for finding contact points.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactTolerances {
-    /// Meetings with a larger gap are not looked for (m).
+    /// Largest gap that is searched (m).
     pub reach: f64,
-    /// Two corners that are no farther apart along a face are seen as corner on face (m): between corners
-    /// that coincide there is no direction.
+    /// Two corners no farther apart than this along a face count as corner on face (m), since coincident
+    /// corners define no direction.
     pub slack: f64,
-    /// Whether a bond holds the pair: its sides are met even where two corners are nearer, so that what is
-    /// pulled open aslant keeps its points.
+    /// Whether the pair is bonded: face contacts are then kept even if two corners are nearer, so that a
+    /// bond that is opened obliquely keeps its points.
     pub held: bool,
 }
 
-/// What the narrow phase asks of a convex core. Vectors are in the world's axes, places relative to the
+/// Operations of the narrow phase on a convex core. Vectors are in world axes, positions relative to the
 /// antagonist's centre.
 pub trait Core<S: Space>: Clone + Debug + Send + Sync {
-    /// The core of a body that turned.
+    /// Returns the core of a rotated body.
     #[must_use]
     fn turned(&self, rotation: &S::Rotation) -> Self;
 
-    /// Meetings with another core, in the order of their features: this is the candidate and stands at
-    /// `apart`; `roundings` are the candidate's and the antagonist's (m).
+    /// Finds contact points with another core, in the order of their features. `self` is the candidate, with
+    /// its centre at `apart`; `roundings` are those of candidate and antagonist (m).
     fn meet(
         &self,
         other: &Self,
@@ -142,8 +142,8 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
         out: &mut Vec<ContactPoint<S::Vector>>,
     );
 
-    /// The meeting with a ball whose centre stands at `apart`; the ball is the candidate, the gap that to
-    /// the rounded core.
+    /// Returns the contact point with a ball whose centre is at `apart`; the ball is the candidate, and the
+    /// gap refers to the rounded core.
     fn meet_ball(&self, apart: &S::Vector, radius: f64, rounding: f64) -> ContactPoint<S::Vector> {
         let (distance, normal) = self.outward(apart);
         ContactPoint {
@@ -163,11 +163,11 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     /// Signed distance of a point from the core (m, negative inside) and the unit normal at the nearest point of it.
     fn outward(&self, point: &S::Vector) -> (f64, S::Vector);
 
-    /// Half of the least thickness across its faces (m); zero for a segment.
+    /// Returns half of the smallest width along its face normals (m); zero for a segment.
     fn half_thickness(&self) -> f64;
 
-    /// Meetings with a surface of a first body, in the order of their features. The core is in the
-    /// surface's frame, its centre at `at`.
+    /// Finds contact points with a surface of a first body, in the order of their features. The core is in
+    /// the surface's frame, with its centre at `at`.
     fn meet_surface(
         &self,
         surface: &dyn Surface<S>,
@@ -177,16 +177,16 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
         out: &mut Vec<ContactPoint<S::Vector>>,
     );
 
-    /// Corners of the rounded core for pictures and files (m): one closed line without its last point in the
-    /// plane, a polygon for every face in space.
+    /// Returns the outline of the rounded core for figures and files (m): in 2D one closed line without its
+    /// last point, in 3D one polygon per face.
     fn outline(&self, rounding: f64) -> Vec<Vec<S::Vector>>;
 
-    /// Its corners and faces.
+    /// Returns its corners and faces.
     fn boundary(&self) -> Boundary<S::Vector>;
 
-    /// The core of these corners and faces.
+    /// Builds a core from corners and faces.
     ///
     /// # Errors
-    /// Why they are those of none.
+    /// Why they are invalid.
     fn bounded_by(boundary: Boundary<S::Vector>) -> Result<Self, String>;
 }

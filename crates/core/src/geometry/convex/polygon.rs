@@ -1,4 +1,4 @@
-//! Convex polygons in the plane.
+//! Convex polygons in 2D.
 
 use super::{
     Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, mass, polygon_pair,
@@ -8,50 +8,50 @@ use crate::geometry::shape::Surface;
 use crate::geometry::space::{Dim2, Space};
 use nalgebra::{Matrix1, Vector2};
 
-/// Cosine of the angle below which two sides face each other: some five degrees.
+/// Cosine of the largest angle between two sides that count as opposite: about five degrees.
 const FACING: f64 = 0.996;
 
-/// Corners that go round against the clock, and the outward unit normals of the sides that begin in them.
-/// Two points are a segment with two sides.
+/// Anticlockwise corners, and the outward unit normals of the sides that start at them. Two points are a
+/// segment with two sides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     points: Vec<Vector2<f64>>,
     normals: Vec<Vector2<f64>>,
 }
 
-/// Why points are no convex polygon.
+/// Reason why points do not form a convex polygon.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum PolygonError {
     /// Fewer than three points.
     #[error("a polygon needs at least three points, got {0}")]
     TooFew(usize),
-    /// Not a number.
+    /// A coordinate is not finite.
     #[error("point {0} of the polygon is not finite")]
     NotFinite(usize),
     /// Two consecutive points coincide.
     #[error("points {0} and {1} of the polygon coincide; remove one of them")]
     Coincident(usize, usize),
-    /// The other way round.
-    #[error("the points of a polygon go round against the clock; turn their order")]
+    /// Clockwise order.
+    #[error("the points of a polygon must be in anticlockwise order; reverse their order")]
     Clockwise,
-    /// All on a line.
+    /// All points on one line.
     #[error("the points of the polygon lie on one line")]
     Flat,
-    /// A corner that points inwards.
+    /// A concave corner.
     #[error(
-        "the polygon is not convex at point {0}; make it of several convex ones (a body may have several shapes)"
+        "the polygon is not convex at point {0}; divide it into convex ones (a body may have several shapes)"
     )]
     NotConvex(usize),
     /// Three points on a line.
     #[error("point {0} of the polygon lies on the line between its neighbours; remove it")]
     Straight(usize),
-    /// The line turns more than once.
-    #[error("the line of the polygon crosses itself")]
+    /// The boundary winds around more than once.
+    #[error("the boundary of the polygon crosses itself")]
     Crosses,
 }
 
 impl Polygon {
-    /// From corners (m) that go round against the clock.
+    /// Creates a polygon from anticlockwise corners (m).
     ///
     /// # Errors
     /// Too few, coincident or non-finite points, points on a line, a polygon that is not convex.
@@ -95,13 +95,13 @@ impl Polygon {
         Ok(Self::with_normals(points))
     }
 
-    /// The segment between two points (m), which are not the same: the core of a capsule.
+    /// Creates the segment between two different points (m), the core of a capsule.
     pub fn segment(from: Vector2<f64>, to: Vector2<f64>) -> Self {
         Self::with_normals(vec![from, to])
     }
 
-    /// A regular polygon about the origin, its first corner on the x axis at `radius` (m); at least three
-    /// sides.
+    /// Creates a regular polygon about the origin, with its first corner on the x axis at `radius` (m) and
+    /// at least three sides.
     pub fn regular(sides: usize, radius: f64) -> Self {
         let angle = |k: usize| std::f64::consts::TAU * k as f64 / sides as f64;
         let corner = |k: usize| Vector2::new(angle(k).cos(), angle(k).sin()) * radius;
@@ -118,7 +118,7 @@ impl Polygon {
         Self { points, normals }
     }
 
-    /// The part of a body with this core and a rounding (m).
+    /// Returns the part of a body with this core and a rounding radius (m).
     pub fn part(&self, rounding: f64) -> ConvexPart<Dim2> {
         let properties = mass::of(&self.points, rounding);
         let core = Self {
@@ -135,33 +135,33 @@ impl Polygon {
         }
     }
 
-    /// Corners (m).
+    /// Returns the corners (m).
     pub fn points(&self) -> &[Vector2<f64>] {
         &self.points
     }
 
-    /// Outward unit normals of the sides; side k goes from corner k to the next.
+    /// Returns the outward unit normals of the sides; side k goes from corner k to the next.
     pub fn normals(&self) -> &[Vector2<f64>] {
         &self.normals
     }
 
-    /// Whether a side with this outward normal lies along the side that faces it, within some five degrees. The
-    /// round end of a capsule does so everywhere.
+    /// Returns whether a side with this outward normal is parallel to the opposite side, within about five
+    /// degrees. Always true for the round end of a capsule.
     pub fn faces(&self, normal: &Vector2<f64>) -> bool {
         self.points.len() == 2 || self.normals[self.facing(normal)].dot(normal) < -FACING
     }
 
-    /// The two ends of a side (m).
+    /// Returns the two ends of a side (m).
     pub fn side(&self, k: usize) -> (Vector2<f64>, Vector2<f64>) {
         (self.points[k], self.points[(k + 1) % self.points.len()])
     }
 
-    /// Distance of the farthest corner from the origin (m).
+    /// Returns the distance of the farthest corner from the origin (m).
     pub fn farthest(&self) -> f64 {
         self.points.iter().map(|p| p.norm()).fold(0.0, f64::max)
     }
 
-    /// The side whose normal points most against a direction.
+    /// Returns the side whose normal is most opposed to a direction.
     pub fn facing(&self, direction: &Vector2<f64>) -> usize {
         let against = |k: &usize| self.normals[*k].dot(direction);
         (0..self.normals.len())
@@ -169,8 +169,8 @@ impl Polygon {
             .unwrap_or(0)
     }
 
-    /// Signed distance of a point from the boundary (m, negative inside), the unit normal at the nearest
-    /// point of it, and the corner where that is one.
+    /// Returns the signed distance of a point from the boundary (m, negative inside), the unit normal at the
+    /// nearest point, and the corner if that is one.
     pub fn distance(&self, point: &Vector2<f64>) -> (f64, Vector2<f64>, Option<usize>) {
         let depth = |k: usize| (point - self.points[k]).dot(&self.normals[k]);
         let n = self.points.len();
@@ -182,7 +182,7 @@ impl Polygon {
         if depth(deepest) <= 0.0 || (s >= 0.0 && s <= (b - a).norm_squared()) {
             return (depth(deepest), self.normals[deepest], None);
         }
-        // Outside, beyond the ends of that side: the nearest side or corner of all.
+        // Outside, beyond the ends of that side: the nearest of all sides and corners.
         let mut best = (f64::INFINITY, self.normals[deepest], None);
         for k in 0..n {
             let (a, b) = self.side(k);

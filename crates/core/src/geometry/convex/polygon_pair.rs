@@ -1,9 +1,10 @@
-//! Two convex polygons: the side with the greatest separation, and the facing side clipped to it.
+//! Contact of two convex polygons: the side with the greatest separation, and the opposite side clipped to
+//! it.
 //!
-//! The distance of two polygons apart is the greatest separation over all directions (separating axes). It is
-//! either along the normal of a side, and then the facing side clipped to that side gives one or two
-//! points; or between two corners, and then there is one. Points are named after the corners they are at,
-//! so that names do not change when the two sides change their parts.
+//! The distance of two disjoint polygons is the greatest separation over all directions (separating axes).
+//! It occurs either along the normal of a side, and then the opposite side clipped to that side gives one or
+//! two points, or between two corners, and then there is one point. Points are named after their corners, so
+//! that the names do not change when the two sides exchange roles.
 
 use super::polygon::Polygon;
 use super::{ContactPoint, ContactTolerances};
@@ -11,8 +12,8 @@ use nalgebra::Vector2;
 
 type V = Vector2<f64>;
 
-/// Meetings of the candidate `a`, whose centre stands at `apart`, with `b` at the origin; `roundings` are
-/// theirs (m). In the order of their features.
+/// Finds the contact points of the candidate `a`, whose centre is at `apart`, with `b` at the origin, in the
+/// order of their features; `roundings` are those of both (m).
 pub fn meet(
     a: &Polygon,
     b: &Polygon,
@@ -27,7 +28,7 @@ pub fn meet(
     if from_a.max(from_b) > reach {
         return;
     }
-    // Of two sides that are as good the candidate's, however they are rounded.
+    // Of two equally good sides the candidate's is used, independent of rounding.
     let a_leads = from_a + gauge.slack * 1e-3 >= from_b;
     let best = if a_leads { from_a } else { from_b };
     if best > 0.0 {
@@ -93,12 +94,12 @@ pub fn meet(
     out[first..].sort_by_key(|m| m.feature);
 }
 
-/// The name of a corner of the candidate or the antagonist.
+/// Returns the name of a corner of the candidate or the antagonist.
 fn name(corner: usize, of_candidate: bool) -> u64 {
     2 * corner as u64 + u64::from(!of_candidate)
 }
 
-/// The greatest separation along a side of `of`, and that side; `to` stands at `apart` from it.
+/// Returns the greatest separation along a side of `of`, and that side; `to` is at `apart` relative to it.
 fn separation(of: &Polygon, to: &Polygon, apart: &V) -> (f64, usize) {
     let mut best = (f64::NEG_INFINITY, 0);
     for (k, n) in of.normals().iter().enumerate() {
@@ -115,7 +116,7 @@ fn separation(of: &Polygon, to: &Polygon, apart: &V) -> (f64, usize) {
     best
 }
 
-/// The two nearest corners and the way from that of `b` to that of `a`.
+/// Returns the two nearest corners and the vector from that of `b` to that of `a`.
 fn nearest_corners(a: &Polygon, b: &Polygon, apart: &V) -> (usize, usize, V) {
     let mut best = (0, 0, a.points()[0] + apart - b.points()[0]);
     for (i, p) in a.points().iter().enumerate() {
@@ -129,7 +130,7 @@ fn nearest_corners(a: &Polygon, b: &Polygon, apart: &V) -> (usize, usize, V) {
     best
 }
 
-/// The least distance between a corner of one and the inner part of a side of the other.
+/// Returns the smallest distance between a corner of one and the interior of a side of the other.
 fn nearest_side(a: &Polygon, b: &Polygon, apart: &V) -> f64 {
     let one = |of: &Polygon, to: &Polygon, apart: &V| {
         let mut best = f64::INFINITY;
@@ -149,20 +150,20 @@ fn nearest_side(a: &Polygon, b: &Polygon, apart: &V) -> f64 {
     one(a, b, &-apart).min(one(b, a, apart))
 }
 
-/// An end of the common part of two sides.
+/// An end of the overlap of two sides.
 struct End {
-    /// Place on the other side, relative to the leading polygon's centre (m).
+    /// Position on the other side, relative to the reference polygon's centre (m).
     at: V,
-    /// Its height over the leading side (m).
+    /// Its height above the reference side (m).
     height: f64,
-    /// The corner it is at.
+    /// The corner at the end.
     corner: usize,
-    /// Whether that is a corner of the leading polygon.
+    /// Whether the corner belongs to the reference polygon.
     of_lead: bool,
     share: f64,
 }
 
-/// The side of `other` that faces a side of `lead`, as far as it lies over it: its ends.
+/// Clips the side of `other` opposite a side of `lead` to that side; returns its ends.
 fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> Vec<End> {
     let normal = lead.normals()[side];
     let (from, to) = lead.side(side);
@@ -170,7 +171,7 @@ fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> 
     let along = (to - from) / length;
     let n = other.points().len();
     let facing = other.facing(&normal);
-    // Against the leading side's direction: the second end comes first.
+    // Opposed to the direction of the reference side: the second end comes first.
     let place = |corner: usize| {
         let p = other.points()[corner] + apart;
         ((p - from).dot(&along), p, corner)
@@ -189,7 +190,7 @@ fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> 
         of_lead: false,
         share: 0.0,
     };
-    // Where the facing side is over a corner of the leading one.
+    // Where the opposite side is above a corner of the reference side.
     let over = |t: f64, corner: usize| {
         let s = ((t - low.0) / (high.0 - low.0)).clamp(0.0, 1.0);
         let at = low.1 + (high.1 - low.1) * s;
@@ -203,7 +204,7 @@ fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> 
     };
     let (left, right) = (low.0.max(0.0), high.0.min(length));
     if right - left <= slack {
-        // Corner on corner, or a side seen from its end: the lower one.
+        // Corner on corner, or a side seen end-on: the lower one.
         let lower = if height(&low.1) <= height(&high.1) {
             low
         } else {
@@ -255,7 +256,7 @@ mod tests {
         out
     }
 
-    /// Corners on an ellipse: convex, of any number, at random.
+    /// Random convex polygon with corners on an ellipse.
     fn random(rng: &mut Pcg64) -> Polygon {
         loop {
             let n = rng.random_range(3..9);
@@ -274,7 +275,7 @@ mod tests {
         }
     }
 
-    /// Distance of two polygons apart by every pair of sides.
+    /// Distance of two disjoint polygons over every pair of sides.
     fn brute(a: &Polygon, b: &Polygon, apart: V) -> f64 {
         let mut best = f64::INFINITY;
         let mut one = |p: V, (from, to): (V, V)| {
@@ -305,7 +306,7 @@ mod tests {
             let points = met(&a, &b, apart, r);
             let gap = points.iter().map(|m| m.gap).fold(f64::INFINITY, f64::min);
             if one.max(two) <= 1e-9 {
-                // They overlap: the way out is the shortest along any side's normal.
+                // For penetration: the smallest depth along any side's normal.
                 assert!(
                     (gap + 0.15 - one.max(two)).abs() < 1e-12,
                     "{gap} {one} {two}"
@@ -318,7 +319,7 @@ mod tests {
                 .iter()
                 .min_by(|x, y| x.gap.total_cmp(&y.gap))
                 .unwrap();
-            // The two feet are as far apart as the gap says, along the normal.
+            // The distance of the two contact points is the gap, along the normal.
             let way = nearest.on_candidate - nearest.on_antagonist;
             assert!((way - nearest.normal * gap).norm() < 1e-12);
             assert!((nearest.normal.norm() - 1.0).abs() < 1e-12);
@@ -368,7 +369,7 @@ mod tests {
             assert_eq!(p.normal, V::new(0.0, 1.0));
             assert!((p.gap - 0.05).abs() < 1e-14 && (p.share - 1.0).abs() < 1e-14);
         }
-        // Of the same width: no corner is beyond the other, up to the slack.
+        // Of equal width: no corner is outside the other side by more than the slack.
         let gauge = ContactTolerances {
             reach: 0.1,
             slack: 1e-6,
@@ -384,7 +385,7 @@ mod tests {
                 assert!(out.iter().all(|m| (m.gap - gap).abs() < 1e-15));
             }
         }
-        // Beside each other's corner: one point, along the way between the corners.
+        // Next to each other's corners: one point, along the line between the corners.
         let mut out = Vec::new();
         let apart = V::new(2.03, 2.04);
         meet(&top, &top, &apart, [0.0; 2], &gauge, &mut out);
@@ -393,8 +394,8 @@ mod tests {
         assert!((out[0].normal - V::new(0.6, 0.8)).norm() < 1e-12);
     }
 
-    /// Opened aslant about a corner that has slid past the other's end, two corners are nearest; a bond over the
-    /// face still needs its two points.
+    /// Opened obliquely about a corner that has slid past the other's end, two corners are nearest; a bond
+    /// over the face still needs its two points.
     #[test]
     fn what_a_bond_holds_keeps_its_face() {
         let square = |turn: f64| {
@@ -403,7 +404,7 @@ mod tests {
             polygon.turned(&turn)
         };
         let (low, top) = (square(0.0), square(-0.05));
-        // The lower right corner of the upper square stands 0.02 above and 5e-4 beyond that of the lower one.
+        // The lower right corner of the upper square is 0.02 above and 5e-4 beyond that of the lower one.
         let right = top.points()[1];
         let apart = V::new(1.0 + 5e-4, 1.0 + 0.02) - right;
         for held in [false, true] {

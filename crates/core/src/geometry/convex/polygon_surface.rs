@@ -1,5 +1,5 @@
-//! A convex polygon and a surface of a first body: the polygon's corners on the surface's faces and
-//! corners, and the surface's corners on the polygon's sides.
+//! Contact of a convex polygon and a surface of a first body: the polygon's corners on the surface's faces
+//! and corners, and the surface's corners on the polygon's sides.
 
 use super::polygon::Polygon;
 use super::{ContactPoint, ContactTolerances, DEEP};
@@ -9,12 +9,14 @@ use nalgebra::Vector2;
 
 type V = Vector2<f64>;
 
-/// How far a normal may be out of a corner's cone and still count as in it.
+/// Tolerance for a normal outside a corner's cone.
 const CONE: f64 = 1e-9;
-/// Two faces of a profile are met at one place when it is no wider than this part of the reach.
+/// Two faces of a profile give one contact point if their points are closer than this fraction of the search
+/// distance.
 const SEAM: f64 = 1e-9;
 
-/// Meetings of the polygon, centred at `at` in the surface's frame, in the order of their features.
+/// Finds the contact points of the polygon, centred at `at` in the surface's frame, in the order of their
+/// features.
 pub fn meet(
     polygon: &Polygon,
     surface: &dyn Surface<Dim2>,
@@ -34,7 +36,7 @@ pub fn meet(
         surface.touches(&p, deep, &mut touches);
         keep_nearest(&mut touches, reach);
         for (t, touch) in touches.iter().enumerate() {
-            // Over a seam both faces are met alike.
+            // At a seam both faces give the same point.
             let alike = |other: &ClosestPoint<V>| {
                 (other.closest_point - touch.closest_point).norm() <= SEAM * reach
                     && other.normal.dot(&touch.normal) >= 1.0 - SEAM
@@ -42,7 +44,7 @@ pub fn meet(
             if touches[..t].iter().any(alike) {
                 continue;
             }
-            // Of the side that faces the surface, or a corner that points to it.
+            // Corners of the opposite side, or a corner that points to the surface.
             let facing = polygon.facing(&touch.normal);
             if k != facing && k != (facing + 1) % n {
                 continue;
@@ -64,7 +66,7 @@ pub fn meet(
     surface.corners(&(at - extent), &(at + extent), &mut corners);
     for corner in &corners {
         let (distance, outward, own) = polygon.distance(&(corner.at - at));
-        // Corner on corner was met above.
+        // Corner on corner was found above.
         if own.is_some() || distance > reach {
             continue;
         }
@@ -87,8 +89,9 @@ pub fn meet(
     out[first..].sort_by_key(|m| m.feature);
 }
 
-/// Of what a corner touches, leaves what is within reach; where that is nothing, the corner may have sunk in deeper within
-/// a step: then the place nearest to it, if it is behind that. A corner near a thin part is far behind its other side.
+/// Keeps the points of a corner within the search distance. If there are none, the corner may have
+/// penetrated deeper within a step: then keeps the nearest point if the corner is behind it. A corner near a
+/// thin part is far behind its other side.
 fn keep_nearest(touches: &mut Vec<ClosestPoint<V>>, reach: f64) {
     let depth = |t: &ClosestPoint<V>| t.distance.abs();
     let nearest = touches.iter().map(depth).fold(f64::INFINITY, f64::min);
@@ -169,12 +172,12 @@ mod tests {
     #[test]
     fn corners_that_sank_in_within_a_step_are_found_and_those_before_a_thin_part_are_not() {
         let floor = Polyline::new(vec![V::new(-5.0, 0.0), V::new(5.0, 0.0)], None).unwrap();
-        // Deeper than the reach of 0.2, and than a quarter of the size, 0.25 sqrt(2).
+        // Deeper than the search distance of 0.2, and than a quarter of the size, 0.25 sqrt(2).
         let sunk = met(&floor, &square(), V::new(0.4, 0.7), 0.0);
         assert_eq!(sunk.len(), 2, "{sunk:?}");
         assert!(sunk.iter().all(|m| (m.gap + 0.3).abs() < 1e-15));
         assert!(met(&floor, &square(), V::new(0.4, 0.6), 0.0).is_empty());
-        // A fin 0.05 wide stands on the floor; the square is 0.25 to its left, 0.3 behind its right side.
+        // A fin 0.05 wide on the floor; the square is 0.25 to its left, 0.3 behind its right side.
         let fin = [
             (-5.0, -9.0),
             (2.0, -9.0),

@@ -1,4 +1,4 @@
-//! Convex polyhedra in space, and the segments of capsules.
+//! Convex polyhedra in 3D, and the segments of capsules.
 
 use super::{
     Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, polyhedron_mass, polyhedron_pair,
@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 type V = Vector3<f64>;
 
-/// Corners, faces between them, and outward unit normals. Two points without faces are a segment.
+/// Corners, faces, and outward unit normals. Two points without faces are a segment.
 #[derive(Clone, Debug)]
 pub struct Polyhedron {
     points: Vec<V>,
@@ -21,67 +21,67 @@ pub struct Polyhedron {
     topology: Arc<Topology>,
 }
 
-/// Which corners, edges and faces belong together.
+/// Incidence of corners, edges and faces.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Topology {
-    /// Corners of each face, against the clock seen from outside.
+    /// Corners of each face, anticlockwise seen from outside.
     pub faces: Vec<Vec<u32>>,
     /// Edges of each face: side k goes from its corner k to the next.
     pub sides: Vec<Vec<u32>>,
     /// All edges.
     pub edges: Vec<Edge>,
-    /// Faces about each corner, against the clock seen from outside.
+    /// Faces around each corner, anticlockwise seen from outside.
     pub about: Vec<Vec<u32>>,
 }
 
-/// Two corners and the faces on both sides; a segment has no faces.
+/// An edge: two corners and the faces on both sides; a segment has no faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
     /// From and to.
     pub corners: [u32; 2],
-    /// The face that goes along the edge, and the one that goes against it.
+    /// The face oriented along the edge, and the one oriented against it.
     pub faces: Option<[u32; 2]>,
 }
 
-/// Why points are no convex polyhedron.
+/// Reason why points do not form a convex polyhedron.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum PolyhedronError {
     /// Fewer than four points.
     #[error("a polyhedron needs at least four points, got {0}")]
     TooFew(usize),
-    /// More than names of contact points can tell apart.
+    /// More edges than names of contact points can distinguish.
     #[error("a polyhedron has at most {MAX_EDGES} edges, got {0}; take fewer points")]
     TooMany(usize),
-    /// Not a number.
+    /// A coordinate is not finite.
     #[error("point {0} of the polyhedron is not finite")]
     NotFinite(usize),
-    /// All in a plane.
+    /// All points in one plane.
     #[error("the points of the polyhedron lie in one plane, or nearly so")]
     Flat,
-    /// Two points at one place.
+    /// Two coincident points.
     #[error("points {0} and {1} of the polyhedron are at the same place; remove one of them")]
     Coincident(usize, usize),
     /// A point inside the hull, or on one of its faces.
     #[error(
-        "point {0} of the polyhedron is no corner of the hull of its points; remove it, or make the body of several convex ones (a body may have several shapes)"
+        "point {0} of the polyhedron is not a corner of the convex hull of its points; remove it, or divide the body into convex ones (a body may have several shapes)"
     )]
     NotConvex(usize),
-    /// Faces do not close.
-    #[error("the faces of the polyhedron do not close")]
+    /// The faces do not form a closed surface.
+    #[error("the faces of the polyhedron do not form a closed surface")]
     Open,
 }
 
-/// Cosine of the angle below which two faces face each other: some five degrees.
+/// Cosine of the largest angle between two faces that count as opposite: about five degrees.
 const FACING: f64 = 0.996;
 
-/// What the names of contact points can tell apart.
+/// Maximum number of edges that the names of contact points can distinguish.
 pub const MAX_EDGES: usize = 1 << 14;
 
 impl Polyhedron {
-    /// The hull of points (m), all of which must be its corners.
+    /// Creates the convex hull of points (m), all of which must be its corners.
     ///
     /// # Errors
-    /// Too few or non-finite points, points in a plane, inside the hull or twice at one place.
+    /// Too few or non-finite points, coplanar points, points inside the hull, coincident points.
     pub fn new(points: &[V]) -> Result<Self, PolyhedronError> {
         let hull = Self::hull(points)?;
         let size = hull.farthest();
@@ -97,10 +97,10 @@ impl Polyhedron {
         Ok(hull)
     }
 
-    /// The hull of points (m), whatever is inside.
+    /// Creates the convex hull of points (m), ignoring interior points.
     ///
     /// # Errors
-    /// Too few or non-finite points, points in a plane.
+    /// Too few or non-finite points, coplanar points.
     pub fn hull(points: &[V]) -> Result<Self, PolyhedronError> {
         if points.len() < 4 {
             return Err(PolyhedronError::TooFew(points.len()));
@@ -108,7 +108,7 @@ impl Polyhedron {
         if let Some(k) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
             return Err(PolyhedronError::NotFinite(k));
         }
-        // The library's tolerances are those of bodies of size one about the origin.
+        // The tolerances of the library assume bodies of unit size at the origin.
         let centre = points.iter().sum::<V>() / points.len() as f64;
         let size = points
             .iter()
@@ -132,7 +132,7 @@ impl Polyhedron {
                 corners[first..first + f.num_vertices_or_edges as usize].to_vec()
             })
             .collect();
-        // Corners as given, not as they come back from the other scale.
+        // The given corners, not those transformed back from the unit scale.
         let given = |p: &HullPoint| {
             let p = V::new(p.x, p.y, p.z);
             let scaled = |k: &usize| (V::new(scaled[*k].x, scaled[*k].y, scaled[*k].z) - p).norm();
@@ -152,11 +152,11 @@ impl Polyhedron {
         Ok(out)
     }
 
-    /// From corners (m) and faces that go round against the clock seen from outside; the faces must be those of a
+    /// Creates a polyhedron from corners (m) and faces that are anticlockwise seen from outside and form a
     /// convex body.
     ///
     /// # Errors
-    /// The faces do not close, or there are too many.
+    /// The faces are not closed, or there are too many.
     pub fn from_faces(points: Vec<V>, faces: Vec<Vec<u32>>) -> Result<Self, PolyhedronError> {
         let topology = Topology::new(points.len(), faces)?;
         let normals = topology.faces.iter().map(|f| normal(&points, f)).collect();
@@ -167,7 +167,7 @@ impl Polyhedron {
         })
     }
 
-    /// A cuboid about the origin (m).
+    /// Creates a cuboid about the origin (m).
     pub fn cuboid(size: [f64; 3]) -> Self {
         let [x, y, z] = size.map(|s| 0.5 * s);
         let points = (0..8)
@@ -189,7 +189,7 @@ impl Polyhedron {
         Self::from_faces(points, faces).expect("the faces of a cuboid close")
     }
 
-    /// The segment between two points (m), which are not the same: the core of a capsule.
+    /// Creates the segment between two different points (m), the core of a capsule.
     pub fn segment(from: V, to: V) -> Self {
         let edge = Edge {
             corners: [0, 1],
@@ -207,7 +207,7 @@ impl Polyhedron {
         }
     }
 
-    /// The part of a body with this core and a rounding (m).
+    /// Returns the part of a body with this core and a rounding radius (m).
     pub fn part(&self, rounding: f64) -> ConvexPart<Dim3> {
         let properties = polyhedron_mass::of(self, rounding);
         let core = Self {
@@ -224,41 +224,41 @@ impl Polyhedron {
         }
     }
 
-    /// Corners (m).
+    /// Returns the corners (m).
     pub fn points(&self) -> &[V] {
         &self.points
     }
 
-    /// Outward unit normals of the faces.
+    /// Returns the outward unit normals of the faces.
     pub fn normals(&self) -> &[V] {
         &self.normals
     }
 
-    /// Corners, edges and faces.
+    /// Returns the incidence of corners, edges and faces.
     pub fn topology(&self) -> &Topology {
         &self.topology
     }
 
-    /// The two ends of an edge (m).
+    /// Returns the two ends of an edge (m).
     pub fn ends(&self, edge: usize) -> [V; 2] {
         self.topology.edges[edge]
             .corners
             .map(|c| self.points[c as usize])
     }
 
-    /// Corners of a face (m).
+    /// Iterates over the corners of a face (m).
     pub fn face(&self, face: usize) -> impl Iterator<Item = V> + '_ {
         self.topology.faces[face]
             .iter()
             .map(|c| self.points[*c as usize])
     }
 
-    /// Distance of the farthest corner from the origin (m).
+    /// Returns the distance of the farthest corner from the origin (m).
     pub fn farthest(&self) -> f64 {
         self.points.iter().map(V::norm).fold(0.0, f64::max)
     }
 
-    /// The corner that is lowest along a direction.
+    /// Returns the corner that is lowest along a direction.
     pub fn lowest(&self, direction: &V) -> usize {
         let height = |k: &usize| self.points[*k].dot(direction);
         (0..self.points.len())
@@ -266,7 +266,8 @@ impl Polyhedron {
             .unwrap_or(0)
     }
 
-    /// The face about the lowest corner along a direction that looks most against it; none of a segment.
+    /// Returns the face at the lowest corner along a direction whose normal is most opposed to it; `None`
+    /// for a segment.
     pub fn facing(&self, direction: &V) -> Option<usize> {
         let against = |f: &u32| self.normals[*f as usize].dot(direction);
         self.topology.about[self.lowest(direction)]
@@ -275,15 +276,15 @@ impl Polyhedron {
             .map(|f| *f as usize)
     }
 
-    /// Whether a face with this outward normal lies along the face that faces it, within some five degrees. A
-    /// segment does so everywhere.
+    /// Returns whether a face with this outward normal is parallel to the opposite face, within about five
+    /// degrees. Always true for a segment.
     pub fn faces(&self, normal: &V) -> bool {
         self.facing(normal)
             .is_none_or(|f| self.normals[f].dot(normal) < -FACING)
     }
 
-    /// Signed distance of a point from the boundary (m, negative inside) and the unit normal at the nearest point
-    /// of it.
+    /// Returns the signed distance of a point from the boundary (m, negative inside) and the unit normal at
+    /// the nearest point.
     pub fn distance(&self, point: &V) -> (f64, V) {
         let height = |f: usize| {
             let corner = self.topology.faces[f][0] as usize;
@@ -317,7 +318,7 @@ impl Polyhedron {
         nearest
     }
 
-    /// Whether a point is over a face, seen along its normal.
+    /// Returns whether the projection of a point along a face's normal is on the face.
     fn over(&self, face: usize, point: &V) -> bool {
         let corners = &self.topology.faces[face];
         (0..corners.len()).all(|k| {
@@ -328,12 +329,13 @@ impl Polyhedron {
     }
 }
 
-/// A unit vector normal to another.
+/// Returns a unit vector perpendicular to another.
 pub fn across(v: &V) -> V {
     Dim3::tangents(&v.normalize())[0]
 }
 
-/// Outward normal of a face by its area vector: exact in the mean where corners are not quite in a plane.
+/// Returns the outward normal of a face from its area vector, an average where the corners are not exactly
+/// coplanar.
 pub fn normal(points: &[V], face: &[u32]) -> V {
     let origin = points[face[0] as usize];
     let at = |k: usize| points[face[k] as usize] - origin;
@@ -342,7 +344,7 @@ pub fn normal(points: &[V], face: &[u32]) -> V {
 }
 
 impl Topology {
-    /// From the corners of the faces.
+    /// Builds the incidence from the corners of the faces.
     fn new(corners: usize, faces: Vec<Vec<u32>>) -> Result<Self, PolyhedronError> {
         let mut edges: Vec<Edge> = Vec::new();
         let mut sides = Vec::with_capacity(faces.len());
@@ -386,7 +388,8 @@ impl Topology {
         Ok(out)
     }
 
-    /// Faces about a corner: the next one goes out along the edge on which this one comes in.
+    /// Returns the faces around a corner: each next face leaves along the edge on which the previous one
+    /// arrives.
     fn around(&self, corner: u32) -> Result<Vec<u32>, PolyhedronError> {
         let place = |f: usize| self.faces[f].iter().position(|c| *c == corner);
         let first = (0..self.faces.len()).find(|f| place(*f).is_some());

@@ -1,20 +1,20 @@
-//! The face that faces a leading face, cut off at its sides (Sutherland and Hodgman, 1974).
+//! Clipping of the opposite face to the sides of a reference face (Sutherland and Hodgman, 1974).
 
 use super::polyhedron::Polyhedron;
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
 
-/// Names of contact points. A corner or a crossing of two edges has the same name whichever face leads.
+/// Names of contact points. A corner or a crossing of two edges has the same name for either reference face.
 pub mod name {
     use super::super::polyhedron::MAX_EDGES;
 
-    /// A corner of the candidate or of the antagonist.
+    /// Returns the name of a corner of the candidate or of the antagonist.
     pub fn corner(corner: usize, of_candidate: bool) -> u64 {
         4 * corner as u64 + u64::from(!of_candidate)
     }
 
-    /// An edge of the candidate over one of the antagonist.
+    /// Returns the name of the crossing of an edge of the candidate with one of the antagonist.
     pub fn crossing(of_candidate: usize, of_antagonist: usize) -> u64 {
         4 * (of_candidate * MAX_EDGES + of_antagonist) as u64 + 2
     }
@@ -29,46 +29,46 @@ pub mod name {
     }
 }
 
-/// A face and what faces it. Vectors are relative to the leading polyhedron's centre.
+/// A reference face and its opposite. Vectors are relative to the reference polyhedron's centre.
 pub struct Lead<'a> {
-    /// The polyhedron whose face leads.
+    /// The polyhedron of the reference face.
     pub own: &'a Polyhedron,
     /// The other one.
     pub other: &'a Polyhedron,
-    /// The leading face.
+    /// The reference face.
     pub face: usize,
-    /// Where the other one's centre stands (m).
+    /// Centre of the other polyhedron (m).
     pub apart: V,
-    /// Whether the leading face is the candidate's.
+    /// Whether the reference face belongs to the candidate.
     pub of_candidate: bool,
 }
 
-/// A point of the facing face.
+/// A point of the opposite face.
 pub struct Point {
-    /// Where it is (m).
+    /// Position (m).
     pub at: V,
-    /// Its height over the leading face (m).
+    /// Height above the reference face (m).
     pub height: f64,
-    /// Outward normal of the leading face.
+    /// Outward normal of the reference face.
     pub normal: V,
     /// Its name.
     pub feature: u64,
-    /// Radius of a disk with its part of the common area (m).
+    /// Radius of a disk with its fraction of the common area (m).
     pub share: f64,
-    /// Whether the two faces lie along each other.
+    /// Whether the two faces are parallel.
     pub facing: bool,
 }
 
-/// What a side of the polygon at hand lies along.
+/// Origin of a side of the current polygon.
 #[derive(Clone, Copy)]
 enum Side {
     /// An edge of the other polyhedron.
     Other(usize),
-    /// A side of the leading face.
+    /// A side of the reference face.
     Lead(usize),
 }
 
-/// A corner of the polygon at hand, and the side that begins in it.
+/// A corner of the current polygon, and the side that starts at it.
 #[derive(Clone, Copy)]
 struct Corner {
     at: V,
@@ -76,7 +76,8 @@ struct Corner {
     side: Side,
 }
 
-/// The points of the facing face that are over the leading one, or beside it by no more than `slack` (m).
+/// Returns the points of the opposite face that are above the reference face, or beside it by at most
+/// `slack` (m).
 pub fn clip(lead: &Lead, slack: f64) -> Vec<Point> {
     let normal = lead.own.normals()[lead.face];
     let mut polygon = facing(lead, &normal);
@@ -121,7 +122,7 @@ pub fn clip(lead: &Lead, slack: f64) -> Vec<Point> {
         .collect()
 }
 
-/// The face of the other polyhedron that faces the leading one; the edge, of a segment.
+/// Returns the face of the other polyhedron opposite the reference face; for a segment its edge.
 fn facing(lead: &Lead, normal: &V) -> Vec<Corner> {
     let topology = lead.other.topology();
     let corner = |c: u32, side: u32| Corner {
@@ -143,7 +144,8 @@ fn facing(lead: &Lead, normal: &V) -> Vec<Corner> {
 }
 
 impl Lead<'_> {
-    /// The name of the point where a side of the polygon at hand crosses side `k` of the leading face.
+    /// Returns the name of the point where a side of the current polygon crosses side `k` of the reference
+    /// face.
     fn name(&self, side: Side, k: usize, sides: &[u32]) -> u64 {
         let edge = |k: usize| sides[k] as usize;
         match side {
@@ -159,7 +161,7 @@ impl Lead<'_> {
     }
 }
 
-/// Of points nearer than `slack` to the one before only that one stays.
+/// Removes points closer than `slack` to the previous one.
 fn merge(polygon: &mut Vec<Corner>, slack: f64) {
     polygon.dedup_by(|b, a| (b.at - a.at).norm() <= slack);
     while polygon.len() > 1 && (polygon[0].at - polygon[polygon.len() - 1].at).norm() <= slack {

@@ -1,5 +1,5 @@
-//! Volume, centre and moments of inertia of a rounded convex polyhedron: the polyhedron, a prism on each face, a
-//! wedge of a cylinder along each edge and a sector of a ball at each corner.
+//! Volume, centre and inertia tensor of a rounded convex polyhedron, composed of the polyhedron, a prism on
+//! each face, a cylinder wedge along each edge and a ball sector at each corner.
 
 use super::polyhedron::Polyhedron;
 use nalgebra::{Matrix3, Vector3};
@@ -15,13 +15,14 @@ pub struct MassProperties {
     pub volume: f64,
     /// Centre of mass (m).
     pub centre: V,
-    /// Moments of inertia about the centre of mass (m^5).
+    /// Inertia tensor about the centre of mass (m^5).
     pub inertia: M,
 }
 
-/// Of the points within `rounding` (m) of a convex core; of a segment they are a capsule.
+/// Computes the mass properties of the points within `rounding` (m) of a convex core; a segment gives a
+/// capsule.
 pub fn of(core: &Polyhedron, rounding: f64) -> MassProperties {
-    // About the first corner, so that a place far from the origin costs no digits.
+    // Relative to the first corner, to avoid cancellation far from the origin.
     let origin = core.points()[0];
     let mut sum = Sum::default();
     let (topology, normals) = (core.topology(), core.normals());
@@ -91,7 +92,7 @@ impl Sum {
         self.second += second;
     }
 
-    /// The tetrahedron (origin, a, b, c).
+    /// Adds the tetrahedron (origin, a, b, c).
     fn tetrahedron(&mut self, a: V, b: V, c: V) {
         let volume = a.dot(&b.cross(&c)) / 6.0;
         let s = a + b + c;
@@ -99,7 +100,7 @@ impl Sum {
         self.add(volume, s * (volume / 4.0), own * (volume / 20.0));
     }
 
-    /// What is within `height` outside a triangle.
+    /// Adds the prism of this height outside a triangle.
     fn prism(&mut self, [a, b, c]: [V; 3], n: &V, height: f64) {
         let area = 0.5 * (b - a).cross(&(c - a)).norm();
         let s = a + b + c;
@@ -115,7 +116,7 @@ impl Sum {
         );
     }
 
-    /// What is within `radius` of an edge, between the directions of the arc.
+    /// Adds the points within `radius` of an edge, between the directions of the arc.
     fn wedge(&mut self, [a, b]: [V; 2], arc: &Arc2, radius: f64) {
         let length = (b - a).norm();
         let along = (a + b) * (0.5 * length);
@@ -129,7 +130,7 @@ impl Sum {
         );
     }
 
-    /// What is within `radius` of a corner, between the directions of the cone.
+    /// Adds the points within `radius` of a corner, between the directions of the cone.
     fn sector(&mut self, corner: V, cone: &Cone, radius: f64) {
         let volume = cone.angle * radius.powi(3) / 3.0;
         let out = cone.first * (radius.powi(4) / 4.0);
@@ -164,7 +165,7 @@ impl Arc2 {
         }
     }
 
-    /// All directions normal to an axis.
+    /// Integrates over all directions perpendicular to an axis.
     fn full(axis: &V) -> Self {
         let t = axis.normalize();
         Self {
@@ -183,11 +184,12 @@ struct Cone {
 }
 
 impl Cone {
-    /// Between unit vectors that go round against the clock.
+    /// Integrates over the cone of unit vectors given anticlockwise.
     ///
-    /// The solid angle by van Oosterom and Strackee (1983); the others by Stokes' theorem on the arcs, whose planes
-    /// have the normals m: int u = sum angle m/2, and, u u^T - 1/3 being a spherical harmonic of degree 2,
-    /// int (u u^T - 1/3) = sum (m N^T + N m^T)/6 with N = int u over the arc.
+    /// The solid angle follows van Oosterom and Strackee (1983); the others follow from Stokes' theorem on
+    /// the arcs, whose planes have the normals m: int u = sum angle m/2, and, since u u^T - 1/3 is a
+    /// spherical harmonic of degree 2, int (u u^T - 1/3) = sum (m N^T + N m^T)/6 with N = int u over the
+    /// arc.
     fn of(normals: &[V]) -> Self {
         let a = &normals[0];
         let mut angle = 0.0;
@@ -213,7 +215,7 @@ impl Cone {
         }
     }
 
-    /// All directions within a right angle of one.
+    /// Integrates over the half space of directions about one.
     fn half(direction: &V) -> Self {
         Self {
             angle: 2.0 * PI,
@@ -270,7 +272,8 @@ mod tests {
             r,
         );
         let (rod, half) = (PI * r * r * l, 2.0 / 3.0 * PI * r.powi(3));
-        // A half ball has its centre 3 r/8 from the cut and 2/5 r^2 about the ball's centre.
+        // The centroid of a half ball is 3 r/8 from the cut, and its moment is 2/5 r^2 per volume about the
+        // ball's centre.
         let c = 0.375 * r;
         let own = half * (0.4 * r * r - c * c + (0.5 * l + c).powi(2));
         let across = rod * (r * r / 4.0 + l * l / 12.0) + 2.0 * own;
@@ -283,7 +286,8 @@ mod tests {
 
     #[test]
     fn a_rounded_cuboid_is_measured_by_its_parts() {
-        // By symmetry only the second moments along the axes: core, slabs, quarter rods, eighths of a ball.
+        // By symmetry only the second moments along the axes are nonzero: core, slabs, quarter cylinders,
+        // eighths of a ball.
         let (size, r) = ([1.0, 2.0, 3.0], 0.4);
         let m = of(&Polyhedron::cuboid(size), r);
         let volume: f64 = size.iter().product();

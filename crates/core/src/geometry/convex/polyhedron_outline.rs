@@ -1,4 +1,5 @@
-//! Faces of a rounded polyhedron for pictures and files: its faces moved out, and what rounds the edges and corners.
+//! Faces of a rounded polyhedron for figures and files: its faces moved outwards, and the rounding of edges
+//! and corners.
 
 use super::polyhedron::Polyhedron;
 use nalgebra::Vector3;
@@ -6,7 +7,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 type V = Vector3<f64>;
 
-/// Polygons against the clock seen from outside (m).
+/// Returns polygons that are anticlockwise seen from outside (m).
 pub fn of(core: &Polyhedron, rounding: f64) -> Vec<Vec<V>> {
     let (topology, normals) = (core.topology(), core.normals());
     if topology.faces.is_empty() {
@@ -37,7 +38,7 @@ pub fn of(core: &Polyhedron, rounding: f64) -> Vec<Vec<V>> {
     out
 }
 
-/// Rings about the axis from one end to the other.
+/// Returns rings about the axis from one end to the other.
 fn capsule(from: V, to: V, radius: f64) -> Vec<Vec<V>> {
     const AROUND: usize = 16;
     const BELOW: usize = 4;

@@ -1,11 +1,13 @@
-//! Two convex polyhedra: a face with the facing face clipped to it, or the two nearest points of edges and corners.
+//! Contact of two convex polyhedra: a face with the opposite face clipped to it, or the two nearest points
+//! of edges and corners.
 //!
-//! Of all faces the one with the greatest separation leads. If the other polyhedron's lowest point lies over it,
-//! that separation is the distance, and the facing face, cut off at the sides of the leading one, gives the points.
-//! Otherwise two edges (their corners among them) are nearest: there is one point. Where the two overlap it is the
-//! axis of least depth among the faces' normals and the edges' products (separating axes); an edge pair counts if
-//! the normal cones of both hold the axis (D. Gregorius, GDC 2013). Points are named after the corners and edges
-//! they are at, so that names do not change when the two faces change their parts.
+//! The reference face is the one with the greatest separation. If the other polyhedron's lowest point is
+//! above it, that separation is the distance, and the opposite face, clipped to the sides of the reference
+//! face, gives the points. Otherwise two edges (including their corners) are nearest, and there is one
+//! point. For penetrating polyhedra the normal is the axis of least depth among face normals and edge
+//! products (separating axes); an edge pair counts if the normal cones of both contain the axis (D.
+//! Gregorius, GDC 2013). Points are named after their corners and edges, so that the names do not change
+//! when the two faces exchange roles.
 
 use super::polyhedron::{Polyhedron, across};
 use super::polyhedron_clip::{self, Lead, name};
@@ -14,13 +16,13 @@ use nalgebra::Vector3;
 
 type V = Vector3<f64>;
 
-/// One axis is as good as another within this part of the slack,
+/// Two axes count as equally good within this fraction of the slack,
 const ALIKE: f64 = 1e-3;
-/// and, for rounding, of the distance of the centres.
+/// plus, for rounding, this fraction of the distance of the centres.
 const ROUNDING: f64 = 1e-13;
 
-/// Meetings of the candidate `a`, whose centre stands at `apart`, with `b` at the origin; `roundings` are theirs
-/// (m). In the order of their features.
+/// Finds the contact points of the candidate `a`, whose centre is at `apart`, with `b` at the origin, in the
+/// order of their features; `roundings` are those of both (m).
 pub fn meet(
     a: &Polyhedron,
     b: &Polyhedron,
@@ -39,7 +41,7 @@ pub fn meet(
     if from_b > reach {
         return;
     }
-    // Of two faces that are as good the candidate's, however they are rounded.
+    // Of two equally good faces the candidate's is used, independent of rounding.
     let a_leads = from_a + alike >= from_b;
     let best = from_a.max(from_b);
     let pair = Pair {
@@ -64,7 +66,7 @@ pub fn meet(
     };
     let first = out.len();
     let over = |p: &polyhedron_clip::Point| p.height <= best + alike;
-    // What is bonded over a face stays so while it bends, though edges may be nearer then.
+    // A bond over a face keeps it while it bends, even if edges become nearer.
     let bonded = gauge.held && points.len() > 2;
     if bonded || best >= -gauge.slack && points.iter().any(over) {
         pair.face(&points, a_leads, gauge, out);
@@ -80,7 +82,7 @@ pub fn meet(
     if best > 0.0 || rods || crossed.as_ref().is_some_and(|c| c.depth > 0.0) {
         let near = nearest(a, b, apart);
         let distance = near.way.norm();
-        // Beside the face by no more than the slack.
+        // Beside the face by at most the slack.
         let beside = best > 0.0
             && distance * distance - best * best <= gauge.slack * gauge.slack
             && !points.is_empty();
@@ -105,7 +107,7 @@ pub fn meet(
     out[first..].sort_by_key(|m| m.feature);
 }
 
-/// The two, and where they stand.
+/// The two polyhedra and their positions.
 struct Pair<'a> {
     a: &'a Polyhedron,
     b: &'a Polyhedron,
@@ -118,7 +120,7 @@ impl Pair<'_> {
         self.roundings[0] + self.roundings[1]
     }
 
-    /// One point, from the points of the two cores (m) and their signed distance.
+    /// Adds one point, from the points of the two cores (m) and their signed distance.
     fn push(
         &self,
         at: &[V; 2],
@@ -138,7 +140,7 @@ impl Pair<'_> {
         });
     }
 
-    /// The points of a face.
+    /// Adds the points of a face contact.
     fn face(
         &self,
         points: &[polyhedron_clip::Point],
@@ -151,7 +153,7 @@ impl Pair<'_> {
             if gap > gauge.reach {
                 continue;
             }
-            // The point is on the other core; its foot on the leading one is below it.
+            // The point is on the other core; its projection on the reference core is below it.
             let at = if a_leads {
                 point.at + self.apart
             } else {
@@ -171,7 +173,7 @@ impl Pair<'_> {
         }
     }
 
-    /// Two edges that are nearest; two points where they lie side by side.
+    /// Adds the point of two nearest edges; two points where they are parallel.
     fn edges(&self, near: &Nearest, gauge: &ContactTolerances, out: &mut Vec<ContactPoint<V>>) {
         let distance = near.way.norm();
         let [e, f] = near.edges;
@@ -196,8 +198,8 @@ impl Pair<'_> {
     }
 }
 
-/// The direction of a way between two edges. Where that is the edges' product but for rounding (m) it is that:
-/// between edges that all but touch the way alone has no direction.
+/// Returns the direction between two edges. Where it equals the edges' product up to rounding (m), the
+/// product is used: between edges almost in contact, the difference vector alone has no accurate direction.
 fn across_both(u: &V, v: &V, way: &V, rounding: f64) -> V {
     let distance = way.norm();
     let product = u.cross(v).try_normalize(1e-9 * u.norm() * v.norm());
@@ -213,8 +215,8 @@ fn across_both(u: &V, v: &V, way: &V, rounding: f64) -> V {
     }
 }
 
-/// The greatest separation along a face of `of`, and that face; `to` stands at `apart` from it. Minus infinity where
-/// there is no face; the first that is beyond `reach` (m), where there is one.
+/// Returns the greatest separation along a face of `of`, and that face; `to` is at `apart` relative to it.
+/// Minus infinity without faces; stops at the first face beyond `reach` (m).
 fn separation(of: &Polyhedron, to: &Polyhedron, apart: &V, reach: f64) -> (f64, usize) {
     let mut best = (f64::NEG_INFINITY, 0);
     for (f, n) in of.normals().iter().enumerate() {
@@ -223,7 +225,7 @@ fn separation(of: &Polyhedron, to: &Polyhedron, apart: &V, reach: f64) -> (f64, 
         let mut lowest = f64::INFINITY;
         for p in to.points() {
             lowest = lowest.min(p.dot(n));
-            // No better than another face: the rest of the corners can only be lower.
+            // Not better than another face: the remaining corners can only lower it.
             if first + lowest <= best.0 {
                 break;
             }
@@ -245,12 +247,12 @@ struct Crossing {
     depth: f64,
     /// From `b` to `a`.
     normal: V,
-    /// The nearest points of the two lines (m).
+    /// Nearest points of the two lines (m).
     points: [V; 2],
     feature: u64,
 }
 
-/// The pair of edges with the greatest separation along their product; none where no pair counts.
+/// Returns the pair of edges with the greatest separation along their product; `None` if no pair counts.
 fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
     let mut best: Option<Crossing> = None;
     for e in 0..a.topology().edges.len() {
@@ -287,8 +289,8 @@ fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
     best
 }
 
-/// Whether a plane normal to a direction can hold a normal between those of an edge's faces: the arc from the one to
-/// the other crosses it. What is said to do so for rounding alone is looked at again.
+/// Returns whether a plane perpendicular to a direction can contain a normal between those of an edge's
+/// faces, so that the arc between these crosses it. Results within rounding are verified later.
 fn turns(of: &Polyhedron, edge: usize, direction: &V) -> bool {
     let Some(faces) = of.topology().edges[edge].faces else {
         return true;
@@ -297,7 +299,7 @@ fn turns(of: &Polyhedron, edge: usize, direction: &V) -> bool {
     m * n <= 1e-12 * direction.norm_squared()
 }
 
-/// Whether a direction normal to an edge is between the normals of its faces.
+/// Returns whether a direction perpendicular to an edge is between the normals of its faces.
 pub fn holds(of: &Polyhedron, edge: usize, axis: &V) -> bool {
     let Some(faces) = of.topology().edges[edge].faces else {
         return true;
@@ -305,11 +307,12 @@ pub fn holds(of: &Polyhedron, edge: usize, axis: &V) -> bool {
     let [m, n] = faces.map(|f| of.normals()[f as usize]);
     let [p, q] = of.ends(edge);
     let along = q - p;
-    // The first face goes along the edge: the normals turn about it from that face's to the other's.
+    // The first face is oriented along the edge: the normals rotate about it from that face's to the
+    // other's.
     m.cross(axis).dot(&along) >= 0.0 && axis.cross(&n).dot(&along) >= 0.0
 }
 
-/// The nearest points of two lines that are not parallel.
+/// Returns the nearest points of two lines that are not parallel.
 fn lines([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
     let (u, v, w) = (p1 - p0, q1 - q0, p0 - q0);
     let (a, b, c) = (u.norm_squared(), u.dot(&v), v.norm_squared());
@@ -321,7 +324,7 @@ fn lines([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
     ]
 }
 
-/// The nearest points of the edges of two polyhedra.
+/// Nearest points of the edges of two polyhedra.
 struct Nearest {
     edges: [usize; 2],
     /// On `a` and on `b` (m).
@@ -330,7 +333,8 @@ struct Nearest {
     way: V,
 }
 
-/// Edges whose balls are farther apart than the best so far are passed over.
+/// Finds the nearest points, skipping edges whose bounding balls are farther apart than the best distance so
+/// far.
 fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
     let mut best = Nearest {
         edges: [0, 0],
@@ -368,7 +372,7 @@ fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
     best
 }
 
-/// The nearest points of two segments. Ericson, Real-Time Collision Detection (2005), section 5.1.9.
+/// Returns the nearest points of two segments. Ericson, Real-Time Collision Detection (2005), section 5.1.9.
 fn segments([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
     let (u, v, r) = (p1 - p0, q1 - q0, p0 - q0);
     let (a, e, f) = (u.norm_squared(), v.norm_squared(), v.dot(&r));
@@ -390,8 +394,8 @@ fn segments([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
     [p0 + u * s, q0 + v * t]
 }
 
-/// Where two segments lie side by side: at both ends of the common part the points of both. None where that part
-/// is no longer than `slack` (m).
+/// Returns the points of both segments at the two ends of their overlap, for parallel segments; `None` where
+/// the overlap is not longer than `slack` (m).
 fn side_by_side([p0, p1]: [V; 2], [q0, q1]: [V; 2], slack: f64) -> Option<[[V; 2]; 2]> {
     let u = p1 - p0;
     let place = |x: &V| (x - p0).dot(&u) / u.norm_squared();

@@ -1,9 +1,9 @@
-//! A convex polyhedron and a surface of a first body.
+//! Contact of a convex polyhedron and a surface of a first body.
 //!
-//! Corners of the polyhedron touch the surface as small balls would. A surface of facets has corners and edges of its
-//! own: those that are sharp touch the polyhedron's faces and edges. A point counts where the facets about it lie
-//! behind its normal, so there are no ghosts at seams, and on a seam of one plane nothing touches. Planes and the
-//! insides of drums are touched by corners alone.
+//! Corners of the polyhedron touch the surface like small balls. A surface of facets has corners and edges
+//! of its own: sharp ones touch the polyhedron's faces and edges. A point counts if the facets around it lie
+//! behind its normal, so that there are no ghost contacts at seams, and none at a seam within one plane.
+//! Planes and the insides of drums are touched by corners only.
 
 use super::polyhedron::Polyhedron;
 use super::polyhedron_pair::holds;
@@ -15,10 +15,11 @@ use nalgebra::Vector3;
 
 type V = Vector3<f64>;
 
-/// Places nearer than this part of the size are the same.
+/// Positions closer than this fraction of the size count as equal.
 const SAME: f64 = 1e-9;
 
-/// Meetings of the polyhedron, centred at `at` in the surface's frame, in the order of their features.
+/// Finds the contact points of the polyhedron, centred at `at` in the surface's frame, in the order of their
+/// features.
 pub fn meet(
     core: &Polyhedron,
     surface: &dyn Surface<Dim3>,
@@ -49,19 +50,19 @@ pub fn meet(
     out[first..].sort_by_key(|m| m.feature);
 }
 
-/// A polyhedron where it stands, and how near is near (m).
+/// A polyhedron in place, and the search distance (m).
 struct Near<'a> {
     core: &'a Polyhedron,
     at: &'a V,
     rounding: f64,
-    /// Of the core.
+    /// Search distance of the core.
     reach: f64,
     deep: f64,
     same: f64,
 }
 
 impl Near<'_> {
-    /// Corners of the polyhedron on the surface.
+    /// Finds contacts of the polyhedron's corners with the surface.
     fn corners(&self, surface: &dyn Surface<Dim3>, faceted: bool, out: &mut Vec<ContactPoint<V>>) {
         let reach = if faceted {
             self.reach.max(self.deep)
@@ -74,7 +75,7 @@ impl Near<'_> {
             touches.clear();
             surface.touches(&p, reach, &mut touches);
             for touch in touches.iter().filter(|t| t.distance < self.reach) {
-                // Of the face that faces the surface; a segment has none, and both its ends count.
+                // Corners of the face opposite the surface; for a segment, which has no faces, both ends.
                 let facing = self.core.facing(&touch.normal);
                 let faces = &self.core.topology().faces;
                 if facing.is_some_and(|f| !faces[f].contains(&(k as u32))) {
@@ -93,7 +94,7 @@ impl Near<'_> {
         }
     }
 
-    /// Sharp corners of the surface on the faces and edges of the polyhedron.
+    /// Finds contacts of sharp corners of the surface with the faces and edges of the polyhedron.
     fn points(&self, facets: &[Facet<V>], ridges: &[Ridge], out: &mut Vec<ContactPoint<V>>) {
         let mut seen: Vec<u64> = Vec::new();
         for ridge in ridges {
@@ -106,7 +107,7 @@ impl Near<'_> {
                 if distance > self.reach || distance < -self.deep {
                     continue;
                 }
-                // Corner on corner is met as a corner of the polyhedron.
+                // Corner on corner is found as a corner of the polyhedron.
                 let closest_point = place - self.at - outward * distance;
                 let corner = |p: &V| (p - closest_point).norm() <= self.same;
                 if self.core.points().iter().any(corner)
@@ -127,7 +128,7 @@ impl Near<'_> {
         }
     }
 
-    /// Sharp edges of the surface across edges of the polyhedron.
+    /// Finds contacts of sharp edges of the surface with edges of the polyhedron.
     fn edges(&self, ridges: &[Ridge], out: &mut Vec<ContactPoint<V>>) {
         for ridge in ridges {
             let [p, q] = ridge.ends;
@@ -142,7 +143,7 @@ impl Near<'_> {
                 if distance.abs() > self.reach.max(self.deep) {
                     continue;
                 }
-                // The nearest points of the lines, in parts of the edges.
+                // Nearest points of the lines, as fractions of the edges.
                 let w = p - a + across * distance;
                 let part = |x: &V, y: &V| w.cross(x).dot(&across) / y.cross(x).dot(&across);
                 let (s, t) = (-part(&v, &u), part(&u, &v));
@@ -176,7 +177,7 @@ impl Near<'_> {
     }
 }
 
-/// Radius of a disk with a corner's part of the area of a face (m).
+/// Returns the radius of a disk with a corner's fraction of the area of a face (m).
 fn share(core: &Polyhedron, face: usize) -> f64 {
     let corners: Vec<V> = core.face(face).collect();
     let from = |k: usize| corners[k] - corners[0];

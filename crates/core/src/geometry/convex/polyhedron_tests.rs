@@ -1,4 +1,4 @@
-//! Polyhedra against each other and against surfaces, by other ways to the same numbers.
+//! Polyhedra against each other and against surfaces, compared with independent computations.
 
 use super::polyhedron::Polyhedron;
 use super::{ContactPoint, ContactTolerances, Core};
@@ -47,7 +47,7 @@ fn direction(rng: &mut Pcg64) -> V {
     }
 }
 
-/// A cuboid or the hull of points on an ellipsoid, turned.
+/// A cuboid or the hull of points on an ellipsoid, rotated.
 fn random(rng: &mut Pcg64) -> Polyhedron {
     let turn = UnitQuaternion::from_scaled_axis(direction(rng) * rng.random_range(0.0..3.0));
     let mut size = || rng.random_range(0.3..1.0);
@@ -71,7 +71,7 @@ fn random(rng: &mut Pcg64) -> Polyhedron {
         .turned(&turn)
 }
 
-/// The distance by the library's GJK.
+/// Distance by the GJK algorithm of the library.
 fn library(a: &Polyhedron, b: &Polyhedron, apart: V) -> f64 {
     let of = |p: &Polyhedron| {
         let points: Vec<Vector> = p
@@ -87,7 +87,7 @@ fn library(a: &Polyhedron, b: &Polyhedron, apart: V) -> f64 {
         .distance
 }
 
-/// The least depth over all faces' normals and all products of edges (separating axes), negative.
+/// Smallest depth over all face normals and all products of edges (separating axes), negative.
 fn depth(a: &Polyhedron, b: &Polyhedron, apart: V) -> f64 {
     let edges = |p: &Polyhedron| -> Vec<V> {
         (0..p.topology().edges.len())
@@ -140,7 +140,7 @@ fn gaps_and_normals_are_those_of_the_nearest_points() {
             "{k}: {gap} {distance} {axis}"
         );
         for m in &points {
-            // The two feet are as far apart as the gap says, along the normal.
+            // The distance of the two contact points is the gap, along the normal.
             let way = m.on_candidate - m.on_antagonist;
             assert!((way - m.normal * m.gap).norm() < 1e-12, "{k}: {m:?}");
             assert!((m.normal.norm() - 1.0).abs() < 1e-12);
@@ -190,7 +190,8 @@ fn stacked_boxes_touch_at_four_points_with_a_quarter_of_the_face_each() {
         assert!((p.normal - V::z()).norm() < 1e-15 && (p.gap - 0.05).abs() < 1e-14);
         assert!((PI * p.share * p.share - 1.0).abs() < 1e-13);
     }
-    // Of the same width: no corner is beyond the other, up to the slack; names do not depend on the noise.
+    // Of equal width: no corner is outside the other face by more than the slack; names do not depend on the
+    // noise.
     let names = |points: &[ContactPoint<V>]| points.iter().map(|m| m.feature).collect::<Vec<_>>();
     let known = names(&met(&top, &top, V::new(0.0, 0.0, 2.0), [0.0; 2], &FINE));
     for shift in [0.0, 1e-12, -1e-9, 5e-7] {
@@ -207,7 +208,7 @@ fn stacked_boxes_touch_at_four_points_with_a_quarter_of_the_face_each() {
             assert!(points.iter().all(|m| (m.gap - gap).abs() < 1e-15));
         }
     }
-    // Turned by 45 degrees an octagon is common: its area is that of the smaller square without four corners.
+    // Rotated by 45 degrees the overlap is an octagon: the area of the smaller square without four corners.
     let turned = top.turned(&UnitQuaternion::from_scaled_axis(
         V::z() * (0.5 * FRAC_PI_2),
     ));
@@ -215,7 +216,7 @@ fn stacked_boxes_touch_at_four_points_with_a_quarter_of_the_face_each() {
     assert_eq!(points.len(), 8);
     let area: f64 = points.iter().map(|p| PI * p.share * p.share).sum();
     assert!((area - 8.0 * (2f64.sqrt() - 1.0)).abs() < 1e-12, "{area}");
-    // Beside each other's corner: one point, along the way between the corners.
+    // Next to each other's corners: one point, along the line between the corners.
     let points = met(&top, &top, V::new(2.02, 2.03, 2.06), [0.0; 2], &FINE);
     assert_eq!(points.len(), 1);
     assert!((points[0].gap - 0.07).abs() < 1e-14);
@@ -256,7 +257,7 @@ fn capsules_side_by_side_crossed_and_on_a_box() {
     let points = met(&across, &lying, V::new(0.2, 0.4, 0.25), [0.1, 0.1], &FINE);
     assert!(points.len() == 1 && (points[0].gap - 0.05).abs() < 1e-15);
     assert!((points[0].normal - V::z()).norm() < 1e-14);
-    // In one plane, end to end and far from where the lines cross.
+    // In one plane, end to end and far from the intersection of the lines.
     let points = met(&across, &lying, V::new(1.1, 1.12, 0.0), [0.1, 0.05], &FINE);
     assert_eq!(points.len(), 1);
     assert!((points[0].gap + 0.15 - 0.1f64.hypot(0.12)).abs() < 1e-14);
@@ -357,7 +358,7 @@ fn a_box_slides_over_the_seams_of_a_flat_mesh() {
             );
         }
     }
-    // A corner first, tilted: one point, upright.
+    // Corner first, tilted: one point with a vertical normal.
     let tilted = block.turned(&UnitQuaternion::from_scaled_axis(V::new(0.5, 0.4, 0.0)));
     let lowest = tilted.points().iter().map(|p| p.z).fold(0.0, f64::min);
     for k in 0..100 {
@@ -374,8 +375,8 @@ fn a_box_slides_over_the_seams_of_a_flat_mesh() {
 
 #[test]
 fn a_box_over_a_ridge_touches_along_it() {
-    // Flat, then down by 45 degrees: half over the ridge it touches with two corners and where its long edges
-    // cross the ridge.
+    // Flat, then down by 45 degrees: half over the ridge, it touches with two corners and where its long
+    // edges cross the ridge.
     let ridge = floor(-1.0);
     let block = Polyhedron::cuboid([1.0, 1.3, 0.4]);
     let points = on(&block, &ridge, V::new(0.1, 0.1, 0.21), 0.0);
@@ -402,7 +403,8 @@ fn a_box_over_a_ridge_touches_along_it() {
 fn a_ball_shaped_corner_in_a_valley_touches_both_sides() {
     let valley = floor(1.0);
     let block = Polyhedron::cuboid([1.0, 1.0, 1.0]);
-    // Its lower right edge near both sides of the bend: 0.05 over the floor, and as far from the slope.
+    // Its lower right edge is near both sides of the bend: 0.05 above the floor, and equally far from the
+    // slope.
     let right = 0.5 + 0.05 * (2f64.sqrt() - 1.0);
     let points = on(&block, &valley, V::new(-right, 0.2, 0.55), 0.0);
     let flat = points
@@ -456,7 +458,7 @@ fn an_apex_in_a_crease_is_held_from_both_sides() {
                 for depth in [0.02, 0.0, -1e-6, -1e-3, -0.05] {
                     let at = V::new(x, y, depth + slope * f64::abs(x));
                     let points = on(&gem, &valley, at, 0.0);
-                    // Of the two slopes each that is near pushes, and none is met from behind.
+                    // Every slope within range pushes, and no contact is from behind.
                     let of = |sign: f64| points.iter().any(|m| m.normal.x * sign > 0.05);
                     let near = if x >= 0.0 { of(-1.0) } else { of(1.0) };
                     assert!(near, "{slope} {x} {y} {depth} {points:?}");

@@ -1,5 +1,5 @@
-//! The scales of a bond, whatever its law: stiffness, strength, and the openings at which it peaks and breaks, found by
-//! driving fresh bonds on the bench from 0.1 pm to 1 m.
+//! Characteristic scales of a bond under any law: stiffness, strength, and the openings at peak traction and
+//! at failure, found by driving new bonds on the bench from 0.1 pm to 1 m.
 
 use super::{Bench, Motion};
 use crate::laws::LawError;
@@ -10,30 +10,31 @@ const FIRST: f64 = 1e-13;
 /// Largest opening of a search (m).
 const LAST: f64 = 1.0;
 
-/// A bond that carries less than this share of its peak is broken.
+/// Fraction of the peak traction below which a bond counts as broken.
 const LITTLE: f64 = 0.01;
 
-/// How a bond answers one mode of opening.
+/// Response of a bond to one mode of opening.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mode {
     /// Slope of the traction at the origin (Pa/m).
     pub stiffness: f64,
-    /// Largest traction (Pa) and the opening at which it is carried (m); none where traction rises to the end of the search.
+    /// Largest traction (Pa) and its opening (m); `None` where traction rises to the end of the search.
     pub peak: Option<(f64, f64)>,
-    /// Opening (m) at which damage is 1, or beyond which less than a hundredth of the peak is carried; none where neither comes.
+    /// Opening (m) at which damage reaches 1, or beyond which the traction stays below a hundredth of the
+    /// peak; `None` where neither happens.
     pub broken: Option<f64>,
 }
 
 /// The scales of a bond.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BondScale {
-    /// Opened along the normal.
+    /// Normal opening.
     pub normal: Mode,
-    /// Slid without pressure.
+    /// Tangential opening without pressure.
     pub shear: Mode,
 }
 
-/// Opens along the normal or slides.
+/// Direction of opening.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Direction {
     /// Along the normal.
@@ -52,14 +53,14 @@ impl Direction {
     }
 }
 
-/// A point of a path: opening (m), traction along it (Pa), damage.
+/// A point of a path: opening (m), traction in its direction (Pa), damage.
 type Point = (f64, f64, f64);
 
 impl Bench {
-    /// The scales of a bond that is opened at a speed (m/s); none where the law makes no bonds.
+    /// Returns the scales of a bond that is opened at a given speed (m/s); `None` if the law makes no bonds.
     ///
     /// # Errors
-    /// What a law said.
+    /// The law's error.
     pub fn scale(&mut self, speed: f64) -> Result<Option<BondScale>, LawError> {
         if !self.law().opens() {
             return Ok(None);
@@ -73,7 +74,7 @@ impl Bench {
 
 impl Mode {
     fn find(bench: &mut Bench, direction: Direction, speed: f64) -> Result<Self, LawError> {
-        // Coarse, over all scales; then fine about the peak, and on to where little is left.
+        // First a coarse search over all scales, then a fine one around the peak and on to failure.
         let steps = ((LAST / FIRST).ln() / 1.05f64.ln()).ceil() as i32;
         let coarse = (0..=steps).map(|k| FIRST * 1.05f64.powi(k));
         let coarse = path(bench, direction, speed, coarse, true)?;
@@ -97,7 +98,7 @@ impl Mode {
             points.chain(finely).chain(tail),
             true,
         )?;
-        // Two small openings: what damping carries at one speed is the same in both.
+        // Two small openings: the damping traction is the same in both at equal speed, and cancels.
         let small = [5e-4, 1e-3].map(|x| x * about);
         let start = path(bench, direction, speed, small.into_iter(), false)?;
         let stiffness = match start[..] {
@@ -112,7 +113,7 @@ impl Mode {
     }
 }
 
-/// Drives a fresh bond through openings; ends where it is broken, if so wished.
+/// Drives a new bond through a list of openings, optionally stopping at failure.
 fn path(
     bench: &mut Bench,
     direction: Direction,
@@ -142,17 +143,18 @@ fn peak(points: &[Point]) -> Option<Point> {
     carried.copied().max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Where a path ended in a break.
+/// Returns the opening at which a path ended in failure.
 fn broken(points: &[Point]) -> Option<f64> {
     let (most, last) = (peak(points)?.1, points.last()?);
     (last.2 >= 1.0 || last.1 < LITTLE * most).then_some(last.0)
 }
 
-/// The gap (m) beyond which a law that attracts without bonds pulls less than a hundredth of what it pulls at most, opened from
-/// contact at a speed (m/s); none where it attracts nothing, or from any distance.
+/// Returns the gap (m) beyond which a law that attracts without bonds pulls with less than a hundredth of
+/// its maximum, when opened from contact at a given speed (m/s); `None` where there is no attraction, or
+/// where its range is unlimited.
 ///
 /// # Errors
-/// What a law said.
+/// The law's error.
 pub fn attraction_reach(bench: &mut Bench, speed: f64) -> Result<Option<f64>, LawError> {
     let mut state = [bench.fresh()];
     let touch = Motion {

@@ -1,8 +1,8 @@
 //! Accelerated projected gradient with restarts (Nesterov 1983; O'Donoghue and Candes 2015; for cone
-//! complementarity Mazhar, Heyn, Negrut and Tasora 2015), with the De Saxce term at the iterate.
+//! complementarity Mazhar, Heyn, Negrut and Tasora 2015), with the De Saxce term evaluated at the iterate.
 //!
-//! Each contact has its own step, theta / lambda_max(W_cc), which keeps its cone; theta falls until the
-//! quadratic model bounds the energy.
+//! Each contact has its own step length, theta / lambda_max(W_cc), a scalar so that the projection onto the
+//! cone stays exact; theta is reduced until the quadratic model bounds the energy.
 
 use super::form::{Form, largest};
 use super::law::slip;
@@ -16,7 +16,7 @@ impl<const D: usize> Solver<D> for Accelerated {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
         let n = form.len();
         let size: Vec<f64> = (0..n).map(|c| largest(form.w.diagonal(c))).collect();
-        // What nothing moves keeps its impulse.
+        // Contacts between immovable bodies keep their impulse.
         let scale: Vec<f64> = size
             .iter()
             .map(|l| if *l > 0.0 { 1.0 / l } else { 0.0 })
@@ -50,7 +50,7 @@ impl<const D: usize> Solver<D> for Accelerated {
                 }
                 theta *= 0.7;
             }
-            // Restart where the momentum goes uphill.
+            // Restart where the momentum points uphill.
             let uphill: f64 = (0..n)
                 .map(|c| {
                     (0..D)

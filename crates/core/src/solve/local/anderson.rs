@@ -1,4 +1,4 @@
-//! Gauss-Seidel sweeps with Anderson's acceleration, see [`crate::solve::extrapolation`].
+//! Gauss-Seidel iterations with Anderson acceleration; see [`crate::solve::extrapolation`].
 
 use super::form::Form;
 use super::nlgs::{Sweep, Tests};
@@ -9,24 +9,25 @@ use pulp::{Arch, Simd, WithSimd};
 /// The method and its parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct Anderson {
-    /// Sweeps remembered at most, after which the memory is begun anew.
+    /// Maximum number of stored iterations, after which the memory is restarted.
     pub memory: usize,
 }
 
-/// Sweeps before the memory is begun: where few do, its sums would cost more than they save.
+/// Plain iterations before the acceleration: for problems that converge in a few, its cost would exceed its
+/// benefit.
 const PLAIN: usize = 8;
-/// Over-relaxation of these.
+/// Over-relaxation of the plain iterations.
 const RELAXED: f64 = 1.3;
-/// So many times [`WINDOW`] more of them are waited for, where they would do at the rate of the last: in the
-/// plane an extrapolation costs as much as a sweep, in space less than half.
+/// Returns the number of additional windows of [`WINDOW`] iterations to wait for if they would converge at
+/// the last rate: in 2D an extrapolation costs as much as an iteration, in 3D less than half.
 const fn soon<const D: usize>() -> i32 {
     if D == 2 { 3 } else { 1 }
 }
-/// Sweeps over which the rate is formed.
+/// Iterations over which the convergence rate is measured.
 const WINDOW: usize = 4;
 
-/// Ends a stall: where the error does not fall for long, extrapolations go round in circles between contacts'
-/// branches, and plain sweeps lead out.
+/// Recovery from stagnation: where the error does not fall for long, extrapolation cycles between contact
+/// statuses, and plain iterations lead out.
 struct Rest {
     error: f64,
     at: usize,
@@ -44,12 +45,12 @@ impl Default for Rest {
 }
 
 impl Rest {
-    /// Sweeps without a fall by a fifth that are a stall.
+    /// Iterations without a reduction of the error by a fifth that count as stagnation.
     const STALL: usize = 100;
-    /// Plain sweeps after it.
+    /// Number of plain iterations that follow.
     const LENGTH: usize = 40;
 
-    /// After a test: whether a rest begins.
+    /// Returns, after a test, whether a recovery begins.
     fn begins(&mut self, error: f64, done: usize) -> bool {
         if error < 0.8 * self.error {
             (self.error, self.at) = (error, done);
@@ -60,7 +61,7 @@ impl Rest {
         false
     }
 
-    /// Before a sweep: whether it is one of the rest.
+    /// Returns, before an iteration, whether it belongs to the recovery.
     fn lasts(&mut self) -> bool {
         let rests = self.left > 0;
         self.left = self.left.saturating_sub(1);
@@ -74,7 +75,8 @@ impl Default for Anderson {
     }
 }
 
-/// p and the start = the admissible point next to it, for the vectors at hand.
+/// Sets p and the next point to the projection of the extrapolated point, for the vector instructions of
+/// this machine.
 struct Adopt<'a, const D: usize>(&'a Form<'a, D>, &'a mut [f64], &'a mut [[f64; D]]);
 
 impl<const D: usize> WithSimd for Adopt<'_, D> {
@@ -108,7 +110,7 @@ impl<const D: usize> Solver<D> for Anderson {
                 if rest.lasts() {
                     sweep.forward(&mut state.p, 1.0);
                 } else if sequence.is_none() && (done < PLAIN || near) {
-                    // The first sweep often ends it, so it is not relaxed.
+                    // The first iteration often converges, so it is not relaxed.
                     let relaxation = if done == 0 { 1.0 } else { RELAXED };
                     sweep.forward(&mut state.p, relaxation);
                 } else {
@@ -124,7 +126,7 @@ impl<const D: usize> Solver<D> for Anderson {
                     }
                     sweep.forward(&mut state.p, 1.0);
                 }
-                // Squared, as changes are.
+                // Squared, like the changes.
                 let rate = sweep.change / changes[done % WINDOW];
                 changes[done % WINDOW] = sweep.change;
                 let end = tests.expected(&sweep, state) * rate.powi(soon::<D>());

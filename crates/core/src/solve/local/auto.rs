@@ -1,9 +1,9 @@
-//! The choice for a problem given as a matrix.
+//! Automatic choice of the method for a problem given as a matrix.
 //!
-//! Sweeps with Anderson's acceleration come first and solve most problems. When they have cost about as
-//! much as some factorisations would, Newton goes on from there, then the interior point tries from its own
-//! start, and then come long runs of sweeps with attempts of Newton between them. The order and the
-//! lengths follow from sizes alone, so the same problem takes the same path on any machine.
+//! Gauss-Seidel with Anderson acceleration comes first and solves most problems. When it has cost about as
+//! much as some factorisations, Newton continues from its result, then the interior point tries from its own
+//! start, and then long runs of Gauss-Seidel alternate with Newton. The order and the lengths follow from
+//! problem sizes alone, so that a problem takes the same path on any machine.
 
 use super::anderson::Anderson;
 use super::form::Form;
@@ -12,22 +12,22 @@ use super::newton::Newton;
 use super::nlgs::{Nlgs, Order};
 use super::state::{Best, Budget, Solver, State};
 
-/// The method; [`Auto::names`] tells what it used.
+/// The method; [`Auto::names`] returns the methods it used.
 #[derive(Clone, Debug, Default)]
 pub struct Auto {
     used: std::cell::RefCell<Vec<&'static str>>,
 }
 
-/// How many sweeps cost as much as one factorisation of W.
+/// Returns how many iterations cost as much as one factorisation of W.
 ///
-/// Fitted on the 41 local problems of the docs' table: a sweep takes 1 ns an entry and 60 ns a contact, a
-/// factorisation 0.9 ns times entries^1.5 (sparse; about the same for the small dense ones).
+/// Fitted to the 41 local problems of the table in the docs: an iteration takes 1 ns per entry and 60 ns per
+/// contact, a factorisation 0.9 ns times entries^1.5 (sparse; about the same for small dense ones).
 pub fn sweeps_per_factorisation(entries: f64, contacts: f64) -> f64 {
     0.9 * entries.powf(1.5) / (entries + 60.0 * contacts)
 }
 
 impl Auto {
-    /// The methods used in the last solve, in the order of their first use.
+    /// Returns the methods used in the last solve, in the order of first use.
     pub fn names(&self) -> Vec<&'static str> {
         self.used.borrow().clone()
     }
@@ -54,7 +54,8 @@ impl Auto {
 
 impl<const D: usize> Solver<D> for Auto {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
-        /// Factorisations' worth of sweeps before the interior point, at a loose and at a tight tolerance.
+        /// Cost of Gauss-Seidel before the interior point in factorisations, at a loose and at a tight
+        /// tolerance.
         const LOOSE: f64 = 40.0;
         const TIGHT: f64 = 20.0;
         self.used.borrow_mut().clear();
@@ -93,7 +94,8 @@ impl<const D: usize> Solver<D> for Auto {
             best.keep(state);
         }
         best.restore(form, state);
-        // What is left has many solutions and dead ends between them: every round takes another way.
+        // The remaining problems have many solutions and local minima of the merit function: every round
+        // uses a different start.
         let base = (worth * per).clamp(1000.0, 10_000.0) as u32;
         let mut round = 0u32;
         while !budget.ends(state) {

@@ -1,4 +1,4 @@
-//! The Delassus operator as a matrix of D x D blocks, one block row a contact.
+//! The Delassus operator as a matrix of D x D blocks, with one block row per contact.
 
 use super::csr::Csr;
 use pulp::{Arch, Simd, WithSimd};
@@ -7,14 +7,14 @@ use std::ops::Range;
 /// A block of W.
 pub type Block<const D: usize> = [[f64; D]; D];
 
-/// W by block rows, the diagonal apart: what a sweep reads.
+/// W by block rows with a separate diagonal, the layout used by Gauss-Seidel.
 #[derive(Clone, Debug)]
 pub struct BlockMatrix<const D: usize> {
     /// Diagonal blocks.
     pub diagonal: Vec<Block<D>>,
     starts: Vec<u32>,
     columns: Vec<u32>,
-    /// Column by column: the sums of a block row then wait for each other less.
+    /// Stored column by column, which shortens the dependency chains of the sums.
     blocks: Vec<f64>,
 }
 
@@ -30,7 +30,7 @@ pub fn times<const D: usize>(a: &Block<D>, x: &[f64; D]) -> [f64; D] {
     })
 }
 
-/// u = W p + q for the vectors at hand.
+/// u = W p + q for the vector instructions of this machine.
 struct Product<'a, const D: usize>(
     &'a BlockMatrix<D>,
     &'a [[f64; D]],
@@ -52,7 +52,7 @@ impl<const D: usize> WithSimd for Product<'_, D> {
 }
 
 impl<const D: usize> BlockMatrix<D> {
-    /// With these diagonal blocks, without others yet: [`Self::push`] and [`Self::end_row`] bring them.
+    /// Creates a matrix with these diagonal blocks; [`Self::push`] and [`Self::end_row`] add the others.
     pub fn new(diagonal: Vec<Block<D>>) -> Self {
         Self {
             diagonal,
@@ -62,7 +62,7 @@ impl<const D: usize> BlockMatrix<D> {
         }
     }
 
-    /// Adds a block to the open row; columns rise.
+    /// Adds a block to the current row, with increasing columns.
     pub fn push(&mut self, column: usize, block: &Block<D>) {
         self.columns.push(column as u32);
         for j in 0..D {
@@ -70,12 +70,12 @@ impl<const D: usize> BlockMatrix<D> {
         }
     }
 
-    /// Begins the next row.
+    /// Ends the current row.
     pub fn end_row(&mut self) {
         self.starts.push(self.columns.len() as u32);
     }
 
-    /// Gathers the entries of a matrix of rows and columns divisible by D; blocks of zeros are left out.
+    /// Converts a matrix whose numbers of rows and columns are divisible by D; zero blocks are left out.
     pub fn from_csr(w: &Csr) -> Self {
         let count = w.rows / D;
         let mut out = Self::new(vec![[[0.0; D]; D]; count]);
@@ -106,7 +106,7 @@ impl<const D: usize> BlockMatrix<D> {
         out
     }
 
-    /// The same matrix by rows.
+    /// Converts to compressed sparse rows.
     pub fn to_csr(&self) -> Csr {
         let mut entries = Vec::new();
         for c in 0..self.diagonal.len() {
@@ -123,17 +123,17 @@ impl<const D: usize> BlockMatrix<D> {
         Csr::from_triplets(n, n, &entries)
     }
 
-    /// Number of contacts.
+    /// Returns the number of contacts.
     pub fn len(&self) -> usize {
         self.diagonal.len()
     }
 
-    /// Whether there is no contact.
+    /// Returns whether there are no contacts.
     pub fn is_empty(&self) -> bool {
         self.diagonal.is_empty()
     }
 
-    /// Number of blocks beside the diagonal.
+    /// Returns the number of off-diagonal blocks.
     pub fn others(&self) -> usize {
         self.columns.len()
     }
@@ -143,7 +143,7 @@ impl<const D: usize> BlockMatrix<D> {
         self.starts[c] as usize..self.starts[c + 1] as usize
     }
 
-    /// The blocks beside the diagonal of a block row, with their columns, which rise.
+    /// Iterates over the off-diagonal blocks of a block row, with increasing columns.
     pub fn row(&self, c: usize) -> impl Iterator<Item = (usize, Block<D>)> + Clone {
         self.range(c).map(|k| {
             let from = &self.blocks[k * D * D..];
@@ -152,7 +152,7 @@ impl<const D: usize> BlockMatrix<D> {
         })
     }
 
-    /// x + sum of W_cd p_d over d != c.
+    /// Returns x + sum of W_cd p_d over d != c.
     #[inline(always)]
     pub fn gather(&self, c: usize, p: &[[f64; D]], mut x: [f64; D]) -> [f64; D] {
         let range = self.range(c);
@@ -175,7 +175,7 @@ impl<const D: usize> BlockMatrix<D> {
         x
     }
 
-    /// u = W p + q.
+    /// Computes u = W p + q.
     pub fn velocity(&self, p: &[[f64; D]], q: &[[f64; D]], u: &mut [[f64; D]]) {
         Arch::new().dispatch(Product(self, p, q, u));
     }

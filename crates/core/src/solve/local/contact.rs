@@ -1,31 +1,31 @@
-//! One contact with its own block of W: find p with u = W_cc p + f in Coulomb's law, exactly.
+//! Exact solution of one contact with its own block of W: p with u = W_cc p + f under Coulomb's law.
 //!
-//! In the plane the law has four branches, each a linear equation. In space the sliding branch asks for
-//! u_n = 0 and u_t = -lambda p_t with lambda >= 0: eliminating p_n leaves p_t(lambda) = -(A + lambda I)^-1 b and
-//! one equation mu p_n(lambda) = |p_t(lambda)|, nearly linear when divided by |p_t| (as in trust-region
-//! methods, Moré and Sorensen 1983), which Newton solves in two or three steps from the last lambda.
+//! In 2D the law has four branches, each a linear equation. In 3D slip requires u_n = 0 and u_t = -lambda
+//! p_t with lambda >= 0. Eliminating p_n leaves p_t(lambda) = -(A + lambda I)^-1 b and the scalar equation
+//! mu p_n(lambda) = |p_t(lambda)|, which is nearly linear after division by |p_t| (as in trust-region
+//! methods, Moré and Sorensen 1983); Newton's method solves it in two or three steps from the last lambda.
 
 use super::block::{Block, times};
 use super::form::largest;
 use super::law::Law;
 use std::hint::select_unpredictable;
 
-/// What the exact solution of a contact needs, formed once.
+/// Precomputed data for the exact solution of a contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Local<const D: usize> {
     w: Block<D>,
     inverse: Block<D>,
     mu: f64,
-    /// In the plane: 1 / (W_nn - s mu W_nt) for s = 1 and -1, what answers a normal velocity while sliding.
+    /// In 2D: 1 / (W_nn - s mu W_nt) for s = 1 and -1, the compliance in slip.
     slides: [f64; 2],
     lambda: f64,
 }
 
-/// A = W_tt - W_tn W_nt / W_nn (in the plane its one entry) and its determinant.
+/// Returns A = W_tt - W_tn W_nt / W_nn (a scalar in 2D) and its determinant.
 #[inline(always)]
 fn schur<const D: usize>(w: &Block<D>) -> ([[f64; 2]; 2], f64) {
-    /// What is added to an A that is singular, as a share of W: impulses along it then answer its velocities
-    /// as far as friction lets them.
+    /// Regularisation of a singular A, as a fraction of W, which defines impulses in its null space up to
+    /// the friction bound.
     const MIN_RATIO: f64 = 1e-12;
     let iwnn = if w[0][0] > 0.0 { 1.0 / w[0][0] } else { 0.0 };
     let mut a = [[0.0; 2]; 2];
@@ -51,7 +51,7 @@ fn schur<const D: usize>(w: &Block<D>) -> ([[f64; 2]; 2], f64) {
 }
 
 impl<const D: usize> Local<D> {
-    /// From the diagonal block and the friction of Coulomb's law.
+    /// Precomputes the data from the diagonal block and the friction coefficient.
     pub fn new(w: &Block<D>, mu: f64) -> Self {
         let (schur, determinant) = schur(w);
         let iwnn = if w[0][0] > 0.0 { 1.0 / w[0][0] } else { 0.0 };
@@ -92,7 +92,7 @@ impl<const D: usize> Local<D> {
         }
     }
 
-    /// The impulse that answers the free velocity `f` of this contact.
+    /// Returns the impulse for the free velocity `f` of this contact.
     #[inline(always)]
     pub fn solve(&mut self, f: &[f64; D]) -> [f64; D] {
         if D == 2 {
@@ -102,12 +102,12 @@ impl<const D: usize> Local<D> {
         }
     }
 
-    /// The four branches in the plane; all are formed and one is chosen, since a processor cannot guess
-    /// which it will be.
+    /// Solves in 2D: all four branches are computed and one is selected, because branch prediction would
+    /// fail.
     #[inline(always)]
     fn solve_plane(&self, f: &[f64; D]) -> [f64; D] {
         let stick = times(&self.inverse, f);
-        // Sliding: p_t = -s mu p_n, s the sign of u_t, which is that of the impulse it lacks.
+        // Slip: p_t = -s mu p_n, where s is the sign of u_t, which is that of the missing impulse.
         let [forth, back] = self.slides.map(|x| -f[0] * x);
         let negative = stick[1].is_sign_negative();
         let n = select_unpredictable(negative, back, forth);
@@ -143,8 +143,9 @@ impl<const D: usize> Local<D> {
         self.slide_space(f)
     }
 
-    /// The same for the other laws: projections with the block's own step, since none of them couples
-    /// its directions much. `start` is where to begin, `all` the impulses that may bound this one.
+    /// Solves the other laws by projected iterations with the block's own step length; none of them couples
+    /// its directions strongly. `start` is the initial value, `all` holds the impulses on which bounds may
+    /// depend.
     pub fn solve_rare(
         &self,
         f: &[f64; D],
@@ -185,7 +186,8 @@ impl<const D: usize> Local<D> {
         p
     }
 
-    /// No normal impulse and no slip; none where the tangents' block is singular.
+    /// Returns the solution without normal impulse and without slip; `None` if the tangential block is
+    /// singular.
     fn slack(&self, f: &[f64; D]) -> Option<[f64; D]> {
         let (w, mut p) = (&self.w, [0.0; D]);
         if D == 2 {
@@ -200,7 +202,7 @@ impl<const D: usize> Local<D> {
 
     fn slide_space(&mut self, f: &[f64; D]) -> [f64; D] {
         const STEPS: usize = 30;
-        /// Of |p_t|: so close, what is left after a linear step is rounding.
+        /// Relative tolerance of |p_t|: after one more nearly linear step, only rounding is left.
         const CLOSE: f64 = 1e-8;
         let (w, mu) = (&self.w, self.mu);
         let (a, _) = schur(w);
@@ -240,7 +242,7 @@ impl<const D: usize> Local<D> {
                 -(d0 * t[1] - a[1][0] * t[0]) * over,
             ];
             let dn = -(w[0][1] * dt[0] + w[0][2] * dt[1]) * iwnn;
-            // Newton on mu n / |t| - 1; all is multiplied by |t|^2, which spares divisions.
+            // Newton's method on mu n / |t| - 1, multiplied by |t|^2 to save divisions.
             let slope = mu * (dn * squared - n * (t[0] * dt[0] + t[1] * dt[1]));
             let mut next = lambda - ratio * squared / slope;
             if !(next > low && next < high) {
@@ -258,7 +260,7 @@ impl<const D: usize> Local<D> {
             }
         }
         self.lambda = lambda;
-        // On the cone to the last bit that matters.
+        // Put the result exactly on the cone.
         let n = p[0].max(0.0);
         let length = (p[1] * p[1] + p[2] * p[2]).sqrt();
         if length > 0.0 {
@@ -277,7 +279,7 @@ mod tests {
     use crate::solve::local::law::slip;
     use rand::{RngExt, SeedableRng};
 
-    /// Distance from the law: the natural map with rho = 1.
+    /// Residual: the natural map with rho = 1.
     fn residual<const D: usize>(w: &Block<D>, f: &[f64; D], p: &[f64; D], mu: f64) -> f64 {
         let mut u = times(w, p);
         for k in 0..D {
@@ -308,7 +310,7 @@ mod tests {
         }
     }
 
-    /// What pulls only: u = 0, or no normal impulse, u_n < 0 and no slip.
+    /// A tension-only bond: u = 0, or no normal impulse, u_n < 0 and no slip.
     fn pulls<const D: usize>() {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(4);
         let mut slack = 0;

@@ -1,13 +1,13 @@
 //! A sparse matrix by rows.
 
-/// Compressed rows: the columns of a row rise, none stands twice.
+/// Compressed sparse rows: the columns of a row increase and are unique.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Csr {
     /// Number of rows.
     pub rows: usize,
     /// Number of columns.
     pub columns: usize,
-    /// Where each row starts; `rows + 1` of them.
+    /// Start of each row; `rows + 1` values.
     pub starts: Vec<usize>,
     /// Column of each entry.
     pub indices: Vec<u32>,
@@ -16,7 +16,7 @@ pub struct Csr {
 }
 
 impl Csr {
-    /// From (row, column, value) in any order; what stands at one place twice is added.
+    /// Builds a matrix from (row, column, value) in any order; duplicate entries are added.
     ///
     /// # Panics
     /// Where an index is outside the matrix.
@@ -63,21 +63,21 @@ impl Csr {
         out
     }
 
-    /// (column, value) of a row's entries.
+    /// Iterates over (column, value) of a row.
     pub fn row(&self, r: usize) -> impl Iterator<Item = (usize, f64)> {
         let range = self.starts[r]..self.starts[r + 1];
         let columns = self.indices[range.clone()].iter().map(|c| *c as usize);
         columns.zip(self.values[range].iter().copied())
     }
 
-    /// y = A x.
+    /// Computes y = A x.
     pub fn apply(&self, x: &[f64], y: &mut [f64]) {
         for (r, y) in y.iter_mut().enumerate() {
             *y = self.row(r).map(|(c, a)| a * x[c]).sum();
         }
     }
 
-    /// The transpose.
+    /// Returns the transpose.
     #[must_use]
     pub fn transpose(&self) -> Self {
         let entries: Vec<(u32, u32, f64)> = (0..self.rows)

@@ -1,25 +1,25 @@
-//! Factors of a square sparse matrix, one for each connected component.
+//! Factors of a square sparse matrix, one per connected component.
 //!
-//! The mass matrix of rigid bodies falls into blocks of 1 to 6 rows; those are factorised densely, with
-//! full pivoting, larger components by faer's sparse LU.
+//! The mass matrix of rigid bodies decomposes into blocks of 1 to 6 rows, which are factorised densely with
+//! full pivoting; larger components use faer's sparse LU.
 
 use super::Csr;
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet, linalg::solvers::Lu as SparseLu};
 use nalgebra::{DMatrix, Dyn, FullPivLU};
 
-/// Components of at most this many rows are dense.
+/// Components of at most this many rows are factorised densely.
 const DENSE: usize = 64;
 
-/// Rows whose LU fails.
+/// A singular component of the matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "it is singular, or so to rounding, in the {rows} linked rows that begin with row {first} (counted from 0)"
+    "it is numerically singular in the {rows} coupled rows that begin with row {first} (counted from 0)"
 )]
 pub struct Singular {
-    /// First row of the component at fault.
+    /// First row of the singular component.
     pub first: usize,
-    /// How many rows the component has.
+    /// Number of rows of the component.
     pub rows: usize,
 }
 
@@ -39,10 +39,10 @@ impl std::fmt::Debug for Factors {
 }
 
 struct Component {
-    /// Its rows in K, rising.
+    /// Its rows in K, increasing.
     rows: Vec<usize>,
-    /// Powers of two: rows and columns are scaled to about one before the LU, so that a pivot near
-    /// rounding means a singular matrix and not a change of units.
+    /// Scaling by powers of two: rows and columns are scaled to about one before the LU, so that a tiny
+    /// pivot indicates a singular matrix and not a choice of units.
     row_scale: Vec<f64>,
     column_scale: Vec<f64>,
     lu: Lu,
@@ -57,7 +57,7 @@ impl Factors {
     /// Factorises a square matrix.
     ///
     /// # Errors
-    /// It is singular to rounding.
+    /// The matrix is numerically singular.
     ///
     /// # Panics
     /// Where it is not square.
@@ -77,7 +77,7 @@ impl Factors {
         })
     }
 
-    /// x of K x = b, in place.
+    /// Solves K x = b in place.
     pub fn solve(&self, b: &mut [f64]) {
         for component in &self.components {
             let mut x = DMatrix::from_fn(component.rows.len(), 1, |i, _| b[component.rows[i]]);
@@ -88,19 +88,19 @@ impl Factors {
         }
     }
 
-    /// Entries of [`Self::sandwich`], from above.
+    /// Returns an upper bound of the number of entries of [`Self::sandwich`].
     pub fn reach(&self, b: &Csr) -> usize {
         let squares = self.components.iter().map(|c| c.columns(b).len().pow(2));
         squares.fold(0, usize::saturating_add)
     }
 
-    /// B^T K^-1 B, of as many rows and columns as B has columns. An entry is left out where every
-    /// component's share of it is exactly zero.
+    /// Returns B^T K^-1 B, a square matrix with one row per column of B. An entry is left out where every
+    /// component contributes exactly zero.
     pub fn sandwich(&self, b: &Csr) -> Csr {
         let mut entries = Vec::new();
         for component in &self.components {
             let columns = component.columns(b);
-            // A few columns at a time: the memory stays near that of B and the result.
+            // Processes a few columns at a time, so that memory stays close to that of B and the result.
             for part in columns.chunks(DENSE) {
                 let mut x = DMatrix::zeros(component.rows.len(), part.len());
                 for (i, row) in component.rows.iter().enumerate() {
@@ -161,9 +161,9 @@ impl Component {
             let a =
                 SparseColMat::try_new_from_triplets(size, size, &triplets).map_err(|_| singular)?;
             let lu = a.sp_lu().map_err(|_| singular)?;
-            // faer reports only structural singularity: a numerical one shows in a solution out of all
-            // proportion, or in one that does not solve. The right-hand side is fixed and has no
-            // reason to lie in the range of a singular matrix.
+            // faer reports only structural singularity. Numerical singularity shows as a huge solution or a
+            // large residual. The fixed right-hand side has no reason to lie in the range of a singular
+            // matrix.
             let b: Vec<f64> = (0..size)
                 .map(|i| ((i as u64 * 2_654_435_761) % 1009) as f64 / 1009.0 - 0.4)
                 .collect();
@@ -190,7 +190,7 @@ impl Component {
         })
     }
 
-    /// The columns of B that have an entry in its rows, rising.
+    /// Returns the columns of B with an entry in the component's rows, increasing.
     fn columns(&self, b: &Csr) -> Vec<usize> {
         let mut columns: Vec<usize> = self
             .rows
@@ -202,7 +202,7 @@ impl Component {
         columns
     }
 
-    /// In place, for every column.
+    /// Solves in place for every column.
     fn solve(&self, x: &mut DMatrix<f64>) {
         for mut column in x.column_iter_mut() {
             for (x, scale) in column.iter_mut().zip(&self.row_scale) {
@@ -211,7 +211,7 @@ impl Component {
         }
         match &self.lu {
             Lu::Dense(lu) => {
-                // A pivot was found in every column: the solve cannot fail.
+                // The LU found a pivot in every column, so that the solve cannot fail.
                 lu.solve_mut(x);
             }
             Lu::Sparse(lu) => {
@@ -261,7 +261,8 @@ impl Component {
     }
 }
 
-/// For each line the power of two that brings its largest entry to between 1 and 2; 1 where it has none.
+/// Returns, for each row or column, the power of two that scales its largest entry to between 1 and 2; 1 for
+/// an empty one.
 fn scales(count: usize, entries: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
     let mut largest = vec![0.0f64; count];
     for (line, x) in entries {
@@ -271,7 +272,7 @@ fn scales(count: usize, entries: impl Iterator<Item = (usize, f64)>) -> Vec<f64>
         .into_iter()
         .map(|x| {
             if x > 0.0 && x.is_finite() {
-                // Kept in the range of normal numbers.
+                // Keeps the scale within the range of normal numbers.
                 (-x.log2().floor().clamp(-1000.0, 1000.0)).exp2()
             } else {
                 1.0
@@ -280,7 +281,8 @@ fn scales(count: usize, entries: impl Iterator<Item = (usize, f64)>) -> Vec<f64>
         .collect()
 }
 
-/// Rows linked by entries, whichever side of the diagonal they stand on; each list rises.
+/// Returns the connected components: lists of rows, increasing, that are linked by entries on either side of
+/// the diagonal.
 fn linked(k: &Csr) -> Vec<Vec<usize>> {
     let mut parent: Vec<usize> = (0..k.rows).collect();
     fn root(parent: &mut [usize], mut i: usize) -> usize {

@@ -1,4 +1,4 @@
-//! N W N + S of a matrix W and diagonal blocks S, factorised.
+//! Factorisation of N W N + S for a matrix W and diagonal blocks S.
 
 use super::block::BlockMatrix;
 use super::form::{Shift, Shifted};
@@ -6,7 +6,7 @@ use super::linear::{Factor, Rows};
 
 struct Factored {
     factor: Factor,
-    /// First row of each block; one more than blocks.
+    /// First row of each block, and the total.
     starts: Vec<usize>,
 }
 

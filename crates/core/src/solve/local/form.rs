@@ -1,4 +1,5 @@
-//! What a solver sees: the operator W, the free velocities q and the law of each block of unknowns.
+//! The problem as a solver sees it: the operator W, the free velocities q, and the law of each block of
+//! unknowns.
 
 use super::block::{Block, BlockMatrix};
 use super::factored;
@@ -8,17 +9,17 @@ use crate::solve::error::{Norm, Scale, Sums, residual};
 use crate::solve::extrapolation;
 use crate::solve::row::Residual;
 
-/// The Delassus operator, whatever stands behind it.
+/// The Delassus operator, independent of its representation.
 pub trait Delassus<const D: usize> {
-    /// Number of blocks.
+    /// Returns the number of blocks.
     fn len(&self) -> usize;
-    /// Whether there is none.
+    /// Returns whether there are no blocks.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
-    /// The diagonal block of a contact.
+    /// Returns the diagonal block of a contact.
     fn diagonal(&self, c: usize) -> &Block<D>;
-    /// u = W p + q.
+    /// Computes u = W p + q.
     fn velocity(&self, p: &[[f64; D]], q: &[[f64; D]], u: &mut [[f64; D]]);
     /// W as a matrix, formed where it is not at hand; none of an operator that gives products alone. Methods that need one say so
     /// ([`crate::solve::Operator`]) and leave a problem without one as it is.
@@ -29,20 +30,21 @@ pub trait Delassus<const D: usize> {
     }
 }
 
-/// What is added to W, and in which units.
+/// Matrix added to W, and the scaling of the system.
 #[derive(Clone, Copy, Debug)]
 pub struct Shift<'a, const D: usize> {
-    /// S by its diagonal blocks.
+    /// S, as its diagonal blocks.
     pub s: &'a [Block<D>],
-    /// So many of the first components of each block take part.
+    /// Number of leading components of each block that belong to the system.
     pub sizes: &'a [usize],
-    /// N: what the normal component of each block is multiplied by.
+    /// N: factor on the normal component of each block.
     pub normal: &'a [f64],
 }
 
 /// Factors of N W N + S.
 pub trait Shifted<const D: usize> {
-    /// x = (N W N + S)^-1 x, zero in components that do not take part; whether it is finite.
+    /// Computes x = (N W N + S)^-1 x, with zero in components outside the system; returns whether the result
+    /// is finite.
     fn solve(&self, x: &mut [[f64; D]]) -> bool;
 }
 
@@ -64,16 +66,16 @@ impl<const D: usize> Delassus<D> for BlockMatrix<D> {
     }
 }
 
-/// A problem: u = W p + q, with (p_c, u_c) in the law of every block c.
+/// A problem: u = W p + q, where (p_c, u_c) satisfies the law of every block c.
 #[derive(Clone, Copy)]
 pub struct Form<'a, const D: usize> {
     /// The operator.
     pub w: &'a dyn Delassus<D>,
-    /// Free velocities, shifts included.
+    /// Free velocities, including shifts.
     pub q: &'a [[f64; D]],
     /// Laws.
     pub laws: &'a [Law],
-    /// How errors are measured.
+    /// Norm of the error.
     pub norm: Norm,
     /// |q|^2.
     pub free: f64,
@@ -82,7 +84,7 @@ pub struct Form<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Form<'a, D> {
-    /// A problem measured by a norm.
+    /// Creates a problem with a norm.
     pub fn new(w: &'a dyn Delassus<D>, q: &'a [[f64; D]], laws: &'a [Law], norm: Norm) -> Self {
         Self {
             w,
@@ -103,22 +105,23 @@ impl<'a, const D: usize> Form<'a, D> {
         }
     }
 
-    /// Number of blocks.
+    /// Returns the number of blocks.
     pub fn len(&self) -> usize {
         self.laws.len()
     }
 
-    /// Whether there is no block.
+    /// Returns whether there are no blocks.
     pub fn is_empty(&self) -> bool {
         self.laws.is_empty()
     }
 
-    /// u = W p + q.
+    /// Computes u = W p + q.
     pub fn velocity(&self, p: &[[f64; D]], u: &mut [[f64; D]]) {
         self.w.velocity(p, self.q, u);
     }
 
-    /// The step of the natural map: 1 in the field's figure, else 1 / lambda_max(W_cc), bounded from above.
+    /// Returns the parameter rho of the natural map: 1 in the norm `Field`, else 1 / lambda_max(W_cc), with
+    /// an upper bound of lambda_max.
     pub fn rho(&self, c: usize) -> f64 {
         match self.norm {
             Norm::Field => 1.0,
@@ -126,7 +129,7 @@ impl<'a, const D: usize> Form<'a, D> {
         }
     }
 
-    /// The error of p, where u = W p + q.
+    /// Returns the error of p, where u = W p + q.
     pub fn error(&self, p: &[[f64; D]], u: &[[f64; D]]) -> Measure {
         let quick = match self.norm {
             Norm::Field => judge::sums(p, u, self.laws),
@@ -146,8 +149,8 @@ impl<'a, const D: usize> Form<'a, D> {
             noise: 0.0,
             work,
         };
-        // The projection of what is no number is 0, and what is divided by infinity too: neither is an
-        // error of 0.
+        // The projection of NaN gives 0, and so does division by infinity: neither must pass as a zero
+        // error.
         finite &= (sums.residual + sums.velocity + sums.impulse + self.free).is_finite();
         Measure {
             error: if finite {
@@ -159,7 +162,7 @@ impl<'a, const D: usize> Form<'a, D> {
         }
     }
 
-    /// The sums of the error, and whether the velocities of blocks that nothing moves are numbers.
+    /// Returns the sums of the error, and whether the velocities of immovable blocks are finite.
     fn sums(&self, p: &[[f64; D]], u: &[[f64; D]]) -> (Sums, bool) {
         let mut sums = Sums::default();
         let mut finite = true;
@@ -193,16 +196,17 @@ impl<'a, const D: usize> Form<'a, D> {
     }
 }
 
-/// An error and what belongs to it.
+/// An error with its reference value.
 #[derive(Clone, Copy, Debug)]
 pub struct Measure {
     /// The error.
     pub error: f64,
-    /// What the residual was divided by.
+    /// Value by which the residual was divided.
     pub scale: f64,
 }
 
-/// The largest eigenvalue of a block, from above (largest absolute row sum of the symmetric part).
+/// Returns an upper bound of the largest eigenvalue of a block (largest absolute row sum of the symmetric
+/// part).
 pub fn largest<const D: usize>(w: &Block<D>) -> f64 {
     let mut most = 0.0f64;
     for i in 0..D {
@@ -212,17 +216,17 @@ pub fn largest<const D: usize>(w: &Block<D>) -> f64 {
     most
 }
 
-/// Sum of squares of a vector of blocks.
+/// Returns the sum of squares of a vector of blocks.
 pub fn squared<const D: usize>(x: &[[f64; D]]) -> f64 {
     dot(x, x)
 }
 
-/// x . y of vectors of blocks.
+/// Returns x . y of vectors of blocks.
 pub fn dot<const D: usize>(x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
     extrapolation::dot(x.as_flattened(), y.as_flattened())
 }
 
-/// The law of a block, for problems from files.
+/// Returns Coulomb's law for each block, for problems from files.
 pub fn coulomb(mu: &[f64]) -> Vec<Law> {
     mu.iter().map(|mu| law::Law::Coulomb(*mu)).collect()
 }

@@ -1,4 +1,4 @@
-//! Problems given with the bodies' velocities, and local ones with multipliers: what is reduced to a
+//! Problems in terms of body velocities, and local problems with multipliers; both are reduced to a
 //! [`LocalProblem`].
 
 use super::{Csr, LocalProblem};
@@ -15,7 +15,7 @@ pub struct GlobalProblem {
     pub h: Csr,
     /// Free impulses, n.
     pub f: Vec<f64>,
-    /// What is added to the relative velocities, m.
+    /// Constant term of the relative velocities, m.
     pub w: Vec<f64>,
     /// Friction coefficients, m / dimension.
     pub mu: Vec<f64>,
@@ -44,7 +44,7 @@ pub struct Multipliers {
 }
 
 impl GlobalProblem {
-    /// u = H^T v + w.
+    /// Returns u = H^T v + w.
     pub fn relative_velocities(&self, v: &[f64]) -> Vec<f64> {
         let mut u = self.w.clone();
         for (i, v) in v.iter().enumerate() {
@@ -57,7 +57,7 @@ impl GlobalProblem {
 }
 
 impl LocalProblem {
-    /// u = W p + q.
+    /// Returns u = W p + q.
     pub fn velocities(&self, p: &[f64]) -> Vec<f64> {
         let mut u = vec![0.0; self.q.len()];
         self.w.apply(p, &mut u);
@@ -67,8 +67,8 @@ impl LocalProblem {
         u
     }
 
-    /// Takes impulses in such units that the mean normal diagonal of W is 1, and gives the factor that they were
-    /// multiplied by; 1 where nothing moves.
+    /// Scales the unit of impulses so that the mean normal diagonal entry of W is 1; returns the factor
+    /// applied to impulses, or 1 where nothing can move.
     pub fn normalise(&mut self) -> f64 {
         let diagonal: Vec<f64> = (0..self.mu.len())
             .map(|c| c * self.dimension)
@@ -86,7 +86,7 @@ impl LocalProblem {
         mean
     }
 
-    /// sum_j |W_ij p_j|: what the rounding of W p is measured by.
+    /// Returns sum_j |W_ij p_j|, the reference for the rounding of W p.
     pub(super) fn sizes(&self, p: &[f64]) -> Vec<f64> {
         (0..self.w.rows)
             .map(|r| self.w.row(r).map(|(c, w)| (w * p[c]).abs()).sum())

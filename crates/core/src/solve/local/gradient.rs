@@ -1,45 +1,46 @@
-//! Projected gradients for the quasi-optimisation problem of Renouf and Alart (Comput. Methods Appl. Mech.
-//! Eng. 194, 2005): p = argmin over C(mu p_n) of p.W p / 2 + q.p, whose thresholds s = mu p_n follow at every
-//! iteration (the diagonalised Tresca fixed point).
+//! Projected gradient methods for the quasi-optimisation problem of Renouf and Alart (Comput. Methods Appl.
+//! Mech. Eng. 194, 2005): p = argmin over C(mu p_n) of p.W p / 2 + q.p, whose friction bounds s = mu p_n are
+//! updated in every iteration (the diagonalised Tresca fixed point).
 //!
-//! The prediction is projected on C^k, gradient and last direction on the cone tangent to C^k at the
-//! iterate. [`Kind::Plain`] goes along the gradient, [`Kind::Conjugate`] along conjugate directions, and
-//! [`Kind::Preconditioned`] does so in the metric of the diagonal of W.
+//! The predicted point is projected onto C^k; gradient and last direction are projected onto the tangent
+//! cone of C^k at the iterate. [`Kind::Plain`] uses the gradient, [`Kind::Conjugate`] conjugate directions,
+//! and [`Kind::Preconditioned`] conjugate directions in the metric of the diagonal of W.
 //!
-//! What slides at the end of an iteration is carried along to its new threshold. Left at the old one while its
-//! normal part grows it would stick in the next iteration and slide in the one after, and so would its
-//! neighbours: conjugacy is lost and the method is no faster than plain gradients.
+//! A contact that slips at the end of an iteration is moved to its new friction bound. If it stayed at the
+//! old bound while its normal part grows, it would stick in the next iteration and slip in the one after,
+//! together with its neighbours; conjugacy would be lost, and the method would be no faster than the plain
+//! gradient.
 //!
-//! Projecting the end of an exact line search can raise the energy p.W p / 2 + q.p at fixed thresholds, and then
-//! the bare method goes round in circles. Such a step is taken back and replaced by one of the safe length
-//! 1 / lambda_max.
+//! Projecting the end point of an exact line search can increase the energy p.W p / 2 + q.p at fixed bounds,
+//! and the basic method then cycles. Such a step is undone and replaced by one of the safe length 1 /
+//! lambda_max.
 
 use super::form::{Form, dot, largest};
 use super::law::{Law, slip};
 use super::state::{Best, Budget, Solver, State};
 
-/// Which of the three.
+/// Variant of the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Projected gradient, PG.
     Plain,
     /// Conjugate projected gradient, CPG.
     Conjugate,
-    /// The same preconditioned by the diagonal, PCPG.
+    /// Conjugate projected gradient preconditioned by the diagonal, PCPG.
     Preconditioned,
 }
 
 /// The method.
 #[derive(Clone, Copy, Debug)]
 pub struct Gradient {
-    /// Which of the three.
+    /// Variant.
     pub kind: Kind,
 }
 
-/// Share of its threshold from which on a contact slides.
+/// Fraction of the friction bound from which a contact counts as slipping.
 const SLIDES: f64 = 1.0 - 1e-12;
 
-/// A contact's admissible set at given thresholds.
+/// Admissible set of a contact at given friction bounds.
 #[derive(Clone, Copy, Debug)]
 enum Set {
     /// n >= 0, |t| <= s.
@@ -89,7 +90,7 @@ impl Set {
         }
     }
 
-    /// Projects a direction on the cone tangent to the set at p.
+    /// Projects a direction onto the tangent cone of the set at p.
     fn tangent<const D: usize>(self, p: &[f64; D], d: &mut [f64; D]) {
         let disc = |d: &mut [f64; D], s: f64| {
             let t = slip(p);
@@ -132,7 +133,7 @@ impl Set {
     }
 }
 
-/// Thresholds from the normal part of the prediction, then the projection on them.
+/// Computes the friction bounds from the normal part of the prediction, then projects onto the sets.
 fn project<const D: usize>(form: &Form<D>, p: &mut [[f64; D]]) {
     for c in 0..p.len() {
         let mut own = p[c];
@@ -141,13 +142,13 @@ fn project<const D: usize>(form: &Form<D>, p: &mut [[f64; D]]) {
     }
 }
 
-/// What follows a threshold grows by, if it was at the old one.
+/// Returns the factor by which the tangential impulse of a contact at its old bound grows with the bound.
 fn growth(at: f64, old: f64, new: f64) -> Option<f64> {
     (old > 0.0 && at >= old * SLIDES).then(|| new / old)
 }
 
-/// Projects a prediction on the sets it was made for, `fixed`, then gives in `p` the admissible point at its own
-/// thresholds: what slides in the first slides in the second.
+/// Projects a prediction onto the sets it was made for (`fixed`), then sets `p` to the admissible point for
+/// its own bounds: contacts that slip in the first slip in the second.
 fn carry<const D: usize>(form: &Form<D>, sets: &[Set], fixed: &mut [[f64; D]], p: &mut [[f64; D]]) {
     fixed.copy_from_slice(p);
     for c in 0..p.len() {
@@ -176,11 +177,11 @@ fn carry<const D: usize>(form: &Form<D>, sets: &[Set], fixed: &mut [[f64; D]], p
     }
 }
 
-/// 1 / lambda_max of W in the metric, by power iteration, a little on the safe side.
+/// Estimates 1 / lambda_max of W in the metric by power iteration, with a safety margin.
 fn safe_step<const D: usize>(form: &Form<D>, metric: &[[f64; D]]) -> f64 {
     const ROUNDS: usize = 20;
     let zero = vec![[0.0; D]; form.len()];
-    // No direction that W may happen not to see.
+    // A start vector that is unlikely to be orthogonal to the dominant eigenvector.
     let mut x: Vec<[f64; D]> = (0..form.len())
         .map(|c| std::array::from_fn(|k| 1.0 + 0.5 * (1.3 * c as f64 + 0.7 * k as f64).sin()))
         .collect();
@@ -208,12 +209,12 @@ fn safe_step<const D: usize>(form: &Form<D>, metric: &[[f64; D]]) -> f64 {
 impl<const D: usize> Solver<D> for Gradient {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
         let n = form.len();
-        // The metric: equal along the tangents, so that discs stay discs.
+        // The metric is isotropic in the tangents, so that discs stay discs.
         let metric: Vec<[f64; D]> = (0..n)
             .map(|c| {
                 let w = form.w.diagonal(c);
                 if largest(w) == 0.0 {
-                    // What nothing moves keeps its impulse.
+                    // Contacts between immovable bodies keep their impulse.
                     return [0.0; D];
                 }
                 if self.kind != Kind::Preconditioned {
@@ -242,7 +243,7 @@ impl<const D: usize> Solver<D> for Gradient {
                 kept[c] = d[c];
                 sets[c].tangent(&state.p[c], &mut kept[c]);
             }
-            // wd and the curvature are still those of the last direction.
+            // `wd` and the curvature still belong to the last direction.
             let curvature = dot(&d, &wd);
             let beta = if first || self.kind == Kind::Plain || curvature <= 0.0 {
                 0.0
@@ -256,7 +257,7 @@ impl<const D: usize> Solver<D> for Gradient {
             }
             let mut along = -dot(&d, &state.u);
             if beta != 0.0 && along <= 0.0 {
-                // Not a descent any more: begin again along the gradient.
+                // No longer a descent direction: restart with the gradient.
                 d.copy_from_slice(&gradient);
                 along = -dot(&d, &state.u);
             }
@@ -281,7 +282,7 @@ impl<const D: usize> Solver<D> for Gradient {
                 }
                 carry(form, &sets, &mut fixed, &mut state.p);
                 form.velocity(&state.p, &mut state.u);
-                // What new thresholds add is no fault of the step.
+                // The change due to new bounds is not attributed to the step.
                 let moved = dot(&state.u, &state.p) - dot(&state.u, &fixed);
                 raised = 0.5 * (dot(&state.p, &state.u) + dot(&state.p, form.q)) - energy - moved;
             }

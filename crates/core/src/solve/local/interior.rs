@@ -1,35 +1,36 @@
-//! Interior point for the conic problem with the De Saxce correction.
+//! Interior-point method for the conic problem with the De Saxce correction.
 //!
-//! With r = (mu p_n, p_t) and v = (u_n / mu + |u_t|, u_t) the law reads r, v in the Lorentz cone, r.v = 0
-//! (De Saxce and Feng 1998), which primal-dual steps in Nesterov and Todd's scaling solve even where W has
-//! not full rank (Acary, Armand, Nguyen and Shpakovych 2024); here the term |u_t| is linearised with the rest.
-//! Mehrotra's predictor and corrector choose the centring.
+//! With r = (mu p_n, p_t) and v = (u_n / mu + |u_t|, u_t) the law reads: r, v in the Lorentz cone, r.v = 0
+//! (De Saxce and Feng 1998). Primal-dual steps in Nesterov-Todd scaling solve it even if W is rank deficient
+//! (Acary, Armand, Nguyen and Shpakovych 2024); here the term |u_t| is linearised as well. Mehrotra's
+//! predictor-corrector chooses the centring.
 //!
-//! Where mu = 0 the cone is the half line: p_t = 0 is known, and the tangents have no rows in the system. A bond
-//! is a block without a cone, u = 0; the normal part of one that only pulls lies on the half line p_n <= 0.
+//! Where mu = 0 the cone is the half line: p_t = 0 is known, and the tangents have no rows in the system. A
+//! bond is a block without a cone, u = 0; the normal part of a tension-only bond lies on the half line p_n
+//! <= 0.
 
 use super::block::Block;
 use super::form::{Form, Shift, dot, largest};
 use super::law::{Law, slip};
 use super::state::{Best, Budget, Solver, State};
 
-/// Rounding of |v_t| over what a sticking contact's v_t is on the central path.
+/// Smoothing of |v_t| relative to the value of v_t on the central path of a sticking contact.
 const SMOOTH: f64 = 0.01;
 
-/// Iterations without a better error before the iterate is moved away from the borders.
+/// Iterations without a smaller error before the iterate is moved away from the cone boundaries.
 const STALLED: u32 = 15;
 
-/// Moves the iterate away from the borders: a contact may reach its own, to rounding, long before the
-/// others, and then no step is left or no scaling.
+/// Moves the iterate away from the cone boundaries: one contact may reach its boundary, to rounding, long
+/// before the others, and then the step length vanishes or the scaling breaks down.
 struct Inwards {
     size_r: f64,
     size_v: f64,
-    /// How often it may be done.
+    /// Remaining number of such moves.
     left: u32,
 }
 
 impl Inwards {
-    /// By as much as is missing; whether it was done.
+    /// Moves the iterate by the missing distance; returns whether it did.
     fn step<const D: usize>(
         &mut self,
         error: f64,
@@ -54,13 +55,13 @@ impl Inwards {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Interior;
 
-/// x0^2 - |x1|^2.
+/// Returns x0^2 - |x1|^2.
 fn determinant<const D: usize>(x: &[f64; D]) -> f64 {
     let t = slip(x);
     (x[0] - t) * (x[0] + t)
 }
 
-/// Jordan product.
+/// Returns the Jordan product.
 fn product<const D: usize>(x: &[f64; D], y: &[f64; D]) -> [f64; D] {
     std::array::from_fn(|k| {
         if k == 0 {
@@ -71,7 +72,7 @@ fn product<const D: usize>(x: &[f64; D], y: &[f64; D]) -> [f64; D] {
     })
 }
 
-/// z with x o z = y.
+/// Returns z with x o z = y.
 fn divide<const D: usize>(x: &[f64; D], y: &[f64; D]) -> [f64; D] {
     let d = determinant(x);
     let cross: f64 = (1..D).map(|k| x[k] * y[k]).sum();
@@ -85,7 +86,7 @@ fn divide<const D: usize>(x: &[f64; D], y: &[f64; D]) -> [f64; D] {
     })
 }
 
-/// Nesterov and Todd's scaling: P r = P^-1 v.
+/// Nesterov-Todd scaling: P r = P^-1 v.
 struct Scaling<const D: usize> {
     eta: f64,
     w: [f64; D],
@@ -134,7 +135,7 @@ impl<const D: usize> Scaling<D> {
         })
     }
 
-    /// P^2 = eta^2 (2 w w^T - J).
+    /// Returns P^2 = eta^2 (2 w w^T - J).
     fn square(&self) -> Block<D> {
         let e = self.eta * self.eta;
         std::array::from_fn(|i| {
@@ -152,7 +153,7 @@ impl<const D: usize> Scaling<D> {
     }
 }
 
-/// The longest step that keeps x + t d in the cone.
+/// Returns the largest t for which x + t d stays in the cone.
 fn longest<const D: usize>(x: &[f64; D], d: &[f64; D]) -> f64 {
     let mut a = d[0] * d[0];
     let mut b = x[0] * d[0];
@@ -179,20 +180,22 @@ fn longest<const D: usize>(x: &[f64; D], d: &[f64; D]) -> f64 {
     t
 }
 
-/// Changes of r and of v.
+/// Increments of r and of v.
 type Pair<const D: usize> = (Vec<[f64; D]>, Vec<[f64; D]>);
 
-/// What share of the slope of |u_t| is linearised: where it makes steps short, less of it, or none.
+/// Fraction of the slope of |u_t| that is linearised: it is reduced, or set to zero, where it makes steps
+/// short.
 struct Slope {
     share: f64,
-    /// By degrees, or all and nothing.
+    /// Whether the fraction changes gradually, or only between all and nothing.
     gradual: bool,
     short: u32,
 }
 
 impl Slope {
-    /// With bonds the whole slope fails again and again: in the fretting case two steps of three end below 1e-2 by
-    /// all and nothing, and the blocks' error stays at 2e-4 where by degrees it falls to 7e-5 in 70 steps.
+    /// With bonds the full slope fails repeatedly: in the fretting case two steps of three are shorter than
+    /// 1e-2 with all-or-nothing, and the error stays at 2e-4, where the gradual variant reaches 7e-5 in 70
+    /// steps.
     fn new(gradual: bool) -> Self {
         Self {
             share: 1.0,
@@ -201,7 +204,7 @@ impl Slope {
         }
     }
 
-    /// After a step of length t.
+    /// Updates the fraction after a step of length t.
     fn follow(&mut self, t: f64) {
         const SHORT: f64 = 0.1;
         const LONG: f64 = 0.5;
@@ -216,15 +219,16 @@ impl Slope {
     }
 }
 
-/// A block as the method sees it: its first components lie in a Lorentz cone, the others are free and their
-/// velocities zero.
+/// A block in the method: its first components lie in a Lorentz cone, the others are free with zero
+/// velocity.
 #[derive(Clone, Copy, Debug)]
 struct Part {
-    /// Components in the cone: all of a contact with friction, one without, one of a bond that only pulls.
+    /// Components in the cone: all for a contact with friction, one without friction or for a tension-only
+    /// bond.
     cone: usize,
     /// Components with a row in the system.
     size: usize,
-    /// What the cone's axis is multiplied by to be the normal: 1/mu, 1 without friction, -1 of what pulls.
+    /// Factor from the cone's axis to the normal: 1/mu, 1 without friction, -1 for a tension-only bond.
     over: f64,
 }
 
@@ -239,12 +243,12 @@ impl Part {
         Self { cone, size, over }
     }
 
-    /// Whether slip widens the cone of velocities.
+    /// Returns whether slip shifts the cone of velocities.
     fn slides(&self) -> bool {
         self.cone > 1
     }
 
-    /// The components in the cone, zeros beside them.
+    /// Returns the components in the cone, padded with zeros.
     #[inline(always)]
     fn of<const D: usize>(&self, x: &[f64; D]) -> [f64; D] {
         std::array::from_fn(|k| if k < self.cone { x[k] } else { 0.0 })
@@ -252,17 +256,17 @@ impl Part {
 }
 
 impl Interior {
-    /// Whether every block is a cone that this method knows; else the reason.
+    /// Checks that the method supports the law of every block.
     ///
     /// # Errors
-    /// A sentence that names the first law that is no cone.
+    /// A sentence that names the first unsupported law.
     pub fn serves(laws: &[Law]) -> Result<(), String> {
         let known = |law: &Law| matches!(law, Law::Coulomb(_) | Law::Free | Law::Pull);
         let other = laws.iter().position(|law| !known(law));
         match other {
             None => Ok(()),
             Some(block) => Err(format!(
-                "the interior point solves Coulomb's law and bonds, and block {block} obeys another law: {:?}",
+                "the interior point supports Coulomb's law and bonds, but block {block} has another law: {:?}",
                 laws[block]
             )),
         }
@@ -275,7 +279,7 @@ impl<const D: usize> Solver<D> for Interior {
         let parts: Vec<Part> = form.laws.iter().map(Part::new::<D>).collect();
         let sizes: Vec<usize> = parts.iter().map(|part| part.size).collect();
         let over: Vec<f64> = parts.iter().map(|part| part.over).collect();
-        // A start well inside both cones, at the problem's own scale.
+        // Starts well inside both cones, at the scale of the problem.
         let cones: Vec<usize> = (0..n).filter(|c| parts[*c].cone > 0).collect();
         let count = cones.len().max(1) as f64;
         let measured: Vec<usize> = if cones.is_empty() {
@@ -291,7 +295,7 @@ impl<const D: usize> Solver<D> for Interior {
         let size_v = mean(&|c| squared(&form.q[c])).sqrt().max(1e-300);
         let size_r = size_v / mean_w;
         if !size_r.is_finite() || size_r <= 0.0 {
-            // Nothing can move, or the numbers are beyond the range.
+            // Nothing can move, or values are out of range.
             return;
         }
         let mut r = vec![[0.0; D]; n];
@@ -458,7 +462,7 @@ impl<const D: usize> Solver<D> for Interior {
                 state.p[c] = r[c];
                 state.p[c][0] *= over[c];
                 if largest(form.w.diagonal(c)) == 0.0 {
-                    // Nothing moves it: an impulse would only grow.
+                    // Both bodies are immovable: the impulse would grow without bound.
                     state.p[c] = [0.0; D];
                 }
             }

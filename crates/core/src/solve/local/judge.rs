@@ -1,4 +1,4 @@
-//! The sums of the error where all blocks obey Coulomb's law and the map's step is 1, as for problems from
+//! Sums of the error for problems in which all blocks obey Coulomb's law and rho is 1, as for problems from
 //! files: four contacts at a time.
 
 use super::law::{Law, natural};
@@ -8,15 +8,15 @@ use pulp::{Arch, Simd, WithSimd};
 /// Contacts at a time.
 const LANES: usize = 4;
 
-/// A number by contact.
+/// One number per contact.
 type Lanes = [f64; LANES];
 
-/// Residuals, velocities and impulses, squared; none where a block obeys another law.
+/// Returns the squared residuals, velocities and impulses; `None` if a block has another law.
 pub fn sums<const D: usize>(p: &[[f64; D]], u: &[[f64; D]], laws: &[Law]) -> Option<Sums> {
     Arch::new().dispatch(Pass(p, u, laws))
 }
 
-/// [`sums`] for the vectors at hand.
+/// [`sums`] for the vector instructions of this machine.
 struct Pass<'a, const D: usize>(&'a [[f64; D]], &'a [[f64; D]], &'a [Law]);
 
 impl<const D: usize> WithSimd for Pass<'_, D> {

@@ -1,8 +1,8 @@
-//! What a block of unknowns obeys: its set of admissible impulses and its natural map.
+//! Laws of a block of unknowns: set of admissible impulses and natural map.
 
 use crate::solve::cone::project_array;
 
-/// |t|.
+/// Returns |t|.
 #[inline(always)]
 pub fn slip<const D: usize>(u: &[f64; D]) -> f64 {
     if D == 2 {
@@ -16,7 +16,7 @@ pub fn slip<const D: usize>(u: &[f64; D]) -> f64 {
     }
 }
 
-/// p - project(p - rho (u + mu |u_t| n)).
+/// Returns p - project(p - rho (u + mu |u_t| n)).
 #[inline(always)]
 pub fn natural<const D: usize>(p: &[f64; D], u: &[f64; D], mu: f64, rho: f64) -> [f64; D] {
     let shift = mu * slip(u);
@@ -26,35 +26,37 @@ pub fn natural<const D: usize>(p: &[f64; D], u: &[f64; D], mu: f64, rho: f64) ->
     std::array::from_fn(|k| p[k] - y[k])
 }
 
-/// What a block of unknowns obeys.
+/// Law of a block of unknowns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
     /// 0 <= u_n perp p_n >= 0 and |p_t| <= mu p_n opposite to u_t.
     Coulomb(f64),
-    /// The same with |p_t| <= mu p_n + cohesion.
+    /// Coulomb's law with |p_t| <= mu p_n + cohesion.
     Cohesive {
         /// Friction coefficient.
         mu: f64,
         /// Shear cohesion over the step (N s).
         cohesion: f64,
     },
-    /// u = 0, p any: a bond, whose compliance stands in W.
+    /// u = 0, p unbounded: a bond, whose compliance is part of W.
     Free,
-    /// As `Free`, but it only pulls: p_n <= 0.
+    /// As `Free`, but in tension only: p_n <= 0.
     Pull,
-    /// Moments (twist, bending): |p_n| <= twist P, |p_t| <= bend P, P the normal impulse of block `of`.
+    /// Moments (twist, bending): |p_n| <= twist P, |p_t| <= bend P, where P is the normal impulse of block
+    /// `of`.
     Moment {
         /// The block whose normal impulse bounds the moment.
         of: u32,
-        /// Bound of the twist over P (m).
+        /// Bound of the twist moment divided by P (m).
         twist: f64,
-        /// Bound of the bending over P (m).
+        /// Bound of the bending moment divided by P (m).
         bend: f64,
     },
 }
 
 impl Law {
-    /// Nearest admissible point to z; `p` are all impulses, for laws that are bounded by others.
+    /// Returns the admissible point nearest to z; `p` holds all impulses, for laws whose bounds depend on
+    /// other blocks.
     #[inline(always)]
     pub fn project<const D: usize>(&self, z: &[f64; D], p: &[[f64; D]]) -> [f64; D] {
         match self {
@@ -93,7 +95,7 @@ impl Law {
         }
     }
 
-    /// mu of the De Saxce correction.
+    /// Returns mu of the De Saxce correction.
     #[inline(always)]
     pub fn friction(&self) -> f64 {
         match self {
@@ -102,7 +104,7 @@ impl Law {
         }
     }
 
-    /// The natural map, p - project(p - rho (u + mu |u_t| n)).
+    /// Returns the natural map, p - project(p - rho (u + mu |u_t| n)).
     #[inline(always)]
     pub fn natural<const D: usize>(
         &self,

@@ -1,14 +1,14 @@
-//! Linear systems given by rows: dense when small, else sparse, both by `faer`.
+//! Linear systems given by rows: dense if small, sparse otherwise, both by `faer`.
 
 use faer::linalg::solvers::{PartialPivLu, Solve, SolveCore};
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, MatMut};
 
-/// A matrix by compressed rows, columns rising.
+/// A matrix in compressed rows with increasing columns.
 #[derive(Clone, Debug, Default)]
 pub struct Rows {
-    /// Where each row starts; one more than rows.
+    /// Start of each row, and the end of the last.
     pub starts: Vec<usize>,
     /// Columns.
     pub columns: Vec<usize>,
@@ -16,19 +16,20 @@ pub struct Rows {
     pub values: Vec<f64>,
 }
 
-/// Up to this many unknowns a dense factorisation is faster.
+/// Maximum number of unknowns for which a dense factorisation is faster.
 const DENSE: usize = 120;
 
 /// A factorised matrix.
 pub enum Factor {
     /// Dense.
     Dense(PartialPivLu<f64>),
-    /// Sparse, of the transpose.
+    /// Sparse; the transpose is factorised.
     Sparse(Box<Lu<usize, f64>>),
 }
 
 impl Factor {
-    /// LU with partial pivoting; none where the matrix is singular or not finite.
+    /// Computes an LU factorisation with partial pivoting; `None` where the matrix is singular or not
+    /// finite.
     pub fn new(a: &Rows) -> Option<Self> {
         let n = a.starts.len() - 1;
         if a.values.iter().any(|x| !x.is_finite()) {
@@ -52,7 +53,7 @@ impl Factor {
         Some(Self::Sparse(Box::new(lu)))
     }
 
-    /// x = A^-1 x; says whether it is finite.
+    /// Computes x = A^-1 x; returns whether it is finite.
     pub fn solve(&self, x: &mut [f64]) -> bool {
         let n = x.len();
         let mut m = MatMut::from_column_major_slice_mut(x, n, 1);

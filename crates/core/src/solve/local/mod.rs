@@ -1,7 +1,7 @@
-//! Contact problems given as a matrix: u = W p + q, K* of (u + mu |u_t| n) perpendicular to p of K.
+//! Contact problems given as a matrix: u = W p + q, K* contains u + mu |u_t| n, perpendicular to p in K.
 //!
-//! This is the form of the field's shared collection (FCLIB). Components are (n, t) or (n, t1, t2),
-//! contact after contact.
+//! This is the form of the public collection FCLIB. Components are (n, t) or (n, t1, t2), contact after
+//! contact.
 #![allow(
     clippy::needless_range_loop,
     reason = "loops over the components of blocks read like their formulas"
@@ -33,12 +33,13 @@ pub use csr::Csr;
 pub use global::{Equalities, GlobalProblem, Multipliers};
 pub use reduce::{Elimination, ReduceError, Reduction};
 
-/// A local problem, whatever its dimension.
+/// A local problem of either dimension.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LocalProblem {
     /// Components of a contact: 2 or 3.
     pub dimension: usize,
-    /// The Delassus operator, `dimension * mu.len()` square (1/kg, or what the file has).
+    /// The Delassus operator, a square matrix of size `dimension * mu.len()` (1/kg, or the unit of the
+    /// file).
     pub w: Csr,
     /// Free relative velocities.
     pub q: Vec<f64>,
@@ -47,10 +48,10 @@ pub struct LocalProblem {
 }
 
 impl LocalProblem {
-    /// Whether the sizes fit and every number can be worked with; else the reason.
+    /// Checks that the sizes agree and every number is usable.
     ///
     /// # Errors
-    /// A sentence about the first thing that is wrong.
+    /// A sentence about the first problem found.
     pub fn check(&self) -> Result<(), String> {
         let (d, n) = (self.dimension, self.q.len());
         if d != 2 && d != 3 {

@@ -1,10 +1,10 @@
-//! Semi-smooth Newton on the Alart-Curnier function, inside proximal steps.
+//! Semi-smooth Newton method on the Alart-Curnier function, inside a proximal-point iteration.
 //!
-//! With z = p - rho u, F_n = p_n - max(z_n, 0) and F_t = p_t - proj(z_t; |.| <= mu max(z_n, 0))
-//! (Alart and Curnier 1991). Rigid packings have rank-deficient W, so Newton solves
-//! u = W p + q + alpha (p - p_k) and the outer loop lets p_k follow (proximal point around Newton:
-//! Acary, Bremond and Huber 2018); alpha falls while that goes well. Contacts whose prediction is open
-//! leave the linear system.
+//! With z = p - rho u, F_n = p_n - max(z_n, 0) and F_t = p_t - proj(z_t; |.| <= mu max(z_n, 0)) (Alart and
+//! Curnier 1991). Rigid packings have a rank-deficient W, so Newton solves u = W p + q + alpha (p - p_k),
+//! and the outer loop updates p_k (proximal point around Newton: Acary, Bremond and Huber 2018); alpha is
+//! reduced while this converges well. Contacts that are open in the prediction are eliminated from the
+//! linear system.
 
 use super::form::{Form, largest, squared};
 use super::law::{Law, slip};
@@ -15,7 +15,7 @@ use std::time::Instant;
 /// The method and its parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct Newton {
-    /// First alpha over the mean diagonal of W.
+    /// Initial alpha divided by the mean diagonal entry of W.
     pub alpha: f64,
 }
 
@@ -25,13 +25,13 @@ impl Default for Newton {
     }
 }
 
-/// Derivatives of one contact's F by p and by u.
+/// Derivatives of one contact's F with respect to p and u.
 struct Slopes<const D: usize> {
     p: [[f64; D]; D],
     u: [[f64; D]; D],
 }
 
-/// F of a contact, and whether it is open in the prediction.
+/// Returns F of a contact, and whether it is open in the prediction.
 fn value<const D: usize>(p: &[f64; D], u: &[f64; D], law: &Law, rho: f64) -> ([f64; D], bool) {
     let z: [f64; D] = std::array::from_fn(|k| p[k] - rho * u[k]);
     let (mu, cohesion) = match law {
@@ -134,7 +134,7 @@ impl<const D: usize> Prox<'_, D> {
         }
     }
 
-    /// F and |F|^2.
+    /// Computes F and |F|^2.
     fn residual(&self, p: &[[f64; D]], u: &[[f64; D]], f: &mut [[f64; D]]) -> f64 {
         for c in 0..p.len() {
             f[c] = value(&p[c], &u[c], &self.form.laws[c], self.rho[c]).0;
@@ -142,7 +142,7 @@ impl<const D: usize> Prox<'_, D> {
         squared(f)
     }
 
-    /// Newton's direction.
+    /// Computes Newton's direction.
     fn direction(&self, p: &[[f64; D]], u: &[[f64; D]], f: &[[f64; D]]) -> Option<Vec<[f64; D]>> {
         let w = self.form.w.matrix()?;
         let n = p.len();
@@ -163,7 +163,7 @@ impl<const D: usize> Prox<'_, D> {
         let mut b = Vec::with_capacity(active.len() * D);
         for &c in &active {
             let s = slopes(&p[c], &u[c], &self.form.laws[c], self.rho[c]);
-            // What open contacts do, W_cd d_d, goes to the right.
+            // The known increments of open contacts, W_cd d_d, move to the right-hand side.
             let mut known = [0.0; D];
             for (e, block) in w.row(c) {
                 if place[e] == usize::MAX {
@@ -225,7 +225,7 @@ fn push<const D: usize>(a: &mut Rows, block: usize, row: &[f64; D]) {
     }
 }
 
-/// An iterate of Newton's method with what belongs to it.
+/// An iterate of Newton's method with its residual.
 #[derive(Clone)]
 struct Point<const D: usize> {
     p: Vec<[f64; D]>,
@@ -250,7 +250,7 @@ impl<const D: usize> Point<D> {
         self.merit = prox.residual(&self.p, &self.u, &mut self.f);
     }
 
-    /// from + t d.
+    /// Evaluates from + t d.
     fn step(&mut self, from: &[[f64; D]], t: f64, d: &[[f64; D]], prox: &Prox<D>) {
         let parts = from.as_flattened().iter().zip(d.as_flattened());
         for (x, (a, d)) in self.p.as_flattened_mut().iter_mut().zip(parts) {
@@ -260,15 +260,16 @@ impl<const D: usize> Point<D> {
     }
 }
 
-/// Newton steps of one proximal problem.
+/// Maximum number of Newton steps of one proximal problem.
 const INNER: u32 = 16;
-/// Steps that may go the whole way though the merit grows: between kinks the line search creeps where the
-/// full step lands in the right piece.
+/// Number of full steps accepted although the merit function grows: between kinks the line search makes
+/// little progress, while the full step reaches the right branch.
 const BOLD: u32 = 8;
-/// A step shorter than this is given up for the full one.
+/// A line-search step shorter than this is replaced by the full step.
 const SHORT: f64 = 0.1;
 
-/// Solves one proximal problem from its centre; whether it got there, well within what alpha moved.
+/// Solves one proximal problem from its centre; returns whether the residual is well below the change due to
+/// alpha.
 fn inner<const D: usize>(
     prox: &Prox<D>,
     mean: f64,
@@ -322,10 +323,10 @@ fn inner<const D: usize>(
 }
 
 impl Newton {
-    /// Whether every law has slopes of its own; else the reason.
+    /// Checks that every law has derivatives independent of other blocks.
     ///
     /// # Errors
-    /// A sentence that names the first law that another block's impulse bounds.
+    /// A sentence that names the first law whose bound depends on another block's impulse.
     pub fn serves(laws: &[Law]) -> Result<(), String> {
         let bounded = laws
             .iter()
@@ -368,9 +369,10 @@ impl<const D: usize> Solver<D> for Newton {
             prox.centre.copy_from_slice(&state.p);
             let before = state.error;
             let good = inner(&prox, mean, &mut at, &mut trial, state, budget);
-            // Newton's iterate may stand a little outside the cones.
+            // Newton's iterate may lie slightly outside the cones.
             for c in 0..n {
-                // What nothing moves keeps its impulse, which would grow without end where it is pressed.
+                // Contacts between immovable bodies keep their impulse, which would otherwise grow without
+                // bound.
                 if largest(form.w.diagonal(c)) > 0.0 {
                     state.p[c] = form.laws[c].project(&at.p[c], &at.p);
                 }
@@ -378,7 +380,7 @@ impl<const D: usize> Solver<D> for Newton {
             state.measure(form);
             best.keep(state);
             if good {
-                // What failed lately is not tried again at once, unless nothing moves without it.
+                // A failed variant is not tried again at once, unless there is no other progress.
                 let slow = state.error > 0.9 * before;
                 hold = if slow { 0 } else { hold.saturating_sub(1) };
                 if hold == 0 {
@@ -388,7 +390,7 @@ impl<const D: usize> Solver<D> for Newton {
             }
             prox.alpha *= RISE;
             hold = HOLD;
-            // Another step of the projections has its kinks elsewhere.
+            // A different rho moves the kinks of the projections.
             failures += 1;
             let scale = SCALES[failures % SCALES.len()];
             for (rho, step) in prox.rho.iter_mut().zip(&steps) {

@@ -8,26 +8,26 @@ use super::state::{Best, Budget, Solver, State};
 use crate::solve::error::Norm;
 use pulp::{Arch, Simd, WithSimd};
 
-/// How contacts are visited.
+/// Order in which contacts are visited.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Order {
-    /// First to last.
+    /// From first to last.
     #[default]
     Forward,
     /// Forwards, then backwards.
     Symmetric,
-    /// In an order drawn from a seed, the same in every sweep.
+    /// In a random order from a seed, the same in every iteration.
     Shuffled(u64),
 }
 
 /// The method and its parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct Nlgs {
-    /// How contacts are visited.
+    /// Order in which contacts are visited.
     pub order: Order,
-    /// Over-relaxation, from 1 (none) to below 2.
+    /// Over-relaxation factor, from 1 (no relaxation) to below 2.
     pub relaxation: f64,
-    /// Ends with the last iterate instead of the best: for sweeps that are to go on.
+    /// Whether to end with the last iterate instead of the best, for iterations that are continued later.
     pub last: bool,
 }
 
@@ -41,15 +41,15 @@ impl Default for Nlgs {
     }
 }
 
-/// The sweep's own memory.
+/// Working memory of the Gauss-Seidel iteration.
 pub struct Sweep<'a, const D: usize> {
     w: &'a BlockMatrix<D>,
     q: &'a [[f64; D]],
     laws: &'a [Law],
     locals: Vec<Local<D>>,
-    /// What a change of impulse does to the residual, about: see [`Tests`].
+    /// Estimated sensitivity of the residual to a change of impulse; see [`Tests`].
     reach: Vec<f64>,
-    /// Square of the residual that the last sweep took away, about.
+    /// Estimated squared residual removed by the last iteration.
     pub change: f64,
 }
 
@@ -105,12 +105,12 @@ impl<'a, const D: usize> Sweep<'a, D> {
         }
     }
 
-    /// All contacts once.
+    /// Visits all contacts once.
     pub fn forward(&mut self, p: &mut [[f64; D]], relaxation: f64) {
         Arch::new().dispatch(Forward(self, p, relaxation));
     }
 
-    /// All contacts once, in an order.
+    /// Visits all contacts once, in the given order.
     pub fn along(&mut self, order: &[u32], p: &mut [[f64; D]], relaxation: f64) {
         self.change = 0.0;
         for c in order {
@@ -118,7 +118,7 @@ impl<'a, const D: usize> Sweep<'a, D> {
         }
     }
 
-    /// All contacts once, last to first.
+    /// Visits all contacts once, from last to first.
     pub fn backward(&mut self, p: &mut [[f64; D]], relaxation: f64) {
         self.change = 0.0;
         for c in (0..p.len()).rev() {
@@ -127,7 +127,7 @@ impl<'a, const D: usize> Sweep<'a, D> {
     }
 }
 
-/// [`Sweep::forward`] for the vectors at hand.
+/// [`Sweep::forward`] for the vector instructions of this machine.
 struct Forward<'s, 'a, const D: usize>(&'s mut Sweep<'a, D>, &'s mut [[f64; D]], f64);
 
 impl<const D: usize> WithSimd for Forward<'_, '_, D> {
@@ -143,8 +143,8 @@ impl<const D: usize> WithSimd for Forward<'_, '_, D> {
     }
 }
 
-/// When to measure the error, which costs about half a sweep: where it may be reached, if it followed the
-/// change of a sweep since it was measured last.
+/// Decides when to evaluate the error, which costs about half an iteration: when it may have reached the
+/// tolerance, if it decreased like the change per iteration since the last evaluation.
 #[derive(Default)]
 pub struct Tests {
     done: u32,
@@ -154,13 +154,13 @@ pub struct Tests {
 }
 
 impl Tests {
-    /// Sweeps at most between two tests; fewer at first, where impulses may go on to change in directions that
-    /// the error does not see.
+    /// Maximum number of iterations between two evaluations; fewer at first, when impulses may still change
+    /// in directions that the error does not detect.
     const MAX_SWEEPS_APART: u32 = 10;
-    /// The expected error over the tolerance from which to test.
+    /// Ratio of expected error to tolerance from which the error is evaluated.
     const NEAR: f64 = 1.5;
 
-    /// After a sweep: whether to measure. The first often ends it.
+    /// Returns, after an iteration, whether to evaluate the error. The first iteration often converges.
     pub fn due<const D: usize>(
         &mut self,
         sweep: &Sweep<D>,
@@ -180,8 +180,8 @@ impl Tests {
         due
     }
 
-    /// Square of the error to expect after a sweep. 0 where nothing changes any more: that is to be
-    /// measured.
+    /// Returns the squared error expected after an iteration; 0 where nothing changes any more, so that it
+    /// is evaluated.
     pub fn expected<const D: usize>(&self, sweep: &Sweep<D>, state: &State<D>) -> f64 {
         if sweep.change == 0.0 {
             return 0.0;
@@ -190,7 +190,7 @@ impl Tests {
     }
 }
 
-/// The contacts in an order drawn from a seed.
+/// Returns the contacts in a random order from a seed.
 fn shuffled(seed: u64, count: usize) -> Vec<u32> {
     use rand::seq::SliceRandom;
     let mut order: Vec<u32> = (0..count as u32).collect();
@@ -200,7 +200,7 @@ fn shuffled(seed: u64, count: usize) -> Vec<u32> {
 
 impl<const D: usize> Solver<D> for Nlgs {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
-        /// Tests without a better error after which there is to be less relaxation.
+        /// Evaluations without a smaller error after which the relaxation is reduced.
         const PATIENCE: u32 = 20;
         let Some(mut sweep) = Sweep::new(form) else {
             return;

@@ -1,56 +1,56 @@
-//! From a global problem, or a local one with multipliers, to the local form u = W p + q.
+//! Reduction of a global problem, or a local one with multipliers, to the local form u = W p + q.
 //!
-//! Global: W = H^T M^-1 H, q = H^T M^-1 f + w. With equality constraints, M v = H r + G l + f and
-//! G^T v + b = 0, the matrix is the saddle K = [M, -G; G^T, 0] of (v, l), and H has rows of zeros below:
-//! W = [H; 0]^T K^-1 [H; 0], q = [H; 0]^T K^-1 (f, -b) + w. Local with multipliers: W - V R^-1 V^T and
-//! q - V R^-1 s.
+//! Global: W = H^T M^-1 H, q = H^T M^-1 f + w. With equality constraints, M v = H r + G l + f and G^T v + b
+//! = 0, the matrix is the saddle-point matrix K = [M, -G; G^T, 0] of (v, l), and H is padded with zero rows:
+//! W = [H; 0]^T K^-1 [H; 0], q = [H; 0]^T K^-1 (f, -b) + w. Local with multipliers: W - V R^-1 V^T and q - V
+//! R^-1 s.
 //!
-//! M is taken as it stands, symmetric or not.
+//! M need not be symmetric.
 
 use super::factor::{Factors, Singular};
 use super::global::{GlobalProblem, Multipliers};
 use super::{Csr, LocalProblem};
 
-/// Why a problem has no local form.
+/// Reason why a problem cannot be reduced to a local form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReduceError {
-    /// No inverse of M.
+    /// M is singular.
     #[error(
         "the matrix M cannot be inverted: {0}; give every degree of freedom a mass or stiffness"
     )]
     Mass(Singular),
-    /// No inverse of the saddle matrix.
+    /// The saddle-point matrix is singular.
     #[error(
         "the matrix [M, -G; G^T, 0] cannot be inverted: {0}; give every degree of freedom a mass or a \
          constraint, and remove constraints that follow from others"
     )]
     Saddle(Singular),
-    /// No inverse of R.
+    /// R is singular.
     #[error(
         "the multipliers cannot be eliminated, because R cannot be inverted: {0}; remove the constraints \
          that follow from others, or give the problem in global form"
     )]
     Multipliers(Singular),
-    /// The local form would not fit in memory.
+    /// The local form would exceed the memory limit.
     #[error(
         "the local form would have up to {entries} entries, above {MAX_ENTRIES}: so many contacts share a body \
          or a structure; give the problem in local form, or fewer contacts"
     )]
     Large {
-        /// Entries of W, from above.
+        /// Upper bound of the number of entries of W.
         entries: usize,
     },
-    /// Numbers beyond the range of a double.
+    /// Values outside the range of double precision.
     #[error(
         "the local form has values beyond the range of a double; scale the units of the problem"
     )]
     Overflow,
 }
 
-/// W of some 3 GB while it is formed.
+/// About 3 GB for W while it is assembled.
 const MAX_ENTRIES: usize = 100_000_000;
 
-/// B^T K^-1 B where it fits in memory.
+/// Computes B^T K^-1 B if it fits in memory.
 fn sandwich(factors: &Factors, b: &Csr) -> Result<Csr, ReduceError> {
     match factors.reach(b) {
         entries if entries > MAX_ENTRIES => Err(ReduceError::Large { entries }),
@@ -58,10 +58,10 @@ fn sandwich(factors: &Factors, b: &Csr) -> Result<Csr, ReduceError> {
     }
 }
 
-/// The local form of a global problem and the way back.
+/// The local form of a global problem, and the recovery of its unknowns.
 #[derive(Debug)]
 pub struct Reduction {
-    /// The local form; its p is the global problem's r.
+    /// The local form; its p is the r of the global problem.
     pub local: LocalProblem,
     factors: Factors,
 }
@@ -70,7 +70,7 @@ impl Reduction {
     /// Eliminates v, and l where there are constraints.
     ///
     /// # Errors
-    /// M, or the saddle matrix, is singular.
+    /// M, or the saddle-point matrix, is singular.
     pub fn new(problem: &GlobalProblem) -> Result<Self, ReduceError> {
         let n = problem.m.rows;
         let (factors, rows) = match &problem.equalities {
@@ -109,7 +109,7 @@ impl Reduction {
         Ok(reduction)
     }
 
-    /// v (n) and l (p, empty without constraints) from the contact impulses r (m).
+    /// Returns v (n) and l (p, empty without constraints) for the contact impulses r (m).
     pub fn velocities(&self, problem: &GlobalProblem, r: &[f64]) -> (Vec<f64>, Vec<f64>) {
         self.back(problem, Some(r))
     }
@@ -132,10 +132,10 @@ impl Reduction {
     }
 }
 
-/// The local form of a local problem with multipliers, and the way back.
+/// The local form of a local problem with multipliers, and the recovery of the multipliers.
 #[derive(Debug)]
 pub struct Elimination {
-    /// The local form; its p is the problem's r.
+    /// The local form; its p is the r of the problem.
     pub local: LocalProblem,
     factors: Factors,
 }
@@ -161,7 +161,7 @@ impl Elimination {
         Ok(Self { local, factors })
     }
 
-    /// l (p) from the contact impulses r (m).
+    /// Returns l (p) for the contact impulses r (m).
     pub fn multipliers(&self, multipliers: &Multipliers, r: &[f64]) -> Vec<f64> {
         let mut x: Vec<f64> = multipliers.s.iter().map(|s| -s).collect();
         for (k, r) in r.iter().enumerate() {

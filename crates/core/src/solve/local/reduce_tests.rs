@@ -1,4 +1,4 @@
-//! Against dense formulas on random problems.
+//! Comparison with dense formulas on random problems.
 
 use super::*;
 use crate::solve::local::global::Equalities;
@@ -25,7 +25,7 @@ fn random(rows: usize, columns: usize, per_row: usize, rng: &mut Pcg64) -> Csr {
     Csr::from_triplets(rows, columns, &entries)
 }
 
-/// Blocks of `block` rows, not symmetric, of masses that differ by `spread` powers of ten.
+/// Nonsymmetric diagonal blocks of `block` rows, with masses spread over `spread` powers of ten.
 fn mass(n: usize, block: usize, spread: i32, rng: &mut Pcg64) -> Csr {
     let mut entries = Vec::new();
     for i in 0..n {
@@ -111,7 +111,7 @@ fn a_global_problem_has_the_dense_local_form() {
 
 #[test]
 fn bodies_that_share_no_contact_stay_apart() {
-    // Two bodies of three rows, a contact each: two blocks of W.
+    // Two bodies of three rows with one contact each: two blocks of W.
     let m = Csr::from_triplets(6, 6, &(0..6).map(|i| (i, i, 2.0)).collect::<Vec<_>>());
     let h = m.clone();
     let problem = GlobalProblem {

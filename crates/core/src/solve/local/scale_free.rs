@@ -1,13 +1,15 @@
-//! A second figure beside the field's: the error in velocities, which no choice of units changes.
+//! A second error measure: the error in velocities, which does not depend on units.
 //!
-//! The field's figure divides by max(|q|, |p|, |u|). Where W is far from 1 impulses dwarf velocities, and a figure of 1e-8
-//! may hide velocities that are all wrong. The scale-free error is [`Norm::Velocity`] of [`crate::solve::error`]:
+//! The error measure of the literature divides by max(|q|, |p|, |u|). Where W is far from 1, impulses
+//! dominate velocities, and an error of 1e-8 may hide velocities that are entirely wrong. The scale-free
+//! error is [`Norm::Velocity`] of [`crate::solve::error`]:
 //!
 //! ```text
-//! |r| / max(|u|, |q|),   r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c| n))) / rho_c,   rho_c = 1 / lambda_max(W_cc)
+//! |r| / max(|u|, |q|),   r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c| n))) / rho_c,   rho_c = 1 /
+//! lambda_max(W_cc)
 //! ```
 //!
-//! W times s with p over s, and q with u and p in another unit, give the same number.
+//! Scaling W by s and p by 1/s, or changing the units of q, u and p, gives the same number.
 
 use super::LocalProblem;
 use super::block::BlockMatrix;
@@ -19,16 +21,16 @@ use crate::solve::error::Norm;
 /// The formula, for reports.
 pub const FORMULA: &str = "|r| / max(|u|, |q|), r = (p - proj_K(p - rho (u + mu |u_t| n))) / rho, rho = 1 / lambda_max(W_cc)";
 
-/// Turns of driving one figure, then the other.
+/// Maximum number of alternations between the two error measures.
 const TURNS: u32 = 6;
 
-/// The scale-free error above which a solution that meets the field's figure is doubted, where no tolerance is asked for: a
-/// hundred times the tolerance, no less than 1e-3 and no more than 0.1.
+/// Returns the scale-free error above which a solution that meets the usual error measure is reported as
+/// doubtful, if no tolerance is given: a hundred times the tolerance, but at least 1e-3 and at most 0.1.
 pub fn usual_limit(tolerance: f64) -> f64 {
     (100.0 * tolerance).clamp(1e-3, 0.1)
 }
 
-/// The scale-free error of impulses p, with u = W p + q; infinite where a number is not finite.
+/// Returns the scale-free error of impulses p, with u = W p + q; infinite where a number is not finite.
 pub fn scale_free_error(problem: &LocalProblem, p: &[f64]) -> f64 {
     match problem.dimension {
         2 => measured::<2>(problem, p),
@@ -38,7 +40,8 @@ pub fn scale_free_error(problem: &LocalProblem, p: &[f64]) -> f64 {
 
 fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> f64 {
     let w = BlockMatrix::<D>::from_csr(&problem.w);
-    // In units of the largest free velocity: a power of two, so that no bit changes and no square leaves the range.
+    // In units of the largest free velocity, rounded to a power of two, so that no bit changes and no square
+    // overflows.
     let unit = magnitude(problem.q.iter());
     let scaled = |x: &[f64]| -> Vec<[f64; D]> {
         let blocks = x.as_chunks::<D>().0.iter();
@@ -52,8 +55,9 @@ fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> f64 {
     form.error(&p, &u).error
 }
 
-/// Brings a state to the field's figure and to the scale-free one, if one is asked for, by turns: what is worse is solved for
-/// from where the other left off. `solve` is the method at work; ends as its budget says.
+/// Reduces both the usual and, if requested, the scale-free error of a state below their tolerances by
+/// alternating between them, always continuing with the larger one. `solve` runs the method; the budget
+/// limits the work.
 pub(super) fn meet<'a, const D: usize>(
     field: &Form<'a, D>,
     velocity: &Form<'a, D>,
@@ -66,7 +70,8 @@ pub(super) fn meet<'a, const D: usize>(
     let Some(limit) = limits.scale_free else {
         return;
     };
-    // A hair below, so that the figures recomputed in another order of sums are still within.
+    // Slightly below the tolerance, so that errors recomputed in another order of summation are still within
+    // it.
     let within = 1.0 - 1e-9;
     let mut tighter = 1.0;
     for _ in 0..TURNS {
@@ -78,7 +83,7 @@ pub(super) fn meet<'a, const D: usize>(
                 break;
             }
             budget.tolerance = limit * within * tighter;
-            // What follows for the other figure may undo some of it.
+            // Reducing the other error may undo part of the progress.
             tighter *= 0.1;
             state.judge(velocity);
             solve(velocity, state, budget);

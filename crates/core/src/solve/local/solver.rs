@@ -1,4 +1,4 @@
-//! Solving a local problem: the methods, their limits and the figure of the error.
+//! Solution of a local problem: methods, limits and error measure.
 
 use super::LocalProblem;
 use super::accelerated::Accelerated;
@@ -21,12 +21,12 @@ use std::time::Instant;
 /// A way to solve a problem.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 pub enum Method {
-    /// The program chooses.
+    /// Automatic choice.
     #[default]
     Auto,
     /// Gauss-Seidel over contacts.
     Nlgs,
-    /// The same, forwards and backwards.
+    /// Gauss-Seidel over contacts, forwards and backwards.
     NlgsSymmetric,
     /// Gauss-Seidel with Anderson's acceleration.
     Anderson,
@@ -45,7 +45,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// All of them.
+    /// All methods.
     pub const ALL: &[Method] = &[
         Method::Auto,
         Method::Nlgs,
@@ -59,7 +59,7 @@ impl Method {
         Method::Interior,
     ];
 
-    /// Its name on the command line.
+    /// Returns its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -75,10 +75,10 @@ impl Method {
         }
     }
 
-    /// A line about it.
+    /// Returns a one-line description.
     pub fn about(self) -> &'static str {
         match self {
-            Self::Auto => "the program chooses: sweeps first, then methods that factorise",
+            Self::Auto => "automatic choice: Gauss-Seidel first, then methods that factorise",
             Self::Nlgs => "Gauss-Seidel over contacts, each solved exactly",
             Self::NlgsSymmetric => "the same, forwards and backwards",
             Self::Anderson => "Gauss-Seidel with Anderson's acceleration",
@@ -91,10 +91,10 @@ impl Method {
         }
     }
 
-    /// Whether it can solve blocks of these laws; else the reason.
+    /// Checks that the method supports blocks of these laws.
     ///
     /// # Errors
-    /// A sentence that says which law it does not serve.
+    /// A sentence that names the unsupported law.
     pub fn serves(self, laws: &[Law]) -> Result<(), String> {
         match self {
             Self::Newton => Newton::serves(laws),
@@ -103,7 +103,7 @@ impl Method {
         }
     }
 
-    /// The method at work.
+    /// Creates the solver.
     pub fn solver<const D: usize>(self) -> Box<dyn Solver<D>> {
         let gradient = |kind| Box::new(Gradient { kind });
         match self {
@@ -139,34 +139,34 @@ impl FromStr for Method {
     }
 }
 
-/// When to stop.
+/// Stopping criteria.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// The [`field_error`] to reach.
     pub tolerance: f64,
-    /// The [`Outcome::scale_free_error`] to reach too; none where it is told only.
+    /// The [`Outcome::scale_free_error`] to reach as well; `None` to report it only.
     pub scale_free: Option<f64>,
-    /// Iterations at most.
+    /// Maximum number of iterations.
     pub max_iterations: u32,
-    /// Seconds at most.
+    /// Maximum time (s).
     pub seconds: f64,
 }
 
-/// What a solve gave.
+/// Result of a solve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// The method, with what `auto` chose.
+    /// The method, with the choices of `auto`.
     pub method: String,
     /// Contact impulses of the best iterate.
     pub p: Vec<f64>,
-    /// Its velocities W p + q.
+    /// Velocities W p + q of that iterate.
     pub u: Vec<f64>,
     /// Its [`field_error`].
     pub error: f64,
-    /// The larger of two figures that it does not hold and that must be within the tolerance too: what
-    /// friction hides of Signorini's law, and impulses that grow without bound. See [`crate::solve::error`].
+    /// The larger of two additional errors, not contained in `error`, that must be within the tolerance too:
+    /// violation of Signorini's law hidden by friction, and unbounded impulses. See [`crate::solve::error`].
     pub beside: f64,
-    /// The error in velocities alone, which no choice of units changes; see [`scale_free`].
+    /// The error in velocities, independent of units; see [`scale_free`].
     pub scale_free_error: f64,
     /// The contact with the largest share of the error.
     pub worst: Option<usize>,
@@ -174,13 +174,13 @@ pub struct Outcome {
     pub iterations: u32,
     /// Seconds taken.
     pub seconds: f64,
-    /// Whether the errors are within the tolerances asked for.
+    /// Whether the errors are within the requested tolerances.
     pub converged: bool,
 }
 
-/// Solves a problem from p = 0. A solve of a few milliseconds is repeated and the best time given, since
-/// the first one pays for cold memory. A problem that [`LocalProblem::check`] refuses is not begun: p = 0, an
-/// infinite error.
+/// Solves a problem from p = 0. Solves of a few milliseconds are repeated and the best time is reported,
+/// since the first one runs with cold caches. For a problem that [`LocalProblem::check`] rejects, the result
+/// is p = 0 with an infinite error.
 pub fn solve(problem: &LocalProblem, method: Method, limits: &Limits) -> Outcome {
     if problem.check().is_err() {
         let p = vec![0.0; problem.q.len()];
@@ -208,7 +208,7 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
     const ENOUGH: f64 = 0.02;
     let w = BlockMatrix::<D>::from_csr(&problem.w);
     let mut q: Vec<[f64; D]> = problem.q.as_chunks().0.to_vec();
-    // Impulses follow a factor of the free velocities: one keeps the squares of far-off units in range.
+    // Impulses scale with the free velocities: scaling these to one keeps squares in range.
     let unit = match magnitude(problem.q.iter()) {
         unit if (1e-50..1e50).contains(&unit) => 1.0,
         unit => unit,
@@ -226,7 +226,8 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
         let form = Form::new(&w, &q, &laws, Norm::Field);
         solver.used.clear();
         let mut now = State::new(&form, vec![[0.0; D]; laws.len()]);
-        // A hair below, so that the figure recomputed in another order of sums is still within.
+        // Slightly below the tolerance, so that the error recomputed in another order of summation is still
+        // within it.
         let tolerance = limits.tolerance * (1.0 - 1e-9);
         let mut budget = Budget::new(tolerance, limits.max_iterations, limits.seconds);
         let step = |f: &Form<D>, s: &mut State<D>, b: &mut Budget| solver.solve(f, s, b);
@@ -261,10 +262,10 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
     }
 }
 
-/// A method, or the choice of one, which can tell afterwards.
+/// A method, or `auto`, which can list the methods it used.
 struct Choice<const D: usize> {
     kind: Kinds<D>,
-    /// What `auto` used, in the order of first use.
+    /// Methods used by `auto`, in the order of first use.
     used: Vec<&'static str>,
 }
 
@@ -306,8 +307,9 @@ impl<const D: usize> Choice<D> {
     }
 }
 
-/// The field's figure: |p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|, |u|), Euclidean norms of whole
-/// vectors, u = W p + q; not divided when the maximum is 0. Infinite where a number is not finite.
+/// Returns the error measure of the literature: |p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|, |u|),
+/// Euclidean norms of whole vectors, u = W p + q; not divided when the maximum is 0. Infinite where a number
+/// is not finite.
 pub fn field_error(problem: &LocalProblem, p: &[f64]) -> f64 {
     match problem.dimension {
         2 => measured::<2>(problem, p).error,
@@ -315,11 +317,11 @@ pub fn field_error(problem: &LocalProblem, p: &[f64]) -> f64 {
     }
 }
 
-/// What is measured of a solution.
+/// Errors of a solution.
 struct Measured {
-    /// The field's figure.
+    /// The error measure of the literature.
     error: f64,
-    /// The larger of the two that it does not hold, see [`crate::solve::error`].
+    /// The larger of the two additional errors; see [`crate::solve::error`].
     beside: f64,
     /// The block with the largest residual.
     worst: Option<usize>,
@@ -335,8 +337,8 @@ fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> Measured {
             worst: None,
         };
     }
-    // The figure is the same of vectors divided by one number: a power of two, so that no bit changes and
-    // no square leaves the range.
+    // Scaling all vectors by one number does not change the error: a power of two, so that no bit changes
+    // and no square overflows.
     let unit = magnitude(all());
     let norm = |x: &[f64]| x.iter().map(|x| (x / unit).powi(2)).sum::<f64>().sqrt();
     let velocity = norm(&problem.q).max(norm(&u));
@@ -354,7 +356,7 @@ fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> Measured {
         }
     }
     let scale = velocity.max(norm(p));
-    // Impulses so large that q is lost in the rounding of W p answer nothing.
+    // If q is lost in the rounding of W p, the impulses are no solution.
     let rounding = f64::EPSILON * norm(&problem.sizes(p));
     let growth = over(f64::sqrt(sum).max(rounding), velocity);
     Measured {
@@ -364,7 +366,7 @@ fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> Measured {
     }
 }
 
-/// The power of two below the largest number; 1 where all are 0.
+/// Returns the power of two below the largest number; 1 where all are 0.
 pub(super) fn magnitude<'a>(x: impl Iterator<Item = &'a f64>) -> f64 {
     let most = x.fold(0.0f64, |m, x| m.max(x.abs()));
     if most > 0.0 {

@@ -1,4 +1,4 @@
-//! What solvers share: the iterate, when to stop, and the trait.
+//! Common parts of the solvers: the iterate, stopping criteria, and the trait.
 
 use super::form::Form;
 use std::time::{Duration, Instant};
@@ -6,20 +6,20 @@ use std::time::{Duration, Instant};
 /// The iterate: impulses p and velocities u = W p + q.
 #[derive(Clone, Debug)]
 pub struct State<const D: usize> {
-    /// Impulses; the start of a solve.
+    /// Impulses; the initial value of a solve.
     pub p: Vec<[f64; D]>,
-    /// Velocities that belong to them.
+    /// Velocities of these impulses.
     pub u: Vec<[f64; D]>,
     /// Error of `p`.
     pub error: f64,
-    /// What the residual is divided by.
+    /// Value by which the residual is divided.
     pub scale: f64,
-    /// Iterations done, in the solver's own unit.
+    /// Iterations done, as counted by the solver.
     pub iterations: u32,
 }
 
 impl<const D: usize> State<D> {
-    /// From impulses.
+    /// Creates a state from impulses.
     pub fn new(form: &Form<D>, p: Vec<[f64; D]>) -> Self {
         let mut state = Self {
             u: vec![[0.0; D]; p.len()],
@@ -37,7 +37,7 @@ impl<const D: usize> State<D> {
         state
     }
 
-    /// Recomputes velocities and error.
+    /// Recomputes velocities and error; returns the error.
     pub fn measure(&mut self, form: &Form<D>) -> f64 {
         form.velocity(&self.p, &mut self.u);
         self.judge(form)
@@ -63,7 +63,7 @@ pub struct Best<const D: usize> {
 }
 
 impl<const D: usize> Best<D> {
-    /// The state at hand.
+    /// Starts with the current state.
     pub fn of(state: &State<D>) -> Self {
         Self {
             error: state.error,
@@ -71,7 +71,7 @@ impl<const D: usize> Best<D> {
         }
     }
 
-    /// Keeps the state if it is better.
+    /// Stores the state if it is better.
     pub fn keep(&mut self, state: &State<D>) {
         if state.error < self.error {
             self.error = state.error;
@@ -79,7 +79,7 @@ impl<const D: usize> Best<D> {
         }
     }
 
-    /// Puts the best back into the state.
+    /// Copies the best iterate back to the state.
     pub fn restore(&self, form: &Form<D>, state: &mut State<D>) {
         if state.error > self.error || !state.error.is_finite() {
             state.p.copy_from_slice(&self.p);
@@ -88,21 +88,21 @@ impl<const D: usize> Best<D> {
     }
 }
 
-/// When to stop.
+/// Stopping criteria.
 #[derive(Clone, Debug)]
 pub struct Budget {
     /// Error to reach.
     pub tolerance: f64,
-    /// Iterations at most, of the solver's own unit.
+    /// Maximum number of iterations, as counted by the solver.
     pub max_iterations: u32,
-    /// When to give up.
+    /// Time at which to stop.
     pub deadline: Instant,
-    /// Where the error went, (iteration, error), if asked for.
+    /// History (iteration, error), if requested.
     pub history: Option<Vec<(u32, f64)>>,
 }
 
 impl Budget {
-    /// Limits from now on.
+    /// Creates limits that start now.
     pub fn new(tolerance: f64, max_iterations: u32, seconds: f64) -> Self {
         let seconds = seconds.clamp(0.0, 1e9);
         Self {
@@ -113,7 +113,7 @@ impl Budget {
         }
     }
 
-    /// Whether the solver is to stop at this state. Takes down the error if asked for.
+    /// Returns whether to stop at this state; records the error if requested.
     pub fn ends<const D: usize>(&mut self, state: &State<D>) -> bool {
         if let Some(history) = &mut self.history {
             history.push((state.iterations, state.error));
@@ -123,7 +123,7 @@ impl Budget {
             || Instant::now() >= self.deadline
     }
 
-    /// The same end with fewer iterations left.
+    /// Returns the same budget with fewer iterations.
     #[must_use]
     pub fn at_most(&self, iterations: u32) -> Self {
         Self {
@@ -134,8 +134,8 @@ impl Budget {
     }
 }
 
-/// A method.
+/// A solution method.
 pub trait Solver<const D: usize> {
-    /// Improves the state until the budget ends it; returns with the best state it knows, measured.
+    /// Improves the state until the budget ends; leaves the best state found, with its error.
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget);
 }

@@ -1,4 +1,4 @@
-//! Contact of two balls with a bond, cohesion or tangential restitution: solved in closed form.
+//! Contact of two balls with a bond, cohesion or tangential restitution, solved in closed form.
 
 use super::{
     Residual, Row, SolverBody, inverse, inverse_along, natural_map, push, relative, restore_parts,
@@ -7,9 +7,9 @@ use super::{
 use crate::geometry::space::{Space, VectorLike, greatest, least};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
 
-/// A direction with w = W_cc, f = u - w p and p_el = -(a + b u): by elimination of u,
-/// s = q - f/w while the contact holds, and p_el = -(k + c (w s + f)),
-/// q = a - (1 + w b) shift/w, k = a/(1 + w b), c = b/(1 + w b).
+/// One direction with w = W_cc, f = u - w p and p_el = -(a + b u): by elimination of u, s = q - f/w while
+/// the contact is closed (or sticks), and p_el = -(k + c (w s + f)), q = a - (1 + w b) shift/w, k = a/(1 + w
+/// b), c = b/(1 + w b).
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct Direction<T> {
@@ -20,7 +20,7 @@ struct Direction<T> {
     c: f64,
 }
 
-/// What the convergence test needs beside; the sweep leaves it alone.
+/// Additional data of the convergence test, not used by the iteration.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct Bond<T> {
@@ -29,7 +29,7 @@ struct Bond<T> {
     shift: T,
 }
 
-/// See the module. `lanes` reads its numbers in their order.
+/// See the module. `lanes` reads its fields in their order.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(in crate::solve) struct FullRow<S: Space> {
@@ -38,13 +38,14 @@ pub(in crate::solve) struct FullRow<S: Space> {
     pt: S::Tangent,
     normal: Direction<f64>,
     tangent: Direction<S::Tangent>,
-    /// Slack bond (a bond that only pulls): s = q_0 - f/w.
+    /// Inactive tension-only bond: s = q_0 - f/w.
     q_slack: f64,
-    /// The bond's normal part is let go above this: 0 for one that only pulls, or infinity.
+    /// Threshold above which the bond's normal part is inactive: 0 for a tension-only bond, otherwise
+    /// infinity.
     limit: f64,
     mu: f64,
     tension: f64,
-    /// mu h c_n + h c_t.
+    /// Friction bound at zero normal impulse, mu h c_n + h c_t.
     grip: f64,
     cohesion: f64,
     bond_n: Bond<f64>,
@@ -58,7 +59,7 @@ impl<S: Space> FullRow<S> {
         let e = contact.elastic.unwrap_or_else(Elastic::none);
         let (dn, dt) = (1.0 + w_n * e.b_n, 1.0 + w_t * e.b_t);
         let (iwn, iwt) = (inverse(w_n), inverse_along(w_t, w_n));
-        // Two immovable bodies do not press on each other; their bond still pulls.
+        // Between two immovable bodies there is no contact impulse; their bond still acts.
         let movable = f64::from(u8::from(w_n > 0.0));
         Self {
             bodies: contact.bodies,
@@ -106,13 +107,13 @@ impl<S: Space> FullRow<S> {
         }
     }
 
-    /// Of a contact that nothing moves.
+    /// Returns a row of a contact between immovable bodies.
     #[cfg(target_arch = "x86_64")]
     pub(super) fn idle() -> Self {
         Self::new(&ContactForm::idle(), 0.0, 0.0)
     }
 
-    /// The impulse of the bond at a relative velocity.
+    /// Returns the impulse of the bond at a relative velocity.
     fn bond(&self, un: f64, ut: S::Tangent) -> (f64, S::Tangent) {
         let pull = -(self.bond_n.a + self.bond_n.b * un);
         let en = if pull > self.limit { 0.0 } else { pull };
@@ -131,7 +132,8 @@ impl<S: Space> Row<S> for FullRow<S> {
         let (n, t) = (&self.normal, &self.tangent);
         let (un, ut) = relative(&self.n, a, b);
         let f = un - n.w * self.pn;
-        // Both answers are formed and one is chosen: the branch would be guessed wrong too often.
+        // Both branches are computed and one is selected, because the branch would be mispredicted too
+        // often.
         let with = greatest(n.q - f * n.iw, -self.tension);
         let pull = -(n.k + n.c * (n.w * with + f));
         let without = greatest(self.q_slack - f * n.iw, -self.tension);

@@ -1,11 +1,12 @@
-//! A contact with levers or of a body that is free along some axes only: solved as a block.
+//! A contact with lever arms, or of a body that is free along some axes only: solved as a block, exactly
+//! where there is no shear cohesion.
 
 use super::block::BlockContact;
 use super::{Residual, Row, SolverBody};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Mobility};
 
-/// A contact with levers, or of a body that is free along some axes only: a full block.
+/// A contact with lever arms, or of a body that is free along some axes only: a full block.
 #[derive(Clone, Debug)]
 pub(in crate::solve) struct GeneralRow<S: Space> {
     bodies: [u32; 2],

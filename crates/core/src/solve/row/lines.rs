@@ -3,14 +3,14 @@
 use super::SolverBody;
 use crate::geometry::space::Space;
 
-/// Velocities reached by several threads, each at bodies of its own.
+/// Velocities accessed by several threads, each at its own bodies.
 pub(in crate::solve) struct Lines<S: Space> {
     first: *mut SolverBody<S>,
     len: usize,
 }
 
-// SAFETY: contacts solved at the same time share no movable body (see `colour`), and lines of
-// immovable bodies are read only; so no line is written while another thread reads or writes it.
+// SAFETY: contacts solved at the same time share no movable body (see `colour`), and records of immovable
+// bodies are only read; so no record is written while another thread accesses it.
 unsafe impl<S: Space> Sync for Lines<S> {}
 
 impl<S: Space> Lines<S> {
@@ -21,15 +21,15 @@ impl<S: Space> Lines<S> {
         }
     }
 
-    /// The line of a body, for code that keeps to the rule of `Sync` by itself.
+    /// Returns the record of a body, for code that itself satisfies the rule of `Sync`.
     #[inline(always)]
     pub fn at(&self, body: u32) -> *mut SolverBody<S> {
         debug_assert!((body as usize) < self.len);
-        // SAFETY: indices are those of bodies pushed before the contact.
+        // SAFETY: indices belong to bodies pushed before the contact.
         unsafe { self.first.add(body as usize) }
     }
 
-    /// Runs `f` on the lines of two bodies and stores those of movable bodies.
+    /// Runs `f` on the records of two bodies and stores those of movable bodies.
     #[inline(always)]
     pub fn with(&self, bodies: [u32; 2], f: impl FnOnce(&mut SolverBody<S>, &mut SolverBody<S>)) {
         debug_assert!(bodies[0] != bodies[1]);
@@ -49,12 +49,12 @@ impl<S: Space> Lines<S> {
         }
     }
 
-    /// The same for one thread alone: stores both.
+    /// Runs `f` on the records of two bodies on a single thread; stores both.
     #[inline(always)]
     pub fn alone(&self, bodies: [u32; 2], f: impl FnOnce(&mut SolverBody<S>, &mut SolverBody<S>)) {
         debug_assert!(bodies[0] != bodies[1]);
         let [a, b] = bodies.map(|k| self.at(k));
-        // SAFETY: two bodies, and no other thread is at work.
+        // SAFETY: two different bodies, and no other thread is active.
         unsafe { f(&mut *a, &mut *b) }
     }
 

@@ -1,7 +1,7 @@
-//! The packed records the sweep runs over, and the exact solution of one contact.
+//! The packed rows over which the solver iterates, and the exact solution of one contact.
 //!
-//! A contact of two balls has W_nt = 0, W_nn = 1/m_i + 1/m_j and an isotropic W_tt, so its problem is
-//! solved in closed form: first the normal part, then the tangential one within the cone.
+//! A contact of two balls has W_nt = 0, W_nn = 1/m_i + 1/m_j and an isotropic W_tt, so that its problem is
+//! solved in closed form: first the normal part, then the tangential part within the cone.
 
 mod block;
 mod full;
@@ -27,7 +27,7 @@ use super::form::ContactSolution;
 use super::{cone, error};
 use crate::geometry::space::{Space, VectorLike};
 
-/// Velocity of a body in the solver: 64 bytes in both dimensions.
+/// Velocity record of a body in the solver: 64 bytes in both dimensions.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct SolverBody<S: Space> {
@@ -42,7 +42,7 @@ pub struct SolverBody<S: Space> {
 }
 
 impl<S: Space> SolverBody<S> {
-    /// Of a body that nothing moves.
+    /// Returns the record of an immovable body.
     #[cfg(target_arch = "x86_64")]
     fn idle() -> Self {
         Self {
@@ -54,7 +54,7 @@ impl<S: Space> SolverBody<S> {
     }
 }
 
-/// What the convergence test reads off one contact.
+/// Contribution of one contact to the convergence test.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Residual {
     /// |p - proj(p - rho (u + mu |u_t| n))|^2 / rho^2 (m^2/s^2).
@@ -70,27 +70,28 @@ pub struct Residual {
 /// A contact in the solver.
 pub(super) trait Row<S: Space>: Clone + Send + Sync + 'static {
     fn bodies(&self) -> [u32; 2];
-    /// Solves the contact for the velocities at hand, goes `relaxation` times as far, and updates them.
+    /// Solves the contact for the current velocities, applies `relaxation` times the impulse increment, and
+    /// updates the velocities.
     fn update(&mut self, a: &mut SolverBody<S>, b: &mut SolverBody<S>, relaxation: f64);
-    /// Adds what the stored impulse does to the velocities.
+    /// Applies the stored impulse to the velocities.
     fn load(&self, a: &mut SolverBody<S>, b: &mut SolverBody<S>);
-    /// Appends the numbers of the impulse.
+    /// Appends the components of the impulse.
     fn store(&self, out: &mut Vec<f64>);
-    /// Takes them back from the front of `from`; the velocities are the caller's.
+    /// Restores them from the front of `from`; the caller updates the velocities.
     fn restore(&mut self, from: &mut &[f64]);
-    /// Takes an impulse given in world axes; the velocities are the caller's.
+    /// Sets an impulse given in world axes; the caller updates the velocities.
     fn set(&mut self, impulse: &S::Vector);
-    /// The normal impulse.
+    /// Returns the normal impulse.
     fn normal(&self) -> f64;
-    /// |u|^2 at the velocities at hand.
+    /// Returns |u|^2 at the current velocities.
     fn speed(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64;
-    /// The step of the natural map; 0 of a contact that nothing can be done about.
+    /// Returns rho of the natural map; 0 for a contact between immovable bodies.
     fn rho(&self) -> f64;
-    /// The friction coefficient.
+    /// Returns the friction coefficient.
     fn friction(&self) -> f64;
     fn residual(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> Residual;
-    /// What the contact carries at the velocities at hand: the bond's part follows from them, the
-    /// unilateral part is the rest.
+    /// Returns the solution at the current velocities: the bond's part follows from them, the unilateral
+    /// part is the rest.
     fn solution(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> ContactSolution<S>;
 }
 
@@ -129,8 +130,8 @@ fn push<S: Space>(
     b.s -= twist * b.is;
 }
 
-/// The natural map of the De Saxce form in velocity, for a shifted impulse (P_n, p_t), a velocity and
-/// its shift.
+/// Computes the natural map of the De Saxce form in velocities, for a shifted impulse (P_n, p_t), a velocity
+/// and its shift.
 #[inline]
 fn natural_map<T: VectorLike>(
     (pn, pt): (f64, T),
@@ -157,13 +158,13 @@ fn natural_map<T: VectorLike>(
     }
 }
 
-/// Of two immovable bodies nothing can be solved: their impulse is zero.
+/// Returns 1/w; zero between two immovable bodies, whose impulse is zero.
 fn inverse(w: f64) -> f64 {
     if w > 0.0 { 1.0 / w } else { 0.0 }
 }
 
-/// The same along the tangent. Where bodies move along the normal alone their slip is given, and friction
-/// goes against it at once, as far as it may.
+/// Returns 1/w_t. Where bodies can move only along the normal the slip is given, and friction takes its
+/// bound at once.
 fn inverse_along(w_t: f64, w_n: f64) -> f64 {
     const MIN_RATIO: f64 = 1e-12;
     inverse(w_t.max(MIN_RATIO * w_n))

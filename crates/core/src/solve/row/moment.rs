@@ -1,13 +1,13 @@
 //! Moments of a contact: rolling and spinning friction, and the bending and twist of a bond.
 //!
 //! M = M_sc + M_el, dual to the relative spin w = w_i - w_j: M_el = -(a + B w) as for impulses, and M_sc
-//! opposes w with |M_sc| <= (friction length) p_n, bending and twist apart.
+//! opposes w with |M_sc| <= (friction length) p_n, separately for bending and twist.
 
 use super::{Residual, SolverBody, inverse};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::{Mobility, Place};
 
-/// What a contact does against rotation. Moments over the step are in N m s.
+/// Resistance of a contact to rotation. Moments over the step are in N m s.
 #[derive(Clone, Copy, Debug)]
 pub struct MomentForm<S: Space> {
     /// Index of the contact, as pushed.
@@ -22,38 +22,38 @@ pub struct MomentForm<S: Space> {
     pub b_twist: f64,
     /// Bending stiffness over the step (N m s^2).
     pub b_bend: f64,
-    /// What the scheme takes beyond the change of the stored energy: loss_twist w_n^2 + loss_bend |w_t|^2
-    /// (J s^2).
+    /// Dissipation of the time scheme beyond the change of the stored energy: loss_twist w_n^2 + loss_bend
+    /// |w_t|^2 (J s^2).
     pub loss_twist: f64,
     /// See `loss_twist`.
     pub loss_bend: f64,
-    /// The moment to start from (N m s).
+    /// Initial moment (N m s).
     pub moment: S::Spin,
 }
 
-/// What the solver gives back.
+/// Solution of the moments of one contact.
 #[derive(Clone, Copy, Debug)]
 pub struct MomentSolution<S: Space> {
     /// The contact, as pushed.
     pub contact: u32,
     /// Total moment on the candidate (N m s).
     pub moment: S::Spin,
-    /// Friction's part of it.
+    /// Part of it due to friction.
     pub friction: S::Spin,
 }
 
 #[derive(Clone, Debug)]
 pub(in crate::solve) struct MomentRow<S: Space> {
     pub form: MomentForm<S>,
-    /// Where the contact's normal impulse stands; set when the rows are sorted.
+    /// Location of the contact's normal impulse; set when the rows are sorted.
     pub place: Place,
     pub bodies: [u32; 2],
     n: S::Vector,
-    /// One over the lengths of the bodies (1/m).
+    /// Inverse lengths of the bodies (1/m).
     over: [f64; 2],
     /// Inverse inertias times the lengths (1/(kg m)).
     inverse_spins: [S::Tensor; 2],
-    /// Relative spin of a unit moment; the largest, where inertia differs by axis.
+    /// Relative spin due to a unit moment; the largest one for anisotropic inertia.
     w: f64,
     iw: f64,
     lever: f64,
@@ -93,7 +93,7 @@ impl<S: Space> MomentRow<S> {
         b.s -= self.inverse_spins[1].apply(moment);
     }
 
-    /// Solves for the spins at hand under the normal impulse `pn`.
+    /// Solves for the current spins under the normal impulse `pn`.
     pub fn update(
         &mut self,
         pn: f64,
@@ -137,14 +137,14 @@ impl<S: Space> MomentRow<S> {
         self.push(&self.moment, a, b);
     }
 
-    /// The bond's moment at a relative spin.
+    /// Returns the bond's moment at a relative spin.
     fn bond(&self, w: &S::Spin) -> S::Spin {
         let form = &self.form;
         let (twist, bend) = S::split_spin(&self.n, w);
         -(form.a + S::about(&self.n, twist * form.b_twist) + bend * form.b_bend)
     }
 
-    /// The natural map, times a lever: a velocity.
+    /// Computes the natural map times a lever arm, as a velocity.
     pub fn residual(&self, pn: f64, a: &SolverBody<S>, b: &SolverBody<S>) -> Residual {
         if self.iw == 0.0 {
             return Residual::default();

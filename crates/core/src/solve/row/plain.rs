@@ -1,4 +1,4 @@
-//! Contact of two balls without a bond: solved in closed form.
+//! Contact of two balls without a bond, solved in closed form.
 
 use super::{
     Residual, Row, SolverBody, inverse, inverse_along, natural_map, push, relative, restore_parts,
@@ -7,7 +7,7 @@ use super::{
 use crate::geometry::space::{Space, VectorLike, greatest, least};
 use crate::solve::form::{ContactForm, ContactSolution};
 
-/// Frictional contact without memory. `lanes` reads its numbers in their order.
+/// Frictional contact without bond. `lanes` reads its fields in their order.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(in crate::solve) struct PlainRow<S: Space> {
@@ -28,7 +28,7 @@ impl<S: Space> PlainRow<S> {
             bodies: contact.bodies,
             n,
             pn: n.dot(&contact.impulse),
-            // Without friction there is no tangential impulse, now or ever.
+            // A frictionless contact never has a tangential impulse.
             pt: grip::<S>(&n, &contact.impulse, contact.friction),
             shift: contact.shift_n,
             iwn: inverse(w_n),
@@ -37,14 +37,14 @@ impl<S: Space> PlainRow<S> {
         }
     }
 
-    /// Of a contact that nothing moves.
+    /// Returns a row of a contact between immovable bodies.
     #[cfg(target_arch = "x86_64")]
     pub(super) fn idle() -> Self {
         Self::new(&ContactForm::idle(), 0.0, 0.0)
     }
 }
 
-/// The tangential part of an impulse to begin with; none without friction.
+/// Returns the tangential part of an initial impulse; zero without friction.
 fn grip<S: Space>(n: &S::Vector, impulse: &S::Vector, mu: f64) -> S::Tangent {
     if mu == 0.0 {
         S::Tangent::zero()

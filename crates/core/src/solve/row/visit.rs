@@ -1,5 +1,5 @@
-//! What is done to every row in turn: several contacts at a time where the machine has the vectors for
-//! it, else one by one, with the same bits.
+//! Operations applied to every row in turn: several contacts at a time with vector instructions where
+//! available, otherwise one by one, with bitwise identical results.
 
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{self, Moving, Records, Tuple, Wide, push, relative};
@@ -7,18 +7,18 @@ use super::{Lines, Row, SolverBody};
 use crate::geometry::space::{Space, VectorLike, least};
 use crate::solve::error::{Scale, Sums};
 
-/// Something done to rows.
+/// An operation on rows.
 pub trait Visit {
-    /// Two vectors of contacts at a time in space, so that one does something while the other waits.
+    /// Whether to process two vector registers of contacts at a time in 3D, to hide latency.
     const TWO: bool;
 
-    /// To one row, the `at`-th of those visited.
+    /// Processes one row, the `at`-th of those visited.
     fn one<S: Space, R: Row<S>>(&mut self, row: &mut R, lines: &Lines<S>, at: usize);
 
-    /// To the rows from the `at`-th on, which share no movable body or are only read.
+    /// Processes the rows from the `at`-th on, which share no movable body or are only read.
     ///
     /// # Safety
-    /// Rows and lines are there, and no one else writes them.
+    /// Rows and records are valid, and nobody else writes them.
     #[cfg(target_arch = "x86_64")]
     unsafe fn several<W: Wide, const U: usize>(
         &mut self,
@@ -29,7 +29,7 @@ pub trait Visit {
     );
 }
 
-/// Visits a block of rows, given the starts of its groups and the end of the last: contacts of a group share
+/// Visits a block of rows, given the starts of its groups and the end of the last; contacts of a group share
 /// no movable body.
 pub fn visit<S: Space, R: Row<S>>(
     rows: &mut [R],
@@ -37,7 +37,7 @@ pub fn visit<S: Space, R: Row<S>>(
     lines: &Lines<S>,
     what: &mut impl Visit,
 ) {
-    // A lone contact a group leaves three lanes of four idle.
+    // Groups of a single contact would leave three of four lanes idle.
     #[cfg(target_arch = "x86_64")]
     if rows.len() >= 2 * groups.len() && lanes::visit(rows, groups, lines, what) {
         return;
@@ -47,7 +47,7 @@ pub fn visit<S: Space, R: Row<S>>(
     }
 }
 
-/// Solves the contact for the velocities at hand, goes so many times as far, and updates them.
+/// Solves the contact for the current velocities, with the given relaxation, and updates the velocities.
 pub struct Update(pub f64);
 
 impl Visit for Update {
@@ -77,7 +77,7 @@ impl Visit for Update {
     }
 }
 
-/// Adds what the stored impulse does to the velocities.
+/// Applies the stored impulse to the velocities.
 pub struct Load;
 
 impl Visit for Load {
@@ -108,10 +108,10 @@ impl Visit for Load {
     }
 }
 
-/// Contacts whose sums are formed apart: the lanes of a vector.
+/// Number of separate partial sums: the lanes of a vector register.
 const APART: usize = 4;
 
-/// Sums what the convergence test reads off contacts.
+/// Sums the contributions of contacts to the convergence test.
 #[derive(Default)]
 pub struct Measure {
     residual: [f64; APART],
@@ -123,7 +123,7 @@ pub struct Measure {
 }
 
 impl Measure {
-    /// The sums; contacts are counted from `first`.
+    /// Returns the sums; contacts are counted from `first`.
     pub fn sums(&self, first: usize) -> Sums {
         let mut out = Sums::default();
         for k in 0..APART {
@@ -191,13 +191,13 @@ pub struct Free {
     noise: [f64; APART],
 }
 
-/// Roundings in a relative velocity, squared.
+/// Squared rounding error of a relative velocity.
 const ROUNDINGS: f64 = 256.0 * f64::EPSILON * f64::EPSILON;
-/// The natural map multiplies that of a slip by mu, which beyond this is no excuse.
+/// The natural map multiplies the rounding error of a slip by mu; mu is capped here for that purpose.
 const MAX_FRICTION: f64 = 1e6;
 
 impl Free {
-    /// The sums.
+    /// Returns the sums.
     pub fn scale(&self) -> Scale {
         let [free, energy, noise] =
             [self.free, self.energy, self.noise].map(|x| (x[0] + x[1]) + (x[2] + x[3]));

@@ -1,4 +1,4 @@
-//! W of a step, matrix-free from its bodies; assembled only when a method asks for the matrix.
+//! W of a step, applied matrix-free from its bodies and assembled only when a method needs the matrix.
 
 use super::motion::Pattern;
 use crate::geometry::space::{Space, VectorLike};
@@ -8,24 +8,25 @@ use crate::solve::local::factored;
 use crate::solve::local::form::{Delassus, Shift, Shifted};
 use std::cell::{OnceCell, RefCell};
 
-/// What a component of a block pushes along.
+/// Direction of one component of a block.
 #[derive(Clone, Copy, Debug)]
 pub struct Axis<S: Space> {
-    /// Linear impulse of a unit.
+    /// Linear impulse per unit of the component.
     pub linear: S::Vector,
-    /// Its moments about the two bodies.
+    /// Moments about the two bodies per unit.
     pub angular: [S::Spin; 2],
-    /// 1/B of a bond; 1 of a component that is not there.
+    /// 1/B of a bond; 1 for an absent component.
     pub compliance: f64,
 }
 
 impl<S: Space> Axis<S> {
-    /// Whether it pushes at all.
+    /// Returns whether the component is present.
     pub fn pushes(&self) -> bool {
         self.linear != S::Vector::zero() || self.angular != [S::Spin::zero(); 2]
     }
 
-    /// The same in a bond of stiffness `b` over the step; not there where the stiffness is zero.
+    /// Returns the component with the compliance of a bond of stiffness `b` over the step; absent for zero
+    /// stiffness.
     pub fn bonded(&self, b: f64) -> Self {
         if b > 0.0 {
             Self {
@@ -45,22 +46,22 @@ impl<S: Space> Axis<S> {
 /// A block of unknowns.
 #[derive(Clone, Debug)]
 pub struct Unknown<S: Space, const D: usize> {
-    /// Pushed along the axes, and against them.
+    /// Bodies on which the components act, with opposite signs.
     pub bodies: [u32; 2],
-    /// One a component.
+    /// One axis per component.
     pub axes: [Axis<S>; D],
 }
 
-/// Impulse and moment of a body.
+/// Impulse and moment of a body, or its velocity and spin.
 pub type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
-/// W of a step, from its bodies.
+/// W of a step, computed from its bodies.
 pub struct Bodies<'a, S: Space, const D: usize> {
-    /// What impulses do, by body.
+    /// Response to impulses, by body.
     pub masses: &'a [Mobility<S>],
     /// The blocks.
     pub unknowns: Vec<Unknown<S, D>>,
-    /// W_cc of every block; to be set once all are there.
+    /// W_cc of every block; to be set once all unknowns are present.
     pub diagonal: Vec<Block<D>>,
     scratch: RefCell<Vec<Motion<S>>>,
     matrix: OnceCell<BlockMatrix<D>>,
@@ -68,7 +69,7 @@ pub struct Bodies<'a, S: Space, const D: usize> {
 }
 
 impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
-    /// Of bodies with these inverse masses and inertias, without unknowns yet.
+    /// Creates an operator for bodies with these inverse masses and inertias, without unknowns.
     pub fn new(masses: &'a [Mobility<S>]) -> Self {
         Self {
             masses,
@@ -80,17 +81,17 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
         }
     }
 
-    /// Which bodies meet.
+    /// Returns the pairs of bodies in contact.
     pub(super) fn pattern(&self) -> &Pattern {
         self.pattern.get_or_init(|| Pattern::new(self))
     }
 
-    /// M^-1 of an impulse and moment on a body.
+    /// Returns M^-1 of an impulse and moment on a body.
     pub fn mobility(&self, body: u32, (p, m): Motion<S>) -> Motion<S> {
         self.masses[body as usize].apply(&p, &m)
     }
 
-    /// Adds what the impulses of a block do to its bodies.
+    /// Applies the impulses of a block to its bodies.
     pub fn push(&self, c: usize, p: &[f64; D], motions: &mut [Motion<S>]) {
         let unknown = &self.unknowns[c];
         for (side, sign) in [(0, 1.0), (1, -1.0)] {
@@ -108,7 +109,7 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
         }
     }
 
-    /// The velocities of a block, without its compliance.
+    /// Returns the velocities of a block, without its compliance.
     pub fn relative(&self, c: usize, motions: &[Motion<S>]) -> [f64; D] {
         let unknown = &self.unknowns[c];
         let [a, b] = unknown.bodies.map(|b| &motions[b as usize]);
@@ -120,7 +121,7 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
         })
     }
 
-    /// The block W_cd.
+    /// Computes the block W_cd.
     pub fn coupling(&self, c: usize, d: usize) -> Block<D> {
         let (x, y) = (&self.unknowns[c], &self.unknowns[d]);
         let mut out = [[0.0; D]; D];
@@ -203,7 +204,7 @@ impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
     }
 
     fn shifted(&self, shift: &Shift<D>) -> Option<Box<dyn Shifted<D> + '_>> {
-        // Where the motions are more, they only add rounding.
+        // With more motions than impulses the body form gains nothing and adds rounding errors.
         if self.pattern().rows() < D * self.len() {
             self.factor(shift)
         } else {

@@ -1,9 +1,10 @@
-//! The problem of a step as the solvers of [`super::local`] see it: blocks of unknowns, each with its law, and
-//! W matrix-free from bodies.
+//! The problem of a step for the solvers of [`super::local`]: blocks of unknowns, each with its law, and W
+//! applied matrix-free from bodies.
 //!
-//! A contact gives one block; its bond a second one, p_el = -(a + B u) read as u + (p_el + a)/B = 0, a law
-//! without friction whose compliance 1/B stands on the diagonal of W; friction against rotation and the
-//! moments of a bond likewise. Tension c_n and what does not depend on velocities go into the free ones.
+//! A contact gives one block. Its bond gives a second one: p_el = -(a + B u), written as u + (p_el + a)/B =
+//! 0, is a law without friction whose compliance 1/B is added to the diagonal of W. Rolling friction and the
+//! moments of a bond are treated likewise. Tension c_n and terms that do not depend on velocities are part
+//! of the free velocities.
 
 mod bodies;
 mod motion;
@@ -19,28 +20,28 @@ use super::row::MomentForm;
 use crate::geometry::space::{Space, VectorLike};
 use bodies::{Axis, Bodies, Motion, Unknown};
 
-/// Impulses of the contacts and moments, none where nothing moves.
+/// Impulses of the contacts, and moments; `None` between immovable bodies.
 type Totals<S> = (
     Vec<Option<<S as Space>::Vector>>,
     Vec<Option<<S as Space>::Spin>>,
 );
 
-/// What became of a contact.
+/// Block indices of a contact.
 #[derive(Clone, Copy, Debug, Default)]
 struct Places {
     contact: Option<u32>,
     bond: Option<u32>,
 }
 
-/// The problem of a step in blocks of D unknowns; D is the dimension of S.
+/// The problem of a step in blocks of D unknowns, where D is the dimension of S.
 pub struct Standard<'a, S: Space, const D: usize> {
     w: Bodies<'a, S, D>,
     laws: Vec<Law>,
     q: Vec<[f64; D]>,
     places: Vec<Places>,
-    /// Friction and bond of each moment.
+    /// Blocks of friction and bond of each moment.
     moments: Vec<Places>,
-    /// The constant part of the impulses, world axes, and of the moments.
+    /// Constant parts of the impulses, in world axes, and of the moments.
     constant: Vec<S::Vector>,
     constant_moments: Vec<S::Spin>,
 }
@@ -54,7 +55,7 @@ fn frame<S: Space, const D: usize>(n: &S::Vector) -> [S::Vector; D] {
     })
 }
 
-/// The axes of rotation: twist and bending; in the plane bending alone, in the second place.
+/// Returns the axes of rotation: twist and bending; in 2D only bending, as second component.
 fn spins<S: Space, const D: usize>(n: &S::Vector) -> [S::Spin; D] {
     std::array::from_fn(|k| {
         let mut components = [0.0; 3];
@@ -64,7 +65,7 @@ fn spins<S: Space, const D: usize>(n: &S::Vector) -> [S::Spin; D] {
 }
 
 impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
-    /// From the forms that were pushed into a problem.
+    /// Builds the blocks from the forms that were pushed into a problem.
     pub fn new(
         problem: &'a Problem<S>,
         forms: &[ContactForm<S>],
@@ -123,7 +124,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         };
         let mut own = axes;
         if open(form) {
-            // Whatever the velocities, it carries no normal impulse: w p = 0, apart from the bodies.
+            // It carries no normal impulse at any velocity: w p = 0, without coupling to the bodies.
             let mobility = |b: &u32| {
                 form.normal
                     .dot(&form.normal.scaled_by(&problem.masses[*b as usize].mass))
@@ -140,7 +141,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             for (d, axis) in axes.iter_mut().enumerate() {
                 *axis = axis.bonded(if d == 0 { e.b_n } else { e.b_t });
             }
-            // Without stiffness the bond pulls as it does, whatever the velocities.
+            // A bond without stiffness has a constant impulse at any velocity.
             let law = if e.tension_only && e.b_n > 0.0 {
                 Law::Pull
             } else {
@@ -209,7 +210,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         places
     }
 
-    /// q: free velocities with the constant impulses, shifts, and a/B of bonds.
+    /// Computes q: free velocities including constant impulses, shifts, and a/B of bonds.
     fn free(&mut self, problem: &Problem<S>, forms: &[ContactForm<S>], moments: &[MomentForm<S>]) {
         let mut motions: Vec<Motion<S>> = problem.free.clone();
         for (form, p) in forms.iter().zip(&self.constant) {
@@ -259,7 +260,8 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         }
     }
 
-    /// Splits total impulses into the blocks': the bond's part follows from the velocities they give.
+    /// Splits total impulses into those of the blocks; the bond's part follows from the resulting
+    /// velocities.
     fn start(&self, problem: &Problem<S>, forms: &[ContactForm<S>]) -> Vec<[f64; D]> {
         let mut p = vec![[0.0; D]; self.laws.len()];
         for (k, (form, places)) in forms.iter().zip(&self.places).enumerate() {
@@ -290,7 +292,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         p
     }
 
-    /// Total impulses of the contacts in world axes, and total moments.
+    /// Returns the total impulses of the contacts in world axes, and the total moments.
     fn totals(
         &self,
         p: &[[f64; D]],
@@ -336,7 +338,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         (impulses, turned)
     }
 
-    /// W, q and mu, where every block is a contact of Coulomb's law.
+    /// Returns W, q and mu if every block is a Coulomb contact.
     pub fn coulomb(&self) -> Option<(Csr, Vec<f64>, Vec<f64>)> {
         let mu: Option<Vec<f64>> = self
             .laws
@@ -354,7 +356,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
     }
 }
 
-/// Whether a contact has a gap and a law that lets it close freely: the impact comes with the contact.
+/// Returns whether a contact has a gap and may close freely; its impact follows when it closes.
 fn open<S: Space>(form: &ContactForm<S>) -> bool {
     form.shift_n == f64::INFINITY
 }
@@ -370,7 +372,8 @@ fn offset<S: Space, const D: usize>(q: &mut [f64; D], unknown: &Unknown<S, D>, a
     }
 }
 
-/// Improves the impulses of a problem by a method; the problem must hold a start. Returns the iterations.
+/// Improves the impulses of a problem by a method, from the impulses stored in the problem. Returns the
+/// iterations.
 pub fn improve<S: Space, const D: usize>(
     problem: &mut Problem<S>,
     forms: &[ContactForm<S>],

@@ -1,8 +1,9 @@
-//! (N W N + S) x = b, S block by block, solved for the motions of the bodies.
+//! Solution of (N W N + S) x = b, with block-diagonal S, in terms of the motions of the bodies.
 //!
-//! With S and b divided by N it is W + S. W = H^T M^-1 H + C with the compliances C, so with y = M^-1 H x and R = (S + C)^-1
-//! (M + H R H^T) y = H R b and x = R (b - H^T y) (Woodbury). There are fewer motions than impulses where a set is
-//! hyperstatic or bonded, and a body meets its neighbours alone, where a contact meets all of theirs.
+//! Divide S and b by N, so that the matrix is W + S. W = H^T M^-1 H + C with the compliances C, so with y =
+//! M^-1 H x and R = (S + C)^-1: (M + H R H^T) y = H R b and x = R (b - H^T y) (Woodbury). Hyperstatic or
+//! bonded sets have fewer motions than impulses, and the matrix is sparser: a body is coupled to its
+//! neighbours only, a contact to all contacts of both its bodies.
 #![allow(
     clippy::needless_range_loop,
     reason = "loops over the components of blocks read like their formulas"
@@ -15,15 +16,15 @@ use crate::solve::local::block::{Block, times};
 use crate::solve::local::form::{Delassus, Shift, Shifted};
 use crate::solve::local::linear::{Factor, Rows};
 
-/// Which pairs of bodies meet.
+/// Pairs of bodies in contact.
 pub(super) struct Pattern {
-    /// First row of each body; none of its rows where it cannot move.
+    /// First row of each body; immovable bodies have no rows.
     starts: Vec<usize>,
-    /// Bodies that meet a body, itself among them, rising; only those that move.
+    /// Movable neighbours of each body, including itself, increasing.
     near: Vec<Vec<u32>>,
 }
 
-/// Degrees of freedom of a body.
+/// Returns the number of degrees of freedom of a body.
 fn size<S: Space>() -> usize {
     S::D + S::Spin::N
 }
@@ -50,7 +51,7 @@ impl Pattern {
         Self { starts, near }
     }
 
-    /// Degrees of freedom in all.
+    /// Returns the total number of degrees of freedom.
     pub fn rows(&self) -> usize {
         self.starts[self.near.len()]
     }
@@ -60,7 +61,7 @@ impl Pattern {
     }
 }
 
-/// Mass matrix of a body; ones where it cannot move.
+/// Returns the mass matrix of a body, with ones for imposed degrees of freedom.
 fn mass<S: Space>(mobility: &Mobility<S>) -> [[f64; 6]; 6] {
     let mut out = [[0.0; 6]; 6];
     for (k, row) in out.iter_mut().enumerate().take(size::<S>()) {
@@ -77,7 +78,7 @@ fn mass<S: Space>(mobility: &Mobility<S>) -> [[f64; 6]; 6] {
     out
 }
 
-/// The inverse of the leading block of `size` rows, zeros beside it; none where it is singular.
+/// Returns the inverse of the leading block of `size` rows, padded with zeros; `None` where it is singular.
 fn invert<const D: usize>(s: &Block<D>, size: usize) -> Option<Block<D>> {
     let (mut a, mut out) = (*s, [[0.0; D]; D]);
     for (k, row) in out.iter_mut().enumerate().take(size) {
@@ -106,7 +107,7 @@ fn invert<const D: usize>(s: &Block<D>, size: usize) -> Option<Block<D>> {
     Some(out)
 }
 
-/// The factors, and what leads to and from the motions.
+/// The factors, with the maps between impulses and motions.
 struct Factors<'a, S: Space, const D: usize> {
     w: &'a Bodies<'a, S, D>,
     s: Vec<Block<D>>,
@@ -118,7 +119,7 @@ struct Factors<'a, S: Space, const D: usize> {
 }
 
 impl<S: Space, const D: usize> Bodies<'_, S, D> {
-    /// The column of H of a component, on one side: along the degrees of freedom of its body.
+    /// Returns the column of H of a component for one of its bodies, by degrees of freedom.
     fn column(&self, c: usize, k: usize, side: usize) -> [f64; 6] {
         let axis = &self.unknowns[c].axes[k];
         let sign = if side == 0 { 1.0 } else { -1.0 };
@@ -133,7 +134,7 @@ impl<S: Space, const D: usize> Bodies<'_, S, D> {
         })
     }
 
-    /// See the module.
+    /// Factorises the system; see the module.
     pub(super) fn factor(&self, shift: &Shift<D>) -> Option<Box<dyn Shifted<D> + '_>> {
         let (sizes, over) = (shift.sizes, shift.normal.iter().map(|n| 1.0 / n));
         let mut s = shift.s.to_vec();
@@ -193,7 +194,7 @@ impl<S: Space, const D: usize> Bodies<'_, S, D> {
         }))
     }
 
-    /// M, with room for what meets; a degree of freedom without motion has a row of its own.
+    /// Returns M with the sparsity pattern of the system; an imposed degree of freedom has a decoupled row.
     fn masses_alone(&self, pattern: &Pattern) -> Rows {
         let d = size::<S>();
         let mut a = Rows::default();
@@ -218,7 +219,7 @@ impl<S: Space, const D: usize> Bodies<'_, S, D> {
 }
 
 impl<S: Space, const D: usize> Factors<'_, S, D> {
-    /// One solve by the factors.
+    /// Solves once with the factors.
     fn once(&self, b: &[[f64; D]]) -> Option<Vec<[f64; D]>> {
         let pattern = self.w.pattern();
         let mut y = vec![0.0; pattern.rows()];
@@ -261,7 +262,7 @@ impl<S: Space, const D: usize> Factors<'_, S, D> {
 
 impl<S: Space, const D: usize> Shifted<D> for Factors<'_, S, D> {
     fn solve(&self, b: &mut [[f64; D]]) -> bool {
-        /// R may be large: what rounding takes is given back.
+        /// R may be large; iterative refinement recovers the digits lost to rounding.
         const REFINEMENTS: usize = 1;
         let zero = vec![[0.0; D]; b.len()];
         let mut wx = zero.clone();

@@ -1,15 +1,15 @@
-//! Gravity that changes in time.
+//! Time-dependent gravity.
 
 use crate::bodies::TimeFunction;
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// How gravity changes in time.
+/// Time dependence of gravity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum GravityDrive {
-    /// The case's gravity turned by an angle (rad) about an axis: 0, 1 or 2, by default z, the only one in
-    /// 2D. A positive angle turns x towards y (y towards z about x, z towards x about y).
+    /// The case's gravity rotated by an angle (rad) about an axis: 0, 1 or 2, by default z, which is the
+    /// only axis in 2D. A positive angle turns x towards y (y towards z about x, z towards x about y).
     Turned {
         /// Angle (rad).
         angle: TimeFunction,
@@ -17,9 +17,9 @@ pub enum GravityDrive {
         #[serde(default = "axis_z")]
         about: usize,
     },
-    /// The case's gravity times a number.
+    /// The case's gravity times a scalar function of time.
     Scaled(TimeFunction),
-    /// One function an axis (m/s^2), in place of the case's gravity.
+    /// One function per axis (m/s^2), replacing the case's gravity.
     Axes(Vec<TimeFunction>),
 }
 
@@ -28,7 +28,7 @@ fn axis_z() -> usize {
 }
 
 impl GravityDrive {
-    /// Gravity at a time (m/s^2); `base` is that of the case.
+    /// Returns gravity at a time (m/s^2); `base` is the case's gravity.
     pub fn at<S: Space>(&self, base: &S::Vector, t: f64) -> S::Vector {
         let mut g = *base;
         match self {
@@ -48,7 +48,7 @@ impl GravityDrive {
         g
     }
 
-    /// The same, `by` seconds later.
+    /// Returns the same drive shifted to `by` seconds later.
     pub fn delayed(&self, by: f64) -> Self {
         match self {
             Self::Turned { angle, about } => Self::Turned {
@@ -60,7 +60,8 @@ impl GravityDrive {
         }
     }
 
-    /// What is wrong with it in a case of this dimension, and where below it.
+    /// Returns the error of this drive in a case of the given dimension, if any, with the key at which it
+    /// occurs.
     pub fn fault(&self, dimension: usize) -> Option<(String, String)> {
         match self {
             Self::Turned { angle, about } => {
@@ -79,7 +80,7 @@ impl GravityDrive {
             Self::Scaled(f) => f.fault().map(|f| (String::new(), f)),
             Self::Axes(list) if list.len() != dimension => {
                 let message = format!(
-                    "{} functions in a case of dimension {dimension}; give one an axis",
+                    "{} functions in a case of dimension {dimension}; give one function per axis",
                     list.len()
                 );
                 Some((String::new(), message))

@@ -1,6 +1,7 @@
-//! What acts on a scene from outside and changes in time: phases, gravity, servo pressures, gates.
+//! Time-dependent external actions on a scene: phases, gravity, servo pressures, gates.
 //!
-//! Each step begins by obeying it: the phase at hand, then what is taken away, then gravity, areas and drives.
+//! Each step begins by applying them: first the current phase, then removals, then gravity, loaded areas and
+//! drives.
 
 mod gravity;
 mod phases;
@@ -15,19 +16,19 @@ use crate::laws::Kind;
 use phases::Clock;
 use serde::{Deserialize, Serialize};
 
-/// The programme of a run.
+/// The schedule of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Control<S: Space> {
-    /// Gravity before any drive of it (m/s^2).
+    /// Constant gravity, before `gravity_drive` is applied (m/s^2).
     pub gravity: S::Vector,
-    /// How gravity changes in time.
+    /// Time dependence of gravity.
     pub gravity_drive: Option<GravityDrive>,
-    /// Drives that follow an area.
+    /// Drives whose force follows the loaded area.
     pub servos: Vec<Servo>,
-    /// Bodies that vanish, by their place among the driven ones, and when (s).
+    /// Bodies to remove: index among the driven bodies, and time (s).
     pub gates: Vec<(usize, f64)>,
-    /// Phases, one after another; the case says them.
+    /// Phases in the order in which they run, from the case.
     #[serde(skip)]
     pub phases: Vec<Phase<S>>,
     clock: Clock,
@@ -47,30 +48,30 @@ impl<S: Space> Default for Control<S> {
 }
 
 impl<S: Space> Control<S> {
-    /// Number of the phase at hand, from 1; 0 before the first step and without phases.
+    /// Returns the number of the current phase, from 1; 0 before the first step and without phases.
     pub fn phase(&self) -> usize {
         self.clock.begun.len()
     }
 
-    /// Whether the phase at hand comes again.
+    /// Returns whether the current phase is repeated later.
     pub fn recurs(&self) -> bool {
         let now = self.phase().checked_sub(1).and_then(|k| self.phases.get(k));
         now.is_some_and(|p| p.recurs)
     }
 
-    /// The phases that began, in their order.
+    /// Returns the phases begun so far, in order.
     pub fn begun(&self) -> &[Begun] {
         &self.clock.begun
     }
 
-    /// Whether the last phase has come to its end.
+    /// Returns whether the last phase has ended.
     pub fn finished(&self) -> bool {
         self.phase() > 0 && self.phase() == self.phases.len() && self.clock.turns()
     }
 }
 
 impl<S: Space> Simulation<S> {
-    /// Puts in force what acts over the step that begins.
+    /// Applies the schedule to the step that begins.
     pub(super) fn apply_schedule(&mut self) {
         if self.control.clock.turns() {
             self.begin_phase();
@@ -78,7 +79,7 @@ impl<S: Space> Simulation<S> {
         self.loads();
     }
 
-    /// Ends the phase at hand where its condition holds after a step.
+    /// Ends the current phase if its end condition holds after a step.
     pub(super) fn end_phase(&mut self) {
         let Some(phase) = self.control.phase().checked_sub(1) else {
             return;
@@ -107,7 +108,7 @@ impl<S: Space> Simulation<S> {
         for (place, dof, drive) in changes.drives {
             let servos = Servo::of(&self.bodies, &self.shapes, place, dof, &drive);
             self.control.servos.retain(|s| !s.serves(place, dof));
-            // They were checked when the scene was built.
+            // The servos were validated when the scene was built.
             self.control.servos.extend(servos.unwrap_or_default());
             let middle = time + 0.5 * self.scheme.h;
             self.bodies
@@ -131,7 +132,7 @@ impl<S: Space> Simulation<S> {
         if let Some(tolerance) = changes.tolerance {
             self.solver.tolerance = tolerance;
         }
-        // What is still, and what is there, may have changed.
+        // The sets of fixed and present bodies may have changed.
         self.network.forget_neighbours();
     }
 
@@ -153,19 +154,20 @@ impl<S: Space> Simulation<S> {
         self.bodies.engage_stages(time + 0.5 * h);
     }
 
-    /// Measures the areas of all servo pressures.
+    /// Measures the loaded areas of all servo pressures.
     pub fn measure_areas(&mut self) {
         for servo in &self.control.servos {
             servo.measure(&mut self.bodies);
         }
     }
 
-    /// What a condition of rest looks at: the grains, first bodies of which nothing is imposed, and dynamical systems.
+    /// Returns the motion that the rest condition tests: that of the grains and of bodies without imposed
+    /// motion or force.
     fn motion_of_free(&self) -> phases::Motion {
         let bodies = &self.bodies;
         let free = |b: &usize| (0..S::D).all(|k| bodies.inverse_mass[*b][k] > 0.0);
         let moving = || (0..bodies.len()).filter(free);
-        // The work that gravity does on a grain over its own diameter.
+        // Work of gravity on a grain over its own diameter.
         let weight = |b: usize| bodies.mass[b] * 2.0 * bodies.length[b];
         let systems = self.systems.energies().0;
         phases::Motion {

@@ -1,4 +1,4 @@
-//! Phases: what changes when one begins, and when it ends.
+//! Phases: the changes at the start of each, and the condition that ends it.
 
 use super::GravityDrive;
 use crate::bodies::Dof;
@@ -15,34 +15,35 @@ pub enum Until {
     After(f64),
     /// After a number of steps.
     Steps(u64),
-    /// When the kinetic energy of the grains has stayed small.
+    /// When the kinetic energy of the grains has stayed below a bound.
     AtRest {
-        /// Below this share of m g d, summed over the grains.
+        /// Bound as a fraction of m g d, summed over the grains.
         #[serde(default)]
         share: Option<f64>,
-        /// Below this energy (J; J/m in 2D).
+        /// Bound as an energy (J; J/m in 2D).
         #[serde(default)]
         energy: Option<f64>,
-        /// For so long (s).
+        /// Time for which the bound must hold (s).
         held: f64,
-        /// After this duration in any case (s).
+        /// Maximum duration of the phase (s).
         #[serde(default)]
         at_most: Option<f64>,
     },
 }
 
-/// What changes when a phase begins; all else stays as it is.
+/// Changes at the start of a phase; everything else keeps its value.
 #[derive(Clone, Debug)]
 pub struct Changes<S: Space> {
-    /// Drives: place among the driven bodies, degree of freedom, drive on the time since the phase began.
+    /// Drives: index among the driven bodies, degree of freedom, drive as a function of the time since the
+    /// phase began.
     pub drives: Vec<(usize, usize, Dof)>,
     /// Gravity (m/s^2).
     pub gravity: Option<S::Vector>,
-    /// How gravity changes, on the time since the phase began.
+    /// Time dependence of gravity, as a function of the time since the phase began.
     pub gravity_drive: Option<GravityDrive>,
-    /// Parameters of contact laws: interface, parameter, value.
+    /// Parameters of contact laws: interface index, parameter index, value.
     pub contact: Vec<(usize, usize, f64)>,
-    /// Bodies that are taken away, by their places.
+    /// Indices of the bodies to remove.
     pub open: Vec<usize>,
     /// Tolerance of the solver.
     pub tolerance: Option<f64>,
@@ -53,31 +54,31 @@ pub struct Changes<S: Space> {
 pub struct Phase<S: Space> {
     /// Name.
     pub name: String,
-    /// Its end; none for the end of the run.
+    /// End condition; `None` for the end of the run.
     pub until: Option<Until>,
     /// What changes at its start.
     pub changes: Changes<S>,
-    /// Whether the same phase comes again: only its last time is worth a picture.
+    /// Whether the same phase is repeated; only the last repetition is then drawn.
     pub recurs: bool,
 }
 
-/// A phase that began.
+/// A phase that has begun.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Begun {
     /// Name.
     pub name: String,
     /// When it began (s).
     pub start: f64,
-    /// Steps done before it.
+    /// Steps completed before it.
     pub first_step: u64,
-    /// When it ended (s); null while it lasts.
+    /// When it ended (s); `None` while it runs.
     pub end: Option<f64>,
     /// Why it ended.
     #[serde(deserialize_with = "known")]
     pub ended_by: Option<Ending>,
 }
 
-/// Why a phase ended, in a word.
+/// Reason why a phase ended, as one word.
 pub type Ending = &'static str;
 
 const ENDS: [Ending; 5] = ["time", "duration", "steps", "rest", "at_most"];
@@ -88,14 +89,14 @@ fn known<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Ending>, D::Error>
     Ok(said.and_then(known))
 }
 
-/// Where the run stands after a step.
+/// Time and step count after a step.
 pub(super) struct Moment {
     pub time: f64,
     pub step: u64,
     pub h: f64,
 }
 
-/// How much the grains move.
+/// Motion of the grains.
 pub(super) struct Motion {
     /// Their kinetic energy (J).
     pub kinetic: f64,
@@ -103,16 +104,16 @@ pub(super) struct Motion {
     pub scale: f64,
 }
 
-/// Where the programme stands.
+/// Progress of the schedule.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Clock {
     pub begun: Vec<Begun>,
-    /// Since when the grains have been at rest (s).
+    /// Time since which the grains have been at rest (s).
     still_since: Option<f64>,
 }
 
 impl Clock {
-    /// Whether the next phase is to begin: none has, or the last one has ended.
+    /// Returns whether the next phase begins now: none has begun yet, or the last one has ended.
     pub fn turns(&self) -> bool {
         self.begun.last().is_none_or(|b| b.end.is_some())
     }
@@ -134,7 +135,7 @@ impl Clock {
         }
     }
 
-    /// Why the phase ends now, if it does; `motion` is measured where that depends on it.
+    /// Returns why the phase ends now, or `None`; `motion` is evaluated only if the condition depends on it.
     pub fn ends(
         &mut self,
         until: &Until,
@@ -143,7 +144,7 @@ impl Clock {
     ) -> Option<&'static str> {
         let begun = self.begun.last()?;
         let (start, first_step) = (begun.start, begun.first_step);
-        // Times are sums of steps: half a step is on neither side of an end.
+        // Times are sums of steps, so that comparing at half a step is safe from rounding.
         let reached = |t: f64| now.time > t - 0.5 * now.h;
         match until {
             Until::Time(t) => reached(*t).then_some("time"),

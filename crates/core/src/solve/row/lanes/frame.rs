@@ -1,11 +1,11 @@
-//! Relative velocities and impulses of several contacts at once, as `relative` and `push` of one.
+//! Relative velocities and impulses of several contacts at once, as `relative` and `push` for one.
 
 use super::vector::*;
 use crate::geometry::space::{Dim2, Dim3, Space};
 use crate::solve::row::SolverBody;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// What [`Columns`] can do, whatever their number.
+/// Operations on [`Columns`] of any size.
 pub trait Tuple<const U: usize>:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Lanes<U>, Output = Self> + Neg<Output = Self>
 {
@@ -54,7 +54,7 @@ impl<const U: usize, const R: usize> Tuple<U> for Columns<U, R> {
     }
 }
 
-/// The lines of the first or second bodies.
+/// The records of the first or second bodies.
 #[derive(Clone, Copy)]
 pub struct Moving<F: Frame, const U: usize> {
     pub v: F::V<U>,
@@ -72,10 +72,10 @@ impl<F: Frame, const U: usize> Moving<F, U> {
         unsafe { F::lines(from) }
     }
 
-    /// Writes back the lines of bodies that move.
+    /// Writes back the records of movable bodies.
     ///
     /// # Safety
-    /// The lines are there.
+    /// The records are valid.
     #[inline(always)]
     pub unsafe fn keep(&self, to: &Records<SolverBody<F>, U>) {
         let zero = Lanes::all(0.0);
@@ -85,36 +85,36 @@ impl<F: Frame, const U: usize> Moving<F, U> {
     }
 }
 
-/// A space in columns.
+/// A space with column-wise vectors.
 pub trait Frame: Space {
     /// A vector.
     type V<const U: usize>: Tuple<U>;
-    /// A tangent, and a spin.
+    /// A tangent or a spin.
     type T<const U: usize>: Tuple<U>;
 
     /// # Safety
     /// The lines are there.
     unsafe fn lines<const U: usize>(from: &Records<SolverBody<Self>, U>) -> Moving<Self, U>;
-    /// Writes back the lines of a mask.
+    /// Writes back the records selected by a mask.
     ///
     /// # Safety
-    /// The lines are there.
+    /// The records are valid.
     unsafe fn keep<const U: usize>(
         to: &Records<SolverBody<Self>, U>,
         body: &Moving<Self, U>,
         mask: [i32; U],
     );
-    /// The part of a velocity along the tangent.
+    /// Returns the tangential part of a velocity.
     fn across<const U: usize>(n: &Self::V<U>, d: &Self::V<U>, un: Lanes<U>) -> Self::T<U>;
-    /// The tangential velocity of a spin.
+    /// Returns the tangential velocity due to a spin.
     fn rolling<const U: usize>(spin: &Self::T<U>, n: &Self::V<U>) -> Self::T<U>;
-    /// The impulse in world axes.
+    /// Returns the impulse in world axes.
     fn impulse<const U: usize>(n: &Self::V<U>, dn: Lanes<U>, dt: &Self::T<U>) -> Self::V<U>;
-    /// The moment of a tangential impulse over the length of its body.
+    /// Returns the moment of a tangential impulse divided by the length of its body.
     fn turning<const U: usize>(n: &Self::V<U>, dt: &Self::T<U>) -> Self::T<U>;
 }
 
-/// u_n and u_t.
+/// Returns u_n and u_t.
 #[inline(always)]
 pub fn relative<F: Frame, const U: usize>(
     n: &F::V<U>,
@@ -126,7 +126,7 @@ pub fn relative<F: Frame, const U: usize>(
     (un, F::across(n, &d, un) - F::rolling(&(a.s + b.s), n))
 }
 
-/// What an impulse does to the velocities.
+/// Applies an impulse to the velocities.
 #[inline(always)]
 pub fn push<F: Frame, const U: usize>(
     n: &F::V<U>,

@@ -1,5 +1,5 @@
-//! Four contacts at once in the lanes of a vector. The operations are those of one contact in their order,
-//! so the bits are its own.
+//! Four contacts at once in the lanes of a vector register. The operations and their order are those of a
+//! single contact, so that results are bitwise identical.
 
 mod frame;
 #[cfg(test)]
@@ -17,7 +17,8 @@ use crate::geometry::space::{Dim2, Dim3, Space};
 use std::any::TypeId;
 use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 
-/// Visits a block of rows, see [`super::visit::visit`]; whether this machine and these rows have vectors.
+/// Visits a block of rows, see [`super::visit::visit`]; returns whether this machine and these rows support
+/// vector instructions.
 pub fn visit<S: Space, R: Row<S>>(
     rows: &mut [R],
     groups: &[u32],
@@ -32,7 +33,8 @@ pub fn visit<S: Space, R: Row<S>>(
     macro_rules! of {
         ($($row:ty),*) => {$(
             if TypeId::of::<R>() == TypeId::of::<$row>() {
-                // SAFETY: the machine has AVX2, the type is that asked for, and bodies are as `Lines` says.
+                // SAFETY: the machine has AVX2, the type was checked, and body indices satisfy the contract
+                // of `Lines`.
                 unsafe { all(first.cast::<$row>(), groups, count, lines.cast(), what) };
                 return true;
             }
@@ -76,27 +78,27 @@ unsafe fn all<W: Wide, V: Visit>(
     }
 }
 
-/// Fills the lanes that have no contact: nothing moves, and nothing is stored.
+/// Fills the lanes without a contact: their bodies are immovable, and nothing is stored.
 struct Idle<W: Wide> {
     row: W,
     line: SolverBody<W::Space>,
 }
 
-/// Four rows and the lines of their bodies.
+/// Four rows and the records of their bodies.
 struct Four<W: Wide> {
     row: [*mut W; 4],
     a: [*mut SolverBody<W::Space>; 4],
     b: [*mut SolverBody<W::Space>; 4],
 }
 
-/// How many contacts ahead the lines are called for.
+/// Prefetch distance in contacts.
 const AHEAD: usize = 16;
 
 impl<W: Wide> Four<W> {
-    /// Those from `first` on, of which no more than `end` belong to the group.
+    /// Loads the rows from `first` up to at most `end`, the end of the group.
     ///
     /// # Safety
-    /// There are `count` rows, of bodies of `lines`.
+    /// There are `count` rows, whose bodies are in `lines`.
     #[inline(always)]
     unsafe fn new(
         rows: *mut W,

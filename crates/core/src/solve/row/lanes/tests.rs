@@ -3,7 +3,7 @@ use crate::solve::form::{ContactForm, Elastic};
 use crate::solve::row::visit::{Free, Load, Measure, Update, Visit};
 use crate::solve::row::{FullRow, Lines, PlainRow, Row, SolverBody};
 
-/// Between -1 and 1, and much the same for no two.
+/// Returns a pseudo-random number between -1 and 1.
 fn wave(k: usize, of: u32) -> f64 {
     (1.7 * k as f64 + 0.9 * f64::from(of * of % 101)).sin()
 }
@@ -37,7 +37,7 @@ fn lines<S: Space>(count: u32) -> Vec<SolverBody<S>> {
     (0..count).map(line).collect()
 }
 
-/// The same without friction.
+/// Contact without friction.
 fn smooth<S: Space>(pair: u32) -> ContactForm<S> {
     ContactForm {
         friction: 0.0,
@@ -45,7 +45,7 @@ fn smooth<S: Space>(pair: u32) -> ContactForm<S> {
     }
 }
 
-/// A contact of every pair of bodies, some of which stick, some slide and some open.
+/// A contact of every pair of bodies, some of which stick, some slip and some open.
 fn contact<S: Space>(pair: u32) -> ContactForm<S> {
     let mut normal = S::Vector::zero();
     for k in 0..S::D {
@@ -67,7 +67,7 @@ fn contact<S: Space>(pair: u32) -> ContactForm<S> {
     }
 }
 
-/// With bonds, some of which only pull, cohesion, restitution, or none of them.
+/// Contacts with bonds, some of them tension-only, cohesion, restitution, or none of these.
 fn bonded<S: Space>(pair: u32) -> ContactForm<S> {
     let mut tangent = S::Tangent::zero();
     for k in 0..S::Tangent::N {
@@ -105,11 +105,11 @@ impl<S: Space, R: Row<S>> State<R, S> {
             out.extend(line.s.padded());
             out.extend([line.im, line.is]);
         }
-        // The two zeros are one number.
+        // Both zeros compare equal.
         out.into_iter().map(|x| (x + 0.0).to_bits()).collect()
     }
 
-    /// Several at a time where the machine can, and one by one.
+    /// Visits several contacts at a time where the machine can, and one by one.
     fn visit<V: Visit>(&mut self, groups: Option<&[u32]>, what: &mut V) {
         let lines = Lines::new(&mut self.lines);
         match groups {
@@ -129,7 +129,7 @@ fn same<S: Space, R: Row<S>>(
     if !is_x86_feature_detected!("avx2") {
         return;
     }
-    // Groups of all remainders, and lines called for to the end.
+    // Groups of all remainders, up to the end of the prefetch distance.
     let groups: Vec<u32> = vec![0, 1, 3, 6, 10, 15, 21, 28, 36, 45, 145];
     let lines = lines::<S>(290);
     let row = |pair: u32| {

@@ -1,15 +1,15 @@
-//! Numbers of several contacts by vector, and records read by columns.
+//! Vectors that hold one number of several contacts, and column-wise access to records.
 //!
-//! The functions are inlined into ones that are compiled for AVX2 (`mod.rs`), which alone may call them.
+//! The functions are inlined into functions compiled for AVX2 (`mod.rs`), which alone may call them.
 
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number of four contacts a vector.
+/// One number of four contacts per vector register.
 #[derive(Clone, Copy)]
 pub struct Lanes<const U: usize>(pub [__m256d; U]);
 
-/// Which lanes.
+/// Mask of lanes.
 #[derive(Clone, Copy)]
 pub struct Mask<const U: usize>([__m256d; U]);
 
@@ -51,7 +51,7 @@ impl<const U: usize> Lanes<U> {
     by_lane!(less, _mm256_sub_pd);
     by_lane!(times, _mm256_mul_pd);
     by_lane!(over, _mm256_div_pd);
-    // Of equal ones, or where the first is none, the second: as `greatest` and `least`.
+    // For equal values, or if the first is NaN, returns the second, as `greatest` and `least` do.
     by_lane!(max, _mm256_max_pd);
     by_lane!(min, _mm256_min_pd);
     by_lane!(and, _mm256_and_pd);
@@ -76,13 +76,13 @@ impl<const U: usize> Lanes<U> {
         Self::all(-0.0).and_not(self)
     }
 
-    /// This length with the sign of `of`.
+    /// Returns the magnitude of `self` with the sign of `of`.
     #[inline(always)]
     pub fn signed_as(self, of: Self) -> Self {
         self.abs().or(Self::all(-0.0).and(of))
     }
 
-    /// Adds each number to that of its lane.
+    /// Adds each number to the sum of its lane.
     #[inline(always)]
     pub fn add_to(self, sums: &mut [f64; 4]) {
         // SAFETY: four numbers; see the module.
@@ -95,8 +95,8 @@ impl<const U: usize> Lanes<U> {
         }
     }
 
-    /// Keeps the largest number of each lane, and the index of the contact that had it first; the first lane
-    /// is that of the contact `at`.
+    /// Updates the maximum of each lane and the index of the contact at which it first occurred; `at` is the
+    /// contact of the first lane.
     #[inline(always)]
     pub fn raise(self, worst: &mut [f64; 4], worst_at: &mut [f64; 4], at: usize) {
         // SAFETY: four numbers; see the module.
@@ -117,7 +117,7 @@ impl<const U: usize> Lanes<U> {
 }
 
 impl<const U: usize> Mask<U> {
-    /// `yes` in these lanes, `no` elsewhere.
+    /// Selects `yes` in these lanes and `no` elsewhere.
     #[inline(always)]
     pub fn choose(self, yes: Lanes<U>, mut no: Lanes<U>) -> Lanes<U> {
         for u in 0..U {
@@ -137,7 +137,7 @@ impl<const U: usize> Mask<U> {
         Self(Lanes(self.0).or(Lanes(with.0)).0)
     }
 
-    /// A bit a lane.
+    /// Returns one bit per lane.
     #[inline(always)]
     pub fn bits(self) -> [i32; U] {
         // SAFETY: see the module.
@@ -197,7 +197,7 @@ impl<const U: usize, const R: usize> Columns<U, R> {
         }
     }
 
-    /// The nearest ones not longer than `bound`.
+    /// Limits the length to `bound`.
     #[inline(always)]
     pub fn limited(self, bound: Lanes<U>) -> Self {
         if R == 1 {
@@ -277,19 +277,18 @@ impl<const U: usize> Columns<U, 3> {
     }
 }
 
-/// Records of four contacts a vector.
+/// Pointers to the records of four contacts per vector register.
 pub type Records<T, const U: usize> = [[*mut T; 4]; U];
 
-/// Four numbers of each record, from the `skip`-th, as columns.
+/// Loads four numbers of each record, from the `skip`-th, as columns.
 ///
 /// # Safety
-/// There are four numbers there.
+/// The records have that many numbers.
 #[inline(always)]
 pub unsafe fn load<T, const U: usize>(from: &Records<T, U>, skip: usize) -> [Lanes<U>; 4] {
     let mut out = [Lanes::all(0.0); 4];
     for (u, from) in from.iter().enumerate() {
-        // By halves, which takes fewer moves between lanes.
-        // SAFETY: as above.
+        // By halves, which needs fewer moves between lanes. SAFETY: as above.
         unsafe {
             let half = |k: usize, h: usize| _mm_loadu_pd(from[k].cast::<f64>().add(skip + h));
             let two = |k: usize, h: usize| {
@@ -305,10 +304,10 @@ pub unsafe fn load<T, const U: usize>(from: &Records<T, U>, skip: usize) -> [Lan
     out
 }
 
-/// One number of each record.
+/// Loads one number of each record.
 ///
 /// # Safety
-/// There is one there.
+/// The records have that many numbers.
 #[inline(always)]
 pub unsafe fn load_one<T, const U: usize>(from: &Records<T, U>, at: usize) -> Lanes<U> {
     let mut out = Lanes::all(0.0);
@@ -322,10 +321,10 @@ pub unsafe fn load_one<T, const U: usize>(from: &Records<T, U>, at: usize) -> La
     out
 }
 
-/// Writes what [`load`] read, for the records of a mask of four bits a vector.
+/// Stores values loaded by [`load`], for the records selected by a mask of four bits per register.
 ///
 /// # Safety
-/// There are four numbers there.
+/// The records have that many numbers.
 #[inline(always)]
 pub unsafe fn store<T, const U: usize>(
     to: &Records<T, U>,
@@ -352,7 +351,7 @@ pub unsafe fn store<T, const U: usize>(
     }
 }
 
-/// Columns to rows.
+/// Transposes columns to rows.
 #[inline(always)]
 unsafe fn transpose(a: __m256d, b: __m256d, c: __m256d, d: __m256d) -> [__m256d; 4] {
     // SAFETY: see the module.

@@ -1,5 +1,5 @@
-//! The rows whose contacts are solved several at a time. The operations are those of one contact in their
-//! order, so the bits are its own.
+//! Rows solved several at a time. The operations and their order are those of a single contact, so that
+//! results are bitwise identical.
 
 use super::frame::{Frame, Moving, Tuple, push, relative};
 use super::vector::*;
@@ -13,7 +13,7 @@ pub struct Residuals<const U: usize> {
     pub power: Lanes<U>,
 }
 
-/// What the rows are and how they weigh: normal, impulse, the step of the natural map, friction.
+/// Data of the rows for the error: normal, impulse, rho of the natural map, friction.
 pub struct Stand<F: Frame, const U: usize> {
     pub n: F::V<U>,
     pub pn: Lanes<U>,
@@ -22,11 +22,11 @@ pub struct Stand<F: Frame, const U: usize> {
     pub mu: Lanes<U>,
 }
 
-/// Rows that begin with the normal, the normal and the tangential impulse.
+/// Rows that begin with the normal, the normal impulse and the tangential impulse.
 pub trait Wide: Row<Self::Space> {
     type Space: Frame;
 
-    /// A row that nothing moves.
+    /// Returns a row of a contact between immovable bodies.
     fn idle() -> Self;
     /// Solves the contacts and updates the velocities.
     ///
@@ -50,22 +50,22 @@ pub trait Wide: Row<Self::Space> {
     ) -> Residuals<U>;
 }
 
-/// Numbers in a vector, and in a tangent.
+/// Returns the numbers of components of a vector and of a tangent.
 const fn sizes<F: Frame>() -> [usize; 2] {
     if F::D == 2 { [2, 1] } else { [3, 3] }
 }
 
-/// Takes the numbers of a record one after the other.
+/// Reads the numbers of a record one after the other.
 struct Reader<const U: usize> {
     numbers: [Lanes<U>; 28],
     at: usize,
 }
 
 impl<const U: usize> Reader<U> {
-    /// Of `count` numbers from `skip` on, and up to three more.
+    /// Loads `count` numbers from `skip` on, rounded up to a multiple of four.
     ///
     /// # Safety
-    /// They are there.
+    /// The records have that many numbers.
     #[inline(always)]
     unsafe fn new<T>(rows: &Records<T, U>, skip: usize, count: usize) -> Self {
         let mut numbers = [Lanes::all(0.0); 28];
@@ -93,7 +93,7 @@ impl<const U: usize> Reader<U> {
 /// Writes impulses back.
 ///
 /// # Safety
-/// The rows are there and begin with n, p_n, p_t.
+/// The rows are valid and begin with n, p_n, p_t.
 #[inline(always)]
 unsafe fn keep<R, F: Frame, const U: usize>(
     rows: &Records<R, U>,
@@ -163,7 +163,7 @@ impl<F: Frame> Wide for PlainRow<F> {
         unsafe {
             let r = Plain::<F, U>::new(rows);
             let zero = Lanes::all(0.0);
-            // One unknown a contact where nothing rubs.
+            // One unknown per contact where there is no friction.
             if r.mu.above(zero).bits() == [0; U] {
                 let un = r.n.dot(a.v - b.v);
                 let pn = (r.pn - (un + r.shift) * (r.iwn * relaxation)).max(zero);
@@ -269,7 +269,7 @@ impl<F: Frame, const U: usize> Full<F, U> {
     }
 }
 
-/// What the convergence test needs beside.
+/// Additional data of the convergence test.
 struct Bonds<F: Frame, const U: usize> {
     cohesion: Lanes<U>,
     a_n: Lanes<U>,
@@ -281,7 +281,7 @@ struct Bonds<F: Frame, const U: usize> {
 }
 
 impl<F: Frame, const U: usize> Bonds<F, U> {
-    /// Numbers of a row before these.
+    /// Number of numbers of a row before these.
     const BEFORE: usize = {
         let [v, t] = sizes::<F>();
         v + 3 * t + 14
@@ -385,7 +385,7 @@ impl<F: Frame> Wide for FullRow<F> {
     }
 }
 
-/// As `natural_map` of one contact; nothing where rho is 0.
+/// As `natural_map` of one contact; zero where rho is 0.
 #[inline(always)]
 fn natural_map<T: Tuple<U>, const U: usize>(
     (pn, pt): (Lanes<U>, T),
