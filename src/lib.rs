@@ -1,12 +1,13 @@
-//! Fretwork: tribology of dry contacts by non-smooth contact dynamics, with interface laws loaded at
-//! run time.
+//! Fretwork: tribology of dry contacts by non-smooth contact dynamics, with interface laws loaded at run
+//! time.
 //!
-//! This crate is the program, and names all layers below it: a [`scene`] makes [`bodies`] with [`geometry`]; each [`step`] detects
-//! [`contact`]s, asks the [`laws`], [`solve`]s, commits; [`process`]es act between steps, and a run is [`record`]ed.
-//! Who needs a layer alone names its crate: `fretwork-core`, `fretwork-scene`, `fretwork-observe`, `fretwork-store` or
-//! `fretwork-plot`.
+//! This crate is the program, and re-exports all layers below it. A [`scene`] creates [`bodies`] with
+//! [`geometry`]; each [`step`] detects [`contact`]s, evaluates the interface [`laws`], [`solve`]s the contact
+//! problem and advances the bodies; [`process`]es act between steps, and [`record`] writes the run's results.
+//! To use a single layer, depend on its crate: `fretwork-core`, `fretwork-scene`, `fretwork-observe`,
+//! `fretwork-store` or `fretwork-plot`.
 
-// A terminal or pipe that takes no more must not end a run: all output goes through `cli::output`.
+// A failed write to a terminal or pipe must not end a run: all output goes through `cli::output`.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod cli;

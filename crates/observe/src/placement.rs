@@ -1,17 +1,17 @@
-//! Where the shapes and contacts of a simulation are.
+//! Positions of the shapes and contacts of a simulation.
 
 use fretwork_core::contact::{Contact, Key};
 use fretwork_core::geometry::convex::{ConvexCollider, Core};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
-/// Where the centre of a piece stands (m).
+/// Centre of a convex part (m).
 pub fn piece_centre<S: Space>(s: &Simulation<S>, piece: &ConvexCollider<S>) -> S::Vector {
     let b = piece.body as usize;
     s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &piece.offset)
 }
 
-/// The corners of a piece (m): one line around it in the plane, its faces in space.
+/// Corners of a convex part (m): its outline in 2D, its faces in 3D.
 pub fn piece_outline<S: Space>(
     s: &Simulation<S>,
     piece: &ConvexCollider<S>,
@@ -31,18 +31,18 @@ pub fn is_first<S: Space>(s: &Simulation<S>, body: u32) -> bool {
 /// The state of the bond of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BondState {
-    /// There is no bond, and was none.
+    /// There is no bond, and has not been any.
     None,
-    /// It holds.
+    /// The bond is intact.
     Intact {
         /// Its damage, 0 to 1.
         damage: f64,
     },
-    /// It broke.
+    /// The bond is broken.
     Broken,
 }
 
-/// The state of the bond of a contact.
+/// State of the bond of a contact.
 pub fn bond_state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> BondState {
     match s.network.bond(contact) {
         Some(bond) if bond.intact() => BondState::Intact {
@@ -53,7 +53,7 @@ pub fn bond_state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> BondStat
     }
 }
 
-/// The two ends of a contact: the candidate's centre, and the antagonist's centre or the foot on a
+/// End points of a contact: the candidate's centre, and the antagonist's centre or the closest point on its
 /// surface.
 pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
     let key = &contact.key;
@@ -72,7 +72,7 @@ pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S:
     (a, a - contact.normal * length)
 }
 
-/// The same where a piece is in it: by way of the contact point, which is the end at a first body.
+/// End points of a contact with a convex part: via the contact point, which is the end at a first body.
 fn ends_of_piece<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
     let centre = s.bodies.position[contact.bodies[0] as usize];
     let at = centre + contact.arms[0];

@@ -1,4 +1,4 @@
-//! What the colour of a grain says.
+//! Colours of grains.
 
 use super::canvas::{Canvas, INK, ReportError, Rgb, mix};
 use super::chart::TEXT;
@@ -6,39 +6,39 @@ use super::font::{Anchor, TextStyle, text_width};
 use fretwork_observe::chart::Axis;
 use serde::{Deserialize, Serialize};
 
-/// What the colour of a grain says.
+/// Meaning of a grain's colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Paint {
-    /// Nothing: grey, from light to dark by its shade.
+    /// No meaning: grey, from light to dark by its shade.
     #[default]
     Grey,
-    /// The layer it belongs to: four colours in turn, as dyed sands.
+    /// Its layer: four colours in turn, as dyed sand.
     Layer(i64),
-    /// Part of a first body, by its number: warm, undamaged.
+    /// Attached to a first body, by its number: warm colours.
     Tied(usize),
     /// Loose third body: blue.
     Loose,
-    /// Ejected: light blue.
+    /// Ejected third body: light blue.
     Out,
-    /// A value, 0 light to 1 dark; grey where there is none.
+    /// A value, 0 light to 1 dark; grey for NaN.
     Value(f64),
 }
 
-/// What the colours of [`Paint::Value`], or of bonds, mean.
+/// Legend of the colours of [`Paint::Value`], or of bonds.
 #[derive(Clone, Debug)]
 pub struct Scale {
     /// The quantity.
     pub label: String,
     /// SI unit without prefix, empty for a pure number.
     pub unit: String,
-    /// Its value at 1; what lies above is drawn as that.
+    /// Value at the end of the colour scale; larger values are drawn the same.
     pub top: f64,
-    /// Whether it is the damage of the bonds between grains, and not a value of the grains.
+    /// Whether it is the damage of bonds between grains, and not a value of the grains.
     pub bonds: bool,
 }
 
 const GREY: [Rgb; 2] = [[238, 238, 236], [150, 151, 152]];
-/// Sands of a sand box: neighbours differ in lightness too, so that they stay apart in grey.
+/// Colours of layers; neighbours also differ in lightness, so that they are distinct in grey.
 const SANDS: [Rgb; 4] = [
     [238, 206, 130],
     [170, 68, 44],
@@ -49,7 +49,7 @@ const SANDS: [Rgb; 4] = [
 const TIED: [Rgb; 2] = [[200, 60, 48], [222, 164, 62]];
 const LOOSE: Rgb = [58, 104, 176];
 const OUT: Rgb = [168, 200, 226];
-/// Bonds, sound and damaged.
+/// Bonds: undamaged, and damaged.
 pub(super) const SOUND: Rgb = [150, 0, 12];
 pub(super) const DAMAGED: Rgb = [255, 112, 20];
 const VALUES: [Rgb; 5] = [
@@ -61,7 +61,7 @@ const VALUES: [Rgb; 5] = [
 ];
 
 impl Paint {
-    /// The colour of a grain of this shade, 0 light to 1 dark.
+    /// The colour of a grain with this shade, 0 light to 1 dark.
     pub(super) fn colour(self, shade: f64) -> Rgb {
         let dim = |colour| mix(colour, [60, 60, 64], 0.45 * shade);
         match self {
@@ -82,7 +82,7 @@ fn value(v: f64) -> Rgb {
     mix(VALUES[k], VALUES[k + 1], place - k as f64)
 }
 
-/// A colour bar with its ticks and its name, from a point on the middle of the bar; the ticks stand below.
+/// Draws a colour bar with its ticks and name, from a point on the middle of the bar; the ticks are below.
 pub(super) fn scale(
     page: &mut Canvas,
     scale: &Scale,
@@ -118,7 +118,7 @@ pub(super) fn scale(
     Ok(())
 }
 
-/// The least of 1, 1.5, 2, 3, 5, 7 times a power of ten not below a value: where a colour bar ends.
+/// The smallest of 1, 1.5, 2, 3, 5, 7 times a power of ten not below a value, as the end of a colour bar.
 pub fn round_top(value: f64) -> f64 {
     let power = 10f64.powf(value.log10().floor());
     let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0];

@@ -1,4 +1,4 @@
-//! Materials and the parameters of interface laws: numbers with their unit and their source.
+//! Materials and parameters of interface laws: numbers with their units and sources.
 
 use super::shipped_materials;
 use super::source::{Fault, InputError, Source, nearest};
@@ -9,35 +9,35 @@ use serde::de::{MapAccess, Visitor};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// A number and where it comes from.
+/// A number and its source.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sourced {
     /// Value.
     pub value: f64,
-    /// Its unit; that of the schema, in SI units, by default.
+    /// Unit; by default that of the schema, in SI units.
     #[serde(default)]
     pub unit: String,
-    /// Paper, norm or table.
+    /// Source: paper, standard or table.
     pub source: String,
 }
 
 impl Sourced {
-    /// The value in the unit of the schema.
+    /// Converts the value to the unit of the schema.
     ///
     /// # Errors
-    /// A unit that is not known, or measures something else.
+    /// The unit is unknown or of another dimension.
     pub fn in_unit(&self, wanted: &str) -> Result<f64, UnitError> {
         units::convert(self.value, &self.unit, wanted)
     }
 }
 
-/// A number of a case: as it is, in the unit of the schema, or `(value: 5, unit: "um")`.
+/// A number of a case: a plain number in the unit of the schema, or `(value: 5, unit: "um")`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Given {
     /// Value.
     pub value: f64,
-    /// Its unit, where one is given.
+    /// Unit, if given.
     pub unit: Option<String>,
 }
 
@@ -48,7 +48,7 @@ impl<'de> Deserialize<'de> for Given {
         struct WithUnit {
             value: f64,
             unit: String,
-            /// For the reader.
+            /// Accepted for the reader of the file; not used.
             #[serde(default, rename = "source")]
             _source: Option<String>,
         }
@@ -83,16 +83,16 @@ impl<'de> Deserialize<'de> for Given {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// What it is.
+    /// Description.
     pub doc: String,
     /// Density (kg/m^3).
     pub density: Sourced,
-    /// Further properties, for the record.
+    /// Further properties; not used by the program.
     #[serde(default)]
     pub properties: BTreeMap<String, Sourced>,
 }
 
-/// Properties whose unit is known.
+/// Properties with a known unit.
 const PROPERTIES: [(&str, &str); 9] = [
     ("young", "Pa"),
     ("shear_modulus", "Pa"),
@@ -106,10 +106,10 @@ const PROPERTIES: [(&str, &str); 9] = [
 ];
 
 impl Material {
-    /// The density (kg/m^3), and the units of all properties looked at.
+    /// The density (kg/m^3); also checks the units of all properties.
     ///
     /// # Errors
-    /// A density that is not positive, a unit that is not known or measures something else: with its path.
+    /// The density is not positive, or a unit is unknown or of another dimension: with its path.
     pub fn density(&self) -> Result<f64, Fault> {
         let density = self
             .density
@@ -137,11 +137,11 @@ impl Material {
     }
 }
 
-/// Parameters of laws for a kind of interface: slot, law, parameter.
+/// Parameters of laws for an interface, by slot, law and name.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct InterfaceParameters {
-    /// What it describes.
+    /// Description.
     pub doc: String,
     /// Contact laws.
     pub contact: BTreeMap<String, BTreeMap<String, Sourced>>,
@@ -154,10 +154,10 @@ pub struct InterfaceParameters {
 }
 
 impl InterfaceParameters {
-    /// Refuses units that are none, also of laws that a case does not use.
+    /// Checks all units, also those of laws that the case does not use.
     ///
     /// # Errors
-    /// The first one, with its path.
+    /// The first invalid unit, with its path.
     pub fn units(&self) -> Result<(), Fault> {
         for (slot, laws) in [
             ("contact", &self.contact),
@@ -176,15 +176,15 @@ impl InterfaceParameters {
     }
 }
 
-/// The folders in which material files are looked for: `materials/` beside the case or in a folder
-/// above it, then in the working folder; a shipped one that none of them has is taken from the program.
+/// The folders searched for material files: `materials/` beside the case and in each folder above it, then in
+/// the working folder, then the files built into the program.
 #[derive(Clone, Debug)]
 pub struct MaterialLibrary {
     folders: Vec<PathBuf>,
 }
 
 impl MaterialLibrary {
-    /// For a case file.
+    /// The search path for a case file.
     pub fn beside(case: &Path) -> Self {
         let absolute = std::path::absolute(case).unwrap_or_else(|_| case.to_owned());
         let mut folders: Vec<PathBuf> = absolute
@@ -200,7 +200,7 @@ impl MaterialLibrary {
     /// Reads `NAME.ron`.
     ///
     /// # Errors
-    /// No such file (`Err(Ok(nearest, available))` as a pair of texts) or one that cannot be read.
+    /// `Err(Ok(missing))` if there is no such file, `Err(Err(error))` if it cannot be read.
     pub fn read(&self, name: &str) -> Result<Source, Result<Missing, InputError>> {
         let plain = !name.is_empty()
             && name
@@ -254,13 +254,13 @@ impl MaterialLibrary {
     }
 }
 
-/// A name that no file has.
+/// A name for which there is no file.
 #[derive(Clone, Debug)]
 pub struct Missing {
     /// The nearest name.
     pub nearest: Option<String>,
     /// All names.
     pub available: String,
-    /// Where it was looked for.
+    /// The folders that were searched.
     pub looked: String,
 }

@@ -1,4 +1,4 @@
-//! The state of a simulation as the views of `results.h5`.
+//! Converts the state of a simulation to the views of `results.h5`.
 
 use super::results::state::ORIENTATION;
 use super::results::{Header, Part, Results, ResultsError};
@@ -12,10 +12,10 @@ use fretwork_observe::placement::{self, BondState};
 use fretwork_observe::statistics::Column;
 use fretwork_scene::build::Loaded;
 
-/// What was built of a case.
+/// References to the built scene.
 #[derive(Debug)]
 pub struct Made<'a, S: Space> {
-    /// The stepper.
+    /// The simulation.
     pub simulation: &'a Simulation<S>,
     /// Material files: name and text.
     pub materials: &'a [(String, String)],
@@ -23,7 +23,7 @@ pub struct Made<'a, S: Space> {
     pub densities: &'a [f64],
 }
 
-/// What the file says before the first step.
+/// Contents of the file before the first step.
 pub fn header<S: Space>(
     loaded: &Loaded,
     built: &Made<'_, S>,
@@ -42,16 +42,16 @@ pub fn header<S: Space>(
             .to_vec(),
     };
     let gone = loaded.case.circuit.iter();
-    let gone = gone.map(|_| c("gone", "", "1 for grains that were taken out"));
+    let gone = gone.map(|_| c("gone", "", "1 for grains that were removed"));
     let shear = loaded.case.output.shear.map(|_| {
         let doc =
-            "local shear since the second phase began, or the start; not a number on first bodies";
+            "local shear since the start of the second phase, or of the run; NaN on first bodies";
         c("shear", "", doc)
     });
     let joule = if dimension == 2 { "J/m" } else { "J" };
     let area = if dimension == 2 { "m" } else { "m^2" };
     let kg = if dimension == 2 { "kg/m" } else { "kg" };
-    let at = ["x", "y", "z"].map(|a| c(a, "m", "where it was"));
+    let at = ["x", "y", "z"].map(|a| c(a, "m", "position"));
     let bonds = loaded.case.interfaces.iter().any(|i| i.cohesion.is_some());
     let broken = [
         c("id", "", "number of the break, from 1"),
@@ -64,28 +64,28 @@ pub fn header<S: Space>(
         c(
             "mode_mix",
             "",
-            "share of sliding in the work of opening and sliding: 0 mode I, 1 mode II",
+            "fraction of sliding in the work of opening and sliding: 0 mode I, 1 mode II",
         ),
         c("opening_normal", "m", "elongation at the end"),
         c("opening_tangential", "m", "norm of the tangential opening"),
         c("area", area, "area of the bond"),
-        c("work", joule, "work done on the bond since it was made"),
-        c("fracture", joule, "energy that damage released"),
-        c("viscous", joule, "heat of its damping"),
+        c("work", joule, "work done on the bond since it formed"),
+        c("fracture", joule, "energy released by damage"),
+        c("viscous", joule, "dissipated by its damping"),
         c(
             "friction",
             joule,
-            "heat of friction at the contact while it held",
+            "dissipated by friction at the contact while it was intact",
         ),
         c(
             "cause",
             "",
-            "0 damage, 1 its contact left all reach or a body was taken out",
+            "0 damage, 1 its bodies moved out of range or one was removed",
         ),
     ]);
     let debris = [
         c("id", "", "number of the piece, from 1"),
-        c("time", "s", "when the account found it loose"),
+        c("time", "s", "time at which the account found it loose"),
         c("size", "", "grains in it"),
         c("mass", kg, "its mass"),
     ];
@@ -94,12 +94,12 @@ pub fn header<S: Space>(
         c(
             "mode_mix",
             "",
-            "share of sliding in the work on the bonds that freed it",
+            "fraction of sliding in the work on the bonds that freed it",
         ),
         c(
             "energy",
             joule,
-            "energy that damage of these bonds released",
+            "energy released by damage of these bonds",
         ),
         c("bonds", "", "number of these bonds"),
     ]);
@@ -151,7 +151,7 @@ pub fn header<S: Space>(
     }
 }
 
-/// Fields of contacts: numbers.
+/// Float fields of contacts.
 fn contact_columns(dimension: usize) -> Vec<Column> {
     let c = Column::new;
     let newton = if dimension == 2 { "N/m" } else { "N" };
@@ -161,7 +161,7 @@ fn contact_columns(dimension: usize) -> Vec<Column> {
         c(
             "status",
             "",
-            "0 carries nothing, 1 sticks, 2 slides (friction is at its bound), 3 an intact bond holds, 4 carries nothing and its bond broke",
+            "0 no force, 1 stick, 2 slip (at the friction bound), 3 intact bond, 4 no force and broken bond",
         ),
         c("damage", "", "damage D; 1 where there is no bond"),
         c("gap", "m", "gap"),
@@ -174,7 +174,7 @@ fn contact_columns(dimension: usize) -> Vec<Column> {
         c(
             "force_tangential_1",
             newton,
-            "tangential force on body_1 along the tangent t1; in 2D t1 is the normal turned by +90 degrees",
+            "tangential force on body_1 along the tangent t1; in 2D t1 is the normal rotated by +90 degrees",
         ),
     ];
     if dimension == 3 {
@@ -201,7 +201,7 @@ fn contact_columns(dimension: usize) -> Vec<Column> {
         c(
             "friction_work",
             joule,
-            "energy that friction took at this contact since it formed",
+            "work of friction at this contact since it formed",
         ),
         c("opening_normal", "m", "elongation of the bond"),
         c("opening_tangential", "m", "norm of its tangential opening"),
@@ -210,7 +210,7 @@ fn contact_columns(dimension: usize) -> Vec<Column> {
     columns
 }
 
-/// Fields of contacts: whole numbers.
+/// Integer fields of contacts.
 fn contact_numbers() -> Vec<Column> {
     let c = Column::new;
     vec![
@@ -223,7 +223,7 @@ fn contact_numbers() -> Vec<Column> {
     ]
 }
 
-/// Bytes that a state takes a grain and a contact: points, cells and fields of 8 bytes.
+/// Bytes per grain and per contact of a recorded state: points, cells and fields of 8 bytes.
 pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
     let (plain, turns) = if S::D == 2 { (9, 1) } else { (12, 4) };
     let turns = if shapes::needed(s) { turns } else { 0 };
@@ -232,7 +232,7 @@ pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
     [8 * (3 + 2 + fields), 8 * (6 + 3 + contact)]
 }
 
-/// Appends the state at hand of a case; `shear` is a column of the grains where the header has it.
+/// Appends the current state; `shear` is a column of the grains if the header has it.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -287,7 +287,7 @@ fn grains<S: Space>(s: &Simulation<S>) -> Part {
     part
 }
 
-/// One ball or polygon: where it stands, its body, material and number of corners, its radius (m).
+/// Adds one ball, polygon or polyhedron: position, body, material, number of corners, radius (m).
 fn grain<S: Space>(s: &Simulation<S>, part: &mut Part, at: S::Vector, of: [u32; 3], radius: f64) {
     let [body, material, corners] = of;
     let b = body as usize;
@@ -395,7 +395,7 @@ fn bodies<S: Space>(s: &Simulation<S>) -> Part {
     }
     for piece in &s.shapes.pieces {
         for mut corners in placement::piece_outline(s, piece) {
-            // Lines are closed, polygons close themselves.
+            // Lines need an explicit closing point, polygons do not.
             if S::D == 2 {
                 corners.extend(corners.first().copied());
             }

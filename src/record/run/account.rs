@@ -1,4 +1,4 @@
-//! The tribological circuit in a run: begun in time, brought up to date, written and summed up.
+//! The tribological circuit in a run: start, updates, output and summary.
 
 use super::{Recorder, RunError};
 use crate::geometry::space::{Space, VectorLike};
@@ -17,20 +17,20 @@ use crate::wear::ledger::{Flows, Ledger, Place};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// The account of a run.
+/// State of the circuit's account.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(super) struct Account<S: Space> {
     start: f64,
     every: u64,
-    /// None before it begins.
+    /// The circuit; `None` before its start time.
     pub circuit: Option<Circuit<S>>,
-    /// Pieces that came loose, and grains in them.
+    /// Number of debris pieces that came loose, and of grains in them.
     pieces: (u64, u64),
     largest: usize,
     broken: u64,
     debris: u64,
-    /// Time, and what passed by then, at each update.
+    /// Time and cumulative flows at each update.
     series: Series<(f64, Flows, f64)>,
 }
 
@@ -49,7 +49,7 @@ impl<S: Space> Account<S> {
         }
     }
 
-    /// Columns of the statistics; none without a circuit.
+    /// Columns of the statistics; empty without a circuit.
     pub fn columns(case: &Case) -> Vec<Column> {
         if case.circuit.is_none() {
             return Vec::new();
@@ -57,25 +57,25 @@ impl<S: Space> Account<S> {
         let kg = if case.dimension == 2 { "kg/m" } else { "kg" };
         let c = Column::new;
         vec![
-            c("tied_grains", "", "grains tied to first bodies"),
+            c("tied_grains", "", "grains attached to first bodies"),
             c("M_grains", "", "grains in the contact"),
             c(
                 "source_grains",
                 "",
                 "grains that came loose, since the start",
             ),
-            c("attached_grains", "", "grains that bonds tied again"),
+            c("attached_grains", "", "grains that bonds attached again"),
             c("ejected_grains", "", "grains that left the contact"),
             c("recirculated_grains", "", "grains that came back"),
-            c("lost_grains", "", "grains that wore: out for good"),
+            c("lost_grains", "", "grains that wore: lost for good"),
             c("M", kg, "mass in the contact"),
             c("source", kg, "mass that came loose, since the start"),
-            c("attached", kg, "mass that bonds tied again"),
+            c("attached", kg, "mass that bonds attached again"),
             c("ejected", kg, "mass that left the contact"),
             c("recirculated", kg, "mass that came back"),
-            c("lost", kg, "mass that wore: out for good"),
-            c("ledger_grains", "", "grains that do not add up; 0"),
-            c("ledger_mass", kg, "mass that does not add up; rounding"),
+            c("lost", kg, "mass that wore: lost for good"),
+            c("ledger_grains", "", "residual of the grain balance; 0"),
+            c("ledger_mass", kg, "residual of the mass balance; rounding"),
         ]
     }
 
@@ -95,7 +95,7 @@ impl<S: Space> Account<S> {
         row
     }
 
-    /// Takes in the last step: its breaks as events, and the account where it is due.
+    /// Processes the last step: broken bonds as events, and an update of the account when it is due.
     pub fn follow(
         &mut self,
         case: &Case,
@@ -134,7 +134,7 @@ impl<S: Space> Account<S> {
             return self.begin(case, s);
         };
         circuit.note(s);
-        // A row of the statistics shows the state at its step.
+        // A row of the statistics needs the state at its step.
         let row = case.output.every > 1 && s.steps.is_multiple_of(case.output.every);
         if !s.steps.is_multiple_of(self.every) && !row && !last {
             return Ok(());
@@ -186,7 +186,7 @@ impl<S: Space> Account<S> {
         Ok(())
     }
 
-    /// The colours of balls and pieces by where they are; none before the account begins.
+    /// Colours of balls and convex parts by their place in the circuit; empty before the account begins.
     pub fn paints(&self, s: &Simulation<S>) -> Vec<Paint> {
         let Some(circuit) = &self.circuit else {
             return Vec::new();
@@ -204,7 +204,7 @@ impl<S: Space> Account<S> {
         bodies.map(paint).collect()
     }
 
-    /// What the summary says.
+    /// The circuit's part of the summary.
     pub fn summary(&self, s: &Simulation<S>, wall: Duration) -> Option<CircuitSummary> {
         let circuit = self.circuit.as_ref()?;
         let end = self.series.last().map_or(self.start, |p| p.0);
@@ -253,7 +253,7 @@ impl<S: Space> Account<S> {
 }
 
 impl<S: Dimensional> Recorder<'_, S> {
-    /// Brings the account up to date with the last step.
+    /// Updates the account after the last step.
     pub(super) fn account(&mut self, last: bool) -> Result<(), RunError> {
         let case = &self.loaded.case;
         self.account

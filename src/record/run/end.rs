@@ -1,4 +1,4 @@
-//! The end of a run: what is summed up, drawn and written last.
+//! End of a run: summary, figures and final output.
 
 use super::error::unreadable;
 use super::{Recorder, RunError, unwritable};
@@ -16,7 +16,7 @@ use crate::scene::build::Dimensional;
 use std::path::Path;
 
 impl<S: Space> Recorder<'_, S> {
-    /// Brings up to date what is known between two steps, and costs nothing.
+    /// Updates the cheap parts of the summary between two steps.
     pub(super) fn count(&mut self) {
         let (s, n) = (&self.simulation, &self.simulation.network);
         let summary = &mut self.summary;
@@ -39,7 +39,7 @@ impl<S: Space> Recorder<'_, S> {
     }
 }
 
-/// What the cycles of a friction test say.
+/// Fills the summary from the cycles of a friction test.
 pub(super) fn sum_up(summary: &mut Summary, cycles: Option<&Cycles>) {
     if let Some(cycles) = cycles {
         summary.friction_coefficient = cycles.last().map(|c| c.friction_coefficient);
@@ -53,7 +53,7 @@ pub(super) fn sum_up(summary: &mut Summary, cycles: Option<&Cycles>) {
 }
 
 impl<S: Dimensional> Recorder<'_, S> {
-    /// Writes what a run leaves behind, whatever it reached.
+    /// Writes the final output of a run, however it ended.
     pub(super) fn finish(&mut self) -> Result<(), RunError> {
         let recalled = self.recall();
         self.count();
@@ -80,13 +80,13 @@ impl<S: Dimensional> Recorder<'_, S> {
             .retain(|name, _| found.contains_key(name));
         summary.findings = self.measures.verdict(&self.table);
         summary.jump = self.jumps.as_ref().map(|j| j.outcome(s, self.worn));
-        // Wear goes on over the cycles that were jumped over.
+        // Wear continues over the cycles that were jumped over.
         let share = self.cycles.as_ref().map_or(1.0, |(c, _)| c.share(s.time));
         let share = if share < 1.0 { share } else { 0.0 };
         let cycles = self.jumps.as_ref().map_or(0.0, |j| j.jumped(share));
         let period = self.cycles.as_ref().and_then(|(c, _)| c.period());
         let over = cycles * period.unwrap_or(0.0);
-        // Nothing leaves a contact that is periodic along the sliding.
+        // No material leaves a contact that is periodic along the sliding.
         let along = self.loaded.case.friction.as_ref().map_or(0, |t| t.along);
         let closed = s.shapes.periodic.period[along].map(|_| 0.0);
         let load_path = self.cycles.as_ref().map(|_| self.load_path);
@@ -122,7 +122,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         files
     }
 
-    /// Reads the rows of the statistics back, where something is made of them.
+    /// Reads the rows of the statistics back, if they are needed.
     fn recall(&mut self) -> Result<(), RunError> {
         let case = &self.loaded.case;
         if !case.output.figures && case.biaxial.is_none() && case.measures.is_empty() {
@@ -132,7 +132,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         self.table.recall().map_err(|e| unreadable(&path, &e))
     }
 
-    /// Writes all other files, each whatever became of the one before it.
+    /// Writes all other files; a failure of one does not stop the next.
     fn files(&mut self) -> Result<(), RunError> {
         let table = self.table.flush();
         let table = table.map_err(|e| unwritable(&self.out.join("statistics.csv"), &e));
@@ -141,7 +141,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         table.and(results).and(scars).and(self.draw())
     }
 
-    /// Ends the file of results, and says in it that it is whole where the run came to its end.
+    /// Closes the results file, and marks it complete if the run reached its end.
     fn end_results(&mut self) -> Result<(), RunError> {
         if self.summary.stopped.is_none() {
             let (number, bytes) = self.keeper.frame(Kind::Ended, Vec::new());
@@ -155,7 +155,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         let start = self.loaded.case.biaxial.as_ref().map_or(0.0, |t| t.start);
         if self.loaded.case.output.figures {
             let cycles = self.cycles.as_ref().map(|c| &c.0);
-            // Its loops show the test itself.
+            // The fretting loops already show the test itself.
             let test = self.loaded.case.friction.as_ref();
             let test = test.filter(|_| cycles.is_some_and(Cycles::oscillates));
             let test = test.map(|t| (t.body.as_str(), t.along));
@@ -186,7 +186,7 @@ impl<S: Dimensional> Recorder<'_, S> {
     }
 }
 
-/// Writes and draws what observers ask for into a folder.
+/// Writes and draws the outputs of observers into a folder.
 ///
 /// # Errors
 /// A file cannot be written.
@@ -204,7 +204,7 @@ pub fn write_outputs(folder: &Path, outputs: &[Output]) -> Result<(), RunError> 
     })
 }
 
-/// Writes a file that is whole whenever it is there.
+/// Writes a file atomically: it is complete whenever it exists.
 pub(super) fn whole(path: &Path, text: &str) -> Result<(), RunError> {
     let part = path.with_extension("part");
     std::fs::write(&part, text).map_err(|e| unwritable(&part, &e))?;

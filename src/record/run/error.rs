@@ -1,4 +1,4 @@
-//! Why a run failed.
+//! Errors of a run.
 
 use crate::record::checkpoint::ResumeError;
 use crate::record::code::CodeError;
@@ -7,32 +7,32 @@ use crate::report::ReportError;
 use crate::step::StepError;
 use std::path::{Path, PathBuf};
 
-/// Why a run failed. What was computed is on disk.
+/// Reason why a run failed. What was computed is on disk.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// The step.
+    /// A step failed.
     #[error(transparent)]
     Step(#[from] StepError),
-    /// A file or folder.
+    /// A file or folder cannot be written.
     #[error("cannot write {}: {reason}; choose another folder with --out or make room", path.display())]
     Write {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Reason.
         reason: String,
     },
-    /// What was written cannot be read back.
-    #[error("cannot read {} back: {reason}; nothing is summed up or drawn from it", path.display())]
+    /// A written file cannot be read back.
+    #[error("cannot read {} back: {reason}; its results are not summarised or drawn", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Reason.
         reason: String,
     },
-    /// No bond ties a grain to a first body of the circuit.
+    /// No bond attaches a grain to a first body of the circuit.
     #[error(
-        "at t = {time:.6e} s, when the circuit begins, no bond ties a grain to `{body}`: let bonds be made before \
-         (circuit.start), let them reach it (detection.alert, the places of grains), or leave it out of circuit.bases"
+        "at t = {time:.6e} s, when the circuit begins, no bond attaches a grain to `{body}`: let bonds form earlier \
+         (circuit.start), let them reach it (detection.alert, positions of grains), or leave it out of circuit.bases"
     )]
     NoBonds {
         /// Name of the body.
@@ -40,16 +40,16 @@ pub enum RunError {
         /// Time (s).
         time: f64,
     },
-    /// The results file.
+    /// The results file failed.
     #[error(transparent)]
     Results(#[from] ResultsError),
-    /// A picture.
+    /// A picture failed.
     #[error(transparent)]
     Picture(#[from] ReportError),
-    /// What was to go on cannot.
+    /// A run cannot be resumed.
     #[error(transparent)]
     Resume(#[from] ResumeError),
-    /// A checkpoint.
+    /// A checkpoint failed.
     #[error("cannot make a checkpoint: {0}")]
     Checkpoint(#[from] CodeError),
 }

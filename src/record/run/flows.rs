@@ -1,27 +1,27 @@
-//! Mean flows of matter, from the start of the friction test on: what came before it, placing grains and pressing them
-//! together, is no flow of the contact.
+//! Mean flows of matter from the start of the friction test on. Preparation, such as placing and compressing
+//! the grains, is not a flow of the contact.
 
 use crate::geometry::space::Space;
 use crate::step::Simulation;
 use serde::{Deserialize, Serialize};
 
-/// What flowed since the start of the friction test; since the start of the run without one.
+/// Flows since the start of the friction test, or of the run without one.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Flows {
-    /// When it starts (s).
+    /// Start time (s).
     pub start: f64,
-    /// Time since then (s).
+    /// Time since the start (s).
     time: f64,
-    /// Volume worn off first bodies before it (m^3; m^3/m).
+    /// Volume worn off first bodies before the start (m^3; m^3/m).
     before: f64,
-    /// Volume worn off them since (m^3; m^3/m).
+    /// Volume worn off first bodies since the start (m^3; m^3/m).
     worn: f64,
-    /// Mass of the third body that crossed a section since (kg; kg/m).
+    /// Mass of the third body that crossed a section since the start (kg; kg/m).
     crossed: f64,
 }
 
 impl Flows {
-    /// From a time on.
+    /// Flows that are counted from a start time (s).
     pub fn since(start: f64) -> Self {
         Self {
             start,
@@ -29,7 +29,8 @@ impl Flows {
         }
     }
 
-    /// Takes in a step: the sliding axis, the inertia scaling of the case, and the volume worn off first bodies so far.
+    /// Adds a step: the sliding axis, the inertia scaling of the case, and the volume worn off first bodies
+    /// so far.
     pub fn add<S: Space>(&mut self, s: &Simulation<S>, along: usize, scaling: f64, worn: f64) {
         let h = s.scheme.h;
         if s.time - 0.5 * h < self.start {
@@ -41,12 +42,13 @@ impl Flows {
         self.crossed += h * internal_flow(s, along) / scaling;
     }
 
-    /// Volume worn off first bodies a second, over a longer time by so much (m^3/s; m^3/(m s)); zero before the start.
+    /// Wear rate of first bodies (m^3/s; m^3/(m s)), over the elapsed time multiplied by `over`; zero before
+    /// the start.
     pub fn source(&self, over: f64) -> f64 {
         mean(self.worn, self.time + over)
     }
 
-    /// Mass that crosses a section a second (kg/s; kg/(m s)); zero before the start.
+    /// Mean mass flow through a section (kg/s; kg/(m s)); zero before the start.
     pub fn internal(&self) -> f64 {
         mean(self.crossed, self.time)
     }
@@ -56,7 +58,7 @@ fn mean(amount: f64, time: f64) -> f64 {
     if time > 0.0 { amount / time } else { 0.0 }
 }
 
-/// Mass of the third body that crosses a section a second: sum m |v| / L along the sliding.
+/// Mass flow of the third body through a section: sum m |v| / L along the sliding.
 fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
     let grains = || {
         (0..s.bodies.len())

@@ -9,7 +9,7 @@ use crate::scene::build::Dimensional;
 use crate::scene::case::Case;
 use crate::step::Simulation;
 
-/// Begins, where the case jumps and the run has a next cycle.
+/// Starts the jumps, if the case has them and a further cycle fits into the run.
 pub(super) fn begin<S: Space>(case: &Case, cycles: &Cycles, s: &Simulation<S>) -> Option<Jumps> {
     let spec = case.jump.clone()?;
     let count = |time: f64| (time / case.time.step).round() as u64;
@@ -24,11 +24,11 @@ pub(super) fn begin<S: Space>(case: &Case, cycles: &Cycles, s: &Simulation<S>) -
 
 /// Column of the statistics.
 pub(super) fn column() -> Column {
-    Column::new("cycles", "", "cycles with those jumped over")
+    Column::new("cycles", "", "cycles, including those jumped over")
 }
 
 impl<S: Dimensional> Recorder<'_, S> {
-    /// Takes the step into the jumps. Whether the run has the cycles that were asked for.
+    /// Processes a step for the jumps. Returns whether the requested number of cycles is reached.
     pub(super) fn jump(&mut self) -> bool {
         let (Some(jumps), Some((cycles, _))) = (&mut self.jumps, &mut self.cycles) else {
             return false;
@@ -43,11 +43,11 @@ impl<S: Dimensional> Recorder<'_, S> {
         jumps.follow(s, cycles.number(s.time + s.scheme.h), self.worn, work)
     }
 
-    /// The column of the statistics.
+    /// Value of the statistics' column.
     pub(super) fn cycles_represented(&self) -> Option<f64> {
         let (jumps, (cycles, _)) = (self.jumps.as_ref()?, self.cycles.as_ref()?);
         let share = cycles.share(self.simulation.time);
-        // A cycle that was closed with this step is among those represented.
+        // A cycle that ended with this step is counted as complete.
         Some(jumps.cycles(if share < 1.0 { share } else { 0.0 }))
     }
 }

@@ -46,57 +46,57 @@ use cpu_time::ProcessTime;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// What a run tells of itself as it goes.
+/// Progress report of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
-    /// Steps done and in all.
+    /// Steps done, and total steps.
     pub steps: (u64, u64),
-    /// Steps that were done before a resumed run went on; 0 for one from the start.
+    /// Steps done before the run was resumed; 0 for a run from the start.
     pub resumed_at: u64,
-    /// Cycle and cycles in all; 0 before the first.
+    /// Current cycle, and total cycles; 0 before the first.
     pub cycle: (u32, u32),
-    /// Contacts.
+    /// Number of contacts.
     pub contacts: usize,
-    /// Sweeps of the last step.
+    /// Solver iterations of the last step.
     pub iterations: u32,
-    /// Error of the last step.
+    /// Solver error of the last step.
     pub error: f64,
-    /// Steps of the run that missed the tolerance.
+    /// Number of steps that missed the tolerance.
     pub unconverged: u64,
-    /// Damage ratio.
+    /// Broken bonds over bonds made.
     pub damage_ratio: f64,
 }
 
-/// How to run.
+/// Options of a run.
 #[derive(Clone, Debug)]
 pub struct RunOptions {
     /// Folder of the results.
     pub out: PathBuf,
-    /// Threads; one gives the same bits as many.
+    /// Number of threads; results are bit-identical for any number.
     pub threads: usize,
 }
 
-/// Runs to the end. `progress` is called after every step.
+/// Runs a scene to its end. `progress` is called after every step.
 ///
 /// # Errors
-/// A failed step or an unwritable file; the summary is written even then.
+/// A step failed or a file cannot be written; the summary is written even then.
 pub fn run<S: Dimensional>(
     loaded: &Loaded,
     built: Built<S>,
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
-    // Compiled here, once for each dimension.
+    // Compiled in this crate, once for each dimension.
     match S::scene(built) {
         Scene::Dim2(built) => execute(Recorder::new(loaded, *built, options, None)?, progress),
         Scene::Dim3(built) => execute(Recorder::new(loaded, *built, options, None)?, progress),
     }
 }
 
-/// What the folder of the results holds of this case, to go on from.
+/// Finds the state of a stopped run of this case in the folder of the results.
 ///
 /// # Errors
-/// What is there cannot be read, is damaged, or of another version or case.
+/// The state cannot be read, is damaged, or belongs to another version or case.
 pub fn stopped<S: Space>(
     loaded: &Loaded,
     built: &Built<S>,
@@ -105,11 +105,11 @@ pub fn stopped<S: Space>(
     Ok(find(&options.out, &Identity::of(loaded, built)?)?)
 }
 
-/// Goes on to the end from where a run of the same case was [`stopped`]: the bits are those of a run that was not.
+/// Resumes a [`stopped`] run of the same case; the results are bit-identical to those of an uninterrupted run.
 /// `progress` is called after every step.
 ///
 /// # Errors
-/// As [`run`], or a state that the case cannot take up.
+/// As [`run`], or the state does not fit the case.
 pub fn resume<S: Dimensional>(
     loaded: &Loaded,
     built: Built<S>,
@@ -147,32 +147,33 @@ struct Recorder<'a, S: Space> {
     table: Table,
     results: Results,
     camera: Camera,
-    /// Shear since the second phase began, where the case asks for it.
+    /// Local shear since the start of the second phase, if the case asks for it.
     strain: Option<Strain<S>>,
     cycles: Option<(Cycles, usize)>,
     biaxial: Option<Biaxial>,
     measures: Measures<S>,
     account: Account<S>,
-    /// Jumps over cycles, where the case has them.
+    /// Jumps over cycles, if the case has them.
     jumps: Option<Jumps>,
     layer: Layer<S>,
     sample: Option<Sample>,
     slide: f64,
     worn: (f64, f64),
-    /// Normal force times sliding distance of the friction test, over the run and what it jumped over (N m; N).
+    /// Normal force times sliding distance of the friction test, over the run including jumps (N m; N).
     load_path: f64,
     flows: Flows,
     iterations: u64,
     couplings: u64,
-    /// Steps that were done when the run was resumed.
+    /// Steps done when the run was resumed.
     resumed_at: u64,
-    /// Steps of the run, and over how many of them states and pictures are spread: those it was begun with.
+    /// Total steps of the run, and the steps over which states and pictures are distributed, as set when it
+    /// was started.
     total: u64,
     spread: u64,
     keeper: CheckpointWriter,
-    /// Time that the run took before it was stopped, of the clock and of processors; and since when it runs now.
+    /// Wall and processor time of the run before it was resumed; and the start of this part.
     spent: (Duration, Duration),
-    /// Where the watch over plugins finds the files during a step.
+    /// Output that the plugin watchdog can save during a step.
     refuge: EmergencySave,
     clock: Instant,
     processor: ProcessTime,
@@ -181,7 +182,7 @@ struct Recorder<'a, S: Space> {
 }
 
 impl<'a, S: Dimensional> Recorder<'a, S> {
-    /// From the start, or from where a run was stopped.
+    /// Starts a run, or restores a stopped one.
     fn new(
         loaded: &'a Loaded,
         built: Built<S>,
@@ -253,7 +254,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             };
             views::header(loaded, &made, &summary, &columns)
         };
-        // The file of results comes first: it alone says what the folder holds.
+        // The results file is replaced first: it alone defines what the folder contains.
         let part = options.out.join("results.h5.part");
         let results = Results::create(&part, &header)?;
         let table = Table::new(columns);
@@ -304,14 +305,14 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         match begun {
             Ok(()) => Ok(recorder),
             Err(e) => {
-                // What the folder held before is still there.
+                // The previous contents of the folder are still there.
                 let _ = std::fs::remove_file(&part);
                 Err(e)
             }
         }
     }
 
-    /// Steps to the end, or until a signal asks for one: why, then.
+    /// Steps to the end, or until a signal; returns the reason in that case.
     fn go(&mut self, progress: &mut dyn FnMut(&Progress)) -> Result<Option<String>, RunError> {
         let output = &self.loaded.case.output;
         if self.simulation.steps == 0 {
@@ -452,7 +453,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
     }
 }
 
-/// Whether event k of `count` over the run falls on this step.
+/// Whether event k of `count`, distributed over the run, falls on this step.
 fn due(step: u64, total: u64, count: u32) -> bool {
     let number = |step: u64| u128::from(step) * u128::from(count) / u128::from(total.max(1));
     count > 0 && number(step) > number(step - 1)

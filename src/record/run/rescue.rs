@@ -1,8 +1,8 @@
-//! What is left for the watch over plugins to write when a law does not come back from a step.
+//! Emergency output, written by the plugin watchdog if a law does not return from a step.
 //!
-//! The thread that is stuck owns the simulation, half of a step done: nobody else may read it. The files of the run it does not
-//! use during a step. So before a step they are laid where the watch finds them, with what was known then, and taken back
-//! after it.
+//! The blocked thread owns the simulation in the middle of a step, so no other thread may read it. The run's
+//! files are not used during a step: before each step they are handed to the watchdog, together with the
+//! summary so far, and taken back afterwards.
 
 use super::Recorder;
 use super::end::{self, LAST};
@@ -20,17 +20,17 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// All that can be written without the simulation.
+/// Everything that can be written without the simulation.
 struct UnsavedOutputs {
     table: Table,
     results: Results,
     cycles: Option<(Cycles, usize)>,
     summary: Summary,
-    /// What parts of the run before this one took, by the clock and of processors.
+    /// Wall and processor time of earlier parts of a resumed run.
     spent: (Duration, Duration),
 }
 
-/// The place where it lies during a step.
+/// Shared slot that holds it during a step.
 #[derive(Debug)]
 pub(super) struct EmergencySave {
     left: Arc<Mutex<Option<UnsavedOutputs>>>,
@@ -44,7 +44,7 @@ impl std::fmt::Debug for UnsavedOutputs {
 }
 
 impl EmergencySave {
-    /// An empty place that the watch knows.
+    /// An empty slot, registered with the watchdog.
     pub fn new(out: PathBuf) -> Self {
         let left = Arc::new(Mutex::new(None));
         let place = Arc::clone(&left);
@@ -65,7 +65,7 @@ impl EmergencySave {
 }
 
 impl UnsavedOutputs {
-    /// Writes it; whether all of it is on disk.
+    /// Writes the output; returns whether all of it is on disk.
     fn write(&mut self, who: &str, out: &std::path::Path) -> bool {
         let summary = &mut self.summary;
         summary.stopped = Some(who.to_owned());
@@ -80,7 +80,7 @@ impl UnsavedOutputs {
 }
 
 impl<S: Steps> Recorder<'_, S> {
-    /// A step, during which the watch can save what was recorded.
+    /// Makes a step during which the watchdog can save the records.
     pub(super) fn step(&mut self) -> Result<StepReport, StepError> {
         self.count();
         let left = UnsavedOutputs {
@@ -94,7 +94,7 @@ impl<S: Steps> Recorder<'_, S> {
         *place() = Some(left);
         let report = self.simulation.step();
         let Some(left) = place().take() else {
-            // The watch took it, just before the law came back: the program ends.
+            // The watchdog took the output just before the law returned: the program is ending.
             loop {
                 std::thread::park();
             }

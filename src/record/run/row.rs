@@ -1,4 +1,4 @@
-//! The rows of the statistics: their columns and what stands in them.
+//! Rows of the statistics: columns and values.
 
 use super::Recorder;
 use super::account::Account;
@@ -69,7 +69,7 @@ impl<S: Dimensional> Recorder<'_, S> {
     }
 }
 
-/// The columns of the statistics that a run of a case has.
+/// The statistics columns of a run of a case.
 pub fn statistics_columns<S: Dimensional>(case: &Case, s: &Simulation<S>) -> Vec<Column> {
     let test = case.friction.as_ref();
     let driven = |name: &str| s.bodies.driven.iter().any(|d| d.name == name);
@@ -92,11 +92,11 @@ pub(super) fn columns<S: Space>(s: &Simulation<S>, friction: bool, biaxial: bool
         c("cycle", "", "cycle of the friction test"),
         c("contacts", "", "contacts within the alert distance"),
         c("active", "", "contacts that carry an impulse"),
-        c("iterations", "", "sweeps of the solver"),
+        c("iterations", "", "iterations of the solver"),
         c("error", "", "error of the solution"),
         c("converged", "", "1 if the tolerance was reached"),
-        c("bonds_intact", "", "bonds that hold"),
-        c("bonds_broken", "", "bonds that broke"),
+        c("bonds_intact", "", "intact bonds"),
+        c("bonds_broken", "", "broken bonds"),
         c("damage_ratio", "", "broken bonds over bonds made"),
         c("mean_damage", "", "mean damage over bonds made"),
     ];
@@ -142,7 +142,7 @@ fn c_named(body: &str, what: &str, axis: &str, unit: &'static str, doc: &'static
     Column::new(format!("{body}_{what}{axis}"), unit, doc)
 }
 
-/// Walls that a scene file brought are not worth columns.
+/// Walls from a scene file get no columns.
 fn shown(name: &str) -> bool {
     !name.starts_with("wall_")
 }

@@ -1,4 +1,4 @@
-//! What the friction test shows in a step: forces, slide, and what was cumulated until then.
+//! Sample of the friction test in a step: forces, slide and cumulative quantities.
 
 use super::Recorder;
 use crate::geometry::space::VectorLike;
@@ -7,7 +7,7 @@ use crate::record::layer::Layer;
 use crate::scene::build::Dimensional;
 
 impl<S: Dimensional> Recorder<'_, S> {
-    /// What was cumulated so far.
+    /// Cumulative quantities so far.
     pub(super) fn cumulated(&self) -> Cumulated {
         let s = &self.simulation;
         Cumulated {
@@ -26,7 +26,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         }
     }
 
-    /// Q, P and the slide of the friction test in the last step.
+    /// Q, P and slide of the friction test in the last step.
     pub(super) fn sample(&self) -> Option<Sample> {
         let test = self.loaded.case.friction.as_ref()?;
         let (_, place) = self.cycles.as_ref()?;
@@ -44,7 +44,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         })
     }
 
-    /// The side on which the contacts of a driven body push it along an axis: 1 or -1.
+    /// Sign of the force that the contacts of a driven body exert on it along an axis: 1 or -1.
     fn facing(&self, place: usize, axis: usize) -> f64 {
         let s = &self.simulation;
         let body = s.bodies.driven[place].body;

@@ -274,7 +274,7 @@ fn a_full_disk_is_told_and_the_run_goes_on_when_there_is_room() {
             "{told}"
         );
         let told = job().done(&out.0, &["--resume"]);
-        went_on += u32::from(told.contains("resumes the run"));
+        went_on += u32::from(told.contains("resuming the run"));
         same(&whole.0, &out.0);
     }
     assert!(went_on > 0, "no limit let a checkpoint be written");

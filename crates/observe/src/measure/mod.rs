@@ -1,4 +1,4 @@
-//! Quantities that a case asks for: sampled when a row of the statistics is written.
+//! Measured quantities of a case, sampled whenever a row of the statistics is written.
 
 mod band;
 mod mass;
@@ -17,56 +17,56 @@ use fretwork_scene::measures::MeasureSpec;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 
-/// One measure.
+/// A measured quantity.
 pub trait Measure<S: Space>: Debug {
-    /// The state at hand is the one from which deformations count.
+    /// Takes the current state as the reference for deformations.
     fn begin(&mut self, _: &Simulation<S>) {}
-    /// Whether it is told of every step, and of what each contact dissipated in it.
+    /// Whether [`Measure::follow`] is called after every step, with the dissipation of each contact recorded.
     fn follows(&self) -> bool {
         false
     }
-    /// Takes in the last step, where [`Measure::follows`].
+    /// Processes the last step; called if [`Measure::follows`] is true.
     fn follow(&mut self, _: &Simulation<S>) {}
-    /// Its columns in the statistics.
+    /// Columns in the statistics.
     fn columns(&self) -> Vec<Column>;
-    /// Values of its columns at the end of a step; it may keep what it needs for the end.
+    /// Values of its columns at the end of a step; also accumulates what it needs for the end of the run.
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64>;
-    /// What it says in the summary, by name.
+    /// Numeric results for the summary, by name.
     fn outcome(&self, table: &Table) -> Vec<(String, f64)>;
-    /// Units of what it says in the summary that is no mean of a column; what is not named is a pure number.
+    /// Units of the results that are not means of a column; results not listed are pure numbers.
     fn units(&self) -> Vec<(String, &'static str)> {
         Vec::new()
     }
-    /// What it says in the summary in words, by name.
+    /// Textual results for the summary, by name.
     fn verdict(&self, _: &Table) -> Vec<(String, String)> {
         Vec::new()
     }
-    /// Force chains as sorted pairs of bodies, the lower first, where it finds them.
+    /// Force chains as sorted pairs of bodies, the lower index first, if the measure finds them.
     fn chains(&self, _: &Simulation<S>) -> Option<Vec<[u32; 2]>> {
         None
     }
-    /// What it carries from step to step, as bytes for a checkpoint; none where it carries nothing.
+    /// Serializes its state for a checkpoint; empty if it has no state.
     ///
     /// # Errors
-    /// It cannot be put into bytes.
+    /// The state cannot be serialized.
     fn save(&self) -> Result<Vec<u8>, CodeError>;
-    /// Goes on from what [`Measure::save`] gave.
+    /// Restores the state from [`Measure::save`].
     ///
     /// # Errors
-    /// The bytes are of something else.
+    /// The bytes belong to another state.
     fn restore(&mut self, from: &[u8]) -> Result<(), CodeError>;
-    /// Its files and figures at the end of a run with this title.
+    /// Files and figures at the end of a run with this title.
     fn outputs(&self, title: &str, table: &Table) -> Vec<Output>;
 }
 
-/// All measures of a run.
+/// All measured quantities of a run.
 #[derive(Debug)]
 pub struct Measures<S: Space> {
     list: Vec<Box<dyn Measure<S>>>,
 }
 
 impl<S: Space> Measures<S> {
-    /// From the words of the case, and its `inertia_scaling`, by which the bodies' masses are too large.
+    /// Builds the measures of a case; its `inertia_scaling` is divided out of reported masses.
     pub fn new(specs: &[MeasureSpec], inertia_scaling: f64) -> Self {
         let make = |spec: &MeasureSpec| -> Box<dyn Measure<S>> {
             match spec.clone() {
@@ -137,7 +137,7 @@ impl<S: Space> Measures<S> {
         }
     }
 
-    /// The state at hand is the one from which deformations count.
+    /// Takes the current state as the reference for deformations.
     pub fn begin(&mut self, s: &mut Simulation<S>) {
         if self.list.iter().any(|m| m.follows()) {
             s.network.spent.get_or_insert_default();
@@ -145,24 +145,24 @@ impl<S: Space> Measures<S> {
         self.list.iter_mut().for_each(|m| m.begin(s));
     }
 
-    /// Takes in the last step.
+    /// Processes the last step.
     pub fn follow(&mut self, s: &Simulation<S>) {
         let list = self.list.iter_mut().filter(|m| m.follows());
         list.for_each(|m| m.follow(s));
     }
 
-    /// What each carries, see [`Measure::save`].
+    /// Serializes the state of each measure, see [`Measure::save`].
     ///
     /// # Errors
-    /// One cannot be put into bytes.
+    /// One of them cannot be serialized.
     pub fn save(&self) -> Result<Vec<Vec<u8>>, CodeError> {
         self.list.iter().map(|m| m.save()).collect()
     }
 
-    /// Goes on from what [`Measures::save`] gave.
+    /// Restores the states from [`Measures::save`].
     ///
     /// # Errors
-    /// The bytes are of other measures.
+    /// The bytes belong to other measures.
     pub fn restore(&mut self, from: &[Vec<u8>]) -> Result<(), CodeError> {
         if from.len() != self.list.len() {
             return Err(CodeError::other("measures"));
@@ -171,7 +171,7 @@ impl<S: Space> Measures<S> {
         pairs.try_for_each(|(measure, bytes)| measure.restore(bytes))
     }
 
-    /// Columns of all, in the order of the case.
+    /// Columns of all measures, in the order of the case.
     pub fn columns(&self) -> Vec<Column> {
         self.list.iter().flat_map(|m| m.columns()).collect()
     }
@@ -181,12 +181,12 @@ impl<S: Space> Measures<S> {
         self.list.iter_mut().flat_map(|m| m.sample(s)).collect()
     }
 
-    /// What stands in the summary.
+    /// Numeric results for the summary.
     pub fn outcome(&self, table: &Table) -> BTreeMap<String, f64> {
         self.list.iter().flat_map(|m| m.outcome(table)).collect()
     }
 
-    /// Units of what stands in the summary, by name.
+    /// Units of the numeric results, by name.
     pub fn units(&self) -> BTreeMap<String, &'static str> {
         let columns = self.columns().into_iter().map(|c| (c.name, c.unit));
         let others = self.list.iter().flat_map(|m| m.units());
@@ -196,7 +196,7 @@ impl<S: Space> Measures<S> {
             .collect()
     }
 
-    /// What stands in the summary in words.
+    /// Textual results for the summary.
     pub fn verdict(&self, table: &Table) -> BTreeMap<String, String> {
         self.list.iter().flat_map(|m| m.verdict(table)).collect()
     }
@@ -206,29 +206,29 @@ impl<S: Space> Measures<S> {
         self.list.iter().find_map(|m| m.chains(s))
     }
 
-    /// Files and figures of all.
+    /// Files and figures of all measures.
     pub fn outputs(&self, title: &str, table: &Table) -> Vec<Output> {
         let outputs = self.list.iter().map(|m| m.outputs(title, table));
         outputs.flatten().collect()
     }
 }
 
-/// A grain, or one of the shapes of a grain that has several.
+/// A grain, or one shape of a grain with several.
 struct Grain<'a, S: Space> {
-    /// Its centre, in the cell that begins at zero along a period (m).
+    /// Centre, wrapped into the period that begins at zero (m).
     at: S::Vector,
     /// Index of the body.
     body: usize,
-    /// Radius of the ball of its volume (m).
+    /// Radius of the ball (2D: disk) of the same volume (m).
     radius: f64,
-    /// Its part of the body's mass, by volume (kg; kg/m in 2D).
+    /// Its share of the body's mass, by volume (kg; kg/m in 2D).
     mass: f64,
-    /// What it is, where it is no ball.
+    /// Its convex part, unless it is a ball.
     piece: Option<&'a ConvexCollider<S>>,
 }
 
 impl<S: Space> Grain<'_, S> {
-    /// How far it reaches above its centre (m).
+    /// Height of its highest point above its centre (m).
     fn rise(&self, s: &Simulation<S>) -> f64 {
         let Some(piece) = self.piece else {
             return self.radius;
@@ -242,7 +242,7 @@ impl<S: Space> Grain<'_, S> {
     }
 }
 
-/// The grains. What driven bodies carry is none.
+/// The grains; shapes of driven bodies are excluded.
 fn grains<S: Space>(s: &Simulation<S>) -> Vec<Grain<'_, S>> {
     let flags = s.bodies.grain_flags();
     let balls = s.shapes.balls.iter().map(|b| Grain {
@@ -273,7 +273,7 @@ fn grains<S: Space>(s: &Simulation<S>) -> Vec<Grain<'_, S>> {
     all
 }
 
-/// (time, value) of a column from a time on.
+/// (time, value) of a column after a time.
 fn since(table: &Table, column: &str, start: f64) -> Vec<(f64, f64)> {
     let pairs = table.column("time").into_iter().zip(table.column(column));
     pairs
@@ -281,12 +281,12 @@ fn since(table: &Table, column: &str, start: f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Mean of the values, none where there are none.
+/// Mean of the values; `None` for no points.
 fn mean(points: &[(f64, f64)]) -> Option<f64> {
     (!points.is_empty()).then(|| points.iter().map(|p| p.1).sum::<f64>() / points.len() as f64)
 }
 
-/// Slope of the straight line through points by least squares; none below two places.
+/// Slope of the least-squares line through points; `None` for fewer than two distinct abscissae.
 fn line(points: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     let n = points.clone().count() as f64;
     let (x, y) = points

@@ -1,12 +1,12 @@
-//! The figure of a biaxial test: four panels against axial strain.
+//! Figure of a biaxial test: four panels against axial strain.
 
 use crate::{ReportError, draw_panels};
 use fretwork_observe::chart::{Axis, Chart, Series, Style};
 use fretwork_observe::statistics::Table;
 use std::path::Path;
 
-/// Draws the stress ratio, the volumetric strain, the coordination and the compacity against axial strain,
-/// from the start of the test (s) on.
+/// Draws stress ratio, volumetric strain, coordination and compacity against axial strain,
+/// from the start of the test (s).
 ///
 /// # Errors
 /// The file cannot be written.

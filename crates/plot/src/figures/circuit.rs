@@ -1,11 +1,11 @@
-//! The figure of the tribological circuit: what passed against time, and what is in the contact.
+//! Figure of the tribological circuit: cumulative flows against time, and the mass in the contact.
 
 use crate::{ReportError, draw_panels};
 use fretwork_observe::chart::{Axis, Chart, Series, Style};
 use fretwork_observe::statistics::Table;
 use std::path::Path;
 
-/// Draws `circuit.png` from the columns of the statistics; `window` is the one of the mean flows (s).
+/// Draws `circuit.png` from the columns of the statistics; `window` is that of the mean flows (s).
 ///
 /// # Errors
 /// The file cannot be written.

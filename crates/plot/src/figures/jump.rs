@@ -5,7 +5,7 @@ use fretwork_observe::chart::{Axis, Chart, Series, Style};
 use fretwork_observe::jump::{JumpSummary, Point};
 use std::path::Path;
 
-/// Draws `jump.png`: wear volume and mean damage against cycles, computed and jumped.
+/// Draws `jump.png`: wear volume and mean damage against cycles, both simulated and jumped.
 ///
 /// # Errors
 /// The file cannot be written.

@@ -1,4 +1,4 @@
-//! The figure of a wear scar.
+//! Figure of a wear scar.
 
 use crate::{ReportError, draw_panels};
 use fretwork_core::geometry::space::Space;
@@ -8,7 +8,7 @@ use fretwork_observe::chart::{Axis, Chart, Series, Style};
 use fretwork_observe::scars::file_name;
 use std::path::Path;
 
-/// Draws the scars: the profile at first and now, and the depth; in space as means across the sliding.
+/// Draws the scars: the initial and the current profile, and the depth; in 3D averaged across the sliding.
 ///
 /// # Errors
 /// A file cannot be written.
@@ -25,7 +25,7 @@ pub fn draw<S: Space>(dir: &Path, title: &str, s: &Simulation<S>) -> Result<(), 
             Axis::new("−depth", "m"),
         );
         depth.subtitle = Some(title.to_owned());
-        // Downwards, as it lies.
+        // Depth plotted downwards.
         let points = rows.iter().map(|r| (r[0], -r[2])).collect();
         let mut charts = vec![depth.with(Series::new(String::new(), points))];
         if S::D == 2

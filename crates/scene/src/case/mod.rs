@@ -1,4 +1,4 @@
-//! A case file: what the user writes.
+//! The case file as the user writes it.
 
 mod grains;
 mod shapes;
@@ -22,54 +22,54 @@ use fretwork_core::step::coupling::Coupling;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// A case, as RON. Every number can be changed with `--set key.path=value`.
+/// A case, read from RON. Every value can be changed with `--set key.path=value`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
     /// Title.
     pub name: String,
-    /// What it shows, and where its numbers come from.
+    /// Description: what the case shows, and the sources of its numbers.
     #[serde(default)]
     pub doc: String,
-    /// 2 or 3.
+    /// Dimension, 2 or 3.
     pub dimension: u32,
-    /// Seed of everything random.
+    /// Seed of all random numbers.
     #[serde(default)]
     pub seed: u64,
-    /// Step and end.
+    /// Time step and end time.
     pub time: TimeSpec,
-    /// Acceleration of gravity (m/s^2), one number an axis.
+    /// Acceleration of gravity (m/s^2), one number per axis.
     #[serde(default)]
     pub gravity: Vec<f64>,
-    /// How gravity changes in time.
+    /// Change of gravity over time.
     #[serde(default)]
     pub gravity_drive: Option<GravityDrive>,
     /// Phases of the run, one after another.
     #[serde(default)]
     pub phases: Vec<PhaseSpec>,
-    /// Factor on all densities, for quasi-static runs without gravity: inertia is scaled so that steps
-    /// resolve the motion, not the sound (da Cruz et al. 2005: results do not depend on it while the
-    /// inertial number stays below 1e-3). Reported densities and wear are unscaled.
+    /// Factor on all densities, for quasi-static runs without gravity. With scaled inertia the time step has
+    /// to resolve the motion only, not sound waves; results do not depend on the factor while the inertial
+    /// number stays below 1e-3 (da Cruz et al. 2005). Reported densities and wear are unscaled.
     #[serde(default = "one")]
     pub inertia_scaling: f64,
     /// `Explicit` (the default), or `Implicit(tolerance: 1e-6, max_iterations: 50)`: the step is solved
-    /// again until its damage is the one that its openings give.
+    /// repeatedly until its damage is consistent with its openings.
     #[serde(default)]
     pub coupling: Coupling,
     /// Length of the periodic cell along an axis (m).
     #[serde(default)]
     pub periodic: PeriodicSpec,
-    /// Detection.
+    /// Contact detection.
     #[serde(default)]
     pub detection: DetectionSpec,
-    /// The solver.
+    /// Options of the contact solver.
     #[serde(default)]
     pub solver: SolverSpec,
-    /// Name in this case, and name of the file in `materials/`.
+    /// Materials: name in this case, and name of the file in `materials/`.
     pub materials: BTreeMap<String, String>,
     /// Interface laws between materials.
     pub interfaces: Vec<InterfaceSpec>,
-    /// SHA-256 that libraries of laws must have, in hexadecimal, by `kind/name`; a law without one may be any.
+    /// Required SHA-256 of law libraries, in hexadecimal, by `kind/name`; laws not listed are not checked.
     #[serde(default)]
     pub pins: BTreeMap<String, String>,
     /// First bodies.
@@ -78,22 +78,22 @@ pub struct Case {
     /// Grains.
     #[serde(default)]
     pub grains: Vec<GrainSpec>,
-    /// What is measured as a friction test.
+    /// The friction test to measure.
     #[serde(default)]
     pub friction: Option<FrictionSpec>,
-    /// What is measured as a biaxial test.
+    /// The biaxial test to measure.
     #[serde(default)]
     pub biaxial: Option<BiaxialSpec>,
-    /// The account of grains between first bodies, contact and outside.
+    /// The tribological circuit: accounting of grains between first bodies, contact and outside.
     #[serde(default)]
     pub circuit: Option<CircuitSpec>,
-    /// Jumps over the cycles of the friction test; none by default.
+    /// Jumps over cycles of the friction test; disabled by default.
     #[serde(default)]
     pub jump: Option<JumpSpec>,
-    /// Other quantities that are measured.
+    /// Further measured quantities.
     #[serde(default)]
     pub measures: Vec<MeasureSpec>,
-    /// What is written, and how often.
+    /// Output files and their intervals.
     #[serde(default)]
     pub output: OutputSpec,
 }
@@ -102,11 +102,11 @@ pub struct Case {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TimeSpec {
-    /// h (s).
+    /// Time step h (s).
     pub step: f64,
-    /// End (s).
+    /// End time (s).
     pub end: f64,
-    /// Theta of the scheme, 1/2 to 1.
+    /// Theta of the time-stepping scheme, 1/2 to 1.
     #[serde(default = "half")]
     pub theta: f64,
 }
@@ -115,7 +115,7 @@ fn half() -> f64 {
     0.5
 }
 
-/// Periodic lengths (m).
+/// Lengths of the periodic cell (m).
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PeriodicSpec {
@@ -127,38 +127,40 @@ pub struct PeriodicSpec {
     pub z: Option<f64>,
 }
 
-/// Detection distances (m); by default a fraction of the smallest radius.
+/// Distances of contact detection (m); by default a fraction of the smallest radius.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DetectionSpec {
-    /// Pairs nearer than this are contacts.
+    /// Alert distance: pairs with a smaller gap are contacts.
     pub alert: Option<f64>,
-    /// How much farther the neighbour list looks.
+    /// Skin: distance beyond the alert distance up to which the neighbour list holds pairs.
     pub skin: Option<f64>,
 }
 
-/// Options of the solver.
+/// Options of the contact solver.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SolverSpec {
     /// The method: `Auto`, `Nlgs`, `Anderson`, `Pg`, `Cpg`, `Pcpg`, `Apgd`, `Newton`, `Interior`; see
     /// `docs/solvers.md`.
     pub method: Method,
-    /// Error to reach.
+    /// Bound on the error.
     pub tolerance: f64,
-    /// How the error is measured: `Balance` or `Velocity`, see [`fretwork_core::solve::error`].
+    /// Definition of the error, `Balance` or `Velocity`, see [`fretwork_core::solve::error`].
     pub norm: Norm,
-    /// Sweeps at most in a step.
+    /// Largest number of iterations per step.
     pub max_iterations: u32,
-    /// Sweeps between convergence tests.
+    /// Iterations between convergence tests.
     pub test_every: u32,
-    /// Over-relaxation, 1 to below 2: how much farther than its own solution a contact goes in a sweep.
+    /// Over-relaxation factor, from 1 to below 2, on the change of each contact's impulse in an iteration.
     pub relaxation: f64,
-    /// Share of a penetration that a step takes back, 0 to 1. Rigid contacts under a slowly changing load creep into
-    /// each other by the solver's tolerance; 0.1 bounds that to ten steps' worth. Its work is an entry of the ledger.
+    /// Fraction of a penetration that is removed per step, 0 to 1. Rigid contacts under a slowly changing
+    /// load drift into penetration by the solver's tolerance; 0.1 bounds the penetration to that of ten
+    /// steps. The work of the correction is an entry of the energy ledger.
     pub correction: f64,
-    /// Overlap in parts of the smaller body's length (a grain's radius) beyond which bodies are moved apart, without
-    /// a change of velocity; 0 (the default) for never. See [`fretwork_core::step::projection`].
+    /// Penetration, as a fraction of the smaller body's length (a grain's radius), beyond which bodies are
+    /// moved apart without a change of velocity; 0 (the default) disables it. See
+    /// [`fretwork_core::step::projection`].
     pub projection: f64,
 }
 
@@ -177,7 +179,7 @@ impl Default for SolverSpec {
     }
 }
 
-/// The law between two materials: four slots, each a plugin's name.
+/// The interface between two materials: four slots, each with the name of a law plugin.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InterfaceSpec {
@@ -185,7 +187,7 @@ pub struct InterfaceSpec {
     pub name: String,
     /// The two materials, by their names in this case.
     pub between: (String, String),
-    /// File in `materials/` with parameters of laws.
+    /// File in `materials/` with parameters of the laws.
     #[serde(default)]
     pub parameters_from: Option<String>,
     /// Contact law.
@@ -199,16 +201,16 @@ pub struct InterfaceSpec {
     /// Wear law.
     #[serde(default)]
     pub wear: Option<String>,
-    /// Parameters given here win over those of the file.
+    /// Parameters that override those of the file.
     #[serde(default)]
     pub parameters: SlotValues,
-    /// When bonds are made.
+    /// When bonds form.
     #[serde(default)]
     pub bonds: BondRule,
-    /// Time under compression after which a contact bonds, also again after its bond broke (s).
+    /// Time in compression after which a contact forms a bond, also after its bond broke (s).
     #[serde(default)]
     pub healing: Option<f64>,
-    /// Factor of the contact's area, see `AreaRule`.
+    /// Factor on the contact area, see `AreaRule`.
     #[serde(default = "one")]
     pub area_factor: f64,
 }
@@ -218,7 +220,7 @@ fn one() -> f64 {
 }
 
 impl InterfaceSpec {
-    /// The law in a slot.
+    /// The name of the law in a slot, if any.
     pub fn law(&self, kind: Kind) -> Option<&str> {
         match kind {
             Kind::Contact => Some(&self.contact),
@@ -229,17 +231,17 @@ impl InterfaceSpec {
     }
 }
 
-/// Values by slot and parameter: numbers in the unit of the law, or `(value: 5, unit: "um")`.
+/// Parameters by slot and name: numbers in the unit of the law, or `(value: 5, unit: "um")`.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SlotValues {
-    /// Of the contact law.
+    /// Parameters of the contact law.
     pub contact: BTreeMap<String, Given>,
-    /// Of the cohesion law.
+    /// Parameters of the cohesion law.
     pub cohesion: BTreeMap<String, Given>,
-    /// Of the damage law.
+    /// Parameters of the damage law.
     pub damage: BTreeMap<String, Given>,
-    /// Of the wear law.
+    /// Parameters of the wear law.
     pub wear: BTreeMap<String, Given>,
 }
 
@@ -249,26 +251,26 @@ pub struct SlotValues {
 pub struct BodySpec {
     /// Name.
     pub name: String,
-    /// Material, by its name in this case.
+    /// Name of its material in this case.
     pub material: String,
-    /// What it is made of.
+    /// Its shapes.
     pub shapes: Vec<ShapeSpec>,
     /// Position of its frame (m); the origin by default.
     #[serde(default)]
     pub position: Vec<f64>,
-    /// Mass (kg; kg/m in 2D). From density and balls where not given.
+    /// Mass (kg; kg/m in 2D); by default from density and shapes.
     #[serde(default)]
     pub mass: Option<f64>,
-    /// Moment of inertia (kg m^2; per metre in 2D).
+    /// Moment of inertia (kg m^2; kg m in 2D).
     #[serde(default)]
     pub inertia: Option<f64>,
-    /// When the body is taken away (s); never by default.
+    /// Time at which the body is removed (s); never by default.
     #[serde(default)]
     pub vanishes: Option<f64>,
-    /// Whether and how far its profiles and height fields follow their wear; not by default.
+    /// Whether, and how far, its profiles and height fields recede as they wear; by default they do not.
     #[serde(default)]
     pub wears: Option<WearSpec>,
-    /// Degrees of freedom; fixed where not given.
+    /// Degrees of freedom; fixed by default.
     #[serde(default)]
     pub dofs: DofSpec,
 }
@@ -305,7 +307,7 @@ impl Default for DofSpec {
     }
 }
 
-/// A friction test: the body that rubs, along which axis, pressed along which.
+/// A friction test: the sliding body, the axis of sliding and the axis of the normal load.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionSpec {
@@ -317,10 +319,10 @@ pub struct FrictionSpec {
     /// Axis of the normal load.
     #[serde(default = "axis_y")]
     pub normal: usize,
-    /// When the motion starts to count (s).
+    /// Time at which the motion starts to count (s).
     #[serde(default)]
     pub start: f64,
-    /// Length of a cycle (s); by default the period of the body's sine.
+    /// Length of a cycle (s); by default the period of the body's sine drive.
     #[serde(default)]
     pub period: Option<f64>,
 }
@@ -333,47 +335,47 @@ fn axis_y() -> usize {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BiaxialSpec {
-    /// The walls on the low and the high side, along which the sample is sheared: names of bodies.
+    /// Names of the walls on the low and high side of the axis along which the sample is loaded.
     pub axial: (String, String),
-    /// The walls on the low and the high side of the other axis.
+    /// Names of the walls on the low and high side of the other axis.
     pub lateral: (String, String),
-    /// When the sample is confined and at rest: strains count from here (s).
+    /// Time at which the confined sample is at rest: strains are measured from here (s).
     #[serde(default)]
     pub start: f64,
 }
 
-/// What is written.
+/// Output files and their intervals.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputSpec {
-    /// Pictures over the run.
+    /// Number of pictures over the run.
     pub frames: u32,
-    /// Recorded states in `results.h5` over the run.
+    /// Number of states recorded in `results.h5` over the run.
     pub views: u32,
-    /// Steps between two rows of the statistics.
+    /// Steps between rows of the statistics.
     pub every: u64,
-    /// Draw the figures at the end.
+    /// Whether figures are drawn at the end.
     pub figures: bool,
-    /// Width of a frame (pixels).
+    /// Width of a picture (pixels).
     pub width: u32,
-    /// What frames show (m): xmin, xmax, ymin, ymax (2D); what there is by default.
+    /// Window of the pictures in 2D (m): xmin, xmax, ymin, ymax; by default the extent of the scene.
     pub window: Option<[f64; 4]>,
-    /// Thickness (m) of layers along the last axis that frames tell apart by colour.
+    /// Thickness (m) of layers along the last axis that pictures distinguish by colour.
     pub layers: Option<f64>,
-    /// The local shear that is darkest in pictures of it; recorded and drawn where given.
+    /// Local shear at the dark end of the colour scale; if given, local shear is recorded and drawn.
     pub shear: Option<f64>,
-    /// Steps between two that are written as FCLIB problems, `fclib/step-N.hdf5`; 0 for none.
+    /// Steps between those written as FCLIB problems, `fclib/step-N.hdf5`; 0 for none.
     pub fclib: u64,
-    /// When checkpoints are written, from which `--resume` goes on.
+    /// When checkpoints, from which `--resume` continues, are written.
     pub checkpoint: Checkpoint,
 }
 
 /// When checkpoints are written.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub enum Checkpoint {
-    /// Every so many seconds of wall time; less often where they would take more than a twentieth of the time.
+    /// At intervals of wall time (s); longer if checkpoints would take more than 5 % of the time.
     Seconds(f64),
-    /// Every so many steps.
+    /// At intervals of steps.
     Steps(u64),
     /// Never.
     Never,
@@ -397,7 +399,7 @@ impl Default for OutputSpec {
 }
 
 impl BodySpec {
-    /// The degrees of freedom in the order of the dimension.
+    /// The degrees of freedom in the order of the dimension: translations, then rotations.
     pub fn ordered(&self, dimension: usize) -> Vec<Dof> {
         let d = self.dofs.clone();
         if dimension == 2 {
@@ -407,7 +409,7 @@ impl BodySpec {
         }
     }
 
-    /// Names of the degrees of freedom, as [`BodySpec::ordered`].
+    /// Names of the degrees of freedom, in the order of [`BodySpec::ordered`].
     pub fn names(dimension: usize) -> &'static [&'static str] {
         if dimension == 2 {
             &["x", "y", "rz"]

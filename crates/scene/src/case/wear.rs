@@ -1,14 +1,14 @@
-//! How the surfaces of a first body follow their wear.
+//! Specification of a first body's wear.
 
 use serde::Deserialize;
 
-/// What a first body says of its wear.
+/// How the surfaces of a first body follow their wear.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WearSpec {
     /// Depth at which a surface is worn through and the run stops (m).
     pub thickness: f64,
-    /// Steps between two at which surfaces follow.
+    /// Steps between updates of the surfaces.
     #[serde(default = "one")]
     pub every: u64,
 }

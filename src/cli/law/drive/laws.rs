@@ -1,4 +1,4 @@
-//! The interface law on the bench: composed of named laws, or as a case has it.
+//! The interface law on the test bench: composed of named laws, or taken from a case.
 
 use super::super::super::{Failure, PluginArgs};
 use super::super::{all_used, named, values};
@@ -13,10 +13,10 @@ use crate::scene::{Scene, load};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Reduced radius of the contact, where neither the user nor a scene says (m).
+/// Default reduced radius of the contact (m).
 const RADIUS: f64 = 1e-5;
 
-/// What is driven: the bench, and what it is called.
+/// The bench with the laws to drive, and their title.
 pub(super) fn bench(args: &DriveArgs) -> Result<(Bench, String), Failure> {
     match &args.case {
         Some(case) => of_case(case, args),
@@ -28,7 +28,7 @@ pub(super) fn bench(args: &DriveArgs) -> Result<(Bench, String), Failure> {
     }
 }
 
-/// The laws of an interface as a case composes them, on the contacts of its scene.
+/// The laws of an interface as composed in a case, with the contacts of its scene.
 fn of_case(case: &Path, args: &DriveArgs) -> Result<(Bench, String), Failure> {
     let loaded = load(case, &args.sets)?;
     let names = || loaded.case.interfaces.iter().map(|i| i.name.as_str());
@@ -115,7 +115,7 @@ fn compose(args: &DriveArgs, plugins: &PluginArgs) -> Result<Interface, Failure>
     let mut next = loaded.into_iter();
     let mut slot = || next.next().flatten();
     let Some(contact) = slot() else {
-        return Err(Failure::Usage("there is no contact law".into()));
+        return Err(Failure::Usage("no contact law is given; name one".into()));
     };
     let law = Interface {
         name: "bench".into(),
