@@ -120,7 +120,9 @@ fn go<S: Dimensional>(
     let mut stop = None;
     if args.resume {
         match record::stopped(loaded, &built, options)? {
-            Found::Nothing => tell(format!("nothing to resume in {out}: starting from the beginning")),
+            Found::Nothing => tell(format!(
+                "nothing to resume in {out}: starting from the beginning"
+            )),
             Found::State(state) => {
                 tell(format!("resuming the run in {out}"));
                 stop = Some(state);
@@ -132,7 +134,7 @@ fn go<S: Dimensional>(
                     answer_json(text.trim_end())?;
                 } else {
                     inform(&format!(
-                        "the run in {out} is finished: nothing to do; to run it anew leave --resume out"
+                        "the run in {out} is finished: nothing to do; to run it again omit --resume"
                     ));
                 }
                 let kept: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();

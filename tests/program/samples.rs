@@ -87,11 +87,7 @@ fn a_grading_curve_gives_the_sizes() {
             ":4:",
             "must not fall",
         ),
-        (
-            "size,pasing\n4e-3,0\n",
-            ":1:",
-            "unknown column `pasing`",
-        ),
+        ("size,pasing\n4e-3,0\n", ":1:", "unknown column `pasing`"),
     ] {
         folder.write("curve.csv", curve);
         let said = refusal(folder.sample::<Dim3>(grains));

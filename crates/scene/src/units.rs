@@ -186,7 +186,9 @@ fn read(text: &str) -> Result<Unit, UnitError> {
         ));
     }
     if quantity.unit().is_affine() {
-        return Err(refused("its zero differs from that of the kelvin; use K".into()));
+        return Err(refused(
+            "its zero differs from that of the kelvin; use K".into(),
+        ));
     }
     Ok(Unit {
         factor: quantity.unit().factor() * si(quantity.dimension()),

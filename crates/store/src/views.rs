@@ -96,11 +96,7 @@ pub fn header<S: Space>(
             "",
             "fraction of sliding in the work on the bonds that freed it",
         ),
-        c(
-            "energy",
-            joule,
-            "energy released by damage of these bonds",
-        ),
+        c("energy", joule, "energy released by damage of these bonds"),
         c("bonds", "", "number of these bonds"),
     ]);
     Header {

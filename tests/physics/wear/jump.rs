@@ -185,7 +185,10 @@ fn jumps_that_mean_nothing_are_refused() {
         (&["jump.cycles=0"], "must be at least 1"),
         (&["jump.tolerance=0.0"], "must be positive, got 0"),
         (&["jump.growth=-1.0"], "must be positive, got -1"),
-        (&["time.step=3e-3"], "choose a time.step that divides the cycle"),
+        (
+            &["time.step=3e-3"],
+            "choose a time.step that divides the cycle",
+        ),
         (&["jump.at_most=4294967295"], "at most 100000"),
         (
             &["friction.period=0.013"],

@@ -127,7 +127,10 @@ fn a_study_of_what_the_case_does_not_have() {
     for (output, words) in [
         ("haste.first_late", "the course of the run"),
         ("uncertainty.wear.step", "the course of the run"),
-        ("uncertainty.friction_coefficient.scatter", "the course of the run"),
+        (
+            "uncertainty.friction_coefficient.scatter",
+            "the course of the run",
+        ),
         ("energy.scale", "the course of the run"),
         ("peak_friction", "no friction test"),
     ] {

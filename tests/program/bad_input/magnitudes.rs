@@ -24,7 +24,10 @@ fn a_spin_whose_square_overflows() {
 fn masses_that_vanish_or_overflow() {
     for radius in ["1e-108", "1e-130", "1e105"] {
         let grain = format!("‸(at: [0.15, 0.15, 2e106], radius: {radius})");
-        refused(&solid(GRAIN, &grain), &["outside the range of the computation"]);
+        refused(
+            &solid(GRAIN, &grain),
+            &["outside the range of the computation"],
+        );
     }
 }
 
@@ -106,7 +109,10 @@ fn steps_whose_square_vanishes_or_overflows() {
         let time = format!("step: ‸{step}, end: {end}");
         refused(
             &solid("step: 1e-3, end: 0.002", &time),
-            &["the square of a step", "outside the range of the computation"],
+            &[
+                "the square of a step",
+                "outside the range of the computation",
+            ],
         );
     }
 }

@@ -81,8 +81,9 @@ impl<S: Dimensional> Builder<'_, S> {
             return Ok(S::identity());
         };
         S::rotation_from(numbers).ok_or_else(|| {
-            let message =
-                format!("the orientation {numbers:?} of a grain is not a rotation: the file is damaged");
+            let message = format!(
+                "the orientation {numbers:?} of a grain is not a rotation: the file is damaged"
+            );
             self.fail(format!("grains.{k}.results"), message)
         })
     }

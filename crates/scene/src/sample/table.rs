@@ -108,10 +108,10 @@ impl Table {
                         row.push(x * metre);
                     }
                     None => {
-                        return Err(
-                            fail(format!("the value `{word}` of `{column}` is not a number"))
-                                .expected("a finite number"),
-                        );
+                        return Err(fail(format!(
+                            "the value `{word}` of `{column}` is not a number"
+                        ))
+                        .expected("a finite number"));
                     }
                 }
             }

@@ -91,7 +91,10 @@ pub fn points(name: StandardName, cut: &Cut) -> Result<Vec<(f64, f64)>, (&'stati
     let tilt = match (name, cut.inclination) {
         (_, None) => None,
         (StandardName::S1002, Some(_)) => {
-            return Err(("inclination", "a wheel has no inclination; incline the rail".into()));
+            return Err((
+                "inclination",
+                "a wheel has no inclination; incline the rail".into(),
+            ));
         }
         (StandardName::Rail60E1, Some(n)) if n.is_finite() && n >= 10.0 => Some(n),
         (StandardName::Rail60E1, Some(n)) => {

@@ -162,7 +162,7 @@ fn what_makes_no_matrix_is_refused() {
         ),
         (
             (-1, 2, &[0, 2, 1], &[0, 1], x),
-            &["/fclib_local/W/p", "never fall"],
+            &["/fclib_local/W/p", "never decrease"],
         ),
         (
             (-1, 2, &[1, 1, 2], &[0, 1], x),

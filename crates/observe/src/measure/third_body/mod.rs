@@ -105,7 +105,11 @@ const COLUMNS: [(&str, &str, &str); 20] = [
     ("clusters", "", "clusters of two bonded grains or more"),
     ("cluster_mean", "", "grains of a cluster, mean by mass"),
     ("cluster_largest", "", "grains of the largest cluster"),
-    ("chains", "", "fraction of the grains that are in force chains"),
+    (
+        "chains",
+        "",
+        "fraction of the grains that are in force chains",
+    ),
     (
         "chain_force",
         "",

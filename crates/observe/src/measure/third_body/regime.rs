@@ -109,7 +109,8 @@ impl Regime {
     /// Name and criteria as a sentence.
     pub fn said(self, flow: Option<&Flow>, cluster: f64) -> String {
         let Some(f) = flow else {
-            return "none: there is no sliding, or fewer than three bins lie in the interior".to_owned();
+            return "none: there is no sliding, or fewer than three bins lie in the interior"
+                .to_owned();
         };
         let seen = format!(
             "the interior shears by {:.0} % of the sliding with R^2 {:.2}, slip {:.0} % and {:.0} % at the walls, \

@@ -149,7 +149,9 @@ fn malformed_text_points_at_its_cause() {
         error("1.0e-3,", "1.0e-3").contains("case.ron:8:9: error: a comma is missing before this")
     );
     assert!(error("frequency: 5.0", "frequency 5.0").starts_with("case.ron:8:"));
-    assert!(error("frequency: 5.0", "frequency: ").contains("a value is missing after `frequency:`"));
+    assert!(
+        error("frequency: 5.0", "frequency: ").contains("a value is missing after `frequency:`")
+    );
     assert!(
         error("*/ still */", "*/ still")
             .contains("case.ron:5:5: error: this comment is never closed")
