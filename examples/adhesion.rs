@@ -1,8 +1,9 @@
-//! The adhesion curve: friction of a rolling wheel against creepage, with third body and without.
+//! Adhesion curve: friction of a rolling wheel against creepage, with and without third body.
 //!
-//! `cargo run --release --example adhesion` rolls `cases/wheel_rail_rolling.ron` at some creepages, two at a time, without
-//! third body and with five samples of it, prints the tables of `docs/rolling.md` and draws `docs/figures/adhesion.png` beside
-//! the closed form of the bare contact. Creepages (in per cent) may be given: `-- 0 1 2`; then nothing is drawn.
+//! `cargo run --release --example adhesion` rolls `cases/wheel_rail_rolling.ron` at several creepages, two at
+//! a time, without third body and with five samples of it, prints the tables of `docs/rolling.md` and draws
+//! `docs/figures/adhesion.png` beside the closed form of the bare contact. Creepages (in per cent) may be
+//! given: `-- 0 1 2`; then no figure is drawn.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
@@ -14,36 +15,38 @@ use std::path::Path;
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 
-/// Creepages with third body, and without.
+/// Creepages with and without third body.
 const WITH: [f64; 7] = [0.0, 0.0025, 0.005, 0.01, 0.02, 0.04, 0.08];
 const BARE: [f64; 10] = [
     0.0, 0.001, 0.002, 0.003, 0.004, 0.006, 0.008, 0.01, 0.02, 0.08,
 ];
 const SEEDS: [u64; 5] = [3, 4, 5, 6, 7];
-/// The case's speed (m/s), radius (m), load (N/m), friction, and stiffnesses of the skin (Pa/m).
+/// Speed (m/s), radius (m), load (N/m), friction coefficient and stiffnesses of the elastic layer (Pa/m) in
+/// the case.
 const SPEED: f64 = 1.0;
 const RADIUS: f64 = 0.46;
 const LOAD: f64 = 1.333e7;
 const MU: f64 = 0.4;
 const NORMAL: f64 = 1.292e13;
 const TANGENTIAL: f64 = NORMAL * 2.0 / 3.0;
-/// When rolling is counted from (s).
+/// Time from which rolling is evaluated (s).
 const START: f64 = 0.03;
 
-/// What a wheel does on average, over the mean load where it is a force.
+/// Averages over a run; forces are divided by the mean load.
 #[derive(Clone, Copy)]
 struct Rolling {
     creepage: f64,
     bare: bool,
-    /// Force along the rail, and moment over radius.
+    /// Force along the rail, and moment over the radius.
     force: f64,
     moment: f64,
-    /// Power of the contact forces on the wheel, friction, all that is lost, and what more is stored, over P v.
+    /// Power of the contact forces on the wheel, friction power, total dissipated power and rate of stored
+    /// energy, over P v.
     power: f64,
     friction: f64,
     lost: f64,
     stored: f64,
-    /// Centre of the wheel over that on a rigid bare rail (m).
+    /// Height of the wheel's centre above its height on a rigid bare rail (m).
     height: f64,
     steps: u32,
     missed: u32,
@@ -64,7 +67,7 @@ fn main() -> Result<(), Failure> {
     for c in with {
         all.extend(SEEDS.map(|seed| (false, *c, seed)));
     }
-    // Nothing is random in the bare contact.
+    // The bare contact has no randomness.
     all.extend(bare.iter().map(|c| (true, *c, SEEDS[0])));
     let runs: Result<Vec<Rolling>, Failure> =
         all.par_iter().map(|(b, c, s)| roll(*b, *c, *s)).collect();
@@ -83,27 +86,28 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Half length of the bare patch (m) and largest pressure (Pa): P = 4/3 a p0, p0 = k_n a^2/(2 R).
+/// Half length of the bare contact patch (m) and largest pressure (Pa): P = 4/3 a p0, p0 = k_n a^2/(2 R).
 fn patch() -> (f64, f64) {
     let a = (1.5 * LOAD * RADIUS / NORMAL).cbrt();
     (a, NORMAL * a * a / (2.0 * RADIUS))
 }
 
-/// Q/P of bristles of stiffness k_t under a parabola of pressure. The arc of the disk is longer than its chord: on average over
-/// the patch its surface is slower along the rail than its rim by a^2/(6 R^2).
+/// Q/P of bristles of stiffness k_t under a parabolic pressure. The arc of the disk is longer than its chord,
+/// so averaged over the patch its surface velocity along the rail is lower than that of its rim by the
+/// fraction a^2/(6 R^2).
 fn closed(creepage: f64) -> f64 {
     let (a, p0) = patch();
     let s = TANGENTIAL * (creepage - a * a / (6.0 * RADIUS * RADIUS)) * a / (2.0 * MU * p0);
     MU * s.signum() * (1.0 - (1.0 - s.abs().min(1.0)).powi(3))
 }
 
-/// Q/P of an elastic half-plane: Carter.
+/// Q/P of an elastic half-plane (Carter).
 fn carter(creepage: f64) -> f64 {
     let s = (creepage * RADIUS / (MU * patch().0)).min(1.0);
     MU * (1.0 - (1.0 - s).powi(2))
 }
 
-/// Mean over samples and half the width of its interval of 95 % by Student's t; none of one sample.
+/// Mean over samples and half-width of its 95 % interval by Student's t; NaN for one sample.
 fn spread(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;

@@ -1,10 +1,11 @@
-//! Whether a long run drifts: penetrations in the shear cell, with and without what takes them out.
+//! Drift of penetrations in a long run of the shear cell, with and without their correction.
 //!
-//! `cargo run --release --example drift [-- STEPS [SETTING...]]` takes 100,000 steps of `cases/shear_cell_3d.ron` with
-//! each setting of the solver alone (`none`, `correction=0.1`, `projection=1e-4`, ...) and prints, ten times on the way,
-//! the deepest penetration since the last line in radii of the smaller grain and at its last step, the mean over closed
-//! contacts, the steps that projected and their sweeps, the energy that was given by taking penetrations out as a share
-//! of the work from outside, the residual of the ledger, and the time of a step with its projections.
+//! `cargo run --release --example drift [-- STEPS [SETTING...]]` takes 100,000 steps of
+//! `cases/shear_cell_3d.ron` with each solver setting (`none`, `correction=0.1`, `projection=1e-4`, ...) and
+//! prints, ten times per run, the deepest penetration since the last line and at its last step, in radii of
+//! the smaller grain, the mean over closed contacts, the steps with a projection and its iterations, the
+//! energy supplied by the correction as a fraction of the external work, the residual of the ledger, and the
+//! time per step.
 
 use fretwork::geometry::space::Dim3;
 use fretwork::laws::SearchPath;
@@ -15,7 +16,7 @@ use std::time::Instant;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// What the solver is set to where nothing is said.
+/// Default solver settings.
 const SETTINGS: [&str; 3] = ["none", "correction=0.1", "projection=1e-4"];
 
 fn main() -> Result<(), Failure> {

@@ -1,9 +1,11 @@
-//! The league table of a folder of FCLIB problems: every solver of ours against the best of a peer's.
+//! League table of a folder of FCLIB problems: every solver of Fretwork against the best solver of another
+//! program.
 //!
 //! `cargo run --release --example league -- FOLDER BASELINE.csv [OUT]` solves every problem of FOLDER with
 //! `auto` at 1e-4, 1e-8 and 1e-12, at most 60 s each (`LIMIT` seconds if set), and with every other solver at
-//! 1e-8, at most 2 s, judges every solution again from a file that was written, and writes to OUT (docs)
-//! `fclib_table.md` and `figures/solvers_profile.png`. `ONLY=auto` leaves the others and the picture out. BASELINE.csv holds the peer's times: problem, nc, solver, tol, solved, time_s.
+//! 1e-8, at most 2 s, evaluates the error of every solution again from a written file, and writes
+//! `fclib_table.md` and `figures/solvers_profile.png` to OUT (docs). `ONLY=auto` omits the other solvers and
+//! the picture. BASELINE.csv holds the other program's times: problem, nc, solver, tol, solved, time_s.
 
 use fretwork::record::fclib::{self, Problem, Solution};
 use fretwork::report::{Axis, Chart, DrawChart, Series};
@@ -15,7 +17,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Times by (problem, tolerance, solver); none where not solved.
+/// Times by (problem, tolerance), for each solver; `None` if not solved.
 type Times = BTreeMap<(String, String), Timings>;
 
 /// A solver's name and its time.
@@ -83,7 +85,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                         outcome.method, outcome.error
                     );
                 }
-                // A global problem's time holds its reduction, as the peer's do.
+                // The time of a global problem includes its reduction, as the other program's does.
                 let seconds = outcome.seconds + if global { reduction } else { 0.0 };
                 let time = outcome.converged.then_some(seconds);
                 if *method == Method::Auto {
@@ -170,7 +172,7 @@ fn reduce(problem: &Problem) -> Result<LocalProblem, Box<dyn Error>> {
     })
 }
 
-/// The error of the solution as it stands in a file.
+/// Error of the solution as stored in a file.
 fn judge_again(local: &LocalProblem, outcome: &Outcome) -> Result<f64, Box<dyn Error>> {
     let path = std::env::temp_dir().join(format!("fretwork-league-{}.hdf5", std::process::id()));
     let solution = Solution {
@@ -224,10 +226,10 @@ fn row(
     )
 }
 
-/// How the solves of `auto` went, by tolerance.
+/// Results of `auto` by tolerance.
 struct Counts<'a> {
     solved: BTreeMap<&'a str, u32>,
-    /// Solved, but with a scale-free error above its usual limit.
+    /// Solved, but with a scale-free error above its default limit.
     doubtful: BTreeMap<&'a str, u32>,
     problems: u32,
     false_success: u32,
@@ -297,10 +299,11 @@ fn page(rows: &str, ours: &Times, peer: &Times, counts: &Counts<'_>, limit: f64)
     out + rows
 }
 
-/// The fastest of the peer's solvers on each problem.
+/// The fastest of the other program's solvers on each problem.
 const BEST: &str = "peer best";
 
-/// Dolan and More's profile: the share of problems solved within a factor of the best of all solvers.
+/// Performance profile (Dolan and More): fraction of problems solved within a factor of the best of all
+/// solvers.
 fn profile(ours: &Times, peer: &Times, path: &Path) -> Result<(), Box<dyn Error>> {
     let mut all: BTreeMap<&(String, String), Timings> = BTreeMap::new();
     for (key, times) in ours.iter().filter(|((_, t), _)| t == "1e-8") {
@@ -311,7 +314,7 @@ fn profile(ours: &Times, peer: &Times, path: &Path) -> Result<(), Box<dyn Error>
             all.insert(key, list);
         }
     }
-    // Those that solve most, ours and the peer's: more curves cannot be told apart.
+    // The solvers of each program that solve most; more curves would not be distinguishable.
     let mut wins = BTreeMap::<String, u32>::new();
     for (s, t) in all.values().flatten() {
         *wins.entry(s.clone()).or_default() += u32::from(t.is_some());

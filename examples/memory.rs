@@ -1,9 +1,9 @@
-//! Memory of a grain and of a contact, counted to the byte, feature by feature.
+//! Memory per grain and per contact, counted to the byte, for each feature.
 //!
-//! `cargo run --release --example memory` makes scenes of disks, spheres, bricks in the plane and in space at two
-//! sizes, steps them, and prints the table of `docs/dev/memory.md`. Grains are counted where they stand apart, contacts
-//! where they lie on each other, each by the difference between the two sizes, so that what is there once does not
-//! count.
+//! `cargo run --release --example memory` makes scenes of disks, spheres, and bricks in 2D and 3D at two
+//! sizes, steps them, and prints the table of `docs/dev/memory.md`. Grains are counted in scenes without
+//! contacts, contacts in packed layers, each by the difference between the two sizes, so that fixed costs
+//! cancel.
 
 #[path = "../tests/support/counting.rs"]
 mod counting;
@@ -27,7 +27,7 @@ use std::path::Path;
 #[global_allocator]
 static COUNTING: counting::Counting = counting::Counting;
 
-/// Measured here beside the shared ones.
+/// Features measured here in addition to the shared ones.
 const MORE: [Feature; 2] = [
     ("projection of overlaps", &["solver.projection=1e-3"]),
     (
@@ -40,19 +40,19 @@ const MORE: [Feature; 2] = [
     ),
 ];
 
-/// What grains are.
+/// Shape of the grains.
 #[derive(Clone, Copy, PartialEq)]
 enum Grains {
     Balls,
     Bricks,
 }
 
-/// What a scene holds.
+/// Memory of a scene.
 struct Held {
     grains: f64,
     contacts: f64,
     live: f64,
-    /// Most beyond that during a step.
+    /// Peak beyond that during a step.
     step: f64,
 }
 
@@ -69,8 +69,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Contacts at the two sizes, about: just below 2^15 and 2^16. Lists that grow double their room when it is full, and are
-/// nearly full here; just after they have doubled they take twice as much.
+/// Approximate numbers of contacts at the two sizes, just below 2^15 and 2^16. Growing lists double their
+/// capacity when full, and are nearly full here; just after doubling they take twice as much.
 const CONTACTS: [f64; 2] = [32_400.0, 64_800.0];
 
 fn scene<S: Dimensional>(
@@ -102,7 +102,7 @@ fn scene<S: Dimensional>(
     Ok(())
 }
 
-/// What `fretwork check` says, from the sizes of the types, with a bond where there is one.
+/// Estimate of `fretwork check` from the sizes of the types, including a bond if there is one.
 fn check<S: Space>(grains: Grains, sets: &[&str]) -> [usize; 2] {
     let [plain, full, general] = Problem::<S>::BYTES_A_CONTACT;
     let bonds = sets.iter().any(|s| s.contains("cohesion"));
@@ -121,7 +121,7 @@ fn check<S: Space>(grains: Grains, sets: &[&str]) -> [usize; 2] {
 
 const RADIUS: f64 = 1e-3;
 
-/// A case of so many grains: apart from each other, or in a layer as deep whatever its size.
+/// A case of `count` grains: separate, or in a layer of constant depth.
 fn case<S: Dimensional>(grains: Grains, count: usize, apart: bool) -> String {
     let wide = 2.0 * RADIUS * (1.0 + 2e-6);
     let (axes, up) = if S::D == 2 {
@@ -163,7 +163,7 @@ fn case<S: Dimensional>(grains: Grains, count: usize, apart: bool) -> String {
         (Grains::Bricks, _) => {
             let gap = if apart { 3.0 * RADIUS } else { 0.0 };
             let thick = if axes == 2 { "" } else { "thickness: 2e-3," };
-            // Above the floor where they do not lie on it.
+            // Above the floor if they do not lie on it.
             let at = up.replace("1.0", &format!("{gap:e}"));
             format!(
                 "BlockWall(material: \"grain\", rows: 20, columns: {}, block: (4e-3, 2e-3), {thick} gap: {gap:e}, at: [{at}])",
@@ -216,5 +216,5 @@ fn measure<S: Dimensional>(
     })
 }
 
-/// Steps before anything is counted: what is made once is there then.
+/// Steps before counting, in which one-time allocations are made.
 const STEPS: u32 = 10;

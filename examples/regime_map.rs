@@ -1,8 +1,10 @@
-//! Regimes of a sheared layer of bonded grains, by the strength of the bonds and the pressure.
+//! Regimes of a sheared layer of bonded grains, by bond strength and pressure.
 //!
-//! `cargo run --release --example regime_map` runs `cases/regime_map.ron` for six strengths, three pressures and three
-//! seeds, two at a time, prints means over the seeds with their intervals of 95 % as the table of `docs/circuit.md` and draws `docs/figures/regime_map.png`: friction and mean cluster against
-//! strength over pressure. What walls and bonds do depends on that ratio; pressure alone changes the inertial number.
+//! `cargo run --release --example regime_map` runs `cases/regime_map.ron` for six strengths, three pressures
+//! and three seeds, two at a time, prints means over the seeds with their 95 % intervals as the table of
+//! `docs/circuit.md` and draws `docs/figures/regime_map.png`: friction and mean cluster size against strength
+//! over pressure. The behaviour of walls and bonds depends on that ratio; pressure alone changes the inertial
+//! number.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
@@ -15,11 +17,11 @@ use std::path::Path;
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 
-/// Strength of the bonds over the pressure.
+/// Bond strength over pressure.
 const RATIOS: [f64; 6] = [0.1, 1.0, 10.0, 30.0, 100.0, 1000.0];
 /// Pressures (Pa).
 const PRESSURES: [f64; 3] = [300.0, 1e3, 3e3];
-/// Samples.
+/// Seeds of the samples.
 const SEEDS: [u64; 3] = [19, 20, 21];
 
 struct Outcome {
@@ -110,7 +112,7 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Mean over the seeds, and half the width of its interval of 95 % by Student's t.
+/// Mean over the seeds, and half-width of its 95 % interval by Student's t.
 fn spread(group: &[Outcome], value: &dyn Fn(&Outcome) -> f64) -> (f64, f64) {
     let n = group.len() as f64;
     let mean = group.iter().map(value).sum::<f64>() / n;

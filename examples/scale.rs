@@ -1,9 +1,9 @@
 //! Cost of a step and memory against the number of grains.
 //!
-//! `cargo run --release --example scale [-- MAX]` settles layers of disks (20 deep) and spheres (10 deep), as wide
-//! as their number asks, from 1,000 to MOST grains (1,000,000), each in a process of its own; prints the table of
-//! `docs/dev/performance.md` and draws `docs/figures/scale.png`. The depth stays the same, and with it the number of
-//! sweeps that a load needs to cross the layer.
+//! `cargo run --release --example scale [-- MAX]` settles layers of disks (20 deep) and spheres (10 deep) of
+//! increasing width, from 1,000 to MAX grains (1,000,000), each in a separate process; it prints the table of
+//! `docs/dev/performance.md` and draws `docs/figures/scale.png`. The depth is constant, and with it the
+//! number of iterations that a load needs to propagate across the layer.
 
 use fretwork::geometry::grid;
 use fretwork::geometry::space::{Dim2, Dim3};
@@ -16,22 +16,22 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-/// What one run measured.
+/// Measurements of one run.
 #[derive(Clone, Copy, Debug)]
 struct Row {
     grains: f64,
     contacts: f64,
-    /// Of the fastest step at rest (s).
+    /// Duration of the fastest step at rest (s).
     step: f64,
-    /// Of it in the detection, the laws and the solver (s).
+    /// Its parts in detection, laws and solver (s).
     parts: [f64; 3],
-    /// Sweeps a step.
+    /// Iterations per step.
     sweeps: f64,
-    /// To make the neighbour list anew (s).
+    /// Duration of rebuilding the neighbour list (s).
     list: f64,
-    /// Steps at rest in which it was made anew, of all.
+    /// Number of steps at rest with a rebuild, of all.
     rebuilt: f64,
-    /// Peak of the memory (bytes).
+    /// Peak memory (bytes).
     memory: f64,
 }
 
@@ -68,7 +68,7 @@ impl Row {
         })
     }
 
-    /// Time of a step a contact (ns).
+    /// Time per step and contact (ns).
     fn each(&self) -> f64 {
         self.step / self.contacts * 1e9
     }
@@ -160,7 +160,7 @@ fn print(name: &str, r: &Row) {
     );
 }
 
-/// Measures in a process of its own, whose peak of memory is that of this size.
+/// Measures in a separate process, so that the peak of memory belongs to this size.
 fn apart(dimension: &str, count: usize) -> Result<Row, Failure> {
     let output = Command::new(std::env::current_exe()?)
         .args(["one", dimension, &count.to_string()])
@@ -176,10 +176,11 @@ fn apart(dimension: &str, count: usize) -> Result<Row, Failure> {
 
 const RADIUS: f64 = 1e-3;
 
-/// Steps that a layer has to come to rest; what takes more is measured as it is, and its sweeps show it.
+/// Limit on the steps for a layer to come to rest; a layer that needs more is measured anyway, and its
+/// iterations show it.
 const SETTLING: u32 = 60;
 
-/// A layer of so many grains above a floor, periodic along the others.
+/// A layer of `count` grains above a floor, periodic along the horizontal axes.
 fn layer<S: Dimensional>(count: usize) -> String {
     let wide = 2.0 * RADIUS * (1.0 + 2e-6);
     let (period, low, high, up) = if S::D == 2 {
@@ -211,7 +212,7 @@ fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
     let loaded = load_text("layer.ron", &layer::<S>(count), &cases, &[])?;
     let mut s = loaded.build_in::<S>(&SearchPath::new(&[]))?.simulation;
     settle(&mut s)?;
-    // As many steps as give some ten million updates of a contact.
+    // Number of steps for about ten million contact updates.
     let steps = (3_000_000 / count).clamp(8, 200);
     let (mut parts, mut step) = ([0.0; 3], f64::INFINITY);
     let (mut sweeps, rebuilds) = (0.0, s.network.rebuilds);
@@ -219,7 +220,7 @@ fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
         let clock = Instant::now();
         let report = s.step()?;
         let time = clock.elapsed().as_secs_f64();
-        // The fastest step: what else the machine does counts as little as it can.
+        // The fastest step is least disturbed by other programs.
         if time < step {
             let t = &report.timing;
             (step, parts) = (time, [t.detect, t.laws, t.solve].map(|t| t.as_secs_f64()));
@@ -260,7 +261,7 @@ fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
     })
 }
 
-/// Steps until the layer is at rest: ten in a row that the first test of convergence ends.
+/// Steps until the layer is at rest: ten steps in a row that converge at the first test.
 fn settle<S: Steps>(s: &mut Simulation<S>) -> Result<(), Failure> {
     let (first, mut calm) = (s.solver.test_every.div_ceil(2), 0);
     for _ in 0..SETTLING {
@@ -273,7 +274,7 @@ fn settle<S: Steps>(s: &mut Simulation<S>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Peak of the memory of this process (bytes); none where the system does not tell.
+/// Peak memory of this process (bytes); NaN if the system does not report it.
 fn peak() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));

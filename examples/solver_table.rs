@@ -1,9 +1,9 @@
-//! Every method on the fretting case at three tolerances, and on every shipped case.
+//! Every solver on the fretting case at three tolerances, and on every shipped case.
 //!
 //! `cargo run --release --example solver_table` writes `docs/dev/fretting_solvers.md` from the rows in
-//! `results/solver_table`, which it fills first: a run is not repeated while its row stands there. Parts:
-//! `PARTS=fretting,seeds,cases`, `METHODS=auto,newton`, `TOLERANCES=1e-4,1e-6`; `BUDGET` (40) is the wall time (s) a
-//! fretting run may take, `SHORT` (4) that of a run of the other cases. `PARTS=page` only writes the page.
+//! `results/solver_table`, which it first fills: a run with an existing row is not repeated. Parts:
+//! `PARTS=fretting,seeds,cases`, `METHODS=auto,newton`, `TOLERANCES=1e-4,1e-6`; `BUDGET` (40) is the limit on
+//! the wall time of a fretting run (s), `SHORT` (4) that of other cases. `PARTS=page` only writes the page.
 
 use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 const FRETTING: &str = "cases/wheel_rail_fretting.ron";
-/// Step and tolerance of the table, and what a run changes beside them.
+/// Step and tolerance of the table, with further changes of a run.
 fn sets(more: String) -> [String; 3] {
     [
         "time.step=1e-4".into(),
@@ -26,9 +26,10 @@ fn sets(more: String) -> [String; 3] {
         more,
     ]
 }
-/// Steps of compaction and of the first slip, bonds made, by `auto` at a tolerance of 1e-4 in every run.
+/// Steps of compaction and of the first slip, with bonds formed, solved by `auto` at a tolerance of 1e-4 in
+/// every run.
 const SETTLE: u64 = 520;
-/// Seeds of the scatter.
+/// Seeds for the scatter.
 const SEEDS: [u64; 3] = [7, 8, 9];
 
 type Any = Box<dyn Error>;
@@ -88,7 +89,7 @@ fn main() -> Result<(), Any> {
     Ok(())
 }
 
-/// A row that stands is not run again.
+/// Runs only if there is no row yet.
 fn keep(rows: &Path, name: &str, run: impl FnOnce() -> Result<String, Any>) -> Result<(), Any> {
     let path = rows.join(name);
     if !path.exists() {
@@ -113,12 +114,13 @@ fn cases() -> Result<Vec<PathBuf>, Any> {
     Ok(all)
 }
 
-/// How the case's words name a method.
+/// Name of a solver in a case.
 fn word(method: Method) -> String {
     format!("solver.method={method:?}")
 }
 
-/// Iterations a step of a shipped case may take; one of Newton or the interior point factorises.
+/// Limit on the iterations per step of a shipped case; an iteration of Newton or the interior point solver is
+/// a factorisation.
 fn most(method: Method) -> u32 {
     match method {
         Method::Newton | Method::Interior => 200,
@@ -126,7 +128,7 @@ fn most(method: Method) -> u32 {
     }
 }
 
-/// The same for the fretting case, whose first slips no method brings to a tight tolerance.
+/// Limit for the fretting case, whose first slips no solver brings to a tight tolerance.
 fn most_in_fretting(method: Method, tolerance: &str) -> u32 {
     match method {
         Method::Newton | Method::Interior => 20,
@@ -135,20 +137,20 @@ fn most_in_fretting(method: Method, tolerance: &str) -> u32 {
     }
 }
 
-/// What a run did.
+/// Statistics of a run.
 #[derive(Default)]
 struct Tally {
     steps: u64,
     iterations: u64,
     missed: u64,
-    /// Steps that `auto` gave to Newton.
+    /// Steps in which `auto` used Newton.
     newton: u64,
     worst: f64,
     seconds: f64,
     stopped: Option<String>,
 }
 
-/// Steps until the time, or the end; `follow` sees the scene before and after a step.
+/// Steps until a time limit or the end; `follow` is called before and after each step.
 fn go<S: Dimensional>(
     s: &mut Simulation<S>,
     steps: u64,
@@ -181,13 +183,14 @@ fn go<S: Dimensional>(
     tally
 }
 
-/// A row: seconds, steps, steps in all, iterations a step, not converged, largest error, friction by cycle.
+/// A row: seconds, steps, total steps, iterations per step, unconverged steps, largest error, friction by
+/// cycle.
 fn fretting(tolerance: &str, method: Method, seed: u64, budget: f64) -> Result<String, Any> {
     let loaded = load(Path::new(FRETTING), &sets(format!("seed={seed}")))?;
     let Scene::Dim2(built) = loaded.build(&SearchPath::new(&[]))? else {
         return Err("the fretting case is plane".into());
     };
-    // Refused by the laws?
+    // Whether the laws rule the solver out.
     let asked = load(Path::new(FRETTING), &sets(word(method)))?;
     if let Err(e) = asked.build(&SearchPath::new(&[])) {
         return Ok(format!("refused\t{e}"));
@@ -200,7 +203,7 @@ fn fretting(tolerance: &str, method: Method, seed: u64, budget: f64) -> Result<S
     let wheel = s.bodies.driven.iter().position(|d| d.name == "wheel");
     let wheel = wheel.ok_or("no wheel")?;
     let (start, period) = (0.05, 0.05);
-    // Work and pressed path of each cycle.
+    // Work and loaded path of each cycle.
     let mut cycles: BTreeMap<u32, (f64, f64, u32)> = BTreeMap::new();
     let tally = go(&mut s, total - SETTLE, budget, |s, before| {
         let at = s.time - start;
@@ -249,7 +252,7 @@ fn fretting(tolerance: &str, method: Method, seed: u64, budget: f64) -> Result<S
     Ok(row)
 }
 
-/// A row: steps, steps in all, converged, largest error, or why not.
+/// A row: steps, total steps, converged steps, largest error; or the reason why there are none.
 fn shipped(case: &Path, method: Method, budget: f64) -> Result<String, Any> {
     let loaded = load(
         case,
@@ -286,7 +289,7 @@ fn read(rows: &Path, name: &str) -> Option<Vec<String>> {
     Some(text.split('\t').map(str::to_owned).collect())
 }
 
-/// A share for a table: 98 of 100 steps is not 100 %.
+/// A fraction for a table, rounded such that 98 of 100 steps is not 100 %.
 fn percent(part: f64, whole: f64) -> String {
     let x = (1000.0 * part / whole).floor() / 10.0;
     format!("{x} %")
@@ -330,7 +333,7 @@ counted and goes on. The machine was shared: times vary by a factor of two.
             let time = if !row[8].is_empty() {
                 format!("stopped at step {steps}: {}", row[8])
             } else if steps < 0.01 * all {
-                // The first steps of the slip are the hardest: nothing follows from them for the rest.
+                // The first steps of slip are the hardest, so they are not extrapolated.
                 format!("{steps} steps done in {seconds:.0} s")
             } else if steps < all {
                 format!(
@@ -421,7 +424,7 @@ much of the run was done, where not all. 20,000 iterations a step, 200 of `newto
     Ok(out.trim_end().to_owned() + "\n")
 }
 
-/// The number of a reason; the name of the interface is not part of it.
+/// Number of a footnote; the name of the interface is not part of it.
 fn note(reasons: &mut Vec<String>, text: &str) -> String {
     let text = text
         .split_once("`: ")

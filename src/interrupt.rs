@@ -1,4 +1,5 @@
-//! SIGINT (Ctrl-C) and SIGTERM: what is at hand is finished and written; a second one ends the program at once.
+//! Handling of SIGINT (Ctrl-C) and SIGTERM: on the first signal the current step is finished and results are
+//! written; a second one ends the program at once.
 //!
 //! On Windows Ctrl-C arrives as SIGINT; SIGTERM is never sent there.
 
@@ -11,15 +12,15 @@ static ASKED: AtomicBool = AtomicBool::new(false);
 static SIGNAL: AtomicUsize = AtomicUsize::new(0);
 static WATCH: Once = Once::new();
 
-/// Exit code of a second signal: what was asked did not finish.
+/// Exit code after a second signal: the command did not finish.
 const ENDED: i32 = 1;
 
-/// From now on a first signal asks for an end and a second one ends the program. Where the system allows no handler, a signal
-/// ends the program as it does without one.
+/// Installs the handlers: the first signal sets the returned flag, a second one ends the program. If the
+/// system allows no handler, signals keep their default action.
 pub fn watch() -> &'static AtomicBool {
     WATCH.call_once(|| {
         for signal in [SIGINT, SIGTERM] {
-            // In this order: the first signal finds the flag not yet set.
+            // The order matters: at the first signal the flag must not be set yet.
             let _ = flag::register_conditional_shutdown(signal, ENDED, &ASKED);
             let _ = flag::register_usize(signal, &SIGNAL, signal as usize);
             let _ = flag::register(signal, &ASKED);
@@ -28,7 +29,7 @@ pub fn watch() -> &'static AtomicBool {
     &ASKED
 }
 
-/// Name of the signal that asked for an end; none where none did.
+/// Name of the signal received; `None` if there was none.
 pub fn asked() -> Option<&'static str> {
     if !ASKED.load(Ordering::SeqCst) {
         return None;

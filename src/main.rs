@@ -1,6 +1,6 @@
 //! The command line of Fretwork.
 
-// A terminal or pipe that takes no more must not end a run: all output goes through `cli::output`.
+// A failed write to a terminal or pipe must not end a run: all output goes through `cli::output`.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 fn main() -> std::process::ExitCode {

@@ -1,4 +1,4 @@
-//! The shipped laws, linked into the program: it can stand alone.
+//! The shipped laws, linked into the program so that it runs without library files.
 
 use crate::laws::{BuiltInLaws, SearchPath};
 use std::sync::OnceLock;

@@ -1,9 +1,9 @@
-//! The extremes: scenes that make simulations explode, each with a criterion that is physics.
+//! Extreme scenes with a physical criterion each.
 //!
-//! `cargo run --release --example extremes` runs them all and prints the table of `docs/dev/extremes.md`; words after it choose
-//! rows by the begin of their names (`-- mass step`). Each row declares what is to come of it: `held` where its criterion is
-//! met; `told` where a limit is reached and the program says so, in words that name that cause and what to change; all else is
-//! `BROKEN` and ends with exit code 1. `-- quick` leaves out what takes minutes.
+//! `cargo run --release --example extremes` runs all of them and prints the table of `docs/dev/extremes.md`;
+//! arguments select rows by the beginning of their names (`-- mass step`). Each row declares its expected
+//! result: `held` if its criterion is met; `told` if a limit is reached and the program reports the cause and
+//! what to change; anything else is `BROKEN` and gives exit code 1. `-- quick` omits rows that take minutes.
 
 mod bench;
 mod rows;

@@ -1,4 +1,4 @@
-//! The pictures.
+//! Pictures of the figures.
 
 use crate::process::{Step, Trace};
 use crate::{Run, Samples, Single};
@@ -6,12 +6,12 @@ use fretwork::report::{Axis, Chart, ReportError, Series, draw_panels};
 use fretwork::solve::local::solver::Method;
 use std::path::Path;
 
-/// Steps over which counts, times and measures of the test are averaged.
+/// Number of steps over which counts, times and measured values are averaged.
 pub const WINDOW: usize = 20;
 
 const SIZE: (u32, u32) = (660, 450);
 
-/// A method's name as the source writes it.
+/// Name of a solver as in the source.
 pub fn name(method: Method) -> String {
     match method {
         Method::Anderson => "Anderson (ours)".to_owned(),
@@ -25,7 +25,7 @@ fn chart(title: impl Into<String>, x: Axis, y: Axis) -> Chart {
     chart
 }
 
-/// The same method in the same colour in every picture.
+/// A fixed colour for each solver in all pictures.
 fn colour(label: &str) -> Option<(u8, u8, u8)> {
     Some(match label {
         "NLGS" => (0, 114, 178),
@@ -44,7 +44,7 @@ fn series(label: &str, points: Vec<(f64, f64)>) -> Series {
     }
 }
 
-/// The last value of each of many short stretches of a logarithmic axis: what the pixels can show.
+/// The last value in each of many short intervals of a logarithmic axis, at pixel resolution.
 fn sparse(history: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let stretch = |x: f64| (x.ln() * 15.0).floor() as i64;
     history
@@ -53,7 +53,7 @@ fn sparse(history: &[(f64, f64)]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Error against iterations at each friction coefficient, and against time at the middle one.
+/// Error against iterations for each friction coefficient, and against time for the middle one.
 pub fn one_step(singles: &[Single], path: &Path) -> Result<(), ReportError> {
     let panel = |single: &Single, timed: bool| {
         let (x, along) = if timed {
@@ -91,7 +91,7 @@ fn smooth(steps: &[Step], x: impl Fn(&Step) -> f64, y: impl Fn(&Step) -> f64) ->
         .collect()
 }
 
-/// Iterations and time of a step against time.
+/// Iterations and time per step against time.
 fn along(runs: &[Run]) -> [Chart; 2] {
     let time = || Axis::new("time", "s");
     let mut panels = [
@@ -122,12 +122,12 @@ fn along(runs: &[Run]) -> [Chart; 2] {
     panels
 }
 
-/// The quasi-static process.
+/// Figure of the quasi-static process.
 pub fn quasi_static(runs: &[Run], path: &Path) -> Result<(), ReportError> {
     draw_panels(&along(runs), 2, path)
 }
 
-/// The dynamic process, with its kinetic energy and what it leaves behind.
+/// Figure of the dynamic process, with kinetic energy and final surface.
 pub fn dynamic(runs: &[Run], path: &Path) -> Result<(), ReportError> {
     let mut energy = chart(
         "Kinetic energy of the grains",
@@ -170,7 +170,7 @@ fn surface(trace: &Trace) -> Vec<(f64, f64)> {
 /// A macroscopic quantity of the biaxial test: name, unit, value.
 pub type Quantity = (&'static str, &'static str, fn(&Step) -> f64);
 
-/// Those that the source compares, and the deviator.
+/// Quantities compared in the source, and the deviator.
 pub const QUANTITIES: [Quantity; 4] = [
     ("pressure", "Pa", |s| s.test.pressure_walls),
     ("coordination", "", |s| s.test.coordination.carried),
@@ -178,10 +178,10 @@ pub const QUANTITIES: [Quantity; 4] = [
     ("deviator over pressure", "", |s| s.test.deviator_ratio),
 ];
 
-/// The biaxial test: means over samples by NLGS and by CPG, over the samples themselves.
+/// Figure of the biaxial test: means over samples by NLGS and by CPG, over the individual samples.
 pub fn biaxial(samples: &Samples, path: &Path) -> Result<(), ReportError> {
     let panels = QUANTITIES.map(|(name, unit, value)| {
-        // One legend serves all panels.
+        // All panels share one legend.
         let label = |text: &str| if name == QUANTITIES[0].0 { text } else { "" }.to_owned();
         let mut panel = chart("", Axis::new("axial strain", ""), Axis::new(name, unit));
         for (k, trace) in samples.nlgs.iter().enumerate() {
@@ -205,7 +205,7 @@ pub fn biaxial(samples: &Samples, path: &Path) -> Result<(), ReportError> {
     draw_panels(&panels, 2, path)
 }
 
-/// The mean of the curves of samples, which are driven alike.
+/// Mean curve of samples with the same loading.
 fn mean(traces: &[&Trace], value: fn(&Step) -> f64) -> Vec<(f64, f64)> {
     let curves: Vec<_> = traces.iter().map(|t| curve(t, value)).collect();
     let length = curves.iter().map(Vec::len).min().unwrap_or(0);

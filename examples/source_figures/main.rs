@@ -1,9 +1,10 @@
-//! The figures of Renouf's lecture on projected gradients (2007; after Renouf and Alart, Comput. Methods Appl. Mech.
-//! Eng. 194, 2005), from runs of our own: error against iteration on one step of a packing, iterations and time along
-//! a quasi-static and a dynamic process, and macroscopic agreement on a biaxial test.
+//! Figures of Renouf's lecture on projected gradients (2007; after Renouf and Alart, Comput. Methods Appl.
+//! Mech. Eng. 194, 2005), from runs of Fretwork: error against iteration for one step of a packing,
+//! iterations and time along a quasi-static and a dynamic process, and macroscopic agreement in a biaxial
+//! test.
 //!
-//! `cargo run --release --example source_figures -- [OUT]`, from the root of the project, writes to OUT (docs)
-//! `solver_figures.md` and `figures/solver_*.png`.
+//! `cargo run --release --example source_figures -- [OUT]`, from the root of the project, writes to OUT
+//! (docs) `solver_figures.md` and `figures/solver_*.png`.
 
 mod charts;
 mod page;
@@ -20,8 +21,8 @@ use step::Fared;
 const BIAXIAL: &str = "cases/biaxial.ron";
 const COLLAPSE: &str = "cases/collapse.ron";
 
-/// The smaller sample of the biaxial case; its walls are nearer, so that 0.8 s bring the same strain. The alert distance is the
-/// default, with which the published figures were found.
+/// Smaller sample of the biaxial case; its walls are closer, so that 0.8 s give the same strain. The alert
+/// distance is the default, with which the published figures were made.
 const SMALLER: [&str; 6] = [
     "detection=()",
     "grains.0.count=500",
@@ -38,7 +39,7 @@ struct Single {
     fared: Vec<Fared>,
 }
 
-/// A run and what it is called.
+/// A run and its label.
 struct Run {
     label: &'static str,
     trace: Trace,
@@ -92,7 +93,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let dynamic = all(COLLAPSE, &[])?;
     charts::dynamic(&dynamic, &figures.join("solver_dynamic.png"))?;
 
-    // Samples of other seeds, by both methods: agreement is judged against what samples differ by.
+    // Samples of other seeds, by both solvers, since agreement is judged against the scatter of samples.
     let mut others = Vec::new();
     for seed in ["seed=12", "seed=13"] {
         let sets = [smaller.clone(), vec![seed.into()]].concat();
@@ -108,7 +109,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Takes the contact problem of one step of the compression, by way of a file as others would, and solves it.
+/// Takes the contact problem of one step of the compression, writes and reads it as a file, and solves it.
 fn single(mu: f64) -> Result<Single, Box<dyn Error>> {
     /// In the middle of the compression (s).
     const WHEN: f64 = 0.6;
@@ -149,7 +150,7 @@ fn single(mu: f64) -> Result<Single, Box<dyn Error>> {
     })
 }
 
-/// Runs a case to its end by a method.
+/// Runs a case to its end with a solver.
 fn run(
     case: &str,
     sets: &[String],

@@ -1,4 +1,4 @@
-//! The page with figures and tables; what it says of agreement is computed.
+//! The page with figures and tables; its statements on agreement are computed.
 
 use crate::charts::{QUANTITIES, WINDOW, curve, name};
 use crate::process::{Step, Trace};
@@ -105,7 +105,7 @@ fn one_step(out: &mut String, singles: &[Single]) {
     *out += "\n";
 }
 
-/// Whether one method is there before another, and by how much.
+/// Whether one solver converges before another, and by how much.
 fn verdict(fared: &[Fared], fast: Method, slow: Method) -> String {
     let to = |m: Method| {
         fared

@@ -1,4 +1,4 @@
-//! Runs of a case in the plane, step by step, with the counts and times that the figures show.
+//! Runs of a 2D case, step by step, with the counts and times for the figures.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
@@ -14,7 +14,7 @@ use std::path::Path;
 pub struct Step {
     /// Time at its end (s).
     pub time: f64,
-    /// Iterations, in the unit of the method.
+    /// Iterations, as counted by the solver.
     pub iterations: u32,
     /// Whether the tolerance was reached.
     pub converged: bool,
@@ -22,7 +22,7 @@ pub struct Step {
     pub seconds: f64,
     /// Kinetic energy of the grains' translation (J/m).
     pub kinetic: f64,
-    /// The biaxial test, where the case is one.
+    /// The biaxial test, if the case has one.
     pub test: State,
 }
 
@@ -31,7 +31,7 @@ pub struct Step {
 pub struct Trace {
     /// Its steps.
     pub steps: Vec<Step>,
-    /// The contact problem of the last one.
+    /// Contact problem of the last step.
     pub last: Option<LocalProblem>,
     /// The grains at the end: centre and radius (m).
     pub grains: Vec<([f64; 2], f64)>,
@@ -39,7 +39,7 @@ pub struct Trace {
     pub tolerance: f64,
 }
 
-/// Runs a case of two dimensions to a time, or to its end.
+/// Runs a 2D case to a time, or to its end.
 pub fn run(case: &Path, sets: &[String], until: Option<f64>) -> Result<Trace, Box<dyn Error>> {
     let loaded = load(case, sets)?;
     let Scene::Dim2(built) = loaded.build(&SearchPath::new(&[]))? else {
@@ -96,7 +96,7 @@ impl Trace {
         self.steps.iter().map(|s| s.seconds).sum()
     }
 
-    /// Iterations a step.
+    /// Mean iterations per step.
     pub fn iterations(&self) -> f64 {
         let sum: u64 = self.steps.iter().map(|s| u64::from(s.iterations)).sum();
         sum as f64 / self.steps.len().max(1) as f64

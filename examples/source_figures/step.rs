@@ -1,4 +1,4 @@
-//! One step of a packing, solved from zero by every method.
+//! One step of a packing, solved from zero by every solver.
 
 use fretwork::solve::error::Norm;
 use fretwork::solve::local::LocalProblem;
@@ -8,25 +8,25 @@ use fretwork::solve::local::solver::Method;
 use fretwork::solve::local::state::{Budget, State};
 use std::time::Instant;
 
-/// How a method fared on a problem.
+/// Result of a solver on a problem.
 #[derive(Clone, Debug)]
 pub struct Fared {
     /// The method.
     pub method: Method,
-    /// (iteration, error).
+    /// Pairs (iteration, error).
     pub history: Vec<(u32, f64)>,
-    /// Seconds an iteration, tests of the error included.
+    /// Seconds per iteration, including tests of the error.
     pub each: f64,
 }
 
 impl Fared {
-    /// Iterations to an error, if it came to it.
+    /// Iterations needed for an error, if it was reached.
     pub fn to(&self, error: f64) -> Option<u32> {
         self.history.iter().find(|h| h.1 <= error).map(|h| h.0)
     }
 }
 
-/// Solves a problem of the plane from p = 0, with so many iterations at most or to 1e-10.
+/// Solves a 2D problem from p = 0 with at most `most` iterations, or to 1e-10.
 pub fn solve(problem: &LocalProblem, method: Method, most: u32) -> Fared {
     const GOAL: f64 = 1e-10;
     let w = BlockMatrix::<2>::from_csr(&problem.w);

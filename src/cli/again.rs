@@ -1,6 +1,6 @@
-//! The command of this process, to be given again.
+//! Reconstruction of this process's command line, to be printed for the user to repeat.
 
-/// The words of this call, quoted for a shell, with those that are not among them at the end.
+/// The arguments of this call, quoted for a shell, with those of `with` appended if they are missing.
 pub(super) fn command(with: &[&str]) -> String {
     let mut words: Vec<String> = std::env::args_os()
         .map(|w| w.to_string_lossy().into_owned())
@@ -14,7 +14,7 @@ pub(super) fn command(with: &[&str]) -> String {
     quoted.join(" ")
 }
 
-/// A word as a POSIX shell reads it back.
+/// Quotes an argument for a POSIX shell.
 fn quote(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {

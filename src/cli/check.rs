@@ -1,4 +1,4 @@
-//! `fretwork check`: what a scene activates, its size and dimensionless groups; writes nothing.
+//! `fretwork check`: the features that a case uses, its size and dimensionless groups; writes no files.
 
 mod bonds;
 pub(super) mod cost;
@@ -156,8 +156,8 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
     out
 }
 
-/// Which methods the case can use, and the reasons why others not. A case that asks for one it cannot use is
-/// refused before.
+/// The solvers that support the case, and why the others do not. A case whose own solver does not support it
+/// is rejected earlier.
 fn methods<S: Space>(simulation: &Simulation<S>, line: &mut impl FnMut(&str, String)) {
     let demands = Demands::of(simulation);
     let (mut can, mut reasons) = (Vec::new(), Vec::new());
@@ -173,7 +173,7 @@ fn methods<S: Space>(simulation: &Simulation<S>, line: &mut impl FnMut(&str, Str
     }
     let chosen = simulation.solver.method;
     let served = match demands.service(chosen) {
-        Service::Serves => "serves this case".to_owned(),
+        Service::Serves => "supports this case".to_owned(),
         Service::May(reason) | Service::Refuses(reason) => reason,
     };
     line("method", format!("{} {served}", chosen.name()));
@@ -197,7 +197,7 @@ fn biaxial_groups<S: Space>(
     else {
         return;
     };
-    // From the start of the test to the end, in all directions: the walls have one that is driven.
+    // From the start of the test to its end, over all walls: at least one of them is driven.
     let largest = |names: &(String, String), f: &dyn Fn(&Dof, f64) -> f64| {
         let walls = s.bodies.driven.iter();
         let walls = walls.filter(|d| d.name == names.0 || d.name == names.1);
@@ -227,7 +227,7 @@ fn biaxial_groups<S: Space>(
     line(
         "inertial number",
         format!(
-            "{inertial:.2e} at a strain rate of {rate:.2e} /s, {:.1e} of strain a step (quasi-static below some 1e-3)",
+            "{inertial:.2e} at a strain rate of {rate:.2e} /s, {:.1e} of strain a step (quasi-static below about 1e-3)",
             rate * case.time.step
         ),
     );
@@ -266,7 +266,7 @@ fn groups<S: Space>(
     };
     line("pressure", format!("{pressure:.3e} Pa"));
     let flags = s.bodies.grain_flags();
-    // Of a piece the ball of its volume.
+    // For convex parts the radius of the ball of the same volume.
     let balls = s.shapes.balls.iter().map(|b| (b.body, b.radius));
     let pieces = s.shapes.pieces.iter().map(|p| (p.body, p.size));
     let volume: f64 = balls
@@ -278,7 +278,7 @@ fn groups<S: Space>(
     let mass: f64 = masses.filter(|(_, grain)| **grain).map(|(m, _)| m).sum();
     if volume > 0.0 {
         let density = mass / volume;
-        // Random packings of disks and of spheres, a little below their densest.
+        // Solid fraction of random packings of disks and spheres, slightly below random close packing.
         let solid = if S::D == 2 { 0.8 } else { 0.6 };
         let thickness = volume / solid / area;
         let inertial = speed / thickness * 2.0 * largest * (density / pressure).sqrt();

@@ -19,7 +19,7 @@ pub enum LawCommand {
     },
     /// Parameters, variables, units, ranges and reference of a law
     Show {
-        /// Name, or kind/name where several kinds have it (damage/mac)
+        /// Name, or kind/name if laws of several kinds have this name (damage/mac)
         name: String,
         #[command(flatten)]
         plugins: PluginArgs,
@@ -27,10 +27,10 @@ pub enum LawCommand {
     /// Make a law to fill in, in Rust, C or Fortran
     #[command(after_help = new::EXAMPLES)]
     New(new::NewArgs),
-    /// Drive one contact along a path and see what the laws answer
+    /// Drive one contact along a path and print the response of the laws
     #[command(after_help = drive::EXAMPLES)]
     Drive(Box<drive::DriveArgs>),
-    /// Test what a law promises: energy, dissipation, frame, step, bits, bad numbers
+    /// Test a law: energy, dissipation, frame indifference, step size, reproducible bits, invalid numbers
     #[command(after_help = certify::EXAMPLES)]
     Certify(certify::CertifyArgs),
 }
@@ -70,7 +70,7 @@ pub fn law(command: &LawCommand) -> Result<(), Failure> {
     }
 }
 
-/// The laws of a name, or of kind/name.
+/// The laws with a name, or with kind/name.
 fn named(path: &SearchPath, name: &str) -> Result<Vec<Plugin>, Failure> {
     let (kind, name) = match name.split_once('/') {
         Some((kind, name)) => {
@@ -90,7 +90,7 @@ fn named(path: &SearchPath, name: &str) -> Result<Vec<Plugin>, Failure> {
     if found.is_empty() {
         let near = crate::scene::source::nearest(name, laws.iter().map(|l| l.1.as_str()));
         let proposal = near.map_or_else(
-            || "; `fretwork law list` names those that are there".to_owned(),
+            || "; `fretwork law list` shows the available ones".to_owned(),
             |n| format!("; did you mean `{n}`?"),
         );
         return Err(Failure::Usage(format!(
@@ -104,7 +104,7 @@ fn named(path: &SearchPath, name: &str) -> Result<Vec<Plugin>, Failure> {
     Ok(opened.collect::<Result<_, _>>()?)
 }
 
-/// Values of a law's parameters: defaults, changed by `kind.name=value` or `name=value`.
+/// Parameter values of a law: defaults, overridden by `kind.name=value` or `name=value`.
 fn values(plugin: &Plugin, sets: &[String], used: &mut [bool]) -> Result<Vec<f64>, Failure> {
     let mut values: Vec<f64> = plugin.parameters.iter().map(|p| p.default).collect();
     for (set, used) in sets.iter().zip(used) {
@@ -130,7 +130,7 @@ fn values(plugin: &Plugin, sets: &[String], used: &mut [bool]) -> Result<Vec<f64
     Ok(values)
 }
 
-/// Refuses a --set that no law took.
+/// Checks that every `--set` was used by a law.
 fn all_used(sets: &[String], used: &[bool], laws: &[&Plugin]) -> Result<(), Failure> {
     let Some(k) = used.iter().position(|u| !u) else {
         return Ok(());
@@ -150,7 +150,7 @@ fn all_used(sets: &[String], used: &[bool], laws: &[&Plugin]) -> Result<(), Fail
     )))
 }
 
-/// Where a law is, in words.
+/// Description of where a law's library is.
 fn library(p: &Plugin) -> String {
     match p.built_in {
         true => format!(

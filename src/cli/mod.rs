@@ -1,6 +1,6 @@
 //! The command line: `run`, `check`, `law`, `solve`, `trade`.
 //!
-//! Exit 0: done. 1: the run failed; what was computed is on disk. 2: the input is wrong.
+//! Exit codes: 0 done; 1 the run failed, but what was computed is on disk; 2 wrong input.
 
 mod again;
 mod check;
@@ -42,12 +42,12 @@ enum Command {
         after_help = "Example:\n  fretwork run cases/wheel_rail_fretting.ron --out results/a --set interfaces.third_body.damage=mohr-coulomb-brittle"
     )]
     Run(run::RunArgs),
-    /// Say what a case activates and what it will cost, without running it or writing anything
+    /// Print what a case uses and what it will cost, without running it or writing files
     Check(check::CheckArgs),
     /// Interface laws: list, show, make, drive and certify them
     #[command(subcommand)]
     Law(law::LawCommand),
-    /// Solve contact problems of the field's shared collection (FCLIB files)
+    /// Solve contact problems in FCLIB files, the format of the shared benchmark collection
     #[command(
         allow_negative_numbers = true,
         after_help = "Exit code: 0 solved, 1 not solved within the limits, 2 wrong input.\n\nExample:\n  fretwork solve tests/fclib/gfc3d_OneContact.hdf5 --tolerance 1e-10 --out solution.hdf5"
@@ -59,15 +59,15 @@ enum Command {
         after_help = "Exit code: 0 done, also where the budget ended it early (it says so), 1 no reference could be run, 2 wrong input.\n\nExample:\n  fretwork trade cases/wheel_rail_fretting.ron --output friction_coefficient=5% --knob step --knob tolerance --budget 30m\n\ndocs/trade.md says how errors are judged and what the search does not explore."
     )]
     Trade(trade::TradeArgs),
-    /// For the program itself: opens libraries in a process of its own
+    /// Internal: opens libraries in a separate process
     #[command(name = child::TRY_LIBRARIES, hide = true)]
     TryLibraries(ChildArgs),
-    /// For the program itself: certifies a law in a process of its own
+    /// Internal: certifies a law in a separate process
     #[command(name = CERTIFY_APART, hide = true)]
     CertifyApart(ChildArgs),
 }
 
-/// What the program tells itself.
+/// Arguments of internal subcommands.
 #[derive(Args, Debug)]
 struct ChildArgs {
     #[arg(long, default_value_t = LAW_TIMEOUT)]
@@ -81,7 +81,7 @@ impl ChildArgs {
     }
 }
 
-/// The case and what is changed in it.
+/// The case and changes to it.
 #[derive(Args, Debug)]
 struct CaseArgs {
     /// The case file (RON)
@@ -93,28 +93,28 @@ struct CaseArgs {
     plugins: PluginArgs,
 }
 
-/// How long a call of a law may take (s), unless the user says otherwise.
+/// Default limit on the duration of a call of a law (s).
 const LAW_TIMEOUT: f64 = 60.0;
 
-/// The longest that a call of a law may take (s): some thirty years.
+/// Largest accepted limit on a call of a law (s), about thirty years.
 const LONGEST: f64 = 1e9;
 
-/// Where plugins are looked for.
+/// Search path of plugins.
 #[derive(Args, Debug)]
 struct PluginArgs {
-    /// Another folder with plugins; FRETWORK_PLUGIN_PATH holds further ones
+    /// Additional folder with plugins; FRETWORK_PLUGIN_PATH lists further ones
     #[arg(long = "plugin-path", value_name = "DIR")]
     plugin_path: Vec<PathBuf>,
-    /// Open plugins even where anybody may write
+    /// Open plugins even from folders that any user may write to
     #[arg(long)]
     trust_plugins: bool,
-    /// Give up when a law has not come back from a call for so long; 0 for never
+    /// Stop if a law does not return from a call within this time; 0 for no limit
     #[arg(long, value_name = "SECONDS", default_value_t = LAW_TIMEOUT, allow_negative_numbers = true)]
     law_timeout: f64,
 }
 
 impl PluginArgs {
-    /// The same words for another call of the program.
+    /// These arguments, for another call of the program.
     fn words(&self) -> Vec<String> {
         let mut words = Vec::new();
         for folder in &self.plugin_path {
@@ -146,7 +146,7 @@ impl PluginArgs {
     }
 }
 
-/// How long a call of a law may take; none for ever.
+/// Limit on the duration of a call of a law; `None` for no limit.
 fn law_limit(seconds: f64) -> Result<Option<Duration>, Failure> {
     if !(0.0..=LONGEST).contains(&seconds) {
         return Err(Failure::Usage(format!(
@@ -156,13 +156,13 @@ fn law_limit(seconds: f64) -> Result<Option<Duration>, Failure> {
     let limit = Duration::from_secs_f64(seconds);
     if !limit.is_zero() && limit < Duration::from_millis(100) {
         return Err(Failure::Usage(format!(
-            "--law-timeout {seconds}: a call may take as long; give at least 0.1 s, or 0 for none"
+            "--law-timeout {seconds}: a valid call may take that long; give at least 0.1 s, or 0 for none"
         )));
     }
     Ok((!limit.is_zero()).then_some(limit))
 }
 
-/// Ends the program when a law does not come back.
+/// Ends the program if a law does not return.
 fn watch_laws(limit: Option<Duration>) -> Result<(), Failure> {
     let Some(limit) = limit else {
         return Ok(());
@@ -176,18 +176,18 @@ fn watch_laws(limit: Option<Duration>) -> Result<(), Failure> {
     })
     .map_err(|e| {
         Failure::Failed(format!(
-            "cannot start the threads that watch over laws: {e}; allow more (ulimit -u), or do without: --law-timeout 0"
+            "cannot start the watchdog threads for laws: {e}; allow more threads (ulimit -u), or disable the limit: --law-timeout 0"
         ))
     })
 }
 
-/// What ends the program early.
+/// Reason for ending early, which determines the exit code.
 #[derive(Debug)]
 enum Failure {
     Input(InputError),
     Usage(String),
     Run(RunError),
-    /// What was asked ran, and failed.
+    /// The command ran and failed.
     Failed(String),
 }
 
@@ -211,7 +211,7 @@ impl From<LawError> for Failure {
 
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
-    // Nothing but `run --threads` computes on more than this thread.
+    // The main thread uses a pool of one; only `run --threads` computes on more.
     let here = rayon::ThreadPoolBuilder::new().num_threads(1);
     let _ = here.use_current_thread().build_global();
     let outcome = match Cli::try_parse() {
@@ -219,7 +219,7 @@ pub fn main() -> ExitCode {
             let _armed = ending::arm();
             run(cli.command)
         }
-        // Help and version are answers, all else is wrong input.
+        // Help and version are answers; other errors are wrong input.
         Err(e) if !e.use_stderr() => output::delivered(e.print()),
         Err(e) => {
             let _ = e.print();

@@ -1,4 +1,4 @@
-//! Numbers on the command line, refused where they make no sense: NaN, infinities, a wrong sign.
+//! Parsers of numbers on the command line that reject NaN, infinities and values out of range.
 
 /// A finite number.
 pub fn finite(text: &str) -> Result<f64, String> {
@@ -8,7 +8,7 @@ pub fn finite(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A number above zero.
+/// A positive number.
 pub fn positive(text: &str) -> Result<f64, String> {
     finite(text)
         .ok()
@@ -16,7 +16,7 @@ pub fn positive(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "a number above 0 is expected".to_owned())
 }
 
-/// A number from zero up.
+/// A number of at least zero.
 pub fn not_negative(text: &str) -> Result<f64, String> {
     finite(text)
         .ok()
@@ -24,7 +24,7 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "a number from 0 up is expected".to_owned())
 }
 
-/// A share of a whole.
+/// A fraction from 0 to 1.
 pub fn share(text: &str) -> Result<f64, String> {
     finite(text)
         .ok()

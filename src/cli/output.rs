@@ -1,12 +1,12 @@
-//! All that the program writes to its standard streams. A terminal, pipe or file that takes no more never ends a run; only an
-//! answer that was asked for and could not be delivered is a failure. Texts are written without what a terminal would take for
-//! a command: titles and names are the user's, and documentation of laws that of plugins.
+//! Output to the standard streams. A closed or full terminal, pipe or file never ends a run; only an
+//! explicitly requested answer that cannot be delivered is a failure. Terminal control characters are
+//! removed, since titles and names come from the user, and documentation of laws comes from plugins.
 
 use super::Failure;
 use crate::scene::source::{clean_json, clean_lines};
 use std::io::{ErrorKind, Write};
 
-/// Writes what the command was asked for to standard output. A reader that went away has what it wanted.
+/// Writes the requested answer to standard output. A closed pipe is not an error.
 ///
 /// # Errors
 /// It cannot be written.
@@ -14,7 +14,7 @@ pub fn answer(text: &str) -> Result<(), Failure> {
     delivered(write(&mut std::io::stdout().lock(), &clean_lines(text)))
 }
 
-/// Writes what the command was asked for as JSON to standard output.
+/// Writes the requested answer as JSON to standard output.
 ///
 /// # Errors
 /// It cannot be written.
@@ -22,10 +22,10 @@ pub fn answer_json(text: &str) -> Result<(), Failure> {
     delivered(write(&mut std::io::stdout().lock(), &clean_json(text)))
 }
 
-/// What came of writing an answer.
+/// Converts the result of writing an answer.
 ///
 /// # Errors
-/// It was not written, and not because its reader went away.
+/// It could not be written, for a reason other than a closed pipe.
 pub fn delivered(written: std::io::Result<()>) -> Result<(), Failure> {
     match written {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Failure::Failed(format!(
@@ -35,17 +35,17 @@ pub fn delivered(written: std::io::Result<()>) -> Result<(), Failure> {
     }
 }
 
-/// Writes what is good to know to standard output, if it can be written.
+/// Writes information to standard output, ignoring failures.
 pub fn inform(text: &str) {
     let _ = write(&mut std::io::stdout().lock(), &clean_lines(text));
 }
 
-/// Writes progress, a warning or an error to standard error, if it can be written.
+/// Writes progress, a warning or an error to standard error, ignoring failures.
 pub fn report(text: &str) {
     let _ = write(&mut std::io::stderr().lock(), &clean_lines(text));
 }
 
-/// Writes a text with colours of its own to standard error, if it can be written.
+/// Writes a text with terminal colours to standard error, ignoring failures.
 pub fn report_rendered(text: &str) {
     let _ = write(&mut std::io::stderr().lock(), text);
 }

@@ -1,4 +1,4 @@
-//! Progress: a bar on a terminal, plain lines elsewhere.
+//! Progress display: a bar on a terminal, plain lines otherwise.
 
 use super::output::report;
 use crate::record::Progress;
@@ -17,7 +17,7 @@ pub struct Display {
 }
 
 impl Display {
-    /// A bar on a terminal, a line now and then elsewhere, nothing when quiet.
+    /// A bar on a terminal, occasional lines otherwise, nothing if quiet.
     pub fn new(quiet: bool) -> Self {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::new(1);
@@ -37,7 +37,7 @@ impl Display {
         }
     }
 
-    /// After a step.
+    /// Updates the display after a step.
     pub fn step(&mut self, p: &Progress) {
         if self.quiet {
             return;
@@ -45,7 +45,7 @@ impl Display {
         let elapsed = self.started.elapsed();
         if let Some(bar) = &self.bar {
             if !self.begun && p.resumed_at > 0 {
-                // The time left follows from the steps of this part of the run alone.
+                // The time left is estimated from this part of a resumed run only.
                 bar.set_length(p.steps.1);
                 bar.set_position(p.resumed_at);
                 bar.reset_eta();
@@ -58,7 +58,7 @@ impl Display {
                 bar.set_message(self.message(p));
             }
         } else if elapsed >= self.next_line || p.steps.0 == p.steps.1 {
-            // Lines get rarer as the run gets longer.
+            // The interval between lines grows with the run time.
             self.next_line = elapsed.mul_f64(1.25).max(elapsed + Duration::from_secs(2));
             let left = left(elapsed, p);
             report(&format!(
@@ -87,16 +87,16 @@ impl Display {
         )
     }
 
-    /// At the end.
+    /// Ends the display.
     pub fn finish(&self) {
         if let Some(bar) = &self.bar {
-            // Where the run ended early it stays there.
+            // The bar of a run that ended early stays where it is.
             bar.abandon();
         }
     }
 }
 
-/// Time left (s), by the steps done since the run began or went on.
+/// Time left (s), from the steps since the run started or was resumed.
 fn left(elapsed: Duration, p: &Progress) -> f64 {
     let (done, all) = p.steps;
     let here = done.saturating_sub(p.resumed_at).max(1);

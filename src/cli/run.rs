@@ -22,19 +22,20 @@ pub struct RunArgs {
     /// Folder of the results; results/<case> by default
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Threads; the results have the same bits for any number
+    /// Threads; results are bit-identical for any number
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
-    /// Go on from the last checkpoint of the same run in the folder; the results are those of a run that was not stopped
+    /// Continue from the last checkpoint in the folder; results equal those of an uninterrupted run
     #[arg(long)]
     resume: bool,
-    /// Exit 1 also where the run came to its end and is not trustworthy (steps that missed the tolerance, a check that failed)
+    /// Exit with 1 also if the run finished but is not trustworthy (steps missed the tolerance, or a check
+    /// failed)
     #[arg(long)]
     strict: bool,
-    /// Print all that is known at the end: first and last cycle, measures, phases, solver, laws
+    /// Print all details at the end: first and last cycle, measures, phases, solver, laws
     #[arg(long, short)]
     verbose: bool,
-    /// No progress; the summary is printed as JSON
+    /// Show no progress; print the summary as JSON
     #[arg(long)]
     json: bool,
 }
@@ -91,7 +92,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     strict(args, summary.reasons.first().map(String::as_str))
 }
 
-/// Fails where `--strict` asks for it and there is a reason not to trust the run.
+/// Fails if `--strict` is given and there is a reason not to trust the run.
 fn strict(args: &RunArgs, reason: Option<&str>) -> Result<(), Failure> {
     match reason.filter(|_| args.strict) {
         None => Ok(()),
@@ -101,7 +102,7 @@ fn strict(args: &RunArgs, reason: Option<&str>) -> Result<(), Failure> {
     }
 }
 
-/// Runs, or goes on; none where there is nothing left to do.
+/// Runs or resumes a case; `None` if the run is already finished.
 fn go<S: Dimensional>(
     loaded: &Loaded,
     built: Built<S>,
@@ -120,9 +121,11 @@ fn go<S: Dimensional>(
     let mut stop = None;
     if args.resume {
         match record::stopped(loaded, &built, options)? {
-            Found::Nothing => tell(format!("nothing to resume in {out}: begins at the start")),
+            Found::Nothing => tell(format!(
+                "nothing to resume in {out}: starting from the beginning"
+            )),
             Found::State(state) => {
-                tell(format!("resumes the run in {out}"));
+                tell(format!("resuming the run in {out}"));
                 stop = Some(state);
             }
             Found::Finished => {
@@ -132,7 +135,7 @@ fn go<S: Dimensional>(
                     answer_json(text.trim_end())?;
                 } else {
                     inform(&format!(
-                        "the run in {out} is finished: nothing to do; to run it anew leave --resume out"
+                        "the run in {out} is finished: nothing to do; to run it again omit --resume"
                     ));
                 }
                 let kept: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
@@ -170,24 +173,24 @@ fn go<S: Dimensional>(
         })
 }
 
-/// Where the case writes the law or the body that ended a run.
+/// Location in the case of the law or the body that ended a run.
 fn place(loaded: &Loaded, origins: &[Origin], error: &RunError) -> Option<String> {
     let (path, what) = match error {
         RunError::Step(StepError::Law { source, .. }) => {
             let (kind, name) = source.law()?;
             let slot = kind.word();
             let interfaces = &loaded.case.interfaces;
-            // Several interfaces may have the same law.
+            // Several interfaces may use the same law.
             let at_fault = source.interface();
             let k = interfaces.iter().position(|i| {
                 i.law(kind) == Some(name) && at_fault.is_none_or(|wanted| wanted == i.name)
             })?;
-            let what = format!("interface `{}` has this law", interfaces[k].name);
+            let what = format!("interface `{}` uses this law", interfaces[k].name);
             (format!("interfaces.{k}.{slot}"), what)
         }
         RunError::Step(StepError::NotFinite { body, .. }) => {
             let origin = origins.get(usize::try_from(*body).ok()?)?;
-            (origin.path(), "the body is written".to_owned())
+            (origin.path(), "the body is defined".to_owned())
         }
         _ => return None,
     };

@@ -1,4 +1,4 @@
-//! `fretwork solve`: problems of the field's shared collection.
+//! `fretwork solve`: solves contact problems in FCLIB files.
 
 mod say;
 
@@ -23,25 +23,26 @@ pub struct SolveArgs {
     /// Error to reach: |p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|, |u|)
     #[arg(long, value_name = "T", default_value = "1e-8", value_parser = positive)]
     tolerance: f64,
-    /// Ask for the scale-free error too, |r| / max(|u|, |q|) in velocities: solve to it as well, and end with 1 where it is above T.
-    /// By default it is told, with a warning above 100 times the tolerance (no less than 1e-3, no more than 0.1)
+    /// Also bound the scale-free error |r| / max(|u|, |q|) in velocities: iterate until both are met, and
+    /// exit with 1 if it stays above T. Without this option it is reported, with a warning above 100 times
+    /// the tolerance (at least 1e-3, at most 0.1)
     #[arg(long, value_name = "T", value_parser = positive)]
     scale_free_tolerance: Option<f64>,
-    /// Iterations at most
+    /// Largest number of iterations
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..))]
     max_iterations: u32,
-    /// Seconds at most for each solve
+    /// Time limit for each solve (s)
     #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = positive)]
     time_limit: f64,
-    /// Writes the problem with its solution here; also when the limits were reached
+    /// Write the problem with its solution to this file, also if a limit was reached
     #[arg(long, value_name = "SOLUTION.hdf5")]
     out: Option<PathBuf>,
-    /// Prints JSON: an object, or an array of them where several files are given
+    /// Print JSON: an object, or an array of objects for several files
     #[arg(long)]
     json: bool,
 }
 
-/// One solver, or all.
+/// One solver, or all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Choice {
     One(Method),
@@ -61,24 +62,24 @@ fn long_help() -> String {
     for method in Method::ALL {
         out += &format!("  {:<12} {}\n", method.name(), method.about());
     }
-    out + "  all          every one of them: a table, solved first, then by time"
+    out + "  all          all solvers in a table, converged ones first, then by time"
 }
 
 impl SolveArgs {
-    /// The scale-free error above which a solution is doubted.
+    /// Scale-free error above which a warning is printed.
     fn scale_free_limit(&self) -> f64 {
         self.scale_free_tolerance
             .unwrap_or_else(|| scale_free::usual_limit(self.tolerance))
     }
 }
 
-/// What was done with one file.
+/// Results for one file.
 struct Solved {
     path: PathBuf,
     problem: Problem,
     read_seconds: f64,
     reduce_seconds: f64,
-    /// The best first.
+    /// Best first.
     outcomes: Vec<Outcome>,
 }
 
@@ -99,7 +100,7 @@ pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
                     super::output::answer(&say::text(&solved, args))?;
                 }
             }
-            // The files after it are still solved; it decides the exit code.
+            // The remaining files are still solved; this one determines the exit code.
             Err(Failure::Usage(message)) => wrong.push(message),
             Err(other) => return Err(other),
         }
@@ -125,7 +126,7 @@ pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Where the solution goes must be known to be right before time is spent.
+/// Checks that the solution can be written before any time is spent.
 fn check_out(out: &Path, problems: &[PathBuf]) -> Result<(), Failure> {
     let refuse = |reason: &str| Err(Failure::Usage(format!("--out {}: {reason}", out.display())));
     if problems.len() > 1 {
@@ -156,7 +157,7 @@ fn check_out(out: &Path, problems: &[PathBuf]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A problem in local form, and what leads back.
+/// A problem in local form, with the map back to its original form.
 enum Form<'a> {
     AsGiven(&'a LocalProblem),
     Reduced(Reduction),
@@ -223,7 +224,7 @@ fn one(path: &Path, args: &SolveArgs) -> Result<Solved, Failure> {
         Choice::One(method) => vec![run(method)],
         Choice::All => Method::ALL.iter().copied().map(run).collect(),
     };
-    // Among those that reached the tolerance the fastest, among the others the most accurate.
+    // The fastest of those that reached the tolerance, then the most accurate of the others.
     outcomes.sort_by(|a, b| {
         let by = |o: &Outcome| if o.converged { o.seconds } else { o.error };
         (b.converged.cmp(&a.converged)).then(by(a).total_cmp(&by(b)))

@@ -1,4 +1,4 @@
-//! `fretwork trade`: accuracy against cost.
+//! `fretwork trade`: studies of accuracy against cost.
 
 mod refuse;
 
@@ -30,45 +30,48 @@ use std::time::{Duration, Instant};
 pub struct TradeArgs {
     #[command(flatten)]
     case: CaseArgs,
-    /// An output and the error wanted of it: a name of summary.json (wear.Qs) or statistics.COLUMN (mean of the last half;
-    /// :max, :min, :last), =1% or =0.003 in its unit; by default friction, damage ratio and wear at 1 %
+    /// An output and its wanted error: a name of summary.json (wear.Qs) or statistics.COLUMN (mean of the
+    /// last half; :max, :min, :last), =1% or =0.003 in its unit; by default friction, damage ratio and wear
+    /// at 1 %
     #[arg(long = "output", value_name = "NAME=ERROR")]
     outputs: Vec<String>,
-    /// What an output is in truth, where a closed form says so; errors are then against it
+    /// Exact value of an output, for example from a closed form; errors are then measured against it
     #[arg(long = "exact", value_name = "NAME=VALUE")]
     exact: Vec<String>,
-    /// Vary this: step, tolerance, solver, test_every, coupling, correction, grains; by default all but grains
+    /// Parameter to vary: step, tolerance, solver, test_every, coupling, correction, grains; by default all
+    /// but grains
     #[arg(long = "knob", value_name = "NAME")]
     knobs: Vec<String>,
-    /// Vary any value of the case; the first value is the reference's
+    /// Vary any value of the case; the first value is that of the reference
     #[arg(long = "vary", value_name = "KEY.PATH=A,B,C")]
     vary: Vec<String>,
-    /// Seeds a setting, from the case's own upwards; one run where nothing is drawn and nothing chaotic
+    /// Seeds per setting, from the case's own upwards; one run if nothing is random and contacts are not
+    /// chaotic
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     seeds: u16,
-    /// Time for everything: 90s, 10m, 2h
+    /// Time budget of the study: 90s, 10m, 2h
     #[arg(long, value_name = "TIME", default_value = "10m", value_parser = duration)]
     budget: Duration,
-    /// Runs side by side; they disturb each other's timing, so that 1 times best
+    /// Parallel runs; they disturb each other's timing, so 1 times best
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
-    /// Folder of the results, where a study also goes on that was interrupted; results/trade/<case> by default
+    /// Folder of the results, in which an interrupted study also continues; by default results/trade/<case>
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Share of steps that may miss the tolerance in a run that counts
+    /// Largest fraction of steps that may miss the tolerance in an accepted run
     #[arg(long, value_name = "SHARE", default_value_t = 1e-2, value_parser = share)]
     unconverged: f64,
-    /// Energy residual, over the largest energy, of a run that counts
+    /// Largest energy residual, relative to the largest energy, of an accepted run
     #[arg(long, value_name = "SHARE", default_value_t = 1e-2, value_parser = not_negative)]
     residual: f64,
-    /// No progress; the study is printed as JSON
+    /// Show no progress; print the study as JSON
     #[arg(long)]
     json: bool,
 }
 
-/// `90s`, `10m`, `1h30m`; a bare number is seconds.
+/// Parses `90s`, `10m`, `1h30m`; a bare number is in seconds.
 fn duration(text: &str) -> Result<Duration, String> {
-    let wrong = || format!("`{text}` is no time; expected such as 90s, 10m, 1h30m");
+    let wrong = || format!("`{text}` is not a time; expected for example 90s, 10m, 1h30m");
     let (mut total, mut digits) = (0.0, String::new());
     for c in text.trim().chars() {
         let unit = match c {
@@ -114,7 +117,7 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     let other_seed = format!("seed={}", loaded.case.seed.wrapping_add(1));
     let sets = [args.case.sets.as_slice(), &[other_seed]].concat();
     let other = load(&args.case.case, &sets)?;
-    // A sample that only some seeds can make is a random one.
+    // The sample is random if some seeds fail to generate it.
     let random = match other.build(&search) {
         Ok(scene) => Facts::of(&other, &scene).drawn != first.drawn,
         Err(_) => true,
@@ -139,7 +142,7 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
         let name = args.case.case.file_stem().unwrap_or_default();
         Path::new("results").join("trade").join(name)
     });
-    // What an earlier study left may need no time at all.
+    // An earlier study in the folder may have done all runs already.
     let begun = out.join("runs").is_dir();
     let mut scene = Some(scene);
     if !begun && let Some(scene) = scene.take() {
@@ -191,13 +194,13 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     if !random && args.seeds == 1 {
         study.notes.push("Nothing in the case is drawn from its seed, and one run a setting does not show whether contacts are chaotic: errors have no intervals.".into());
     } else if random && count == 1 {
-        study.notes.push("One seed tells no scatter: no error has an interval, and nothing can be claimed. Give --seeds 3 or more.".into());
+        study.notes.push("One seed gives no scatter: no error has an interval, and no conclusion can be drawn. Give --seeds 3 or more.".into());
     }
     study
         .notes
         .push("Precision is not varied: Fretwork computes and stores in f64 only.".into());
     if study.jobs > 1 {
-        study.notes.push(format!("{} runs went side by side, which disturbs their timing; visits (contacts times iterations) do not depend on it.", study.jobs));
+        study.notes.push(format!("{} runs ran in parallel, which disturbs their timing; visits (contacts times iterations) do not depend on it.", study.jobs));
     }
     study.look_for_chaos(args.seeds.into(), stop)?;
     study.prepare(stop)?;
@@ -272,12 +275,12 @@ fn tell(
     let drawn =
         figure::draw(study, &found, &loaded.case.name, &picture).map_err(TradeError::from)?;
     if !drawn {
-        // One of an earlier study would be taken for this one's.
+        // A picture of an earlier study would be mistaken for one of this study.
         let _ = std::fs::remove_file(&picture);
     }
     let ended = if interrupted {
         Err(Failure::Failed(format!(
-            "interrupted: what ran is kept; to go on from there:\n  {}",
+            "interrupted: finished runs are kept; to continue from there:\n  {}",
             again::command(&[])
         )))
     } else {
@@ -313,18 +316,18 @@ fn tell(
         };
         if !dropped.is_empty() {
             what.push_str(&format!(
-                " Finer than this budget allows the reference: {}; a larger --budget takes them up.",
+                " Finer than this budget allows the reference: {}; a larger --budget includes them.",
                 dropped.join("; ")
             ));
         }
         inform(&format!(
-            "INCOMPLETE, {why}.{what} The same command goes on from here."
+            "INCOMPLETE, {why}.{what} The same command continues from here."
         ));
     }
     let last = if drawn {
         format!("{}/trade.png", out.display())
     } else {
-        "no picture: no setting has an error that is known".into()
+        "no picture: no setting has a known error".into()
     };
     inform(&format!(
         "{0}/trade.csv, {0}/trade.json, {last}",
@@ -333,18 +336,18 @@ fn tell(
     ended
 }
 
-/// Whether a `--set` and a `--vary` name the same key.
+/// Whether a `--set` and a `--vary` have the same key.
 fn same_key(set: &str, vary: &str) -> bool {
     let key = |t: &str| t.split('=').next().map(|k| k.trim().to_owned());
     key(set) == key(vary)
 }
 
-/// What a study asks of a scene.
+/// Properties of a scene that a study needs.
 struct Facts {
     methods: Vec<Method>,
     offer: Offer,
     materials: Vec<(String, String)>,
-    /// What a seed may change: places and shapes, as a hash.
+    /// Hash of the positions and shapes, which a seed may change.
     drawn: u64,
 }
 
@@ -378,7 +381,7 @@ impl Facts {
     }
 }
 
-/// FNV-1a over what is written to it, so that a scene need not be held as text.
+/// FNV-1a hash of everything written to it, so that a scene need not be formatted to a string.
 struct Hasher(u64);
 
 impl std::fmt::Write for Hasher {

@@ -1,4 +1,4 @@
-//! What a run leaves behind, and the run itself: analysis of [`fretwork_observe`], files of [`fretwork_store`], pictures of
+//! The run loop and its results: analysis by [`fretwork_observe`], files by [`fretwork_store`], pictures by
 //! [`fretwork_plot`].
 pub mod run;
 

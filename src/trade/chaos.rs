@@ -1,8 +1,9 @@
-//! Whether a case that draws nothing from its seed is chaotic all the same.
+//! Test whether a case without random numbers is chaotic.
 //!
-//! The case's own setting is run twice, the second time with a step longer by a part in 1e10. Where no difference grows, the
-//! outputs agree as well as that; where contacts are chaotic they part as those of two seeds do. Then runs whose steps are longer by
-//! k parts in 1e10 stand for seeds, and errors have intervals.
+//! The case's own setting is run twice, the second time with a step longer by 1e-10 of itself. If no
+//! difference grows, the outputs agree to a similar accuracy; if contacts are chaotic, they differ as those
+//! of two seeds do. Then runs whose steps are longer by k times 1e-10 take the place of seeds, and errors
+//! have intervals.
 
 use super::TradeError;
 use super::child::{Ended, Launcher, Status, summary};
@@ -12,26 +13,27 @@ use super::study::Study;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// A step is longer by so much, in parts of itself, for the second run, twice as much for the third.
+/// Relative increase of the step for the second run; twice this for the third, and so on.
 const NUDGE: f64 = 1e-10;
 
-/// A difference that is noticed, in parts of the error wanted.
+/// Smallest noticed difference, as a fraction of the wanted error.
 const NOTICED: f64 = 0.01;
 
-/// Share of the budget that the two runs may take.
+/// Largest fraction of the budget for the two runs.
 const SHARE: f64 = 0.2;
 
-/// How runs of a case that draws nothing are told apart.
+/// Distinction of the runs of a case without random numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Perturbation {
-    /// The seed of the run that is not nudged.
+    /// Seed of the unperturbed run.
     pub first: u64,
     /// The case's own step (s).
     pub step: f64,
 }
 
 impl Perturbation {
-    /// The step of a run with these `--set` (s); none where it is the setting's own, or stands in a whole `time`.
+    /// Step of a run with these `--set` arguments (s); `None` if it is the setting's own, or is part of a
+    /// whole `time`.
     pub fn step(&self, sets: &[&str], seed: u64) -> Option<f64> {
         let times = seed.wrapping_sub(self.first);
         let key = |set: &&str| set.split('=').next().unwrap_or_default().trim().to_owned();
@@ -45,7 +47,7 @@ impl Perturbation {
 }
 
 impl Study {
-    /// Looks for chaos in a case that draws nothing; where there is some, each setting gets so many runs.
+    /// Tests a case without random numbers for chaos; if it is chaotic, each setting gets `runs` perturbed runs.
     ///
     /// # Errors
     /// A run cannot be started.
@@ -68,7 +70,7 @@ impl Study {
                     }
                     Ended::Interrupted => {
                         self.notes.push(format!(
-                            "Whether contacts are chaotic here was not seen: two runs take more than {:.0} % of the budget.",
+                            "Whether contacts are chaotic was not tested: two runs take more than {:.0} % of the budget.",
                             100.0 * SHARE
                         ));
                         return Ok(());
@@ -87,7 +89,7 @@ impl Study {
             None => {
                 self.done.remove(&(own, first.wrapping_add(1)));
                 self.notes.push(format!(
-                    "Nothing in the case is drawn from its seed, and a step longer by {NUDGE:e} of itself changes no output \
+                    "Nothing in the case is drawn from its seed, and a relative change of the step by {NUDGE:e} changes no output \
                      by a hundredth of the error wanted: one run a setting, and errors without intervals."
                 ));
             }
@@ -95,8 +97,8 @@ impl Study {
                 self.random = true;
                 self.seeds = (0..runs).map(|k| first.wrapping_add(k)).collect();
                 self.notes.push(format!(
-                    "Nothing in the case is drawn from its seed, but a step longer by {NUDGE:e} of itself changes {told}: \
-                     contacts are chaotic here, and runs with steps longer by k times that stand for seeds."
+                    "Nothing in the case is drawn from its seed, but a relative change of the step by {NUDGE:e} changes {told}: \
+                     contacts are chaotic, and runs with steps longer by multiples of that take the place of seeds."
                 ));
             }
         }
@@ -104,7 +106,7 @@ impl Study {
     }
 }
 
-/// What an output does between two runs, where that is noticed.
+/// Description of an output's difference between two runs, if it is noticed.
 fn parted(output: &Output, one: &Path, other: &Path) -> Option<String> {
     let [a, b] = [one, other].map(|place| output.read(&summary(place), place));
     let (a, b) = (a?, b?);
@@ -116,7 +118,7 @@ fn parted(output: &Output, one: &Path, other: &Path) -> Option<String> {
 }
 
 impl Launcher {
-    /// The `time.step` of a run that is nudged.
+    /// The `time.step` of a perturbed run.
     pub(super) fn nudged(&self, sets: &[&str], seed: u64) -> Option<String> {
         let step = self.nudge?.step(sets, seed)?;
         Some(format!("time.step={step:e}"))

@@ -1,4 +1,5 @@
-//! Runs of a case in processes of their own, and what they leave: kept by a key, so that none is done twice.
+//! Runs of a case in separate processes, and their stored results, which are looked up by a key so that no
+//! run is repeated.
 
 use super::TradeError;
 use super::chaos::Perturbation;
@@ -13,30 +14,30 @@ use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// What a run came to.
+/// Outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Status {
-    /// Done, and fit to compare.
+    /// It finished, and can be compared.
     Done,
-    /// It failed, was refused, or is not to be trusted: why.
+    /// It failed, was rejected or is not trustworthy: reason.
     Failed(String),
-    /// It was ended after so many seconds, slower than the reference.
+    /// It was stopped after this many seconds, as slower than the reference.
     Slow(f64),
 }
 
-/// What `run.json` keeps of a run that ended by itself: numbers only, judged anew whenever they are read.
+/// Contents of `run.json` for a run that ended by itself: numbers only, judged again whenever they are read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Kept {
     sets: Vec<String>,
     seed: u64,
     /// Exit code.
     exit: i32,
-    /// First line of what it said on stderr.
+    /// First line of its output on stderr.
     said: String,
     steps: Option<f64>,
     unconverged: f64,
     uncoupled: f64,
-    /// None where the energy is not finite.
+    /// `None` if the energy is not finite.
     residual: Option<f64>,
     seconds: f64,
     wall: f64,
@@ -44,7 +45,8 @@ struct Kept {
 }
 
 impl Kept {
-    /// Whether another try may end otherwise: it was refused (files may have changed), could not write, or left nothing.
+    /// Whether a repetition may end differently: the run was rejected (files may have changed), could not
+    /// write, or left nothing.
     fn passing(&self) -> bool {
         match self.exit {
             0 => self.steps.is_none(),
@@ -54,68 +56,68 @@ impl Kept {
     }
 }
 
-/// A run that ended by itself, or for good.
+/// A run that ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finished {
-    /// What it came to.
+    /// Outcome.
     pub status: Status,
-    /// Whether the failure, if it is one, is of this time only: it is not kept, and the run is tried again by the next study.
+    /// Whether a failure may be temporary: it is not stored, and the next study tries again.
     pub passing: bool,
-    /// The `--set` arguments it ran with.
+    /// The `--set` arguments of the run.
     pub sets: Vec<String>,
-    /// Its seed.
+    /// Seed of the run.
     pub seed: u64,
-    /// Seconds of stepping, of the processor.
+    /// Processor time of the steps (s).
     pub seconds: f64,
-    /// Seconds that the whole run took, by the clock.
+    /// Wall time of the whole run (s).
     pub wall: f64,
-    /// Contacts times iterations, summed over the steps: a cost that does not depend on the machine.
+    /// Contacts times iterations, summed over the steps: a machine-independent measure of cost.
     pub visits: f64,
 }
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ended {
-    /// For good.
+    /// With a definite outcome.
     Finished(Finished),
-    /// Its time was out, or the study was interrupted; nothing is kept.
+    /// By its time limit or an interruption of the study; nothing is stored.
     Interrupted,
 }
 
-/// When a run is not to be trusted.
+/// Limits beyond which a run is not trusted.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// Share of steps that may miss the tolerance.
+    /// Fraction of steps that may miss the tolerance.
     pub unconverged: f64,
     /// Energy residual over the largest energy.
     pub residual: f64,
 }
 
-/// Starts runs of one case.
+/// Launcher of the runs of one case.
 #[derive(Debug)]
 pub struct Launcher {
-    /// The program.
+    /// Path of the program.
     pub program: PathBuf,
     /// The case.
     pub case: PathBuf,
-    /// `--set` of the user.
+    /// `--set` arguments of the user.
     pub sets: Vec<String>,
-    /// Words about plugins that each run is given.
+    /// Plugin arguments passed to each run.
     pub plugins: Vec<String>,
-    /// Where runs are kept.
+    /// Folder in which runs are stored.
     pub folder: PathBuf,
-    /// When they are not to be trusted.
+    /// Limits beyond which they are not trusted.
     pub limits: Limits,
-    /// How runs are told apart where the seed draws nothing.
+    /// Distinction of the runs if the seed changes nothing.
     pub nudge: Option<Perturbation>,
     fingerprint: String,
 }
 
 impl Launcher {
-    /// For a case with the materials it reads, `(name, text)`.
+    /// A launcher for a case with the materials it reads, `(name, text)`.
     ///
     /// # Errors
-    /// The program cannot find itself, or the folder cannot be made.
+    /// The path of the program cannot be determined, or the folder cannot be created.
     pub fn new(
         loaded: &Loaded,
         materials: &[(String, String)],
@@ -124,7 +126,7 @@ impl Launcher {
         limits: Limits,
     ) -> Result<Self, TradeError> {
         let unknown = |e: &dyn std::fmt::Display| {
-            TradeError::Usage(format!("the program does not find its own file: {e}"))
+            TradeError::Usage(format!("the path of the program cannot be determined: {e}"))
         };
         let program = std::env::current_exe().map_err(|e| unknown(&e))?;
         let mut hash = Sha256::new();
@@ -151,12 +153,12 @@ impl Launcher {
         })
     }
 
-    /// What tells this case, with this program, from others.
+    /// Hash that identifies the case and the program.
     pub fn fingerprint(&self) -> &str {
         &self.fingerprint
     }
 
-    /// The folder of a run.
+    /// Folder of a run.
     pub fn place(&self, sets: &[String], seed: u64) -> PathBuf {
         let mut hash = Sha256::new();
         hash.update(&self.fingerprint);
@@ -168,17 +170,17 @@ impl Launcher {
         self.folder.join(&hex(&hash.finalize())[..16])
     }
 
-    /// What an earlier run left, judged by the limits of today.
+    /// Stored result of an earlier run, judged by the current limits.
     pub fn kept(&self, sets: &[String], seed: u64) -> Option<Finished> {
         let text = std::fs::read_to_string(self.place(sets, seed).join("run.json")).ok()?;
         let kept: Kept = serde_json::from_str(&text).ok()?;
         (!kept.passing()).then(|| self.judged(kept))
     }
 
-    /// Runs to its end, to `deadline`, or for `bound` at most.
+    /// Runs to the end, to `deadline`, or for at most `bound`.
     ///
     /// # Errors
-    /// The process cannot be started, or the folder not be written.
+    /// The process cannot be started, or the folder cannot be written.
     pub fn run(
         &self,
         sets: &[String],
@@ -216,11 +218,12 @@ impl Launcher {
                 }
                 break None;
             }
-            // Short runs are waited for closely, long ones seldom.
+            // The polling interval grows with the run time.
             let nap = started.elapsed() / 50;
             std::thread::sleep(nap.clamp(Duration::from_millis(2), Duration::from_millis(100)));
         };
-        // Ctrl-C reaches the run too, maybe before this program: it then ends as one that did not finish.
+        // Ctrl-C reaches the child process too, possibly before this program; the run then counts as
+        // interrupted.
         let done = code.is_some_and(|c| c.success());
         let signalled = || interrupted(&place);
         if !done && (stop.load(Ordering::Relaxed) || signalled()) {
@@ -244,12 +247,12 @@ impl Launcher {
                 run.passing = true;
                 run.status = match ended {
                     None => Status::Slow(elapsed),
-                    _ => Status::Failed("ended by a signal from outside".into()),
+                    _ => Status::Failed("ended by a signal".into()),
                 };
                 run
             }
         };
-        // The numbers stay; states and pictures of every setting would fill the disk.
+        // Only the numbers are kept; states and pictures of every setting would fill the disk.
         for file in ["results.h5", "contacts.vtkhdf", "bodies.vtkhdf"] {
             let _ = std::fs::remove_file(place.join(file));
         }
@@ -298,10 +301,10 @@ impl Launcher {
         }
     }
 
-    /// Why a run that ended well is not to be trusted.
+    /// Reason why a finished run is not trusted.
     fn doubt(&self, kept: &Kept) -> Option<String> {
         let Some(steps) = kept.steps else {
-            return Some("it left no summary".into());
+            return Some("it wrote no summary".into());
         };
         let most = self.limits.unconverged * steps.max(1.0);
         if kept.unconverged > most {
@@ -310,7 +313,7 @@ impl Launcher {
         }
         if kept.uncoupled > most {
             return Some(format!(
-                "{} of {steps} steps left damage and opening apart",
+                "{} of {steps} steps did not converge in the damage coupling",
                 kept.uncoupled
             ));
         }
@@ -325,17 +328,17 @@ impl Launcher {
     }
 }
 
-/// Whether a run says that a signal ended it.
+/// Whether a run reports that a signal ended it.
 fn interrupted(place: &Path) -> bool {
     summary(place)["interrupted"] == Value::Bool(true)
 }
 
-/// What a run left in its folder; `exit` none where it did not end by itself.
+/// Result that a run left in its folder; `exit` is `None` if it did not end by itself.
 fn kept(place: &Path, sets: &[String], seed: u64, exit: Option<i32>, elapsed: f64) -> Kept {
     let summary = summary(place);
     let number = |key: &str| summary.pointer(key).and_then(Value::as_f64);
     let said = std::fs::read_to_string(place.join("stderr.txt")).unwrap_or_default();
-    let first = said.lines().next().unwrap_or("it did not say why");
+    let first = said.lines().next().unwrap_or("no reason was given");
     Kept {
         sets: sets.to_vec(),
         seed,
@@ -351,7 +354,7 @@ fn kept(place: &Path, sets: &[String], seed: u64, exit: Option<i32>, elapsed: f6
     }
 }
 
-/// The summary of a run; null where there is none.
+/// Summary of a run; null if there is none.
 pub fn summary(place: &Path) -> Value {
     std::fs::read_to_string(place.join("summary.json"))
         .ok()
@@ -359,7 +362,7 @@ pub fn summary(place: &Path) -> Value {
         .unwrap_or(Value::Null)
 }
 
-/// Contacts times iterations over all steps, from the rows there are.
+/// Contacts times iterations over all steps, estimated from the rows of the statistics.
 fn visits(place: &Path, steps: f64) -> f64 {
     let path = place.join("statistics.csv");
     let both = column(&path, "contacts").zip(column(&path, "iterations"));
@@ -377,7 +380,7 @@ fn hex(bytes: &[u8]) -> String {
 mod tests {
     use super::*;
 
-    /// The same run counts or not as the limits of the day say; what may end otherwise next time is not kept.
+    /// A stored run is judged by the current limits; a failure that may be temporary is not stored.
     #[test]
     fn a_kept_run_is_judged_by_todays_limits() {
         let run = |exit, said: &str| Kept {

@@ -1,4 +1,5 @@
-//! Combinations of levels that were cheaper alone, those first that the single knobs promise to be within the wanted error.
+//! Combinations of levels that were cheaper alone; first those predicted, from the single parameters, to meet
+//! the wanted error.
 
 use super::compare::Row;
 use super::frontier::frontier;
@@ -6,11 +7,11 @@ use super::output::Wanted;
 use super::setting::Setting;
 use super::study::Study;
 
-/// Most combinations that are tried.
+/// Limit on the number of combinations.
 const COMBINATIONS: usize = 8;
 
 impl Study {
-    /// Settings that change several knobs, put together from levels that were cheaper alone.
+    /// Settings that change several parameters, composed of levels that were cheaper alone.
     pub(super) fn combinations(&self) -> Vec<Setting> {
         let found = self.compare();
         let own = Setting::own(&self.knobs);
@@ -21,7 +22,7 @@ impl Study {
         else {
             return Vec::new();
         };
-        // Signed errors in parts of what is wanted, and the intervals.
+        // Signed errors as fractions of the wanted error, with intervals.
         let scaled = |row: &Row| -> Option<Vec<(f64, f64)>> {
             let each = row.errors.iter().zip(&self.outputs).map(|(e, o)| {
                 let (Wanted::Relative(w) | Wanted::Absolute(w)) = o.wanted;
@@ -49,7 +50,7 @@ impl Study {
                     ));
                 }
             }
-            // The cheapest few of a knob.
+            // The cheapest levels of a parameter.
             here[1..].sort_by(|a, b| a.1.total_cmp(&b.1));
             here.truncate(4);
             moves.push(here);
@@ -83,7 +84,7 @@ impl Study {
         let on = frontier(&plane);
         let mut kept = on.into_iter();
         points.retain(|_| kept.next().unwrap_or(false));
-        // Those promised to be within the wanted error, the cheapest first; then the nearest to it.
+        // First those predicted to meet the wanted error, cheapest first; then the nearest to it.
         points.sort_by(|a, b| {
             let key = |p: &(Setting, f64, f64)| if p.2 <= 1.0 { (0, p.1) } else { (1, p.2) };
             let (x, y) = (key(a), key(b));

@@ -1,4 +1,5 @@
-//! Errors against the reference: seed by seed, with their intervals, told apart from the scatter among seeds.
+//! Comparison with the reference: errors seed by seed with confidence intervals, distinguished from the
+//! scatter among seeds.
 
 use super::child::{Finished, Launcher, Status, summary};
 use super::frontier::frontier;
@@ -9,83 +10,83 @@ use super::setting::Setting;
 use super::study::Ledger;
 use std::collections::BTreeMap;
 
-/// An output of a setting. Errors are shares of the reference's value where a share is wanted, else in the output's unit.
+/// An output of a setting. Errors are fractions of the reference's value if the wanted error is relative,
+/// otherwise in the output's unit.
 #[derive(Clone, Debug)]
 pub struct OutputError {
-    /// The output itself, over seeds, in its unit.
+    /// The output over the seeds, in its unit.
     pub value: Mean,
-    /// What it is more than the reference, seed by seed.
+    /// Difference from the reference, seed by seed.
     pub error: Mean,
-    /// The error with its interval at most.
+    /// Upper bound of the error from its interval.
     pub at_most: f64,
-    /// The same and the reference's own error.
+    /// The same plus the reference's own error.
     pub bound: f64,
-    /// Whether no other setting is both cheaper and better known to be near.
+    /// Whether no other setting is cheaper with a smaller bound on the error.
     pub on_frontier: bool,
 }
 
-/// How far the reference may itself be off.
+/// Error of the reference itself.
 #[derive(Clone, Debug)]
 pub struct OwnError {
-    /// The reference over seeds, in the unit of the output.
+    /// The output of the reference over the seeds, in its unit.
     pub value: Mean,
-    /// At most; infinite where it is not known.
+    /// Upper bound; infinite if unknown.
     pub at_most: f64,
-    /// From what: a sentence.
+    /// Basis of the estimate, as a sentence.
     pub why: String,
 }
 
-/// A setting and how it did.
+/// A setting and its results.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// It.
+    /// The setting.
     pub setting: Setting,
     /// Its name.
     pub name: String,
-    /// Seeds that ran.
+    /// Number of seeds that ran.
     pub seeds: usize,
-    /// Why it is not to be used, if so.
+    /// Reason why it cannot be used, if any.
     pub failed: Option<String>,
-    /// Seconds of stepping, a run.
+    /// Processor time of the steps per run (s).
     pub seconds: f64,
-    /// Contact visits, a run.
+    /// Contacts times iterations per run.
     pub visits: f64,
-    /// How many times faster than the reference: seed by seed, with the lowest and highest of its interval where there are
-    /// seeds enough.
+    /// Speed relative to the reference, seed by seed, with its confidence interval if there are enough seeds.
     pub faster: Option<(f64, Option<(f64, f64)>)>,
-    /// One an output; none where it has no value.
+    /// One entry per output; `None` if it has no value.
     pub errors: Vec<Option<OutputError>>,
 }
 
-/// All settings that ran.
+/// Comparison of all settings that ran.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// From the cheapest to the dearest.
+    /// Settings from the cheapest to the most expensive.
     pub rows: Vec<Row>,
-    /// One an output; none while the reference has no value.
+    /// One entry per output; `None` if the reference has no value.
     pub own: Vec<Option<OwnError>>,
-    /// The place of the reference, if it ran.
+    /// Index of the reference, if it ran.
     pub reference: Option<usize>,
 }
 
-/// What is compared.
+/// Input of a comparison.
 pub struct Compared<'a> {
-    /// Varied.
+    /// Varied parameters.
     pub knobs: &'a [StudyParameter],
-    /// Read.
+    /// Compared outputs.
     pub outputs: &'a [Output],
     /// Whether the seed changes the scene.
     pub random: bool,
-    /// Seeds wanted.
+    /// Requested seeds.
     pub seeds: &'a [u64],
-    /// The runs.
+    /// Finished runs.
     pub done: &'a Ledger,
-    /// Where they stand.
+    /// Launcher, which knows their folders.
     pub launcher: &'a Launcher,
 }
 
 impl Compared<'_> {
-    /// Sets every setting against the reference.
+    /// Compares every setting with the reference.
     pub fn compare(&self) -> Comparison {
         let reference = Setting::reference(self.knobs);
         let mut settings: Vec<&Setting> = self.done.keys().map(|(s, _)| s).collect();
@@ -109,7 +110,7 @@ impl Compared<'_> {
                 .iter()
                 .map(|r| {
                     let bound = match &r.errors[o] {
-                        // Where nothing tells its own error, it is right by definition.
+                        // If nothing bounds its own error, the reference is exact by definition.
                         Some(e) if r.setting == reference && e.bound.is_infinite() => 0.0,
                         Some(e) => e.bound,
                         None => f64::INFINITY,
@@ -143,7 +144,7 @@ impl Compared<'_> {
         self.done.range(from..=to).map(|((_, seed), r)| (*seed, r))
     }
 
-    /// An output by seed.
+    /// Values of an output by seed.
     fn values(&self, setting: &Setting, output: usize) -> BTreeMap<u64, f64> {
         let good = self.runs(setting).filter(|(_, r)| r.status == Status::Done);
         good.filter_map(|(seed, r)| {
@@ -186,7 +187,7 @@ impl Compared<'_> {
         };
         let all: Vec<f64> = of.iter().filter_map(difference).collect();
         let mean = self.mean(&all)?;
-        // What is zero in the reference and here is right; a share of zero is not known.
+        // An output that is zero in both is exact; a fraction of zero is undefined.
         match scale > 0.0 {
             true => Some(mean.scaled(1.0 / scale)),
             false => (mean.mean == 0.0 && mean.scatter.is_none_or(|s| s == 0.0)).then_some(mean),
@@ -229,7 +230,7 @@ impl Compared<'_> {
                 (_, None) => {
                     known = false;
                     parts.push(format!(
-                        "{} {label} is too near the reference's to tell; give a level {NEAREST} times as coarse or more",
+                        "{} {label} is too close to the reference's to compare; give a level {NEAREST} times as coarse or more",
                         knob.name
                     ));
                 }
@@ -240,7 +241,7 @@ impl Compared<'_> {
             }
         }
         if parts.is_empty() {
-            parts.push("neither step nor tolerance is varied, so that nothing tells".into());
+            parts.push("neither step nor tolerance is varied, so there is no estimate".into());
             known = false;
         }
         Some(OwnError {
@@ -310,10 +311,12 @@ impl Compared<'_> {
     }
 }
 
-/// The least ratio to the reference from which its own error is judged: below it a small difference would be taken many times.
+/// Smallest ratio to the reference for estimating its own error: below it a small difference would be
+/// multiplied by a large factor.
 const NEAREST: f64 = 1.5;
 
-/// The level next to the reference's, of a knob that has an order: the first coarse enough to judge from, else the next.
+/// The level next to the reference's, of an ordered parameter: the first that is coarse enough for the
+/// estimate, otherwise the next one.
 pub fn neighbour(knob: &StudyParameter) -> Option<usize> {
     let ordered = matches!(knob.sense, Sense::Step | Sense::Tolerance);
     let mut coarser = knob.reference + 1..knob.levels.len();
@@ -323,13 +326,14 @@ pub fn neighbour(knob: &StudyParameter) -> Option<usize> {
         .or(Some(next))
 }
 
-/// How many times as coarse as the reference's a level is.
+/// Ratio of a level to the reference's level.
 fn ratio(knob: &StudyParameter, level: usize) -> Option<f64> {
     Some(knob.levels.get(level)?.number? / knob.levels.get(knob.reference)?.number?)
 }
 
-/// What the difference from a level `ratio` times as coarse is multiplied by to bound the reference's own error. Of first
-/// order e(rh) - e(h) = (r - 1) e(h): 1/(r - 1), and 1 from r = 2 on. None where the levels are too near.
+/// Factor on the difference from a level `ratio` times as coarse that bounds the reference's own error. For
+/// first order e(rh) - e(h) = (r - 1) e(h), so 1/(r - 1), and at least 1 up to r = 2. `None` if the levels
+/// are too close.
 fn weight(ratio: f64) -> Option<f64> {
     match ratio {
         r if r >= 2.0 => Some(1.0),
@@ -338,7 +342,7 @@ fn weight(ratio: f64) -> Option<f64> {
     }
 }
 
-/// An error for people: `-0.8 +- 0.3 %`.
+/// A formatted error: `-0.8 +- 0.3 %`.
 pub struct Told<'a>(pub &'a Mean, pub Wanted);
 
 impl std::fmt::Display for Told<'_> {
@@ -357,7 +361,7 @@ impl std::fmt::Display for Told<'_> {
     }
 }
 
-/// A share as a number of per cent with the digits it deserves.
+/// A fraction in per cent with significant digits.
 pub fn share(x: f64) -> String {
     let percent = 100.0 * x;
     match percent.abs() {
@@ -374,7 +378,7 @@ mod tests {
     use super::super::knobs::Level;
     use super::*;
 
-    /// An error of first order, e = c h: what is said of it is never below it.
+    /// For a first-order error e = c h, the reported bound is never below the error.
     #[test]
     fn the_own_error_follows_the_ratio_of_the_steps() {
         let c = 0.3;

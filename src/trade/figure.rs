@@ -1,4 +1,4 @@
-//! The figure: error against cost, one panel an output.
+//! Figure of error against cost, one panel per output.
 
 use super::compare::{Comparison, OutputError, Row};
 use super::knobs::{Level, Sense, StudyParameter};
@@ -10,9 +10,9 @@ use std::path::Path;
 
 const GREY: (u8, u8, u8) = (120, 120, 120);
 const RED: (u8, u8, u8) = (190, 30, 45);
-/// So many settings have an entry of their own in the legend; more are told apart by what they change.
+/// Largest number of settings with their own legend entry; more are grouped by what they change.
 const NAMED: usize = 8;
-/// One colour a group of settings, in the order of their first appearance.
+/// One colour per group of settings, in the order of their first appearance.
 const COLOURS: [(u8, u8, u8); 8] = [
     (0, 114, 178),
     (213, 94, 0),
@@ -24,7 +24,7 @@ const COLOURS: [(u8, u8, u8); 8] = [
     (60, 60, 60),
 ];
 
-/// Draws it, and says whether there was something to draw: a finite error of a setting that ran.
+/// Draws the figure; returns whether any setting that ran has a finite error.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -84,8 +84,8 @@ fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
         wanted.colour = Some(RED);
         chart = chart.with(wanted);
     }
-    // The frontier joins what is known at most: it steps down as the cost goes up.
-    // A staircase: between two settings the cheaper is the best there is.
+    // The frontier joins the error bounds as a staircase that falls with increasing cost: between two
+    // settings the cheaper one is the best available.
     let mut stairs: Vec<(f64, f64)> = Vec::new();
     for (r, e) in others().filter(|(_, e)| e.on_frontier) {
         let next = (r.seconds, lifted(e.at_most));
@@ -152,7 +152,7 @@ fn subtitle(study: &Study, output: &Output, found: &Comparison, o: usize) -> Str
     let seeds = if study.random {
         format!("intervals of 95 % over {} seeds", study.seeds.len())
     } else {
-        "no chance in the case".into()
+        "no randomness in the case".into()
     };
     let against = match (output.exact, &found.own[o]) {
         (Some(x), _) => format!("against the true value {x}"),
@@ -198,7 +198,7 @@ fn value(knob: &StudyParameter, level: &Level) -> String {
     }
 }
 
-/// What a setting is shown as among many: the case's own by its values, the others by the knob they change.
+/// Group of a setting among many: the case's own by its values, others by the parameter they change.
 fn group(study: &Study, row: &Row) -> String {
     match row.setting.changed(&study.knobs).as_slice() {
         [] => format!("as in the case: {}", named(&study.knobs, &row.setting)),

@@ -1,4 +1,4 @@
-//! `trade.json` and `trade.csv`.
+//! Output files `trade.json` and `trade.csv`.
 
 use super::TradeError;
 use super::compare::Comparison;
@@ -9,7 +9,7 @@ use super::study::Study;
 use super::verdict::Verdict;
 use serde_json::{Value, json};
 
-/// The whole study.
+/// The whole study as JSON.
 pub fn json(study: &Study, found: &Comparison, verdicts: &[Verdict], complete: bool) -> Value {
     let reference = Setting::reference(&study.knobs);
     let number = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
@@ -76,7 +76,7 @@ pub fn json(study: &Study, found: &Comparison, verdicts: &[Verdict], complete: b
     })
 }
 
-/// One line a setting; errors are shares of the reference's value or in the output's unit, as they were asked for.
+/// Writes one line per setting; errors are fractions of the reference's value or in the output's unit, as requested.
 ///
 /// # Errors
 /// The file cannot be written.

@@ -1,4 +1,4 @@
-//! What a setting will cost, before it runs: from short probes, corrected by the runs that end.
+//! Cost forecast of a setting from short probes, corrected by finished runs.
 
 use super::child::{Ended, Finished, Launcher, Status};
 use super::knobs::{Sense, StudyParameter};
@@ -12,17 +12,18 @@ use std::time::{Duration, Instant};
 /// Cost = own (h0/h) (tol0/tol)^power.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Forecast {
-    /// Seconds of the case's own setting.
+    /// Duration of the case's own setting (s).
     pub own: f64,
-    /// How the cost goes with the inverse of the tolerance.
+    /// Exponent of the cost in the inverse of the tolerance.
     pub power: f64,
-    /// Whether every probe measured a row of statistics or a whole run; else it is a guess, and not kept.
+    /// Whether every probe measured a row of statistics or a whole run; otherwise the forecast is a guess,
+    /// and not stored.
     pub measured: bool,
 }
 
 impl Forecast {
-    /// Runs the case's own setting and the finest for a short while each. A run that ends within it
-    /// is put into `done`.
+    /// Runs the case's own setting and the finest for a short while each. A run that ends within that time
+    /// is added to `done`.
     ///
     /// # Errors
     /// A run cannot be started.
@@ -44,7 +45,7 @@ impl Forecast {
             let all = steps / shrink(setting, knobs, Sense::Step);
             let table = launcher.place(&sets, seed).join("statistics.csv");
             let mut guess = f64::INFINITY;
-            // Rows are written some at a time: where none is there yet, nothing is known, and more time is given once.
+            // Rows are written in batches: without one, the probe is repeated once with more time.
             for longer in [1, 3] {
                 let started = Instant::now();
                 let ended = launcher.run(&sets, seed, started + longer * each, None, stop)?;
@@ -54,7 +55,7 @@ impl Forecast {
                     done.insert((setting.clone(), seed), run);
                     return Ok(wall);
                 }
-                // Steps are taken from when their table is made; what comes before is paid once.
+                // Steps are timed from the creation of the table; the time before is a constant.
                 let begun = std::fs::metadata(&table).and_then(|m| m.created()).ok();
                 let stepping = begun.and_then(|t| ended_at.duration_since(t).ok());
                 let stepping = stepping.unwrap_or_else(|| started.elapsed()).as_secs_f64();
@@ -83,7 +84,8 @@ impl Forecast {
         })
     }
 
-    /// Seconds of a run: as its other seeds took, or by the law above, times how far that law was off so far.
+    /// Duration of a run (s): that of its other seeds, or the cost law above, multiplied by its mean error so
+    /// far.
     pub fn seconds(&self, setting: &Setting, knobs: &[StudyParameter], done: &Ledger) -> f64 {
         let ended = |r: &&Finished| r.status == Status::Done;
         let same: Vec<f64> = done
@@ -94,7 +96,7 @@ impl Forecast {
         if !same.is_empty() {
             return same.iter().sum::<f64>() / same.len() as f64;
         }
-        // The nearest kin: the case's own where it ran, else all that ran.
+        // Correct by the case's own setting if it ran, otherwise by all that ran.
         let own = Setting::own(knobs);
         let ratios = |only: bool| -> Vec<f64> {
             done.iter()
@@ -109,7 +111,7 @@ impl Forecast {
         self.law(setting, knobs) * off.exp()
     }
 
-    /// Seconds by the probes alone.
+    /// Duration from the probes alone (s).
     pub fn law(&self, setting: &Setting, knobs: &[StudyParameter]) -> f64 {
         let step = shrink(setting, knobs, Sense::Step);
         let tolerance = shrink(setting, knobs, Sense::Tolerance);
@@ -117,7 +119,7 @@ impl Forecast {
     }
 }
 
-/// How much smaller than the case's own a step or tolerance is: the ratio, 1 where it is not varied.
+/// Ratio of the case's own step or tolerance to that of the setting; 1 if it is not varied.
 fn shrink(setting: &Setting, knobs: &[StudyParameter], sense: Sense) -> f64 {
     let of = |(k, level): (&StudyParameter, &usize)| {
         let number = |l: usize| k.levels.get(l).and_then(|l| l.number);

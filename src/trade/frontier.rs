@@ -1,7 +1,7 @@
-//! The frontier: settings than which no other is both cheaper and more accurate.
+//! Pareto frontier: settings for which no other is both cheaper and more accurate.
 
-/// Which of the points (cost, error) no other dominates: another is no worse in both and better in one. Points that are not
-/// finite are never on it.
+/// Which of the points (cost, error) are not dominated: a point is dominated if another is no worse in both
+/// and better in one. Points that are not finite are never on the frontier.
 pub fn frontier(points: &[(f64, f64)]) -> Vec<bool> {
     let finite = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
     let beats = |a: &(f64, f64), b: &(f64, f64)| {
@@ -22,7 +22,7 @@ mod tests {
     fn keeps_what_nothing_dominates() {
         let points = [(1.0, 5.0), (2.0, 3.0), (2.0, 4.0), (3.0, 3.0), (4.0, 1.0)];
         assert_eq!(frontier(&points), [true, true, false, false, true]);
-        // Twins are both on it; what is not known is not.
+        // Equal points are both on it; non-finite ones are not.
         let points = [
             (1.0, 1.0),
             (1.0, 1.0),
@@ -33,8 +33,8 @@ mod tests {
         assert!(frontier(&[]).is_empty());
     }
 
-    /// The definition: along the frontier a higher cost buys a lower error, and whatever is off it has something on it that
-    /// is no worse in both.
+    /// By definition, along the frontier a higher cost gives a lower error, and every other point is
+    /// dominated by one on it.
     #[test]
     fn is_sorted_and_covers_the_rest() {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(3);

@@ -1,26 +1,26 @@
-//! Means over seeds with their Student intervals.
+//! Means over seeds with Student confidence intervals.
 
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Share of the intervals that hold the true mean, where values are independent and normal.
+/// Confidence level of the intervals, for independent normal values.
 pub const CONFIDENCE: f64 = 0.95;
 
 /// The mean of some values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Mean {
-    /// Values.
+    /// Number of values.
     pub count: usize,
     /// Their mean.
     pub mean: f64,
-    /// Their standard deviation; none of one value.
+    /// Standard deviation; `None` for a single value.
     pub scatter: Option<f64>,
-    /// Half the width of the interval of the mean; none where one value of a random quantity is all there is.
+    /// Half-width of the interval of the mean; `None` for a single value of a random quantity.
     pub half_width: Option<f64>,
 }
 
 impl Mean {
-    /// Of values that differ by chance from seed to seed; none of no value.
+    /// The mean of values that vary randomly from seed to seed; `None` for no values.
     pub fn of(values: &[f64]) -> Option<Self> {
         let count = values.len();
         let n = count as f64;
@@ -41,7 +41,7 @@ impl Mean {
         })
     }
 
-    /// Of a quantity without chance in it: one value says all.
+    /// The value of a deterministic quantity.
     pub fn certain(value: f64) -> Self {
         Self {
             count: 1,
@@ -51,7 +51,7 @@ impl Mean {
         }
     }
 
-    /// The largest magnitude within the interval; infinite where the interval is not known.
+    /// Largest magnitude within the interval; infinite if the interval is unknown.
     pub fn at_most(&self) -> f64 {
         self.mean.abs() + self.half_width.unwrap_or(f64::INFINITY)
     }
@@ -73,7 +73,7 @@ impl Mean {
     }
 }
 
-/// Student's t for the mean of so many values; none below two.
+/// Student's t for the mean of `count` values; `None` below two.
 fn quantile(count: usize) -> Option<f64> {
     if count < 2 {
         return None;
@@ -82,8 +82,8 @@ fn quantile(count: usize) -> Option<f64> {
     Some(t.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
 }
 
-/// How many seeds would bring the half width below `wanted`, judged by the scatter so far: the fewest n with
-/// t(n) s / sqrt(n) <= wanted.
+/// Number of seeds that would bring the half-width below `wanted`, estimated from the scatter so far: the
+/// smallest n with t(n) s / sqrt(n) <= wanted.
 pub fn seeds_for(scatter: f64, wanted: f64) -> Option<usize> {
     let enough = |n: usize| quantile(n).is_some_and(|t| t * scatter / (n as f64).sqrt() <= wanted);
     if wanted.is_nan() || wanted <= 0.0 {
@@ -99,13 +99,14 @@ mod tests {
     use super::*;
     use rand::{RngExt, SeedableRng};
 
-    /// A normal variate by Box and Muller.
+    /// A normal variate by the Box-Muller method.
     fn normal(rng: &mut rand_pcg::Pcg64) -> f64 {
         let (a, b): (f64, f64) = (rng.random(), rng.random());
         (-2.0 * (1.0 - a).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
     }
 
-    /// The interval holds the true mean in 95 of 100 trials: over 20,000 the share has a standard error of 0.15 %.
+    /// The interval contains the true mean in 95 of 100 trials: over 20,000 trials the fraction has a
+    /// standard error of 0.15 %.
     #[test]
     fn intervals_hold_the_true_mean_as_often_as_they_say() {
         for count in [2, 3, 8] {
@@ -124,7 +125,7 @@ mod tests {
         }
     }
 
-    /// Student's t of 95 % (any table): 12.706 for one degree of freedom, 4.303 for two.
+    /// Student's t at 95 % (any table): 12.706 for one degree of freedom, 4.303 for two.
     #[test]
     fn follows_students_table() {
         assert!((quantile(2).unwrap() - 12.706).abs() < 1e-3);

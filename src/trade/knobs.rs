@@ -1,8 +1,9 @@
-//! What a study varies: the knobs of a case and their levels.
+//! Varied parameters of a study and their levels.
 //!
-//! A preset makes its levels from the case's own value; `--vary key=a,b,c` gives them. The reference has the finest level
-//! that the budget allows of the knobs that have one (step, tolerance), the first level of a `--vary`, and the case's own
-//! value of the rest: no solver is finer than another at one tolerance, and a correction is a choice, not a resolution.
+//! A preset derives its levels from the case's own value; `--vary key=a,b,c` lists them. The reference has
+//! the finest level that the budget allows for ordered parameters (step, tolerance), the first level of a
+//! `--vary`, and the case's own value of the others: at equal tolerance no solver is finer than another, and
+//! a correction is a choice, not a resolution.
 
 use super::TradeError;
 use crate::laws::Kind;
@@ -12,65 +13,66 @@ use crate::scene::{Loaded, load};
 use crate::solve::local::solver::Method;
 use crate::step::coupling::Coupling;
 
-/// A value of a knob.
+/// A level of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
-    /// As people read it.
+    /// Label for the report.
     pub label: String,
-    /// The `--set` arguments that give it.
+    /// The `--set` arguments for this level.
     pub sets: Vec<String>,
-    /// The number it is, where it is one.
+    /// Numeric value, if it has one.
     pub number: Option<f64>,
 }
 
-/// How a knob moves the cost and the error.
+/// Effect of a parameter on cost and error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sense {
-    /// The step: smaller is finer, and cost goes as its inverse.
+    /// Time step: smaller is finer, and the cost is inversely proportional.
     Step,
-    /// The tolerance: smaller is finer.
+    /// Tolerance: smaller is finer.
     Tolerance,
     /// Levels without an order.
     Choice,
-    /// From `--vary`: the first level is the reference's.
+    /// From `--vary`: the first level is that of the reference.
     Listed,
 }
 
-/// Something that is varied. Levels of a step or tolerance stand from the finest to the coarsest.
+/// A varied parameter. Levels of a step or tolerance are ordered from the finest to the coarsest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyParameter {
     /// Its name.
     pub name: String,
-    /// How it acts.
+    /// Effect on cost and error.
     pub sense: Sense,
-    /// Its levels, at least one.
+    /// Levels, at least one.
     pub levels: Vec<Level>,
-    /// Which of them is the case's.
+    /// Index of the case's own level.
     pub own: usize,
-    /// Which of them the reference has.
+    /// Index of the reference's level.
     pub reference: usize,
 }
 
-/// Names of the presets, with what they are.
+/// Names and descriptions of the presets.
 pub const PRESETS: &[(&str, &str)] = &[
     ("step", "time.step times 1/4 to 4"),
     ("tolerance", "solver.tolerance over two decades each way"),
-    ("solver", "the methods that serve the case"),
-    ("test_every", "sweeps between convergence tests"),
+    ("solver", "the solvers that support the case"),
+    ("test_every", "iterations between convergence tests"),
     ("coupling", "damage coupling, explicit or implicit"),
     ("correction", "position correction, 0 to 0.2"),
     ("grains", "half the grains of the first lattice or deposit"),
 ];
 
-/// What `--knob` takes when it is not given; the number of grains changes the question, not only the answer.
+/// Whether a preset is varied by default; the number of grains changes the problem itself, not only the
+/// accuracy.
 fn wanted_by_default(name: &str) -> bool {
     name != "grains"
 }
 
-/// The knobs asked for by name, or the usual ones of the case, and those of `--vary`.
+/// The parameters requested by name, or the default ones of the case, and those of `--vary`.
 ///
 /// # Errors
-/// A name that is none, a preset that the case has no use for, a key or value that the case refuses.
+/// A name is unknown, a preset does not apply to the case, or the case rejects a key or value.
 pub fn knobs(
     loaded: &Loaded,
     methods: &[Method],
@@ -80,7 +82,7 @@ pub fn knobs(
     let mut knobs = Vec::new();
     for name in names {
         if name == "precision" {
-            let text = "--knob precision: Fretwork computes and stores in f64 only, there is no f32 storage to compare with";
+            let text = "--knob precision: Fretwork computes and stores in f64 only, so precision cannot be varied";
             return Err(TradeError::Usage(text.into()));
         }
         if !PRESETS.iter().any(|p| p.0 == name) {
@@ -117,9 +119,9 @@ fn unknown(name: &str) -> TradeError {
     ))
 }
 
-/// A number as RON reads it and people do.
+/// Formats a number so that RON can read it.
 fn digits(x: f64) -> String {
-    // Powers of two of a round number end in rounding noise, which 12 digits cut off.
+    // Powers of two of a decimal number have rounding noise at the end, which 12 digits remove.
     let rounded: f64 = format!("{x:.11e}").parse().unwrap_or(x);
     if rounded != 0.0 && !(1e-2..1e4).contains(&rounded.abs()) {
         format!("{rounded:e}")
@@ -137,7 +139,7 @@ fn number(key: &str, x: f64) -> Level {
     }
 }
 
-/// The levels of a preset, or why the case has none.
+/// Levels of a preset, or the reason why it does not apply to the case.
 fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<StudyParameter, String> {
     let case = &loaded.case;
     let knob = |sense, levels: Vec<Level>, own: usize, reference: usize| {
@@ -157,14 +159,14 @@ fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<StudyParame
         "tolerance" => {
             let own = case.solver.tolerance;
             let all = [-2, -1, 0, 1, 2].map(|k| own * 10f64.powi(k));
-            // Sweeps cannot reach what rounding hides; a tolerance of 0.1 hardly solves.
+            // Iterations cannot reach a tolerance below rounding; at 0.1 the problem is hardly solved.
             let useful = |t: &f64| (1e-13..=0.1).contains(t);
             Ok(tolerances(case, all.into_iter().filter(useful).collect()))
         }
         "solver" => {
             let own = methods.iter().position(|m| *m == case.solver.method);
             if methods.len() < 2 {
-                return Err("only one method serves this case".into());
+                return Err("only one solver supports this case".into());
             }
             let level = |m: &Method| Level {
                 label: m.name().to_owned(),
@@ -177,7 +179,7 @@ fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<StudyParame
         "test_every" => {
             if !sweeps(case.solver.method) {
                 return Err(format!(
-                    "the solver of the case, {}, makes no sweeps between tests",
+                    "the solver of the case, {}, does not iterate in sweeps between tests",
                     case.solver.method.name()
                 ));
             }
@@ -234,12 +236,12 @@ fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<StudyParame
     }
 }
 
-/// Whether a method does sweeps, whose tests `test_every` sets apart.
+/// Whether a solver iterates in sweeps, to which `test_every` applies.
 fn sweeps(method: Method) -> bool {
     matches!(method, Method::Auto | Method::Nlgs | Method::Anderson)
 }
 
-/// Positive numbers and the case's own among them, from the finest up, each with what makes a level of it.
+/// Positive values including the case's own, from the finest up, each with the arguments of its level.
 fn ordered(
     name: &str,
     sense: Sense,
@@ -265,7 +267,7 @@ fn steps(case: &Case, values: Vec<f64>) -> StudyParameter {
     let every = case.output.every as f64 * case.time.step;
     ordered("step", Sense::Step, case.time.step, values, |h| {
         let mut level = number("time.step", h);
-        // As many rows of statistics a second as the case has.
+        // Keeps the case's interval between statistics rows in time.
         let rows = (every / h).round().max(1.0);
         if rows != case.output.every as f64 {
             level.sets.push(format!("output.every={rows}"));
@@ -279,7 +281,7 @@ fn tolerances(case: &Case, values: Vec<f64>) -> StudyParameter {
     ordered("tolerance", Sense::Tolerance, own, values, |t| {
         let mut level = number("solver.tolerance", t);
         if t < own {
-            // First-order methods need as many more sweeps at worst.
+            // First-order methods need proportionally more iterations in the worst case.
             let most = f64::from(case.solver.max_iterations) * own / t;
             let most = most.min(f64::from(u32::MAX)).round();
             level.sets.push(format!("solver.max_iterations={most}"));
@@ -288,7 +290,7 @@ fn tolerances(case: &Case, values: Vec<f64>) -> StudyParameter {
     })
 }
 
-/// The first grains with a count of their own, and it.
+/// The first grains with a count, and that count.
 fn counted(case: &Case) -> Option<(usize, usize)> {
     let count = |g: &GrainSpec| match g {
         GrainSpec::Lattice { count, .. } => Some(*count),
@@ -299,14 +301,15 @@ fn counted(case: &Case) -> Option<(usize, usize)> {
     all.find_map(|(k, g)| Some((k, count(g)?)))
 }
 
-/// `--set`s that write the structs which the case leaves out: a `--set` puts a field only into what is written.
+/// `--set` arguments that write the structs which the case omits: a `--set` can insert a field only into a
+/// struct that is written.
 pub fn openings(loaded: &Loaded) -> Vec<String> {
     let missing = |group: &&str| loaded.source.position_of(group).is_none();
     let groups = ["solver", "output"].into_iter().filter(missing);
     groups.map(|group| format!("{group}=()")).collect()
 }
 
-/// `key.path=a,b,c`: commas within brackets or quotes belong to a value.
+/// Parses `key.path=a,b,c`: commas within brackets or quotes belong to a value.
 fn listed(loaded: &Loaded, argument: &str) -> Result<StudyParameter, TradeError> {
     let form = || {
         TradeError::Usage(format!(
@@ -321,7 +324,7 @@ fn listed(loaded: &Loaded, argument: &str) -> Result<StudyParameter, TradeError>
     };
     if key.trim() == "seed" || recorded(key.trim()) {
         return Err(TradeError::Usage(format!(
-            "--vary {}: a study sets this itself, or it changes what is written and not what is computed; for more seeds give --seeds",
+            "--vary {}: a study sets this itself, or it changes the output files and not the computation; for more seeds give --seeds",
             key.trim()
         )));
     }
@@ -336,7 +339,7 @@ fn listed(loaded: &Loaded, argument: &str) -> Result<StudyParameter, TradeError>
     };
     let mut levels: Vec<Level> = values.iter().map(level).collect();
     let before = [loaded.source.sets(), &openings(loaded)].concat();
-    // The text of the case before and after: a value that leaves it as it is, is its own.
+    // Compares the text of the case before and after: a value that does not change it is the case's own.
     let (mut own, mut texts) = (None, Vec::new());
     for (k, level) in levels.iter().enumerate() {
         let sets: Vec<String> = before.iter().chain(&level.sets).cloned().collect();
@@ -352,7 +355,7 @@ fn listed(loaded: &Loaded, argument: &str) -> Result<StudyParameter, TradeError>
         }
         texts.push(text);
     }
-    // The two numbers that have an order by themselves.
+    // The two parameters whose numeric values have an order.
     let numbers: Vec<f64> = levels.iter().filter_map(|l| l.number).collect();
     let positive = numbers.len() == levels.len() && numbers.iter().all(|x| *x > 0.0);
     match key.trim() {

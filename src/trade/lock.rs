@@ -1,17 +1,17 @@
-//! One study at a time in a folder, and only in a folder of studies.
+//! Lock on a study's folder: one study at a time, and only in a folder that belongs to studies.
 
 use super::TradeError;
 use std::fs::{File, TryLockError};
 use std::path::Path;
 
-/// What marks a folder of studies.
+/// Marker file of a folder of studies.
 const MARK: &str = "trade.lock";
 
-/// Makes the folder, or takes one that holds a study, until what is returned is dropped; the system lets go of the lock when
-/// the process ends, however it does.
+/// Creates or opens a study's folder and locks it until the returned file is dropped; the system releases the lock when
+/// the process ends.
 ///
 /// # Errors
-/// Another study runs in it, it holds something else, or it cannot be written.
+/// Another study runs in it, it holds other files, or it cannot be written.
 pub fn take(out: &Path) -> Result<File, TradeError> {
     let fail = |e: &dyn std::fmt::Display| TradeError::write(out, e);
     let ours = || {
@@ -35,10 +35,10 @@ pub fn take(out: &Path) -> Result<File, TradeError> {
         .map_err(|e| TradeError::write(&path, &e))?;
     match file.try_lock() {
         Err(TryLockError::WouldBlock) => Err(TradeError::Usage(format!(
-            "another fretwork trade is at work in {}; wait for its end, or give another folder with --out",
+            "another fretwork trade is running in {}; wait for its end, or give another folder with --out",
             out.display()
         ))),
-        // A file system without locks: go on as without one.
+        // Continue without a lock on file systems that have none.
         Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
     }
 }
@@ -53,7 +53,7 @@ mod tests {
         let _ = std::fs::remove_dir_all(&out);
         let first = take(&out).unwrap();
         let said = take(&out).unwrap_err().to_string();
-        assert!(said.contains("another fretwork trade is at work"), "{said}");
+        assert!(said.contains("another fretwork trade is running"), "{said}");
         drop(first);
         drop(take(&out).unwrap());
         std::fs::remove_file(out.join(MARK)).unwrap();

@@ -1,9 +1,10 @@
-//! What accuracy costs: settings of a case are varied, and each is compared with a reference at the finest, over seeds.
+//! Studies of accuracy against cost: settings of a case are varied, and each is compared with a reference at
+//! the finest setting, over several seeds.
 //!
-//! [`knobs`] says what is varied, [`study`] plans within a budget, [`child`] has each setting run by a process of its own and
-//! keeps what it leaves, [`output`] reads the wanted numbers, [`compare`] sets them against the reference with Student
-//! [`interval`]s, [`frontier`] finds what nothing dominates, [`verdict`] the cheapest for a wanted error, and [`table`],
-//! [`files`] and [`figure`] tell it.
+//! [`knobs`] defines the varied parameters, [`study`] plans within a budget, [`child`] runs each setting in a
+//! separate process and stores its result, [`output`] reads the compared numbers, [`compare`] compares them
+//! with the reference, with Student [`interval`]s, [`frontier`] finds the non-dominated settings, [`verdict`]
+//! the cheapest one for a wanted error, and [`table`], [`files`] and [`figure`] report the result.
 
 pub mod chaos;
 pub mod child;
@@ -27,33 +28,33 @@ use crate::report::ReportError;
 use crate::scene::InputError;
 use std::path::{Path, PathBuf};
 
-/// Why a study cannot be made.
+/// Reason why a study cannot be done.
 #[derive(Debug, thiserror::Error)]
 pub enum TradeError {
-    /// The case, or a value that a knob gives it.
+    /// The case, or a value that a parameter gives it, is wrong.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// What was asked for.
+    /// The arguments are wrong.
     #[error("{0}")]
     Usage(String),
     /// Every run of the reference failed.
     #[error("{0}")]
     Reference(String),
-    /// A file or folder.
+    /// A file or folder cannot be written.
     #[error("cannot write {}: {reason}; choose another folder with --out or make room", path.display())]
     Write {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Reason.
         reason: String,
     },
-    /// The figure.
+    /// The figure cannot be drawn.
     #[error(transparent)]
     Figure(#[from] ReportError),
 }
 
 impl TradeError {
-    /// A file that could not be written.
+    /// Error for a file that cannot be written.
     pub(super) fn write(path: &Path, reason: &dyn std::fmt::Display) -> Self {
         Self::Write {
             path: path.to_owned(),

@@ -1,4 +1,4 @@
-//! The outputs that a case has, known before anything runs.
+//! Outputs that a case has, determined before anything runs.
 
 use super::TradeError;
 use super::output::{Output, flatten, listed};
@@ -13,27 +13,27 @@ use serde_json::Value;
 /// The outputs of a case.
 #[derive(Clone, Debug)]
 pub struct Offer {
-    /// A summary of the case's kind, with nothing in it yet.
+    /// A summary for this kind of case, without values.
     summary: Value,
     /// Columns of the statistics.
     columns: Vec<String>,
     /// Names of its measures.
     measures: Vec<String>,
-    /// Names and groups that its runs leave empty, with what the case lacks.
+    /// Names and groups that its runs leave empty, and what the case lacks for them.
     absent: Vec<(&'static str, &'static str)>,
-    /// Whether bonds are made.
+    /// Whether the case has bonds.
     bonded: bool,
 }
 
 const NO_TEST: &str = "the case has no friction test (`friction`)";
 const NO_BONDS: &str = "no interface of the case makes bonds";
-const NO_DAMAGE: &str = "no interface of the case has bonds that are damaged";
+const NO_DAMAGE: &str = "no interface of the case has a damage law";
 const NO_WEAR: &str = "no interface of the case has a wear law";
-const OF_THE_RUN: &str = "it tells how a run went, not what the case computes";
+const OF_THE_RUN: &str = "it describes the course of the run, not a result of the case";
 const NO_CIRCUIT: &str = "the case has no circuit of grains (`circuit`)";
 
 impl Offer {
-    /// That of a case and its scene.
+    /// The outputs of a case and its scene.
     pub fn of<S: Dimensional>(case: &Case, built: &Built<S>) -> Self {
         let s = &built.simulation;
         let bonds =
@@ -76,12 +76,12 @@ impl Offer {
             (
                 &["jump"],
                 case.jump.is_some(),
-                "the case jumps over no cycles (`jump`)",
+                "the case has no jumps over cycles (`jump`)",
             ),
             (
                 &["scars"],
                 !s.scars.is_empty(),
-                "no surface of the case follows its wear",
+                "no surface of the case recedes by wear (`wears`)",
             ),
         ];
         let lacking = needs.iter().filter(|n| !n.1);
@@ -96,8 +96,8 @@ impl Offer {
         }
     }
 
-    /// What the case is asked for when nothing is named: friction where it has a friction test, the damage ratio where it has
-    /// bonds that are damaged, the source flow where it has a wear law; at 1 % each.
+    /// The default outputs: friction if the case has a friction test, the damage ratio if it has a damage
+    /// law, the source flow if it has a wear law; at 1 % each.
     pub fn usual(&self) -> Vec<Output> {
         let names = ["friction_coefficient", "damage_ratio", "wear.Qs"];
         let damaged = self.bonded && self.lack(&["mean_damage".to_owned()]).is_none();
@@ -108,7 +108,7 @@ impl Offer {
         there.filter_map(|n| Output::parse(n).ok()).collect()
     }
 
-    /// What the case lacks for a path.
+    /// What the case lacks for an output.
     fn lack(&self, path: &[String]) -> Option<&'static str> {
         let name = path.join(".");
         let below = |group: &str| {
@@ -127,10 +127,10 @@ impl Offer {
         names
     }
 
-    /// Refuses an output that no run of the case has.
+    /// Checks that runs of the case have an output.
     ///
     /// # Errors
-    /// A sentence with what the case lacks, the nearest name and those there are.
+    /// A sentence that says what the case lacks, with the nearest name and the existing ones.
     pub fn check(&self, output: &Output) -> Result<(), TradeError> {
         if let Some(column) = output.column_name() {
             return if self.columns.iter().any(|c| c == column) {
@@ -143,7 +143,7 @@ impl Offer {
         let unknown = || Err(output.unknown(&self.names(), "", &output.name));
         if let Some(why) = self.lack(path) {
             return Err(TradeError::Usage(format!(
-                "--output {}: {why}, so that there is nothing to compare; {}",
+                "--output {}: {why}, so there is nothing to compare; {}",
                 output.name,
                 listed(&self.names(), "")
             )));
@@ -158,7 +158,7 @@ impl Offer {
         let mut at = &self.summary;
         for part in path {
             match at {
-                // A run fills it; what is in it then is seen on a run of two steps.
+                // Filled by a run only; checked later on a run of two steps.
                 Value::Null | Value::Array(_) => return Ok(()),
                 Value::Object(map) if map.is_empty() => return Ok(()),
                 _ => match at.get(part) {
@@ -170,7 +170,7 @@ impl Offer {
         match at {
             Value::Number(_) | Value::Null => Ok(()),
             Value::Object(_) | Value::Array(_) => Err(TradeError::Usage(format!(
-                "--output {}: it is no number; name what is in it, as {}.NAME",
+                "--output {}: it is not a number but a group; name one of its entries, as {}.NAME",
                 output.name, output.name
             ))),
             _ => unknown(),

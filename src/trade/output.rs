@@ -1,55 +1,55 @@
-//! The numbers that a study compares: from `summary.json` or a column of `statistics.csv`.
+//! Numbers that a study compares: from `summary.json` or a column of `statistics.csv`.
 
 use super::TradeError;
 use crate::scene::source::nearest;
 use serde_json::Value;
 use std::path::Path;
 
-/// How an error counts.
+/// The wanted error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wanted {
-    /// A share of the reference's value.
+    /// A fraction of the reference's value.
     Relative(f64),
     /// In the unit of the output.
     Absolute(f64),
 }
 
-/// Where a number stands.
+/// Location of a number.
 #[derive(Clone, Debug, PartialEq)]
 enum Place {
     /// In `summary.json`, by its path.
     Summary(Vec<String>),
-    /// A column of the statistics, and what of it.
+    /// A column of the statistics, and its reduction to a number.
     Column(String, Take),
 }
 
-/// What of a column.
+/// Reduction of a column to a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Take {
     /// The mean over the last half of the rows.
     Mean,
-    /// The largest.
+    /// The largest value.
     Max,
-    /// The smallest.
+    /// The smallest value.
     Min,
-    /// The last.
+    /// The last value.
     Last,
 }
 
-/// An output and the error wanted of it.
+/// An output and its wanted error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// As it was asked for.
+    /// Name, as requested.
     pub name: String,
     /// The error wanted.
     pub wanted: Wanted,
-    /// What the output is in truth, where a closed form says so; else the reference takes its place.
+    /// Exact value, for example from a closed form; if absent, errors are measured against the reference.
     pub exact: Option<f64>,
     place: Place,
 }
 
 impl Output {
-    /// Reads `name=1%`, `name=0.003` (in its unit) or `name` (1 %).
+    /// Parses `name=1%`, `name=0.003` (in its unit) or `name` (1 %).
     ///
     /// # Errors
     /// A sentence.
@@ -68,25 +68,25 @@ impl Output {
         let value: f64 = digits
             .trim()
             .parse()
-            .map_err(|_| wrong(&format!("`{}` is no error to ask for", wanted.trim())))?;
+            .map_err(|_| wrong(&format!("`{}` is not a valid error", wanted.trim())))?;
         if !(value > 0.0 && value.is_finite()) {
             return Err(wrong("the wanted error must be a number above zero"));
         }
         if share && value >= 100.0 {
             return Err(wrong(
-                "an error as large as the output itself tells nothing; ask for less than 100 %",
+                "an error as large as the output itself is meaningless; ask for less than 100 %",
             ));
         }
         let name = name.trim();
         if name.is_empty() {
-            return Err(wrong("there is no name"));
+            return Err(wrong("the name is missing"));
         }
-        // An energy balance is exact where it closes; what is left is the error itself.
+        // The exact value of an energy residual is zero; its value is the error itself.
         let (exact, share) = match name {
             "energy_residual_relative" => (Some(0.0), false),
             "energy.residual" if share => {
                 return Err(wrong(
-                    "its true value is zero, of which there is no share; give joules, or ask for energy_residual_relative",
+                    "its exact value is zero, so a relative error is undefined; give joules, or ask for energy_residual_relative",
                 ));
             }
             "energy.residual" => (Some(0.0), false),
@@ -106,7 +106,7 @@ impl Output {
                     Some((c, "min")) => (c, Take::Min),
                     Some((c, "last")) => (c, Take::Last),
                     Some((_, other)) => {
-                        let why = format!("`:{other}` is none of :mean, :max, :min, :last");
+                        let why = format!("`:{other}` is not one of :mean, :max, :min, :last");
                         return Err(wrong(&why));
                     }
                 };
@@ -126,7 +126,7 @@ impl Output {
         })
     }
 
-    /// The parts of its name in `summary.json`; none where it is a column of the statistics.
+    /// Path of its name in `summary.json`; `None` if it is a column of the statistics.
     pub(super) fn summary_path(&self) -> Option<&[String]> {
         match &self.place {
             Place::Summary(path) => Some(path),
@@ -142,7 +142,7 @@ impl Output {
         }
     }
 
-    /// Its value in the folder of a run; none where the run has none (null).
+    /// Its value in the folder of a run; `None` if the run has none (null).
     pub fn read(&self, summary: &Value, folder: &Path) -> Option<f64> {
         match &self.place {
             Place::Summary(path) => {
@@ -169,7 +169,7 @@ impl Output {
         }
     }
 
-    /// Whether it is something that one of these measures says at the end of a run.
+    /// Whether it is a result that one of these measures gives at the end of a run.
     pub(super) fn measured(&self, measures: &[&str]) -> bool {
         let Place::Summary(path) = &self.place else {
             return false;
@@ -184,11 +184,11 @@ impl Output {
         group == "measures" && measures.iter().any(begins)
     }
 
-    /// The sentence of an output that a case does not have, with the nearest of those it has.
+    /// Error for an output that a case does not have, with the nearest existing one.
     pub(super) fn unknown(&self, names: &[String], prefix: &str, wanted: &str) -> TradeError {
         let close = nearest(wanted, names.iter().map(String::as_str))
             .or_else(|| {
-                // The last part alone, for a name whose parents were left out.
+                // Compare the last component alone, since parents may have been omitted.
                 let last = |n: &&String| n.rsplit('.').next() == wanted.rsplit('.').next();
                 names.iter().find(last).map(String::as_str)
             })
@@ -200,7 +200,7 @@ impl Output {
         ))
     }
 
-    /// Whether a run has an output of this name, be it null there, or empty because one of the case's `measures` begins later.
+    /// Checks whether a run has an output of this name; it may be null, or absent because one of the case's `measures` begins later.
     ///
     /// # Errors
     /// A sentence with the nearest name.
@@ -215,7 +215,7 @@ impl Output {
                 let mut at = summary;
                 for part in path {
                     at = match at {
-                        // What a short run leaves empty, a whole one may fill.
+                        // Groups that are empty after a short run may be filled by a whole one.
                         Value::Null | Value::Array(_) => return Ok(()),
                         _ => match at.get(part) {
                             Some(next) => next,
@@ -231,7 +231,7 @@ impl Output {
                 match at {
                     Value::Number(_) | Value::Null => Ok(()),
                     _ => Err(TradeError::Usage(format!(
-                        "--output {}: it is no number; name what is in it, as {}.NAME",
+                        "--output {}: it is not a number but a group; name one of its entries, as {}.NAME",
                         self.name, self.name
                     ))),
                 }
@@ -248,7 +248,7 @@ impl Output {
     }
 }
 
-/// The outputs there are.
+/// List of the existing outputs.
 pub(super) fn listed(names: &[String], prefix: &str) -> String {
     let more = if prefix.is_empty() {
         ", and statistics.COLUMN of statistics.csv (:mean of the last half, :max, :min, :last)"
@@ -263,7 +263,7 @@ pub(super) fn listed(names: &[String], prefix: &str) -> String {
 
 /// Paths of the numbers in a summary.
 pub(super) fn flatten(value: &Value, path: &str, out: &mut Vec<String>) {
-    // Nobody compares these.
+    // Not useful for a comparison.
     if [
         "solver",
         "bodies",
@@ -302,7 +302,7 @@ pub(super) fn flatten(value: &Value, path: &str, out: &mut Vec<String>) {
     }
 }
 
-/// Names of the columns, without their units.
+/// Names of the columns, without units.
 fn header(path: &Path) -> Vec<String> {
     let Ok(mut reader) = csv::Reader::from_path(path) else {
         return Vec::new();
@@ -314,7 +314,7 @@ fn header(path: &Path) -> Vec<String> {
         .unwrap_or_default()
 }
 
-/// The values of a column; whole rows only, so that a table that is being written can be read.
+/// Values of a column; only complete rows are read, since the table may still be written to.
 pub(super) fn column(path: &Path, name: &str) -> Option<Vec<f64>> {
     let place = header(path).iter().position(|n| n == name)?;
     let mut reader = csv::ReaderBuilder::new().from_path(path).ok()?;

@@ -1,37 +1,37 @@
-//! A setting: a value for every knob.
+//! A setting: one level for every varied parameter.
 
 use super::knobs::StudyParameter;
 
-/// The level of every knob, as an index into its levels, in the order of the knobs.
+/// Index of the level of every parameter, in the order of the parameters.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Setting(pub Vec<usize>);
 
 impl Setting {
-    /// The case as it is.
+    /// The setting of the case itself.
     pub fn own(knobs: &[StudyParameter]) -> Self {
         Self(knobs.iter().map(|k| k.own).collect())
     }
 
-    /// The finest.
+    /// The reference setting.
     pub fn reference(knobs: &[StudyParameter]) -> Self {
         Self(knobs.iter().map(|k| k.reference).collect())
     }
 
-    /// The same with another level of one knob.
+    /// This setting with another level of one parameter.
     pub fn with(&self, knob: usize, level: usize) -> Self {
         let mut levels = self.0.clone();
         levels[knob] = level;
         Self(levels)
     }
 
-    /// The knobs whose level is not the case's own.
+    /// The parameters whose level is not the case's own.
     pub fn changed(&self, knobs: &[StudyParameter]) -> Vec<usize> {
         (0..knobs.len())
             .filter(|&k| self.0[k] != knobs[k].own)
             .collect()
     }
 
-    /// `step 5e-5, tolerance 1e-3`: what differs from the case.
+    /// Name of the setting by its differences from the case: `step 5e-5, tolerance 1e-3`.
     pub fn name(&self, knobs: &[StudyParameter]) -> String {
         let parts: Vec<String> = self
             .changed(knobs)
@@ -45,7 +45,7 @@ impl Setting {
         }
     }
 
-    /// The `--set` arguments that make it from the case.
+    /// The `--set` arguments for this setting.
     pub fn sets(&self, knobs: &[StudyParameter]) -> Vec<String> {
         let changed = self.changed(knobs);
         changed

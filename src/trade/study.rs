@@ -1,9 +1,9 @@
 //! The study: which settings run, in which order, within the budget.
 //!
-//! First the reference, the case's own setting, and the neighbours of the reference from which its own error is judged.
-//! Then one knob at a time, from the case's own value outward, where a user would look. Then combinations of what was
-//! cheaper alone, those first that the single knobs promise to be within the wanted error. Interactions of knobs that are not
-//! among the combinations run are not seen.
+//! The first runs are the reference, the case's own setting, and the neighbours of the reference from which
+//! its own error is estimated. Then one parameter at a time is varied, outward from the case's own value.
+//! Then follow combinations of levels that were cheaper alone, first those predicted to meet the wanted
+//! error. Interactions of parameters outside these combinations are not detected.
 
 use super::TradeError;
 use super::child::{Ended, Finished, Launcher, Status};
@@ -21,46 +21,46 @@ use std::time::{Duration, Instant};
 /// Runs by setting and seed.
 pub type Ledger = BTreeMap<(Setting, u64), Finished>;
 
-/// A run that is not the reference's is ended when it took this many times as long: it cannot be worth it. The clock counts,
-/// and other programs may hold it up.
+/// Factor on the reference's duration after which another run is stopped as too slow. Wall time is used,
+/// which other programs may affect.
 const PATIENCE: f64 = 3.0;
 
-/// What a study is made of.
+/// State of a study.
 #[derive(Debug)]
 pub struct Study {
-    /// Starts runs.
+    /// Launcher of the runs.
     pub launcher: Arc<Launcher>,
-    /// Varied.
+    /// Varied parameters.
     pub knobs: Vec<StudyParameter>,
-    /// Compared.
+    /// Compared outputs.
     pub outputs: Vec<Output>,
     /// Seeds, at least one.
     pub seeds: Vec<u64>,
-    /// Whether they change the scene.
+    /// Whether the seeds change the scene.
     pub random: bool,
-    /// Steps of the case as it is.
+    /// Number of steps of the case itself.
     pub steps: f64,
-    /// Runs at the same time.
+    /// Number of parallel runs.
     pub jobs: usize,
-    /// Seconds that all may take.
+    /// Time budget.
     pub budget: Duration,
-    /// The runs that ended.
+    /// Finished runs.
     pub done: Ledger,
-    /// What costs are expected.
+    /// Cost forecast.
     pub forecast: Forecast,
-    /// Runs that an earlier study in the same folder left.
+    /// Number of runs reused from an earlier study in the same folder.
     pub reused: usize,
-    /// Runs done now.
+    /// Number of runs done now.
     pub fresh: usize,
-    /// Settings left out for want of time.
+    /// Settings left out for lack of time.
     pub left_out: BTreeSet<Setting>,
-    /// What is to be told beside the numbers.
+    /// Remarks for the report.
     pub notes: Vec<String>,
-    /// When it began.
+    /// Start time.
     pub started: Instant,
 }
 
-/// What a later study in the same folder goes on from.
+/// Plan that a later study in the same folder continues.
 #[derive(Debug, Serialize, Deserialize)]
 struct Plan {
     fingerprint: String,
@@ -69,12 +69,12 @@ struct Plan {
     forecast: Forecast,
 }
 
-/// A run that is about to begin or has ended, for who watches.
+/// Event for a progress display.
 #[derive(Debug)]
 pub enum Event<'a> {
-    /// It begins, with the seconds expected.
+    /// A run begins, with its expected duration (s).
     Begins(&'a str, u64, f64),
-    /// It ended.
+    /// A run ended.
     Ended(&'a str, u64, &'a Finished),
 }
 
@@ -95,7 +95,7 @@ impl Study {
             .collect();
         Plan {
             fingerprint: self.launcher.fingerprint().to_owned(),
-            // More time, or more jobs, may allow a finer reference.
+            // A larger budget or more jobs may allow a finer reference.
             knobs: format!(
                 "{levels:?} {} {} {}",
                 self.seeds.len(),
@@ -107,11 +107,11 @@ impl Study {
         }
     }
 
-    /// Probes, and chooses the finest reference whose share of the work fits: with its neighbours, at most 60 % of the
-    /// budget. A plan that an earlier study left for the same question and budget is taken up as it is.
+    /// Probes the cost, and chooses the finest reference whose work fits: with its neighbours, at most 60 % of the
+    /// budget. The plan of an earlier study for the same question and budget is reused unchanged.
     ///
     /// # Errors
-    /// A run cannot be started, the plan not be written.
+    /// A run cannot be started, or the plan cannot be written.
     pub fn prepare(&mut self, stop: &AtomicBool) -> Result<(), TradeError> {
         let path = self.plan_file();
         let text = std::fs::read_to_string(&path).unwrap_or_default();
@@ -143,7 +143,7 @@ impl Study {
             stop,
         )?;
         self.fresh = self.done.len();
-        // Coarser by turns, tolerance before step.
+        // Coarsen tolerance and step alternately, the tolerance first.
         while self.reference_work() > 0.6 * self.budget.as_secs_f64() {
             let coarser = |k: &StudyParameter| k.reference < k.own;
             let mut finest: Vec<usize> = (0..self.knobs.len())
@@ -156,7 +156,7 @@ impl Study {
         self.keep_plan(stop)
     }
 
-    /// Levels finer than the reference's for which the budget, or a run that failed, left no room.
+    /// Levels finer than the reference's that were dropped because of the budget or a failed run.
     pub fn dropped(&self) -> Vec<String> {
         let ran = |k: usize, l: usize| self.done.keys().any(|(s, _)| s.0[k] == l);
         let mut all = Vec::new();
@@ -169,7 +169,7 @@ impl Study {
         all
     }
 
-    /// Writes the plan; not where it rests on a guess, or on probes that were cut short.
+    /// Stores the plan, unless it rests on a guess or on interrupted probes.
     fn keep_plan(&self, stop: &AtomicBool) -> Result<(), TradeError> {
         if !self.forecast.measured || stop.load(Ordering::Relaxed) {
             return Ok(());
@@ -183,18 +183,18 @@ impl Study {
         matches!(self.knobs[k].sense, Sense::Step | Sense::Tolerance)
     }
 
-    /// Seconds of the reference, its neighbours and the case's own over the seeds.
+    /// Expected duration of the reference, its neighbours and the case's own setting over the seeds (s).
     fn reference_work(&self) -> f64 {
         self.work(&self.first())
     }
 
-    /// Seconds that settings are expected to take over all seeds, with the jobs side by side.
+    /// Expected duration of settings over all seeds with parallel jobs (s).
     pub fn work(&self, settings: &[Setting]) -> f64 {
         let one = |s: &Setting| self.forecast.seconds(s, &self.knobs, &self.done);
         settings.iter().map(one).sum::<f64>() * self.seeds.len() as f64 / self.jobs as f64
     }
 
-    /// The reference, the case's own and the neighbours of the reference.
+    /// The reference, the case's own setting and the neighbours of the reference.
     pub fn first(&self) -> Vec<Setting> {
         let reference = Setting::reference(&self.knobs);
         let mut all = vec![reference.clone(), Setting::own(&self.knobs)];
@@ -204,7 +204,8 @@ impl Study {
         unique(all)
     }
 
-    /// One knob at a time from the case's own, near ones first; nothing finer than the reference.
+    /// Settings that change one parameter of the case's own setting, near levels first; no level finer than
+    /// the reference's.
     pub fn star(&self) -> Vec<Setting> {
         let own = Setting::own(&self.knobs);
         let mut all = Vec::new();
@@ -226,10 +227,10 @@ impl Study {
             .collect()
     }
 
-    /// Does the study. Ends early, without an error, when the budget is spent or `stop` is set.
+    /// Runs the study. It ends early, without an error, when the budget is spent or `stop` is set.
     ///
     /// # Errors
-    /// A run cannot be started, or no reference can be had.
+    /// A run cannot be started, or no reference could be run.
     pub fn go(
         &mut self,
         stop: &AtomicBool,
@@ -237,7 +238,7 @@ impl Study {
     ) -> Result<(), TradeError> {
         loop {
             let reference = Setting::reference(&self.knobs);
-            // What was too slow beside a finer reference may be the reference itself.
+            // Runs stopped as too slow for a finer reference may be the reference now.
             self.done
                 .retain(|(s, _), r| *s != reference || !matches!(r.status, Status::Slow(_)));
             self.batch(std::slice::from_ref(&reference), stop, watch)?;
@@ -258,7 +259,7 @@ impl Study {
                 .max_by_key(|&k| (self.knobs[k].sense == Sense::Tolerance, k));
             let Some(k) = coarser else {
                 return Err(TradeError::Reference(format!(
-                    "the reference ({name}) failed, so that there is nothing to compare with: {why}"
+                    "the reference ({name}) failed, so there is nothing to compare with: {why}"
                 )));
             };
             self.notes
@@ -277,7 +278,7 @@ impl Study {
         Ok(())
     }
 
-    /// Settings against the reference, from what there is.
+    /// Compares the finished settings with the reference.
     pub fn compare(&self) -> Comparison {
         self.compared().compare()
     }
@@ -293,12 +294,12 @@ impl Study {
         }
     }
 
-    /// Seconds left of the budget.
+    /// Remaining budget (s).
     fn left(&self) -> f64 {
         (self.budget.as_secs_f64() - self.started.elapsed().as_secs_f64()).max(0.0)
     }
 
-    /// Runs what of these settings has not run, as far as the time goes.
+    /// Runs the settings that have not run yet, as far as the budget allows.
     fn batch(
         &mut self,
         settings: &[Setting],
@@ -360,7 +361,7 @@ impl Study {
                 }
             };
             for _ in 1..jobs {
-                // Fewer side by side where the system gives no more threads.
+                // Fewer jobs if the system provides no more threads.
                 let _ = std::thread::Builder::new().spawn_scoped(scope, work);
             }
             work();
@@ -372,7 +373,7 @@ impl Study {
     }
 }
 
-/// A run to do.
+/// A pending run.
 struct Job {
     setting: Setting,
     seed: u64,
@@ -385,8 +386,8 @@ struct Job {
 
 type Shared<'a> = Mutex<(&'a mut Study, VecDeque<(Setting, u64)>)>;
 
-/// The next run that fits into the time that is left, by the forecast; a setting is begun only if all its seeds fit. The
-/// reference is begun in any case: without it nothing can be said.
+/// The next run that fits into the remaining time by the forecast; a setting is started only if all its seeds
+/// fit. The reference is always started, since nothing can be compared without it.
 fn take(shared: &Shared<'_>, reference: &Setting, stop: &AtomicBool) -> Option<Job> {
     let mut guard = shared.lock().ok()?;
     let (study, queue) = &mut *guard;
@@ -395,7 +396,7 @@ fn take(shared: &Shared<'_>, reference: &Setting, stop: &AtomicBool) -> Option<J
         let left = study.left();
         let failed = |r: &Finished| r.status != Status::Done;
         let known = |s: &Setting| study.done.range((s.clone(), 0)..=(s.clone(), u64::MAX));
-        // One seed that failed condemns a setting; the others need not run.
+        // A setting with one failed seed is rejected, so its other seeds need not run.
         if known(&setting).any(|(_, r)| failed(r)) {
             continue;
         }
@@ -423,7 +424,7 @@ fn take(shared: &Shared<'_>, reference: &Setting, stop: &AtomicBool) -> Option<J
     }
 }
 
-/// The same without repetitions, in order.
+/// Removes duplicates, preserving the order.
 fn unique(settings: Vec<Setting>) -> Vec<Setting> {
     let mut seen = BTreeSet::new();
     settings

@@ -1,4 +1,4 @@
-//! The report on a terminal.
+//! Report of a study on a terminal.
 
 use super::compare::{Comparison, Row, Told, share};
 use super::output::Wanted;
@@ -7,7 +7,7 @@ use super::study::Study;
 use super::verdict::{Verdict, amount, three};
 use std::fmt::Write as _;
 
-/// Seconds as people say them.
+/// A duration in readable units.
 pub fn seconds(s: f64) -> String {
     match s {
         s if s < 0.0995 => format!("{:.0} ms", 1e3 * s),
@@ -18,7 +18,7 @@ pub fn seconds(s: f64) -> String {
     }
 }
 
-/// What is about to happen, before it does.
+/// Announcement before the study runs.
 pub fn forecast(study: &Study) -> String {
     let (first, star) = (study.first(), study.star());
     let seeds = study.seeds.len();
@@ -44,8 +44,8 @@ pub fn forecast(study: &Study) -> String {
         })
         .collect();
     format!(
-        "varied\n{}\nforecast, from short probes: the case's own setting {} a run, the reference {}; the reference and what judges it {} ({}), \
-         one knob at a time {} more ({}), combinations as time is left; budget {}",
+        "varied\n{}\nforecast, from short probes: the case's own setting {} a run, the reference {}; the reference and its neighbours {} ({}), \
+         one knob at a time {} more ({}), combinations as time allows; budget {}",
         names.join("\n"),
         seconds(
             study
@@ -130,7 +130,7 @@ pub fn text(study: &Study, found: &Comparison, verdicts: &[Verdict]) -> String {
     }
     let _ = writeln!(
         out,
-        "* on the frontier: no other setting is cheaper with a smaller error at most"
+        "* on the frontier: no other setting is cheaper with a smaller error bound"
     );
     out.push('\n');
     for (own, o) in found.own.iter().zip(&study.outputs) {
@@ -196,7 +196,7 @@ pub fn text(study: &Study, found: &Comparison, verdicts: &[Verdict]) -> String {
     out
 }
 
-/// A number with the digits it deserves.
+/// A number with significant digits.
 struct Shown(f64);
 
 impl std::fmt::Display for Shown {
@@ -209,7 +209,7 @@ impl std::fmt::Display for Shown {
     }
 }
 
-/// As a shell takes it.
+/// Quotes an argument for a shell.
 fn quoted(set: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "=._-+/:,@%".contains(c);
     if set.is_empty() || !set.chars().all(plain) {

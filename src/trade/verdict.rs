@@ -1,23 +1,24 @@
-//! The cheapest setting for a wanted error, and what may be said of it.
+//! The cheapest setting for a wanted error, and the confidence in it.
 
 use super::compare::{Comparison, Row, share};
 use super::interval::{Mean, seeds_for};
 use super::output::{Output, Wanted};
 
-/// What was found for a wanted error.
+/// Verdict for a wanted error.
 #[derive(Clone, Debug)]
 pub struct Verdict {
-    /// The outputs and their errors: `1 % on friction_coefficient`.
+    /// The outputs and their wanted errors: `1 % on friction_coefficient`.
     pub wanted: String,
-    /// The place of the setting in the rows; none where no setting can be shown to be within.
+    /// Index of the setting in the rows; `None` if no setting is shown to meet the error.
     pub row: Option<usize>,
-    /// Whether it holds against the answer, the reference's own error counted, and not only against the reference.
+    /// Whether the error bound includes the reference's own error, and not only the distance from the
+    /// reference.
     pub holds: bool,
-    /// The rest of the sentence.
+    /// Text of the verdict.
     pub text: String,
 }
 
-/// One verdict an output, and one for all together where there are several.
+/// One verdict per output, and one for all together if there are several.
 pub fn verdicts(found: &Comparison, outputs: &[Output], random: bool) -> Vec<Verdict> {
     let mut sets: Vec<Vec<usize>> = (0..outputs.len()).map(|o| vec![o]).collect();
     if outputs.len() > 1 {
@@ -33,7 +34,7 @@ fn limit(output: &Output) -> f64 {
     w
 }
 
-/// An amount of error of an output, with its unit.
+/// An error of an output, with its unit.
 pub fn amount(x: f64, output: &Output) -> String {
     match output.wanted {
         Wanted::Relative(_) => format!("{} %", share(x)),
@@ -52,7 +53,7 @@ fn verdict(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) 
             )
         })
         .collect();
-    // Zero everywhere: the runs agree because nothing happened.
+    // Zero in all runs: they agree because nothing happened.
     let idle = set.iter().find(|&&o| {
         outputs[o].exact.is_none()
             && !found.rows.is_empty()
@@ -67,7 +68,7 @@ fn verdict(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) 
             row: None,
             holds: false,
             text: format!(
-                "no verdict: {} is zero in all runs, so that nothing is compared; name another output, or run the case for longer",
+                "no verdict: {} is zero in all runs, so there is nothing to compare; name another output, or run the case for longer",
                 outputs[o].name
             ),
         };
@@ -81,11 +82,12 @@ fn verdict(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) 
                     .is_some_and(|e| good(e, limit(&outputs[o])))
             })
     };
-    // The reference's own error, for outputs whose true value is not given, must be known.
+    // The reference's own error must be known for outputs without a given exact value.
     let reference_known = set
         .iter()
         .all(|&o| found.own[o].as_ref().is_some_and(|x| x.at_most.is_finite()));
-    // Rows stand from the cheapest up. Against the answer first, then against the reference alone.
+    // Rows are ordered from the cheapest. First those proven with the reference's own error, then those
+    // relative to the reference alone.
     let proved = reference_known
         .then(|| found.rows.iter().position(|r| all(r, &|e, w| e.bound <= w)))
         .flatten();
@@ -143,7 +145,7 @@ fn verdict(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) 
         (Some(k), _) if exact => (
             Some(k),
             true,
-            format!("{}, against the true value", told(k)),
+            format!("{}, against the exact value", told(k)),
         ),
         (Some(k), _) => (
             Some(k),
@@ -158,7 +160,7 @@ fn verdict(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) 
             Some(k),
             false,
             format!(
-                "{}. That is the distance from the reference; the REFERENCE IS NOT GOOD ENOUGH to call it the error: it may itself be off {}",
+                "{}. This is the distance from the reference; the REFERENCE IS NOT GOOD ENOUGH to call it the error: it may itself be off {}",
                 told(k),
                 own.join(", ")
             ),
@@ -209,7 +211,7 @@ pub fn speed(row: &Row) -> String {
     }
 }
 
-/// Two or three digits.
+/// Two or three significant digits.
 pub fn three(x: f64) -> String {
     match x {
         x if x >= 100.0 => format!("{x:.0}"),
@@ -218,7 +220,7 @@ pub fn three(x: f64) -> String {
     }
 }
 
-/// Why no setting is within the wanted error.
+/// Reason why no setting meets the wanted error.
 fn nothing(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) -> String {
     let Some(reference) = found.reference.map(|k| &found.rows[k]) else {
         return "the reference did not run to its end; give more --budget".into();
@@ -246,7 +248,7 @@ fn nothing(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) 
         };
         if !e.at_most.is_finite() {
             parts.push(format!(
-                "{} differs from seed to seed, and one seed tells no scatter: give --seeds 3 or more",
+                "{} differs from seed to seed, and one seed gives no scatter: give --seeds 3 or more",
                 output.name
             ));
             continue;
@@ -257,22 +259,22 @@ fn nothing(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) 
             row.name,
             amount(e.at_most, output)
         );
-        // Where chance, not the error, is what is too large.
+        // Whether the scatter, not the error, is too large.
         let scatter = e.error.scatter.unwrap_or(0.0);
         if random && e.error.half_width.is_some_and(|h| h > wanted) {
-            // Seeds narrow the interval only: the mean and what the reference is off by stay.
+            // More seeds only narrow the interval; the mean and the reference's own error remain.
             let own = found.own[o].as_ref().map_or(f64::INFINITY, |x| x.at_most);
             let own = if own.is_finite() { own } else { 0.0 };
             let room = wanted - e.error.mean.abs() - own;
             let needs = if room > 0.0 {
                 seeds_for(scatter, room).map_or(String::new(), |n| {
-                    format!("; some {} seeds would be needed", about(n))
+                    format!("; about {} seeds would be needed", about(n))
                 })
             } else if own > 0.0 && wanted > e.error.mean.abs() {
-                "; no number of seeds would do: the mean with the reference's own error is already outside"
+                "; no number of seeds would suffice: the mean with the reference's own error is already outside"
                     .into()
             } else {
-                "; no number of seeds would do: the mean is already outside".into()
+                "; no number of seeds would suffice: the mean is already outside".into()
             };
             text.push_str(&format!(
                 ": the scatter among its {} seeds ({} of a difference) hides errors below it{needs}",

@@ -218,7 +218,7 @@ fn bonds_are_weighed_against_step_and_load_by_driving_them() {
         "{fast}"
     );
     assert!(
-        fast.contains("NOT RESOLVED: bonds are followed as at rest"),
+        fast.contains("NOT RESOLVED: bonds are treated quasi-statically"),
         "{fast}"
     );
     let advised = after(&fast, "its fracture energy is wrong; time.step of ");

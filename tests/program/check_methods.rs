@@ -49,7 +49,7 @@ fn the_methods_of_a_case_are_listed() {
     let (fine, text) = check("column", &[]);
     assert!(fine);
     assert_eq!(line(&text, "methods"), ALL);
-    assert_eq!(line(&text, "method"), "auto serves this case");
+    assert_eq!(line(&text, "method"), "auto supports this case");
     // Bonds: all of them, unless the law asks for shear cohesion too.
     let (fine, text) = check("beam_2d", &["solver.method=Newton"]);
     assert!(fine);
@@ -57,7 +57,7 @@ fn the_methods_of_a_case_are_listed() {
         line(&text, "methods"),
         format!("{GRADIENTS}, newton, interior?")
     );
-    assert_eq!(line(&text, "method"), "newton serves this case");
+    assert_eq!(line(&text, "method"), "newton supports this case");
     // Friction against rotation: neither of the two.
     let (fine, text) = check("rolling_stop_sphere", &[]);
     assert!(fine);

@@ -174,11 +174,11 @@ fn bad_names_and_kinds_are_refused() {
     for (line, part) in [
         (
             "fretwork law new ../x --kind damage --lang c",
-            "is no name for a law",
+            "is not a valid name for a law",
         ),
         (
             "fretwork law new My --kind damage --lang c",
-            "is no name for a law",
+            "is not a valid name for a law",
         ),
         (
             "fretwork law new x --kind damages --lang c",

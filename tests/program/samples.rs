@@ -87,11 +87,7 @@ fn a_grading_curve_gives_the_sizes() {
             ":4:",
             "must not fall",
         ),
-        (
-            "size,pasing\n4e-3,0\n",
-            ":1:",
-            "no use for a column `pasing`",
-        ),
+        ("size,pasing\n4e-3,0\n", ":1:", "unknown column `pasing`"),
     ] {
         folder.write("curve.csv", curve);
         let said = refusal(folder.sample::<Dim3>(grains));
@@ -129,7 +125,7 @@ fn a_table_gives_grains() {
         (
             "x,y,z,radius\n0.1,0.1,0.1,1e-3\n",
             ":1:",
-            "no use for a column `z`",
+            "unknown column `z`",
         ),
     ] {
         folder.write("grains.csv", table);

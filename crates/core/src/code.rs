@@ -1,35 +1,35 @@
-//! State as bytes, and back: numbers keep their bits, infinities and what is not a number included.
+//! Binary serialization of state. Floats keep their bits, including infinities and NaN.
 //!
-//! The form is postcard's: fields in their order without names, so that a state can only be read by the version of the
-//! program that wrote it. What frames it says which that was.
+//! The format is postcard: fields in order without names, so a state can only be read by the program version
+//! that wrote it. The enclosing frame records that version.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Why a state cannot be put into bytes or read from them.
+/// Error in serializing or deserializing a state.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct CodeError(String);
 
 impl CodeError {
-    /// The bytes are of something else: `what` names it in the plural.
+    /// The bytes belong to another kind of state.
     pub fn other(what: &str) -> Self {
         Self(format!("it holds other {what} than the case has"))
     }
 }
 
-/// The bytes of a state.
+/// Serializes a state.
 ///
 /// # Errors
-/// A type that has no such form.
+/// The type cannot be serialized by postcard.
 pub fn encode<T: Serialize + ?Sized>(state: &T) -> Result<Vec<u8>, CodeError> {
     postcard::to_stdvec(state).map_err(|e| CodeError(e.to_string()))
 }
 
-/// The state of bytes, all of which it must take.
+/// Deserializes a state, which must use all bytes.
 ///
 /// # Errors
-/// Bytes of something else.
+/// The bytes do not represent a `T`.
 pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, CodeError> {
     let (state, rest) = postcard::take_from_bytes(bytes).map_err(|e| CodeError(e.to_string()))?;
     if rest.is_empty() {
@@ -55,7 +55,7 @@ mod tests {
         let bytes = encode(&vec![1.0f64, 2.0]).unwrap();
         assert!(decode::<Vec<f64>>(&bytes[..bytes.len() - 1]).is_err());
         assert!(decode::<Vec<f64>>(&[&bytes[..], &[0]].concat()).is_err());
-        // A length is a claim: nothing is allocated by it.
+        // The declared length is not trusted for the allocation.
         assert!(decode::<Vec<f64>>(&[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x7f]).is_err());
     }
 }

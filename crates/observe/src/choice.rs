@@ -1,4 +1,4 @@
-//! What `auto` chose over a run, in one sentence.
+//! Statistics of the solvers that `auto` chose during a run.
 
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::solve::{Attempt, Report, SolvePath};
@@ -7,30 +7,32 @@ use serde::{Deserialize, Serialize};
 /// Counts over the steps of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Choice {
-    /// Steps in which Newton or the interior point was tried.
+    /// Steps in which Newton or the interior point solver was tried.
     pub factorised: u64,
     /// Steps in which Newton was tried.
     pub newton_tried: u64,
-    /// Steps which it ended.
+    /// Steps in which Newton converged.
     pub newton_ended: u64,
-    /// Steps in which the interior point was tried.
+    /// Steps in which the interior point solver was tried.
     pub interior_tried: u64,
-    /// Steps which it ended.
+    /// Steps in which it converged.
     pub interior_ended: u64,
-    /// Mean over the steps in which either was tried: unknowns that carry over degrees of freedom that they move.
+    /// Ratio of unknowns to degrees of freedom of the contacts that carry force; mean over the steps in which
+    /// either solver was tried.
     pub hyperstaticity_mean: f64,
-    /// Mean sweeps before them.
+    /// Mean number of NLGS iterations before they were tried.
     pub sweeps_before_mean: f64,
-    /// Steps that sweeps ended after Newton would have been due, on hyperstatic sets, where it comes later.
+    /// Steps in which NLGS converged after Newton would have been tried on other contact sets; on hyperstatic
+    /// sets it is tried later.
     pub swept_longer: u64,
-    /// Steps that swept on because Newton does not serve friction against rotation.
+    /// Steps that stayed with NLGS because Newton does not support friction against rotation.
     pub newton_unserved: u64,
-    /// Steps that swept on because there were too many contacts to factorise.
+    /// Steps that stayed with NLGS because there were too many contacts to factorise.
     pub too_large: u64,
 }
 
 impl Choice {
-    /// Counts a step.
+    /// Adds a step.
     pub fn add(&mut self, report: &Report) {
         match report.chosen {
             SolvePath::Sweeps => {}
@@ -55,10 +57,10 @@ impl Choice {
         }
     }
 
-    /// What was chosen and why.
+    /// Describes the choice and its reason.
     pub fn why(&self, method: Method, steps: u64) -> String {
         if method != Method::Auto {
-            return format!("{} was asked for", method.name());
+            return format!("{} was requested", method.name());
         }
         if self.factorised > 0 {
             let set = if self.hyperstaticity_mean > 1.0 {
@@ -67,7 +69,7 @@ impl Choice {
                 "not hyperstatic"
             };
             return format!(
-                "methods that factorise were tried in {} of {steps} steps, after {:.0} sweeps on average had not been enough ({:.2} unknowns a degree of freedom: {set}): newton ended {} of {}, interior {} of {}; sweeps did the rest{}",
+                "solvers with a factorisation were tried in {} of {steps} steps, after {:.0} sweeps on average had not converged ({:.2} unknowns per degree of freedom: {set}): newton converged in {} of {}, interior in {} of {}; sweeps solved the other steps{}",
                 self.factorised,
                 self.sweeps_before_mean,
                 self.hyperstaticity_mean,
@@ -83,23 +85,23 @@ impl Choice {
         }
         if self.swept_longer > 0 {
             return format!(
-                "sweeps alone; in {} of {steps} steps newton was due, but comes later on hyperstatic contacts",
+                "sweeps only; in {} of {steps} steps newton would have been tried, but on hyperstatic contacts it is tried later",
                 self.swept_longer
             );
         }
         if self.newton_unserved > 0 {
             return format!(
-                "sweeps alone; in {} of {steps} steps newton was due and does not serve friction against rotation",
+                "sweeps only; in {} of {steps} steps newton would have been tried, but it does not support friction against rotation",
                 self.newton_unserved
             );
         }
         if self.too_large > 0 {
             return format!(
-                "sweeps alone; in {} of {steps} steps newton was due and there were too many contacts to factorise",
+                "sweeps only; in {} of {steps} steps newton would have been tried, but there were too many contacts to factorise",
                 self.too_large
             );
         }
-        "sweeps, which were enough before a factorisation would have paid".to_owned()
+        "sweeps, which converged before a factorisation would have been worth its cost".to_owned()
     }
 }
 
@@ -112,7 +114,7 @@ mod tests {
         let mut choice = Choice::default();
         choice.add(&Report::default());
         assert!(choice.why(Method::Auto, 1).starts_with("sweeps"));
-        assert_eq!(choice.why(Method::Pg, 1), "pg was asked for");
+        assert_eq!(choice.why(Method::Pg, 1), "pg was requested");
         for (after, hyperstaticity, newton, interior) in [
             (100, 1.0, Attempt::Ended, Attempt::No),
             (300, 2.0, Attempt::Failed, Attempt::Ended),
@@ -133,7 +135,7 @@ mod tests {
             "200 sweeps",
             "1.50",
             ": hyperstatic",
-            "newton ended 1 of 2",
+            "newton converged in 1 of 2",
             "interior 1 of 1",
         ] {
             assert!(why.contains(part), "{why}");

@@ -1,21 +1,21 @@
-//! How many neighbours carry a grain.
+//! Coordination number: contacts per grain that carry force.
 
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 
-/// A contact counts where its normal force is above this part of the mean: what is below is the solver's
-/// tolerance, not a force.
+/// A contact counts if its normal force exceeds this fraction of the mean; smaller forces are within the
+/// solver's tolerance.
 const FAINT: f64 = 1e-3;
 
 /// Coordination of the free grains.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Coordination {
-    /// Mean number of contacts that carry force, over all grains; one with a wall counts once.
+    /// Mean number of contacts that carry force, over all grains; a contact with a wall counts once.
     pub mean: f64,
-    /// The same over the grains and contacts that are left when rattlers are taken out.
+    /// The same for the grains and contacts that remain after removing rattlers.
     pub carried: f64,
-    /// Share of rattlers: grains with fewer than two such contacts, which nothing can hold in balance, and
-    /// those that become so when others are taken out.
+    /// Fraction of rattlers: grains with fewer than two such contacts, which cannot be in equilibrium, and
+    /// those that become so when other rattlers are removed.
     pub rattlers: f64,
 }
 
@@ -24,7 +24,7 @@ pub fn coordination<S: Space>(s: &Simulation<S>) -> Coordination {
     count_pairs(&s.bodies.grain_flags(), &bearing(s))
 }
 
-/// Number of contacts of each body that carry force in the last step, as they count in a coordination.
+/// Number of contacts of each body that carry force in the last step, with the threshold of [`coordination`].
 pub fn degrees<S: Space>(s: &Simulation<S>) -> Vec<u32> {
     let mut degree = vec![0; s.bodies.len()];
     for body in bearing(s).into_iter().flatten() {
@@ -50,7 +50,7 @@ fn count_pairs(free: &[bool], pairs: &[[u32; 2]]) -> Coordination {
         let mut degree = vec![0u32; free.len()];
         for pair in pairs {
             let [a, b] = pair.map(|b| b as usize);
-            // A wall holds, a rattler does not.
+            // Walls always count as supports, rattlers do not.
             if (held[a] || !free[a]) && (held[b] || !free[b]) {
                 degree[a] += 1;
                 degree[b] += 1;
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn rattlers_are_taken_out_one_after_another() {
-        // A triangle of grains on a wall (body 0), a chain of two hanging on it, one grain alone.
+        // A triangle of grains on a wall (body 0), a chain of two attached to it, and one single grain.
         let free = [false, true, true, true, true, true, true];
         let pairs = [[1, 2], [2, 3], [1, 3], [1, 0], [3, 4], [4, 5]];
         let z = count_pairs(&free, &pairs);

@@ -1,23 +1,23 @@
-//! Wear of the first bodies, each by itself.
+//! Wear of the individual first bodies.
 
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What a first body lost by the wear law.
+/// Wear of a first body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BodyWear {
     /// Its name.
     pub body: String,
     /// Volume (m^3; m^3/m in 2D).
     pub volume: f64,
-    /// Mean depth over what was worn (m); null where no surface of it follows its wear.
+    /// Mean depth over the worn area (m); null if none of its surfaces recedes.
     pub depth_mean: Option<f64>,
-    /// Largest depth (m); likewise.
+    /// Largest depth (m); null if none of its surfaces recedes.
     pub depth_max: Option<f64>,
-    /// Specific wear rate k = V/(P s) (m^3/(N m), in the plane too, where volume and force are both per metre of depth); null
-    /// without a friction test.
+    /// Specific wear rate k = V/(P s) (m^3/(N m), also in 2D, where volume and force are both per metre of
+    /// depth); null without a friction test.
     pub specific_rate: Option<f64>,
 }
 
@@ -55,7 +55,7 @@ pub fn wear<S: Space>(s: &Simulation<S>) -> Vec<BodyWear> {
 #[derive(Default)]
 struct Worn {
     volume: f64,
-    /// What its scars took (m^3; m^3/m), and of what area (m^2; m) it is.
+    /// Volume removed by its scars (m^3; m^3/m), and their area (m^2; m).
     put: f64,
     area: f64,
     depth: f64,

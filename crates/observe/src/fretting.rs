@@ -1,41 +1,29 @@
-//! What the cycles of a fretting test say together: its regime, and wear against the energy that was dissipated.
+//! Evaluation of all cycles of a fretting test: sliding regime, and wear against dissipated energy.
 
 use super::friction::Cycle;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// A_t: from this energy ratio E_d/(4 Q delta) on, the whole contact slides. The value of an elastic sphere on a
-/// flat at the end of partial slip; S. Fouvry, Ph. Kapsa, L. Vincent, "Quantification of fretting damage", Wear 200
-/// (1996) 186.
+/// A_t: energy ratio E_d/(4 Q delta) from which the whole contact slides. It is the value for an elastic
+/// sphere on a flat at the end of partial slip; S. Fouvry, Ph. Kapsa, L. Vincent, "Quantification of fretting
+/// damage", Wear 200 (1996) 186.
 pub const TRANSITION: f64 = 0.2;
 
-/// How a contact slides.
-///
-/// # Examples
-/// ```
-/// use fretwork_observe::fretting::Regime;
-///
-/// // A loop that is a rectangle of height 2 Q and width 2 delta dissipates 4 Q delta: gross slip.
-/// let (q, delta) = (30.0, 5e-6);
-/// let dissipated: f64 = 2.0 * q * 2.0 * delta;
-/// assert_eq!(Regime::of(dissipated / (4.0 * q * delta)), Regime::Gross);
-/// // A thin loop: most of the displacement is elastic.
-/// assert_eq!(Regime::of(0.05), Regime::Partial);
-/// ```
+/// Sliding regime of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Regime {
-    /// Part of it sticks in every cycle.
+    /// Partial slip: part of the contact sticks in every cycle.
     #[default]
     Partial,
-    /// Some cycles are of one kind, some of the other.
+    /// Some cycles have partial slip, some gross slip.
     Mixed,
-    /// All of it slides in every cycle.
+    /// Gross slip: the whole contact slides in every cycle.
     Gross,
 }
 
 impl Regime {
-    /// Of one cycle, by its energy ratio.
+    /// Regime of one cycle by its energy ratio.
     pub fn of(energy_ratio: f64) -> Self {
         if energy_ratio < TRANSITION {
             Self::Partial
@@ -54,37 +42,38 @@ impl Regime {
     }
 }
 
-/// A ratio of sums over cycles, with its interval of 95 %.
+/// A ratio of sums over cycles with its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Slope {
     /// The ratio.
     pub value: f64,
-    /// Half the width of its interval, by the jackknife over cycles; none for one cycle.
+    /// Half-width of its interval, by the jackknife over cycles; `None` for one cycle.
     pub half_width: Option<f64>,
 }
 
-/// The outcome of a fretting test.
+/// Result of a fretting test.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
-    /// Running regime over all complete cycles.
+    /// Regime over all complete cycles.
     pub regime: Regime,
-    /// Energy dissipated in all complete cycles, the sum of E_d (J; J/m in 2D), also of those jumped over.
+    /// Energy dissipated in all complete cycles, the sum of E_d (J; J/m in 2D), including cycles jumped over.
     pub energy: f64,
-    /// Volume worn off first bodies in them (m^3; m^3/m).
+    /// Volume worn off first bodies in these cycles (m^3; m^3/m).
     pub wear_volume: f64,
-    /// Slope of wear volume against cumulated energy, alpha (m^3/J); none without wear. E_d is the area of the loop: where
-    /// bodies also meet in impacts or rise, the energy of friction alone is less.
+    /// Slope alpha of wear volume against cumulative energy (m^3/J); `None` without wear. E_d is the area of
+    /// the loop: if bodies also collide or move normally, the energy dissipated by friction alone is smaller.
     pub alpha: Option<Slope>,
 }
 
 impl Outcome {
-    /// Of the complete cycles; none without any.
+    /// Evaluates the complete cycles; `None` if there are none.
     pub fn new(cycles: &[Cycle]) -> Option<Self> {
         let complete: Vec<&Cycle> = cycles.iter().filter(|c| c.complete).collect();
         let first = complete.first()?;
         let kind = Regime::of(first.energy_ratio);
         let same = complete.iter().all(|c| Regime::of(c.energy_ratio) == kind);
-        // A cycle that stands for many holds the fracture of all of them: those beside it say what one takes.
+        // A cycle that represents several holds the fracture energy of all of them; its neighbours give that
+        // of a single one.
         let single = |c: &&&Cycle| c.jumped == 0;
         let energy = |k: usize| {
             let cycle = complete[k];
@@ -115,8 +104,9 @@ impl Outcome {
     }
 }
 
-/// Sum of y over sum of x, of independent pairs (x, y): the slope of cumulated y against cumulated x. The interval is
-/// Student's of the jackknife's pseudo-values (B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, 1982).
+/// Sum of y over sum of x for independent pairs (x, y): the slope of cumulative y against cumulative x. The
+/// interval is Student's, from the jackknife's pseudo-values (B. Efron, The Jackknife, the Bootstrap and
+/// Other Resampling Plans, 1982).
 fn slope(points: &[(f64, f64)]) -> Option<Slope> {
     let n = points.len() as f64;
     let (x, y) = points
@@ -175,7 +165,7 @@ mod tests {
 
     #[test]
     fn the_interval_of_a_slope_covers_it_as_often_as_it_says() {
-        // Cycles with 5 % of noise on the energy and 10 % on the volume, of twenty each.
+        // Cycles with 5 % noise on the energy and 10 % on the volume, twenty each.
         let mut rng = Pcg64::seed_from_u64(1);
         let mut noise = |share: f64| {
             let sum: f64 = (0..12).map(|_| rng.random_range(-0.5..0.5)).sum();

@@ -1,4 +1,4 @@
-//! A friction test: loops Q-delta, friction coefficient cycle by cycle, from forces and from heat.
+//! Friction test: Q-delta loops, and the friction coefficient of each cycle from forces and from dissipation.
 
 use super::fretting::Regime;
 use super::layer::Balance;
@@ -8,27 +8,27 @@ use super::steady::BLOCKS;
 use fretwork_core::process::cycle::CycleClock;
 use serde::{Deserialize, Serialize};
 
-/// What one step of the test measured.
+/// Measurements of one step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sample {
     /// Time at the end of the step (s).
     pub time: f64,
-    /// Tangential force that moves the body, the mean over the step (N; N/m in 2D).
+    /// Tangential force that moves the body, averaged over the step (N; N/m in 2D).
     pub q: f64,
-    /// Normal force, positive in compression.
+    /// Normal force, positive in compression (N; N/m in 2D).
     pub p: f64,
-    /// Sliding over the step (m), signed.
+    /// Signed sliding distance in the step (m).
     pub slide: f64,
     /// Work of the tangential drive over the step (J).
     pub work: f64,
 }
 
-/// One cycle, or the part of the run that counts.
+/// One cycle, or the evaluated part of the run if there are no cycles.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Cycle {
     /// Number, from 1.
     pub cycle: u32,
-    /// Whether it was run to its end.
+    /// Whether it was completed.
     pub complete: bool,
     /// Work of the tangential force over the cycle, E_d (J; J/m in 2D).
     pub work: f64,
@@ -36,38 +36,38 @@ pub struct Cycle {
     pub normal_force: f64,
     /// Largest tangential force (N; N/m).
     pub tangential_amplitude: f64,
-    /// Length of the path (m).
+    /// Length of the sliding path (m).
     pub path: f64,
-    /// integral Q d delta / integral P |d delta|: the friction coefficient from forces; 0 where the body was
-    /// not pressed.
+    /// Integral of Q d delta over integral of P |d delta|: the friction coefficient from forces; 0 if the
+    /// body was not pressed.
     pub friction_coefficient: f64,
-    /// (heat + change of stored energy - other work) / integral P |d delta|: from the energy ledger, the
-    /// other work from the driven bodies' paths, see [`super::layer`].
+    /// (dissipation + change of stored energy - other work) / integral of P |d delta|: from the energy
+    /// ledger; the other work is that of the driven bodies, see [`super::layer`].
     pub friction_from_dissipation: f64,
-    /// Bonds broken in it.
+    /// Bonds broken in the cycle.
     pub broken: u64,
-    /// Damage ratio at its end.
+    /// Damage ratio at the end of the cycle.
     pub damage_ratio: f64,
     /// A = E_d / (4 Q delta).
     pub energy_ratio: f64,
     /// Half the stroke, delta* (m).
     pub amplitude: f64,
-    /// Half the opening of the loop at Q = 0 (m).
+    /// Half of the loop's width at Q = 0, the sliding amplitude (m).
     pub sliding: f64,
-    /// Share of the stroke that is not sliding: 1 - sliding/amplitude.
+    /// Fraction of the stroke without sliding: 1 - sliding/amplitude.
     pub stick_ratio: f64,
-    /// Mean of |Q|/P where the motion turns.
+    /// Mean of |Q|/P at the reversals of the motion.
     pub reversal_ratio: f64,
-    /// Partial or gross slip, by the energy ratio.
+    /// Partial or gross slip, from the energy ratio.
     pub regime: Regime,
     /// Volume worn off first bodies (m^3; m^3/m in 2D).
     pub wear_volume: f64,
-    /// Cycles that it stands for beside itself, see [`fretwork_core::wear::jump`]: wear and damage are of all, the rest is of
-    /// one.
+    /// Number of further cycles that it represents, see [`fretwork_core::wear::jump`]: wear and damage are of
+    /// all of them, the rest is of one.
     pub jumped: u32,
 }
 
-/// Follows the cycles of a test.
+/// Observer of the cycles of a friction test.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Cycles {
     clock: CycleClock,
@@ -83,14 +83,14 @@ pub struct Cycles {
     before: Option<State>,
     shape: Loop,
     place: f64,
-    /// Without a period: integrals of Q d delta and P |d delta| over parts of equal time.
+    /// Without a period: integrals of Q d delta and P |d delta| over blocks of equal time.
     blocks: Vec<(f64, f64)>,
 }
 
-/// What is cumulated over a run, at an end of a step.
+/// Cumulative quantities of a run at the end of a step.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct State {
-    /// Energies.
+    /// Energy balance.
     pub balance: Balance,
     /// Bonds broken.
     pub broken: u64,
@@ -99,15 +99,15 @@ pub struct State {
 }
 
 impl Cycle {
-    /// Largest |Q| over the mean P; none where the body was not pressed.
+    /// Largest |Q| over the mean P; `None` if the body was not pressed.
     pub fn peak_ratio(&self) -> Option<f64> {
         (self.normal_force > 0.0).then(|| self.tangential_amplitude / self.normal_force)
     }
 }
 
 impl Cycles {
-    /// Cycles of length `period` from `start` on; without a period the second half of what remains
-    /// until `end` is one cycle (s).
+    /// Cycles of length `period` from `start` on; without a period the second half of the time from `start`
+    /// to `end` is one cycle.
     pub fn new(start: f64, period: Option<f64>, end: f64) -> Self {
         Self::of(CycleClock::new(start, period, end), end)
     }
@@ -131,7 +131,7 @@ impl Cycles {
         }
     }
 
-    /// How the friction coefficient scatters over the later cycles; without a period over the blocks that are done.
+    /// Scatter of the friction coefficient over the later cycles; without a period over the finished blocks.
     pub fn scatter(&self) -> Option<Scatter> {
         if self.oscillates() {
             return scatter::over_cycles(&self.list, |c| c.friction_coefficient);
@@ -146,27 +146,27 @@ impl Cycles {
         self.clock.number(time)
     }
 
-    /// When a cycle begins and ends (s); none without cycles.
+    /// Start and end of a cycle (s); `None` without cycles.
     pub fn span(&self, number: u32) -> Option<[f64; 2]> {
         self.clock.span(number)
     }
 
-    /// Whether the motion goes to and fro.
+    /// Whether the motion is reciprocating.
     pub fn oscillates(&self) -> bool {
         self.clock.period.is_some()
     }
 
-    /// Goes on to a later end (s).
+    /// Extends the test to a later end (s).
     pub fn lengthen(&mut self, end: f64) {
         self.end = end;
     }
 
-    /// How many cycles the run has in all.
+    /// Number of cycles of the whole run.
     pub fn total(&self) -> u32 {
         self.number(self.end)
     }
 
-    /// Adds a step: what was cumulated at its start and at its end, and the damage ratio.
+    /// Adds a step: cumulative quantities at its start and at its end, and the damage ratio.
     pub fn add(&mut self, sample: &Sample, h: f64, before: State, after: State, damage: f64) {
         let number = self.number(sample.time);
         if number == 0 {
@@ -235,7 +235,7 @@ impl Cycles {
         cycle.complete = sample.time >= end - 1e-6 * h;
     }
 
-    /// The last complete cycle, or the last.
+    /// The last complete cycle, or the last one if none is complete.
     pub fn last(&self) -> Option<&Cycle> {
         self.list
             .iter()
@@ -249,8 +249,8 @@ impl Cycles {
 mod tests {
     use super::*;
 
-    /// Two cycles of a sine at friction `mu`, the lid lifted and lowered with the stroke; `measured` is
-    /// what the force reads over what it is.
+    /// Two cycles of a sine at friction `mu`, with the lid rising and falling with the stroke; `measured` is
+    /// the ratio of the measured to the true force.
     fn loops(mu: f64, lift: f64, measured: f64) -> Cycles {
         let (p, a, f, h) = (1e3, 5e-5, 10.0, 1e-5);
         let omega = std::f64::consts::TAU * f;
@@ -258,7 +258,7 @@ mod tests {
         let (mut balance, mut t) = (Balance::default(), 0.0);
         while t < 0.2 - 0.5 * h {
             let v = a * omega * (omega * (t + 0.5 * h)).cos();
-            // On slopes of `lift` the force gains what the normal force loses.
+            // On slopes of `lift`, the tangential force gains what the normal force loses.
             let q = mu * p * v.signum() + lift * p;
             let before = balance;
             balance.taken += mu * p * v.abs() * h;

@@ -1,4 +1,4 @@
-//! What a run says of its jumps over cycles.
+//! Report on jumps over cycles.
 
 use super::figures;
 use super::observer::{Observer, RunEnd};
@@ -53,39 +53,39 @@ impl<S: Space> Observer<S> for CycleJumps {
     }
 }
 
-/// A jump over which the work of a cycle changes by more than this has led, or passed, into another state.
+/// Relative change of the work per cycle over a jump above which the jump may have passed into another state.
 const CHANGED: f64 = 0.2;
 
-/// Lines for a terminal.
+/// Report lines.
 pub fn lines(jump: &JumpSummary) -> Vec<(&'static str, String)> {
     let longest = jump.jumps.iter().map(|j| j.cycles).max().unwrap_or(0);
     vec![(
         "cycle jump",
         format!(
-            "{} cycles by {} computed ones, {} jumps of at most {longest}; {}",
+            "{} cycles from {} computed ones, {} jumps of at most {longest}; {}",
             jump.represented_cycles,
             jump.computed_cycles,
             jump.jumps.len(),
             match jump.error_estimate {
-                Some(e) => format!("off by some {:.1} %", 100.0 * e),
-                None => "how far off is not known".to_owned(),
+                Some(e) => format!("estimated error {:.1} %", 100.0 * e),
+                None => "error unknown".to_owned(),
             }
         ),
     )]
 }
 
-/// What the estimate of what jumps were off by does not hold for.
+/// Warnings where the error estimate of the jumps does not hold.
 pub fn warnings(jump: &JumpSummary) -> Vec<Warning> {
     let mut list = Vec::new();
     if !jump.not_jumped.is_empty() {
         let text = format!(
-            "{} stay as the computed cycles leave them; compare with a run of smaller jump.at_most",
+            "{} are not extrapolated by the jumps; compare with a run of smaller jump.at_most",
             jump.not_jumped.join(", ")
         );
         list.push(Warning::note("NOT JUMPED", text));
     }
     if jump.error_estimate.is_none() && !jump.jumps.is_empty() {
-        let text = "what jumps were off by has no growth to be set against; compare with a run of smaller jump.at_most";
+        let text = "the error of the jumps cannot be related to a growth; compare with a run of smaller jump.at_most";
         list.push(Warning::serious("JUMPS NOT JUDGED", text));
     }
     if jump.unchecked_cycles > 0 {
@@ -119,7 +119,7 @@ pub fn warnings(jump: &JumpSummary) -> Vec<Warning> {
     {
         let count = jump.jumps.iter().filter(far).count();
         let text = format!(
-            "{count} jumps are off by more than twice jump.tolerance, the one of {} cycles after cycle {} by {:.1} %; \
+            "{count} jumps have an error above twice jump.tolerance, the one of {} cycles after cycle {} of {:.1} %; \
              make jump.at_most smaller, or jump.after larger",
             worst.cycles,
             worst.after,

@@ -1,8 +1,8 @@
-//! The energy balance of what lies between the driven bodies, from contact forces and the bodies' paths.
+//! Energy balance of the bodies between the driven bodies, from contact forces and the paths of the driven bodies.
 //!
-//! The driven bodies give the rest, through their contacts,
-//! -sum (h p . v_theta + moment . w_theta): that is dissipated in contacts or kept by the other bodies.
-//! Nothing here uses the ledger's external work, so the two sides check each other.
+//! The driven bodies do the work -sum (h p . v_theta + moment . w_theta) on the rest through their contacts:
+//! it is dissipated in contacts or stored by the other bodies.
+//! The ledger's external work is not used here, so the two balances check each other.
 
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
@@ -11,25 +11,26 @@ use serde::{Deserialize, Serialize};
 /// Energies since the start (J; J/m in 2D).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Balance {
-    /// Dissipated in all contacts, and kept (kinetic, potential, elastic) by what is not driven.
+    /// Energy dissipated in all contacts, and stored (kinetic, potential, elastic) by bodies that are not
+    /// driven.
     pub taken: f64,
-    /// Work of the driven bodies on their contacts, the tangential drive of the test apart.
+    /// Work of the driven bodies on their contacts, except the tangential drive of the test.
     pub other: f64,
 }
 
-/// Follows the balance.
+/// Observer of the balance.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Layer<S: Space> {
-    /// Velocities of the driven bodies at the end of the last step that was followed.
+    /// Velocities of the driven bodies at the end of the last processed step.
     velocity: Vec<(S::Vector, S::Spin)>,
-    /// Potential energy and dissipation by the scheme of the driven bodies, which the ledger holds too.
+    /// Potential energy, and dissipation by the scheme, of the driven bodies, which the ledger includes.
     apart: f64,
     other: f64,
 }
 
 impl<S: Space> Layer<S> {
-    /// From the state at hand on.
+    /// Starts from the current state.
     pub fn new(s: &Simulation<S>) -> Self {
         Self {
             velocity: velocities(s),
@@ -61,7 +62,7 @@ impl<S: Space> Layer<S> {
         self.velocity = now;
     }
 
-    /// The balance at the end of the last step that was followed.
+    /// The balance at the end of the last processed step.
     pub fn balance(&self, s: &Simulation<S>) -> Balance {
         let e = &s.energy;
         let driven = s.bodies.driven.iter().zip(&self.velocity);
@@ -73,7 +74,7 @@ impl<S: Space> Layer<S> {
             .sum();
         let kept = e.kinetic - kinetic + e.potential + e.elastic + e.carried;
         Balance {
-            // What a projection gave against loads passed no contact.
+            // Work of the projection against loads does not pass through a contact.
             taken: e.dissipated() + e.scheme + kept + s.lifted - self.apart,
             other: self.other,
         }

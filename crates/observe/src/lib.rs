@@ -1,8 +1,8 @@
-//! Everything that looks at a run of Fretwork, as rows, tables and charts: the friction test and its cycles, fretting, biaxial
-//! tests, third bodies, wear scars, and the quantities that a case asks for.
+//! Observers of a run of Fretwork, which produce rows, tables and charts: the friction test and its cycles,
+//! fretting, biaxial tests, third bodies, wear scars, and the measured quantities of a case.
 //!
-//! It reads the simulation of `fretwork-core` and the words of the case of `fretwork-scene`. Charts are data here
-//! ([`chart`], [`output`]): who writes and draws them is above.
+//! They read the simulation of `fretwork-core` and the case of `fretwork-scene`. Charts are data here
+//! ([`chart`], [`output`]); higher layers write and draw them.
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 

@@ -1,21 +1,21 @@
-//! The shape of a fretting loop Q(delta): where it crosses Q = 0, and Q/P where the motion turns.
+//! Shape of a fretting loop Q(delta): its crossings of Q = 0, and Q/P at the reversals of the motion.
 
 use serde::{Deserialize, Serialize};
 
-/// Follows a loop, sample by sample.
+/// Observer of a loop, fed sample by sample.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Loop {
-    /// Displacement (m), Q and P (N), and the last motion that was not zero (m).
+    /// Displacement (m), Q (N), and the last non-zero increment of displacement (m).
     last: Option<[f64; 3]>,
     motion: f64,
     /// Lowest and highest displacement at Q = 0 in the cycle (m).
     crossings: Option<[f64; 2]>,
-    /// Sum of |Q|/P where the motion turned, and how often.
+    /// Sum of |Q|/P over the reversals, and their number.
     reversals: (f64, u32),
 }
 
 impl Loop {
-    /// Begins the next cycle where the last one ended.
+    /// Starts the next cycle at the end of the last one.
     pub fn next_cycle(&mut self) {
         self.crossings = None;
         self.reversals = (0.0, 0);
@@ -41,12 +41,12 @@ impl Loop {
         self.last = Some([displacement, q, p]);
     }
 
-    /// Half the opening of the loop at Q = 0 (m): the sliding amplitude.
+    /// Half of the loop's width at Q = 0, the sliding amplitude (m).
     pub fn aperture(&self) -> f64 {
         self.crossings.map_or(0.0, |[low, high]| 0.5 * (high - low))
     }
 
-    /// Mean of |Q|/P where the motion turned.
+    /// Mean of |Q|/P over the reversals.
     pub fn reversal(&self) -> f64 {
         self.reversals.0 / f64::from(self.reversals.1.max(1))
     }
@@ -56,8 +56,8 @@ impl Loop {
 mod tests {
     use super::*;
 
-    /// The loop of a sphere on a flat in partial slip at Q* = share mu P, by Mindlin: on loading
-    /// delta = delta_0 (1 - (1 - Q/mu P)^(2/3)), and by Masing twice that over half the force from a reversal.
+    /// The loop of a sphere on a flat in partial slip at Q* = share mu P, by Mindlin: on loading delta =
+    /// delta_0 (1 - (1 - Q/mu P)^(2/3)), and by Masing's rule twice that at half the force from a reversal.
     fn mindlin(share: f64, steps: u32) -> (Loop, f64, f64) {
         let (p, mu, gross) = (100.0, 0.5, 2e-6);
         let load = |q: f64| gross * (1.0 - (1.0 - q / (mu * p)).powf(2.0 / 3.0));

@@ -1,31 +1,31 @@
-//! What an observer leaves at the end of a run: texts and charts, by the names of their files. Who writes and draws them is
-//! above this layer.
+//! Output of an observer at the end of a run: texts and charts with file names. A higher layer writes and
+//! draws them.
 
 use crate::chart::Chart;
 
-/// A file that an observer asks for.
+/// An output file of an observer.
 #[derive(Clone, Debug)]
 pub enum Output {
     /// A table as text.
     Text {
         /// Name of the file.
         file: String,
-        /// What stands in it.
+        /// Content of the file.
         text: String,
     },
     /// Charts on one page.
     Charts {
-        /// Name of the file, a PNG.
+        /// Name of the PNG file.
         file: String,
-        /// The charts; those without data are left out.
+        /// The charts; those without data are omitted.
         charts: Vec<Chart>,
-        /// In so many columns.
+        /// Number of columns on the page.
         columns: usize,
     },
 }
 
 impl Output {
-    /// Charts on one page, in so many columns.
+    /// Charts on one page, in a number of columns.
     pub fn charts(file: String, charts: impl Into<Vec<Chart>>, columns: usize) -> Self {
         Self::Charts {
             file,

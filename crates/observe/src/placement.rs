@@ -1,4 +1,4 @@
-//! Where the shapes and contacts of a simulation are.
+//! Positions of the shapes and contacts of a simulation.
 
 pub use fretwork_core::contact::BondState;
 use fretwork_core::contact::{Contact, Key};
@@ -6,12 +6,12 @@ use fretwork_core::geometry::convex::{ConvexCollider, Core};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
-/// Where the centre of a piece stands (m).
+/// Centre of a convex part (m).
 pub fn piece_centre<S: Space>(s: &Simulation<S>, piece: &ConvexCollider<S>) -> S::Vector {
     fretwork_core::contact::detect::piece_centre(piece, &s.bodies)
 }
 
-/// The corners of a piece (m): one line around it in the plane, its faces in space.
+/// Corners of a convex part (m): its outline in 2D, its faces in 3D.
 pub fn piece_outline<S: Space>(
     s: &Simulation<S>,
     piece: &ConvexCollider<S>,
@@ -33,7 +33,7 @@ pub fn bond_state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> BondStat
     s.network.bond_state(contact)
 }
 
-/// The two ends of a contact: the candidate's centre, and the antagonist's centre or the foot on a
+/// End points of a contact: the candidate's centre, and the antagonist's centre or the closest point on its
 /// surface.
 pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
     let key = &contact.key;
@@ -52,7 +52,7 @@ pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S:
     (a, a - contact.normal * length)
 }
 
-/// The same where a piece is in it: by way of the contact point, which is the end at a first body.
+/// End points of a contact with a convex part: via the contact point, which is the end at a first body.
 fn ends_of_piece<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
     let centre = s.bodies.position[contact.bodies[0] as usize];
     let at = centre + contact.arms[0];

@@ -1,4 +1,4 @@
-//! Numbers with units for people: four digits and the SI prefix that suits.
+//! Formatting of numbers with units: four digits and a suitable SI prefix.
 
 /// Prefixes and their powers of ten.
 const PREFIXES: [(i32, &str); 9] = [
@@ -13,7 +13,7 @@ const PREFIXES: [(i32, &str); 9] = [
     (9, "G"),
 ];
 
-/// A number in so many significant digits, plain where that is short.
+/// Formats a number with `digits` significant digits, without exponent if that is short.
 pub fn number(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
@@ -31,8 +31,8 @@ pub fn number(value: f64, digits: i32) -> String {
     }
 }
 
-/// A value in an SI unit: `2.300e-5`, `m` is `23.00 um`. Kilograms become grams, cubic metres mm3, so that volumes beside each
-/// other have one unit.
+/// Formats a value in an SI unit: `2.300e-5`, `m` gives `23.00 um`. Kilograms become grams, and cubic metres
+/// mm3, so that volumes have a common unit.
 pub fn quantity(value: f64, unit: &str) -> String {
     if unit.is_empty() {
         return number(value, 4);
@@ -69,7 +69,7 @@ pub fn quantity(value: f64, unit: &str) -> String {
     )
 }
 
-/// A specific wear rate (m^3/(N m)), in mm3/(N m).
+/// Formats a specific wear rate (m^3/(N m)) in mm3/(N m).
 pub fn wear_rate(value: f64) -> String {
     format!("{} mm3/(N m)", number(1e9 * value, 4))
 }

@@ -1,4 +1,4 @@
-//! Wear scars: columns of the statistics, what the summary says and `scar_NAME.csv`.
+//! Wear scars: columns of the statistics, entries of the summary, and `scar_NAME.csv`.
 
 use super::figures;
 use super::observer::{Observer, RunEnd};
@@ -14,25 +14,25 @@ use serde::Serialize;
 /// One scar in the summary (SI).
 #[derive(Clone, Debug, Serialize)]
 pub struct ScarSummary {
-    /// Body, with a number where several of its surfaces wear.
+    /// Name of the body, with a number if several of its surfaces wear.
     pub body: String,
     /// Volume worn off (m^3; m^3/m).
     pub volume: f64,
     /// Largest depth (m).
     pub depth: f64,
-    /// Where it is along x, in the body's frame (m).
+    /// Position of the largest depth along x, in the body's frame (m).
     pub deepest_at: f64,
     /// `U`, `W` or `None`; see [`fretwork_core::wear::shape`].
     pub form: Form,
-    /// Where the scar begins and ends along x (m); null where there is none.
+    /// Start of the scar along x (m); null if there is no scar.
     pub from: Option<f64>,
-    /// Its other end (m).
+    /// End of the scar along x (m); null if there is no scar.
     pub to: Option<f64>,
-    /// Depth of its middle (m).
+    /// Depth at its middle (m).
     pub middle: f64,
-    /// Depth of its deepest slice on the left and on the right (m).
+    /// Depth of the deepest slice on the left and on the right of the middle (m).
     pub sides: [f64; 2],
-    /// Depth at which it is worn through (m).
+    /// Depth at which the surface is worn through (m).
     pub thickness: f64,
 }
 
@@ -53,7 +53,7 @@ impl ScarSummary {
         }
     }
 
-    /// Its form and extent in words; volume and depths stand with the wear of its body.
+    /// Describes its form and extent; volume and depths are reported with the wear of its body.
     pub fn outline(&self) -> String {
         match (self.form, self.from, self.to) {
             (Form::None, ..) | (_, None, _) | (_, _, None) => "no scar".to_owned(),
@@ -135,8 +135,8 @@ impl<S: Space> Observer<S> for Scars {
     }
 }
 
-/// The scar as a table: places in the body's frame, height now and at first, depth (m). A run reads it again as the
-/// `file` of a `Profile`.
+/// The scar as a table: positions in the body's frame, current and initial height, depth (m). A case can read
+/// it as the `file` of a `Profile`.
 pub fn table<S: Space>(s: &Simulation<S>, scar: &Scar<S>) -> String {
     let across = if S::D == 2 { "x [m]" } else { "x [m],y [m]" };
     let mut text = format!("{across},z [m],z_first [m],depth [m]\n");
@@ -146,7 +146,7 @@ pub fn table<S: Space>(s: &Simulation<S>, scar: &Scar<S>) -> String {
     let mut rows: Vec<(S::Vector, f64)> = scar.vertices().map(|(v, d)| (v.at, d)).collect();
     let repeated = rows.first().map(|r| r.1);
     rows.extend(shape.end().zip(repeated));
-    // From left to right, whichever way the chain goes.
+    // From left to right, independent of the orientation of the profile.
     if S::D == 2 && shape.sign() < 0.0 {
         rows.reverse();
     }

@@ -1,15 +1,15 @@
-//! How far a quantity scatters within one run: Student's interval of 95 % of its mean over the later half of the cycles, or
-//! over blocks of equal time where there are none.
+//! Scatter of a quantity within one run: Student's 95 % confidence interval of its mean over the later half
+//! of the cycles, or over blocks of equal time if there are no cycles.
 //!
-//! Cycles are batches (A. M. Law, Simulation Modeling and Analysis, section 9.5.3). Where they show a trend by the test of
-//! Mann and Kendall they are not steady, and there is no interval.
+//! Cycles are used as batches (A. M. Law, Simulation Modeling and Analysis, section 9.5.3). If they show a
+//! trend by the Mann-Kendall test, the quantity is not steady and no interval is given.
 
 use super::friction::Cycle;
 use super::steady::{self, Flow};
 
-/// Fewest cycles that an interval is made of.
+/// Smallest number of cycles for an interval.
 const FEWEST: usize = 3;
-/// Cycles from which on their correlation is looked at.
+/// Number of cycles from which their correlation is tested.
 const CORRELATED: usize = 8;
 
 /// A mean over cycles or blocks, with its interval.
@@ -17,9 +17,9 @@ const CORRELATED: usize = 8;
 pub struct Scatter {
     /// Mean, half-width of its interval, trend.
     pub flow: Flow,
-    /// How many values it is of.
+    /// Number of values.
     pub count: usize,
-    /// What they are: `cycles 6 to 10`.
+    /// Description of the values: `cycles 6 to 10`.
     pub over: String,
 }
 
@@ -34,16 +34,16 @@ impl Scatter {
         })
     }
 
-    /// Half-width of the interval; none where the values show a trend.
+    /// Half-width of the interval; `None` if the values show a trend.
     pub fn half_width(&self) -> Option<f64> {
         self.flow.steady.then_some(self.flow.half_width)
     }
 
-    /// How the interval was made, or why there is none.
+    /// Describes the method of the interval, or the reason why there is none.
     pub fn method(&self) -> String {
         let n = self.count as f64;
         if !self.flow.steady {
-            // Two digits of less than a hundredth would be zeros.
+            // Values below 0.01 would print as zeros.
             let p = match self.flow.trend_probability {
                 p if p < 0.01 => "p < 0.01".to_owned(),
                 p => format!("p = {p:.2}"),
@@ -53,7 +53,7 @@ impl Scatter {
         let related = self.count >= CORRELATED && self.flow.correlation > 2.0 / n.sqrt();
         let related = if related {
             format!(
-                "; neighbours correlate by {:.2}, so that it is too narrow",
+                "; neighbouring values have a correlation of {:.2}, so the interval is too narrow",
                 self.flow.correlation
             )
         } else {
@@ -63,7 +63,7 @@ impl Scatter {
     }
 }
 
-/// Of a value over the later half of the complete cycles, but at least three; none where there are fewer.
+/// Scatter of a value over the later half of the complete cycles, at least three; `None` if there are fewer.
 pub fn over_cycles(cycles: &[Cycle], value: impl Fn(&Cycle) -> f64) -> Option<Scatter> {
     let complete: Vec<&Cycle> = cycles.iter().filter(|c| c.complete).collect();
     let count = complete.len().div_ceil(2).max(FEWEST).min(complete.len());
@@ -73,7 +73,7 @@ pub fn over_cycles(cycles: &[Cycle], value: impl Fn(&Cycle) -> f64) -> Option<Sc
     Scatter::new(&values, format!("cycles {first} to {last}"))
 }
 
-/// Of the ratio of two sums, block by block; none where a block has no divisor.
+/// Scatter of the ratio of two sums, block by block; `None` if a divisor is zero.
 pub fn over_blocks(blocks: &[(f64, f64)]) -> Option<Scatter> {
     let ratio = |b: &(f64, f64)| (b.1 > 0.0).then(|| b.0 / b.1);
     let values: Option<Vec<f64>> = blocks.iter().map(ratio).collect();
@@ -96,7 +96,8 @@ mod tests {
 
     #[test]
     fn the_interval_is_student_s_over_the_later_half() {
-        // Of 0.39, 0.41, 0.40: mean 0.40, standard deviation 0.01, t(2, 0.975) = 4.302653: 0.0248414.
+        // For 0.39, 0.41, 0.40: mean 0.40, standard deviation 0.01, t(2, 0.975) = 4.302653, half-width
+        // 0.0248414.
         let list = cycles(&[0.9, 0.8, 0.7, 0.39, 0.41, 0.40]);
         let scatter = over_cycles(&list, |c| c.friction_coefficient).unwrap();
         assert_eq!(scatter.over, "cycles 4 to 6");

@@ -1,14 +1,14 @@
-//! A series in time that takes no more room however long it gets: when it is full every second point goes.
+//! Time series in bounded memory: when it is full, every second point is dropped.
 
 use serde::{Deserialize, Serialize};
 
-/// Points, the first and the last among them, and between them as many as there is room for, equally far apart.
+/// Equidistant points, including the first, and the last one separately.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Series<T> {
     points: Vec<T>,
-    /// The last one taken in, where it is not among the points.
+    /// The last point, if it is not among the points.
     last: Option<T>,
-    /// Of so many that come one is kept.
+    /// One of `each` points is stored.
     each: u64,
     seen: u64,
 }
@@ -28,7 +28,7 @@ impl<T> Series<T> {
     /// Most points; half as many remain at least.
     pub const MAX: usize = 2048;
 
-    /// Takes a point in.
+    /// Adds a point.
     pub fn add(&mut self, point: T) {
         let kept = self.seen.is_multiple_of(self.each);
         self.seen += 1;
@@ -44,17 +44,17 @@ impl<T> Series<T> {
             });
             self.each *= 2;
         }
-        // It is the first after an even number of kept ones: still one of every `each`.
+        // After thinning an even number of stored points this one is still one of every `each`.
         self.points.push(point);
         self.last = None;
     }
 
-    /// The points, the last one too.
+    /// The stored points and the last one.
     pub fn points(&self) -> impl Iterator<Item = &T> {
         self.points.iter().chain(&self.last)
     }
 
-    /// The last one taken in.
+    /// The last point.
     pub fn last(&self) -> Option<&T> {
         self.last.as_ref().or(self.points.last())
     }

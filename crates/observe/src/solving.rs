@@ -1,45 +1,45 @@
-//! What a run says of its solver.
+//! Solver statistics of a run.
 
 use super::choice::Choice;
 use serde::{Deserialize, Serialize};
 
-/// What the solver did.
+/// Solver statistics over the steps of a run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SolverSummary {
-    /// Mean sweeps a step.
+    /// Mean number of iterations per step.
     pub iterations_mean: f64,
-    /// Most sweeps in a step.
+    /// Largest number of iterations in a step.
     pub iterations_max: u32,
     /// Largest error at the end of a step.
     pub error_max: f64,
     /// Steps that did not reach the tolerance.
     pub unconverged_steps: u64,
-    /// Steps whose damage and opening did not agree to the coupling's tolerance.
+    /// Steps in which damage and opening did not reach the coupling's tolerance.
     pub uncoupled_steps: u64,
-    /// Solves a step, on average, of an implicit coupling; 0 for an explicit one.
+    /// Mean number of solves per step with implicit coupling; 0 for explicit coupling.
     pub coupling_iterations_mean: f64,
-    /// The first of them, 0 if none.
+    /// First unconverged step; 0 if there is none.
     pub first_unconverged: u64,
-    /// Steps that took overlaps out by moving bodies.
+    /// Steps in which penetrations were removed by projection.
     pub projected_steps: u64,
-    /// Deepest overlap that such a step found, in parts of the smaller body's length.
+    /// Largest penetration before a projection, as a fraction of the smaller body's length.
     pub overlap_before: f64,
-    /// Deepest overlap that such a step left.
+    /// Largest penetration after a projection, as a fraction of the smaller body's length.
     pub overlap_after: f64,
     /// Tolerance.
     pub tolerance: f64,
-    /// How the error is formed.
+    /// Formula of the error.
     pub error_formula: String,
-    /// The method asked for.
+    /// Requested solver.
     pub method: String,
-    /// Steps by the method that ended them.
+    /// Number of steps by the solver that converged.
     pub steps_by_method: std::collections::BTreeMap<String, u64>,
-    /// What was chosen and why, in a sentence.
+    /// Reason for the choice, as a sentence.
     pub why: String,
-    /// What `auto` chose.
+    /// Statistics of the solvers that `auto` chose.
     pub choice: Choice,
     /// Steps written as FCLIB problems.
     pub fclib_written: u64,
-    /// Steps that were to be written and hold what that form does not.
+    /// Steps that could not be written as FCLIB problems, since the format cannot represent them.
     pub fclib_skipped: u64,
 }

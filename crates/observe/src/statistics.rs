@@ -1,4 +1,4 @@
-//! The table of statistics: one row every so many steps, as `statistics.csv` and in `results.h5`.
+//! Table of statistics: one row every few steps, in `statistics.csv` and `results.h5`.
 
 use std::fs::File;
 use std::io::{BufWriter, Read, Seek, SeekFrom};
@@ -11,12 +11,12 @@ pub struct Column {
     pub name: String,
     /// SI unit, empty for a pure number.
     pub unit: &'static str,
-    /// One line.
+    /// Description in one line.
     pub doc: &'static str,
 }
 
 impl Column {
-    /// A column.
+    /// Makes a column.
     pub fn new(name: impl Into<String>, unit: &'static str, doc: &'static str) -> Self {
         Self {
             name: name.into(),
@@ -26,14 +26,15 @@ impl Column {
     }
 }
 
-/// Rows written as they come, and read back in the end: a run holds none of them, however long it is.
+/// A table that is written row by row and read back at the end, so that memory does not grow with the length
+/// of the run.
 #[derive(Debug, Default)]
 pub struct Table {
     /// Columns.
     pub columns: Vec<Column>,
-    /// Values, row after row, once they were [`recalled`](Self::recall).
+    /// Values, row by row, after [`Self::recall`].
     pub rows: Vec<f64>,
-    /// The file and its writer; none before it is there.
+    /// The file and its writer; `None` before it is opened.
     file: Option<(PathBuf, csv::Writer<BufWriter<File>>)>,
 }
 
@@ -71,7 +72,7 @@ impl Table {
         Ok(())
     }
 
-    /// Appends rows that another run wrote, given by their columns.
+    /// Appends rows of an earlier part of the run, given by columns.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -83,7 +84,7 @@ impl Table {
         Ok(())
     }
 
-    /// Appends a row, one value a column.
+    /// Appends a row, one value per column.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -95,7 +96,7 @@ impl Table {
         }
     }
 
-    /// Writes what is held back.
+    /// Flushes buffered rows to the file.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -103,12 +104,12 @@ impl Table {
         Ok(self.file.as_mut().map_or(Ok(()), |f| f.1.flush())?)
     }
 
-    /// Reads the rows back: written digits stand for the same bits. A row that was not written to its end does not count.
+    /// Reads the rows back; the written digits reproduce the same bits. An incomplete last row is dropped.
     ///
     /// # Errors
     /// The file cannot be read.
     pub fn recall(&mut self) -> Result<(), csv::Error> {
-        // What cannot be written is told by whoever flushes last.
+        // A write error is reported by the caller's last flush.
         let _ = self.flush();
         self.rows.clear();
         let Some((path, _)) = &self.file else {
@@ -137,7 +138,7 @@ impl Table {
         Ok(())
     }
 
-    /// The values of a column that was recalled; empty if there is none of that name.
+    /// Values of a recalled column; empty if there is no column of that name.
     pub fn column(&self, name: &str) -> Vec<f64> {
         let width = self.columns.len();
         match self.columns.iter().position(|c| c.name == name) {
@@ -146,18 +147,18 @@ impl Table {
         }
     }
 
-    /// Number of the last cycle that is as long as the one before it, and when it began (s), by the columns `cycle` and `time`;
-    /// none where there are no two cycles.
+    /// Number and start (s) of the last cycle that is as long as the one before it, from the columns `cycle`
+    /// and `time`; `None` if there are no two cycles.
     pub fn last_cycle(&self) -> Option<(u32, f64)> {
         let (cycles, times) = (self.column("cycle"), self.column("time"));
-        // Before the first row of a cycle stands the last of the one before it.
+        // The row before the first row of a cycle is the last one of the previous cycle.
         let turns = (1..cycles.len()).filter(|k| cycles[*k] > cycles[k - 1]);
         let begins: Vec<(u32, f64)> = turns.map(|k| (cycles[k] as u32, times[k - 1])).collect();
         let [.., (_, before), last] = begins[..] else {
             return None;
         };
         let (length, reached) = (last.1 - before, times.last()? - last.1);
-        // A row may come a step late.
+        // A row may be written a step late.
         if reached >= 0.9 * length {
             Some(last)
         } else {
@@ -187,7 +188,7 @@ mod tests {
         assert_eq!(bits(&table.rows), bits(rows.as_flattened()));
         assert_eq!(table.column("b").len(), 3);
         let text = std::fs::read_to_string(&path).unwrap();
-        // Within the last number, where it still is one, where it is none, and at once.
+        // Cut within the last number such that it is still a number, such that it is not one, and at once.
         for (cut, left) in [(text.len() - 4, 2), (text.len() - 3, 2), (0, 0)] {
             std::fs::write(&path, &text[..cut]).unwrap();
             table.recall().unwrap();

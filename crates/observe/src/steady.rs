@@ -1,25 +1,25 @@
-//! Whether a flow is steady, and how well its mean is known.
+//! Test whether a flow is steady, and the confidence interval of its mean.
 //!
-//! What passed is cut into blocks of equal time. Their means give the flow with its interval by Student's t (batch
-//! means: A. M. Law, Simulation Modeling and Analysis, section 9.5.3); a trend over them is looked for with the test of
-//! Mann and Kendall (M. G. Kendall, Rank Correlation Methods, 1975).
+//! The cumulative quantity is divided into blocks of equal time. Their means give the flow with Student's
+//! interval (batch means: A. M. Law, Simulation Modeling and Analysis, section 9.5.3); a trend is tested with
+//! the Mann-Kendall test (M. G. Kendall, Rank Correlation Methods, 1975).
 
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-/// Blocks that a window is cut into.
+/// Number of blocks in a window.
 pub const BLOCKS: usize = 10;
 
 /// A mean flow over a window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Flow {
-    /// Mean, of what the table held a second.
+    /// Mean rate, in units of the table per second.
     pub mean: f64,
-    /// Half the width of its interval of 95 %.
+    /// Half-width of its 95 % confidence interval.
     pub half_width: f64,
-    /// Correlation of neighbouring blocks: far above zero, the interval is too narrow.
+    /// Correlation of neighbouring blocks: if it is far above zero, the interval is too narrow.
     pub correlation: f64,
-    /// Probability of a trend as strong as the one found, or stronger, where there is none.
+    /// p-value of the trend test: probability of a trend at least this strong in a steady flow.
     pub trend_probability: f64,
     /// Whether no trend was found: the probability is above 5 %.
     pub steady: bool,
@@ -32,8 +32,8 @@ impl Flow {
     }
 }
 
-/// The flow of what a cumulated quantity grew by, from a time on. `points` are (time, cumulated), times rising; none
-/// where a block holds fewer than two of them: what lies between points is not known.
+/// Mean rate of a cumulative quantity after a time. `points` are (time, cumulative value), with increasing
+/// times; `None` if a block has fewer than two points.
 pub fn flow(points: &[(f64, f64)], start: f64, end: f64) -> Option<Flow> {
     if start >= end || points.len() < 2 {
         return None;
@@ -51,7 +51,7 @@ pub fn flow(points: &[(f64, f64)], start: f64, end: f64) -> Option<Flow> {
     summary(&blocks)
 }
 
-/// The cumulated quantity at a time, linear between points; what lies just beyond them is their end.
+/// Cumulative value at a time, interpolated linearly and constant just beyond the ends.
 fn at(points: &[(f64, f64)], time: f64) -> Option<f64> {
     let k = points.partition_point(|p| p.0 < time);
     if k == 0 {
@@ -64,7 +64,7 @@ fn at(points: &[(f64, f64)], time: f64) -> Option<f64> {
     Some(x0 + (x1 - x0) * (time - t0) / (t1 - t0))
 }
 
-/// Mean, interval and trend of means over blocks; none of fewer than two.
+/// Mean, interval and trend of block means; `None` for fewer than two.
 pub(super) fn of_blocks(blocks: &[f64]) -> Option<Flow> {
     if blocks.len() < 2 {
         None
@@ -98,7 +98,7 @@ fn summary(blocks: &[f64]) -> Option<Flow> {
     })
 }
 
-/// Two-sided probability of the trend in a sequence, by Mann and Kendall, with ties and the normal approximation.
+/// Two-sided p-value of the Mann-Kendall trend test, with ties and the normal approximation.
 fn trend(values: &[f64]) -> Option<f64> {
     let n = values.len() as f64;
     let mut s = 0i64;

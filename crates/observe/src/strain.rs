@@ -1,9 +1,10 @@
-//! Local shear strain of the grains since a moment, from how their neighbours of that moment moved.
+//! Local shear strain of the grains since a reference time, from the motion of their neighbours at that time.
 //!
-//! The deformation gradient F of a grain is the one that carries the vectors X to its neighbours into those of now, x,
-//! with the least sum of squares |x - F X|^2 (M. L. Falk, J. S. Langer, Phys. Rev. E 57 (1998) 7192). Its largest and
-//! smallest stretches a and b, singular values of F, give the shear g = (a - b)/sqrt(a b): the amount of simple shear
-//! that has the same ratio of stretches, whatever its size. Rotation and dilation do not count.
+//! The deformation gradient F of a grain minimises the sum of |x - F X|^2 over its neighbours, where X and x
+//! are the vectors to a neighbour at the reference time and now (M. L. Falk, J. S. Langer, Phys. Rev. E 57
+//! (1998) 7192). Its largest and smallest singular values a and b give the shear g = (a - b)/sqrt(a b): the
+//! amount of simple shear that has the same ratio of stretches, at finite strain. Rotation and dilation do
+//! not contribute.
 
 use super::observer::{Observer, RunEnd};
 use super::picture::{Picture, Shows};
@@ -17,16 +18,16 @@ use fretwork_core::step::Simulation;
 use nalgebra::{DMatrix, Matrix3};
 use serde::{Deserialize, Serialize};
 
-/// A neighbour: its place among the grains' balls, and the vector to it at the moment that counts (m).
+/// A neighbour: its index among the grains' balls, and the vector to it at the reference time (m).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Neighbour<V> {
     ball: u32,
     vector: V,
-    /// What the periodic cell adds to a difference of positions (m).
+    /// Periodic shift of the difference of positions (m).
     image: V,
 }
 
-/// The neighbours of each ball at a moment.
+/// The neighbours of each ball at the reference time.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Strain<S: Space> {
@@ -34,8 +35,8 @@ pub struct Strain<S: Space> {
 }
 
 impl<S: Space> Strain<S> {
-    /// Counts from the state at hand. Neighbours of a grain are those less than a mean diameter apart, surface to
-    /// surface: two shells, so that one neighbour alone does not decide.
+    /// Takes the current state as reference. Neighbours of a grain are those with a gap below a mean
+    /// diameter: two shells, so that no single neighbour dominates.
     pub fn new(s: &Simulation<S>) -> Self {
         let balls = &s.shapes.balls;
         let centres: Vec<S::Vector> = balls.iter().map(|b| centre(b, &s.bodies)).collect();
@@ -64,7 +65,8 @@ impl<S: Space> Strain<S> {
         Self { around }
     }
 
-    /// The shear of each ball since then; not a number for balls of first bodies and where neighbours span no space.
+    /// Shear of each ball since the reference time; NaN for balls of first bodies, and if the neighbours do
+    /// not span the space.
     pub fn shear(&self, s: &Simulation<S>) -> Vec<f64> {
         let now: Vec<S::Vector> = s
             .shapes
@@ -160,7 +162,7 @@ fn shear<S: Space>(pairs: impl Iterator<Item = (S::Vector, S::Vector)>) -> f64 {
     }
     let square = |m: &Matrix3<f64>| DMatrix::from_fn(S::D, S::D, |i, j| m[(i, j)]);
     let (moment, moved) = (square(&moment), square(&moved));
-    // Neighbours on a line give no gradient across it.
+    // Neighbours on a line do not determine the gradient across it.
     let spread = moment.clone().symmetric_eigenvalues();
     if spread.min() <= 1e-3 * spread.max() {
         return f64::NAN;
@@ -183,7 +185,8 @@ mod tests {
     use fretwork_core::geometry::space::{Dim2, Dim3};
     use nalgebra::{Matrix2, Rotation2, Rotation3, Vector2, Vector3};
 
-    /// A simple shear, turned and widened, has its own amount, small or large, and a rotation alone has none.
+    /// A simple shear, rotated and dilated, gives its own amount at small and large strain, and a pure
+    /// rotation gives zero.
     #[test]
     fn simple_shear_has_its_amount() {
         let star: Vec<Vector2<f64>> = (0..7)

@@ -1,13 +1,13 @@
-//! The stress that contacts carry, after Love and Weber.
+//! Love-Weber stress of the contacts.
 
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
-/// The internal moment tensor of the free grains, sum f (x) l over their contacts, over a volume: the
-/// Love-Weber stress (Pa), positive in compression; row: axis of the force, column: axis of the branch.
+/// Love-Weber stress of the free grains (Pa), sum f (x) l over their contacts divided by a volume, positive
+/// in compression; row: axis of the force, column: axis of the branch.
 ///
-/// f is the mean force of the last step, l goes from a grain's centre to the contact: to the wall's face, or
-/// to the middle of the gap to another grain. At rest the stress is what the walls feel.
+/// f is the mean force of the last step; l points from a grain's centre to the contact: to the face of a
+/// wall, or to the middle of the gap to another grain. At rest the stress equals that on the walls.
 pub fn love_weber<S: Space>(s: &Simulation<S>, volume: f64) -> [[f64; 3]; 3] {
     let mut moment = [[0.0; 3]; 3];
     each_moment(s, |_, force, branch| {
@@ -20,8 +20,8 @@ pub fn love_weber<S: Space>(s: &Simulation<S>, volume: f64) -> [[f64; 3]; 3] {
     moment
 }
 
-/// Gives, for each free grain at each of its contacts, its body, the mean force of the last step (N; N/m in 2D) and
-/// the branch (m), the signs such that the product is positive in compression.
+/// Calls a function for each contact of each free grain, with the body, the mean force of the last step (N;
+/// N/m in 2D) and the branch (m), signed such that their product is positive in compression.
 pub fn each_moment<S: Space>(
     s: &Simulation<S>,
     mut take: impl FnMut(usize, &S::Vector, &S::Vector),
@@ -41,7 +41,7 @@ pub fn each_moment<S: Space>(
     }
 }
 
-/// Mean pressure and sine of the mobilised friction angle, (s1 - s2)/(s1 + s2) with the principal stresses
+/// Mean pressure, and sine of the mobilised friction angle, (s1 - s2)/(s1 + s2) with the principal stresses
 /// in the plane of the first two axes; the sine is zero without pressure.
 pub fn plane_invariants(stress: &[[f64; 3]; 3]) -> (f64, f64) {
     let mean = 0.5 * (stress[0][0] + stress[1][1]);
@@ -61,7 +61,7 @@ mod tests {
 
     #[test]
     fn invariants_do_not_depend_on_the_axes() {
-        // Principal stresses 3 and 1 Pa, turned by an angle: p = 2, sin phi = 1/2.
+        // Principal stresses 3 and 1 Pa, rotated by an angle: p = 2, sin phi = 1/2.
         for angle in [0.0f64, 0.4, 1.1] {
             let (s, c) = angle.sin_cos();
             let mut turned = [[0.0; 3]; 3];

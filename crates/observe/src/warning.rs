@@ -1,28 +1,28 @@
-//! A warning about a run: what was seen, and what to change.
+//! Warnings about a run: what was observed, and what to change.
 
-/// Heading of what a run ended before.
+/// Category of events that the run ended before.
 pub const NOT_REACHED: &str = "NOT REACHED";
 
 /// A warning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// What it is of, such as `NOT CONVERGED`.
+    /// Category, such as `NOT CONVERGED`.
     pub of: &'static str,
-    /// What was seen, and what to change.
+    /// What was observed, and what to change.
     pub text: String,
-    /// Whether results are not to be trusted because of it; else it is a note.
+    /// Whether results are not trustworthy because of it; otherwise it is a note.
     pub serious: bool,
 }
 
 impl Warning {
-    /// A reason not to trust the run.
+    /// A warning that makes the run untrustworthy.
     pub fn serious(of: &'static str, text: impl Into<String>) -> Self {
         let text = text.into();
         let serious = true;
         Self { of, text, serious }
     }
 
-    /// What is worth knowing.
+    /// A note that does not affect trust in the run.
     pub fn note(of: &'static str, text: impl Into<String>) -> Self {
         let text = text.into();
         let serious = false;

@@ -1,25 +1,25 @@
-//! Axes fitted to their data: round tick values.
+//! Axis scales: ranges and round tick values fitted to the data.
 
 use super::canvas::ReportError;
 use fretwork_observe::chart::{Axis, number, superscript};
 
-/// An axis fitted to its data: shown range, tick values and labels.
+/// A scale fitted to data: range, tick values and labels.
 #[derive(Clone, Debug)]
 pub(super) struct Scale {
     exponent: i32,
     log: bool,
-    /// Range in shown values (divided by the power of ten, or its logarithm).
+    /// Range in displayed values (divided by the power of ten, or its logarithm).
     pub range: (f64, f64),
-    /// Tick positions in shown values, with what is written at each.
+    /// Tick positions in displayed values, with their labels.
     pub ticks: Vec<(f64, String)>,
-    /// Positions of the short ticks between them, of a logarithmic axis.
+    /// Positions of the minor ticks of a logarithmic axis.
     pub minor: Vec<f64>,
-    /// Name with the unit shown.
+    /// Name with the displayed unit.
     pub label: String,
 }
 
 impl Scale {
-    /// Fits an axis to values in its unit, or to a range asked for.
+    /// Fits a scale to values in the axis unit, or to a requested range.
     pub fn fit(
         axis: &Axis,
         values: impl Iterator<Item = f64>,
@@ -58,7 +58,7 @@ impl Scale {
         let (mut a, mut b) = (scale.shown(low), scale.shown(high));
         if asked.is_none() {
             let width = b - a;
-            // A constant (up to rounding) gets a window of its own size.
+            // Constant data (up to rounding) get a range proportional to their value.
             let pad = if width > 1e-9 * a.abs().max(b.abs()) {
                 0.04 * width
             } else if axis.log || a == 0.0 {
@@ -91,7 +91,7 @@ impl Scale {
         Ok(scale)
     }
 
-    /// Value to draw for a value in the unit; NaN when it cannot be shown.
+    /// Displayed value for a value in the axis unit; NaN if it cannot be shown.
     pub fn shown(&self, value: f64) -> f64 {
         if self.log {
             if value > 0.0 { value.log10() } else { f64::NAN }

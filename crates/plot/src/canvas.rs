@@ -1,4 +1,4 @@
-//! An antialiased drawing surface in pixels, y downwards, saved as PNG.
+//! Antialiased drawing surface in pixels, y downwards, saved as PNG.
 
 use std::fs::File;
 use std::io::BufWriter;
@@ -12,7 +12,7 @@ use tiny_skia::{
 use super::font::{self, TextStyle};
 use super::notice;
 
-/// Why a picture could not be made.
+/// Error in drawing a picture.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// The file could not be written.
@@ -21,19 +21,19 @@ pub enum ReportError {
         path.display()
     )]
     Write {
-        /// File asked for.
+        /// Requested file.
         path: PathBuf,
-        /// What the system answered.
+        /// Message of the operating system.
         reason: String,
     },
-    /// The size asked for cannot be drawn.
+    /// The requested size cannot be drawn.
     #[error(
         "a picture of {width} x {height} pixels cannot be drawn; ask for 200 to 16384 pixels a side"
     )]
     Size {
-        /// Width asked for, pixels.
+        /// Requested width, pixels.
         width: u32,
-        /// Height asked for, pixels.
+        /// Requested height, pixels.
         height: u32,
     },
     /// The window of a frame is empty or not finite.
@@ -59,7 +59,7 @@ pub enum ReportError {
     /// The grid of a chart could not be drawn.
     #[error("cannot draw the grid of the chart ({0}); check the ranges of its axes")]
     Grid(String),
-    /// The fonts carried in the program cannot be read.
+    /// The built-in fonts cannot be read.
     #[error("the fonts built into this program cannot be read; build it again from clean sources")]
     Font,
 }
@@ -71,7 +71,7 @@ pub(super) const WHITE: Rgb = [255, 255, 255];
 pub(super) const INK: Rgb = [28, 30, 34];
 pub(super) const SOFT_INK: Rgb = [95, 99, 106];
 
-/// Colour between two, at `t` in 0..1.
+/// Interpolates between two colours, with `t` in 0..1.
 pub(super) fn mix(a: Rgb, b: Rgb, t: f64) -> Rgb {
     let t = t.clamp(0.0, 1.0);
     std::array::from_fn(|i| {
@@ -92,7 +92,7 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    /// A white surface, or an error when the size is out of reason.
+    /// Creates a white surface; an error if the size is out of range.
     pub fn new(width: u32, height: u32) -> Result<Self, ReportError> {
         if font::faces().is_empty() {
             return Err(ReportError::Font);
@@ -102,7 +102,7 @@ impl Canvas {
         Ok(canvas)
     }
 
-    /// A transparent surface.
+    /// Creates a transparent surface.
     pub fn clear(width: u32, height: u32) -> Result<Self, ReportError> {
         let error = ReportError::Size { width, height };
         if width > 16384 || height > 16384 {
@@ -136,9 +136,8 @@ impl Canvas {
         }
     }
 
-    /// Paints a disk whose colour is asked for at each offset from its centre
-    /// and distance to it, in pixels. For thousands of grains this is far
-    /// cheaper than paths or gradients.
+    /// Paints a disk with a colour that depends on the offset from its centre and the distance, in pixels.
+    /// For thousands of grains this is much faster than paths or gradients.
     pub fn disk(
         &mut self,
         [x, y]: [f32; 2],
@@ -170,7 +169,7 @@ impl Canvas {
         }
     }
 
-    /// Writes rows of opaque pixels, so many across, over the surface from its left top corner.
+    /// Writes rows of opaque pixels, `across` per row, from the top left corner.
     pub fn write(&mut self, across: usize, pixels: &[Rgb]) {
         let width = self.pixmap.width() as usize;
         let rows = self.pixmap.data_mut().chunks_exact_mut(4 * width);
@@ -201,8 +200,8 @@ impl Canvas {
         self.stroke(&corners, true, width, colour, None);
     }
 
-    /// Strokes a line through points. Long lines are cut into overlapping
-    /// pieces, because the cost of one stroke grows faster than its length.
+    /// Strokes a line through points. Long lines are split into overlapping pieces, since the cost of a
+    /// stroke grows faster than its length.
     pub fn stroke(
         &mut self,
         points: &[[f32; 2]],
@@ -258,7 +257,7 @@ impl Canvas {
             .fill_path(&path, &paint(style.colour), FillRule::Winding, place, None);
     }
 
-    /// Lays another surface over this one with its corner at a pixel.
+    /// Composites another surface over this one at a pixel.
     pub fn lay(&mut self, over: &Canvas, left: i32, top: i32) {
         self.pixmap.draw_pixmap(
             left,
@@ -270,8 +269,7 @@ impl Canvas {
         );
     }
 
-    /// Replaces what is under another surface with it; what does not fit is
-    /// left out.
+    /// Copies another surface onto this one; the part outside is clipped.
     pub fn paste(&mut self, over: &Canvas, left: usize, top: usize) {
         let (across, over_across) = (self.pixmap.width() as usize, over.pixmap.width() as usize);
         let kept = over_across.min(across.saturating_sub(left));
@@ -281,8 +279,8 @@ impl Canvas {
         }
     }
 
-    /// Writes the surface, which is opaque, to a PNG file: without its alpha channel and compressed fast, some ten times
-    /// as fast as tiny-skia's own writer.
+    /// Writes the opaque surface to a PNG file. The encoder of plotters is about ten times as fast as that of
+    /// tiny-skia.
     pub fn save(&self, path: &Path) -> Result<(), ReportError> {
         match notice::current() {
             Some(text) => notice::banded(self, &text)?.write_file(path),
@@ -322,7 +320,7 @@ fn reason(error: &dyn std::error::Error) -> String {
     cause.to_string()
 }
 
-/// Path through points; one point alone gives a dot when stroked.
+/// Path through points; a single point becomes a dot when stroked.
 fn polyline_path(points: &[[f32; 2]], closed: bool) -> Option<tiny_skia::Path> {
     let (first, rest) = points.split_first()?;
     let mut builder = PathBuilder::with_capacity(points.len() + 2, points.len() + 2);

@@ -13,13 +13,12 @@ use super::font::{Anchor, TextStyle as Text, text_width};
 use super::legend::{Legend, Rows};
 use fretwork_observe::chart::{Chart, Series};
 
-/// Width of a page in units of layout. Text is 28 of them: 9 pt where the page is
-/// printed 16 cm wide.
+/// Width of a page in layout units. Text is 28 units high: 9 pt if the page is printed 16 cm wide.
 pub(super) const PAGE: f32 = 1400.0;
-/// Size of text in units of layout.
+/// Height of text in layout units.
 pub(super) const TEXT: f32 = 28.0;
 
-/// Runs of points in pixels of the plot; a gap starts a new run.
+/// Polylines in pixels of the plot; a gap starts a new one.
 pub(super) type Runs = Vec<Vec<[f32; 2]>>;
 
 /// Rectangle in pixels of the picture.
@@ -32,7 +31,7 @@ pub(super) struct Plot {
 }
 
 impl Plot {
-    /// Where a point lies, in pixels of the plot.
+    /// Position of a point in pixels of the plot.
     fn place(&self, x: &Scale, y: &Scale, p: (f64, f64)) -> [f32; 2] {
         let across = |scale: &Scale, value: f64, length: i32| {
             let (a, b) = scale.range;
@@ -43,7 +42,7 @@ impl Plot {
     }
 }
 
-/// Text in lines that fit a width, broken at spaces.
+/// Wraps text into lines of a width, broken at spaces.
 pub(super) fn wrapped(text: &str, size: f32, room: f32) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -60,10 +59,10 @@ pub(super) fn wrapped(text: &str, size: f32, room: f32) -> Vec<String> {
 
 /// Draws a chart.
 pub trait DrawChart {
-    /// Draws the chart to a PNG file; nothing where there is nothing to show.
+    /// Draws the chart to a PNG file; writes no file if there is nothing to show.
     ///
     /// # Errors
-    /// The file cannot be written, or the chart asks for a range or a size that cannot be drawn.
+    /// The file cannot be written, or the range or size of the chart cannot be drawn.
     fn draw(&self, path: &Path) -> Result<(), ReportError>;
 }
 
@@ -76,7 +75,7 @@ impl DrawChart for Chart {
     }
 }
 
-/// A chart as it is laid out.
+/// A chart during layout.
 pub(super) struct Sheet<'a>(pub &'a Chart);
 
 impl std::ops::Deref for Sheet<'_> {
@@ -88,7 +87,7 @@ impl std::ops::Deref for Sheet<'_> {
 }
 
 impl Sheet<'_> {
-    /// Values along the vertical axis that must be seen: points and intervals.
+    /// Values along the vertical axis that must be visible: points and intervals.
     fn heights(&self) -> impl Iterator<Item = f64> + '_ {
         let points = self.series.iter().flat_map(|s| &s.points);
         let ends = self.series.iter().flat_map(|s| {
@@ -99,8 +98,7 @@ impl Sheet<'_> {
         points.filter(|p| self.shows(p)).map(|p| p.1).chain(ends)
     }
 
-    /// Draws the chart as part of a page of a width in pixels, which sets the size
-    /// of text and lines.
+    /// Draws the chart as part of a page whose width in pixels sets the size of text and lines.
     pub(super) fn page(&self, page_width: u32) -> Result<Canvas, ReportError> {
         let (width, height) = self.size_px;
         if width.min(height) < 200 {
@@ -133,7 +131,7 @@ impl Sheet<'_> {
             height: ((high - top - closest_point) as i32).max(20),
         };
 
-        // The legend goes where no curve passes, else in rows over the plot.
+        // The legend is placed where no curve passes, otherwise in rows above the plot.
         let mut curves = self.curves(&x, &y, &plot);
         let legend = Legend::of(self, u);
         let mut ink = curves.clone();
@@ -165,7 +163,7 @@ impl Sheet<'_> {
         Ok(page)
     }
 
-    /// Lines of the heading with their sizes, in a width; and the height of all.
+    /// Lines of the heading with their sizes, wrapped to a width, and the total height.
     fn header(&self, room: f32, u: f32) -> (Vec<(String, f32, bool)>, f32) {
         let mut lines = Vec::new();
         if !self.title.is_empty() {
@@ -200,7 +198,7 @@ impl Sheet<'_> {
         all.flat_map(|s| self.bars_of(s, x, y, plot)).collect()
     }
 
-    /// Draws the error bars of a series, with caps.
+    /// Draws the error bars of a series with caps.
     fn draw_intervals(
         &self,
         field: &mut Canvas,
@@ -230,7 +228,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// Every series in pixels of the plot, thinned to what the pixels can show.
+    /// All series in pixels of the plot, thinned to the pixel resolution.
     fn curves(&self, x: &Scale, y: &Scale, plot: &Plot) -> Vec<Runs> {
         let place = |p: &(f64, f64)| plot.place(x, y, *p);
         self.series
@@ -285,7 +283,7 @@ impl Sheet<'_> {
             let at = [left - 0.5 * em, bottom - height * on(y, *v) + 0.34 * em];
             page.text(label, at, &Text::new(em, INK).anchored(Anchor::End));
         }
-        // A long name may reach beyond the plot before it is set smaller.
+        // A long axis name may extend beyond the plot before its size is reduced.
         let fit = |text: &str, room: f32| {
             let size = 30.0 * u;
             size * (room / text_width(text, size)).min(1.0)
@@ -414,7 +412,7 @@ mod tests {
                 chart.size_px = (420, 300);
                 let path = file(name);
                 chart.draw(&path).unwrap();
-                // Nothing to show leaves no file.
+                // No file is written if there is nothing to show.
                 let empty = ["empty", "nothing-finite"].contains(&name);
                 assert_eq!(path.exists(), !empty, "{name}");
                 if !empty {

@@ -3,7 +3,7 @@
 use super::canvas::{Canvas, Rgb, WHITE, mix};
 use fretwork_observe::chart::Style;
 
-/// Told apart by readers who do not see all colours (Okabe and Ito).
+/// Colours for readers with colour vision deficiency (Okabe and Ito).
 pub(super) const PALETTE: [Rgb; 7] = [
     [0, 114, 178],
     [213, 94, 0],
@@ -14,7 +14,7 @@ pub(super) const PALETTE: [Rgb; 7] = [
     [60, 60, 60],
 ];
 
-/// Perceptual gradient (viridis, without its yellow that white paper swallows).
+/// Perceptual gradient (viridis without its yellow, which is invisible on white paper).
 const GRADIENT: [Rgb; 5] = [
     [68, 1, 84],
     [59, 82, 139],
@@ -29,7 +29,7 @@ pub(super) fn gradient(t: f64) -> Rgb {
     mix(GRADIENT[i], GRADIENT[i + 1], at - i as f64)
 }
 
-/// Keeps first, lowest, highest and last point of each stay in a pixel column.
+/// Keeps the first, lowest, highest and last point of each pass through a pixel column.
 pub(super) fn thinned(run: &[[f32; 2]]) -> Vec<[f32; 2]> {
     let mut kept = Vec::new();
     for stay in run.chunk_by(|a, b| a[0].floor() == b[0].floor()) {
@@ -54,7 +54,7 @@ pub(super) fn thinned(run: &[[f32; 2]]) -> Vec<[f32; 2]> {
     kept
 }
 
-/// Draws the runs of one series; `shape` is its rank, `u` the picture's scale.
+/// Draws the lines of one series; `shape` is the index of the marker, `u` the scale of the picture.
 pub(super) fn draw_series(
     field: &mut Canvas,
     runs: &[Vec<[f32; 2]>],
@@ -70,8 +70,7 @@ pub(super) fn draw_series(
         }
     }
     if matches!(style, Style::Markers | Style::LineMarkers) {
-        // Markers that would cover one another are drawn once: scattered ones by
-        // cell, those along a line by distance.
+        // Overlapping markers are drawn once: scattered ones by cell, those along a line by distance.
         let total: usize = runs.iter().map(Vec::len).sum();
         let scattered = style == Style::Markers;
         let crowded = total > if scattered { 4000 } else { 60 };
@@ -93,7 +92,7 @@ pub(super) fn draw_series(
     }
 }
 
-/// A marker with a white rim; the shape follows the rank of the series.
+/// A marker with a white rim; its shape follows the index of the series.
 fn marker(field: &mut Canvas, [x, y]: [f32; 2], shape: usize, colour: Rgb, radius: f32) {
     for (r, colour) in [(1.28 * radius, WHITE), (radius, colour)] {
         let corners = match shape % 4 {

@@ -1,5 +1,4 @@
-//! Text as vector outlines, from fonts carried in the binary: pictures come out
-//! the same on every machine, with or without fonts installed.
+//! Text as vector outlines from built-in fonts, so that pictures are identical on every machine.
 
 use std::sync::OnceLock;
 
@@ -9,7 +8,7 @@ use tiny_skia::{Path, PathBuilder};
 
 use super::canvas::Rgb;
 
-/// Where the given point lies on the line of text.
+/// Horizontal anchor of a line of text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Anchor {
     Start,
@@ -17,24 +16,24 @@ pub(super) enum Anchor {
     End,
 }
 
-/// How one line of text is set.
+/// Style of a line of text.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TextStyle {
     /// Em size in pixels.
     pub size: f32,
     pub colour: Rgb,
     pub anchor: Anchor,
-    /// The light face is thin at small sizes; its outline is thickened by this
-    /// fraction of the em, so one face serves as regular and as semi-bold.
+    /// The light face is thin at small sizes: its outline is thickened by this fraction of the em, so that
+    /// one face serves as regular and semi-bold.
     pub weight: f32,
-    /// Reads upwards, for the name of a vertical axis.
+    /// Rotated to read upwards, for vertical axes.
     pub upwards: bool,
-    /// Halo that keeps the text readable over a drawing.
+    /// Colour of a halo that keeps the text readable over a drawing.
     pub halo: Option<Rgb>,
 }
 
 impl TextStyle {
-    /// Regular text starting at its point.
+    /// Regular text that starts at its anchor.
     pub fn new(size: f32, colour: Rgb) -> Self {
         Self {
             size,
@@ -67,7 +66,7 @@ impl TextStyle {
     }
 }
 
-/// The text face, then the face that has the symbols it lacks.
+/// The text face, and a face with the symbols that it lacks.
 pub(super) fn faces() -> &'static [FontRef<'static>] {
     static FACES: OnceLock<Vec<FontRef<'static>>> = OnceLock::new();
     FACES.get_or_init(|| {
@@ -78,7 +77,7 @@ pub(super) fn faces() -> &'static [FontRef<'static>] {
     })
 }
 
-/// The first face that has the character, else the first face's blank box.
+/// The first face that has the character, otherwise the missing-glyph box of the first face.
 fn glyph(character: char) -> Option<(usize, GlyphId)> {
     let faces = faces();
     faces
@@ -93,14 +92,14 @@ fn glyph(character: char) -> Option<(usize, GlyphId)> {
 struct Set {
     face: usize,
     id: GlyphId,
-    /// Where it begins, and its em size, pixels.
+    /// Horizontal position, and em size, pixels.
     pen: f32,
     size: f32,
-    /// How far it stands below the line, pixels.
+    /// Distance below the baseline, pixels.
     drop: f32,
 }
 
-/// Where a character stands.
+/// Vertical level of a character.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Level {
     Line,
@@ -108,9 +107,9 @@ enum Level {
     Above,
 }
 
-/// Characters of a line with their levels. Below stand one or two letters or digits after a single letter and `_`, as in
-/// `v_x`; other underscores belong to names. Raised digits are those of the line, set smaller: the faces do not have
-/// them all.
+/// Characters of a line with their levels. One or two letters or digits after a single letter and `_` are
+/// subscripts, as in `v_x`; other underscores are part of names. Superscript digits are set from smaller
+/// regular digits, since the faces lack some of them.
 fn levels(text: &str) -> Vec<(char, Level)> {
     let all: Vec<char> = text.chars().collect();
     let word = |k: usize| all.get(k).is_some_and(|c| c.is_alphanumeric() || *c == '_');
@@ -135,7 +134,7 @@ fn levels(text: &str) -> Vec<(char, Level)> {
     out
 }
 
-/// Glyphs of a line with their places, and the width of it, in pixels.
+/// Glyphs of a line with their positions, and its width, in pixels.
 fn set_line(text: &str, size: f32) -> (Vec<Set>, f32) {
     let mut pen = 0.0;
     let mut previous = None;
@@ -171,12 +170,12 @@ fn set_line(text: &str, size: f32) -> (Vec<Set>, f32) {
     (glyphs, pen)
 }
 
-/// Width of a line of text in pixels, at an em size in pixels.
+/// Width of a line of text in pixels for an em size in pixels.
 pub(super) fn text_width(text: &str, size: f32) -> f32 {
     set_line(text, size).1
 }
 
-/// Outline of a line of text, its anchor on the baseline at the origin.
+/// Outline of a line of text, with its anchor on the baseline at the origin.
 pub(super) fn text_path(text: &str, style: &TextStyle) -> Option<Path> {
     let (glyphs, width) = set_line(text, style.size);
     let start = match style.anchor {
@@ -204,7 +203,7 @@ pub(super) fn text_path(text: &str, style: &TextStyle) -> Option<Path> {
                 OutlineCurve::Quad(a, _, b) => (a, b),
                 OutlineCurve::Cubic(a, _, _, b) => (a, b),
             };
-            // The font gives one list of curves: a jump starts a new contour.
+            // The font gives one list of curves: a jump between them starts a new contour.
             if last != Some(from) {
                 if last.is_some() {
                     builder.close();

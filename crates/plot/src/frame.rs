@@ -1,4 +1,4 @@
-//! One picture of the simulated field: bodies, grains and interactions.
+//! Picture of the scene: bodies, grains and interactions.
 
 use std::path::Path;
 
@@ -15,13 +15,13 @@ use fretwork_observe::picture::Paint;
 /// A first body (rail, wheel), or a grain with corners.
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
-    /// Corners of a closed polygon, metres; may reach out of the window.
+    /// Corners of a closed polygon, metres; may extend beyond the window.
     pub points: Vec<[f64; 2]>,
     /// Name written in the body; empty for none.
     pub label: String,
-    /// Grey of a grain, as [`Disk::shade`]; none for a first body.
+    /// Grey level of a grain, as [`Disk::shade`]; `None` for a first body.
     pub shade: Option<f64>,
-    /// What the colour of a grain says.
+    /// Colour of a grain.
     pub paint: Paint,
 }
 
@@ -32,11 +32,11 @@ pub struct Disk {
     pub centre: [f64; 2],
     /// Radius, metres.
     pub radius: f64,
-    /// Rotation since the start, radians, shown by a tick.
+    /// Rotation since the start, radians, shown by a mark.
     pub angle: f64,
-    /// Shade of the grain: 0 light, 1 dark.
+    /// Grey level of the grain: 0 light, 1 dark.
     pub shade: f64,
-    /// What its colour says.
+    /// Colour of the grain.
     pub paint: Paint,
 }
 
@@ -48,7 +48,7 @@ pub enum LinkState {
         /// Damage of the bond, 0 sound to 1 about to break.
         damage: f64,
     },
-    /// Once bonded, in blue.
+    /// Broken bond, in blue.
     Broken,
     /// Contact that was never bonded, in thin grey.
     Plain,
@@ -65,12 +65,12 @@ pub struct Link {
     pub b: [f64; 2],
     /// Colour.
     pub state: LinkState,
-    /// Force relative to the usual one: 1 is the usual width, 0 the thinnest;
-    /// what lies above 4 is drawn as 4.
+    /// Force relative to the typical one: 1 is the typical width, 0 the thinnest; values above 4 are drawn as
+    /// 4.
     pub width: f64,
 }
 
-/// An arrow over the field, for a load or a motion.
+/// An arrow for a load or a motion.
 #[derive(Clone, Debug)]
 pub struct Arrow {
     /// Tail, metres.
@@ -81,16 +81,15 @@ pub struct Arrow {
     pub label: String,
 }
 
-/// A picture of the field at one instant.
+/// A picture of the scene at one instant.
 #[derive(Clone, Debug)]
 pub struct Frame<'a> {
     /// Heading; empty for none.
     pub title: String,
-    /// Facts under the heading (time, cycle, friction), set in one line when
-    /// they fit.
+    /// Texts under the heading (time, cycle, friction), on one line if they fit.
     pub caption: Vec<String>,
-    /// xmin, xmax, ymin, ymax, metres. The picture shows all of it at the same
-    /// scale in both directions, and more where the picture would be too flat.
+    /// xmin, xmax, ymin, ymax, metres. The picture shows all of it at equal scale in both directions, and
+    /// more if the picture would be too flat.
     pub window: [f64; 4],
     /// First bodies, and grains with corners.
     pub bodies: &'a [Outline],
@@ -100,9 +99,9 @@ pub struct Frame<'a> {
     pub links: &'a [Link],
     /// Loads and motions.
     pub arrows: &'a [Arrow],
-    /// What the values of the grains or of the bonds mean, where they are painted by one.
+    /// Colour scale of the values of grains or bonds, if they are coloured by a value.
     pub scale: Option<Scale>,
-    /// What is shown in space, in place of bodies and disks.
+    /// The 3D scene, drawn instead of bodies and disks.
     pub scene: Option<&'a Scene>,
     /// Width of the picture in pixels; the height follows from the window.
     pub width_px: u32,
@@ -115,7 +114,7 @@ const STEEL: Rgb = [142, 150, 160];
 const STEEL_EDGE: Rgb = [70, 77, 86];
 const GRAIN_EDGE: Rgb = [118, 120, 122];
 
-/// From metres to pixels of the field.
+/// Map from metres to pixels of the field.
 #[derive(Clone, Copy, Debug)]
 struct Map {
     left: f64,
@@ -149,7 +148,7 @@ impl Frame<'_> {
         let side = (24.0 * u).round();
         let field_width = self.width_px as f32 - 2.0 * side;
         let (dx, dy) = (xmax - xmin, ymax - ymin);
-        // A field neither flatter than a band nor taller than a sheet of paper.
+        // Limits on the aspect ratio of the field.
         let scale = (f64::from(field_width) / dx).min(1.4 * f64::from(field_width) / dy);
         let field_height = ((dy * scale) as f32).max(0.08 * field_width).round();
         let map = Map {
@@ -162,7 +161,7 @@ impl Frame<'_> {
         let lines = caption_lines(&self.caption, TEXT * u, room);
         let title = if self.title.is_empty() { 0.0 } else { 42.0 * u };
         let top = (title + lines.len() as f32 * 38.0 * u + 24.0 * u).round();
-        // Under the field: the colour bar and the scale bar, then what links mean.
+        // Under the field: the colour bar and the scale bar, then the legend of the links.
         let bar = if self.scale.is_some() { 96.0 * u } else { 0.0 };
         let line = if self.scale.is_none() || !self.links.is_empty() {
             62.0 * u
@@ -248,8 +247,8 @@ impl Frame<'_> {
         }
     }
 
-    /// Unit of line width: follows the grains, so that links neither hide
-    /// small ones nor get lost between large ones.
+    /// Unit of line width: proportional to the grains, so that links neither cover small grains nor vanish
+    /// between large ones.
     fn line_unit(&self, field: &Canvas, map: &Map, u: f32) -> f32 {
         let (sum, count) = self
             .seen(field, map)
@@ -262,7 +261,7 @@ impl Frame<'_> {
         }
     }
 
-    /// Grains that touch the field, with centre and radius in pixels.
+    /// Grains that overlap the field, with centre and radius in pixels.
     fn seen(&self, field: &Canvas, map: &Map) -> Vec<(&Disk, [f32; 2], f32)> {
         let disks = self.disks.iter();
         disks
@@ -270,7 +269,7 @@ impl Frame<'_> {
             .collect()
     }
 
-    /// Links of one colour are filled together; plain ones lie below.
+    /// Links of one colour are filled together, plain ones at the bottom.
     fn draw_links(&self, field: &mut Canvas, map: &Map, u: f32) {
         const LEVELS: usize = 8;
         let unit = self.line_unit(field, map, u);
@@ -323,7 +322,7 @@ impl Frame<'_> {
     }
 }
 
-/// Centre and radius of a disk in pixels, if it touches the field.
+/// Centre and radius of a disk in pixels, if it overlaps the field.
 fn pixels(disk: &Disk, field: &Canvas, map: &Map) -> Option<([f32; 2], f32)> {
     let at = map.point(disk.centre);
     let r = (disk.radius * map.scale) as f32;
@@ -332,8 +331,8 @@ fn pixels(disk: &Disk, field: &Canvas, map: &Map) -> Option<([f32; 2], f32)> {
     (r > 0.0 && near(at[0], width) && near(at[1], height)).then_some((at, r))
 }
 
-/// A body cut to the field and a margin, in pixels: a wheel of half a metre
-/// round a field of a tenth of a millimetre is beyond single precision.
+/// A body clipped to the field and a margin, in pixels: a wheel of 0.5 m around a field of 0.1 mm exceeds
+/// single precision.
 fn visible(points: &[[f64; 2]], field: &Canvas, map: &Map) -> Vec<[f32; 2]> {
     let margin = 8.0 / map.scale;
     let (width, height) = (
@@ -420,7 +419,7 @@ mod tests {
                 &frame(&[], &disks, &links),
                 &format!("{state:?}").replace(' ', ""),
             );
-            // The middle of the field: title and caption above, legend below.
+            // The middle of the field, between title and legend.
             let (side, middle) = (7, picture.width() / 2);
             let scale = f64::from(picture.width() - 2 * side) / (100.0 * UM);
             let below = (20.0 * UM * scale) as u32 + (74.0 * 400.0 / 1400.0) as u32;

@@ -1,4 +1,4 @@
-//! What surrounds the field of a frame: legend, scale bar, arrows, caption.
+//! Elements around the field of a picture: legend, scale bar, arrows, caption.
 
 use tiny_skia::PathBuilder;
 
@@ -8,8 +8,7 @@ use super::font::{Anchor, TextStyle, text_width};
 use super::frame::{BROKEN, CHAIN, Link, LinkState, PLAIN};
 use super::paint::{DAMAGED, SOUND};
 
-/// Names the colours of the links that are present, from a point on the
-/// middle of the line.
+/// Draws the legend of the link colours that are present, from a point on the middle of the line.
 pub(super) fn legend(page: &mut Canvas, links: &[Link], [left, middle]: [f32; 2], u: f32) {
     let em = TEXT * u;
     let has = |of: fn(&LinkState) -> bool| links.iter().any(|l| of(&l.state));
@@ -58,7 +57,7 @@ pub(super) fn legend(page: &mut Canvas, links: &[Link], [left, middle]: [f32; 2]
     }
 }
 
-/// A bar of round length that ends at a point; `scale` in pixels a metre.
+/// Draws a scale bar of round length that ends at a point; `scale` in pixels per metre.
 pub(super) fn scale_bar(page: &mut Canvas, [right, middle]: [f32; 2], scale: f64, u: f32) {
     let (metres, label) = round_length(190.0 * f64::from(u) / scale);
     let length = (metres * scale) as f32;
@@ -71,7 +70,7 @@ pub(super) fn scale_bar(page: &mut Canvas, [right, middle]: [f32; 2], scale: f64
     page.text(&label, [left - 14.0 * u, middle + 0.34 * TEXT * u], &style);
 }
 
-/// The longest of 1, 2, 5 times a power of ten within a length in metres.
+/// The largest of 1, 2, 5 times a power of ten not above a length in metres.
 fn round_length(longest: f64) -> (f64, String) {
     let power = longest.log10().floor();
     let factor = match longest / 10f64.powf(power) {
@@ -90,7 +89,7 @@ fn round_length(longest: f64) -> (f64, String) {
     (metres, format!("{digits} {unit}"))
 }
 
-/// An arrow with a white rim, and its label beside the tail.
+/// Draws an arrow with a white rim, and its label beside the tail.
 pub(super) fn arrow(field: &mut Canvas, from: [f32; 2], to: [f32; 2], label: &str, u: f32) {
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
     let length = dx.hypot(dy);
@@ -121,8 +120,8 @@ pub(super) fn arrow(field: &mut Canvas, from: [f32; 2], to: [f32; 2], label: &st
     field.text(label, at, &style);
 }
 
-/// Adds a straight bar to a path. All bars turn the same way round, so that
-/// crossing ones do not cut holes in one another.
+/// Adds a straight bar to a path. All bars have the same winding, so that crossing ones do not cut holes into
+/// each other.
 pub(super) fn push_bar(path: &mut PathBuilder, a: [f32; 2], b: [f32; 2], width: f32) {
     let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
     let length = dx.hypot(dy);
@@ -152,7 +151,7 @@ pub(super) fn centroid(points: &[[f32; 2]]) -> Option<[f32; 2]> {
     (area != 0.0).then(|| [sum[0] / area, sum[1] / area])
 }
 
-/// Facts joined in as few lines as fit.
+/// Joins texts in as few lines as fit.
 pub(super) fn caption_lines(facts: &[String], size: f32, room: f32) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for fact in facts {

@@ -1,4 +1,4 @@
-//! The legend of a chart: a box where no curve passes, or rows above the plot.
+//! Legend of a chart: a box where no curve passes, or rows above the plot.
 
 use super::canvas::{Canvas, INK, Rgb, WHITE};
 use super::chart::{Plot, Runs, Sheet, TEXT};
@@ -20,7 +20,7 @@ const SAMPLE: f32 = 56.0;
 const PAD: f32 = 14.0;
 
 impl Legend {
-    /// The legend a chart needs, if any; `u` is the scale of the picture.
+    /// The legend of a chart, if it needs one; `u` is the scale of the picture.
     pub fn of(chart: &Chart, u: f32) -> Option<Self> {
         let em = TEXT * u;
         let labels = labels(chart);
@@ -40,16 +40,14 @@ impl Legend {
         })
     }
 
-    /// Corner of a place in the plot, in pixels of the picture, that no curve
-    /// crosses.
+    /// Corner of a free area of the plot, in pixels of the picture, that no curve crosses.
     pub fn free_place(&self, curves: &[Runs], plot: &Plot, u: f32) -> Option<[f32; 2]> {
         let (width, height) = (plot.width as f32, plot.height as f32);
         let gap = 20.0 * u;
         if self.width + 2.0 * gap > width || self.height + 2.0 * gap > height {
             return None;
         }
-        // Cells of the plot that hold ink; the steps along a line are shorter
-        // than a cell.
+        // Cells of the plot that contain a curve; the sampling along a line is finer than a cell.
         let cell = 6.0;
         let (columns, rows) = ((width / cell) as usize + 1, (height / cell) as usize + 1);
         let mut ink = vec![false; columns * rows];
@@ -73,7 +71,7 @@ impl Legend {
             }
         }
         let (far_x, far_y) = (width - self.width - gap, height - self.height - gap);
-        // The corners, then along the edges, then anywhere.
+        // Candidates: the corners, then along the edges, then anywhere.
         let (half_x, half_y) = ((width - self.width) / 2.0, (height - self.height) / 2.0);
         let mut places = vec![
             [far_x, gap],
@@ -101,7 +99,7 @@ impl Legend {
         Some([plot.left as f32 + x, plot.top as f32 + y])
     }
 
-    /// Draws the legend with its left top corner at a pixel of the picture.
+    /// Draws the legend with its top left corner at a pixel of the picture.
     pub fn draw(&self, chart: &Chart, page: &mut Canvas, [left, top]: [f32; 2], u: f32) {
         let em = TEXT * u;
         let edge: Rgb = [200, 204, 210];
@@ -131,7 +129,7 @@ impl Legend {
     }
 }
 
-/// A sample of a series and its label, from a point on the middle of the line.
+/// A line sample of a series and its label, from a point on the middle of the line.
 fn entry(
     chart: &Chart,
     page: &mut Canvas,
@@ -160,16 +158,16 @@ fn entry(
     page.text(label, [to + PAD * u, middle + 0.34 * em], &ink);
 }
 
-/// The legend as rows above a plot, where the plot has no room for a box.
+/// The legend as rows above a plot that has no free area for a box.
 pub(super) struct Rows {
     /// Height of all rows, pixels.
     pub height: f32,
-    /// Index of each series, and where its entry begins.
+    /// Index of each series, and the position of its entry.
     entries: Vec<(usize, [f32; 2])>,
 }
 
 impl Rows {
-    /// Lays the entries out in a width in pixels; `u` is the scale of the picture.
+    /// Arranges the entries within a width in pixels; `u` is the scale of the picture.
     pub fn of(chart: &Chart, width: f32, u: f32) -> Self {
         if chart.colour_by_order {
             return Self {
@@ -205,7 +203,7 @@ impl Rows {
     }
 }
 
-/// Rank and label of the series that ask for an entry.
+/// Index and label of the series with a legend entry.
 fn labels(chart: &Chart) -> Vec<(usize, &str)> {
     let entry =
         |(i, s): (usize, &'_ fretwork_observe::chart::Series)| (!s.label.is_empty()).then_some(i);

@@ -1,4 +1,4 @@
-//! A band over pictures that says first what is not to be trusted in them.
+//! Warning band above pictures of a run that is not trustworthy.
 
 use super::canvas::{Canvas, ReportError, Rgb, WHITE};
 use super::font::{TextStyle, text_width};
@@ -10,7 +10,7 @@ thread_local! {
     static NOTICE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Draws pictures, each of which has a band at its top with this text, where there is one.
+/// Runs `draw` such that each picture has a band at its top with this text, if there is one.
 pub fn noted<T>(notice: Option<String>, draw: impl FnOnce() -> T) -> T {
     let before = NOTICE.replace(notice);
     let drawn = draw();
@@ -18,12 +18,12 @@ pub fn noted<T>(notice: Option<String>, draw: impl FnOnce() -> T) -> T {
     drawn
 }
 
-/// The text of the band at hand.
+/// Text of the current band.
 pub(super) fn current() -> Option<String> {
     NOTICE.with_borrow(Clone::clone)
 }
 
-/// A picture with a band above it; the rest of it is as it was.
+/// Adds a band above an otherwise unchanged picture.
 pub(super) fn banded(picture: &Canvas, text: &str) -> Result<Canvas, ReportError> {
     let (width, height) = (picture.pixmap.width(), picture.pixmap.height());
     let u = width as f32 / 1400.0;

@@ -1,4 +1,4 @@
-//! What the colour of a grain says.
+//! Colours of grains.
 
 use super::canvas::{Canvas, INK, ReportError, Rgb, mix};
 use super::chart::TEXT;
@@ -6,21 +6,21 @@ use super::font::{Anchor, TextStyle, text_width};
 use fretwork_observe::chart::Axis;
 use fretwork_observe::picture::Paint;
 
-/// What the colours of [`Paint::Value`], or of bonds, mean.
+/// Legend of the colours of [`Paint::Value`], or of bonds.
 #[derive(Clone, Debug)]
 pub struct Scale {
     /// The quantity.
     pub label: String,
     /// SI unit without prefix, empty for a pure number.
     pub unit: String,
-    /// Its value at 1; what lies above is drawn as that.
+    /// Value at the end of the colour scale; larger values are drawn the same.
     pub top: f64,
-    /// Whether it is the damage of the bonds between grains, and not a value of the grains.
+    /// Whether it is the damage of bonds between grains, and not a value of the grains.
     pub bonds: bool,
 }
 
 const GREY: [Rgb; 2] = [[238, 238, 236], [150, 151, 152]];
-/// Sands of a sand box: neighbours differ in lightness too, so that they stay apart in grey.
+/// Colours of layers; neighbours also differ in lightness, so that they are distinct in grey.
 const SANDS: [Rgb; 4] = [
     [238, 206, 130],
     [170, 68, 44],
@@ -31,7 +31,7 @@ const SANDS: [Rgb; 4] = [
 const TIED: [Rgb; 2] = [[200, 60, 48], [222, 164, 62]];
 const LOOSE: Rgb = [58, 104, 176];
 const OUT: Rgb = [168, 200, 226];
-/// Bonds, sound and damaged.
+/// Bonds: undamaged, and damaged.
 pub(super) const SOUND: Rgb = [150, 0, 12];
 pub(super) const DAMAGED: Rgb = [255, 112, 20];
 const VALUES: [Rgb; 5] = [
@@ -69,7 +69,7 @@ fn value(v: f64) -> Rgb {
     mix(VALUES[k], VALUES[k + 1], place - k as f64)
 }
 
-/// A colour bar with its ticks and its name, from a point on the middle of the bar; the ticks stand below.
+/// Draws a colour bar with its ticks and name, from a point on the middle of the bar; the ticks are below.
 pub(super) fn scale(
     page: &mut Canvas,
     scale: &Scale,
@@ -105,7 +105,7 @@ pub(super) fn scale(
     Ok(())
 }
 
-/// The least of 1, 1.5, 2, 3, 5, 7 times a power of ten not below a value: where a colour bar ends.
+/// The smallest of 1, 1.5, 2, 3, 5, 7 times a power of ten not below a value, as the end of a colour bar.
 pub fn round_top(value: f64) -> f64 {
     let power = 10f64.powf(value.log10().floor());
     let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0];

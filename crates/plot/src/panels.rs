@@ -6,15 +6,15 @@ use super::font::TextStyle;
 use fretwork_observe::chart::Chart;
 use std::path::Path;
 
-/// Width of a page in pixels: 318 to the inch where it is printed 16 cm wide.
+/// Width of a page in pixels: 318 per inch if it is printed 16 cm wide.
 const WIDTH: u32 = 2000;
 /// Height of a panel over its width.
 const ASPECT: f32 = 0.8;
-/// Columns at most: text of 9 pt leaves no room for curves in narrower panels.
+/// Limit on the columns: in narrower panels text of 9 pt leaves no room for curves.
 const COLUMNS: usize = 2;
 
-/// Draws charts row by row, so many columns wide (at most two), to one PNG file. Charts without data are left out;
-/// without any there is no file. What all charts say under their headings is set once, above the page.
+/// Draws charts row by row in a number of columns (at most two) to one PNG file. Charts without data are omitted;
+/// without any chart there is no file. A subtitle common to all charts is drawn once, above the page.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -55,7 +55,7 @@ pub fn draw_panels(charts: &[Chart], columns: usize, path: &Path) -> Result<(), 
     page.save(path)
 }
 
-/// Takes what all charts have as their second line off them, and gives it.
+/// Removes the subtitle that all charts have in common, and returns it.
 fn common(charts: &mut [Chart]) -> String {
     let first = charts.first().and_then(|c| c.subtitle.clone());
     let Some(first) = first.filter(|f| charts.iter().all(|c| c.subtitle.as_ref() == Some(f)))
@@ -89,7 +89,7 @@ mod tests {
         let two = png_size(&path);
         assert_eq!(two.0, WIDTH);
         draw_panels(&[some.clone(), some.clone(), some], 3, &path).unwrap();
-        // A third chart begins a second row: there are two columns at most.
+        // A third chart begins a second row, since there are at most two columns.
         assert!(png_size(&path).1 > two.1 + 700);
         std::fs::remove_file(path).unwrap();
     }

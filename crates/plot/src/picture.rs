@@ -1,4 +1,4 @@
-//! The state of a simulation as pictures and as points, lines and outlines for files.
+//! Pictures of the state of a simulation.
 
 mod links;
 mod quantity;
@@ -15,43 +15,44 @@ use fretwork_scene::case::OutputSpec;
 use links::{forces, links};
 use std::path::Path;
 
-/// What a frame shows of the scene.
+/// View of the scene for a series of pictures.
 #[derive(Clone, Debug)]
 pub struct Camera {
     window: [f64; 4],
     fixed: bool,
     width: u32,
-    /// Thickness of the layers that are told apart by colour (m).
+    /// Thickness of the layers distinguished by colour (m).
     layers: Option<f64>,
-    /// Paint of each ball, where there are layers.
+    /// Colour of each ball, if there are layers.
     paints: Vec<Paint>,
 }
 
-/// What a picture shows.
+/// Subject of a picture.
 #[derive(Clone, Copy, Debug)]
 pub enum Subject<'a> {
-    /// Grains in the colours of their layers where there are layers; else with their speed, or the damage of their
-    /// bonds where there are bonds, and in the plane the forces and bonds between them.
+    /// Grains coloured by layer if there are layers, otherwise by speed, or by the damage of their bonds if
+    /// there are bonds; in 2D also the forces and bonds between them.
     Scene,
-    /// The bonds, intact and broken.
+    /// Intact and broken bonds.
     Bonds,
-    /// Colours of the balls and then of the pieces.
+    /// Colours of the balls, followed by those of the convex parts.
     Painted(&'a [Paint]),
-    /// The contacts that carry force, those of force chains apart: sorted pairs of bodies, the lower first.
+    /// The contacts that carry force, with force chains highlighted: sorted pairs of bodies, the lower index
+    /// first.
     Chains(&'a [[u32; 2]]),
     /// A value of each ball, from 0 to `top`.
     Values {
         /// The values.
         values: &'a [f64],
-        /// What they are.
+        /// Name of the quantity.
         label: &'a str,
-        /// What is drawn darkest.
+        /// Value at the dark end of the scale.
         top: f64,
     },
 }
 
 impl Camera {
-    /// Looks at the whole scene as it stands, or at the window that the case names.
+    /// A view of the whole scene in its current state, or of the window given in the case.
     pub fn new<S: Space>(simulation: &Simulation<S>, output: &OutputSpec) -> Self {
         let mut camera = Self {
             window: output.window.unwrap_or_default(),
@@ -65,7 +66,7 @@ impl Camera {
         camera
     }
 
-    /// Dyes the grains by the layers in which they stand now.
+    /// Colours the grains by the layers in which they are now.
     pub fn dye<S: Space>(&mut self, simulation: &Simulation<S>) {
         let Some(thickness) = self.layers else { return };
         let grain = simulation.bodies.grain_flags();
@@ -80,17 +81,17 @@ impl Camera {
         self.paints = all.map(paint).collect();
     }
 
-    /// The paint of each ball, where there are layers.
+    /// Colour of each ball, if there are layers.
     pub fn paints(&self) -> &[Paint] {
         &self.paints
     }
 
-    /// Takes paints that were given before.
+    /// Restores colours that were assigned earlier.
     pub fn paint(&mut self, paints: Vec<Paint>) {
         self.paints = paints;
     }
 
-    /// Looks at the scene as it stands now, unless the case names a window.
+    /// Adapts the window to the current scene, unless the case gives one.
     pub fn follow<S: Space>(&mut self, simulation: &Simulation<S>) {
         if !self.fixed {
             self.window = Self::whole(simulation);
@@ -141,7 +142,7 @@ impl Camera {
         w
     }
 
-    /// Draws a frame of a subject.
+    /// Draws a picture of a subject.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -199,10 +200,10 @@ impl Camera {
         .draw(path)
     }
 
-    /// The contacts that a subject shows as lines (2D).
+    /// The contacts drawn as lines for a subject (2D).
     fn lines<S: Space>(&self, simulation: &Simulation<S>, subject: Subject<'_>) -> Vec<Link> {
         match subject {
-            // A map of the state alone: forces would hide it.
+            // A map of the bond states only: forces would cover it.
             Subject::Bonds => {
                 let bonds = links(simulation, self.window).into_iter();
                 let bonds = bonds.filter(|l| l.state != LinkState::Plain);
@@ -210,7 +211,7 @@ impl Camera {
             }
             Subject::Chains(pairs) => forces(simulation, self.window, pairs),
             Subject::Scene if self.paints.is_empty() => links(simulation, self.window),
-            // Colours say something of the grains: nothing is drawn over them.
+            // The colours of grains carry the information: nothing is drawn over them.
             _ => Vec::new(),
         }
     }
@@ -247,7 +248,8 @@ fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Ve
     out
 }
 
-/// The largest ball of each first body that is large in the window, as an outline that hides under its disk and bears the name.
+/// For each first body made of balls that is large in the window, an outline of its largest ball, which is
+/// hidden under its disk and carries the name.
 pub fn named_balls<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
     const CORNERS: u32 = 256;
     let least = 0.1 * (window[1] - window[0]).min(window[3] - window[2]);
@@ -282,7 +284,7 @@ pub fn named_balls<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline
     out
 }
 
-/// The images of a point that show in the window.
+/// The periodic images of a point that are visible in the window.
 fn images(x: f64, reach: f64, window: [f64; 4], period: Option<f64>) -> Vec<f64> {
     let Some(period) = period else { return vec![x] };
     let x = x - period * (x / period).floor();
@@ -322,7 +324,7 @@ fn paint(paints: &[Paint], ball: usize) -> Paint {
     paints.get(ball).copied().unwrap_or_default()
 }
 
-/// First bodies as closed polygons that reach out of the window.
+/// First bodies as closed polygons that extend beyond the window.
 fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
     let period = s.shapes.periodic.period[0];
     let far = 2.0 * ((window[1] - window[0]) + (window[3] - window[2]));
@@ -376,7 +378,7 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
                 }
                 None => polygon.clone_from(&points),
             }
-            // The solid is on the right of the chain.
+            // The solid is on the right of the polyline.
             let (a, z) = (polygon[0], polygon[polygon.len() - 1]);
             let (dx, dy) = (z[0] - a[0], z[1] - a[1]);
             let length = dx.hypot(dy).max(f64::MIN_POSITIVE);
@@ -394,8 +396,8 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
     out
 }
 
-/// What is outside a closed convex chain that runs anticlockwise: a square `far` wide with the chain cut out; a
-/// seam to the right joins the two.
+/// The outside of a closed convex polyline that runs counter-clockwise: a square of size `far` with the
+/// polyline cut out, joined by a seam on the right.
 fn around(chain: &[[f64; 2]], far: f64) -> Vec<[f64; 2]> {
     let ring = &chain[..chain.len() - 1];
     let right = (0..ring.len()).max_by(|a, b| ring[*a][0].total_cmp(&ring[*b][0]));

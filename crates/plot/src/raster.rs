@@ -1,8 +1,8 @@
-//! Pixels with a depth: what is nearer to the viewer hides what is farther, whatever is drawn first.
+//! Pixel buffer with depth: nearer objects hide farther ones in any drawing order.
 
 use super::canvas::Rgb;
 
-/// A corner of a polygon: pixels to the right and downwards, and pixels towards the viewer.
+/// A corner of a polygon: pixels to the right, downwards, and towards the viewer.
 pub(super) type Corner = [f64; 3];
 
 /// A surface of pixels with depths; larger depths are nearer.
@@ -13,17 +13,17 @@ pub(super) struct Raster {
     depth: Vec<f32>,
 }
 
-/// How a polygon covers pixels.
+/// How a polygon is blended.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Cover {
     /// Hides what is behind it.
     Opaque,
-    /// Tints what is behind it by this share, and leaves its depth.
+    /// Tints what is behind it by this fraction, and leaves the depth unchanged.
     Veil(f32),
 }
 
 impl Raster {
-    /// A surface of one colour, infinitely far.
+    /// Creates a buffer of one colour at infinite depth.
     pub fn new(width: usize, height: usize, ground: Rgb) -> Self {
         Self {
             width,
@@ -38,11 +38,11 @@ impl Raster {
         span(low, high, self.height)
     }
 
-    /// A lit sphere.
+    /// Draws a lit sphere.
     pub fn sphere(&mut self, [x, y, z]: Corner, radius: f64, base: Rgb) {
-        // Light from the left above, in front of the picture; unit length.
+        // Light from the upper left in front of the picture; unit length.
         const LIGHT: [f64; 3] = [-0.45, -0.6, 0.661];
-        // The smallest still shows.
+        // The smallest spheres remain visible.
         let radius = radius.max(0.75);
         for row in self.rows(y - radius, y + radius) {
             let ny = (row as f64 + 0.5 - y) / radius;
@@ -60,7 +60,7 @@ impl Raster {
                     continue;
                 }
                 let facing = (LIGHT[0] * nx + LIGHT[1] * ny + LIGHT[2] * nz).max(0.0);
-                // The rim falls off as well, so that like spheres stand apart.
+                // The rim is darkened as well, so that equal spheres are distinguishable.
                 let light = (0.5 + 0.54 * facing) * (0.62 + 0.38 * nz.sqrt());
                 let gleam = 36.0 * facing.powi(24);
                 self.depth[at] = depth;
@@ -69,7 +69,7 @@ impl Raster {
         }
     }
 
-    /// Calls with the index and depth of each pixel of a convex polygon.
+    /// Calls a function with the index and depth of each pixel of a convex polygon.
     fn scan(&self, corners: &[Corner], mut call: impl FnMut(usize, f32)) {
         let Some([a, b, c]) = plane(corners) else {
             return;
@@ -118,7 +118,7 @@ impl Raster {
         (self.colour, self.depth) = (pixels, depths);
     }
 
-    /// How many pixels a convex polygon covers, and behind how many of them something stands.
+    /// Number of pixels that a convex polygon covers, and of those with something behind it.
     pub fn hidden(&self, corners: &[Corner]) -> (usize, usize) {
         let (mut covered, mut hidden) = (0, 0);
         self.scan(corners, |at, depth| {
@@ -129,7 +129,8 @@ impl Raster {
         (covered, hidden)
     }
 
-    /// A straight line, hidden by what is nearer by more than `lift` pixels: a line on a steep face is not hidden by it.
+    /// Draws a straight line, hidden by objects nearer by more than `lift` pixels, so that a line on a steep
+    /// face is not hidden by that face.
     pub fn line(&mut self, a: Corner, b: Corner, width: f64, lift: f64, colour: Rgb, share: f32) {
         let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
         let length = dx.hypot(dy);
@@ -139,7 +140,7 @@ impl Raster {
         let half = 0.5 * width;
         for row in self.rows(a[1].min(b[1]) - half, a[1].max(b[1]) + half) {
             let y = row as f64 + 0.5;
-            // Where the strip about the line crosses the row.
+            // Intersection of the strip about the line with the row.
             let reach = half + 1.0;
             let (from, to) = if dy.abs() > 1e-9 * length {
                 let middle = a[0] + (y - a[1]) / dy * dx;
@@ -167,7 +168,7 @@ impl Raster {
         }
     }
 
-    /// The picture at `1/by` of the size: the mean of `by` times `by` pixels; rows of red, green and blue.
+    /// Downsamples by a factor `by` in each direction, averaging pixels; rows of red, green and blue.
     pub fn reduced(&self, by: usize) -> (usize, usize, Vec<Rgb>) {
         let (width, height) = (self.width / by, self.height / by);
         let mut out = Vec::with_capacity(width * height);
@@ -201,7 +202,7 @@ fn tinted(under: Rgb, colour: Rgb, share: f32) -> Rgb {
     })
 }
 
-/// The depth of a polygon's plane as `a x + b y + c`; none where it is seen edge on.
+/// Depth of a polygon's plane as `a x + b y + c`; `None` if it is seen edge on.
 fn plane(corners: &[Corner]) -> Option<[f64; 3]> {
     let mut n = [0.0; 3];
     for (k, p) in corners.iter().enumerate() {
@@ -288,7 +289,7 @@ mod tests {
         assert_eq!(r.colour[10 * 40 + 10], RED);
         assert_eq!(r.colour[10 * 40 + 30], BLUE);
         r.line([30.0, 0.0, 0.0], [30.0, 0.0, 9.0], 2.0, 3.0, BLUE, 1.0);
-        // An almost level line is whole.
+        // An almost horizontal line is complete.
         r.line([1.0, 15.0, 60.0], [39.0, 15.001, 60.0], 2.0, 3.0, BLUE, 1.0);
         assert!((2..38).all(|x| r.colour[15 * 40 + x] == BLUE));
         let (w, h, pixels) = r.reduced(2);

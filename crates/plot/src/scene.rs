@@ -1,4 +1,5 @@
-//! A scene in space as pixels: grains, and first bodies as walls that are seen through where grains stand behind them.
+//! 3D scene rendered to pixels: grains, and first bodies as walls that are transparent where grains are
+//! behind them.
 
 use super::canvas::{Canvas, Rgb, WHITE, mix};
 use super::paint::Coloured;
@@ -14,63 +15,63 @@ pub struct Sphere {
     pub centre: [f64; 3],
     /// Radius (m).
     pub radius: f64,
-    /// What its colour says.
+    /// Colour.
     pub paint: Paint,
     /// Whether it is part of a first body.
     pub first: bool,
 }
 
-/// Faces of one thing: a grain with corners, or a surface of a first body, closed or open.
+/// Faces of one object: a grain with corners, or a surface of a first body, closed or open.
 #[derive(Clone, Debug)]
 pub struct Faces {
-    /// Convex polygons (m), anticlockwise seen from the open side.
+    /// Convex polygons (m), counter-clockwise seen from the open side.
     pub polygons: Vec<Vec<[f64; 3]>>,
-    /// What the colour of a grain says.
+    /// Colour.
     pub paint: Paint,
     /// Whether it belongs to a first body.
     pub first: bool,
 }
 
-/// What a frame shows in space.
+/// Content of a 3D picture.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// From where.
+    /// Direction of view.
     pub view: View,
     /// Spheres.
     pub spheres: Vec<Sphere>,
-    /// All else.
+    /// Objects with faces.
     pub faces: Vec<Faces>,
 }
 
-/// Pixels for one of the picture, along each side.
+/// Supersampling factor along each side.
 const FINE: usize = 2;
-/// Fields of more pixels are not drawn finer.
+/// Fields with more pixels are not supersampled.
 const LARGEST: usize = 6_000_000;
-/// A group of faces is seen through where grains stand behind more than this share of its pixels.
+/// A group of faces is transparent if grains are behind more than this fraction of its pixels.
 const SEEN_THROUGH: f64 = 0.01;
 /// Cosine of the angle between two faces below which their common edge is drawn.
 const CREASE: f64 = 0.9;
-/// First bodies: faces, and edges.
+/// Colours of first bodies: faces, and edges.
 const WALL: Rgb = [226, 230, 236];
 const WALL_EDGE: Rgb = [74, 84, 98];
-/// How much a wall that is seen through tints what is behind it.
+/// Tint of a transparent wall on the objects behind it.
 const VEIL: f32 = 0.07;
 
-/// From metres to pixels.
+/// Map from metres to pixels.
 pub(super) struct Place {
     /// Metres at the left and top of the field.
     pub corner: [f64; 2],
-    /// Pixels a metre.
+    /// Pixels per metre.
     pub scale: f64,
 }
 
-/// Faces of one smooth part of a thing, as they are seen.
+/// Visible faces of one smooth part of an object.
 struct Group {
     faces: Vec<Vec<Corner>>,
     lights: Vec<f64>,
 }
 
-/// What a thing shows: parts towards the viewer, faces away from it, and edges.
+/// Visible parts of an object: groups of faces towards the viewer, faces away from it, and edges.
 #[derive(Default)]
 struct Seen {
     groups: Vec<Group>,
@@ -79,7 +80,7 @@ struct Seen {
 }
 
 impl Scene {
-    /// Corners of all that is shown, as the view has them: to the right, upwards (m).
+    /// Projected corners of everything shown: to the right, upwards (m).
     pub fn extent(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         let spheres = self.spheres.iter().flat_map(|s| {
             let [x, y] = self.view.project(s.centre).0;
@@ -111,7 +112,7 @@ impl Scene {
         };
         for s in &self.spheres {
             let at = pixel(s.centre);
-            // Grey grains that are far are darker, to show the depth of the bed.
+            // Grey grains are darker with distance, to show depth.
             let far = 0.5 - (at[2] / scale) / depth;
             let shade = match (s.paint, s.first) {
                 (Paint::Grey, true) => 0.75 + 0.25 * far,
@@ -135,7 +136,7 @@ impl Scene {
                 raster.line(a, b, 1.0 * line, 3.0, edge, 0.9);
             }
         }
-        // What is in front of grains is a veil: it is laid over all that hides.
+        // Walls in front of grains are drawn as veils after all opaque objects.
         let (mut solids, mut veils, mut edges) = (Vec::new(), Vec::new(), Vec::new());
         for faces in walls {
             let seen = self.seen(faces, &pixel);
@@ -166,7 +167,7 @@ impl Scene {
         field.write(across, &pixels);
     }
 
-    /// The middle of the depths of the grains, and their span (m).
+    /// Middle and range of the depths of the grains (m).
     fn depths(&self) -> [f64; 2] {
         let spheres = self.spheres.iter().map(|s| s.centre);
         let corners = self.faces.iter().flat_map(|f| f.polygons.iter().flatten());
@@ -185,7 +186,7 @@ impl Scene {
         }
     }
 
-    /// What is seen of a thing.
+    /// Visible parts of an object.
     fn seen(&self, faces: &Faces, pixel: &impl Fn([f64; 3]) -> Corner) -> Seen {
         let mut seen = Seen::default();
         let normals: Vec<[f64; 3]> = faces.polygons.iter().map(|p| normal(p)).collect();
@@ -226,7 +227,8 @@ impl Scene {
         seen
     }
 
-    /// Of a normal: how far it points to the viewer, and the light from the left above, in front of the picture.
+    /// For a normal: its component towards the viewer, and the light from the upper left in front of the
+    /// picture.
     fn light(&self, n: &[f64; 3]) -> (f64, f64) {
         const LIGHT: [f64; 3] = [-0.45, 0.6, 0.661];
         let ([x, y], z) = self.view.project(*n);
@@ -243,14 +245,14 @@ fn solid(raster: &mut Raster, group: &Group, base: Rgb) {
     }
 }
 
-/// An edge of one face or between two.
+/// An edge of one face or between two faces.
 struct Edge {
     ends: [[f64; 3]; 2],
     sides: (usize, Option<usize>),
     crease: bool,
 }
 
-/// The edges of polygons, and the smooth part each polygon belongs to.
+/// The edges of polygons, and the smooth part to which each polygon belongs.
 fn joined(polygons: &[Vec<[f64; 3]>], normals: &[[f64; 3]]) -> (Vec<Edge>, Vec<usize>) {
     let all = || polygons.iter().flatten().flatten().copied();
     let size = all()
@@ -302,7 +304,7 @@ fn root(parts: &mut [usize], mut k: usize) -> usize {
     k
 }
 
-/// Unit normal of a polygon; null where it has no area.
+/// Unit normal of a polygon; zero if it has no area.
 fn normal(corners: &[[f64; 3]]) -> [f64; 3] {
     let Some(first) = corners.first() else {
         return [0.0; 3];
@@ -404,12 +406,12 @@ mod tests {
         let alone = middle(Vec::new(), 3.0);
         let blue = |c: [u8; 3]| c[2] > c[0] + 40;
         assert!(blue(alone));
-        // Before the wall, behind it, behind a grain with corners.
+        // In front of the wall, behind it, behind a grain with corners.
         assert_eq!(middle(vec![wall(true)], -3.0), alone);
         let veiled = middle(vec![wall(true)], 3.0);
         assert!(blue(veiled) && veiled != alone, "{veiled:?}");
         assert!(!blue(middle(vec![wall(false)], 3.0)));
-        // A wall with nothing behind it hides the ground.
+        // A wall with nothing behind it hides the background.
         let field = painted(&scene(view, vec![wall(true)], vec![grain(-3.0)]));
         assert!(colour(&field, 60, 60) != [255; 3]);
     }

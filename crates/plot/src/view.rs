@@ -1,4 +1,4 @@
-//! The direction from which a frame in space is seen.
+//! Viewing direction of 3D pictures.
 
 /// Direction of an orthographic view.
 #[derive(Clone, Copy, Debug)]
@@ -9,9 +9,8 @@ pub struct View {
 }
 
 impl View {
-    /// View with z upwards; the viewer stands at `azimuth` radians from the
-    /// negative y axis, counterclockwise seen from above, and `elevation`
-    /// radians above the horizontal. `View::new(0.0, 0.0)` shows x to the
+    /// View with z upwards; the viewer is at `azimuth` radians from the negative y axis, counterclockwise
+    /// seen from above, and `elevation` radians above the horizontal. `View::new(0.0, 0.0)` shows x to the
     /// right and z upwards.
     pub fn new(azimuth: f64, elevation: f64) -> Self {
         let ((sa, ca), (se, ce)) = (azimuth.sin_cos(), elevation.sin_cos());
@@ -22,8 +21,8 @@ impl View {
         }
     }
 
-    /// Position in the picture of a point in space, and its distance towards
-    /// the viewer, in the length unit of the point (metres).
+    /// Projected position of a point, and its coordinate towards the viewer, in the length unit of the point
+    /// (m).
     pub fn project(&self, point: [f64; 3]) -> ([f64; 2], f64) {
         let dot = |a: &[f64; 3]| a[0] * point[0] + a[1] * point[1] + a[2] * point[2];
         ([dot(&self.right), dot(&self.up)], dot(&self.towards))

@@ -1,13 +1,13 @@
-//! What a biaxial test asks of a case: four flat walls that face each other along two axes.
+//! Validation of a case's biaxial test: it needs four flat walls that face each other along two axes.
 
 use super::case::{BiaxialSpec, BodySpec, Case, ShapeSpec};
 use super::source::{Fault, nearest};
 use fretwork_core::bodies::Dof;
 
-/// Refuses a test that cannot be measured.
+/// Checks that the test can be measured on the walls it names.
 ///
 /// # Errors
-/// The first fault, with its path.
+/// The first error, with its path in the case.
 pub(super) fn check(case: &Case) -> Result<(), Fault> {
     let Some(test) = &case.biaxial else {
         return Ok(());
@@ -68,7 +68,7 @@ fn names(test: &BiaxialSpec) -> [(&'static str, &str); 4] {
     ]
 }
 
-/// The axis across which a wall stands, and the sign of its normal.
+/// The axis normal to a wall, and the sign of the wall's normal along it.
 fn facing(case: &Case, (path, name): (&str, &str)) -> Result<(usize, f64), Fault> {
     let Some(body) = case.bodies.iter().find(|b| b.name == name) else {
         let all: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();

@@ -1,24 +1,25 @@
-//! The contacts that an interface's bonds are made on, as far as a scene tells before it runs.
+//! Contacts on which an interface's bonds form, estimated from the scene before it runs.
 
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 
-/// Sites of bonds.
+/// Statistics of the contacts on which bonds form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BondSites {
-    /// Contacts of the interface at the start; 0 where there are none yet and the grains are looked at instead.
+    /// Number of contacts of the interface at the start; 0 if there are none yet and the estimate is made
+    /// from the grains.
     pub contacts: usize,
     /// Median of their reduced radii r1 r2/(r1 + r2) (m).
     pub radius: f64,
-    /// Largest area over the effective mass along the normal (m^2/kg; in 2D per metre of depth): a stiffness of k Pa/m has the
-    /// square of its circular frequency k times it.
+    /// Largest ratio of contact area to effective mass along the normal (m^2/kg; in 2D per metre of depth). A
+    /// bond stiffness of k (Pa/m) times this ratio is the square of the bond's angular frequency.
     pub normal: f64,
-    /// The same along the tangents, where grains turn too.
+    /// The same ratio along the tangents, where the grains' rotation is included.
     pub shear: f64,
 }
 
 impl BondSites {
-    /// Those of the interface at a place in `laws`; none where no contact and no grain is governed by it.
+    /// Bond sites of the interface with index `law`; `None` if it governs no contact and no grain.
     pub fn of<S: Space>(s: &Simulation<S>, law: usize) -> Option<Self> {
         Self::of_contacts(s, law).or_else(|| Self::of_grains(s, law))
     }
@@ -52,7 +53,8 @@ impl BondSites {
         Some(out)
     }
 
-    /// Two equal grains of a kind that the interface governs: the median for the radius, the lightest for the frequencies.
+    /// Estimate from two equal grains of the materials that the interface governs: the median radius, and the
+    /// lightest grain for the frequencies.
     fn of_grains<S: Space>(s: &Simulation<S>, law: usize) -> Option<Self> {
         let governs = |material: u16| {
             let others = s.shapes.balls.iter().map(|b| b.material);

@@ -1,4 +1,4 @@
-//! What a case must satisfy before it runs.
+//! Validation of a case before it is built.
 
 use super::build::Origin;
 use super::case::{BodySpec, Case, Checkpoint};
@@ -9,10 +9,10 @@ use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use fretwork_core::step::coupling::Coupling;
 
-/// Numbers that make no sense.
+/// Checks the numbers of a case.
 ///
 /// # Errors
-/// The first one found, with its path.
+/// The first invalid one, with its path.
 pub fn numbers(case: &Case) -> Result<(), Fault> {
     let positive = |path: &str, x: f64| {
         if x.is_finite() && x > 0.0 {
@@ -38,7 +38,7 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
     let square = case.time.step * case.time.step;
     if !square.is_normal() {
         let message = format!(
-            "the square of a step of {:e} s is beyond what can be computed with; check its unit",
+            "the square of a step of {:e} s is outside the range of the computation; check its unit",
             case.time.step
         );
         return Err(Fault::new("time.step", message));
@@ -251,11 +251,11 @@ fn friction(case: &Case, dimension: usize) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Grains that overlap at the start: more than 1 % of the smallest radius is refused, less is the
+/// Checks for grains that overlap at the start. More than 1 % of the smallest radius is an error; less is taken for the
 /// rounding of a sample that was settled elsewhere.
 ///
 /// # Errors
-/// The worst pair.
+/// The pair with the largest overlap.
 pub(super) fn overlaps<S: Space>(
     simulation: &mut Simulation<S>,
     smallest: f64,
@@ -290,7 +290,7 @@ pub(super) fn overlaps<S: Space>(
         name(worst.bodies[1]),
         -worst.gap
     );
-    // The place of the grain that was written last, or of the body where no grain is in it.
+    // The error is reported at the last grain of the pair in the case, or at the body if neither is a grain.
     let at = worst.bodies.iter().max_by_key(|b| {
         let driven = s.bodies.driven.iter().any(|d| d.body == **b);
         let place = match origins.get(**b as usize) {

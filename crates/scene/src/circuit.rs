@@ -1,4 +1,5 @@
-//! The words of a case about the tribological circuit: which bonds tie grains to first bodies, where grains leave.
+//! The tribological circuit in a case: the bonds that attach grains to first bodies, and the zones where
+//! grains leave.
 
 use super::case::Case;
 use super::source::{Fault, nearest};
@@ -12,15 +13,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CircuitSpec {
-    /// First bodies that grains can belong to, by name: a grain does while a path of unbroken bonds ties it to one.
+    /// Names of the first bodies that grains can belong to. A grain belongs to one while a path of unbroken
+    /// bonds connects them.
     pub bases: Vec<String>,
     /// Interfaces whose bonds tie; by default all that make bonds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bonds: Option<Vec<String>>,
-    /// When the account begins (s); the bonds that tie must be made by then.
+    /// Time at which the account begins (s); the bonds that attach grains must have formed by then.
     #[serde(default)]
     pub start: f64,
-    /// Steps between two updates of the account.
+    /// Steps between updates of the account.
     #[serde(default = "ten")]
     pub every: u64,
     /// Where grains are outside the contact.
@@ -38,9 +40,9 @@ fn ten() -> u64 {
 pub struct ZoneSpec {
     /// Its name.
     pub name: String,
-    /// Lowest corner (m); `-inf` where it is open.
+    /// Low corner (m); `-inf` where the zone is unbounded.
     pub low: Vec<f64>,
-    /// Highest corner (m); `inf` where it is open.
+    /// High corner (m); `inf` where the zone is unbounded.
     pub high: Vec<f64>,
     /// The body with which it moves; its corners are then relative to that body's position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -51,10 +53,10 @@ pub struct ZoneSpec {
     pub lost_after: Option<f64>,
 }
 
-/// Refuses a circuit that means nothing.
+/// Checks the circuit of a case.
 ///
 /// # Errors
-/// The first fault, with its path.
+/// The first error, with its path.
 pub(super) fn check(case: &Case) -> Result<(), Fault> {
     let Some(circuit) = &case.circuit else {
         return Ok(());
@@ -137,7 +139,7 @@ fn body(case: &Case, path: &str, name: &str) -> Result<(), Fault> {
         .nearest(nearest(name, names.iter().copied())))
 }
 
-/// Interfaces whose bonds tie, by index.
+/// Indices of the interfaces whose bonds attach grains.
 fn tying(case: &Case, circuit: &CircuitSpec) -> Result<Vec<usize>, Fault> {
     let all =
         || (0..case.interfaces.len()).filter(|i| case.interfaces[*i].law(Kind::COHESION).is_some());
@@ -181,7 +183,7 @@ fn zone(case: &Case, zone: &ZoneSpec) -> Result<(), Fault> {
         }
         if periods[a].is_some() && low.is_finite() != high.is_finite() {
             let message = format!(
-                "along axis {a}, which is periodic, what lies beyond one side is everything, got {low} to {high}; give \
+                "along axis {a}, which is periodic, a zone open on one side is the whole cell, got {low} to {high}; give \
                  both sides, or leave both open"
             );
             return Err(Fault::new(
@@ -206,7 +208,7 @@ fn zone(case: &Case, zone: &ZoneSpec) -> Result<(), Fault> {
     }
 }
 
-/// What a circuit is made of, in the scene of the case, which was checked.
+/// The circuit's specification in terms of the built scene; the case must have been checked.
 pub fn install<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Spec<S>> {
     let circuit = case.circuit.as_ref()?;
     let index = |name: &String| {

@@ -1,4 +1,4 @@
-//! From the case's words to interface laws: plugins found, parameters resolved and checked.
+//! Interface laws of a case: finds the plugins, resolves and checks their parameters.
 
 use super::case::{Case, InterfaceSpec};
 use super::material::{Given, InterfaceParameters, MaterialLibrary, Sourced};
@@ -11,20 +11,20 @@ use fretwork_core::laws::{AreaRule, BondRule, Interface, Kind, LawError, Loaded,
 use fretwork_core::step::Simulation;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The laws of a case and which materials they govern.
+/// The interfaces of a case, and the materials they govern.
 pub struct Laws {
-    /// Interfaces, in the case's order.
+    /// Interfaces, in the order of the case.
     pub interfaces: Vec<Interface>,
-    /// By materials, in the order of the case's map.
+    /// Interface by pair of materials, in the order of the case's map.
     pub table: LawTable,
-    /// Texts of the parameter files read.
+    /// Name and text of the parameter files that were read.
     pub files: Vec<(String, String)>,
 }
 
-/// Builds the laws.
+/// Builds the interfaces.
 ///
 /// # Errors
-/// Unknown names, values out of range, slots that do not fit: at their place in the case.
+/// Unknown names, values out of range and laws that do not fit their slot, each at its place in the case.
 pub fn build(
     case: &Case,
     source: &Source,
@@ -48,7 +48,7 @@ pub fn build(
         let at = |f: Fault| source.locate(f.under(&here));
         if case.interfaces[..k].iter().any(|i| i.name == spec.name) {
             let message = format!(
-                "two interfaces are named `{}`; give each another name, phases and `--set` go by it",
+                "two interfaces are named `{}`; give them different names, since phases and `--set` refer to them by name",
                 spec.name
             );
             return Err(at(Fault::new("name", message)));
@@ -95,12 +95,12 @@ pub fn build(
     Ok(out)
 }
 
-/// The laws that an interface names.
+/// Kind and name of the laws of an interface.
 fn used(spec: &InterfaceSpec) -> impl Iterator<Item = (Kind, &str)> {
     spec.laws.iter().map(|(kind, name)| (kind, name.as_str()))
 }
 
-/// Pairs of materials whose bodies pass through each other, since no interface is between them.
+/// Pairs of materials in the scene without an interface: their bodies pass through each other.
 pub fn without_interface<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<String> {
     let materials: Vec<&String> = case.materials.keys().collect();
     let mut bodies = vec![BTreeSet::new(); materials.len()];
@@ -109,7 +109,7 @@ pub fn without_interface<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<String
     let surfaces = s.shapes.surfaces.iter().map(|f| (f.material, f.body));
     for (material, body) in balls.chain(pieces).chain(surfaces) {
         let of = &mut bodies[usize::from(material)];
-        // One other than itself is enough to meet.
+        // Contact within a material needs two bodies of it.
         if of.len() < 2 {
             of.insert(body);
         }
@@ -132,7 +132,7 @@ pub fn without_interface<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<String
     out
 }
 
-/// Refuses pins that are none, or of laws that the case does not use.
+/// Rejects pins that are malformed, or of laws that the case does not use.
 fn pins(case: &Case) -> Result<(), Fault> {
     let wanted = case.interfaces.iter().flat_map(used);
     let used: Vec<String> = wanted
@@ -184,7 +184,7 @@ fn read_parameters(
     Ok((parsed, Some(file)))
 }
 
-/// What does not fit, in the case or in its parameter file.
+/// An error in the case or in its parameter file.
 struct Wrong {
     fault: Fault,
     in_file: bool,
@@ -280,7 +280,7 @@ fn load(
             return Err(Fault::new(slot, message).into());
         }
     }
-    // Value, unit, path, and whether it is written in the case.
+    // Value, unit, path, and whether it is written in the case itself.
     type Number<'a> = (f64, &'a str, String, bool);
     let given: BTreeMap<&str, Number<'_>> = file
         .iter()

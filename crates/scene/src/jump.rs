@@ -1,4 +1,4 @@
-//! The words of a case about jumps over cycles.
+//! Validation of a case's jumps over cycles.
 
 use super::case::{BodySpec, Case};
 use super::source::Fault;
@@ -6,13 +6,13 @@ use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_core::laws::Kind;
 pub use fretwork_core::process::jump::JumpSpec;
 
-/// Most cycles of a jump, or of its control.
+/// Limit on the cycles of a jump, and of its control.
 const MAX_CYCLES: u32 = 100_000;
 
-/// Refuses jumps that mean nothing.
+/// Checks the jumps of a case.
 ///
 /// # Errors
-/// The first fault, with its path.
+/// The first error, with its path.
 pub(super) fn check(case: &Case) -> Result<(), Fault> {
     let Some(jump) = &case.jump else {
         return Ok(());
@@ -72,25 +72,26 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
     let steps = period(case).unwrap_or(0.0) / case.time.step;
     if (steps - steps.round()).abs() > 1e-3 || steps < 1.5 {
         let message = format!(
-            "a cycle takes {steps} steps, and a jump would not begin and end with one; let time.step divide the cycle"
+            "a cycle takes {steps} steps, so a jump would not begin and end with a step; choose a time.step that divides the cycle"
         );
         return Err(Fault::new("jump", message));
     }
     Ok(())
 }
 
-/// Refuses what does not come again with every cycle: a jump passes over cycles, and time does not go on in it.
+/// Rejects drives, phases and gravity that do not repeat with every cycle: a jump skips cycles, and the
+/// simulated time stands still in it.
 fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), Fault> {
     let (Some(test), Some(cycle)) = (&case.friction, period(case)) else {
         return Ok(());
     };
     if !case.phases.is_empty() {
-        let message = "phases go by the time that is computed, and a jump passes over cycles; make a case of the phase that \
+        let message = "phases follow the simulated time, and a jump skips cycles; make a separate case of the phase that \
                        jumps (grains of the last state by `State`), or leave `jump` out";
         return Err(Fault::new("phases", message));
     }
     if case.gravity_drive.is_some() {
-        let message = "gravity that changes does not come again with every cycle; leave `gravity_drive` or `jump` out";
+        let message = "gravity that changes does not repeat with every cycle; leave `gravity_drive` or `jump` out";
         return Err(Fault::new("gravity_drive", message));
     }
     let begins = test.start + f64::from(jump.after) * cycle;
@@ -100,8 +101,8 @@ fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), Fault> {
             if let Some(why) = restless(dof, k < case.dimension as usize, cycle, begins) {
                 let path = format!("bodies.{}.dofs.{}", body.name, names[k]);
                 let message = format!(
-                    "a jump passes over whole cycles of {cycle:e} s from {begins:e} s on, so all that drives must come again with each, \
-                     but {why}; let it rest from then on, give it a period that divides the cycle, or leave `jump` out"
+                    "a jump skips whole cycles of {cycle:e} s from {begins:e} s on, so all drives must repeat with each cycle, \
+                     but {why}; keep it constant from then on, give it a period that divides the cycle, or leave `jump` out"
                 );
                 return Err(Fault::new(path, message));
             }
@@ -110,14 +111,14 @@ fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Why a drive does not come again with every cycle from a time on, if it does not.
+/// The reason why a drive does not repeat with every cycle after a time; `None` if it does.
 fn restless(dof: &Dof, translates: bool, cycle: f64, begins: f64) -> Option<String> {
     if let Dof::Stages(_) = dof {
         return Some("its drives follow one another in time".into());
     }
     match dof.function()? {
         TimeFunction::Constant(v) => (translates && *v != 0.0 && matches!(dof, Dof::Velocity(_)))
-            .then(|| "it goes on in one direction".into()),
+            .then(|| "it continues in one direction".into()),
         TimeFunction::Ramp { end, .. } if *end > begins => {
             Some(format!("its ramp lasts until {end:e} s"))
         }

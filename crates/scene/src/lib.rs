@@ -1,7 +1,7 @@
-//! Cases and materials: read, checked, and made into a scene that steps.
+//! Cases and materials: reads and checks them, and builds simulations from them.
 //!
-//! [`load`] reads a case file, [`Loaded::build`] makes of it a simulation of the layer below, `fretwork-core`. This layer knows
-//! nothing of results and pictures.
+//! [`load`] reads a case file and [`Loaded::build`] builds from it a simulation of the layer below,
+//! `fretwork-core`. This layer does not depend on results, pictures or the command line.
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 

@@ -1,18 +1,19 @@
-//! Numbers that are each possible and together are beyond what double precision holds: masses that vanish, energies that
-//! overflow, motions that rounding takes away.
+//! Checks for numbers that are valid each but exceed double precision together: masses that underflow,
+//! energies that overflow, and displacements per step lost to rounding.
 
 use super::build::Origin;
 use super::source::Fault;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 
-/// Motion lost over the run, in parts of the alert distance, from which a case is refused.
+/// Displacement lost to rounding over the run, as a fraction of the alert distance, above which a case is
+/// rejected.
 const LOST: f64 = 2e-5;
 
-/// Bodies whose mass, energy or motion the numbers cannot hold.
+/// Checks the masses, energies and velocities of all bodies.
 ///
 /// # Errors
-/// The first one, at its place in the case.
+/// The first one that double precision cannot represent, at its place in the case.
 pub(super) fn check<S: Space>(
     s: &Simulation<S>,
     origins: &[Origin],
@@ -28,13 +29,13 @@ pub(super) fn check<S: Space>(
         let (mass, inertia) = (bodies.mass[b], bodies.inertia[b]);
         if !(mass.is_normal() && mass > 0.0 && (1.0 / mass).is_normal()) {
             return refuse(format!(
-                "a mass of {mass:e} kg is beyond what can be computed with; check its size and density, and their units"
+                "a mass of {mass:e} kg is outside the range of the computation; check its size and density, and their units"
             ));
         }
         if inertia != 0.0 && !(inertia.is_normal() && inertia > 0.0 && (1.0 / inertia).is_normal())
         {
             return refuse(format!(
-                "a moment of inertia of {inertia:e} kg m2 is beyond what can be computed with; check its size and \
+                "a moment of inertia of {inertia:e} kg m2 is outside the range of the computation; check its size and \
                  density, and their units"
             ));
         }
@@ -54,7 +55,7 @@ pub(super) fn check<S: Space>(
             && v[k].abs() * end > LOST * s.network.alert
         {
             return refuse(format!(
-                "at {:e} m from the origin numbers are {:.1e} m apart, and it moves {:.1e} m in a step: it would never \
+                "at {:e} m from the origin adjacent numbers are {:.1e} m apart, and it moves {:.1e} m in a step: it would never \
                  move; put the origin nearer to the scene, or take a larger time.step",
                 x[k].abs(),
                 spacing(x[k]),
@@ -74,7 +75,7 @@ pub(super) fn check<S: Space>(
     Ok(())
 }
 
-/// The distance from a number to the next one of larger size.
+/// Distance to the next larger number in magnitude.
 fn spacing(x: f64) -> f64 {
     let x = x.abs();
     x.next_up() - x

@@ -1,4 +1,4 @@
-//! Materials and the parameters of interface laws: numbers with their unit and their source.
+//! Materials and parameters of interface laws: numbers with their units and sources.
 
 use super::shipped_materials;
 use super::source::{Fault, InputError, Source, nearest};
@@ -20,26 +20,26 @@ pub struct Sourced {
     /// Its unit; that of the schema, in SI units, by default.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub unit: String,
-    /// Paper, norm or table.
+    /// Source: paper, standard or table.
     pub source: String,
 }
 
 impl Sourced {
-    /// The value in the unit of the schema.
+    /// Converts the value to the unit of the schema.
     ///
     /// # Errors
-    /// A unit that is not known, or measures something else.
+    /// The unit is unknown or of another dimension.
     pub fn in_unit(&self, wanted: &str) -> Result<f64, UnitError> {
         units::convert(self.value, &self.unit, wanted)
     }
 }
 
-/// A number of a case: as it is, in the unit of the schema, or `(value: 5, unit: "um")`.
+/// A number of a case: a plain number in the unit of the schema, or `(value: 5, unit: "um")`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Given {
     /// Value.
     pub value: f64,
-    /// Its unit, where one is given.
+    /// Unit, if given.
     pub unit: Option<String>,
 }
 
@@ -69,7 +69,7 @@ impl<'de> Deserialize<'de> for Given {
         struct WithUnit {
             value: f64,
             unit: String,
-            /// For the reader.
+            /// Accepted for the reader of the file; not used.
             #[serde(default, rename = "source")]
             _source: Option<String>,
         }
@@ -104,7 +104,7 @@ impl<'de> Deserialize<'de> for Given {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// What it is.
+    /// Description.
     pub doc: String,
     /// Density (kg/m^3).
     pub density: Sourced,
@@ -113,7 +113,7 @@ pub struct Material {
     pub properties: BTreeMap<String, Sourced>,
 }
 
-/// Properties whose unit is known.
+/// Properties with a known unit.
 const PROPERTIES: [(&str, &str); 9] = [
     ("young", "Pa"),
     ("shear_modulus", "Pa"),
@@ -127,10 +127,10 @@ const PROPERTIES: [(&str, &str); 9] = [
 ];
 
 impl Material {
-    /// The density (kg/m^3), and the units of all properties looked at.
+    /// The density (kg/m^3); also checks the units of all properties.
     ///
     /// # Errors
-    /// A density that is not positive, a unit that is not known or measures something else: with its path.
+    /// The density is not positive, or a unit is unknown or of another dimension: with its path.
     pub fn density(&self) -> Result<f64, Fault> {
         let density = self
             .density
@@ -162,7 +162,7 @@ impl Material {
 /// kind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InterfaceParameters {
-    /// What it describes.
+    /// Description.
     pub doc: String,
     /// Parameters by slot and law.
     pub slots: BySlot<BTreeMap<String, BTreeMap<String, Sourced>>>,
@@ -217,10 +217,10 @@ impl Serialize for InterfaceParameters {
 }
 
 impl InterfaceParameters {
-    /// Refuses units that are none, also of laws that a case does not use.
+    /// Checks all units, also those of laws that the case does not use.
     ///
     /// # Errors
-    /// The first one, with its path.
+    /// The first invalid unit, with its path.
     pub fn units(&self) -> Result<(), Fault> {
         for (slot, laws) in self.slots.iter() {
             for (law, parameters) in laws {
@@ -234,8 +234,8 @@ impl InterfaceParameters {
     }
 }
 
-/// The folders in which material files are looked for: `materials/` beside the case or in a folder
-/// above it, then in the working folder; a shipped one that none of them has is taken from the program.
+/// The folders searched for material files: `materials/` beside the case and in each folder above it, then in
+/// the working folder, then the files built into the program.
 #[derive(Clone, Debug)]
 pub struct MaterialLibrary {
     folders: Vec<PathBuf>,
@@ -244,7 +244,7 @@ pub struct MaterialLibrary {
 }
 
 impl MaterialLibrary {
-    /// For a case file.
+    /// The search path for a case file.
     pub fn beside(case: &Path) -> Self {
         let absolute = std::path::absolute(case).unwrap_or_else(|_| case.to_owned());
         let mut folders: Vec<PathBuf> = absolute
@@ -270,7 +270,7 @@ impl MaterialLibrary {
     /// Reads `NAME.ron`.
     ///
     /// # Errors
-    /// No such file (`Err(Ok(nearest, available))` as a pair of texts) or one that cannot be read.
+    /// `Err(Ok(missing))` if there is no such file, `Err(Err(error))` if it cannot be read.
     pub fn read(&self, name: &str) -> Result<Source, Result<Missing, InputError>> {
         if let Some(text) = self.own.get(name) {
             return Ok(Source::from_text(
@@ -331,13 +331,13 @@ impl MaterialLibrary {
     }
 }
 
-/// A name that no file has.
+/// A name for which there is no file.
 #[derive(Clone, Debug)]
 pub struct Missing {
     /// The nearest name.
     pub nearest: Option<String>,
     /// All names.
     pub available: String,
-    /// Where it was looked for.
+    /// The folders that were searched.
     pub looked: String,
 }

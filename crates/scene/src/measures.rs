@@ -1,4 +1,4 @@
-//! Quantities that a case asks to be measured, beside those of friction and biaxial tests.
+//! Measured quantities of a case other than friction and biaxial tests.
 
 use super::case::Case;
 use super::source::{Fault, nearest};
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum MeasureSpec {
-    /// Mass of the grains whose centres stand above a level along an axis (kg; kg/m in 2D).
+    /// Mass of the grains whose centres are above a level along an axis (kg; kg/m in 2D).
     Mass {
         /// Name of the column.
         name: String,
@@ -16,11 +16,11 @@ pub enum MeasureSpec {
         axis: usize,
         /// The level (m).
         above: f64,
-        /// From when on the rate of change is fitted for the summary (s).
+        /// Time after which the rate of change is fitted for the summary (s).
         #[serde(default)]
         start: f64,
     },
-    /// Angle of the free surface (rad), from the tops of the grains between two places along x.
+    /// Angle of the free surface (rad), from the highest grains between two positions along x.
     Slope {
         /// Name of the column.
         name: String,
@@ -28,11 +28,11 @@ pub enum MeasureSpec {
         from: f64,
         /// Right end (m).
         to: f64,
-        /// From when on the mean is formed for the summary (s).
+        /// Time after which the mean is formed for the summary (s).
         #[serde(default)]
         start: f64,
     },
-    /// Solid fraction, velocity and spin in slices of a box, as means over time: `name.csv`, `name.png`.
+    /// Time-averaged solid fraction, velocity and spin in slices of a box: `name.csv`, `name.png`.
     Profile {
         /// Name of the files.
         name: String,
@@ -44,15 +44,16 @@ pub enum MeasureSpec {
         high: Vec<f64>,
         /// Number of slices.
         bins: usize,
-        /// Angle by which the box and the axes of the velocity are turned about the origin (rad, 2D).
+        /// Angle by which the box and the velocity axes are rotated about the origin (rad, 2D).
         #[serde(default)]
         turned: f64,
-        /// From when on (s).
+        /// Start of averaging (s).
         #[serde(default)]
         start: f64,
     },
-    /// A shear band in a box: angle with the x axis (rad, 0 to pi), width across it (m) and number of the grains
-    /// whose local shear since the second phase began (since the start without phases) has passed a threshold.
+    /// Shear band in a box: angle to the x axis (rad, 0 to pi), width across it (m) and number of the grains
+    /// whose local shear exceeds a threshold. Shear is counted from the start of the second phase (from the
+    /// start of the run without phases).
     Band {
         /// Prefix of the columns.
         name: String,
@@ -60,11 +61,11 @@ pub enum MeasureSpec {
         low: Vec<f64>,
         /// High corner (m).
         high: Vec<f64>,
-        /// The shear from which on a grain belongs to the band.
+        /// Shear above which a grain belongs to the band.
         above: f64,
     },
     /// Plane shear along x between two heights: shear rate, pressure, stress ratio, solid fraction and
-    /// inertial number of the grains, away from the walls. x (and y in 3D) must be periodic.
+    /// inertial number of the grains away from the walls. x (and y in 3D) must be periodic.
     Shear {
         /// Prefix of the columns.
         name: String,
@@ -72,12 +73,12 @@ pub enum MeasureSpec {
         low: f64,
         /// Upper height (m).
         high: f64,
-        /// From when on means are formed for the summary (s).
+        /// Time after which means are formed for the summary (s).
         #[serde(default)]
         start: f64,
     },
-    /// Profiles across the third body between two first bodies, its clusters, force chains, flow regime, and where
-    /// energy is dissipated.
+    /// Profiles across the third body between two first bodies, its clusters, force chains and flow regime,
+    /// and the distribution of dissipation.
     ThirdBody(ThirdBodySpec),
 }
 
@@ -87,25 +88,25 @@ pub enum MeasureSpec {
 pub struct ThirdBodySpec {
     /// Prefix of the columns and files.
     pub name: String,
-    /// The two first bodies: profiles run from the first to the second.
+    /// The two first bodies; profiles run from the first to the second.
     pub between: (String, String),
-    /// Axis of the sliding.
+    /// Axis of sliding.
     pub along: usize,
     /// Axis across the layer.
     pub across: usize,
     /// Number of bins across the thickness.
     #[serde(default = "twenty")]
     pub bins: usize,
-    /// Number of slices of time whose profiles are told apart.
+    /// Number of time slices with separate profiles.
     #[serde(default = "four")]
     pub slices: usize,
-    /// Looks at every so many rows of the statistics; the rows between repeat the last look.
+    /// Rows of the statistics between evaluations; the rows between repeat the last values.
     #[serde(default = "each")]
     pub every: usize,
-    /// Where the layer ends.
+    /// Definition of the layer's boundaries.
     #[serde(default)]
     pub extent: Extent,
-    /// From when on means are formed and energies counted (s).
+    /// Start of averaging and of the energy account (s).
     #[serde(default)]
     pub start: f64,
 }
@@ -113,10 +114,10 @@ pub struct ThirdBodySpec {
 /// Where a third body ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Extent {
-    /// At the mean heights of the faces of the first bodies.
+    /// The mean heights of the faces of the first bodies.
     #[default]
     Faces,
-    /// Between the heights with 1 % of the grains' mass below and above them.
+    /// The heights with 1 % of the grains' mass below and above them.
     Grains,
 }
 
@@ -133,7 +134,7 @@ fn four() -> usize {
 }
 
 impl MeasureSpec {
-    /// Its name.
+    /// Name of the measure.
     pub fn name(&self) -> &str {
         match self {
             Self::Mass { name, .. }
@@ -145,7 +146,7 @@ impl MeasureSpec {
         }
     }
 
-    /// What it measures, as a case writes it.
+    /// Kind of the measure, as written in a case.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Mass { .. } => "Mass",
@@ -157,7 +158,7 @@ impl MeasureSpec {
         }
     }
 
-    /// From when on it forms means (s); a band does from the start of the run.
+    /// Start of averaging (s); for a band the start of the run.
     pub fn start(&self) -> f64 {
         match self {
             Self::Mass { start, .. }
@@ -170,10 +171,10 @@ impl MeasureSpec {
     }
 }
 
-/// Refuses measures that mean nothing.
+/// Checks the measures of a case.
 ///
 /// # Errors
-/// The first fault, with its path.
+/// The first error, with its path.
 pub(super) fn check(case: &Case) -> Result<(), Fault> {
     for (k, spec) in case.measures.iter().enumerate() {
         let twice = case.measures[..k].iter().any(|m| m.name() == spec.name());
@@ -190,7 +191,7 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Refuses first bodies that are not there.
+/// Checks that the first bodies of a layer exist.
 fn known(case: &Case, layer: &ThirdBodySpec) -> Result<(), Fault> {
     let names = || case.bodies.iter().map(|b| b.name.as_str());
     for (k, name) in [&layer.between.0, &layer.between.1].into_iter().enumerate() {
@@ -205,7 +206,7 @@ fn known(case: &Case, layer: &ThirdBodySpec) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Columns and figures that a run has anyway.
+/// Names of columns and figures that every run may have.
 const RESERVED: [&str; 55] = [
     "step",
     "time",

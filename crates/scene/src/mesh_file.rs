@@ -1,4 +1,4 @@
-//! Triangles from STL and OBJ files.
+//! Reader of triangle meshes in STL and OBJ files.
 
 use super::source::read_bytes;
 use nalgebra::Vector3;
@@ -8,13 +8,13 @@ use std::path::Path;
 
 type V = Vector3<f64>;
 
-/// The largest file of triangles accepted, in bytes.
+/// Limit on the size of a mesh file, in bytes.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// Points in the unit of the file, each once, and triangles of them.
+/// Reads the distinct points, in the unit of the file, and the triangles between them.
 ///
 /// # Errors
-/// The file cannot be read, is none of the two formats, holds no triangles, or other ones than it announces.
+/// The file cannot be read, has neither format, or does not hold the triangles that it announces.
 pub fn read(path: &Path) -> Result<(Vec<V>, Vec<[u32; 3]>), String> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let shown = path.display();
@@ -34,7 +34,7 @@ pub fn read(path: &Path) -> Result<(Vec<V>, Vec<[u32; 3]>), String> {
                 ignore_lines: true,
                 ..tobj::LoadOptions::default()
             };
-            // Files of colours that it names stay closed.
+            // Material files named by an OBJ file are not opened.
             let no_colours = |_: &Path| Ok((Vec::new(), Default::default()));
             let read = tobj::load_obj_buf(&mut Cursor::new(bytes()?), &options, no_colours);
             let (models, _) = read.map_err(|e| match e {
@@ -67,18 +67,18 @@ pub fn read(path: &Path) -> Result<(Vec<V>, Vec<[u32; 3]>), String> {
     Ok(joined(&soup))
 }
 
-/// Bytes before the triangles of a binary STL file, and of each triangle.
+/// Length of the header of a binary STL file, and of each triangle, in bytes.
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
-/// The solids of an STL file, each as a file of its own: one where it is binary, as many as there are in text.
+/// Splits an STL file into its solids, each as a file: one for a binary file, any number for a text file.
 fn solids(bytes: &[u8]) -> Result<Vec<Vec<u8>>, String> {
     let announced = bytes.get(HEADER - 4..HEADER).map(|count| {
         let count: [u8; 4] = [count[0], count[1], count[2], count[3]];
         u32::from_le_bytes(count) as usize
     });
     let whole = |count: usize| count.saturating_mul(TRIANGLE).saturating_add(HEADER);
-    // A binary file may begin with "solid" too: its length tells.
+    // A binary file may begin with "solid" too; its length distinguishes it.
     let binary = announced.is_some_and(|count| whole(count) == bytes.len());
     let text = bytes.starts_with(b"solid") && bytes.get(5).is_none_or(u8::is_ascii_whitespace);
     if text && !binary {
@@ -102,13 +102,13 @@ fn solids(bytes: &[u8]) -> Result<Vec<Vec<u8>>, String> {
             held - count
         ));
     }
-    // Without a first letter it cannot be taken for text.
+    // The header is blanked so that the parser does not take the file for text.
     let mut plain = bytes.to_vec();
     plain[0] = b' ';
     Ok(vec![plain])
 }
 
-/// The solids of an STL file in text.
+/// Splits the solids of an STL text file.
 fn texts(bytes: &[u8]) -> Result<Vec<Vec<u8>>, String> {
     let first_word = |line: &[u8]| {
         let words = line.split(u8::is_ascii_whitespace);
@@ -122,7 +122,7 @@ fn texts(bytes: &[u8]) -> Result<Vec<Vec<u8>>, String> {
             (false, None) => {}
             (false, Some(b"solid")) => {
                 open = true;
-                // The reader wants a name.
+                // The parser requires a name.
                 solids.push(b"solid mesh\n".to_vec());
             }
             (false, Some(_)) => {
@@ -162,12 +162,12 @@ fn triangles(solid: Vec<u8>, soup: &mut Vec<[V; 3]>) -> Result<(), String> {
     })
 }
 
-/// Corners at the same place become one point; what has no area is left out.
+/// Merges corners at the same position and drops triangles without area.
 fn joined(soup: &[[V; 3]]) -> (Vec<V>, Vec<[u32; 3]>) {
     let mut points: Vec<V> = Vec::new();
     let mut known = HashMap::new();
     let mut name = |p: &V| {
-        // Zero has two signs.
+        // Adding zero turns -0.0 into 0.0.
         let bits = [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
         *known.entry(bits).or_insert_with(|| {
             points.push(*p);

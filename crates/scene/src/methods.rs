@@ -1,4 +1,4 @@
-//! Which methods can solve a case, before it runs.
+//! Which solvers support a case, determined before it runs.
 
 use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::demand::{LawRequirements, Requirement};
@@ -6,28 +6,29 @@ use fretwork_core::solve::local::solver::Method;
 use fretwork_core::solve::{Features, refusal};
 use fretwork_core::step::Simulation;
 
-/// Whether a method serves a case.
+/// Whether a solver supports a case.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Service {
-    /// It does.
+    /// The solver supports it.
     Serves,
-    /// A step may refuse it: which interface may ask for what.
+    /// The solver may fail in a step: the interface and what it may require.
     May(String),
-    /// It does not: the interface that asks for it, and why.
+    /// The solver does not support it: the interface that rules it out, and why.
     Refuses(String),
 }
 
-/// What the interfaces of a scene ask for; none where a law's trial failed, which a step will tell of.
+/// Requirements of the interfaces of a scene, with `None` for a law that failed in its trial call; the run
+/// reports that failure.
 pub struct Demands(Vec<(String, Option<LawRequirements>)>);
 
 impl Demands {
-    /// Asks the laws.
+    /// Determines the requirements by trial calls of the laws.
     pub fn of<S: Space>(simulation: &Simulation<S>) -> Self {
         let shapes = &simulation.shapes;
         let pieces = shapes.pieces.iter().map(|p| p.size);
         let radii = shapes.balls.iter().map(|b| b.radius).chain(pieces);
         let (low, high) = radii.fold((f64::INFINITY, 0.0f64), |(l, h), r| (l.min(r), h.max(r)));
-        // Two of the smallest; the largest against a flat body.
+        // Two grains of the smallest radius, and the largest grain against a flat body.
         let radii = if high > 0.0 {
             [0.5 * low, high]
         } else {
@@ -40,12 +41,12 @@ impl Demands {
         Self(simulation.laws.iter().map(ask).collect())
     }
 
-    /// Interfaces by name and what they ask for.
+    /// Names and requirements of the interfaces.
     pub fn each(&self) -> impl Iterator<Item = (&str, Option<&LawRequirements>)> {
         self.0.iter().map(|(name, d)| (name.as_str(), d.as_ref()))
     }
 
-    /// Whether a method serves them.
+    /// Whether a solver supports the interfaces.
     pub fn service(&self, method: Method) -> Service {
         let refusal = |rotation, cohesion| {
             let features = Features {
@@ -57,7 +58,7 @@ impl Demands {
         };
         let mut may = None;
         for (name, demand) in &self.0 {
-            // The reason of a refusal, and how surely it will come.
+            // The reason of a refusal, and how certain it is.
             let (asked, reason) = match demand {
                 Some(demand) => {
                     let (rotation, cohesion) = (demand.rotation, demand.cohesion);

@@ -1,4 +1,4 @@
-//! Phases of a case: a list of what changes and until when, checked and made ready for the stepper.
+//! Phases of a case: what each changes and when it ends; checks them and converts them for the simulation.
 
 use super::case::{BodySpec, Case};
 use super::source::{Fault, nearest};
@@ -49,7 +49,7 @@ pub struct Repeat {
     /// Name of the first phase of the group; the phase itself by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<String>,
-    /// How many times the group is done in all.
+    /// Total number of times the group is run.
     pub times: u32,
 }
 
@@ -78,7 +78,7 @@ pub struct Redriven {
 }
 
 impl Redriven {
-    /// The drives given, with their names and their places in the order of the dimension.
+    /// The given drives, with their names and their indices in the order of the dimension.
     fn given(&self, dimension: usize) -> impl Iterator<Item = (&'static str, Option<usize>, &Dof)> {
         let all = [
             ("x", &self.x),
@@ -96,7 +96,7 @@ impl Redriven {
     }
 }
 
-/// All drives that a body ever has on its degrees of freedom: its own, then those of phases.
+/// All drives that a body has during the run: its own, then those of the phases.
 pub fn drives_of(case: &Case, body: &BodySpec) -> Vec<(usize, Dof)> {
     let dimension = case.dimension as usize;
     let own = body.ordered(dimension).into_iter().enumerate();
@@ -108,10 +108,10 @@ pub fn drives_of(case: &Case, body: &BodySpec) -> Vec<(usize, Dof)> {
     .collect()
 }
 
-/// Refuses phases whose numbers or names make no sense.
+/// Checks the phases of a case.
 ///
 /// # Errors
-/// The first fault, with its path.
+/// The first error, with its path.
 pub(super) fn check(case: &Case) -> Result<(), Fault> {
     for (k, phase) in case.phases.iter().enumerate() {
         let last = k + 1 == case.phases.len();
@@ -136,10 +136,10 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Most phases of a run, repeats counted.
+/// Limit on the phases of a run, repetitions included.
 const MAX_PHASES: u64 = 1_000_000;
 
-/// Refuses a repeat that goes nowhere.
+/// Checks the repetition at phase `k`.
 fn repeat(case: &Case, k: usize) -> Result<(), Fault> {
     let Some(spec) = &case.phases[k].repeat else {
         return Ok(());
@@ -166,14 +166,14 @@ fn repeat(case: &Case, k: usize) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Where the group that ends with a phase begins.
+/// Index of the first phase of the group that ends with phase `k`.
 fn first(case: &Case, k: usize) -> usize {
     let from = case.phases[k].repeat.as_ref().and_then(|r| r.from.as_ref());
     let place = |name: &String| case.phases[..=k].iter().rposition(|p| p.name == *name);
     from.and_then(place).unwrap_or(k)
 }
 
-/// Groups of phases in their order, and how many times each is done.
+/// The groups of phases in order, and how often each is run.
 fn groups(case: &Case) -> impl Iterator<Item = (std::ops::Range<usize>, u32)> + '_ {
     let mut groups: Vec<(std::ops::Range<usize>, u32)> = Vec::new();
     for (k, phase) in case.phases.iter().enumerate() {
@@ -250,10 +250,10 @@ fn one(case: &Case, phase: &PhaseSpec, last: bool) -> Result<(), Fault> {
     }
 }
 
-/// Refuses a drive of gravity that cannot be followed.
+/// Checks a drive of gravity.
 ///
 /// # Errors
-/// The fault, below `gravity_drive`.
+/// The first error, with its path below `gravity_drive`.
 pub(super) fn gravity_drive(drive: Option<&GravityDrive>, dimension: usize) -> Result<(), Fault> {
     match drive.and_then(|d| d.fault(dimension)) {
         Some((below, message)) => {
@@ -264,7 +264,7 @@ pub(super) fn gravity_drive(drive: Option<&GravityDrive>, dimension: usize) -> R
     }
 }
 
-/// Whether there is gravity at some time.
+/// Whether there is gravity at any time.
 fn weighs(case: &Case) -> bool {
     let some = |g: &[f64]| g.iter().any(|x| *x != 0.0);
     let phases = || case.phases.iter();
@@ -328,10 +328,10 @@ fn known<'a>(
         .nearest(nearest(name, names)))
 }
 
-/// Hands gravity, servos, gates and phases of a checked case to its simulation.
+/// Installs gravity, servo drives, gates and phases of a checked case in its simulation.
 ///
 /// # Errors
-/// A pressure without an area, or friction that a law does not take: with its path.
+/// A pressure without an area, or a friction coefficient that the law does not have: with its path.
 pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<(), Fault> {
     s.control.gravity = s.gravity;
     s.control.gravity_drive.clone_from(&case.gravity_drive);

@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
 
-/// A self-affine profile over a period: heights (m) at `points` equidistant places, mean zero, with the
+/// Generates a periodic self-affine profile: heights (m) at `points` equidistant positions, zero mean, the
 /// given root-mean-square, power spectrum |q|^(-1 - 2H) between the two wavelengths, random phases.
 ///
 /// B. N. J. Persson et al., J. Phys.: Condens. Matter 17 (2005) R1.
@@ -30,7 +30,7 @@ pub fn rough(
     heights
 }
 
-/// The waves of a rough profile, by how often each fits into the period.
+/// Wave numbers of a rough profile, in waves per period.
 pub fn waves(
     points: usize,
     period: f64,
@@ -44,7 +44,7 @@ pub fn waves(
     low..=high
 }
 
-/// Independent heights of the given root-mean-square, mean zero.
+/// Independent random heights (m) of the given root-mean-square and zero mean.
 pub fn noise(count: usize, rms: f64, seed: u64) -> Vec<f64> {
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut heights: Vec<f64> = (0..count).map(|_| rng.random_range(-1.0..1.0)).collect();

@@ -1,13 +1,13 @@
-//! Profiles from tables: columns `x` and `z`, from left to right, and those that a run writes beside them.
+//! Reader of profile tables with the columns `x` and `z`, also those that a run writes with such columns.
 
 use super::sample::table::Table;
 use super::source::InputError;
 use std::path::Path;
 
-/// The points of a profile (m).
+/// Reads the points of a profile (m).
 ///
 /// # Errors
-/// At the line that is wrong.
+/// An error at the line that is wrong.
 pub fn read(path: &Path) -> Result<Vec<(f64, f64)>, InputError> {
     let table = Table::read_lengths(path, &["x", "z"], &["z_first", "depth"])?;
     let (x, z) = (table.column("x"), table.column("z"));
@@ -15,7 +15,7 @@ pub fn read(path: &Path) -> Result<Vec<(f64, f64)>, InputError> {
         .map(|row| (table.value(row, x), table.value(row, z)))
         .collect();
     if let Some(k) = points.windows(2).position(|w| w[1] == w[0]) {
-        let message = "this point of the profile is the one before it; leave one out";
+        let message = "this point of the profile equals the one before it; leave one out";
         return Err(table.fail(k + 1, message));
     }
     Ok(points)

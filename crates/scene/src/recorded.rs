@@ -1,12 +1,13 @@
-//! Grains of a state of another run, as a record of it holds them. Who reads that record is above this layer: the program
-//! hands a reader over, see [`crate::Loaded::reading_records`].
+//! Grains of a recorded state of another run. The reader of the record belongs to a higher layer and is
+//! passed in, see [`crate::Loaded::reading_records`].
 
 use std::path::{Path, PathBuf};
 
-/// Reads a state of a record (the last one without a number) for a case of 2 or 3 dimensions.
+/// Reader of a state from a results file (the last state if no number is given), for a case of dimension 2 or
+/// 3.
 pub type RecordReader = fn(&Path, Option<usize>, usize) -> Result<State, StateError>;
 
-/// A grain that is no lone ball.
+/// A grain other than a single ball.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapedBody {
     /// Its identity.
@@ -15,9 +16,9 @@ pub struct ShapedBody {
     pub mass: f64,
     /// Density of its material (kg/m^3).
     pub density: f64,
-    /// The length that makes its spin a velocity (m).
+    /// Characteristic length (m) that converts its spin to a velocity.
     pub length: f64,
-    /// Moments of inertia in its own axes (kg m^2; 2D kg m), row by row; in the plane the first.
+    /// Moments of inertia in the body frame (kg m^2; 2D kg m), row by row; in 2D the first entry only.
     pub inertia: [f64; 9],
 }
 
@@ -32,30 +33,31 @@ pub struct ShapedBall {
     pub offset: [f64; 3],
 }
 
-/// A convex piece of such a grain.
+/// A convex part of such a grain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapedPiece {
     /// Identity of the grain.
     pub body: u64,
     /// Radius of the rounding (m).
     pub rounding: f64,
-    /// Radius of the ball of its volume (m).
+    /// Radius of the ball (2D: disk) of the same volume (m).
     pub size: f64,
-    /// Its centre in the grain's frame (m).
+    /// Position of its centre in the grain's frame (m).
     pub offset: [f64; 3],
-    /// Corners about its centre (m).
+    /// Corners relative to its centre (m).
     pub corners: Vec<[f64; 3]>,
-    /// Faces by their corners.
+    /// Faces as lists of corner indices.
     pub faces: Vec<Vec<u32>>,
 }
 
-/// How a grain moves, in SI units; unused components are zero, the spin of a plane case is the first.
+/// Position and velocity of a grain, in SI units. Unused components are zero; in 2D the spin is the first
+/// component.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// Where its centre is, or that of its first part (m), within the period where there is one.
+    /// Position of its centre of mass, or of its first part (m), wrapped into the period if there is one.
     pub at: [f64; 3],
-    /// Orientation: the angle (rad) in the plane, a quaternion (w, x, y, z) in space; none where the file has none, which
-    /// is where all grains are lone balls.
+    /// Orientation: the angle (rad) in 2D, a quaternion (w, x, y, z) in 3D; `None` if the file has no
+    /// orientations, since all its grains are single balls.
     pub rotation: Option<[f64; 4]>,
     /// Velocity (m/s).
     pub velocity: [f64; 3],
@@ -68,27 +70,27 @@ pub struct Motion {
 pub struct Grain {
     /// Radius (m).
     pub radius: f64,
-    /// How it moves.
+    /// Position and velocity.
     pub motion: Motion,
 }
 
-/// A grain of a state that is no lone ball.
+/// A grain of a state that is not a single ball.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapedGrain {
     /// Mass, inertia.
     pub body: ShapedBody,
-    /// Its balls; the first is its first part where there is one,
+    /// Its balls; the first of them is its first part if there is one.
     pub balls: Vec<ShapedBall>,
-    /// and the first of its pieces where there is none.
+    /// Its convex parts; the first of them is its first part if there is no ball.
     pub pieces: Vec<ShapedPiece>,
-    /// How it moves.
+    /// Position and velocity.
     pub motion: Motion,
 }
 
-/// The grains of one state; first bodies and grains that were taken out are left out.
+/// The grains of one state, without first bodies and without grains that were removed.
 #[derive(Clone, Debug, Default)]
 pub struct State {
-    /// Number of the state, from 0.
+    /// Index of the state, from 0.
     pub frame: usize,
     /// Its time (s).
     pub time: f64,
@@ -98,25 +100,25 @@ pub struct State {
     pub shaped: Vec<ShapedGrain>,
 }
 
-/// Why a state cannot be read.
+/// Error in reading a state.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StateError {
-    /// No file of results, or a damaged one.
+    /// The results file is missing or damaged.
     #[error("cannot read {}: {reason}", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// Reason.
         reason: String,
     },
-    /// A number that is too high.
+    /// There is no state with this number.
     #[error("{} has the states {states}, not number {asked}", path.display())]
     NoFrame {
         /// The file.
         path: PathBuf,
-        /// Which it has.
+        /// The range of states in the file.
         states: String,
-        /// Which was asked for.
+        /// The requested number.
         asked: usize,
     },
 }

@@ -1,4 +1,4 @@
-//! Samples of grains.
+//! Generation of grain samples.
 
 pub mod cutting;
 pub mod deposit;
@@ -11,9 +11,9 @@ pub mod voronoi_space;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// A lattice of balls without overlaps: hexagonal in 2D, cubic in 3D, spaced by the largest radius;
-/// radii uniform between the two. Fills the box from the bottom row up, at most `count`.
-/// With a periodic width the columns fit it exactly.
+/// Generates a lattice of balls without overlaps, hexagonal in 2D and cubic in 3D, spaced by the largest
+/// radius, with radii uniform between two values. It fills the box from the bottom row up with at most
+/// `count` balls. With a periodic width the columns fit it exactly.
 pub fn lattice(
     dimension: usize,
     periodic: bool,
@@ -47,7 +47,7 @@ pub fn lattice(
             if y + 0.5 * spacing > high[1] * (1.0 + 1e-12) + spacing * 1e-9 {
                 break;
             }
-            // Odd rows stand in the gaps; in a box they have one ball fewer than would cross it.
+            // Odd rows are offset by half a spacing; in a box they have one ball fewer.
             let even = row % 2 == 0;
             let (shift, columns) = match (periodic, even) {
                 (true, true) => (0.25, columns),

@@ -1,31 +1,31 @@
-//! Functions of time that change faster than the step can follow.
+//! Check for functions of time that change faster than the time step resolves.
 //!
-//! Imposed motion is on its path at the end of every step, but what lies between two ends is a straight line, and
-//! forces are taken at one point of the step.
+//! Imposed motion is on its path at the end of every step, but between two ends it is linear, and forces are
+//! evaluated once per step.
 
 use super::case::{BodySpec, Case};
 use super::phases::drives_of;
 use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_core::step::control::GravityDrive;
 
-/// Steps a period below which a sine is followed coarsely: the straight lines between 20 ends miss the path by
-/// (pi/20)^2/2, 1.2 % of the amplitude.
+/// Steps per period below which a sine is poorly resolved: linear interpolation between 20 points has an
+/// error of (pi/20)^2/2, 1.2 % of the amplitude.
 const COARSE: f64 = 20.0;
-/// Steps a period below which a sine shows as one of another frequency (Nyquist).
+/// Steps per period below which a sine aliases to another frequency (Nyquist).
 const ALIAS: f64 = 2.0;
-/// Steps that a ramp or a table should last.
+/// Smallest recommended number of steps of a ramp or a table.
 const SHORT: f64 = 5.0;
 
-/// A function of time that the step of a case does not resolve.
+/// A function of time that the time step of a case does not resolve.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnresolvedDrive {
-    /// What it drives, what is wrong and what to change.
+    /// Message: what is driven, what is wrong and what to change.
     pub text: String,
-    /// Whether the steps see another frequency.
+    /// Whether the function aliases to another frequency.
     pub aliased: bool,
 }
 
-/// What the steps of a case cannot follow, each with what to change: bodies, then phases, then gravity.
+/// The functions that the time step does not resolve: bodies, then phases, then gravity.
 pub fn unresolved(case: &Case) -> Vec<UnresolvedDrive> {
     let dimension = case.dimension as usize;
     let h = case.time.step;
@@ -70,7 +70,7 @@ pub fn unresolved(case: &Case) -> Vec<UnresolvedDrive> {
     found
 }
 
-/// Whether a function in steps of `h` shows as one of another frequency.
+/// Whether a function aliases when sampled with step `h` (s).
 fn aliased(function: &TimeFunction, h: f64) -> bool {
     match function {
         TimeFunction::Sine {
@@ -82,7 +82,7 @@ fn aliased(function: &TimeFunction, h: f64) -> bool {
     }
 }
 
-/// What is wrong with a function in steps of `h`; `moves` where it is a displacement.
+/// What is wrong with a function sampled with step `h` (s), if anything; `moves` if it is a displacement.
 fn fault(function: &TimeFunction, h: f64, moves: bool) -> Option<String> {
     match function {
         TimeFunction::Constant(_) => None,
@@ -97,8 +97,8 @@ fn fault(function: &TimeFunction, h: f64, moves: bool) -> Option<String> {
                 None
             } else if steps <= ALIAS {
                 Some(format!(
-                    "the sine of {frequency} Hz has {steps:.3} steps a period and ALIASES: ends of steps see another \
-                     motion, or none; take time.step = {most:.2e} s or less, or a lower frequency"
+                    "the sine of {frequency} Hz has {steps:.3} steps a period and ALIASES: the steps sample another \
+                     motion, or none at all; take time.step = {most:.2e} s or less, or a lower frequency"
                 ))
             } else {
                 Some(format!(
@@ -130,8 +130,8 @@ fn table(points: &[(f64, f64)], h: f64, moves: bool) -> Option<String> {
     let changes = |w: &&[(f64, f64)]| w[0].1 != w[1].1;
     let short = |w: &[(f64, f64)]| w[1].0 - w[0].0 < h * (1.0 - 1e-9);
     let pieces: Vec<&[(f64, f64)]> = points.windows(2).collect();
-    // What follows on another short piece is detail that is lost; a lone one is a jump, which a table is to be given
-    // as. A displacement that jumps has a velocity that only the step gives.
+    // A short piece followed by another short piece is lost detail; a single one is a deliberate jump in a
+    // table. A displacement that jumps is always an error: its velocity would depend on the time step.
     let lost = |k: usize| {
         let beside = k > 0 && short(pieces[k - 1]) && changes(&pieces[k - 1]);
         short(pieces[k]) && changes(&pieces[k]) && (moves || beside)
@@ -193,7 +193,7 @@ mod tests {
         };
         assert_eq!(fault(&ramp(1.005), 1e-3, true), None);
         assert!(fault(&ramp(1.004), 1e-3, true).is_some());
-        // A jump of a force or a velocity, of a displacement, and a pulse within a step.
+        // A jump of a force or a velocity, a jump of a displacement, and a pulse within a step.
         let jump = TimeFunction::Table(vec![(0.0, 0.0), (0.5, 0.0), (0.500_01, 1.0)]);
         assert_eq!(fault(&jump, 1e-3, false), None);
         assert!(fault(&jump, 1e-3, true).is_some());

@@ -3,7 +3,7 @@
 use super::source::{InputError, Source};
 use std::path::Path;
 
-/// A wall: a point of its surface and the normal to the open side.
+/// A wall: a point of its surface, and the normal towards the open side.
 #[derive(Clone, Debug)]
 pub struct Wall {
     /// Point (m).
@@ -15,7 +15,7 @@ pub struct Wall {
 /// A ball: centre and radius (m).
 pub type Place = (Vec<f64>, f64);
 
-/// What a scene file holds.
+/// Contents of a scene file.
 #[derive(Clone, Debug, Default)]
 pub struct SceneFile {
     /// Free balls.
@@ -26,10 +26,10 @@ pub struct SceneFile {
     pub walls: Vec<Wall>,
 }
 
-/// Reads a scene file of a dimension.
+/// Reads a scene file of the given dimension.
 ///
 /// # Errors
-/// With the line that is wrong.
+/// An error at the line that is wrong.
 pub fn read(path: &Path, dimension: usize) -> Result<SceneFile, InputError> {
     let source = Source::read(path)?;
     let text = source.text();
@@ -87,7 +87,7 @@ pub fn read(path: &Path, dimension: usize) -> Result<SceneFile, InputError> {
                 if !(length > 0.0 && length.is_finite()) {
                     return Err(fail("the normal of a wall must not be null".into()));
                 }
-                // A unit normal stays as it is written, to the last bit.
+                // A normal of unit length is used as written, bit for bit.
                 let unit = (length - 1.0).abs() < 1e-9;
                 let scale = if unit { 1.0 } else { 1.0 / length };
                 let normal: Vec<f64> = v[6..].iter().map(|x| x * scale).collect();
@@ -110,7 +110,7 @@ pub fn read(path: &Path, dimension: usize) -> Result<SceneFile, InputError> {
         }
         offset += line.len();
     }
-    // A 2D wall is a rectangle: its open side is the one that looks at the grains.
+    // A 2D wall is a rectangle: its open side faces the grains.
     let count = out.balls.len().max(1) as f64;
     let mean = |k: usize| out.balls.iter().map(|b| b.0[k]).sum::<f64>() / count;
     let centre = if dimension == 2 {

@@ -1,4 +1,4 @@
-//! The shipped material files, kept in the program for where they are not beside a case.
+//! The shipped material files, compiled into the program for use when they are not found beside a case.
 
 /// Names and texts of `materials/*.ron`.
 pub const FILES: [(&str, &str); 7] = [
@@ -32,7 +32,7 @@ pub const FILES: [(&str, &str); 7] = [
     ),
 ];
 
-/// The text of one.
+/// The text of a shipped file by its name.
 pub fn text(name: &str) -> Option<&'static str> {
     FILES.iter().find(|f| f.0 == name).map(|f| f.1)
 }

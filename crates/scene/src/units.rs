@@ -1,12 +1,12 @@
-//! Units beside numbers: read, checked against the unit that the schema gives the number, and converted.
+//! Units of numbers: parses them, checks them against the unit of the schema, and converts values.
 //!
-//! The names, prefixes and products are those of the crate `runits`. What it does not know stands here: angles
-//! (radians are pure numbers to it, and so would be a friction coefficient in degrees) and scales of hardness.
+//! Names, prefixes and products are those of the crate `runits`. This module adds angles (which `runits`
+//! takes for pure numbers, so that a friction coefficient in degrees would pass) and hardness scales.
 
 use super::source::{Fault, nearest};
 use runits::{Dimension, ParseError, UnknownUnit};
 
-/// Units that are proposed where one is wrong, or not known.
+/// Units that are suggested for a wrong or unknown one.
 const USUAL: [&str; 62] = [
     "m", "mm", "um", "nm", "cm", "km", "s", "ms", "us", "min", "h", "kg", "g", "mg", "t", "N",
     "mN", "kN", "MN", "Pa", "kPa", "MPa", "GPa", "bar", "J", "mJ", "kJ", "MJ", "W", "kW", "Hz",
@@ -15,22 +15,22 @@ const USUAL: [&str; 62] = [
     "m^2", "mm^2", "m^3", "mm^3", "Pa s", "J s/m^2", "Pa s/m", "1/s", "%",
 ];
 
-/// Scales of hardness: what a test prints, no pressure.
+/// Hardness scales, which are not pressures.
 const HARDNESS: [&str; 8] = ["HBW", "HB", "HV", "HK", "HRA", "HRB", "HRC", "HLD"];
 
-/// Why a unit does not fit.
+/// Reason why a unit does not fit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnitError {
     /// What is wrong.
     pub message: String,
-    /// What would fit.
+    /// What would be valid.
     pub expected: Option<String>,
     /// The nearest unit by name.
     pub nearest: Option<String>,
 }
 
 impl UnitError {
-    /// As a fault at a path.
+    /// Converts to a validation error at a path.
     pub fn at(self, path: impl Into<String>) -> Fault {
         let mut fault = Fault::new(path, self.message).nearest(self.nearest.as_deref());
         fault.expected = self.expected;
@@ -38,21 +38,21 @@ impl UnitError {
     }
 }
 
-/// A unit that was read.
+/// A parsed unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Unit {
-    /// Its size in SI units.
+    /// Its value in SI units.
     factor: f64,
     dimension: Dimension,
-    /// Whether an angle is part of it.
+    /// Whether it contains an angle.
     angle: bool,
 }
 
-/// A value in the unit of the schema: `value` in `given` where the schema says `wanted`, both as text. An empty text
+/// Converts `value` from the unit `given` to the unit `wanted` of the schema. An empty text
 /// is the schema's own unit.
 ///
 /// # Errors
-/// A unit that is not known, or of another dimension.
+/// The unit is unknown or of another dimension.
 pub fn convert(value: f64, given: &str, wanted: &str) -> Result<f64, UnitError> {
     let same = |text: &str| text.split_whitespace().collect::<String>();
     if given.trim().is_empty() || same(given) == same(wanted) {
@@ -72,7 +72,7 @@ pub fn convert(value: f64, given: &str, wanted: &str) -> Result<f64, UnitError> 
     let Ok(schema) = read(wanted) else {
         return Err(UnitError {
             message: format!(
-                "the unit here is `{wanted}`, which is not known: `{given}` cannot be converted to it"
+                "the unit here is `{wanted}`, which is unknown: `{given}` cannot be converted to it"
             ),
             expected: Some(format!("`{wanted}`, or no unit")),
             nearest: None,
@@ -95,7 +95,7 @@ pub fn convert(value: f64, given: &str, wanted: &str) -> Result<f64, UnitError> 
     }
     let factor = decimal(unit.factor / schema.factor);
     let inverse = decimal(schema.factor / unit.factor);
-    // A number in another decimal unit has the bits that it has when written in the schema's.
+    // Dividing by a round inverse gives the same bits as a value written in the schema's unit.
     Ok(if inverse > 1.0 && inverse == inverse.round() {
         value / inverse
     } else {
@@ -103,10 +103,10 @@ pub fn convert(value: f64, given: &str, wanted: &str) -> Result<f64, UnitError> 
     })
 }
 
-/// Refuses a text that is neither a unit nor a scale of hardness.
+/// Checks that a text is a unit or a hardness scale.
 ///
 /// # Errors
-/// The unit that is not known.
+/// The unit that is unknown.
 pub fn known(text: &str) -> Result<(), UnitError> {
     if text.trim().is_empty() || hardness(text).is_some() {
         return Ok(());
@@ -114,7 +114,7 @@ pub fn known(text: &str) -> Result<(), UnitError> {
     read(text).map(|_| ())
 }
 
-/// The scale of hardness that a text names, with or without its load: `HBW`, `HV 10`, `HBW 10/3000`.
+/// The hardness scale named by a text, with or without its load: `HBW`, `HV 10`, `HBW 10/3000`.
 pub fn hardness(text: &str) -> Option<&'static str> {
     let letters = text.trim();
     let end = letters
@@ -148,15 +148,15 @@ fn read(text: &str) -> Result<Unit, UnitError> {
     let plain = powers(&plain);
     let unknown = |name: &str| UnitError {
         message: if name == text {
-            format!("`{name}` is no known unit")
+            format!("`{name}` is not a known unit")
         } else {
-            format!("`{name}` in `{text}` is no known unit")
+            format!("`{name}` in `{text}` is not a known unit")
         },
         expected: None,
         nearest: nearest(name, USUAL).map(|near| text.replacen(name, near, 1)),
     };
     let refused = |why: String| UnitError {
-        message: format!("`{text}` is no unit: {why}"),
+        message: format!("`{text}` is not a unit: {why}"),
         expected: Some("a unit such as `MPa`, `um`, `kJ/m^2` or `J s/m^2`".into()),
         nearest: nearest(text, USUAL).map(str::to_owned),
     };
@@ -175,18 +175,20 @@ fn read(text: &str) -> Result<Unit, UnitError> {
         ParseError::Unit(UnknownUnit::Unknown(name)) => unknown(&name),
         ParseError::DivideByZero => refused("it divides by zero".into()),
         ParseError::UnexpectedEnd => refused("it ends too early".into()),
-        // The crate's own words are of its tokens.
+        // The crate's own messages are about its tokens.
         _ => refused(
             "write names of units with powers such as `m^2`, joined by spaces, `*` and `/`".into(),
         ),
     })?;
     if quantity.value() != 1.0 {
         return Err(refused(
-            "it holds a number, which belongs to the value".into(),
+            "it contains a number, which belongs to the value".into(),
         ));
     }
     if quantity.unit().is_affine() {
-        return Err(refused("its zero is not that of its kelvins; use K".into()));
+        return Err(refused(
+            "its zero differs from that of the kelvin; use K".into(),
+        ));
     }
     Ok(Unit {
         factor: quantity.unit().factor() * si(quantity.dimension()),
@@ -195,7 +197,7 @@ fn read(text: &str) -> Result<Unit, UnitError> {
     })
 }
 
-/// Writes `mm3` as `mm^3`, as people and the program's own results do: a name with a 2 or 3 at its end is a power.
+/// Rewrites `mm3` as `mm^3`: a name that ends with 2 or 3 is a power.
 fn powers(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 2);
     let mut rest = text.chars().peekable();
@@ -213,7 +215,7 @@ fn powers(text: &str) -> String {
     out
 }
 
-/// A metre with a prefix from mega upwards: `Mm` is written for a millimetre by mistake, and would be 1e9 times that.
+/// A metre with a prefix of mega or above: `Mm` is a common typing error for `mm`, and 1e9 times larger.
 fn far(text: &str) -> Option<&str> {
     let mut words = text.split(|c: char| !c.is_alphabetic() && c != '_');
     words.find(|word| {
@@ -224,12 +226,12 @@ fn far(text: &str) -> Option<&str> {
     })
 }
 
-/// From the base units of the crate, which has grams, to those of the SI.
+/// Factor from the crate's base units, which include the gram, to SI.
 fn si(dimension: Dimension) -> f64 {
     1e3f64.powi(-i32::from(dimension.mass))
 }
 
-/// Whether a unit has an angle in it.
+/// Whether a unit contains an angle.
 fn turns(text: &str) -> bool {
     let words = text.split(|c: char| !c.is_alphabetic() && c != '_');
     words.filter(|word| !word.is_empty()).any(|word| {
@@ -241,7 +243,7 @@ fn turns(text: &str) -> bool {
     })
 }
 
-/// The nearest number of few digits, where round-off alone is between.
+/// The nearest number with few digits, if it differs by rounding only.
 fn decimal(x: f64) -> f64 {
     let rounded: f64 = format!("{x:.12e}").parse().unwrap_or(x);
     if (rounded - x).abs() <= 8.0 * f64::EPSILON * x.abs() {
@@ -259,7 +261,7 @@ fn named(unit: &str) -> String {
     }
 }
 
-/// Usual units that measure the same.
+/// Common units of the same dimension.
 fn fitting(wanted: &str) -> Option<String> {
     let schema = read(wanted).ok()?;
     let fits = |name: &&&str| {
@@ -365,7 +367,7 @@ mod tests {
                 "(kg m^-1 s^-2) does not measure the same as `Pa/m` (kg m^-2 s^-2)",
             ),
             ("um", "", "(m) does not measure the same as a pure number"),
-            // Radians are no friction coefficient, and 2 pi is between a cycle and a radian a second.
+            // A radian is not a friction coefficient, and a cycle differs from a radian by 2 pi.
             (
                 "deg",
                 "",

@@ -1,4 +1,4 @@
-//! The files of a run of Fretwork: `results.h5`, checkpoints, problems of the FCLIB collection, and the summary.
+//! Files of a run of Fretwork: `results.h5`, checkpoints, FCLIB problems, and the summary.
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 

@@ -1,4 +1,4 @@
-//! The shapes of a simulation's grains, for `results.h5`.
+//! Shapes of a simulation's grains for `results.h5`.
 
 use super::results::shapes::{Shaped, ShapedBall, ShapedBody, ShapedPiece};
 use fretwork_core::bodies::Bodies;
@@ -7,7 +7,7 @@ use fretwork_core::geometry::shape::Ball;
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use fretwork_core::step::Simulation;
 
-/// The grains that are no lone balls, with the densities of the materials (kg/m^3).
+/// The grains other than single balls, with the densities of the materials (kg/m^3).
 pub fn of<S: Space>(s: &Simulation<S>, densities: &[f64]) -> Shaped {
     let grains = shaped(s);
     let (bodies, shapes) = (&s.bodies, &s.shapes);
@@ -48,15 +48,15 @@ pub fn of<S: Space>(s: &Simulation<S>, densities: &[f64]) -> Shaped {
     out
 }
 
-/// Whether there are grains that are no lone balls: then states have orientations.
+/// Whether there are grains other than single balls; states then have orientations.
 pub fn needed<S: Space>(s: &Simulation<S>) -> bool {
     shaped(s).contains(&true)
 }
 
-/// Which bodies are grains, and no lone balls.
+/// Which bodies are grains other than single balls.
 fn shaped<S: Space>(s: &Simulation<S>) -> Vec<bool> {
     let mut parts = vec![0u32; s.bodies.len()];
-    // A lone piece counts as two parts, as does a ball aside of the centre.
+    // A single convex part counts as two parts, and so does a ball with an offset.
     let aside = |b: &Ball<S>| 1 + u32::from(b.offset != S::Vector::zero());
     for ball in &s.shapes.balls {
         parts[ball.body as usize] += aside(ball);
@@ -70,7 +70,7 @@ fn shaped<S: Space>(s: &Simulation<S>) -> Vec<bool> {
     parts.into_iter().map(|n| n > 1).collect()
 }
 
-/// Moments of inertia in the body's own axes (kg m^2), row by row.
+/// Moments of inertia in the body frame (kg m^2), row by row.
 fn inertia<S: Space>(bodies: &Bodies<S>, body: usize) -> [f64; 9] {
     let uniform = S::Tensor::uniform(bodies.inertia[body]);
     let own = bodies.tensors.get(body).and_then(Option::as_ref);

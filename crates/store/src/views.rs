@@ -1,4 +1,4 @@
-//! The state of a simulation as the views of `results.h5`.
+//! Converts the state of a simulation to the views of `results.h5`.
 
 use super::results::{Header, Part, Results, ResultsError};
 use super::shapes;
@@ -11,10 +11,10 @@ use fretwork_observe::placement;
 use fretwork_observe::statistics::Column;
 use fretwork_scene::build::Loaded;
 
-/// What was built of a case.
+/// References to the built scene.
 #[derive(Debug)]
 pub struct Made<'a, S: Space> {
-    /// The stepper.
+    /// The simulation.
     pub simulation: &'a Simulation<S>,
     /// Material files: name and text.
     pub materials: &'a [(String, String)],
@@ -22,7 +22,7 @@ pub struct Made<'a, S: Space> {
     pub densities: &'a [f64],
 }
 
-/// What the file says before the first step, with the columns of the statistics and those of the grains that observers have.
+/// Contents of the file before the first step.
 pub fn header<S: Space>(
     loaded: &Loaded,
     built: &Made<'_, S>,
@@ -53,28 +53,28 @@ pub fn header<S: Space>(
         c(
             "mode_mix",
             "",
-            "share of sliding in the work of opening and sliding: 0 mode I, 1 mode II",
+            "fraction of sliding in the work of opening and sliding: 0 mode I, 1 mode II",
         ),
         c("opening_normal", "m", "elongation at the end"),
         c("opening_tangential", "m", "norm of the tangential opening"),
         c("area", area, "area of the bond"),
-        c("work", joule, "work done on the bond since it was made"),
-        c("fracture", joule, "energy that damage released"),
-        c("viscous", joule, "heat of its damping"),
+        c("work", joule, "work done on the bond since it formed"),
+        c("fracture", joule, "energy released by damage"),
+        c("viscous", joule, "dissipated by its damping"),
         c(
             "friction",
             joule,
-            "heat of friction at the contact while it held",
+            "dissipated by friction at the contact while it was intact",
         ),
         c(
             "cause",
             "",
-            "0 damage, 1 its contact left all reach or a body was taken out",
+            "0 damage, 1 its bodies moved out of range or one was removed",
         ),
     ]);
     let debris = [
         c("id", "", "number of the piece, from 1"),
-        c("time", "s", "when the account found it loose"),
+        c("time", "s", "time at which the account found it loose"),
         c("size", "", "grains in it"),
         c("mass", kg, "its mass"),
     ];
@@ -83,13 +83,9 @@ pub fn header<S: Space>(
         c(
             "mode_mix",
             "",
-            "share of sliding in the work on the bonds that freed it",
+            "fraction of sliding in the work on the bonds that freed it",
         ),
-        c(
-            "energy",
-            joule,
-            "energy that damage of these bonds released",
-        ),
+        c("energy", joule, "energy released by damage of these bonds"),
         c("bonds", "", "number of these bonds"),
     ]);
     Header {
@@ -159,14 +155,14 @@ fn empty<S: Space, T>(fields: &FieldList<S, T>) -> Part {
     }
 }
 
-/// Bytes that a state takes a grain and a contact: points, cells and fields of 8 bytes.
+/// Bytes per grain and per contact of a recorded state: points, cells and fields of 8 bytes.
 pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
     let fields = fields(s, circuit);
     let (grain, contact) = (fields.grains.iter().count(), fields.contacts.iter().count());
     [8 * (3 + 2 + grain), 8 * (6 + 3 + contact)]
 }
 
-/// Appends the state at hand of a case, with the values of the observers' columns of the grains, in the order of the header.
+/// Appends the current state; `shear` is a column of the grains if the header has it.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -232,7 +228,7 @@ fn bodies<S: Space>(s: &Simulation<S>) -> Part {
     }
     for piece in &s.shapes.pieces {
         for mut corners in placement::piece_outline(s, piece) {
-            // Lines are closed, polygons close themselves.
+            // Lines need an explicit closing point, polygons do not.
             if S::D == 2 {
                 corners.extend(corners.first().copied());
             }

@@ -1,4 +1,4 @@
-//! What went wrong in a run, and what to change: reasons not to trust it, and notes. docs/trustworthy.md has the table.
+//! Warnings about a run with advice: reasons not to trust it, and notes. The table is in docs/trustworthy.md.
 
 use crate::summary::Summary;
 use fretwork_core::geometry::space::Space;
@@ -8,20 +8,20 @@ use fretwork_core::step::Simulation;
 pub use fretwork_observe::warning::{NOT_REACHED, Warning};
 use fretwork_scene::methods::{Demands, Service};
 
-/// Residual of the energy ledger, in parts of the largest energy, that rounding does not explain: ledgers close to 1e-9 and
-/// better, over millions of steps too.
+/// Residual of the energy ledger, relative to the largest energy, above which it is not explained by
+/// rounding: ledgers close to 1e-9 and better, also over millions of steps.
 pub const LEDGER: f64 = 1e-6;
-/// Overlap that a projection leaves, in parts of the smaller body's length, that is worth a note.
+/// Penetration after a projection, as a fraction of the smaller body's length, that is worth a note.
 const OVERLAP: f64 = 1e-2;
 
 /// Steps that ended above the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Missed {
-    /// How many.
+    /// Their number.
     pub steps: u64,
-    /// Number of the first.
+    /// The first of them.
     pub first: u64,
-    /// Largest error of one.
+    /// Largest error of them.
     pub error: f64,
 }
 
@@ -38,7 +38,7 @@ impl Missed {
         self.error = self.error.max(report.error);
     }
 
-    /// What to tell the user after `of` steps: only methods that the laws let through are proposed. None where all steps
+    /// Advice to the user after `of` steps; proposes only solvers that the laws permit. `None` if all steps
     /// converged.
     pub fn warning<S: Space>(&self, simulation: &Simulation<S>, of: u64) -> Option<String> {
         if self.steps == 0 {
@@ -56,7 +56,8 @@ impl Missed {
         } else {
             format!(", or try solver.method {}", others.join(" or "))
         };
-        // Velocities of bodies that weigh little beside others round to more than a tight tolerance asks for.
+        // Velocities of bodies much lighter than their neighbours have rounding errors above a tight
+        // tolerance.
         let rounding = if options.tolerance < 1e-6 {
             ", or allow a larger solver.tolerance (rounding may leave more than this one)"
         } else {
@@ -69,7 +70,7 @@ impl Missed {
         ))
     }
 
-    /// What was seen of `of` steps, and the first thing to change.
+    /// Description of the missed steps among `of`, and the first thing to change.
     fn seen(&self, of: u64, tolerance: f64) -> String {
         format!(
             "{} of {of} steps, the first is step {}, ended with an error of up to {:.1e} (tolerance {tolerance:.0e}); take a \
@@ -89,8 +90,8 @@ pub fn missed(summary: &Summary) -> Missed {
     }
 }
 
-/// All that is to be said of a run as far as its summary knows it, worst first; reasons before notes. `advice` is what the
-/// laws let one change where steps missed the tolerance ([`Missed::warning`]).
+/// All warnings that follow from a summary, worst first; reasons before notes. `advice` is the text for
+/// missed steps ([`Missed::warning`]).
 pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     let mut list = Vec::new();
     let mut serious = |of: &'static str, text: Option<String>| {
@@ -130,10 +131,10 @@ fn stopped(summary: &Summary) -> Option<String> {
     let why = summary.stopped.as_ref()?;
     Some(if summary.interrupted {
         format!(
-            "{why}; the results are of the part that ran, the same command with --resume goes on"
+            "{why}; the results cover the completed part, the same command with --resume continues"
         )
     } else {
-        format!("{why}; the results are of the part that ran")
+        format!("{why}; the results cover the completed part")
     })
 }
 
@@ -153,7 +154,7 @@ fn infinite(summary: &Summary) -> Option<String> {
     ];
     let all = energies.into_iter().chain(friction.into_iter().flatten());
     all.into_iter().any(|x| !x.is_finite()).then(|| {
-        "energies or friction are no finite numbers: forces, speeds or sizes of the case are beyond what f64 holds".to_owned()
+        "energies or friction are not finite: forces, speeds or sizes of the case exceed the range of double precision".to_owned()
     })
 }
 
@@ -171,7 +172,7 @@ fn uncoupled(summary: &Summary) -> Option<String> {
     let steps = summary.solver.uncoupled_steps;
     (steps > 0).then(|| {
         format!(
-            "{steps} of {} steps left damage and opening apart; raise max_iterations of `coupling: Implicit(tolerance: ..., max_iterations: ...)` or take a smaller time.step",
+            "{steps} of {} steps did not converge in the damage coupling; raise max_iterations of `coupling: Implicit(tolerance: ..., max_iterations: ...)` or take a smaller time.step",
             summary.steps
         )
     })
@@ -190,7 +191,7 @@ fn uncertified(summary: &Summary) -> Option<String> {
     })
 }
 
-/// Drives that the step aliases, or follows coarsely.
+/// Drives that the steps alias or resolve poorly.
 fn drives(summary: &Summary, aliased: bool) -> Option<String> {
     let drives = summary.unresolved_drives.iter();
     let texts: Vec<&str> = drives
@@ -217,7 +218,7 @@ fn phases(summary: &Summary) -> Option<String> {
     })
 }
 
-/// What is worth knowing and leaves the results as they are.
+/// Notes that do not affect the trust in the results.
 fn notes(summary: &Summary) -> Vec<Warning> {
     let mut notes = Vec::new();
     let mut note = |of, text: Option<String>| notes.extend(text.map(|t| Warning::note(of, t)));
@@ -225,7 +226,7 @@ fn notes(summary: &Summary) -> Vec<Warning> {
     note(
         "NO COMPLETE CYCLE",
         unfinished.then(|| {
-            "the run ended within the first cycle, or half, that counts: friction is of the part that ran; let it run longer \
+            "the run ended within the first evaluated cycle, or half: friction covers the completed part; let it run longer \
              (time.end)"
                 .to_owned()
         }),
@@ -248,7 +249,7 @@ fn notes(summary: &Summary) -> Vec<Warning> {
         "OVERLAP",
         (over > OVERLAP).then(|| {
             format!(
-                "taking overlaps out left up to {over:.1e} of a body's length; take a smaller time.step"
+                "removing overlaps left up to {over:.1e} of a body's length; take a smaller time.step"
             )
         }),
     );

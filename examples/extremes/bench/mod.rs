@@ -1,4 +1,4 @@
-//! Scenes in a few words, runs of some steps, and verdicts.
+//! Short scene descriptions, runs of some steps, and verdicts.
 
 mod run;
 mod sketch;

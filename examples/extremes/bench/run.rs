@@ -1,31 +1,31 @@
-//! Steps, and what was told during them.
+//! Runs of some steps, and the warnings in them.
 
 use super::verdict::{Cause, Expected, Row, Verdict};
 use fretwork::geometry::space::{Space, VectorLike};
 use fretwork::record::Missed;
 use fretwork::step::{Simulation, Steps};
 
-/// What was told during some steps.
+/// Statistics and warnings of a run.
 #[derive(Default)]
 pub struct Ran {
-    /// Steps done.
+    /// Number of steps.
     pub steps: u64,
     /// Steps that did not converge.
     pub missed: Missed,
-    /// The sentence with which the run stopped.
+    /// Message with which the run stopped.
     pub stopped: Option<String>,
-    /// Most sweeps in a step.
+    /// Largest number of iterations in a step.
     pub iterations: u32,
     /// Largest kinetic energy (J; J/m).
     pub liveliest: f64,
 }
 
-/// Steps on, `steps` times.
+/// Makes `steps` steps.
 pub fn go<S: Steps>(s: &mut Simulation<S>, steps: u64) -> Ran {
     watch(s, steps, |_| ())
 }
 
-/// The same, with a look at the state after each step.
+/// Makes `steps` steps and calls a function with the state after each.
 pub fn watch<S: Steps>(
     s: &mut Simulation<S>,
     steps: u64,
@@ -51,13 +51,13 @@ pub fn watch<S: Steps>(
 }
 
 impl Ran {
-    /// All that was told, in the words of the program.
+    /// All warnings, in the words of the program.
     fn told<S: Space>(&self, s: &Simulation<S>) -> Vec<(Cause, String)> {
         let mut told = Vec::new();
         let stopped = self.stopped.iter().cloned();
         told.extend(stopped.map(|words| (Cause::Stopped, words)));
         let step_size = &s.network.step_size;
-        // One sentence tells of all of them.
+        // One message covers all of them.
         let warning = step_size.warning().unwrap_or_default();
         let causes = [
             (step_size.late, Cause::Late),
@@ -71,7 +71,7 @@ impl Ran {
         told
     }
 
-    /// The row of a scene that ran.
+    /// Table row of a scene that ran.
     pub fn row<S: Space>(
         &self,
         s: &Simulation<S>,
@@ -90,13 +90,13 @@ impl Ran {
     }
 }
 
-/// Deepest overlap of the contacts at hand, in parts of their radius.
+/// Deepest overlap of the current contacts, as a fraction of their radius.
 pub fn overlap<S: Space>(s: &Simulation<S>) -> f64 {
     let deep = s.network.contacts.iter().map(|c| -c.gap / c.radius);
     deep.fold(0.0, f64::max)
 }
 
-/// The force along the last axis that a first body bears in the last step (N/m; N).
+/// Force along the last axis on a first body in the last step (N/m; N).
 pub fn carried<S: Space>(s: &Simulation<S>, name: &str) -> f64 {
     let driven = s.bodies.driven.iter().position(|d| d.name == name);
     driven.map_or(f64::NAN, |d| -s.received[d].0[S::D - 1] / s.scheme.h)

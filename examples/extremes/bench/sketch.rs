@@ -1,4 +1,4 @@
-//! Scenes in a few words, written once for two and three dimensions.
+//! Short scene descriptions, written once for 2D and 3D.
 
 use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
@@ -12,36 +12,36 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Acceleration of gravity of the rows (m/s^2).
 pub const G: f64 = 9.81;
 
-/// A scene in a few words; the rest is as in every row.
+/// A scene description; values not given here are the same in all rows.
 #[derive(Clone)]
 pub struct Sketch {
     /// Step (s).
     pub step: f64,
-    /// Theta of the scheme.
+    /// Theta of the time-stepping scheme.
     pub theta: f64,
-    /// Along the last axis, downwards (m/s^2).
+    /// Gravity along the last axis, downwards (m/s^2).
     pub gravity: f64,
-    /// The contact law of all interfaces.
+    /// Contact law of all interfaces.
     pub contact: &'static str,
-    /// Friction of the only interface.
+    /// Friction coefficient of the only interface.
     pub mu: f64,
-    /// Normal restitution of the only interface, where its law has one.
+    /// Normal restitution of the only interface, if its law has it.
     pub restitution: Option<f64>,
-    /// Further words of the interface, with a comma at the end.
+    /// Further fields of the interface, with a trailing comma.
     pub interface: &'static str,
-    /// Further parameters of its laws, after a comma.
+    /// Further parameters of its laws, with a leading comma.
     pub parameters: String,
-    /// Further words of the solver, with a comma at the end.
+    /// Further fields of the solver, with a trailing comma.
     pub solver: String,
     /// Alert distance and skin (m).
     pub detection: [f64; 2],
     /// Densities (kg/m^3) of the materials `m0`, `m1`, …
     pub densities: Vec<f64>,
-    /// First bodies, in the words of a case.
+    /// First bodies, as in a case.
     pub bodies: String,
-    /// Grains, in the words of a case.
+    /// Grains, as in a case.
     pub grains: String,
-    /// Further words of the case, with a comma at the end.
+    /// Further fields of the case, with a trailing comma.
     pub more: String,
 }
 
@@ -66,7 +66,7 @@ impl Default for Sketch {
     }
 }
 
-/// A place or a direction: along x, across the plane of the scene (nowhere in 2D) and upwards.
+/// A position or a direction: along x, out of plane (omitted in 2D) and upwards.
 pub fn place<S: Space>(x: f64, across: f64, up: f64) -> String {
     match S::D {
         2 => format!("[{x:?}, {up:?}]"),
@@ -74,12 +74,12 @@ pub fn place<S: Space>(x: f64, across: f64, up: f64) -> String {
     }
 }
 
-/// The name of the axis that points upwards.
+/// Name of the vertical axis.
 pub fn up<S: Space>() -> &'static str {
     if S::D == 2 { "y" } else { "z" }
 }
 
-/// Of a disk (m^2) or a sphere (m^3).
+/// Area of a disk (m^2) or volume of a sphere (m^3).
 pub fn volume<S: Space>(radius: f64) -> f64 {
     if S::D == 2 {
         PI * radius.powi(2)
@@ -99,7 +99,7 @@ pub fn floor<S: Space>() -> String {
     plane::<S>("floor", 0.0, 0.0, 1.0)
 }
 
-/// A disk or a sphere at a place.
+/// A disk or a sphere at a position.
 pub fn ball(at: &str, radius: f64) -> String {
     format!("(at: {at}, radius: {radius:?})")
 }
@@ -113,7 +113,7 @@ pub fn grains(material: &str, all: &[String]) -> String {
 }
 
 impl Sketch {
-    /// The text of its case.
+    /// Text of the case.
     fn text(&self, dimension: usize) -> String {
         let materials: Vec<usize> = (0..self.densities.len()).collect();
         let named = materials.iter().map(|k| format!("\"m{k}\": \"m{k}\""));
@@ -156,7 +156,7 @@ impl Sketch {
     /// Builds the scene.
     ///
     /// # Errors
-    /// The sentence that a user would read.
+    /// The message that a user would read.
     pub fn build<S: Dimensional>(&self) -> Result<Simulation<S>, String> {
         static SCENES: AtomicUsize = AtomicUsize::new(0);
         let number = SCENES.fetch_add(1, Ordering::Relaxed);

@@ -1,24 +1,24 @@
-//! What is expected of a row, and whether it came so.
+//! Expected and actual results of a row.
 
-/// A limit that the program told of.
+/// A limit that the program reports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
     /// `TOO FAST`: contacts were first seen overlapping.
     Late,
-    /// `TOO FAST`: a body moved so far in a step that not all in its way was looked at.
+    /// `TOO FAST`: a body moved farther in a step than the neighbour list covers.
     Unwatched,
-    /// `TOO FAST`: two bodies went into or through each other within a step.
+    /// `TOO FAST`: two bodies passed into or through each other within a step.
     Passed,
     /// `NOT CONVERGED`.
     Unconverged,
-    /// The scene was refused, in a sentence that holds these words.
+    /// The scene was rejected with a message that contains these words.
     Refused(&'static str),
-    /// A step ended the run.
+    /// A failed step ended the run.
     Stopped,
 }
 
 impl Cause {
-    /// What its sentence must hold: what to change.
+    /// Words that the message must contain as advice.
     fn proposal(self) -> &'static str {
         match self {
             Self::Late | Self::Unwatched | Self::Passed => "take a smaller time.step",
@@ -29,47 +29,47 @@ impl Cause {
     }
 }
 
-/// What a row declares.
+/// Expectation of a row.
 #[derive(Clone, Copy, Debug)]
 pub struct Expected {
     /// Whether its criterion is met.
     pub met: bool,
-    /// All that is told, in this order.
+    /// All reported causes, in this order.
     pub told: &'static [Cause],
 }
 
-/// The criterion is met and nothing is told.
+/// The criterion is met without warnings.
 pub const HELD: Expected = Expected {
     met: true,
     told: &[],
 };
 
-/// The criterion is missed, and these causes are told.
+/// The criterion is missed, and these causes are reported.
 pub const fn told(told: &'static [Cause]) -> Expected {
     Expected { met: false, told }
 }
 
-/// The criterion is met, and these causes are told none the less.
+/// The criterion is met, but these causes are reported.
 pub const fn held_though(told: &'static [Cause]) -> Expected {
     Expected { met: true, told }
 }
 
-/// What became of a scene.
+/// Result of a scene.
 pub enum Verdict {
-    /// The criterion is met, as expected; with what was told none the less.
+    /// The criterion is met, as expected; with the warnings.
     Held(String),
-    /// It is not, and the program said why, as expected.
+    /// The criterion is missed and the program reported the cause, as expected.
     Told(String),
-    /// All else.
+    /// Anything else.
     Broken(String),
 }
 
 impl Verdict {
-    /// Compares what came with what was expected. Numbers that are not finite, or a ledger that does not close, are
-    /// never excused.
+    /// Compares the result with the expectation. Non-finite numbers, or a ledger that does not close, always
+    /// count as broken.
     pub fn new(expected: Expected, met: bool, sound: bool, told: &[(Cause, String)]) -> Self {
         let mut words: Vec<&str> = told.iter().map(|(_, words)| words.as_str()).collect();
-        // One sentence may tell of two causes.
+        // One message may report two causes.
         words.dedup();
         let words = words.join("; ");
         let causes = told.iter().map(|(cause, _)| cause);
@@ -96,24 +96,24 @@ impl Verdict {
 
 /// A row of the table.
 pub struct Row {
-    /// The value of the extreme.
+    /// Value of the extreme parameter.
     pub value: String,
-    /// The figures that were found.
+    /// Measured values.
     pub found: String,
-    /// What became of it.
+    /// Verdict.
     pub verdict: Verdict,
 }
 
-/// Dimensions, each with what runs its rows.
+/// Dimensions, each with the function that runs its rows.
 pub type Runs = &'static [(u8, fn() -> Vec<Row>)];
 
 /// Rows of one kind.
 pub struct Group {
     /// Its name.
     pub name: &'static str,
-    /// What must hold.
+    /// Criterion.
     pub criterion: &'static str,
-    /// Runs them, in each dimension that has them.
+    /// Functions that run it, by dimension.
     pub runs: Runs,
     /// Whether it takes seconds at most, so that the tests run it too.
     pub quick: bool,

@@ -35,8 +35,8 @@ fn stiffness<S: Dimensional>() -> Vec<Row> {
 fn hanging<S: Dimensional>(k: f64, theta: f64, expected: Expected) -> Row {
     let value = format!("{k:.0e} Pa/m, theta = {theta}");
     let mass = 1e3 * volume::<S>(0.1);
-    // About the bond's area, for the length of the steps: where waves are damped, a tenth of the period, and not below
-    // 1 ms.
+    // The bond's area determines the time step: a tenth of the period, and at least 1 ms if oscillations are
+    // damped.
     let area = 0.1f64.powi(S::D as i32 - 1);
     let period = std::f64::consts::TAU * (mass / (k * area)).sqrt();
     let step = if theta < 1.0 {
@@ -78,7 +78,7 @@ fn hanging<S: Dimensional>(k: f64, theta: f64, expected: Expected) -> Row {
     ran.row(&s, (value, found), met, expected)
 }
 
-/// Of the first bond (m).
+/// Opening of the first bond (m).
 fn opening<S: Dimensional>(s: &Simulation<S>) -> f64 {
     s.network.memory[0]
         .bonds
@@ -86,7 +86,7 @@ fn opening<S: Dimensional>(s: &Simulation<S>) -> f64 {
         .map_or(f64::NAN, |b| b.opening_n)
 }
 
-/// A grid whose every place is pulled from its neighbours.
+/// A grid in which every grain is pulled from its neighbours.
 fn torn<S: Dimensional>() -> Vec<Row> {
     let (side, layers, bonds) = if S::D == 2 { (10, 1, 180) } else { (5, 5, 300) };
     let pulled = |speed: f64| {

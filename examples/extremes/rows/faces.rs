@@ -1,4 +1,4 @@
-//! Blocks face to face: walls with more unknowns than motions, and faces that are flush.
+//! Face contacts of blocks: walls with more unknowns than degrees of freedom, and flush faces.
 
 use super::super::bench::{G, Group, HELD, Row, Sketch, carried, floor, go, refused};
 use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
@@ -18,7 +18,7 @@ pub const FACES: Group = Group {
     quick: true,
 };
 
-/// A block 0.1 m high and, in space, 0.1 m deep.
+/// A block 0.1 m high and, in 3D, 0.1 m deep.
 fn block<S: Dimensional>(x: f64, up: f64, width: f64) -> String {
     match S::D {
         2 => format!(
@@ -51,7 +51,7 @@ fn standing<S: Dimensional>(value: String, blocks: &[String], width: f64, mu: f6
     let bears = carried(&s, "floor") / (1e3 * each * blocks.len() as f64 * G) - 1.0;
     let fast = s.bodies.velocity.iter().map(VectorLike::norm);
     let fast = fast.fold(0.0, f64::max);
-    // How far a turn moved the ends of the axes.
+    // Displacement of the ends of the axes by the rotation.
     let turned = |(a, b): (&S::Rotation, &S::Rotation)| {
         let ends = (0..S::D).map(|k| {
             let mut axis = S::Vector::zero();
@@ -72,7 +72,7 @@ fn standing<S: Dimensional>(value: String, blocks: &[String], width: f64, mu: f6
     ran.row(&s, (value, found), met, HELD)
 }
 
-/// Courses in running bond; in space a block touches at four corners a joint.
+/// Courses in running bond; in 3D a block has four contact points per joint.
 fn wall<S: Dimensional>() -> Vec<Row> {
     let of = |mu: f64| {
         let mut blocks = Vec::new();

@@ -1,4 +1,4 @@
-//! Centres in one place, and lengths from nanometres to megametres.
+//! Coincident centres, and lengths from nanometres to megametres.
 
 use super::super::bench::Cause::Refused;
 use super::super::bench::{
@@ -62,7 +62,7 @@ fn coincident<S: Dimensional>() -> Vec<Row> {
     .into()
 }
 
-/// Sweeps of each step, places over the scale, and the scene.
+/// Iterations of each step, scaled positions, and the scene.
 type Heap<S> = (Vec<u32>, Vec<[f64; 3]>, Simulation<S>);
 
 fn lengths<S: Dimensional>() -> Vec<Row> {

@@ -1,4 +1,4 @@
-//! Ratios of mass and of size, and tall columns: what stands bears its weight.
+//! Ratios of mass and of size, and tall columns.
 
 use super::super::bench::Cause::Unconverged;
 use super::super::bench::{
@@ -8,8 +8,8 @@ use super::super::bench::{
 use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
 
-/// A tolerance bounds the square of the share of the work that is not carried: docs/design.md. A share of the weight that
-/// is missing in each step moves the small ball by share g h^2 a step.
+/// A tolerance bounds the square of the fraction of the work that is not transmitted: docs/design.md. If a
+/// fraction of the weight is missing in each step, the small ball moves by that fraction of g h^2 per step.
 const BEARS: &str = "the floor bears (m1 + m2) g and the joint m2 g to the root of the tolerance (1e-10 where none stands); overlap \
                      below 1e-6 of the radius and what that share of g moves in the steps";
 
@@ -79,10 +79,10 @@ fn pair<S: Dimensional>(
     ran.row(&s, (value, found), met, expected)
 }
 
-/// Rounding of the light body's velocity leaves more than 1e-10 of its work from here on.
+/// From this ratio on, rounding of the light body's velocity leaves an error above 1e-10.
 const FAR: f64 = 1e11;
 
-/// Heavy on light, with the tolerance that the program proposes where rounding is in the way.
+/// Heavy on light, with the tolerance that the program proposes where rounding limits it.
 fn heavy<S: Dimensional>(
     words: &str,
     ratio: f64,

@@ -1,4 +1,4 @@
-//! Next to nothing: no gravity, no grains, one grain, one contact.
+//! Minimal scenes: no gravity, no grains, one grain, one contact.
 
 use super::super::bench::{G, Group, HELD, Row, Sketch, ball, floor, go, grains, place, refused};
 use fretwork::geometry::space::{Dim2, Dim3};

@@ -1,4 +1,4 @@
-//! The rows of the table, by what is extreme in them.
+//! Rows of the table, by extreme parameter.
 
 mod bonds;
 mod faces;

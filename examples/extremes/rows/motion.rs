@@ -67,10 +67,10 @@ fn speeds<S: Dimensional>() -> Vec<Row> {
     [
         (1.0, NEAR, HELD),
         (1e2, NEAR, HELD),
-        // Seen at the start of the step.
+        // Detected at the start of the step.
         (1e2, 0.2, HELD),
         (1e3, NEAR, HELD),
-        // Beyond the post within the half move before the first detection.
+        // Beyond the post within the half step before the first detection.
         (1e4, NEAR, told(&[Passed])),
         (1e5, NEAR, told(&[Passed])),
     ]
@@ -78,8 +78,9 @@ fn speeds<S: Dimensional>() -> Vec<Row> {
     .into()
 }
 
-/// A box of 0.1 m, so many of its sides a step, which is a little more than the alert distance above the surface at the
-/// end of a step: side down on a flat one, or edge down above a valley.
+/// A box of 0.1 m at a speed given in box sides per step, starting slightly more than the alert distance
+/// above the surface at the end of a step: with a side down on a flat surface, or an edge down above a
+/// valley.
 fn corners<S: Dimensional>() -> Vec<Row> {
     let thrown = |(sides, valley, expected): (f64, bool, Expected)| {
         let v = sides * 0.1 / Sketch::default().step;

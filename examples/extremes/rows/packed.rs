@@ -1,4 +1,4 @@
-//! Friction from nothing to rigid, wedges, Painleve's rod, and a tolerance that none can meet.
+//! Friction from zero to rigid, wedges, Painleve's rod, and an unattainable tolerance.
 
 use super::super::bench::Cause::Unconverged;
 use super::super::bench::{
@@ -59,7 +59,7 @@ fn friction<S: Dimensional>() -> Vec<Row> {
             Ok(s) => s,
             Err(e) => return refused(value, HELD, &e),
         };
-        // In space down a slope between the axes.
+        // In 3D down a slope between the axes.
         let mut slope = S::Vector::zero();
         slope[0] = if S::D == 2 { 1.0 } else { 0.8 };
         if S::D == 3 {
@@ -153,7 +153,7 @@ fn rod() -> Vec<Row> {
         .into()
 }
 
-/// One ball on those of a side, or a triangle, of balls that touch.
+/// One ball on the ends of a row, or on a triangle, of balls that touch.
 fn tolerance<S: Dimensional>() -> Vec<Row> {
     let root = 3f64.sqrt();
     let (base, top) = match S::D {
@@ -178,7 +178,7 @@ fn tolerance<S: Dimensional>() -> Vec<Row> {
         ..Sketch::default()
     };
     let value = format!("{} balls with another on them", count - 1);
-    // In the plane the error is zero to the last bit.
+    // In 2D the error is exactly zero.
     let expected = match S::D {
         2 => HELD,
         _ => held_though(&[Unconverged]),

@@ -1,4 +1,4 @@
-//! Steps from tiny to senseless, functions of time that jump, and a million steps.
+//! Time steps from tiny to unreasonably large, functions of time that jump, and a million steps.
 
 use super::super::bench::Cause::{Refused, Unconverged};
 use super::super::bench::{
@@ -30,8 +30,8 @@ pub const MANY: Group = Group {
 };
 
 fn steps<S: Dimensional>() -> Vec<Row> {
-    // Grains are followed through the step and held; spheres come to be wedged: more impulses than motions, and in the
-    // longest step some are left overlapping.
+    // Disks are resolved and held; spheres become wedged, with more unknowns than degrees of freedom, and in
+    // the longest step some overlap remains.
     let (coarse, senseless) = match S::D {
         2 => (HELD, HELD),
         _ => (held_though(&[Unconverged]), told(&[Unconverged])),
@@ -170,7 +170,7 @@ fn many() -> Vec<Row> {
     let high = 3f64.sqrt() * r;
     let at = |x: f64, up: f64| ball(&place::<Dim2>(x, 0.0, up), r);
     let sketch = Sketch {
-        // It stands from 2 - sqrt 3 = 0.268 on.
+        // Stable from 2 - sqrt 3 = 0.268 on.
         mu: 0.3,
         bodies: floor::<Dim2>(),
         grains: grains("m0", &[at(0.0, r), at(2.0 * r, r), at(r, r + high)]),

@@ -1,5 +1,5 @@
-//! Bonds against the load and the step: what a bond carries, how far it slides within a step, and how its oscillation is
-//! resolved; of any law, by driving it on the bench.
+//! Bonds compared with the load and the time step, for any law, by driving the law on a test bench: the
+//! strength of a bond, its slide per step, and how well its oscillation is resolved.
 
 use super::load::Load;
 use crate::geometry::space::Space;
@@ -9,24 +9,24 @@ use crate::scene::bond_sites::BondSites;
 use crate::scene::build::Built;
 use crate::scene::case::Case;
 
-/// Strength over pressure between which a load and a bond are of one size.
+/// Range of bond strength over pressure in which load and bonds are comparable.
 const STRENGTH: [f64; 2] = [0.01, 100.0];
 
-/// Slide within a step over the opening at break: up to the first the fracture energy of a bond that takes all of the slide is
-/// right to some 3 %; beyond the second the bond goes in fewer than ten steps.
+/// Slide per step over the opening at break. Up to the first value the fracture energy of a bond that takes
+/// all of the slide has an error of about 3 %; beyond the second the bond breaks in fewer than ten steps.
 const SLIDE: [f64; 2] = [0.01, 0.1];
 
-/// Step times circular frequency: up to the first a period has twenty steps or more, and the scheme lengthens it by less than
-/// 1 %, (h omega)^2/12; beyond the second it has three steps or fewer.
+/// Time step times angular frequency. Up to the first value a period has at least twenty steps, and the
+/// scheme lengthens it by less than 1 %, (h omega)^2/12; beyond the second it has at most three steps.
 const FREQUENCY: [f64; 2] = [0.3, 2.0];
 
-/// A bond that is broken within this many times the opening at its peak is brittle.
+/// A bond that breaks below this multiple of its opening at peak traction is brittle.
 const BRITTLE: f64 = 1.05;
 
-/// The speed at which bonds are driven where nothing is moved (m/s).
+/// Speed at which bonds are driven if nothing in the case moves (m/s).
 const USUAL_SPEED: f64 = 1e-3;
 
-/// Lines on the bonds of every interface that makes some.
+/// Report lines on the bonds of every interface that has a cohesion law.
 pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<(&'static str, String)> {
     let s = &built.simulation;
     let mut out = Vec::new();
@@ -35,13 +35,13 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<(&'sta
             continue;
         }
         let Some(sites) = BondSites::of(s, place) else {
-            out.push(("bonds", format!("{}: no grain is governed by it", law.name)));
+            out.push(("bonds", format!("{}: it governs no grain", law.name)));
             continue;
         };
         let speed = load.speed.as_ref().map_or(USUAL_SPEED, |s| s.0);
         let mut bench = Bench::new(law.clone(), S::D as u32, sites.radius);
         let where_from = match sites.contacts {
-            0 => "none yet, judged by the grains".to_owned(),
+            0 => "no contact yet, estimated from the grains".to_owned(),
             n => format!("{n} contacts at the start"),
         };
         let head = format!(
@@ -61,13 +61,13 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<(&'sta
                 out.extend(texts.into_iter().flatten().map(|text| ("", text)));
             }
             Ok(None) => {}
-            Err(e) => out.push(("", format!("NOT KNOWN: driven on the bench, {e}"))),
+            Err(e) => out.push(("", format!("NOT KNOWN: on the test bench, {e}"))),
         }
     }
     out
 }
 
-/// What a bond carries in one mode, against the pressure.
+/// Bond strength in one mode, compared with the pressure.
 fn strength(how: &str, mode: &Mode, load: &Load) -> Option<String> {
     let Some((peak, opening)) = mode.peak else {
         return (mode.stiffness > 0.0).then(|| {
@@ -97,7 +97,7 @@ fn strength(how: &str, mode: &Mode, load: &Load) -> Option<String> {
     ))
 }
 
-/// How far a bond slides within a step, if it takes all of the imposed motion.
+/// Slide of a bond per step if it takes all of the imposed motion.
 fn slide(scale: &BondScale, load: &Load, h: f64) -> Option<String> {
     let ends = |m: &Mode| m.broken.or(m.peak.map(|p| p.1));
     let modes = [&scale.normal, &scale.shear];
@@ -105,10 +105,10 @@ fn slide(scale: &BondScale, load: &Load, h: f64) -> Option<String> {
     let peaks = modes.into_iter().filter_map(|m| m.peak.map(|p| p.1));
     let peak = peaks.reduce(f64::min)?;
     let Some((speed, body)) = &load.speed else {
-        return Some("slide a step: no body is moved by a given speed".to_owned());
+        return Some("slide a step: no body has an imposed speed".to_owned());
     };
     let ratio = speed * h / critical;
-    // What breaks at its peak has no softening that a step could jump over.
+    // A bond that breaks at its peak has no softening branch that a step could skip.
     let brittle = critical <= BRITTLE * peak;
     let step = h * SLIDE[0] / ratio;
     let verdict = if ratio > SLIDE[1] {
@@ -141,7 +141,7 @@ fn slide(scale: &BondScale, load: &Load, h: f64) -> Option<String> {
     ))
 }
 
-/// How the step resolves the fastest oscillation of one bond.
+/// How well the step resolves the fastest oscillation of one bond.
 fn frequency(scale: &BondScale, sites: &BondSites, h: f64, scaling: f64) -> Option<String> {
     let normal = h * (scale.normal.stiffness * sites.normal).sqrt();
     let shear = h * (scale.shear.stiffness * sites.shear).sqrt();
@@ -153,7 +153,7 @@ fn frequency(scale: &BondScale, sites: &BondSites, h: f64, scaling: f64) -> Opti
     let inertia = scaling * (most / FREQUENCY[0]).powi(2);
     let verdict = if most > FREQUENCY[1] {
         format!(
-            "NOT RESOLVED: bonds are followed as at rest, their waves are not; for waves time.step of {step:.0e} s, or inertia_scaling of {inertia:.0e} where motion is slow"
+            "NOT RESOLVED: bonds are treated quasi-statically, their waves are not resolved; for waves time.step of {step:.0e} s, or inertia_scaling of {inertia:.0e} where motion is slow"
         )
     } else if most > FREQUENCY[0] {
         format!(

@@ -1,4 +1,5 @@
-//! How long a run will take: from a few steps of a copy of the scene, timed for a short while. Nothing is written.
+//! Estimate of the run time from a few steps of a copy of the scene, timed for a short while. No files are
+//! written.
 
 use crate::step::Simulation;
 use crate::step::Steps;
@@ -7,17 +8,17 @@ use cpu_time::ThreadTime;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// How long steps are timed, by the clock.
+/// Wall time for which steps are timed.
 const WATCHED: Duration = Duration::from_millis(500);
 
-/// Most steps that are timed.
+/// Limit on the number of timed steps.
 const STEPS: u64 = 2000;
 
-/// A run takes between the estimate over this and the estimate times this: contacts and iterations change on the way. Where
-/// grains are loose at the start, the upper end is also raised to the contacts of a packing.
+/// Factor between the estimate and its lower and upper bounds, since contacts and iterations change during
+/// the run. If grains are loose at the start, the upper bound is also raised to the contacts of a packing.
 const FACTOR: f64 = 3.0;
 
-/// A step that was timed.
+/// A timed step.
 #[derive(Clone, Copy, Debug)]
 struct Timed {
     /// Processor time (s).
@@ -26,30 +27,30 @@ struct Timed {
     iterations: u32,
 }
 
-/// What a short trial of a scene came to.
+/// Result of a short trial of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Trial {
     timed: Vec<Timed>,
-    /// How long the step at work had taken when the time was up (s, by the clock); 0 where none was.
+    /// Wall time for which the unfinished step had run at the end (s); 0 if none was unfinished.
     pending: f64,
-    /// Why a step failed.
+    /// Message of a failed step.
     failure: Option<String>,
 }
 
-/// The seconds a run may take.
+/// Estimated duration of a run (s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunTime {
-    /// The best guess; none where not even one step was done in time.
+    /// Best estimate; `None` if not even one step finished in time.
     pub about: Option<f64>,
-    /// It hardly takes less.
+    /// Lower bound.
     pub least: f64,
-    /// It hardly takes more; infinite where not one step was done.
+    /// Upper bound; infinite if not one step finished.
     pub most: f64,
 }
 
 impl Trial {
-    /// Steps a scene for a short while, in a thread of its own, which is left behind when the time is up: no scene, however
-    /// large, holds the program up for longer.
+    /// Steps a scene for a short while in a thread of its own. The thread is abandoned when the time is up,
+    /// so that even the largest scene does not block the program.
     pub fn of<S: Steps>(mut simulation: Simulation<S>, steps: u64) -> Self {
         let (sender, receiver) = channel::<Result<Timed, String>>();
         let watched = steps.min(STEPS);
@@ -72,7 +73,7 @@ impl Trial {
         let begun = Instant::now();
         let mut last = begun;
         if let Err(e) = std::thread::Builder::new().spawn(work) {
-            out.failure = Some(format!("there is no thread to time steps on ({e})"));
+            out.failure = Some(format!("cannot start a thread to time steps ({e})"));
             return out;
         }
         loop {
@@ -99,12 +100,13 @@ impl Trial {
         out
     }
 
-    /// The steps that count: the first ones make lists and start from nothing.
+    /// The steps that are used: the first ones build neighbour lists and have no warm start.
     fn used(&self) -> &[Timed] {
         &self.timed[self.timed.len() / 2..]
     }
 
-    /// Seconds a step. A step at work that has taken far longer than the others counts with what it took so far.
+    /// Seconds per step. An unfinished step that has taken much longer than the others counts with its time
+    /// so far.
     fn step(&self) -> f64 {
         let (mean, n) = (self.mean(|t| t.seconds), self.used().len() as f64);
         if self.stuck() {
@@ -114,7 +116,7 @@ impl Trial {
         }
     }
 
-    /// Whether the step at work takes far longer than the others did.
+    /// Whether the unfinished step has taken much longer than the others.
     fn stuck(&self) -> bool {
         self.pending > 10.0 * self.mean(|t| t.seconds).max(1e-3)
     }
@@ -123,14 +125,14 @@ impl Trial {
         self.used().iter().map(f).sum::<f64>() / self.used().len() as f64
     }
 
-    /// How many times as many contacts a dense packing of the grains has: two a disk, three a sphere, half of the four and
-    /// six neighbours that each has there.
+    /// Ratio of the contacts in a dense packing to the current ones: two per disk and three per sphere, half
+    /// of the four and six neighbours of each.
     fn growth(&self, grains: usize, dimension: usize) -> f64 {
         let dense = (grains * dimension) as f64;
         (dense / self.mean(|t| t.contacts as f64).max(1.0)).max(1.0)
     }
 
-    /// What a run of so many steps takes on one thread; none where a step failed.
+    /// Duration of a run of `steps` steps on one thread; `None` if a step failed.
     pub fn run_time(&self, steps: u64, grains: usize, dimension: usize) -> Option<RunTime> {
         if self.failure.is_some() {
             return None;
@@ -150,7 +152,7 @@ impl Trial {
         })
     }
 
-    /// A line on it.
+    /// Report line.
     pub fn text(&self, steps: u64, grains: usize, dimension: usize) -> String {
         let Some(time) = self.run_time(steps, grains, dimension) else {
             return format!(
@@ -160,14 +162,14 @@ impl Trial {
         };
         let Some(about) = time.about else {
             return format!(
-                "more than {}: the first step alone takes longer than {}",
+                "more than {}: the first step alone takes more than {}",
                 amount(time.least),
                 amount(WATCHED.as_secs_f64())
             );
         };
         let loose = if self.growth(grains, dimension) > 1.5 {
             let dense = grains * dimension;
-            format!("; grains are loose yet, packed they have some {dense} contacts")
+            format!("; grains are still loose, a packing has about {dense} contacts")
         } else {
             String::new()
         };
@@ -191,7 +193,7 @@ impl Trial {
     }
 }
 
-/// A time for people.
+/// A duration in a readable unit.
 fn amount(s: f64) -> String {
     if s < 1e-3 {
         "less than 1 ms".to_owned()
@@ -211,7 +213,7 @@ mod tests {
             contacts: 200,
             iterations: 10,
         };
-        // The first, dear step does not count.
+        // The first, expensive step is not used.
         let trial = Trial {
             timed: vec![step(1.0), step(2e-3), step(4e-3), step(4e-3)],
             ..Trial::default()
@@ -222,13 +224,13 @@ mod tests {
             text.starts_with(begins) && !text.contains("loose"),
             "{text}"
         );
-        // A tenth of the contacts of a packing: ten times as long at most.
+        // A tenth of the contacts of a packing: at most ten times as long.
         let loose = trial.text(10_000, 1000, 2);
         assert!(
             loose.contains("and 20 min") && loose.contains("some 2000 contacts"),
             "{loose}"
         );
-        // A step that does not come back counts: (2 x 4 ms + 1 s)/3 each.
+        // A step that does not finish counts: (2 x 4 ms + 1 s)/3 each.
         let stuck = Trial {
             pending: 1.0,
             ..trial.clone()

@@ -1,4 +1,4 @@
-//! What a scene has switched on and what is off, and what a grain and a contact take in memory.
+//! Features that a case enables or leaves disabled, and the memory per grain and contact.
 
 use crate::bodies::{Bodies, Dof};
 use crate::contact::Bond;
@@ -15,7 +15,7 @@ use crate::solve::Problem;
 use crate::step::Simulation;
 use crate::step::coupling::Coupling;
 
-/// Lines on what is on and what is off.
+/// Names of the enabled and disabled features.
 #[derive(Default)]
 pub struct Features {
     pub on: Vec<String>,
@@ -23,7 +23,7 @@ pub struct Features {
 }
 
 impl Features {
-    /// Those of a scene.
+    /// The features of a case and its scene.
     pub fn of<S: Space>(case: &Case, built: &Built<S>) -> Self {
         let s = &built.simulation;
         let mut out = Self::default();
@@ -47,7 +47,7 @@ impl Features {
         self.say("dimensions", Some(text));
         let turning = s.bodies.inverse_inertia.iter().filter(|i| **i > 0.0);
         let turning = turning.count();
-        // Only what acts beside the centre turns a grain.
+        // Only a contact whose force does not pass through the centre exerts a moment.
         let levers = s.network.contacts.iter().any(|c| !c.central);
         let turned = levers || asks(s, |d| d.friction) || s.laws.iter().any(Interface::opens);
         let text = format!("{turning} bodies turn freely");
@@ -65,7 +65,7 @@ impl Features {
         self.say("gravity", (g > 0.0).then(|| format!("{g:.3e} m/s^2")));
     }
 
-    /// What changes during the run, and what pushes from outside.
+    /// Changes during the run, and external loads.
     fn programme<S: Space>(&mut self, case: &Case, s: &Simulation<S>) {
         let phases = case.phases.iter().map(|p| match &p.repeat {
             None => p.name.clone(),
@@ -274,7 +274,7 @@ fn asks<S: Space>(s: &Simulation<S>, which: fn(&LawRequirements) -> Requirement)
     each.any(|(_, d)| d.is_none_or(|d| which(d) != Requirement::Never))
 }
 
-/// Bytes that a grain and a contact take, from the types that hold them.
+/// Bytes per grain and per contact, from the types that store them.
 pub fn memory<S: Space>(s: &Simulation<S>) -> [String; 2] {
     let (state, line) = (Bodies::<S>::BYTES, Problem::<S>::BYTES_A_BODY);
     let kept = state + size_of::<Ball<S>>() + size_of::<S::Vector>();

@@ -1,4 +1,4 @@
-//! What acts on a scene from outside, as far as the case tells: the speed of sliding and the pressure.
+//! External loads on a scene, as far as the case gives them: sliding speed and pressure.
 
 use crate::bodies::{Dof, TimeFunction};
 use crate::geometry::space::{Space, VectorLike};
@@ -8,20 +8,20 @@ use crate::scene::case::Case;
 use crate::scene::phases::drives_of;
 use std::f64::consts::TAU;
 
-/// Samples of a drive over the run.
+/// Number of samples of a drive over the run.
 const SAMPLES: u32 = 1000;
 
-/// What acts on a scene.
+/// External loads on a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Load {
-    /// Largest imposed speed (m/s), and whose it is; none where nothing is moved.
+    /// Largest imposed speed (m/s), and the name of its body; `None` if nothing is moved.
     pub speed: Option<(f64, String)>,
-    /// Pressure (Pa), and what it follows from; none where nothing tells.
+    /// Pressure (Pa), and its origin; `None` if it cannot be determined.
     pub pressure: Option<(f64, &'static str)>,
 }
 
 impl Load {
-    /// That of a case and its scene.
+    /// The loads of a case and its scene.
     pub fn of<S: Space>(case: &Case, built: &Built<S>) -> Self {
         let test = friction_pressure(case, built).map(|p| (p, "of the friction test"));
         let biaxial = || biaxial_pressure(case, built).map(|p| (p, "of the biaxial test"));
@@ -34,13 +34,13 @@ impl Load {
     }
 }
 
-/// The largest magnitude of a function of a drive over the run.
+/// Largest magnitude of a drive's function over the run.
 fn largest(end: f64, f: impl Fn(f64) -> f64) -> f64 {
     let times = (0..=SAMPLES).map(|k| end * f64::from(k) / f64::from(SAMPLES));
     times.map(|t| f(t).abs()).fold(0.0, f64::max)
 }
 
-/// The largest speed that a drive imposes; of a sine by its formula, which samples may miss.
+/// Largest speed that a drive imposes; for a sine from its amplitude, which samples may miss.
 fn peak_speed(dof: &Dof, end: f64) -> f64 {
     let each = dof.drives().map(|drive| {
         let sampled = largest(end, |t| drive.imposed_velocity(t).unwrap_or(0.0));
@@ -60,13 +60,13 @@ fn peak_speed(dof: &Dof, end: f64) -> f64 {
 }
 
 fn speed<S: Space>(case: &Case) -> Option<(f64, String)> {
-    // Where a friction test slides its slide is what counts, not how the body is pressed on.
+    // In a friction test the imposed sliding counts, not the motion along the normal.
     let test = case.friction.as_ref();
     let slide = test.and_then(|t| fastest(case, |name, k| name == t.body && k == t.along));
     slide.or_else(|| fastest(case, |_, k| k < S::D))
 }
 
-/// The fastest of the drives that count, by body and axis.
+/// Largest speed of the drives accepted by `counts`, by body and axis.
 fn fastest(case: &Case, counts: impl Fn(&str, usize) -> bool) -> Option<(f64, String)> {
     let mut fastest: Option<(f64, String)> = None;
     for body in &case.bodies {
@@ -82,7 +82,7 @@ fn fastest(case: &Case, counts: impl Fn(&str, usize) -> bool) -> Option<(f64, St
     fastest
 }
 
-/// The imposed force over the period of the test.
+/// Imposed force over the contact area of the test.
 pub fn friction_pressure<S: Space>(case: &Case, built: &Built<S>) -> Option<f64> {
     let (test, s) = (case.friction.as_ref()?, &built.simulation);
     let driven = s.bodies.driven.iter().find(|d| d.name == test.body)?;
@@ -91,7 +91,7 @@ pub fn friction_pressure<S: Space>(case: &Case, built: &Built<S>) -> Option<f64>
     (pressure > 0.0).then_some(pressure)
 }
 
-/// Area on which a friction test presses: of a contact that is periodic along the sliding (m^2; m in 2D).
+/// Contact area of a friction test that is periodic along the sliding (m^2; m in 2D).
 pub fn friction_area<S: Space>(case: &Case, built: &Built<S>) -> Option<f64> {
     let (test, s) = (case.friction.as_ref()?, &built.simulation);
     let period = s.shapes.periodic.period[test.along]?;
@@ -102,7 +102,7 @@ pub fn friction_area<S: Space>(case: &Case, built: &Built<S>) -> Option<f64> {
     })
 }
 
-/// The lateral force on a square sample, at a compacity of 0.82.
+/// Lateral force on a square sample of compacity 0.82.
 fn biaxial_pressure<S: Space>(case: &Case, built: &Built<S>) -> Option<f64> {
     let (spec, s) = (case.biaxial.as_ref()?, &built.simulation);
     let test = Biaxial::new(spec, s)?;
@@ -127,7 +127,7 @@ fn servo_pressure(case: &Case) -> Option<f64> {
     (most > 0.0).then_some(most)
 }
 
-/// The weight of all grains over the ground they stand above.
+/// Weight of all grains over the base area below them.
 fn weight<S: Space>(built: &Built<S>) -> Option<f64> {
     let s = &built.simulation;
     let g = s.gravity.norm();

@@ -16,13 +16,13 @@ pub const EXAMPLES: &str = "Examples:
 
 #[derive(Args, Debug)]
 pub struct CertifyArgs {
-    /// A library, or the name of a law on the search path (kind/name where several kinds have it)
+    /// A library, or the name of a law on the search path (kind/name if laws of several kinds have it)
     #[arg(required_unless_present = "all")]
     law: Option<String>,
     /// Every law on the search path
     #[arg(long, conflicts_with = "law")]
     all: bool,
-    /// A parameter, e.g. w=0.2; the others have their defaults
+    /// A parameter, e.g. w=0.2; the others keep their defaults
     #[arg(long = "set", value_name = "NAME=VALUE")]
     sets: Vec<String>,
     /// Print the certificates as JSON

@@ -1,4 +1,4 @@
-//! `fretwork law drive`: one contact on the bench.
+//! `fretwork law drive`: one contact on a test bench.
 
 mod laws;
 mod output;
@@ -23,13 +23,14 @@ pub const EXAMPLES: &str = "Examples:
 #[derive(Args, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct DriveArgs {
-    /// Laws to compose: a name fills every slot that has it; kind/name fills one
+    /// Laws to compose: a name fills every slot that has a law of this name; kind/name fills one slot
     #[arg(required_unless_present_any = ["case", "interface"], conflicts_with = "case")]
     laws: Vec<String>,
-    /// Drive the laws of an interface of this case, with its parameters, on contacts of the size they have there
+    /// Drive the laws of an interface of this case, with its parameters, on contacts of their size in the
+    /// case
     #[arg(long, value_name = "FILE")]
     case: Option<PathBuf>,
-    /// The interface, by its name in the case; may be left out where there is one only
+    /// Name of the interface in the case; may be omitted if there is only one
     #[arg(long, value_name = "NAME", requires = "case")]
     interface: Option<String>,
     /// A parameter: NAME=VALUE or KIND.NAME=VALUE; with --case a value of the case: KEY.PATH=VALUE
@@ -38,32 +39,34 @@ pub struct DriveArgs {
     /// I, II, mixed (at --angle), cyclic (about zero in mode II; from 0 in mode I with --angle 0), force (raised in 1 s), slide
     #[arg(long, default_value = "I")]
     mode: String,
-    /// Angle of the opening from the normal, degrees (mixed, cyclic, force)
+    /// Angle of the opening to the normal, degrees (mixed, cyclic, force)
     #[arg(long)]
     angle: Option<f64>,
-    /// Largest opening (m), traction (force, Pa) or sliding distance at each velocity (slide, m); by default a fifth beyond
-    /// where the bond breaks or the attraction ends (cyclic: beyond its peak; force: a tenth beyond its strength; slide: 1e-5)
+    /// Largest opening (m), traction (force, Pa) or sliding distance at each velocity (slide, m); by default
+    /// 20 % beyond the opening at which the bond breaks or the attraction ends (cyclic: beyond its peak;
+    /// force: 10 % beyond its strength; slide: 1e-5)
     #[arg(long)]
     to: Option<f64>,
-    /// Reduced radius of the contact r1 r2/(r1 + r2) (m); 1e-5, with --case the median of the interface's contacts
+    /// Reduced radius of the contact r1 r2/(r1 + r2) (m); by default 1e-5, with --case the median of the
+    /// interface's contacts
     #[arg(long, value_parser = positive)]
     radius: Option<f64>,
     /// Speed of the opening (m/s)
     #[arg(long, default_value_t = 1e-3)]
     rate: f64,
-    /// Steps of the path, of a cycle, or of each velocity
+    /// Steps of the path, of each cycle, or of each velocity
     #[arg(long, default_value_t = 2000)]
     steps: u32,
     /// Cycles (cyclic)
     #[arg(long, default_value_t = 5)]
     cycles: u32,
-    /// Velocities one after the other (slide, m/s)
+    /// Velocities in sequence (slide, m/s)
     #[arg(long, value_delimiter = ',', value_parser = positive)]
     velocities: Vec<f64>,
-    /// Compressive pressure (Pa); 1e6 in slide, else 0
+    /// Compressive pressure (Pa); by default 1e6 in slide, otherwise 0
     #[arg(long)]
     pressure: Option<f64>,
-    /// A path from a CSV file with a heading: time,n,t1,t2 (s, m)
+    /// A path from a CSV file with the header time,n,t1,t2 (s, m)
     #[arg(long)]
     path: Option<PathBuf>,
     /// Write the table to a CSV file
@@ -79,7 +82,7 @@ pub struct DriveArgs {
     plugins: PluginArgs,
 }
 
-/// Refuses numbers that make no path.
+/// Checks the numeric arguments of the path.
 fn check(args: &DriveArgs) -> Result<(), Failure> {
     let positive = |x: f64| x.is_finite() && x > 0.0;
     let wrong = [

@@ -1,4 +1,4 @@
-//! `fretwork law new`: a law to fill in, that builds and is certified as it stands.
+//! `fretwork law new`: a template for a law that builds and passes certification as generated.
 
 use super::super::Failure;
 use super::super::output::inform;
@@ -22,7 +22,7 @@ pub struct NewArgs {
     /// Language
     #[arg(long, value_enum)]
     lang: Language,
-    /// Folder to make (the law's name by default)
+    /// Folder to create (by default the law's name)
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -36,7 +36,7 @@ enum Language {
 
 const HEADER: &str = include_str!("../../../plugins/abi/include/fretwork.h");
 const MODULE: &str = include_str!("templates/fretwork.f90");
-/// The safe crate and the ABI, so that a law builds anywhere.
+/// Sources of the SDK and the ABI, so that a law builds without the repository.
 const CRATES: [(&str, &str); 7] = [
     (
         "fretwork-abi/src/lib.rs",
@@ -75,12 +75,12 @@ pub fn new(args: &NewArgs) -> Result<(), Failure> {
     else {
         return usage(format!("--kind {}: expected {}", args.kind, Kind::words()));
     };
-    // An underscore in a name stands for the dash that cases write.
+    // Cases write a dash where a name has an underscore.
     let name = args.name.replace('_', "-");
     let plain = name_is_valid(&name) && name.starts_with(|c: char| c.is_ascii_lowercase());
     if !plain || name.len() > 60 {
         return usage(format!(
-            "`{}` is no name for a law; use a-z, 0-9 and -, a letter first, at most 60",
+            "`{}` is not a valid name for a law; use a-z, 0-9 and -, a letter first, at most 60",
             args.name
         ));
     }

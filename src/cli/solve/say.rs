@@ -1,4 +1,4 @@
-//! What `fretwork solve` prints.
+//! Output of `fretwork solve`.
 
 use super::{Choice, SolveArgs, Solved};
 use crate::record::fclib::Problem;
@@ -7,7 +7,7 @@ use crate::solve::local::solver::Outcome;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
-/// The figure of the error, p the contact impulses and u = W p + q.
+/// Formula of the error, with p the contact impulses and u = W p + q.
 const FORMULA: &str = "|p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|, |u|)";
 
 fn kind(problem: &Problem) -> &'static str {
@@ -19,7 +19,7 @@ fn kind(problem: &Problem) -> &'static str {
     }
 }
 
-/// The lines of one file.
+/// Report on one file.
 pub fn text(solved: &Solved, args: &SolveArgs) -> String {
     let (problem, best) = (&solved.problem, &solved.outcomes[0]);
     let mut out = format!("{}", solved.path.display());
@@ -59,7 +59,7 @@ pub fn text(solved: &Solved, args: &SolveArgs) -> String {
         line(
             "",
             format!(
-                "but {:.1e} of what it does not hold: contacts that friction alone keeps apart, or impulses that grow without bound; the problem may have no solution",
+                "but {:.1e} in what the formula does not measure: contacts that friction alone keeps apart, or impulses that grow without bound; the problem may have no solution",
                 best.beside
             ),
         );
@@ -102,15 +102,15 @@ pub fn text(solved: &Solved, args: &SolveArgs) -> String {
     out.trim_end().to_owned()
 }
 
-/// What to say where the field's figure passes and the scale-free one does not.
+/// Warning if the FCLIB error passes and the scale-free one does not.
 fn warning(o: &Outcome, args: &SolveArgs) -> Option<String> {
     let limit = args.scale_free_limit();
     let passes = o.error <= args.tolerance && o.beside <= args.tolerance;
     (passes && o.scale_free_error > limit).then(|| {
         format!(
-            "the field's error passes, the scale-free one does not: velocities are wrong by {:.1e} of the largest of |u| and |q|, \
-             above {limit:.1e}. The field's figure adds impulses to velocities, and in these units the one hides the other; give \
-             --scale-free-tolerance {limit:.0e} to have both met, or store W/s and s r in place of W and r, s a mean of W's diagonal",
+            "the FCLIB error passes, the scale-free one does not: velocities have an error of {:.1e} of the largest of |u| and |q|, \
+             above {limit:.1e}. The FCLIB error adds impulses to velocities, and in these units one hides the other; give \
+             --scale-free-tolerance {limit:.0e} to meet both, or store W/s and s r in place of W and r, s a mean of W's diagonal",
             o.scale_free_error
         )
     })
@@ -144,7 +144,7 @@ fn seconds(s: f64) -> String {
     format!("{s:.3e} s")
 }
 
-/// The object of one file.
+/// JSON object for one file.
 pub fn json(solved: &Solved, args: &SolveArgs) -> Value {
     let problem = &solved.problem;
     let mut value = outcome(&solved.outcomes[0], args);
@@ -189,12 +189,12 @@ fn outcome(o: &Outcome, args: &SolveArgs) -> Value {
     })
 }
 
-/// Why a file is not solved.
+/// Reason why a file is not solved.
 pub fn unsolved(solved: &Solved, args: &SolveArgs) -> String {
     let best = &solved.outcomes[0];
     if best.error <= args.tolerance && best.beside > args.tolerance {
         return format!(
-            "{}: the error is {:.3e}, but {:.1e} of what it does not hold: the problem may have no solution",
+            "{}: the error is {:.3e}, but {:.1e} in what the formula does not measure: the problem may have no solution",
             solved.path.display(),
             best.error,
             best.beside
@@ -204,7 +204,7 @@ pub fn unsolved(solved: &Solved, args: &SolveArgs) -> String {
         && best.error <= args.tolerance
     {
         return format!(
-            "{}: the field's error is {:.3e}, but the scale-free one is {:.3e}, above --scale-free-tolerance {asked:e}, after {} \
+            "{}: the FCLIB error is {:.3e}, but the scale-free one is {:.3e}, above --scale-free-tolerance {asked:e}, after {} \
              iterations and {}; raise --max-iterations or --time-limit, or try --solver all",
             solved.path.display(),
             best.error,

@@ -1,4 +1,4 @@
-//! What a study cannot do is refused before anything runs: outputs that the case does not have, and a budget below one run.
+//! Checks of a study before anything runs: outputs that the case does not have, and a budget below one run.
 
 use super::TradeArgs;
 use crate::cli::Failure;
@@ -14,7 +14,8 @@ use crate::trade::table::seconds;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// The outputs asked for, or the usual ones, if the case has them, with what they are in truth where that is given.
+/// The requested outputs, or the default ones, with their exact values where given; an error if the case does
+/// not have one.
 pub fn outputs(args: &TradeArgs, offer: &Offer) -> Result<Vec<Output>, Failure> {
     let mut outputs = if args.outputs.is_empty() {
         offer.usual()
@@ -51,7 +52,7 @@ pub fn outputs(args: &TradeArgs, offer: &Offer) -> Result<Vec<Output>, Failure> 
             .parse()
             .ok()
             .filter(|v: &f64| v.is_finite())
-            .ok_or_else(|| wrong("the value is no number"))?;
+            .ok_or_else(|| wrong("the value is not a number"))?;
         let found = outputs.iter_mut().find(|o| o.name == name.trim());
         found
             .ok_or_else(|| wrong("no --output has this name"))?
@@ -60,8 +61,8 @@ pub fn outputs(args: &TradeArgs, offer: &Offer) -> Result<Vec<Output>, Failure> 
     Ok(outputs)
 }
 
-/// Refuses a budget in which not even the case's own setting runs once, by what a short trial of the scene tells: a study takes
-/// many runs, so that a budget of one is below any use. A case that phases or jumps may end early is not judged.
+/// Rejects a budget smaller than one run of the case, as estimated by a short trial: a study takes many runs.
+/// A case that phases or jumps may end early is not checked.
 pub fn budget(args: &TradeArgs, loaded: &Loaded, scene: Scene) -> Result<(), Failure> {
     let case = &loaded.case;
     let early = case.jump.is_some() || case.phases.last().is_some_and(|p| p.until.is_some());
@@ -81,7 +82,7 @@ fn budget_of<S: Steps>(args: &TradeArgs, loaded: &Loaded, built: Built<S>) -> Re
     let trial = Trial::of(built.simulation, steps);
     let budget = args.budget.as_secs_f64();
     let Some(run) = trial.run_time(steps, grains, S::D) else {
-        // A step that fails is told by the run that fails.
+        // A failing step is reported by the run itself.
         return Ok(());
     };
     if run.about.unwrap_or(run.least) <= budget {
@@ -97,7 +98,7 @@ fn budget_of<S: Steps>(args: &TradeArgs, loaded: &Loaded, built: Built<S>) -> Re
     )))
 }
 
-/// Names in groups that a run fills are checked against a run of two steps, where the case allows one so short.
+/// Checks names in groups that only a run fills against a run of two steps, if the case allows one so short.
 pub fn after_two_steps(
     args: &TradeArgs,
     loaded: &Loaded,

@@ -1,10 +1,10 @@
-//! Files of an older run that the one which takes its place does not write over: they go, and nothing else does.
+//! Removal of an older run's files that the new run would not overwrite; no other files are removed.
 
 use super::frame::PICTURES;
 use super::{RunError, unwritable};
 use std::path::Path;
 
-/// Figures at the end of a run, by name. Those of measures and scars have the names of a case, and stay.
+/// Names of the figures at the end of a run. Figures of measures and scars are named by a case, and are kept.
 const FIGURES: [&str; 8] = [
     "damage_ratio.png",
     "fretting_loops.png",
@@ -16,7 +16,7 @@ const FIGURES: [&str; 8] = [
     "biaxial.png",
 ];
 
-/// Takes pictures, problems and figures of an older run out of its folder.
+/// Removes pictures, problems and figures of an older run from its folder.
 pub(super) fn clear(folder: &Path) -> Result<(), RunError> {
     let picture = |name: &str| {
         PICTURES
@@ -30,7 +30,7 @@ pub(super) fn clear(folder: &Path) -> Result<(), RunError> {
     remove(folder, &|name| FIGURES.contains(&name))
 }
 
-/// Whether a name has the number of a step, of eight digits or more, between two texts.
+/// Whether a name has a step number of at least eight digits between two given texts.
 fn numbered(name: &str, before: &str, after: &str) -> bool {
     let rest = name.strip_prefix(before);
     let Some(number) = rest.and_then(|r| r.strip_suffix(after)) else {
@@ -40,7 +40,7 @@ fn numbered(name: &str, before: &str, after: &str) -> bool {
     digits && (number.len() == 8 || number.len() > 8 && !number.starts_with('0'))
 }
 
-/// Removes the files of a folder with such names.
+/// Removes the files of a folder whose names are accepted by `ours`.
 fn remove(folder: &Path, ours: &dyn Fn(&str) -> bool) -> Result<(), RunError> {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return Ok(());

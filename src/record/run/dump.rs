@@ -1,4 +1,4 @@
-//! Steps as problems of the field's collection.
+//! Output of steps as FCLIB problems.
 
 use super::{Recorder, RunError, unwritable};
 use crate::record::fclib;
@@ -6,14 +6,14 @@ use crate::scene::build::Dimensional;
 use crate::step::StepReport;
 
 impl<S: Dimensional> Recorder<'_, S> {
-    /// Writes the step's problem in the form of the field's collection.
+    /// Writes the contact problem of a step as an FCLIB file.
     pub(super) fn dump(&mut self, step: u64, report: &StepReport) -> Result<(), RunError> {
         let problem = self.simulation.local_problem();
         let Some(mut problem) = problem.filter(|p| p.check().is_ok()) else {
             self.problems.1 += 1;
             return Ok(());
         };
-        // The field's error adds impulses to velocities: of like size neither hides the other.
+        // The FCLIB error adds impulses to velocities; scaled to similar size neither hides the other.
         let scale = problem.normalise();
         let folder = self.out.join("fclib");
         let path = folder.join(format!("step-{step:08}.hdf5"));
@@ -23,8 +23,8 @@ impl<S: Dimensional> Recorder<'_, S> {
         let per = if S::D == 2 { " per m of depth" } else { "" };
         let description = format!(
             "u: velocities of the candidate of a contact relative to its antagonist, (n, t) or (n, t1, t2), n \
-             towards the candidate (m/s); u_n holds the step's shift too (an open gap over h, what is given \
-             back of a penetration, restitution). r: impulses of the step times {scale:e}, so that the mean \
+             towards the candidate (m/s); u_n includes the step's shift (an open gap over h, the correction \
+             of a penetration, restitution). r: impulses of the step times {scale:e}, so that the mean \
              normal diagonal of W is 1; r/{scale:e} is in N s{per}. Step {:e} s, theta {}, time {:e} s; solved \
              in the run by {} to an error of {:.1e}, {}.",
             s.scheme.h,

@@ -1,4 +1,4 @@
-//! The end of a run: what is summed up, drawn and written last.
+//! End of a run: summary, figures and final output.
 
 use super::error::unreadable;
 use super::{Recorder, RunError, unwritable};
@@ -12,7 +12,7 @@ use std::path::Path;
 use std::time::Duration;
 
 impl<S: Dimensional> Recorder<'_, S> {
-    /// Writes what a run leaves behind, whatever it reached.
+    /// Writes the final output of a run, however it ended.
     pub(super) fn finish(&mut self) -> Result<(), RunError> {
         let recalled = self.recall();
         let wall = self.spent.0 + self.clock.elapsed();
@@ -63,7 +63,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         table.and(results).and(outputs).and(self.draw(wall))
     }
 
-    /// Ends the file of results, and says in it that it is whole where the run came to its end.
+    /// Closes the results file, and marks it complete if the run reached its end.
     fn end_results(&mut self) -> Result<(), RunError> {
         if self.summary.stopped.is_none() {
             let (number, bytes) = self.keeper.frame(Kind::Ended, Vec::new());
@@ -81,7 +81,7 @@ impl<S: Dimensional> Recorder<'_, S> {
     }
 }
 
-/// Writes and draws what observers ask for into a folder.
+/// Writes and draws the outputs of observers into a folder.
 ///
 /// # Errors
 /// A file cannot be written.

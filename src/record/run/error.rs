@@ -1,4 +1,4 @@
-//! Why a run failed.
+//! Errors of a run.
 
 use crate::record::checkpoint::ResumeError;
 use crate::record::code::CodeError;
@@ -7,26 +7,26 @@ use crate::report::ReportError;
 use crate::step::StepError;
 use std::path::{Path, PathBuf};
 
-/// Why a run failed. What was computed is on disk.
+/// Reason why a run failed. What was computed is on disk.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// The step.
+    /// A step failed.
     #[error(transparent)]
     Step(#[from] StepError),
-    /// A file or folder.
+    /// A file or folder cannot be written.
     #[error("cannot write {}: {reason}; choose another folder with --out or make room", path.display())]
     Write {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Reason.
         reason: String,
     },
-    /// What was written cannot be read back.
-    #[error("cannot read {} back: {reason}; nothing is summed up or drawn from it", path.display())]
+    /// A written file cannot be read back.
+    #[error("cannot read {} back: {reason}; its results are not summarised or drawn", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// Two columns of the statistics have one name.
@@ -54,13 +54,13 @@ pub enum RunError {
     /// The results file.
     #[error(transparent)]
     Results(#[from] ResultsError),
-    /// A picture.
+    /// A picture failed.
     #[error(transparent)]
     Picture(#[from] ReportError),
-    /// What was to go on cannot.
+    /// A run cannot be resumed.
     #[error(transparent)]
     Resume(#[from] ResumeError),
-    /// A checkpoint.
+    /// A checkpoint failed.
     #[error("cannot make a checkpoint: {0}")]
     Checkpoint(#[from] CodeError),
 }

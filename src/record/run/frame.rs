@@ -1,4 +1,4 @@
-//! The pictures of a moment.
+//! Pictures of the scene during a run.
 
 use super::{Recorder, RunError};
 use crate::record::picture::Subject;
@@ -7,11 +7,11 @@ use crate::scene::build::Dimensional;
 use fretwork_observe::picture::{Picture, Shows};
 use fretwork_observe::run_state::damage_ratio;
 
-/// Names of pictures of the program itself: `frames/NAME_STEP.png`.
+/// Name prefixes of pictures: `frames/NAME_STEP.png`.
 pub(super) const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "chains"];
 
 impl<S: Dimensional> Recorder<'_, S> {
-    /// Draws the frames of a step.
+    /// Draws the pictures of a step.
     pub(super) fn frame(&mut self, step: u64) -> Result<(), RunError> {
         if self.loaded.case.output.frames == 0 {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Checkpoints of a run: what is kept, and how a run that was stopped takes it up.
+//! Checkpoints of a run: their contents, and how a stopped run is restored from them.
 
 use super::clear;
 use super::{Recorder, RunError, unwritable};
@@ -14,15 +14,15 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// What a run carries from step to step, beside what follows from its case. Rows are in the results file; how many of
-/// them are of this state stands here.
+/// State of the run loop, beyond what follows from the case. Rows are in the results file; the number of rows
+/// that belong to this state is stored here.
 #[derive(Serialize, Deserialize)]
 #[serde(bound = "")]
 struct Carried<'a, S: Space> {
     simulation: Saved<'a, S>,
-    /// Steps over which states and pictures are spread.
+    /// Number of steps over which states and pictures are distributed.
     spread: u64,
-    /// Rows of each growing dataset of the results, in the order of their declarations.
+    /// Rows and chunks of each growing dataset of the results, in the order of their declaration.
     rows: Vec<(u64, u32)>,
     paints: Cow<'a, [Paint]>,
     processes: Vec<ProcessState>,
@@ -34,12 +34,12 @@ struct Carried<'a, S: Space> {
 }
 
 impl<S: Dimensional> Recorder<'_, S> {
-    /// Keeps the state at hand in the results.
+    /// Writes a checkpoint of the current state to the results.
     pub(super) fn keep(&mut self) -> Result<(), RunError> {
         let begun = Instant::now();
         let state = self.state()?;
         self.mark(Kind::State, state)?;
-        // The other files follow from the results; this one is for the eye.
+        // The other files can be regenerated from the results; this one is for the user to read.
         self.table
             .flush()
             .map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
@@ -47,16 +47,16 @@ impl<S: Dimensional> Recorder<'_, S> {
         Ok(())
     }
 
-    /// Writes a frame into the results.
+    /// Writes a checkpoint frame into the results.
     pub(super) fn mark(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
         let (number, bytes) = self.keeper.frame(kind, state);
         Ok(self.results.checkpoint(number, &bytes)?)
     }
 
-    /// Gives the results their name, with a first frame in them, and opens the table.
+    /// Moves the results file to its final name, with a first checkpoint in it, and opens the table.
     pub(super) fn publish(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
         self.mark(kind, state)?;
-        // Of a run that ended here before: from now on this folder holds one that goes on.
+        // Remove the marker of a finished earlier run: from now on this folder holds an unfinished one.
         match std::fs::remove_file(self.out.join(LAST)) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
                 return Err(unwritable(&self.out.join(LAST), &e));
@@ -89,7 +89,8 @@ impl<S: Dimensional> Recorder<'_, S> {
         })?)
     }
 
-    /// Takes up the state of a run that was stopped, and its rows up to there, in a file that then takes its place.
+    /// Restores the state of a stopped run, and its rows up to there, in a new file that then replaces the
+    /// old one.
     pub(super) fn take_up(&mut self, stop: ResumePoint) -> Result<(), RunError> {
         let path = stop.kept.path().to_owned();
         let refused = |source: CodeError| ResumeError::State {

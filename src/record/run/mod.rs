@@ -35,33 +35,33 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Progress of a run, after a step.
+/// Progress report of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
-    /// Steps done and in all.
+    /// Steps done, and total steps.
     pub steps: (u64, u64),
-    /// Steps that were done before a resumed run went on; 0 for one from the start.
+    /// Steps done before the run was resumed; 0 for a run from the start.
     pub resumed_at: u64,
-    /// Cycle and cycles in all; 0 before the first.
+    /// Current cycle, and total cycles; 0 before the first.
     pub cycle: (u32, u32),
-    /// Contacts.
+    /// Number of contacts.
     pub contacts: usize,
-    /// Sweeps of the last step.
+    /// Solver iterations of the last step.
     pub iterations: u32,
-    /// Error of the last step.
+    /// Solver error of the last step.
     pub error: f64,
-    /// Steps of the run that missed the tolerance.
+    /// Number of steps that missed the tolerance.
     pub unconverged: u64,
-    /// Damage ratio.
+    /// Broken bonds over bonds made.
     pub damage_ratio: f64,
 }
 
-/// How to run.
+/// Options of a run.
 #[derive(Clone, Debug)]
 pub struct RunOptions {
     /// Folder of the results.
     pub out: PathBuf,
-    /// Threads; one gives the same bits as many.
+    /// Number of threads; results are bit-identical for any number.
     pub threads: usize,
 }
 
@@ -174,10 +174,10 @@ pub fn run<S: Dimensional>(
     }
 }
 
-/// What the folder of the results holds of this case, to go on from.
+/// Finds the state of a stopped run of this case in the folder of the results.
 ///
 /// # Errors
-/// What is there cannot be read, is damaged, or of another version or case.
+/// The state cannot be read, is damaged, or belongs to another version or case.
 pub fn stopped<S: Space>(
     loaded: &Loaded,
     built: &Built<S>,
@@ -206,11 +206,12 @@ struct Recorder<'a, S: Space> {
     unconverged: u64,
     /// Steps that were done when the run was resumed.
     resumed_at: u64,
-    /// Steps of the run, and over how many of them states and pictures are spread: those it was begun with.
+    /// Total steps of the run, and the steps over which states and pictures are distributed, as set when it
+    /// was started.
     total: u64,
     spread: u64,
     keeper: CheckpointWriter,
-    /// Time that the run took before it was stopped, of the clock and of processors; and since when it runs now.
+    /// Wall and processor time of the run before it was resumed; and the start of this part.
     spent: (Duration, Duration),
     /// Where the watch over plugins finds the files during a step.
     emergency: EmergencySave<S>,
@@ -281,7 +282,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         match begun {
             Ok(()) => Ok(recorder),
             Err(e) => {
-                // What the folder held before is still there.
+                // The previous contents of the folder are still there.
                 let _ = std::fs::remove_file(&part);
                 Err(e)
             }

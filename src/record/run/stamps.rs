@@ -1,4 +1,4 @@
-//! What a run is stamped with: its laws, and the density of its first bodies.
+//! Metadata of a run: the certification of its laws, and the density of its first bodies.
 
 use crate::certify::{Certificate, certify_apart, certify_parameters};
 use crate::laws::{Interface, Kind, LawError, Loaded as Law, Plugin, SearchPath};
@@ -6,9 +6,9 @@ use crate::record::summary::PluginStamp;
 use crate::scene::build::Loaded;
 use crate::shipped::built_in;
 
-/// The laws of a run, each once, and whether they keep their promises with its parameters: a damage law with the
-/// cohesion that it stands beside where that keeps its own, the others with plain shipped partners. So the law is blamed that
-/// is at fault, and none beside it.
+/// The laws of a run, each listed once, and whether each passes certification with its parameters. A damage
+/// law is tested with the cohesion law beside it if that passes itself, other laws with plain shipped
+/// partners, so that a failure is attributed to the law that causes it.
 pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
     let mut known = Known {
         path: SearchPath::new(&[]).with_built_in(built_in()),
@@ -72,7 +72,7 @@ impl Key {
     }
 }
 
-/// What was found of laws, with their partners.
+/// Certification results of laws and their partners.
 struct Known {
     path: SearchPath,
     found: Vec<((Key, Option<Key>), bool)>,
@@ -84,8 +84,8 @@ impl Known {
         if let Some((_, certified)) = self.found.iter().find(|(k, _)| *k == key) {
             return *certified;
         }
-        // What is not the program's own may end the process in which it is tested, or spoil its memory. What is, is
-        // certified whole by the project's tests.
+        // A foreign law may end the process in which it is tested, or corrupt its memory. The shipped laws
+        // are certified by the project's tests.
         let own = |p: &Plugin| self.path.is_own(p);
         let trusted = own(&law.plugin) && partner.is_none_or(|p| own(&p.plugin));
         type Test = fn(&Plugin, &[f64], Option<&Law>, &SearchPath) -> Result<Certificate, LawError>;
@@ -101,7 +101,7 @@ impl Known {
     }
 }
 
-/// Density of the first bodies, for wear as a mass.
+/// Density of the first bodies, for wear expressed as mass.
 pub(super) fn density_of(loaded: &Loaded, any: bool) -> f64 {
     let material = loaded.case.bodies.first().map(|b| b.material.as_str());
     match (any, material) {

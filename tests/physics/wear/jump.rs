@@ -185,7 +185,10 @@ fn jumps_that_mean_nothing_are_refused() {
         (&["jump.cycles=0"], "must be at least 1"),
         (&["jump.tolerance=0.0"], "must be positive, got 0"),
         (&["jump.growth=-1.0"], "must be positive, got -1"),
-        (&["time.step=3e-3"], "let time.step divide the cycle"),
+        (
+            &["time.step=3e-3"],
+            "choose a time.step that divides the cycle",
+        ),
         (&["jump.at_most=4294967295"], "at most 100000"),
         (
             &["friction.period=0.013"],
@@ -204,11 +207,11 @@ fn jumps_that_mean_nothing_are_refused() {
                 "bodies.cylinder.dofs.x=Velocity(Constant(1e-3))",
                 "friction.period=0.02",
             ],
-            "it goes on in one direction",
+            "it continues in one direction",
         ),
         (
             &["phases=[(name: \"a\", until: Time(10.0)), (name: \"b\")]"],
-            "phases go by the time that is computed",
+            "phases follow the simulated time",
         ),
         (&["circuit=(bases: [\"flat\"])"], "leave one of the two out"),
     ] {

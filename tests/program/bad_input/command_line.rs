@@ -119,16 +119,19 @@ fn check_refuses_what_run_refuses() {
     refusal(&output, &[place, "expected a number between 0.5 and 1"]);
 }
 
-/// A study compares what the case computes, not how a run went, and no friction where nothing is rubbed.
+/// A study compares what the case computes, not the course of the run, and no friction where nothing is rubbed.
 #[test]
 fn a_study_of_what_the_case_does_not_have() {
     let trial = Trial::new();
     trial.write("case.ron", PLANE);
     for (output, words) in [
-        ("haste.first_late", "how a run went"),
-        ("uncertainty.wear.step", "how a run went"),
-        ("uncertainty.friction_coefficient.scatter", "how a run went"),
-        ("energy.scale", "how a run went"),
+        ("haste.first_late", "the course of the run"),
+        ("uncertainty.wear.step", "the course of the run"),
+        (
+            "uncertainty.friction_coefficient.scatter",
+            "the course of the run",
+        ),
+        ("energy.scale", "the course of the run"),
         ("peak_friction", "no friction test"),
     ] {
         let said = refusal(

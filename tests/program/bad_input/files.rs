@@ -280,12 +280,12 @@ fn a_table_says_each_thing_once() {
         (
             "x,y,radius\n0.1,0.1,0.01\nx,y,radius\n",
             "3:1",
-            &["the value `x` of `x` is no number"],
+            &["the value `x` of `x` is not a number"],
         ),
         (
             "x,y,radius,colour\n1,1,1,1\n",
             "1:1",
-            &["no use for a column `colour`"],
+            &["unknown column `colour`"],
         ),
         (
             "x,y,radius\n0.1,0.1\n",
@@ -295,7 +295,7 @@ fn a_table_says_each_thing_once() {
         (
             "x,y,radius\n0.1,0.1,1e400\n",
             "2:1",
-            &["`1e400` of `radius` is no number"],
+            &["`1e400` of `radius` is not a number"],
         ),
     ] {
         let file = trial.write("g.csv", table);
@@ -320,9 +320,9 @@ fn grains_in_one_place_are_refused_before_their_pairs_are_stored() {
     table.push_str(&"0.1,0.05,1e-9\n".repeat(11_000));
     trial.write("pile.csv", table);
     let words = [
-        "11000 of them stand within",
+        "11000 of them are within",
         "of (1e-1, 5e-2) m",
-        "places that are there twice",
+        "positions that occur twice",
     ];
     let said = trial.refuses(&case, &[], &words);
     assert!(

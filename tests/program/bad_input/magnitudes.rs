@@ -1,4 +1,4 @@
-//! Numbers that are possible one by one and together are beyond what can be computed with: refused at their place, or the run
+//! Numbers that are possible one by one and together are outside the range of the computation: refused at their place, or the run
 //! ends with a sentence; nothing that is not finite reaches a file of a run that says it is done.
 
 use super::trial::{PLANE, SOLID, Trial, refused, with};
@@ -24,7 +24,10 @@ fn a_spin_whose_square_overflows() {
 fn masses_that_vanish_or_overflow() {
     for radius in ["1e-108", "1e-130", "1e105"] {
         let grain = format!("‸(at: [0.15, 0.15, 2e106], radius: {radius})");
-        refused(&solid(GRAIN, &grain), &["beyond what can be computed with"]);
+        refused(
+            &solid(GRAIN, &grain),
+            &["outside the range of the computation"],
+        );
     }
 }
 
@@ -106,7 +109,10 @@ fn steps_whose_square_vanishes_or_overflows() {
         let time = format!("step: ‸{step}, end: {end}");
         refused(
             &solid("step: 1e-3, end: 0.002", &time),
-            &["the square of a step", "beyond what can be computed with"],
+            &[
+                "the square of a step",
+                "outside the range of the computation",
+            ],
         );
     }
 }

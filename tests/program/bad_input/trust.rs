@@ -110,7 +110,7 @@ fn a_law_that_writes_behind_its_columns() {
         1,
         &[
             "the contact law `own` wrote behind the end of a column in Prepare",
-            "interface `grains` has this law at",
+            "interface `grains` uses this law at",
             "case.ron:13:22",
         ],
     );
@@ -150,7 +150,7 @@ fn the_interface_that_failed_is_the_one_that_is_shown() {
             &[
                 "as `out_friction`",
                 "(interface `walls`",
-                "interface `walls` has this law at",
+                "interface `walls` uses this law at",
                 &format!("case.ron:{line}:"),
             ],
         );

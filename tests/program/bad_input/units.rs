@@ -49,7 +49,7 @@ fn units_of_another_kind_are_refused() {
             "\"kgg/m^3\"",
             "1:47",
             &[
-                "`kgg` in `kgg/m^3` is no known unit",
+                "`kgg` in `kgg/m^3` is not a known unit",
                 "did you mean `kg/m^3`?",
             ],
         ),
@@ -82,7 +82,7 @@ fn units_of_another_kind_are_refused() {
         ),
         (
             "\"hardness\": (value: 3, unit: \"HVV\", source: \"a\")",
-            Some("`HVV` is no known unit"),
+            Some("`HVV` is not a known unit"),
         ),
         (
             "\"grain_size\": (value: 3, unit: \"micron s\", source: \"a\")",

@@ -65,10 +65,10 @@ fn a_profile_from_a_file() {
     let missing = trial.write("case.ron", case(r#"file: "nowhere.csv""#));
     trial.refuses(&missing, &[], &["nowhere.csv"]);
     for (table, says) in [
-        ("x,y\n0,0\n", "no use for a column `y`"),
-        ("x [kg],z\n0,0\n", "`kg` is no unit of length"),
-        ("x,z\n0,0\n0,0\n0.4,0\n", "is the one before it"),
-        ("x,z\n0,0\nhalf,0\n", "`half` of `x` is no number"),
+        ("x,y\n0,0\n", "unknown column `y`"),
+        ("x [kg],z\n0,0\n", "`kg` is not a unit of length"),
+        ("x,z\n0,0\n0,0\n0.4,0\n", "equals the one before it"),
+        ("x,z\n0,0\nhalf,0\n", "`half` of `x` is not a number"),
     ] {
         trial.write("p.csv", table);
         let case = trial.write("case.ron", case(r#"file: "p.csv""#));
@@ -125,7 +125,7 @@ fn wear_that_cannot_be() {
     );
     refused(
         &archard(&WEARS.replace("(0.2, 0.0)", "(0.2, 0.0), (0.2, -0.1)")),
-        &["stands upright between points 1 and 2"],
+        &["is vertical between points 1 and 2"],
     );
     let field = "rms: 1e-4)]),";
     let drum = with(SOLID, field, "rms: 1e-4), ], wears: ‸(thickness: 1e-3)),");

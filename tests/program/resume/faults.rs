@@ -102,7 +102,7 @@ fn another_version_is_refused() {
         }
     }
     std::fs::write(&path, bytes).unwrap();
-    refused(&out.0, job(), 2, &["is of Fretwork 9.9.9", &ours]);
+    refused(&out.0, job(), 2, &["was written by Fretwork 9.9.9", &ours]);
 }
 
 #[test]
@@ -176,7 +176,7 @@ fn one_damaged_checkpoint_costs_some_steps_two_are_refused() {
     flip(&mut bytes, found[0].1);
     flip(&mut bytes, found[1].1);
     std::fs::write(&path, &bytes).unwrap();
-    refused(&out.0, job(), 1, &["damaged", "leave --resume out"]);
+    refused(&out.0, job(), 1, &["damaged", "omit --resume"]);
     let mut bytes = good;
     flip(&mut bytes, found[1].1);
     std::fs::write(&path, &bytes).unwrap();
@@ -194,7 +194,7 @@ fn a_file_that_is_cut_or_none_is_refused() {
     let good = std::fs::read(&path).unwrap();
     for length in [0, 7, 600, good.len() / 50, good.len() / 3] {
         std::fs::write(&path, &good[..length]).unwrap();
-        refused(&out.0, job(), 1, &["results.h5", "leave --resume out"]);
+        refused(&out.0, job(), 1, &["results.h5", "omit --resume"]);
     }
     std::fs::write(&path, b"not a file of results at all").unwrap();
     refused(&out.0, job(), 1, &["cannot read"]);
@@ -274,7 +274,7 @@ fn a_full_disk_is_told_and_the_run_goes_on_when_there_is_room() {
             "{told}"
         );
         let told = job().done(&out.0, &["--resume"]);
-        went_on += u32::from(told.contains("resumes the run"));
+        went_on += u32::from(told.contains("resuming the run"));
         same(&whole.0, &out.0);
     }
     assert!(went_on > 0, "no limit let a checkpoint be written");

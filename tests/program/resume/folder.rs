@@ -223,9 +223,9 @@ fn two_runs_differ_in_what_the_clock_gives_alone() {
     let docs = docs.unwrap();
     let paragraph = docs
         .split("\n\n")
-        .find(|p| p.contains("are the same, but for"))
+        .find(|p| p.contains("are equal, except for"))
         .unwrap();
-    let excepted = paragraph.split("are the same, but for").nth(1).unwrap();
+    let excepted = paragraph.split("are equal, except for").nth(1).unwrap();
     let excepted = excepted.split('.').next().unwrap();
     let named: Vec<&str> = excepted.split('`').skip(1).step_by(2).collect();
     let listed: Vec<&str> = fretwork::record::summary::FROM_THE_CLOCK

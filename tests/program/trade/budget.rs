@@ -88,7 +88,7 @@ fn ends_with_the_budget_and_goes_on_after_an_interruption() {
     assert_eq!(ended.status.code(), Some(1));
     let said = String::from_utf8_lossy(&ended.stderr);
     let (_, again) = said
-        .split_once("to go on from there:\n")
+        .split_once("to continue from there:\n")
         .unwrap_or_default();
     assert!(again.contains(" trade ") && again.contains(&out), "{said}");
     assert_eq!(running(&out), Vec::<String>::new(), "runs that were left");

@@ -26,7 +26,7 @@ fn wrong_input_is_answered_with_the_nearest_name() {
         (&["--output", "energy.fracture=0%"], "above zero"),
         (
             &["--output", "energy.residual=1%"],
-            "its true value is zero",
+            "its exact value is zero",
         ),
         (
             &["--vary", "tme.step=1e-8,2e-8"],
@@ -38,8 +38,8 @@ fn wrong_input_is_answered_with_the_nearest_name() {
             &["--exact", "energy.fractur=1"],
             "no --output has this name",
         ),
-        (&["--budget", "soon"], "is no time"),
-        (&["--budget", "NaN"], "is no time"),
+        (&["--budget", "soon"], "is not a time"),
+        (&["--budget", "NaN"], "is not a time"),
         (
             &["--unconverged", "NaN"],
             "a number from 0 to 1 is expected",
@@ -54,7 +54,7 @@ fn wrong_input_is_answered_with_the_nearest_name() {
         (&["--output", "wear.Qs"], "has a wear law"),
         (&["--output", "wear.Qw"], "no circuit of grains"),
         (&["--output", "biaxial.angle"], "no biaxial test"),
-        (&["--output", "plugins"], "it is no number"),
+        (&["--output", "plugins"], "it is not a number but a group"),
         (
             &["--output", "statistics.M"],
             "a run of this case has no such output",
@@ -65,7 +65,7 @@ fn wrong_input_is_answered_with_the_nearest_name() {
         ),
         (
             &["--set", "solver.method=Newton", "--knob", "test_every"],
-            "makes no sweeps",
+            "does not iterate in sweeps",
         ),
         (
             &["--set", "time.step=1e-13", "--budget", "3s"],
@@ -100,9 +100,9 @@ fn outputs_that_a_case_does_not_have_are_refused_before_a_run() {
         ("friction_coefficient", "no friction test"),
         ("cycles.2.work", "no friction test"),
         ("damage_ratio", "no interface of the case makes bonds"),
-        ("energy.fracture", "bonds that are damaged"),
+        ("energy.fracture", "has a damage law"),
         ("wear.Qs", "no interface of the case has a wear law"),
-        ("jump.cycles", "jumps over no cycles"),
+        ("jump.cycles", "has no jumps over cycles"),
         ("measures.layer_flow", "did you mean"),
         ("statistics.slide", "a run of this case has no such output"),
     ] {

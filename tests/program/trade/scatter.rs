@@ -140,7 +140,7 @@ fn chaos_without_draws_has_intervals() {
         (&Value::Bool(true), &Value::Bool(true), &Value::Bool(true))
     );
     let notes = found["notes"].to_string();
-    assert!(notes.contains("contacts are chaotic here"), "{notes}");
+    assert!(notes.contains("contacts are chaotic"), "{notes}");
     for s in settings(&found) {
         assert_eq!(s["seeds"], 3);
         if s["reference"] == false {

@@ -1,7 +1,7 @@
-//! A biaxial test: stresses, strains, compacity and coordination of the grains between four flat walls.
+//! Biaxial test: stresses, strains, compacity and coordination of the grains between four flat walls.
 //!
-//! Stresses and the axial strain are positive in compression, the volumetric strain in expansion. In two
-//! dimensions forces are per metre of depth, so that a force over a length is a pressure.
+//! Stresses and the axial strain are positive in compression, the volumetric strain in expansion. In 2D
+//! forces are per metre of depth, so a force over a length is a pressure.
 
 mod outcome;
 
@@ -19,32 +19,32 @@ use fretwork_core::geometry::space::Space;
 use fretwork_core::step::{Simulation, StepReport};
 use fretwork_scene::case::BiaxialSpec;
 
-/// A flat wall square to an axis.
+/// A flat wall normal to an axis.
 #[derive(Clone, Copy, Debug)]
 struct Wall {
-    /// Place among the driven bodies.
+    /// Index among the driven bodies.
     place: usize,
     /// Index of the body.
     body: usize,
-    /// Where its face stands in its frame, along the axis (m).
+    /// Position of its face in the body's frame, along the axis (m).
     offset: f64,
 }
 
-/// Follows the test.
+/// Observer of a biaxial test.
 #[derive(Clone, Debug)]
 pub struct Biaxial {
-    /// The axis of loading and the other one.
+    /// Axis of loading, and the other axis.
     axes: [usize; 2],
-    /// Low and high wall of each.
+    /// Low and high wall of each axis.
     walls: [[Wall; 2]; 2],
-    /// When strains start to count (s).
+    /// Time from which strains are measured (s).
     start: f64,
-    /// Lengths along the two axes at the start (m).
+    /// Distances between the walls along the two axes at the start (m).
     reference: [f64; 2],
     solid: f64,
 }
 
-/// The test at the end of a step.
+/// Measured values at the end of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct State {
     /// Axial and lateral stress, from the walls (Pa).
@@ -55,20 +55,20 @@ pub struct State {
     pub pressure_contacts: f64,
     /// Deviator over mean pressure, (axial - lateral)/(axial + lateral), from the walls.
     pub deviator_ratio: f64,
-    /// Sine of the mobilised friction angle, from the principal stresses of the contacts.
+    /// Sine of the mobilised friction angle, from the principal Love-Weber stresses of the contacts.
     pub sin_phi: f64,
-    /// Shortening of the axial length over that at the start.
+    /// Decrease of the axial length over its initial value.
     pub axial_strain: f64,
-    /// Growth of the volume over that at the start.
+    /// Increase of the volume over its initial value.
     pub volumetric_strain: f64,
     /// Volume of the grains over that between the walls.
     pub compacity: f64,
-    /// Contacts a grain.
+    /// Coordination number of the grains.
     pub coordination: Coordination,
 }
 
 impl Biaxial {
-    /// Finds the walls, whose names and shapes [`fretwork_scene::biaxial`] has checked.
+    /// Finds the walls, whose names and shapes were checked by [`fretwork_scene::biaxial`].
     pub fn new<S: Space>(spec: &BiaxialSpec, s: &Simulation<S>) -> Option<Self> {
         let axial = axis_of(s, &spec.axial.0)?;
         let axes = [axial, 1 - axial.min(1)];
@@ -110,12 +110,12 @@ impl Biaxial {
         })
     }
 
-    /// Whether the test has begun.
+    /// Whether the test has started.
     fn begun<S: Space>(&self, s: &Simulation<S>) -> bool {
         s.time > self.start + 0.5 * s.scheme.h
     }
 
-    /// Takes in the last step.
+    /// Processes the last step.
     pub fn follow<S: Space>(&mut self, s: &Simulation<S>) {
         if !self.begun(s) {
             self.reference = self.lengths(s);
@@ -127,17 +127,17 @@ impl Biaxial {
         self.solid
     }
 
-    /// Mean mass of a grain (kg; kg/m in 2D), inertia scaled as in the run.
+    /// Mean mass of a grain (kg; kg/m in 2D), including inertia scaling.
     pub fn grain_mass<S: Space>(&self, s: &Simulation<S>) -> f64 {
         let masses = || s.bodies.grains().map(|b| s.bodies.mass[b]);
         masses().sum::<f64>() / masses().count().max(1) as f64
     }
 
-    /// What the last step gives.
+    /// Measured values for the last step.
     pub fn state<S: Space>(&self, s: &Simulation<S>) -> State {
         let lengths = self.lengths(s);
         let volume = lengths[0] * lengths[1];
-        // Grains push the low wall down the axis and the high wall up; at rest by as much.
+        // Grains push the low wall down the axis and the high wall up, with equal forces at rest.
         let walls = [0, 1].map(|k| {
             let [low, high] = self.walls[k].map(|w| s.received[w.place].0[self.axes[k]]);
             0.5 * (high - low) / (s.scheme.h * lengths[1 - k])
@@ -183,9 +183,9 @@ impl Biaxial {
                 "",
                 "volume of grains over that between the walls",
             ),
-            c("coordination", "", "contacts that carry force, a grain"),
+            c("coordination", "", "contacts that carry force, per grain"),
             c("coordination_carried", "", "the same without rattlers"),
-            c("rattlers", "", "share of grains that carry nothing"),
+            c("rattlers", "", "fraction of grains that carry no force"),
         ]
     }
 }
@@ -247,7 +247,7 @@ impl State {
     }
 }
 
-/// The axis that the face of a wall is square to.
+/// Axis normal to the face of a wall.
 fn axis_of<S: Space>(s: &Simulation<S>, name: &str) -> Option<usize> {
     let body = s.bodies.driven.iter().find(|d| d.name == name)?.body;
     let face = s.shapes.surfaces.iter().find(|f| f.body == body)?;

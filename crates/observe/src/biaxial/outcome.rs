@@ -1,11 +1,11 @@
-//! What a biaxial test found, for the summary.
+//! Results of a biaxial test for the summary.
 
 use super::super::statistics::Table;
 use serde::Serialize;
 use std::fmt::Write as _;
 
-/// Axial strain over which a stress ratio is averaged before its largest value is called the peak: forces
-/// between rigid grains jump from step to step.
+/// Axial strain over which the stress ratio is averaged before its maximum is taken as the peak, since forces
+/// between rigid grains fluctuate from step to step.
 const WINDOW: f64 = 5e-3;
 
 /// Results of the test. Angles in radians; strains and stresses signed as in [`super`].
@@ -19,34 +19,35 @@ pub struct Outcome {
     pub coordination_carried_start: f64,
     /// Pressure on the walls when the test starts (Pa).
     pub pressure_start: f64,
-    /// Largest |p_walls - p_contacts| / p_walls when the test starts and in its course.
+    /// Largest |p_walls - p_contacts| / p_walls at the start of the test, and during it.
     pub pressure_mismatch: [f64; 2],
-    /// Largest q/p, averaged over half a per cent of axial strain.
+    /// Largest q/p, averaged over 0.5 % of axial strain.
     pub peak_ratio: f64,
-    /// Its friction angle, asin(q/p) (rad).
+    /// Friction angle at the peak, asin(q/p) (rad).
     pub peak_angle: f64,
     /// Axial strain at the peak.
     pub peak_strain: f64,
     /// Mean q/p over the last third of the axial strain.
     pub residual_ratio: f64,
-    /// Its friction angle (rad).
+    /// Friction angle of the residual ratio (rad).
     pub residual_angle: f64,
     /// Axial strain at the end.
     pub axial_strain: f64,
     /// Volumetric strain at the end.
     pub volumetric_strain: f64,
-    /// Smallest volumetric strain: the contraction before the sample dilates.
+    /// Smallest volumetric strain: the contraction before dilation.
     pub contraction: f64,
     /// Compacity at the end, the mean over the last third of the axial strain.
     pub compacity_end: f64,
-    /// Coordination at the end, likewise.
+    /// Coordination at the end, averaged likewise.
     pub coordination_end: f64,
-    /// Mean inertial number over the test, rate of axial strain times sqrt(m/p), m the mean mass of a grain.
+    /// Mean inertial number over the test: rate of axial strain times sqrt(m/p), with m the mean mass of a
+    /// grain.
     pub inertial_number: f64,
 }
 
 impl Outcome {
-    /// From the statistics: `start` of the test (s), mean mass of a grain (kg; kg/m).
+    /// Evaluates the statistics, with the `start` of the test (s) and the mean mass of a grain (kg; kg/m).
     pub fn new(table: &Table, start: f64, mass: f64) -> Self {
         let time = table.column("time");
         let first = time.partition_point(|t| *t <= start * (1.0 + 1e-9));
@@ -102,7 +103,7 @@ impl Outcome {
         out
     }
 
-    /// Some lines for a terminal: a label and a text.
+    /// Report lines, each a label and a text.
     pub fn lines(&self) -> Vec<(&'static str, String)> {
         let mut rest = format!(
             "compacity {:.4}, coordination {:.3}, {:.3} without rattlers",
@@ -110,7 +111,7 @@ impl Outcome {
         );
         let _ = write!(
             rest,
-            ", pressure {:.4e} Pa, that of the contacts {:.1e} from it",
+            ", pressure {:.4e} Pa, relative difference to that of the contacts {:.1e}",
             self.pressure_start, self.pressure_mismatch[0]
         );
         vec![
@@ -129,7 +130,7 @@ impl Outcome {
             (
                 "strains",
                 format!(
-                    "axial {:.4}, volumetric {:+.4} (least {:+.4}); inertial number {:.2e}",
+                    "axial {:.4}, volumetric {:+.4} (minimum {:+.4}); inertial number {:.2e}",
                     self.axial_strain,
                     self.volumetric_strain,
                     self.contraction,
@@ -147,7 +148,7 @@ impl Outcome {
     }
 }
 
-/// The largest mean over a window of strain, and the strain in its middle; over all where it is shorter.
+/// Largest mean over a window of strain, and the strain at its centre; over the whole range if it is shorter.
 fn peak(strain: &[f64], ratio: &[f64]) -> (f64, f64) {
     let whole = ratio.iter().sum::<f64>() / ratio.len().max(1) as f64;
     let mut best: Option<(f64, f64)> = None;
@@ -175,7 +176,7 @@ mod tests {
     #[test]
     fn a_lone_jump_is_no_peak() {
         let strain: Vec<f64> = (0..1000).map(|k| f64::from(k) * 1e-4).collect();
-        // A hill of 0.4 in the middle of 0.3, and one step of 10.
+        // A plateau of 0.4 within 0.3, and one step of 10.
         let mut ratio: Vec<f64> = strain
             .iter()
             .map(|e| if (e - 0.03).abs() < 5e-3 { 0.4 } else { 0.3 })

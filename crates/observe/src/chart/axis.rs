@@ -1,18 +1,17 @@
 //! Axes of a chart: quantity, unit, and SI prefixes in place of exponents.
 
-/// What an axis shows. Data are given in the unit itself; the chart picks the
-/// prefix (data in `m` of the order of 1e-5 are shown in µm).
+/// An axis of a chart. Data are given in the unit itself; the chart picks the prefix (data in `m` of the
+/// order of 1e-5 are shown in µm).
 #[derive(Clone, Debug, Default)]
 pub struct Axis {
     /// Quantity, for example `displacement δ`.
     pub name: String,
-    /// SI unit without prefix (`m`, `N`, `Pa`, `s`, `J`, `W`, `N/m`, `m/s`,
-    /// `m^3`, `kg`), or empty for a pure number. Powers are written `m^2` and
-    /// shown raised. Other units are shown with a power of ten.
+    /// SI unit without prefix (`m`, `N`, `Pa`, `s`, `J`, `W`, `N/m`, `m/s`, `m^3`, `kg`), or empty for a pure
+    /// number. Powers are written `m^2` and shown as superscripts. Other units are shown with a power of ten.
     pub unit: String,
-    /// Logarithmic scale: values that are not positive are left out.
+    /// Logarithmic scale: non-positive values are omitted.
     pub log: bool,
-    /// Ticks stand at whole numbers only: cycles, grains.
+    /// Ticks at whole numbers only, for cycles or grains.
     pub whole: bool,
 }
 
@@ -38,8 +37,7 @@ impl Axis {
         self
     }
 
-    /// Exponent of ten to divide by, and the label, when the largest
-    /// magnitude shown is `largest`.
+    /// Exponent of ten to divide by, and the axis label, for the largest magnitude shown.
     pub fn scaled(&self, largest: f64) -> (i32, String) {
         let (exponent, unit) = if self.log || !(largest > 0.0 && largest.is_finite()) {
             (0, raised(&self.unit))
@@ -54,13 +52,13 @@ impl Axis {
     }
 }
 
-/// Exponent of ten of the first digit.
+/// Exponent of ten of the first significant digit.
 fn magnitude(value: f64) -> i32 {
     (value * (1.0 + 1e-12)).log10().floor() as i32
 }
 
-/// Exponent of ten to divide by, and the unit that is left: with a prefix where
-/// it takes one, else with a power of ten where the numbers would be long.
+/// Exponent of ten to divide by, and the resulting unit: with an SI prefix if it takes one, otherwise with a
+/// power of ten if the numbers would be long.
 fn shown_unit(unit: &str, magnitude: i32) -> (i32, String) {
     if let Some((exponent, base, prefix)) = prefix(unit, magnitude) {
         let rest = unit.find('/').map_or("", |at| &unit[at..]);
@@ -75,7 +73,7 @@ fn shown_unit(unit: &str, magnitude: i32) -> (i32, String) {
     (exponent, power.trim_end().to_owned())
 }
 
-/// A unit with its powers as superscripts: `m^3` as m³, `deg` as °.
+/// Formats a unit with superscripts: `m^3` as m³, `deg` as °.
 fn raised(unit: &str) -> String {
     let mut out = String::with_capacity(unit.len());
     let mut up = false;
@@ -93,7 +91,7 @@ fn raised(unit: &str) -> String {
     if out == "deg" { "°".to_owned() } else { out }
 }
 
-/// A value with its unit, so many significant digits: `120 ms`, `−5.0 µm`.
+/// Formats a value with its unit and `digits` significant digits: `120 ms`, `−5.0 µm`.
 pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     if !value.is_finite() {
         return format!("{value} {}", raised(unit)).trim_end().to_owned();
@@ -123,12 +121,11 @@ pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     format!("{text} {unit}").trim_end().to_owned()
 }
 
-/// Exponent, base of the unit and SI prefix for a magnitude, when the unit is one
-/// that takes prefixes.
+/// Exponent, base unit and SI prefix for a magnitude, if the unit takes prefixes.
 fn prefix(unit: &str, magnitude: i32) -> Option<(i32, &str, &'static str)> {
     let base = unit.split('/').next().unwrap_or_default();
     if let Some(power) = base.strip_prefix("m^").and_then(|p| p.parse::<i32>().ok()) {
-        // The prefix is raised with the metre: 1 mm³ is 1e-9 m³.
+        // The prefix is raised to the power of the metre: 1 mm³ is 1e-9 m³.
         let fits = |step: &i32| (-2..5).contains(&(magnitude - step * power));
         let step = [0, -3, -6, -9].into_iter().find(fits)?;
         let name = ["", "m", "µ", "n"][(-step / 3) as usize];
@@ -149,7 +146,7 @@ fn prefix(unit: &str, magnitude: i32) -> Option<(i32, &str, &'static str)> {
     if !takes.contains(&base) {
         return None;
     }
-    // Kiloseconds and kilokelvins are nobody's habit.
+    // Kiloseconds and kilokelvins are not in common use.
     let highest = if matches!(base, "s" | "K") { 0 } else { 12 };
     let exponent = (3 * magnitude.div_euclid(3)).min(highest);
     let prefix = match exponent {
@@ -165,7 +162,7 @@ fn prefix(unit: &str, magnitude: i32) -> Option<(i32, &str, &'static str)> {
         12 => "T",
         _ => return None,
     };
-    // Four digits of seconds read well; more do not.
+    // Four digits of seconds are readable; more are not.
     (magnitude - exponent < 5).then_some((exponent, base, prefix))
 }
 
@@ -190,7 +187,7 @@ fn raised_digit(c: char) -> char {
     }
 }
 
-/// A number with a true minus sign.
+/// A number with the minus sign U+2212.
 pub fn number(value: f64, decimals: usize) -> String {
     let text = format!("{:.decimals$}", value + 0.0);
     match text.strip_prefix('-') {

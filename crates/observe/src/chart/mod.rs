@@ -1,4 +1,4 @@
-//! Charts of curves as data: loops, histories, stacked cycles. Who draws them is above this layer.
+//! Charts of curves as data: loops, histories, stacked cycles. A higher layer draws them.
 
 mod axis;
 
@@ -12,9 +12,9 @@ pub enum Style {
     Line,
     /// Dashed line.
     Dashed,
-    /// One marker a point.
+    /// One marker per point.
     Markers,
-    /// Line with markers; on long series only some of the points carry one.
+    /// Line with markers; on long series only some points have one.
     LineMarkers,
 }
 
@@ -30,8 +30,8 @@ pub struct Series {
     pub colour: Option<(u8, u8, u8)>,
     /// Line or markers.
     pub style: Style,
-    /// Lower and upper end of the interval at each point, in the unit of the
-    /// vertical axis; empty for none. An interval that is not finite is left out.
+    /// Lower and upper end of the interval at each point, in the unit of the vertical axis; empty for none. A
+    /// non-finite interval is omitted.
     pub intervals: Vec<(f64, f64)>,
 }
 
@@ -45,19 +45,19 @@ impl Series {
         }
     }
 
-    /// The same series with an interval at each point, as an error bar.
+    /// Sets an interval at each point, drawn as an error bar.
     pub fn intervals(mut self, intervals: Vec<(f64, f64)>) -> Self {
         self.intervals = intervals;
         self
     }
 
-    /// The same series in a colour: red, green, blue.
+    /// Sets the colour: red, green, blue.
     pub fn coloured(mut self, red: u8, green: u8, blue: u8) -> Self {
         self.colour = Some((red, green, blue));
         self
     }
 
-    /// The same series in another style.
+    /// Sets the style.
     pub fn style(mut self, style: Style) -> Self {
         self.style = style;
         self
@@ -81,10 +81,10 @@ pub struct Chart {
     pub x_range: Option<(f64, f64)>,
     /// Vertical range in the axis unit; `None` fits the data.
     pub y_range: Option<(f64, f64)>,
-    /// Colours the series along a gradient from first to last, with a bar of
-    /// that gradient as legend: for cycles laid over one another.
+    /// Colours the series along a gradient from first to last, with the gradient as legend; for superimposed
+    /// cycles.
     pub colour_by_order: bool,
-    /// Width and height in pixels; text and lines follow the width of the page.
+    /// Width and height in pixels; text and line widths scale with the page width.
     pub size_px: (u32, u32),
 }
 
@@ -104,14 +104,13 @@ impl Chart {
         }
     }
 
-    /// The same chart with one more curve.
+    /// Adds a curve.
     pub fn with(mut self, series: Series) -> Self {
         self.series.push(series);
         self
     }
 
-    /// The same chart with one more curve, unless it is zero all along or has no
-    /// point that can be shown.
+    /// Adds a curve, unless it is zero throughout or has no finite point.
     pub fn with_unless_zero(self, series: Series) -> Self {
         let shown = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite() && p.1 != 0.0;
         if series.points.iter().any(shown) {
@@ -121,7 +120,7 @@ impl Chart {
         }
     }
 
-    /// Whether there is a point to show.
+    /// Whether any point can be shown.
     pub fn has_data(&self) -> bool {
         self.series
             .iter()

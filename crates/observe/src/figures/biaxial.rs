@@ -1,4 +1,4 @@
-//! The figure of a biaxial test: four panels against axial strain.
+//! Figure of a biaxial test: four panels against axial strain.
 
 use crate::chart::{Axis, Chart, Series, Style};
 use crate::output::Output;

@@ -1,4 +1,4 @@
-//! The figure of the tribological circuit: what passed against time, and what is in the contact.
+//! Figure of the tribological circuit: cumulative flows against time, and the mass in the contact.
 
 use crate::chart::{Axis, Chart, Series, Style};
 use crate::output::Output;

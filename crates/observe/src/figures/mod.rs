@@ -1,4 +1,4 @@
-//! The figures of a finished run as charts, from its table of statistics.
+//! Figures of a finished run, from its statistics.
 
 pub(crate) mod biaxial;
 pub(crate) mod circuit;
@@ -13,9 +13,9 @@ use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
-/// Loops of a test that are drawn at most: the first, the last, and some of those between.
+/// Limit on the drawn loops: the first, the last, and some in between.
 const LOOPS: usize = 40;
-/// Panels of forces against displacements at most.
+/// Limit on the panels of force against displacement.
 const DRIVES: usize = 6;
 
 /// An axis along which a body is driven.
@@ -43,7 +43,7 @@ pub(crate) fn drives<S: Space>(s: &Simulation<S>, test: Option<(&str, usize)>) -
     out
 }
 
-/// Whether a motion is imposed, or a force that changes: a constant load against its displacement shows but noise.
+/// Whether a motion or a varying force is imposed: the displacement under a constant load is mostly noise.
 fn driven_along(dof: &Dof) -> bool {
     match dof {
         Dof::Free | Dof::Fixed => false,
@@ -99,7 +99,7 @@ pub(crate) fn energy_balance(title: &str, table: &Table, dimension: usize) -> Ou
     Output::charts("energy.png".into(), [energy(title, table, dimension)], 1)
 }
 
-/// (x, y) of two columns.
+/// Pairs (x, y) of two columns.
 fn pairs(table: &Table, x: &str, y: &str) -> Vec<(f64, f64)> {
     table.column(x).into_iter().zip(table.column(y)).collect()
 }
@@ -139,7 +139,7 @@ fn loops(title: &str, table: &Table, cycles: &Cycles, newton: &'static str) -> [
             continue;
         }
         let label = format!("cycle {}", cycle.cycle);
-        // One legend serves both panels.
+        // Both panels share one legend.
         let of = |f: &dyn Fn(&[f64; 3]) -> f64| -> Vec<(f64, f64)> {
             points.iter().map(|p| (p[0], f(p))).collect()
         };
@@ -154,7 +154,7 @@ fn loops(title: &str, table: &Table, cycles: &Cycles, newton: &'static str) -> [
     [q, share]
 }
 
-/// The first, the last and evenly those between.
+/// Selects the first, the last and evenly spaced ones in between.
 fn chosen(list: &[Cycle], count: usize) -> Vec<&Cycle> {
     let last = list.len().saturating_sub(1);
     let shown = list.len().min(count);
@@ -162,8 +162,8 @@ fn chosen(list: &[Cycle], count: usize) -> Vec<&Cycle> {
     (0..shown).map(|k| &list[place(k)]).collect()
 }
 
-/// Rows of (value, value, value) from one time to another, the first column being the time; between rows the values at
-/// the two times are interpolated, so that a cycle ends where the next one begins.
+/// Rows of three values in a time interval, given the time column and three others; values at both ends are
+/// interpolated, so that a cycle ends where the next one begins.
 fn within(columns: &[Vec<f64>; 4], [from, to]: [f64; 2]) -> Vec<[f64; 3]> {
     let time = &columns[0];
     let slack = 1e-9 * (to - from);
@@ -180,7 +180,7 @@ fn within(columns: &[Vec<f64>; 4], [from, to]: [f64; 2]) -> Vec<[f64; 3]> {
         out.push(between(first, from));
     }
     if first == 0 && end > 0 && time[0] > from + slack {
-        // The run begins with the cycle: from rest at zero, with the force of its first row.
+        // The run starts with the cycle: from rest at zero displacement, with the force of its first row.
         let [_, q, p] = row(0);
         out.push([0.0, q, p]);
     }
@@ -191,7 +191,7 @@ fn within(columns: &[Vec<f64>; 4], [from, to]: [f64; 2]) -> Vec<[f64; 3]> {
     out
 }
 
-/// Friction coefficient cycle by cycle; of a motion one way, against the path.
+/// Friction coefficient by cycle; for a one-way motion, against the path.
 fn friction(title: &str, table: &Table, cycles: &Cycles) -> Chart {
     let mu = Axis::new("friction coefficient µ", "");
     if !cycles.oscillates() {
@@ -240,7 +240,7 @@ fn friction(title: &str, table: &Table, cycles: &Cycles) -> Chart {
     chart
 }
 
-/// The force that drives each body against its displacement.
+/// Driving force of each body against its displacement.
 fn forces(title: &str, table: &Table, drives: &[Drive], newton: &'static str) -> Vec<Chart> {
     let mut charts = Vec::new();
     for Drive { body, axis } in drives {
@@ -258,7 +258,7 @@ fn forces(title: &str, table: &Table, drives: &[Drive], newton: &'static str) ->
         let x = Axis::new(format!("displacement u_{a}"), "m");
         let y = Axis::new(format!("force F_{a}"), newton);
         let heading = format!("Force that drives {body} along {a}");
-        // At equilibrium the contacts give back what drives the body.
+        // In equilibrium the contact force is opposite to the driving force.
         let points = at.iter().zip(&force).map(|(x, f)| (x - start, -f));
         charts.push(headed(heading, title, x, y).with(Series::new("", points.collect())));
         if charts.len() == DRIVES {
@@ -268,7 +268,7 @@ fn forces(title: &str, table: &Table, drives: &[Drive], newton: &'static str) ->
     charts
 }
 
-/// Entries of the ledger: column, label, colour, and whether it is stored or given and not dissipated.
+/// Ledger entry: column, label, colour, and whether it is stored or supplied rather than dissipated.
 type Entry = (&'static str, &'static str, (u8, u8, u8), bool);
 const ENTRIES: [Entry; 13] = [
     ("external_work", "external work W", (28, 30, 34), false),
@@ -290,9 +290,9 @@ const ENTRIES: [Entry; 13] = [
     ("kinetic", "kinetic energy", (86, 160, 215), true),
     ("residual", "residual", (150, 150, 150), true),
 ];
-/// Entries below this share of the largest lie on the axis and are left out.
+/// Entries below this fraction of the largest would coincide with the axis and are omitted.
 const NEGLIGIBLE: f64 = 1e-3;
-/// A residual below this share of the largest entry is rounding, and said so.
+/// A residual below this fraction of the largest entry is rounding, and reported as such.
 const ROUNDING: f64 = 1e-9;
 
 fn energy(title: &str, table: &Table, dimension: usize) -> Chart {
@@ -338,7 +338,7 @@ mod tests {
         table
     }
 
-    /// Rows of a circle in (delta, Q) with P = 2, so many a cycle, of cycles of one second.
+    /// Rows of a circle in (delta, Q) with P = 2, at an interval `every`, for cycles of one second.
     fn circle(every: f64, end: f64) -> Table {
         let count = (end / every).round() as usize;
         let row = |k: usize| {
@@ -354,7 +354,7 @@ mod tests {
 
     #[test]
     fn a_whole_cycle_ends_where_it_began() {
-        // Rows that divide the cycle, and rows that do not.
+        // Intervals that divide the cycle, and one that does not.
         for every in [0.01, 0.03, 0.007] {
             let table = circle(every, 3.5);
             let columns = ["time", "delta", "Q", "P"].map(|n| table.column(n));
@@ -367,9 +367,9 @@ mod tests {
                 .windows(2)
                 .map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1]));
             assert!(longest.fold(0.0, f64::max) < 1.1 * std::f64::consts::TAU * every);
-            // The first begins before the first row, from rest.
+            // The first cycle starts before the first row, from rest.
             assert_eq!(within(&columns, [0.0, 1.0])[0][0], 0.0);
-            // What there is of a cycle that is not whole.
+            // The existing part of an incomplete cycle.
             assert!(within(&columns, [3.0, 4.0]).len() >= (0.45 / every) as usize);
         }
     }

@@ -1,4 +1,4 @@
-//! The figures of wear scars.
+//! Figure of a wear scar.
 
 use crate::chart::{Axis, Chart, Series, Style};
 use crate::output::Output;
@@ -7,7 +7,7 @@ use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use fretwork_core::wear::{Form, shape};
 
-/// One figure a scar, `scar_NAME.png`: the profile at first and now, and the depth; in space as means across the sliding.
+/// Draws the scars: the initial and the current profile, and the depth; in 3D averaged across the sliding.
 ///
 /// # Errors
 /// A file cannot be written.
@@ -25,7 +25,7 @@ pub(crate) fn charts<S: Space>(title: &str, s: &Simulation<S>) -> Vec<Output> {
             Axis::new("−depth", "m"),
         );
         depth.subtitle = Some(title.to_owned());
-        // Downwards, as it lies.
+        // Depth plotted downwards.
         let points = rows.iter().map(|r| (r[0], -r[2])).collect();
         let mut charts = vec![depth.with(Series::new(String::new(), points))];
         if S::D == 2

@@ -1,8 +1,9 @@
-//! A shear band: its angle and its width, from the grains in a box whose local shear passes a threshold.
+//! Shear band: its angle and width from the grains in a box whose local shear exceeds a threshold.
 //!
-//! Row by row in height, two mean diameters high, the band stands at the median place of these grains and is twice
-//! as wide as their quartiles are apart, which is the width where they fill it evenly; a few stray grains do not
-//! count. A straight line through the rows gives the angle; across that line the width is the rows' mean.
+//! The grains are sorted into rows two mean diameters high. In each row the band's centre is the median
+//! position of these grains, and its width is twice their interquartile range, which is exact for a uniformly
+//! filled band and robust against a few stray grains. A straight line through the rows gives the angle; the
+//! width across that line is the mean over the rows.
 
 use super::{Observer, RunEnd, grains, line};
 use crate::chart::{Axis, Chart, Series};
@@ -14,7 +15,7 @@ use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use std::f64::consts::PI;
 
-/// See [`fretwork_scene::measures::MeasureSpec::Band`].
+/// Observer for [`fretwork_scene::measures::MeasureSpec::Band`].
 #[derive(Clone, Debug)]
 pub struct Band<S: Space> {
     pub(super) name: String,
@@ -24,10 +25,10 @@ pub struct Band<S: Space> {
     pub(super) strain: Option<Strain<S>>,
 }
 
-/// Fewest grains of a row, and fewest rows of a band.
+/// Smallest number of grains in a row, and of rows in a band.
 const FEWEST: (usize, usize) = (4, 3);
 
-/// Angle from the x axis, 0 to pi, and width of the band that points (x, height) make.
+/// Angle to the x axis, 0 to pi, and width of the band formed by points (x, height).
 fn shape(points: &[(f64, f64)], low: f64, row: f64) -> Option<(f64, f64)> {
     let mut rows: Vec<Vec<f64>> = Vec::new();
     for (x, z) in points {
@@ -45,7 +46,8 @@ fn shape(points: &[(f64, f64)], low: f64, row: f64) -> Option<(f64, f64)> {
     {
         row_k.sort_by(f64::total_cmp);
         let n = row_k.len() as f64;
-        // The quartiles of n even draws are nearer by this than those of what they are drawn from.
+        // Correction for the quartiles of n equidistant samples, which are closer together than those of the
+        // population.
         let few = (n + 1.0) / (n - 1.0);
         width += 2.0 * few * (quantile(row_k, 0.75) - quantile(row_k, 0.25));
         centres.push((low + (k as f64 + 0.5) * row, quantile(row_k, 0.5)));
@@ -53,13 +55,13 @@ fn shape(points: &[(f64, f64)], low: f64, row: f64) -> Option<(f64, f64)> {
     if centres.len() < FEWEST.1 {
         return None;
     }
-    // x against height: a band may stand upright.
+    // x as a function of height, since a band may be vertical.
     let lean = line(centres.iter().copied())?;
     let angle = 1f64.atan2(lean).rem_euclid(PI);
     Some((angle, width / centres.len() as f64 * angle.sin()))
 }
 
-/// Between the values, which are sorted and not none.
+/// Interpolated quantile of sorted, non-empty values.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let place = share * (sorted.len() - 1) as f64;
     let k = place as usize;
@@ -113,7 +115,7 @@ impl<S: Space> Observer<S> for Band<S> {
     }
 
     fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
-        // A band grows: what counts is its last state.
+        // A band grows, so its last state is reported.
         let last = |part: &str| {
             let column = format!("{}_{part}", self.name);
             let value = table
@@ -164,7 +166,7 @@ impl<S: Space> Observer<S> for Band<S> {
 mod tests {
     use super::*;
 
-    /// Points that fill a band of known angle and width, and some that stray.
+    /// Points that fill a band of known angle and width, and some strays.
     #[test]
     fn a_band_has_its_angle_and_width() {
         for degrees in [35.0f64, 60.0, 90.0, 120.0] {
@@ -184,7 +186,7 @@ mod tests {
                 "{} in place of {degrees}",
                 a.to_degrees()
             );
-            // The rows are as high as a third of the width: a leaning band is a little wider in them.
+            // The rows are a third of the width high, so a leaning band appears slightly wider in them.
             assert!((w / width - 1.0).abs() < 0.12, "{w} at {degrees}");
         }
         assert!(shape(&[(0.0, 0.0); 9], 0.0, 1.0).is_none());

@@ -1,4 +1,4 @@
-//! Mass above a level: what a silo still holds.
+//! Mass above a level, for example the content of a silo.
 
 use super::{Observer, RunEnd, grains, line, since};
 use crate::chart::{Axis, Chart, Series};
@@ -7,7 +7,7 @@ use crate::statistics::{Column, Table};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
-/// See [`fretwork_scene::measures::MeasureSpec::Mass`].
+/// Observer for [`fretwork_scene::measures::MeasureSpec::Mass`].
 #[derive(Clone, Debug)]
 pub struct Mass {
     pub(super) name: String,

@@ -1,4 +1,4 @@
-//! Quantities that a case asks for: sampled when a row of the statistics is written.
+//! Measured quantities of a case, sampled whenever a row of the statistics is written.
 
 mod band;
 mod mass;
@@ -93,22 +93,22 @@ fn measure<S: Space>(spec: MeasureSpec, inertia_scaling: f64) -> Box<dyn Observe
     }
 }
 
-/// A grain, or one of the shapes of a grain that has several.
+/// A grain, or one shape of a grain with several.
 struct Grain<'a, S: Space> {
-    /// Its centre, in the cell that begins at zero along a period (m).
+    /// Centre, wrapped into the period that begins at zero (m).
     at: S::Vector,
     /// Index of the body.
     body: usize,
-    /// Radius of the ball of its volume (m).
+    /// Radius of the ball (2D: disk) of the same volume (m).
     radius: f64,
-    /// Its part of the body's mass, by volume (kg; kg/m in 2D).
+    /// Its share of the body's mass, by volume (kg; kg/m in 2D).
     mass: f64,
-    /// What it is, where it is no ball.
+    /// Its convex part, unless it is a ball.
     piece: Option<&'a ConvexCollider<S>>,
 }
 
 impl<S: Space> Grain<'_, S> {
-    /// How far it reaches above its centre (m).
+    /// Height of its highest point above its centre (m).
     fn rise(&self, s: &Simulation<S>) -> f64 {
         let Some(piece) = self.piece else {
             return self.radius;
@@ -122,7 +122,7 @@ impl<S: Space> Grain<'_, S> {
     }
 }
 
-/// The grains. What driven bodies carry is none.
+/// The grains; shapes of driven bodies are excluded.
 fn grains<S: Space>(s: &Simulation<S>) -> Vec<Grain<'_, S>> {
     let flags = s.bodies.grain_flags();
     let balls = s.shapes.balls.iter().map(|b| Grain {
@@ -153,7 +153,7 @@ fn grains<S: Space>(s: &Simulation<S>) -> Vec<Grain<'_, S>> {
     all
 }
 
-/// (time, value) of a column from a time on.
+/// (time, value) of a column after a time.
 fn since(table: &Table, column: &str, start: f64) -> Vec<(f64, f64)> {
     let pairs = table.column("time").into_iter().zip(table.column(column));
     pairs
@@ -161,12 +161,12 @@ fn since(table: &Table, column: &str, start: f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Mean of the values, none where there are none.
+/// Mean of the values; `None` for no points.
 fn mean(points: &[(f64, f64)]) -> Option<f64> {
     (!points.is_empty()).then(|| points.iter().map(|p| p.1).sum::<f64>() / points.len() as f64)
 }
 
-/// Slope of the straight line through points by least squares; none below two places.
+/// Slope of the least-squares line through points; `None` for fewer than two distinct abscissae.
 fn line(points: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     let n = points.clone().count() as f64;
     let (x, y) = points

@@ -1,6 +1,6 @@
-//! Profiles: solid fraction, velocity and spin in the slices of a box, as means over time.
+//! Time-averaged profiles of solid fraction, velocity and spin in the slices of a box.
 //!
-//! A grain counts in the slice of its centre, with its mass where velocities are averaged.
+//! A grain counts in the slice of its centre; velocities are mass-weighted.
 
 use super::{Observer, RunEnd, grains};
 use crate::chart::{Axis, Chart, Series, Style};
@@ -11,7 +11,7 @@ use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
 
-/// See [`fretwork_scene::measures::MeasureSpec::Profile`].
+/// Observer for [`fretwork_scene::measures::MeasureSpec::Profile`].
 #[derive(Clone, Debug)]
 pub struct Profile<S: Space> {
     name: String,
@@ -30,7 +30,7 @@ struct Slice<S: Space> {
     mass: f64,
     volume: f64,
     momentum: S::Vector,
-    /// Mass times the spin: about z in 2D, its norm in 3D.
+    /// Sum of mass times spin: about z in 2D, its norm in 3D.
     spin: f64,
 }
 
@@ -62,7 +62,7 @@ impl<S: Space> Profile<S> {
         }
     }
 
-    /// A vector in the axes of the box.
+    /// Components of a vector along the axes of the box.
     fn turned(&self, v: &S::Vector) -> S::Vector {
         let (sin, cos) = self.turned.sin_cos();
         let mut out = *v;
@@ -70,7 +70,7 @@ impl<S: Space> Profile<S> {
         out
     }
 
-    /// Place, solid fraction, velocity and spin, slice by slice; velocities are not a number where no grain was.
+    /// Position, solid fraction, velocity and spin of each slice; NaN velocities where there was no grain.
     fn rows(&self) -> Vec<Vec<f64>> {
         let wide = (self.high[self.axis] - self.low[self.axis]) / self.slices.len() as f64;
         let section: f64 = (0..S::D)

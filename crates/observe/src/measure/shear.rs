@@ -1,9 +1,10 @@
 //! Plane shear of the grains between two heights, away from the walls.
 //!
-//! The shear rate is the slope of v_x over height, stresses are Love-Weber's of the contacts whose point lies
-//! between the heights, sum f l / V, and the solid fraction counts the part of each grain between them. The
-//! inertial number is rate sqrt(m/p) with the mean mass in 2D (da Cruz et al., Phys. Rev. E 72 (2005) 021309),
-//! rate d sqrt(density/p) in 3D. In the summary mu and I are those of the mean stresses and of the mean rate.
+//! The shear rate is the slope of v_x over height. Stresses are Love-Weber stresses, sum f l / V, of the
+//! contacts whose point lies between the heights, and the solid fraction counts the part of each grain
+//! between them. The inertial number is rate sqrt(m/p) with the mean mass in 2D (da Cruz et al., Phys. Rev. E
+//! 72 (2005) 021309), and rate d sqrt(density/p) in 3D. In the summary mu and I are computed from the mean
+//! stresses and the mean rate.
 
 use super::{Observer, RunEnd, grains, line, mean, since};
 use crate::chart::{Axis, Chart, Series};
@@ -13,7 +14,7 @@ use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use std::f64::consts::PI;
 
-/// See [`fretwork_scene::measures::MeasureSpec::Shear`].
+/// Observer for [`fretwork_scene::measures::MeasureSpec::Shear`].
 #[derive(Clone, Debug)]
 pub struct Shear {
     pub(super) name: String,
@@ -85,7 +86,7 @@ impl<S: Space> Observer<S> for Shear {
             if !inside(0.5 * (a[up] + b[up])) {
                 continue;
             }
-            // From the antagonist to the candidate, as the impulse acts on the candidate.
+            // The branch from the antagonist to the candidate, since the impulse acts on the candidate.
             let branch = a[up] - b[up];
             normal += contact.impulse[up] * branch;
             shear += contact.impulse[0] * branch;
@@ -107,7 +108,7 @@ impl<S: Space> Observer<S> for Shear {
     }
 
     fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
-        // Stresses come in bursts: a mean of ratios would count the lightest moments most.
+        // Stresses fluctuate strongly: a mean of ratios would be dominated by instants of low load.
         let [rate, p, mu, phi, inertial] =
             PARTS.map(|part| since(table, &self.column(part.0), self.start));
         let with_p = |values: &[(f64, f64)], power: f64| {
@@ -154,11 +155,11 @@ impl<S: Space> Observer<S> for Shear {
     }
 }
 
-/// Volume of a ball (m^3; m^2 in 2D) below a plane at a height `d` above its centre (m).
+/// Volume of a ball (m^3; m^2 in 2D) below a horizontal plane at height `d` above its centre (m).
 pub(super) fn below(dimension: usize, r: f64, d: f64) -> f64 {
     let d = d.clamp(-r, r);
     if dimension == 2 {
-        // Half the chord; near the poles the two terms cancel to rounding only in this form.
+        // Half the chord; this form has no cancellation near the poles.
         let half = ((r - d) * (r + d)).sqrt();
         r * r * half.atan2(-d) + d * half
     } else {
@@ -178,7 +179,7 @@ mod tests {
             assert!(
                 (whole - 2.0 * half).abs() < 1e-15 && below(dimension, 0.3, -0.4).abs() < 1e-15
             );
-            // The derivative is the section.
+            // The derivative is the area of the section.
             let (d, e) = (0.11, 1e-6);
             let section = (below(dimension, 0.3, d + e) - below(dimension, 0.3, d - e)) / (2.0 * e);
             let c = (0.09f64 - d * d).sqrt();

@@ -1,4 +1,4 @@
-//! The angle of a free surface: a straight line through the tops of the grains, column by column.
+//! Angle of a free surface: a straight line through the highest grain of each column.
 
 use super::{Observer, RunEnd, grains, line, mean, since};
 use crate::chart::{Axis, Chart, Series};
@@ -7,7 +7,7 @@ use crate::statistics::{Column, Table};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 
-/// See [`fretwork_scene::measures::MeasureSpec::Slope`].
+/// Observer for [`fretwork_scene::measures::MeasureSpec::Slope`].
 #[derive(Clone, Debug)]
 pub struct Slope {
     pub(super) name: String,
@@ -30,7 +30,7 @@ impl<S: Space> Observer<S> for Slope {
     }
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        // A grain in flight is no surface.
+        // Grains in free flight are not part of the surface.
         let mut touched = vec![false; s.bodies.len()];
         for contact in &s.network.contacts {
             if contact.impulse != S::Vector::zero() {
@@ -43,7 +43,7 @@ impl<S: Space> Observer<S> for Slope {
         let wide = self.to - self.from;
         let all = grains(s);
         let sum: f64 = all.iter().map(|g| 2.0 * g.radius).sum();
-        // Columns of two diameters.
+        // Columns are two mean diameters wide.
         let width = 2.0 * sum / all.len().max(1) as f64;
         let columns = if width > 0.0 {
             (wide / width).floor().clamp(2.0, 1e6) as usize

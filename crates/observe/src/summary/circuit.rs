@@ -1,27 +1,27 @@
-//! The tribological circuit in the summary.
+//! Tribological circuit in the summary.
 
 use crate::steady::Flow;
 use fretwork_core::wear::ledger::{Contents, Flows};
 use serde::Serialize;
 
-/// Mean flows over the second half of the account, with their intervals (kg/s; kg/(m s) in 2D); null where it was brought up
-/// to date too seldom.
+/// Mean flows over the second half of the account, with their confidence intervals (kg/s; kg/(m s) in 2D);
+/// null if there were too few updates.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 #[allow(non_snake_case)]
 pub struct Rates {
-    /// Source.
+    /// Source flow.
     pub Qs: Option<Flow>,
-    /// What bonds tied again.
+    /// Attached flow: mass bonded again.
     pub Qa: Option<Flow>,
-    /// Ejected.
+    /// Ejected flow.
     pub Qe: Option<Flow>,
-    /// Recirculated.
+    /// Recirculated flow.
     pub Qr: Option<Flow>,
-    /// Wear.
+    /// Wear flow.
     pub Qw: Option<Flow>,
-    /// Qs - Qa - Qw, block by block: within its interval of zero in steady sliding.
+    /// Qs - Qa - Qw, block by block: its interval contains zero in steady sliding.
     pub Qs_less_Qw: Option<Flow>,
-    /// Growth of the mass in the contact.
+    /// Rate of change of the mass in the contact.
     pub M: Option<Flow>,
 }
 
@@ -30,39 +30,39 @@ pub struct Rates {
 pub struct Base {
     /// Its name.
     pub name: String,
-    /// Grains tied to it at the end.
+    /// Number of grains attached to it at the end.
     pub grains: usize,
 }
 
 /// The tribological circuit; see [`fretwork_core::wear::ledger`].
 #[derive(Clone, Debug, Serialize)]
 pub struct CircuitSummary {
-    /// When the account began (s).
+    /// Start of the account (s).
     pub start: f64,
     /// Window of the rates (s).
     pub window: [f64; 2],
-    /// What there is at the end.
+    /// Contents at the end.
     pub contents: Contents,
-    /// What passed since the start.
+    /// Cumulative flows since the start.
     pub flows: Flows,
-    /// What does not add up.
+    /// Residual of the balance.
     pub residual: Contents,
-    /// Unit of the mean flows: kg/s, in two dimensions kg/(m s), per metre of depth.
+    /// Unit of the mean flows: kg/s; in 2D kg/(m s), per metre of depth.
     pub rates_unit: &'static str,
     /// Mean flows.
     pub rates: Rates,
     /// First bodies.
     pub bases: Vec<Base>,
-    /// Pieces that came loose.
+    /// Number of debris pieces that came loose.
     pub pieces: u64,
-    /// Grains of the largest.
+    /// Number of grains of the largest piece.
     pub largest_piece: usize,
-    /// Share of the run's wall time that the account took.
+    /// Fraction of the run's wall time used by the account.
     pub cost_share: f64,
 }
 
 impl CircuitSummary {
-    /// Lines for a terminal.
+    /// Report lines.
     pub(super) fn lines(&self) -> Vec<(&'static str, String)> {
         let (c, f, r) = (&self.contents, &self.flows, &self.rates);
         let tied: Vec<String> = self
@@ -85,7 +85,7 @@ impl CircuitSummary {
                 if d.half_width < s.mean.max(w.mean) {
                     "equal within the interval"
                 } else {
-                    "no verdict: the interval of their difference is wider than they are"
+                    "not comparable: the interval of their difference is wider than their values"
                 }
             }
             (Some(_), Some(_), Some(_)) => "they differ",
@@ -95,7 +95,7 @@ impl CircuitSummary {
             (
                 "grains",
                 format!(
-                    "tied {}, {} in the contact, {} ejected, {} lost",
+                    "attached {}, {} in the contact, {} ejected, {} lost",
                     tied.join(", "),
                     c.contact.grains,
                     c.ejected.grains,
@@ -105,7 +105,7 @@ impl CircuitSummary {
             (
                 "passed",
                 format!(
-                    "{} came loose in {} pieces (largest {}), {} tied again, {} ejected, {} came back, {} lost",
+                    "{} came loose in {} pieces (largest {}), {} attached again, {} ejected, {} came back, {} lost",
                     f.source.grains,
                     self.pieces,
                     self.largest_piece,

@@ -1,4 +1,4 @@
-//! What `--verbose` prints besides: contacts, first and last cycle, phases, solver, laws.
+//! Additional output of `--verbose`: contacts, first and last cycle, phases, solver, laws.
 
 use super::Summary;
 use super::text::Lines;
@@ -72,7 +72,7 @@ impl Summary {
     fn solver_lines(&self, lines: &mut Lines) {
         let s = &self.solver;
         let text = format!(
-            "{:.1} iterations a step, {} at most; error at most {:.2e} (tolerance {:.0e})",
+            "{:.1} iterations per step, {} at most; error at most {:.2e} (tolerance {:.0e})",
             s.iterations_mean, s.iterations_max, s.error_max, s.tolerance
         );
         lines.add("solver", text);
@@ -86,14 +86,14 @@ impl Summary {
         }
         if s.projected_steps > 0 {
             let text = format!(
-                "{} steps took overlaps out: up to {:.2e} of a body's length before, {:.2e} after",
+                "{} steps removed overlaps: up to {:.2e} of a body's length before, {:.2e} after",
                 s.projected_steps, s.overlap_before, s.overlap_after
             );
             lines.add("projection", text);
         }
         if s.coupling_iterations_mean > 0.0 {
             let text = format!(
-                "{:.1} solves a step, damage and opening together",
+                "{:.1} solves per step for the damage coupling",
                 s.coupling_iterations_mean
             );
             lines.add("coupling", text);
@@ -102,7 +102,7 @@ impl Summary {
             let skipped = match s.fclib_skipped {
                 0 => String::new(),
                 n => format!(
-                    "; {n} not, they hold bonds, cohesion or friction against rotation, which FCLIB does not"
+                    "; {n} not, since they have bonds, cohesion or friction against rotation, which FCLIB cannot represent"
                 ),
             };
             lines.add(

@@ -1,22 +1,22 @@
-//! How well the main results are known.
+//! Uncertainty of the main results.
 
 use super::Summary;
 use crate::scatter::{self, Scatter};
 use serde::Serialize;
 
-/// A result with what it may be off by, each as a half-width of an interval of 95 %, in the unit of the value; null where it
-/// was not estimated.
+/// A result with its uncertainties, each as a half-width of a 95 % confidence interval in the unit of the
+/// value; null if it was not estimated.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Estimate {
-    /// What the half-widths are around.
+    /// The value to which the half-widths refer.
     pub value: Option<f64>,
-    /// By the scatter within the run.
+    /// From the scatter within the run.
     pub scatter: Option<f64>,
-    /// By the length of the time step: one run cannot tell, `fretwork trade` does.
+    /// From the time step; not estimated by a single run, see `fretwork trade`.
     pub step: Option<f64>,
-    /// By the tolerance of the solver: likewise.
+    /// From the solver's tolerance; not estimated by a single run.
     pub tolerance: Option<f64>,
-    /// How the scatter was found, or why it was not.
+    /// Method of the scatter estimate, or the reason why there is none.
     pub method: Option<String>,
 }
 
@@ -32,7 +32,7 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// Of a summary whose other numbers are there; `friction` is the scatter of the friction coefficient.
+    /// Estimates for a summary with its other values; `friction` is the scatter of the friction coefficient.
     pub fn new(summary: &Summary, friction: Option<&Scatter>) -> Self {
         let mut all = Self::default();
         let mu = &mut all.friction_coefficient;
@@ -50,7 +50,7 @@ impl Uncertainty {
             return all;
         }
         all.wear.value = Some(worn);
-        // A cycle that stands for many is no draw like the others.
+        // A cycle that represents several is not a sample like the others.
         let alike = summary.fretting.is_some() && summary.cycles.iter().all(|c| c.jumped == 0);
         if let Some(s) = scatter::over_cycles(&summary.cycles, |c| c.wear_volume).filter(|_| alike)
         {

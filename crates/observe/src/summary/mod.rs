@@ -1,4 +1,4 @@
-//! `summary.json`, and the summary a tribologist reads at the end.
+//! `summary.json`, and the text summary at the end of a run.
 
 mod circuit;
 mod details;
@@ -22,10 +22,10 @@ use fretwork_core::step::control::Begun;
 use fretwork_scene::sampling::UnresolvedDrive;
 use serde::Serialize;
 
-/// A plugin that was loaded.
+/// A loaded plugin.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PluginStamp {
-    /// Slot.
+    /// Kind of the law.
     pub kind: String,
     /// Name.
     pub name: String,
@@ -33,26 +33,27 @@ pub struct PluginStamp {
     pub version: String,
     /// SHA-256 of the library.
     pub sha256: String,
-    /// Where it was found.
+    /// Path of the library.
     pub path: String,
-    /// Whether it keeps its promises with the parameters of this run, see [`fretwork_core::certify`].
+    /// Whether it passes certification with the parameters of this run, see [`fretwork_core::certify`].
     pub certified: bool,
 }
 
-/// Flows of matter, as mean mass flows since the start of the friction test, or of the run without one.
+/// Wear and mean mass flows since the start of the friction test, or of the run without one.
 #[derive(Clone, Debug, Default, Serialize)]
 #[allow(non_snake_case)]
 pub struct Wear {
-    /// Unit of the flows: kg/s, in two dimensions kg/(m s), per metre of depth.
+    /// Unit of the flows: kg/s; in 2D kg/(m s), per metre of depth.
     pub unit: &'static str,
-    /// Since when Qs of the wear law and Qi count (s); what a circuit counts begins with the circuit.
+    /// Start of Qs (of the wear law) and Qi (s); flows of a circuit start with the circuit.
     pub start: f64,
-    /// Source: mass worn off first bodies by the wear law, and with a circuit the grains that came loose from them.
+    /// Source: mass worn off first bodies by the wear law, or, with a circuit, mass of the grains that came
+    /// loose from them.
     pub Qs: f64,
     /// Internal: mass of the third body that crosses a section, mean of |m v_x|/L.
     pub Qi: f64,
-    /// Ejected: with a circuit what reached its zones; without one zero in a contact that is periodic along the sliding, and
-    /// not measured (null) in an open one.
+    /// Ejected: with a circuit the mass that reached its zones; without one zero in a contact that is
+    /// periodic along the sliding, and null (not measured) in an open one.
     pub Qe: Option<f64>,
     /// Lost: ejected and not recirculated; as `Qe`.
     pub Qw: Option<f64>,
@@ -60,21 +61,22 @@ pub struct Wear {
     pub volume_first_bodies: f64,
     /// Volume worn between grains (m^3; m^3/m).
     pub volume_third_body: f64,
-    /// Normal force times sliding distance, the integral of P |ds| over the run (N m; N in 2D); null without a friction test.
+    /// Normal force times sliding distance: the integral of P |ds| over the run (N m; N in 2D); null without
+    /// a friction test.
     pub load_path: Option<f64>,
-    /// The first bodies that lost something, each by itself.
+    /// Wear of the first bodies that lost material.
     pub bodies: Vec<BodyWear>,
 }
 
 impl Wear {
-    /// Unit of flows in so many dimensions.
+    /// Unit of flows in a dimension.
     pub fn unit(dimension: usize) -> &'static str {
         if dimension == 2 { "kg/(m s)" } else { "kg/s" }
     }
 }
 
-/// What may differ between the summaries of two runs of one case, as JSON pointers: what the clock gives, and the number
-/// of threads, which is the command line's. All else has the same bits; `docs/checkpoints.md` says so.
+/// JSON pointers to the values that may differ between the summaries of two runs of a case: wall and
+/// processor times, and the number of threads. All others are bit-identical, see `docs/checkpoints.md`.
 pub const FROM_THE_CLOCK: [&str; 4] = [
     "/wall_seconds",
     "/cpu_seconds",
@@ -82,44 +84,46 @@ pub const FROM_THE_CLOCK: [&str; 4] = [
     "/circuit/cost_share",
 ];
 
-/// The whole run.
+/// Summary of a run.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Summary {
     /// Title of the case.
     pub case: String,
     /// Whether all checks passed; see `warnings` of the layer that stores it.
     pub trustworthy: bool,
-    /// Why it is not trustworthy, in sentences, worst first.
+    /// Reasons why it is not trustworthy, as sentences, worst first.
     pub reasons: Vec<String>,
-    /// The reasons, and after them what is worth knowing besides.
+    /// The reasons, followed by notes.
     pub warnings: Vec<String>,
-    /// Name of what the run is of, case, materials, laws and scene: the results file knows its summary by it.
+    /// Identity of the run (case, materials, laws and scene), by which the results file recognises its
+    /// summary.
     pub identity: String,
-    /// 2 or 3.
+    /// Dimension, 2 or 3.
     pub dimension: usize,
     /// Steps done.
     pub steps: u64,
     /// Time reached (s).
     pub time: f64,
-    /// Time it took (s).
+    /// Wall time of the run (s).
     pub wall_seconds: f64,
-    /// Processor time of it, of all threads (s): what other programs on the machine do not change much.
+    /// Processor time of all threads (s), which depends little on other programs.
     pub cpu_seconds: f64,
-    /// Bodies.
+    /// Number of bodies.
     pub bodies: usize,
-    /// Contacts at the end.
+    /// Number of contacts at the end.
     pub contacts: usize,
-    /// Bonds made.
+    /// Number of bonds made.
     pub bonds: u64,
-    /// Bonds broken.
+    /// Number of bonds broken.
     pub broken: u64,
     /// Broken over made.
     pub damage_ratio: f64,
     /// Mean damage over all bonds.
     pub mean_damage: f64,
-    /// From forces, over the last complete cycle, or the second half; null without a friction test.
+    /// Friction coefficient from forces, over the last complete cycle, or the second half; null without a
+    /// friction test.
     pub friction_coefficient: Option<f64>,
-    /// The same from the energy ledger.
+    /// Friction coefficient from the energy ledger.
     pub friction_from_dissipation: Option<f64>,
     /// Largest |Q| over the mean P of the same cycle.
     pub peak_friction: Option<f64>,
@@ -128,21 +132,21 @@ pub struct Summary {
     pub friction_scatter: Option<Scatter>,
     /// How well the main results are known from this run alone.
     pub uncertainty: Uncertainty,
-    /// Cycle by cycle.
+    /// Cycles of the friction test.
     pub cycles: Vec<Cycle>,
-    /// What the cycles of a fretting test say together; null where nothing moves to and fro.
+    /// Evaluation of a fretting test; null without reciprocating motion.
     pub fretting: Option<fretting::Outcome>,
-    /// What a biaxial test found; null without one.
+    /// Result of a biaxial test; null without one.
     pub biaxial: Option<Outcome>,
-    /// Phases that began, with their times; empty without phases.
+    /// Phases that were started, with their times; empty without phases.
     pub phases: Vec<Begun>,
     /// Names of the phases that the run did not reach.
     pub phases_missed: Vec<String>,
-    /// What the case's measures found, by name (SI).
+    /// Numeric results of the case's measures, by name (SI).
     pub measures: std::collections::BTreeMap<String, f64>,
     /// Their units; empty for a pure number.
     pub measure_units: std::collections::BTreeMap<String, &'static str>,
-    /// What they found in words, by name.
+    /// Textual results of the case's measures, by name.
     pub findings: std::collections::BTreeMap<String, String>,
     /// Energy ledger (J; J/m).
     pub energy: Energy,
@@ -154,9 +158,9 @@ pub struct Summary {
     pub circuit: Option<CircuitSummary>,
     /// Jumps over cycles; null without.
     pub jump: Option<JumpSummary>,
-    /// Scars of the surfaces that follow their wear; empty without.
+    /// Scars of the surfaces that recede; empty without any.
     pub scars: Vec<ScarSummary>,
-    /// What shows whether the step was small enough to see every contact in time.
+    /// Diagnostics of whether the step was small enough to detect every contact in time.
     #[serde(rename = "haste")]
     pub step_size: StepSizeDiagnostics,
     /// Drives that the step does not resolve.
@@ -172,9 +176,9 @@ pub struct Summary {
     pub seed: u64,
     /// Version of the program.
     pub version: String,
-    /// Why the run stopped before its end, if it did.
+    /// Reason why the run stopped before its end, if it did.
     pub stopped: Option<String>,
-    /// Whether a signal stopped it: it goes on with `--resume`.
+    /// Whether a signal stopped it; it can be resumed with `--resume`.
     pub interrupted: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What the end of a run prints: warnings, friction, damage, wear, energies. What else there is, see `details`.
+//! Text at the end of a run: warnings, friction, damage, wear, energies. Further output is in `details`.
 
 use super::{BodyWear, Summary};
 use crate::biaxial::Outcome;
@@ -7,10 +7,10 @@ use crate::jump;
 use crate::quantity::{number, quantity, wear_rate};
 use std::fmt::Write as _;
 
-/// Most values of measures that are printed unasked.
+/// Largest number of measured values that are printed without `--verbose`.
 const MEASURES: usize = 8;
 
-/// Energies below this share of the largest are left out, as in the figure of the energy balance.
+/// Energies below this fraction of the largest are omitted, as in the energy figure.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// Lines of label and text.
@@ -30,7 +30,7 @@ impl Lines {
 }
 
 impl Summary {
-    /// Lines for a terminal: warnings first, then the results; with all details where they are asked for.
+    /// The text: warnings first, then the results, with all details if `verbose`.
     pub fn text(&self, verbose: bool) -> String {
         let mut out = String::new();
         if !self.trustworthy {
@@ -62,12 +62,12 @@ impl Summary {
         out + &lines.0
     }
 
-    /// Unit of a quantity that is per metre of depth in the plane.
+    /// Unit of a quantity that is per metre of depth in 2D.
     pub(super) fn unit(&self, solid: &'static str, plane: &'static str) -> &'static str {
         if self.dimension == 3 { solid } else { plane }
     }
 
-    /// The last complete cycle, or the last.
+    /// The last complete cycle, or the last one if none is complete.
     fn last_cycle(&self) -> Option<&Cycle> {
         let complete = self.cycles.iter().rfind(|c| c.complete);
         complete.or(self.cycles.last())
@@ -81,7 +81,7 @@ impl Summary {
         let over = match (fretting, cycle.complete) {
             (true, true) => format!("in cycle {}, the last complete one", cycle.cycle),
             (false, true) => "over the second half".to_owned(),
-            (_, false) => "over the part that ran of what counts".to_owned(),
+            (_, false) => "over the completed part of the evaluated time".to_owned(),
         };
         let known = &self.uncertainty.friction_coefficient;
         let mean = match (known.value, known.scatter, &known.method) {
@@ -195,7 +195,7 @@ impl Summary {
         lines.all(self.circuit.iter().flat_map(|c| c.lines()));
     }
 
-    /// Where energy came from and where it went: external work + gravity + kinetic energy at the start = dissipated + stored.
+    /// Energy balance: external work + gravity + kinetic energy at the start = dissipated + stored.
     fn energies(&self, lines: &mut Lines) {
         let unit = self.unit("J", "J/m");
         let e = &self.energy;
@@ -246,7 +246,7 @@ impl Summary {
         lines.add("external work", text);
     }
 
-    /// What the case asked for besides.
+    /// Further results of the case.
     fn others(&self, lines: &mut Lines, verbose: bool) {
         lines.all(self.biaxial.iter().flat_map(Outcome::lines));
         for (name, text) in &self.findings {

@@ -3,7 +3,7 @@ use crate::fretting::{self, Regime};
 use crate::scatter;
 use crate::summary::Uncertainty;
 
-/// Fifty cycles of a fretting test with damage and wear, partial slip at first and gross slip in the end.
+/// Fifty cycles of a fretting test with damage and wear, partial slip at first and gross slip at the end.
 fn fretting() -> Summary {
     let cycle = |k: u32| Cycle {
         cycle: k,
@@ -143,7 +143,7 @@ fn energies_are_named_as_in_the_ledger_and_balance() {
     );
     place(&text, "12.00 J; gravity gave 80.00 J; the ledger");
     assert!(!text.contains("damping of bonds") && !text.contains("time integration"));
-    // Damping and time integration are no longer one entry with adhesion; a rise takes energy.
+    // Damping and time integration are separate entries; a rise takes energy.
     let e = &mut summary.energy;
     (e.viscous, e.scheme, e.potential) = (2.0, 4.0, 7.0);
     let text = summary.text(false);

@@ -1,4 +1,4 @@
-//! Contacts as lines between their ends: their state, bonds and forces.
+//! Contacts as lines between their ends, with state, bonds and forces.
 
 use super::images;
 use crate::{Link, LinkState};
@@ -7,7 +7,7 @@ use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use fretwork_observe::placement::{BondState, bond_state, ends};
 
-/// The state of a contact in pictures.
+/// State of a contact in pictures.
 pub fn state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> LinkState {
     match bond_state(s, contact) {
         BondState::Intact { damage } => LinkState::Intact { damage },
@@ -21,7 +21,7 @@ pub(super) fn links<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Link> 
     links_in(s, window, |contact| state(s, contact))
 }
 
-/// The contacts that carry force, those of the chains told apart.
+/// The contacts that carry force, with those of the chains marked.
 pub(super) fn forces<S: Space>(
     s: &Simulation<S>,
     window: [f64; 4],
@@ -56,7 +56,7 @@ fn links_in<S: Space>(
     for contact in &s.network.contacts {
         let state = state(contact);
         let force = contact.impulse.norm();
-        // A plain candidate pair that carries nothing is no interaction.
+        // A candidate pair without force is not drawn.
         if state == LinkState::Plain && force == 0.0 {
             continue;
         }

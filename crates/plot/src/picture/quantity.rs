@@ -1,4 +1,4 @@
-//! The quantity that colours the grains of a frame: their speed, or the damage of their bonds where there are bonds.
+//! Default quantity for the colours of grains: their speed, or the damage of their bonds if there are bonds.
 
 use crate::{Paint, Scale, round_top};
 use fretwork_core::contact::{BondState, Key};
@@ -7,11 +7,12 @@ use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use fretwork_observe::placement::is_first;
 
-/// The share of the grains whose speed is within the colour bar: a few that fly do not turn all others pale.
+/// Fraction of the grains whose speed is within the colour bar, so that a few fast grains do not make all
+/// others pale.
 const WITHIN: f64 = 0.98;
 
-/// Paints of the balls and then of the pieces, and what they mean; none where nothing moves. In the plane bonds are
-/// drawn one by one, and the scale is theirs.
+/// Colours of the balls and then of the convex parts, and their scale; `None` if nothing moves. In 2D bonds
+/// are drawn one by one, and the scale is theirs.
 pub(super) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<Scale>) {
     let values = match (s.network.bonds_made() > 0, S::D) {
         (true, 2) => return (Vec::new(), Some(damage_scale(true))),
@@ -74,7 +75,7 @@ fn damage_scale(bonds: bool) -> Scale {
     }
 }
 
-/// Mean damage of the bonds of each body, broken ones counting 1; not a number where it never had one.
+/// Mean damage of the bonds of each body, broken ones counting 1; NaN if it never had a bond.
 fn damage<S: Space>(s: &Simulation<S>) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); s.bodies.len()];
     let mut add = |body: u32, damage: f64| {
@@ -99,7 +100,7 @@ fn damage<S: Space>(s: &Simulation<S>) -> Vec<f64> {
     sums.into_iter().map(|(sum, n)| sum / n).collect()
 }
 
-/// The body of a ball, piece or surface, by its part of a key.
+/// Body of a ball, convex part or surface, from its collider key.
 fn carrier<S: Space>(s: &Simulation<S>, key: u32) -> Option<u32> {
     let index = (key & !(Key::SURFACE | Key::PIECE)) as usize;
     if key & Key::SURFACE != 0 {

@@ -1,4 +1,4 @@
-//! The scene of a frame in space: grains, and first bodies cut to the part of space that grains can be in.
+//! 3D scene of a picture: grains, and first bodies clipped to the region that grains can reach.
 
 use super::{balls, paint};
 use crate::{Faces, Paint, Scene, Sphere, View};
@@ -15,16 +15,17 @@ struct Side {
     offset: f64,
 }
 
-/// How far a plane shows beyond the grains, over their extent; and how far away it may be to be shown.
+/// Extent of a plane beyond the grains, as a fraction of their extent; also the largest distance at which it
+/// is shown.
 const MARGIN: f64 = 0.06;
 const FAR: f64 = 0.5;
 
-/// Where frames in space are seen from: x to the right, z upwards, turned a little and from above.
+/// View direction of 3D pictures: x to the right, z upwards, slightly rotated and from above.
 fn view() -> View {
     View::new(0.6, 0.4)
 }
 
-/// All that a frame shows. `paints` are of the balls, then of the pieces.
+/// Scene of a picture. `paints` are those of the balls, then of the convex parts.
 pub(super) fn scene<S: Space>(s: &Simulation<S>, paints: &[Paint]) -> Scene {
     let shown = |body: u32| !s.bodies.removed[body as usize];
     let mut spheres = Vec::with_capacity(s.shapes.balls.len());
@@ -67,7 +68,7 @@ fn walls<S: Space>(s: &Simulation<S>) -> Vec<Faces> {
         .collect();
     let (low, high) = room(s, &surfaces);
     let reach = length(&sub(&high, &low)).max(f64::MIN_POSITIVE);
-    // What planes leave open; a drum is open inside, and bounds the planes across it.
+    // The open sides of planes; the inside of a drum is open, and clips the planes across it.
     let planes: Vec<Option<Side>> = surfaces.iter().map(|f| solid_side(s, f)).collect();
     let walls = surfaces.iter().enumerate().map(|(k, surface)| {
         let polygons: Vec<Vec<Point>> = if surface.shape.bounded() {
@@ -100,7 +101,7 @@ fn walls<S: Space>(s: &Simulation<S>) -> Vec<Faces> {
     walls.collect()
 }
 
-/// Faces of a surface in the axes of the world.
+/// Faces of a surface in world coordinates.
 fn placed<S: Space>(
     s: &Simulation<S>,
     surface: &Carried<S>,
@@ -116,7 +117,7 @@ fn placed<S: Space>(
         .collect()
 }
 
-/// The open side of a plane; none of other surfaces.
+/// The open side of a plane; `None` for other surfaces.
 fn solid_side<S: Space>(s: &Simulation<S>, surface: &Carried<S>) -> Option<Side> {
     let b = surface.body as usize;
     let normal = S::rotate(&s.bodies.rotation[b], &surface.shape.flat()?).padded();
@@ -127,7 +128,8 @@ fn solid_side<S: Space>(s: &Simulation<S>, surface: &Carried<S>) -> Option<Side>
     })
 }
 
-/// The box in which planes and drums are shown: about grains and bounded surfaces, as far as the planes near them.
+/// The box to which planes and drums are clipped: around grains and bounded surfaces, extended to nearby
+/// planes.
 fn room<S: Space>(s: &Simulation<S>, surfaces: &[&Carried<S>]) -> (Point, Point) {
     let mut bound = Bound::default();
     for (centre, radius) in balls(s) {
@@ -220,7 +222,7 @@ fn cuboid(low: &Point, high: &Point) -> Vec<Side> {
     (0..6).map(side).collect()
 }
 
-/// The inner sides of the faces of a drum.
+/// Inner half-spaces of the faces of a drum.
 fn inside(faces: &[Vec<Point>]) -> Vec<Side> {
     let side = |face: &Vec<Point>| {
         let (a, b, c) = (face.first()?, face.get(1)?, face.get(2)?);
@@ -237,7 +239,7 @@ fn inside(faces: &[Vec<Point>]) -> Vec<Side> {
     faces.iter().filter_map(side).collect()
 }
 
-/// A convex polygon cut to the inside of all sides.
+/// Clips a convex polygon to all half-spaces.
 fn cut(polygon: Vec<Point>, sides: &[Side]) -> Vec<Point> {
     let mut kept = polygon;
     for side in sides {

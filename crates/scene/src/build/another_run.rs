@@ -1,4 +1,5 @@
-//! Grains of a state of another run: places, orientations, velocities, spins and shapes as its record holds them.
+//! Grains taken from a state of another run: positions, orientations, velocities, spins and shapes as
+//! recorded there.
 
 use super::grains::Seed;
 use super::{Builder, Dimensional, Origin};
@@ -9,18 +10,18 @@ use fretwork_core::geometry::convex::{Boundary, ConvexCollider, Core};
 use fretwork_core::geometry::shape::Ball;
 use fretwork_core::geometry::space::{MatrixLike, VectorLike};
 
-/// Grains that are no lone balls, of one of `grains`.
+/// Grains other than single balls, from one entry of `grains`.
 pub(super) struct Others {
-    /// Its place in the list,
+    /// Index of the entry in the list.
     k: usize,
-    /// its material and the density of that (kg/m^3),
+    /// Material index, and its density (kg/m^3).
     of: (u16, f64),
-    /// and its grains.
+    /// The grains.
     grains: Vec<ShapedGrain>,
 }
 
 impl<S: Dimensional> Builder<'_, S> {
-    /// Grains of a state of another run: the balls, and the others.
+    /// Reads the grains of a state of another run: the balls, and the grains of other shapes.
     pub(super) fn grains_of_run(
         &mut self,
         k: usize,
@@ -76,17 +77,18 @@ impl<S: Dimensional> Builder<'_, S> {
 
     fn rotation(&self, k: usize, motion: &Motion) -> Result<S::Rotation, InputError> {
         let Some(numbers) = &motion.rotation else {
-            // The orientation of a ball changes nothing.
+            // The orientation of a ball has no effect.
             return Ok(S::identity());
         };
         S::rotation_from(numbers).ok_or_else(|| {
-            let message =
-                format!("the orientation {numbers:?} of a grain is none: the file is damaged");
+            let message = format!(
+                "the orientation {numbers:?} of a grain is not a rotation: the file is damaged"
+            );
             self.fail(format!("grains.{k}.results"), message)
         })
     }
 
-    /// Adds grains that are no lone balls.
+    /// Adds the grains other than single balls.
     pub(super) fn shaped_grains(&mut self, others: Others) -> Result<(), InputError> {
         let (k, of) = (others.k, others.of);
         for grain in others.grains {
@@ -94,7 +96,7 @@ impl<S: Dimensional> Builder<'_, S> {
             let id = grain.body.id;
             self.shaped_grain(grain, rotation, of).map_err(|what| {
                 let message = format!(
-                    "the shape of grain {id} cannot be taken: {what}; the file is damaged, run its case again"
+                    "the shape of grain {id} cannot be used: {what}; the file is damaged, run its case again"
                 );
                 self.fail(format!("grains.{k}.results"), message)
             })?;
@@ -140,7 +142,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(())
     }
 
-    /// A body of a mass and inertia; those of another density are scaled.
+    /// Adds a body with its recorded mass and inertia, scaled if the density differs.
     fn weighing(&mut self, of: &ShapedBody, at: S::Vector, density: f64) -> Result<u32, String> {
         let n = S::Spin::N;
         let entry = |i: usize, j: usize| of.inertia[3 * i + j];
@@ -151,9 +153,9 @@ impl<S: Dimensional> Builder<'_, S> {
             || !of.inertia.iter().all(|x| x.is_finite())
             || !at.is_finite()
         {
-            return Err("its place, mass or inertia is none".to_owned());
+            return Err("its position, mass or inertia is not a valid number".to_owned());
         }
-        // One, to the bit, for the same material.
+        // Exactly one if the material is the same.
         let ratio = density / of.density;
         let (mass, length) = (of.mass * ratio, of.length);
         let mut axes = [S::Spin::zero(); 3];
@@ -177,7 +179,7 @@ impl<S: Dimensional> Builder<'_, S> {
     }
 }
 
-/// A piece of a body, as it was recorded.
+/// Rebuilds a convex part of a body from the record.
 fn recorded<S: Dimensional>(
     piece: ShapedPiece,
     body: u32,

@@ -1,4 +1,4 @@
-//! Voussoirs of an arch.
+//! Voussoirs (blocks) of an arch.
 
 use super::polygons::Block;
 use super::{Builder, Dimensional};
@@ -7,11 +7,12 @@ use crate::source::InputError;
 use fretwork_core::geometry::space::{MatrixLike, VectorLike};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Thinner blocks than this makes are a slip of the keyboard, and as many of them are neighbours as their number is high.
+/// Limit on the number of blocks: a larger number is taken for a typing error.
 const MAX_BLOCKS: usize = 10_000;
 
 impl<S: Dimensional> Builder<'_, S> {
-    /// The blocks between the radial joints of an arch, from right to left; none for other grains.
+    /// Makes the blocks of an arch between its radial joints, from right to left; an empty list for other
+    /// kinds of grains.
     pub(super) fn arch(&self, here: &str, spec: &GrainSpec) -> Result<Vec<Block<S>>, InputError> {
         let GrainSpec::Arch {
             blocks,
@@ -81,7 +82,7 @@ impl<S: Dimensional> Builder<'_, S> {
     }
 }
 
-/// Centre of mass, area and polar moment about it of a piece of a ring between two angles.
+/// Centroid, area and polar moment of area about it of a ring sector between two angles.
 fn ring_piece(inner: f64, outer: f64, from: f64, to: f64) -> ([f64; 2], f64, f64) {
     let (angle, middle) = (to - from, 0.5 * (from + to));
     let area = 0.5 * angle * (outer * outer - inner * inner);
@@ -100,7 +101,7 @@ mod tests {
     fn two_half_rings_make_a_ring() {
         let (centre, area, polar) = ring_piece(1.0, 2.0, 0.0, PI);
         assert!((area - 1.5 * PI).abs() < 1e-14);
-        // 4 (R^3 - r^3)/(3 pi (R^2 - r^2)) above the diameter.
+        // Centroid of a half ring: 4 (R^3 - r^3)/(3 pi (R^2 - r^2)) above the diameter.
         assert!((centre[1] - 28.0 / (9.0 * PI)).abs() < 1e-14 && centre[0].abs() < 1e-15);
         let about = polar + area * centre[1] * centre[1];
         assert!((2.0 * about - 0.5 * PI * 15.0).abs() < 1e-13);

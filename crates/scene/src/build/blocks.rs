@@ -1,4 +1,4 @@
-//! Samples of blocks that fit each other: Voronoi cells, and walls in running bond.
+//! Samples of blocks that fit together: Voronoi cells, and walls in running bond.
 
 use super::polygons::Block;
 use super::{Builder, Dimensional};
@@ -12,15 +12,16 @@ use fretwork_core::geometry::convex::polyhedron::Polyhedron;
 use fretwork_core::geometry::space::VectorLike;
 use nalgebra::{Vector2, Vector3};
 
-/// More blocks than a run of days can follow are a slip of the keyboard.
+/// Limit on the number of blocks: a larger number is taken for a typing error.
 const MAX_BLOCKS: usize = 100_000;
-/// Lloyd's rounds change nothing that is seen after some hundred.
+/// Limit on Lloyd iterations; beyond some hundred the cells no longer change visibly.
 const MAX_ROUNDS: usize = 1_000;
-/// Cells times rounds that are made in some seconds, in the plane and in space. Making the cells without a round counts as one.
+/// Limit on cells times Lloyd iterations in 2D and 3D, which take some seconds. Building the cells counts as
+/// one iteration.
 const MAX_WORK: [f64; 2] = [1e6, 5e4];
 
 impl<S: Dimensional> Builder<'_, S> {
-    /// Voronoi cells of a box.
+    /// Makes the Voronoi cells of a box.
     pub(super) fn voronoi(
         &mut self,
         k: usize,
@@ -52,7 +53,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let most = MAX_WORK[S::D - 2];
         if cells * (spec.rounds + 1) as f64 > most {
             let message = format!(
-                "{} rounds over {cells:.3e} cells take too long: cells times rounds, and one more, may be {most:e} at \
+                "{} rounds over {cells:.3e} cells take too long: cells times (rounds + 1) may be {most:e} at \
                  most in {} dimensions",
                 spec.rounds,
                 S::D
@@ -81,7 +82,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(out)
     }
 
-    /// Cells of a rectangle, and what was done to them.
+    /// Makes the cells of a rectangle; also returns a note on what was changed in them.
     fn cells_in_the_plane(
         &self,
         here: &str,
@@ -106,7 +107,7 @@ impl<S: Dimensional> Builder<'_, S> {
             };
             let inner = inner.ok_or_else(|| self.nothing_left(here, spec))?;
             let corners: Vec<(f64, f64)> = inner.iter().map(|p| (p.x, p.y)).collect();
-            // A side that was taken out can turn its neighbours by too much.
+            // Removing a short side can turn its neighbours too far.
             let part = self.polygon(here, &corners, spec.rounding).map_err(|_| {
                 let message = "a cell with several very short sides lost its shape; take another `seed`, or some `rounds`";
                 self.fail(here, message)
@@ -124,7 +125,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok((out, note))
     }
 
-    /// Cells of a box, and what was done to them.
+    /// Makes the cells of a box; also returns a note on what was changed in them.
     fn cells_in_space(
         &self,
         here: &str,
@@ -167,7 +168,7 @@ impl<S: Dimensional> Builder<'_, S> {
 
     fn no_room(&self, here: &str, size: f64) -> InputError {
         let message = format!(
-            "cells of {size:e} m find no room: the region must be wider and higher{} than half of that",
+            "cells of {size:e} m do not fit: the region must be wider and higher{} than half of that",
             if S::D == 2 { "" } else { " and deeper" }
         );
         self.fail(format!("{here}.size"), message)
@@ -189,7 +190,7 @@ impl<S: Dimensional> Builder<'_, S> {
         self.fail(format!("{here}.{field}"), message)
     }
 
-    /// A wall in running bond, course by course from the ground, from left to right.
+    /// Makes a wall in running bond, course by course from the ground up and from left to right.
     pub(super) fn block_wall(
         &self,
         here: &str,
@@ -249,7 +250,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(out)
     }
 
-    /// A block of a wall about its centre.
+    /// Makes a block of a wall, centred at the origin.
     fn brick(
         &self,
         here: &str,

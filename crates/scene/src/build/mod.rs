@@ -1,4 +1,4 @@
-//! From a case to a scene that steps.
+//! Construction of a simulation from a case.
 
 mod another_run;
 mod arch;
@@ -36,16 +36,16 @@ use fretwork_core::wear::Scar;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// A case that was read: the text, what it says, and where it stands.
+/// A case file that was read and parsed.
 #[derive(Debug)]
 pub struct Loaded {
-    /// The text, `--set` applied.
+    /// The text, with `--set` applied.
     pub source: Source,
-    /// What it says.
+    /// The parsed case.
     pub case: Case,
-    /// Its file.
+    /// Path of the file.
     pub path: PathBuf,
-    /// What reads grains of the results of other runs; none where such cases are refused.
+    /// Reader of grains from the results of other runs; with `None` cases that need it are rejected.
     pub records: Option<RecordReader>,
     /// Texts of material and parameter files that the program gives itself, by name.
     pub(super) own_files: BTreeMap<String, String>,
@@ -63,17 +63,17 @@ pub enum Scene {
 /// A scene ready to step.
 #[derive(Debug)]
 pub struct Built<S: Space> {
-    /// The stepper.
+    /// The simulation.
     pub simulation: Simulation<S>,
-    /// Material files read: name and text.
+    /// Name and text of the material files that were read.
     pub materials: Vec<(String, String)>,
-    /// Densities of the materials, with the scaling of inertia (kg/m^3).
+    /// Densities of the materials, times `inertia_scaling` (kg/m^3).
     pub densities: Vec<f64>,
-    /// The body under test and the names of the driven bodies, in their order.
+    /// Names of the first bodies, in their order.
     pub names: Vec<String>,
-    /// What samples that were made at random, or read, turned out to be: one line each.
+    /// One line of description for each sample that was generated at random or read from a file.
     pub samples: Vec<String>,
-    /// Where the case writes each body, by the identity of the body.
+    /// The entry of the case that made each body, by body index.
     pub origins: Vec<Origin>,
 }
 
@@ -81,7 +81,7 @@ impl Loaded {
     /// Builds the scene.
     ///
     /// # Errors
-    /// At file, line and column.
+    /// An [`InputError`] with file, line and column.
     pub fn build(&self, path: &SearchPath) -> Result<Scene, InputError> {
         if self.case.dimension == 2 {
             Ok(Scene::Dim2(Box::new(self.build_in::<Dim2>(path)?)))
@@ -90,15 +90,15 @@ impl Loaded {
         }
     }
 
-    /// Builds the scene in a dimension that must be the case's.
+    /// Builds the scene in dimension `S`, which must be that of the case.
     ///
     /// # Errors
-    /// At file, line and column.
+    /// An [`InputError`] with file, line and column.
     pub fn build_in<S: Dimensional>(&self, path: &SearchPath) -> Result<Built<S>, InputError> {
         S::build(self, path)
     }
 
-    /// See [`Self::build_in`], which compiles this once for each dimension.
+    /// Implementation of [`Self::build_in`], compiled once for each dimension.
     fn build_by<S: Dimensional>(&self, path: &SearchPath) -> Result<Built<S>, InputError> {
         let shelf = self.shelf();
         let (densities, mut materials) = self.materials(&shelf)?;
@@ -157,13 +157,13 @@ impl Loaded {
         })
     }
 
-    /// Density of a material of the case (kg/m^3), without any scaling of inertia.
+    /// Density of a material of the case (kg/m^3), without inertia scaling.
     pub fn density(&self, name: &str) -> Option<f64> {
         let (densities, _) = self.materials(&self.shelf()).ok()?;
         densities.get(name).map(|d| d.1)
     }
 
-    /// Densities by material, and the texts of the files.
+    /// Reads the materials: densities in the order of the case, and the texts of the files.
     #[allow(clippy::type_complexity)]
     fn materials(
         &self,
@@ -194,9 +194,9 @@ impl Loaded {
     }
 }
 
-/// Pairs of grains that a skin may make neighbours, see [`Builder::refuse_wide_skin`].
+/// Limit on the pairs of grains that a large skin may make neighbours, see [`Builder::refuse_wide_skin`].
 const MAX_PAIRS: f64 = 2e8;
-/// Pairs of grains at the start, see [`Builder::refuse_piles`]: of any case, and for each grain.
+/// Limits on the pairs of grains at the start, in total and per grain, see [`Builder::refuse_piles`].
 const MAX_PAIRS_AT_ALL: usize = 2_000_000;
 const MAX_PAIRS_A_GRAIN: usize = 100;
 
@@ -209,7 +209,8 @@ struct Builder<'a, S: Space> {
     files: BTreeMap<String, SceneFile>,
     bodies: Bodies<S>,
     shapes: Shapes<S>,
-    /// Where the case writes each body: the place in `grains`, in that list, or in `bodies`.
+    /// The entry of the case that made each body: an index in `grains`, an index in its list, or an index in
+    /// `bodies`.
     origins: Vec<Origin>,
     /// See [`Built::samples`].
     samples: Vec<String>,
@@ -217,17 +218,17 @@ struct Builder<'a, S: Space> {
     scars: Vec<Scar<S>>,
 }
 
-/// The place of a body in the case.
+/// The entry of the case that made a body.
 #[derive(Clone, Copy, Debug)]
 pub enum Origin {
-    /// Of one of `grains`, and which of its list where it has one.
+    /// Index in `grains`, and index in its list if it has one.
     Grain(usize, Option<usize>),
-    /// One of `bodies`.
+    /// Index in `bodies`.
     Body(usize),
 }
 
 impl Origin {
-    /// Its dotted path.
+    /// Dotted path of the entry.
     pub fn path(self) -> String {
         match self {
             Self::Grain(k, None) => format!("grains.{k}"),
@@ -302,7 +303,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let largest = self.radii().fold(0.0, f64::max);
         if largest > 0.0 && alert > 10.0 * largest {
             let message = format!(
-                "an alert distance of {alert} m is more than ten times the largest radius ({largest} m): all would be \
+                "an alert distance of {alert} m is more than ten times the largest radius ({largest} m): all pairs would be \
                  contacts; the default is 0.05 of the smallest"
             );
             return Err(self.fail("detection.alert", message));
@@ -349,13 +350,14 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(simulation)
     }
 
-    /// Radii of all balls, and of the balls that hold the pieces (m).
+    /// Radii of all balls, and of the bounding balls of the convex parts (m).
     fn radii(&self) -> impl Iterator<Item = f64> + '_ {
         let pieces = self.shapes.pieces.iter().map(|p| p.bound);
         self.shapes.balls.iter().map(|b| b.radius).chain(pieces)
     }
 
-    /// A skin beyond the grains' size makes neighbours of grains that never meet; the list must still fit into memory.
+    /// Rejects a skin larger than the grains: it makes neighbours of grains that never meet, and the
+    /// neighbour list may not fit into memory.
     fn refuse_wide_skin(&self, alert: f64, skin: f64, largest: f64) -> Result<(), InputError> {
         if self.case.detection.skin.is_none() || skin <= largest {
             return Ok(());
@@ -377,8 +379,9 @@ impl<S: Dimensional> Builder<'_, S> {
         Err(self.fail("detection.skin", message))
     }
 
-    /// Grains that stand in each other, such as all at one place, make more pairs than memory holds: refused before
-    /// any pair is stored. Grains that only touch have some twenty neighbours each, whatever their sizes.
+    /// Rejects grains that overlap in large numbers, such as all at one position: they make more pairs than
+    /// fit into memory. The test runs before any pair is stored. Grains that only touch have about twenty
+    /// neighbours each, whatever their sizes.
     fn refuse_piles(&self, alert: f64, skin: f64, table: &LawTable) -> Result<(), InputError> {
         let balls = &self.shapes.balls;
         let owner = |at: u32| match balls.get(at as usize) {
@@ -394,7 +397,7 @@ impl<S: Dimensional> Builder<'_, S> {
             self.bodies.position[b] + S::rotate(&self.bodies.rotation[b], &p.offset)
         }));
         let radii: Vec<f64> = self.radii().collect();
-        // A wide skin that the case asks for has a limit of its own.
+        // A large skin given in the case has its own limit.
         let reach = alert
             + if self.case.detection.skin.is_some() {
                 0.0
@@ -416,8 +419,8 @@ impl<S: Dimensional> Builder<'_, S> {
         let at: Vec<String> = (0..S::D).map(|k| format!("{:e}", at[k])).collect();
         let looked = grid::most_pairs(&centres, &radii, reach, periodic);
         let message = format!(
-            "more than {most} pairs of grains are within reach of each other (up to {looked:.1e}), where grains that \
-             touch make some 20 each: {} of them stand within {:.1e} m of ({}) m",
+            "more than {most} pairs of grains are within reach of each other (up to {looked:.1e}), while grains that \
+             touch make about 20 each: {} of them are within {:.1e} m of ({}) m",
             crowd.count,
             crowd.size,
             at.join(", ")
@@ -427,20 +430,20 @@ impl<S: Dimensional> Builder<'_, S> {
             .get(body as usize)
             .map_or_else(|| "grains".to_owned(), |o| o.path());
         let fault = Fault::new(origin, message).expected(
-            "grains beside each other: look for places that are there twice, radii in another unit, or too large a \
+            "grains beside each other: look for positions that occur twice, radii in another unit, or too large a \
              `detection.alert`",
         );
         Err(self.source.locate(fault))
     }
 
-    /// Two balls must not touch each other twice around a period.
+    /// Rejects a period so small that two balls could touch each other on both sides.
     fn refuse_small_period(&self, reach: f64) -> Result<(), InputError> {
         let widest = self.radii().fold(0.0, f64::max);
         for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
             let period = self.shapes.periodic.period[k];
             if period.is_some_and(|p| 2.0 * (2.0 * widest + reach) > p) && reach > 2.0 * widest {
                 let message = format!(
-                    "with the skin, grains see each other {reach:e} m apart, which reaches twice around the period `periodic.{name}`; make it smaller"
+                    "with the skin, grains are neighbours up to {reach:e} m apart, which reaches twice around the period `periodic.{name}`; make it smaller"
                 );
                 return Err(self.fail("detection.alert".to_owned(), message));
             }

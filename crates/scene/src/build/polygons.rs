@@ -1,4 +1,4 @@
-//! Convex polygons: grains and parts of first bodies.
+//! Convex polygons, as grains and as parts of first bodies.
 
 use super::{Builder, Dimensional, Origin};
 use crate::case::{Coordinates, GrainSpec, OnePolygon};
@@ -9,23 +9,23 @@ use fretwork_core::geometry::convex::polygon::{Polygon, PolygonError};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use nalgebra::Vector2;
 
-/// More sides than a picture shows are a slip of the keyboard.
+/// Limit on the sides of a regular polygon: a larger number is taken for a typing error.
 const MAX_SIDES: usize = 10_000;
 
-/// A grain of one piece: its centre of mass (m), mass and moment of inertia at unit density.
+/// A grain of one convex part: its centre of mass (m), volume and moment of inertia at unit density.
 pub(super) struct Block<S: Space> {
     pub at: S::Vector,
     pub volume: f64,
     pub inertia: S::Tensor,
     pub part: ConvexPart<S>,
-    /// Where the part's centre stands from the block's centre of mass (m).
+    /// Position of the part's centre relative to the block's centre of mass (m).
     pub offset: S::Vector,
     pub velocity: S::Vector,
     pub spin: S::Spin,
 }
 
 impl<S: Space> Block<S> {
-    /// A part at rest where it stands.
+    /// The block of a part that does not move relative to it.
     pub fn of(part: ConvexPart<S>) -> Self {
         Self {
             at: part.centre,
@@ -40,7 +40,7 @@ impl<S: Space> Block<S> {
 }
 
 impl<S: Dimensional> Builder<'_, S> {
-    /// The grains that are polygons.
+    /// Adds the grains that are polygons.
     pub(super) fn polygons(&mut self) -> Result<(), InputError> {
         for (k, spec) in self.case.grains.iter().enumerate() {
             let here = format!("grains.{k}");
@@ -131,7 +131,7 @@ impl<S: Dimensional> Builder<'_, S> {
         })
     }
 
-    /// A convex part from its corners (m).
+    /// Makes a convex part from the corners of a polygon (m).
     pub(super) fn polygon(
         &self,
         here: &str,
@@ -152,7 +152,7 @@ impl<S: Dimensional> Builder<'_, S> {
         S::polygon(&polygon, rounding).map_err(|e| self.fail(here, e))
     }
 
-    /// A capsule.
+    /// Makes a capsule.
     pub(super) fn capsule(
         &self,
         here: &str,

@@ -1,4 +1,4 @@
-//! Convex polyhedra: grains and parts of bodies; meshes from files.
+//! Convex polyhedra, as grains and as parts of bodies, and meshes from files.
 
 use super::polygons::Block;
 use super::{Builder, Dimensional, Origin};
@@ -13,7 +13,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 type V = Vector3<f64>;
 
 impl<S: Dimensional> Builder<'_, S> {
-    /// The grains that are polyhedra.
+    /// Adds the grains that are polyhedra.
     pub(super) fn polyhedra(&mut self) -> Result<(), InputError> {
         for (k, spec) in self.case.grains.iter().enumerate() {
             let GrainSpec::Polyhedra { material, grains } = spec else {
@@ -62,7 +62,7 @@ impl<S: Dimensional> Builder<'_, S> {
         })
     }
 
-    /// The hull of corners (m).
+    /// Makes the convex hull of points (m).
     pub(super) fn hull(
         &self,
         here: &str,
@@ -73,7 +73,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Polyhedron::new(&points).map_err(|e| bad(e.to_string()))
     }
 
-    /// A cuboid about the origin by the lengths of its edges (m).
+    /// Makes a cuboid about the origin from the lengths of its edges (m).
     pub(super) fn cuboid(
         &self,
         here: &str,
@@ -87,7 +87,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Err(self.fail(format!("{here}.size"), message))
     }
 
-    /// A core turned about its origin by a rotation vector (rad).
+    /// Rotates a polyhedron about its origin by a rotation vector (rad).
     pub(super) fn placed(
         &self,
         here: &str,
@@ -100,7 +100,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(core.turned(&UnitQuaternion::from_scaled_axis(turned)))
     }
 
-    /// A part with a rounding (m).
+    /// Makes a convex part with rounded edges.
     pub(super) fn polyhedron(
         &self,
         here: &str,
@@ -114,7 +114,7 @@ impl<S: Dimensional> Builder<'_, S> {
         S::polyhedron(core, rounding).map_err(|e| self.fail(here, e))
     }
 
-    /// The points (m) and triangles of a mesh beside the case.
+    /// Reads the points (m) and triangles of a mesh file, given by a path relative to the case.
     pub(super) fn mesh_file(
         &self,
         here: &str,

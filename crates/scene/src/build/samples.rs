@@ -1,4 +1,4 @@
-//! Samples that are made at random, and grains from tables.
+//! Samples that are generated at random, and grains read from tables.
 
 use super::grains::{MAX_MADE, MAX_READ, Seed};
 use super::{Builder, Dimensional, Origin};
@@ -10,7 +10,7 @@ use crate::source::{Fault, InputError};
 use fretwork_core::geometry::space::VectorLike;
 
 impl<S: Dimensional> Builder<'_, S> {
-    /// A random deposit.
+    /// Makes a random deposit.
     pub(super) fn deposit(
         &mut self,
         k: usize,
@@ -35,8 +35,8 @@ impl<S: Dimensional> Builder<'_, S> {
         let placed = made.grains.len();
         if placed < spec.count {
             let message = format!(
-                "only {placed} of {} grains found room: together they would take {:.0} % of the box, where grains \
-                 thrown at random find room up to about {} %",
+                "only {placed} of {} grains fit: together they would take {:.0} % of the box, while grains \
+                 placed at random fit up to about {} %",
                 spec.count,
                 100.0 * made.asked,
                 if S::D == 2 { 50 } else { 35 }
@@ -118,7 +118,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(Sizes::sieve(&curve, S::D))
     }
 
-    /// Grains of a table.
+    /// Reads the grains of a table.
     pub(super) fn grains_of_csv(
         &mut self,
         k: usize,

@@ -18,55 +18,55 @@ use fretwork_core::laws::SearchPath;
 use fretwork_core::step::Steps;
 use nalgebra::Vector2;
 
-/// Points of a random surface, at most,
+/// Limit on the points of a random surface.
 const MAX_POINTS: usize = 1_000_000;
-/// and points times waves of a rough profile, which its making takes time for.
+/// Limit on points times waves of a rough profile, which bounds the time to generate it.
 const MAX_TERMS: f64 = 2e8;
 
-/// Shapes that exist in one dimension only.
+/// Operations that differ between dimensions, and shapes that exist in only one of them.
 pub trait Dimensional: Steps {
-    /// A scene of this dimension, see [`Loaded::build_in`].
+    /// Builds a scene of this dimension, see [`Loaded::build_in`].
     ///
     /// # Errors
     /// As [`Loaded::build_in`].
     fn build(loaded: &Loaded, path: &SearchPath) -> Result<Built<Self>, InputError>;
-    /// It as one of either dimension.
+    /// Wraps the built scene in the enum of both dimensions.
     fn scene(built: Built<Self>) -> Scene;
-    /// A profile of points, left to right.
+    /// Makes a profile from its points, left to right.
     ///
     /// # Errors
-    /// Why it is none, or that the dimension has no profiles.
+    /// The reason why the points are not a valid profile, or that the dimension has no profiles.
     fn profile(
         points: Vec<(f64, f64)>,
         side: Side,
         period: Option<f64>,
     ) -> Result<Box<dyn Surface<Self>>, String>;
-    /// A height field.
+    /// Makes a height field.
     ///
     /// # Errors
-    /// Why it is none, or that the dimension has no height fields.
+    /// The reason why the heights are not a valid field, or that the dimension has no height fields.
     fn height_field(
         points: (usize, usize),
         spacing: (f64, f64),
         heights: Vec<f64>,
         periodic: [bool; 2],
     ) -> Result<Box<dyn Surface<Self>>, String>;
-    /// A surface of triangles.
+    /// Makes a surface of triangles.
     ///
     /// # Errors
-    /// That the dimension has none.
+    /// The dimension has none.
     fn mesh(mesh: Mesh) -> Result<Box<dyn Surface<Self>>, String>;
-    /// A polygon of a body.
+    /// Makes a convex part from a polygon.
     ///
     /// # Errors
-    /// That the dimension has none.
+    /// The dimension has none.
     fn polygon(core: &Polygon, rounding: f64) -> Result<ConvexPart<Self>, String>;
-    /// A polyhedron of a body.
+    /// Makes a convex part from a polyhedron.
     ///
     /// # Errors
-    /// That the dimension has none.
+    /// The dimension has none.
     fn polyhedron(core: &Polyhedron, rounding: f64) -> Result<ConvexPart<Self>, String>;
-    /// All that is within a radius of a segment.
+    /// Makes a capsule: all points within a radius of a segment.
     fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> ConvexPart<Self>;
 }
 
@@ -91,7 +91,7 @@ impl Dimensional for Dim2 {
         }
         if let Some(k) = points.windows(2).position(|w| w[1].x < w[0].x) {
             return Err(format!(
-                "the points of a profile must go from left to right, and point {} at x = {:e} m is left of the one before, at {:e} m",
+                "the points of a profile must go from left to right, but point {} at x = {:e} m is left of the one before, at {:e} m",
                 k + 1,
                 points[k + 1].x,
                 points[k].x
@@ -169,7 +169,7 @@ impl Dimensional for Dim3 {
     }
 }
 
-/// A surface and its offset in the frame of its body.
+/// A surface, and its offset in the frame of its body (m).
 pub(super) type Placed<S> = (<S as Space>::Vector, Box<dyn Surface<S>>);
 
 impl<S: Dimensional> Builder<'_, S> {
@@ -257,7 +257,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 }
                 let longest = longest.unwrap_or(period);
                 self.few_terms(here, *points, period, (longest, *shortest))?;
-                // Rail and wheel must not be each other's image.
+                // A seed of its own for each body: rail and wheel must not be mirror images.
                 let salt = here
                     .bytes()
                     .fold(17u64, |h, b| h.wrapping_mul(31).wrapping_add(u64::from(b)));
@@ -320,7 +320,7 @@ impl<S: Dimensional> Builder<'_, S> {
         }
     }
 
-    /// Refuses a rough profile that would take long to make.
+    /// Rejects a rough profile that would take long to generate.
     fn few_terms(
         &self,
         here: &str,
@@ -344,7 +344,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(())
     }
 
-    /// A profile by its points; one that spans the period repeats.
+    /// Makes a profile from its points; one that spans the period is periodic.
     fn chain(
         &self,
         here: &str,

@@ -1,4 +1,4 @@
-//! Rigid unions: what is carried by one body, with its mass properties.
+//! Rigid unions: the shapes carried by one body, with their mass properties.
 
 use super::surface::Placed;
 use super::{Builder, Dimensional, Origin};
@@ -18,7 +18,8 @@ pub(super) struct Union<S: Space> {
 }
 
 impl<S: Space> Union<S> {
-    /// Centre (m), volume (m^3; 2D: m^2) and moments of inertia about it at unit density of what has a volume.
+    /// Centre (m), volume (m^3; 2D: m^2) and moments of inertia about it at unit density, of each shape that
+    /// has a volume.
     fn volumes(&self) -> impl Iterator<Item = (S::Vector, f64, S::Tensor)> + '_ {
         let ball = |(x, r): &(S::Vector, f64)| {
             let volume = S::ball_volume(*r);
@@ -32,12 +33,12 @@ impl<S: Space> Union<S> {
         self.balls.iter().map(ball).chain(parts)
     }
 
-    /// Volume of all (m^3; 2D: m^2).
+    /// Total volume (m^3; 2D: m^2).
     pub fn volume(&self) -> f64 {
         self.volumes().map(|v| v.1).sum()
     }
 
-    /// The centre of mass; the origin where a surface has no volume (m).
+    /// Centre of mass (m); the origin if the union has surfaces only, which have no volume.
     pub fn centre(&self) -> S::Vector {
         let (mut centre, volume) = (S::Vector::zero(), self.volume());
         if volume > 0.0 && self.surfaces.is_empty() {
@@ -56,7 +57,7 @@ impl<S: Space> Union<S> {
             })
     }
 
-    /// The radius, where there is nothing but a ball (m).
+    /// The radius (m), if the union is a single ball.
     pub fn only_ball(&self) -> Option<f64> {
         let alone = self.balls.len() == 1 && self.parts.is_empty() && self.surfaces.is_empty();
         alone.then(|| self.balls[0].1)
@@ -64,7 +65,7 @@ impl<S: Space> Union<S> {
 }
 
 impl<S: Dimensional> Builder<'_, S> {
-    /// The shapes of a body.
+    /// Collects the shapes of a body.
     pub(super) fn union(
         &mut self,
         path: &str,
@@ -142,7 +143,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(cluster.1.iter().map(ball).collect())
     }
 
-    /// The balls of a plate with a hole: no grain as large as they are gets through between them.
+    /// Makes the balls of a plate with a hole, so close that no grain of their size passes between them.
     fn plate(
         &self,
         here: &str,
@@ -182,7 +183,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(balls)
     }
 
-    /// Gives a body, whose centre of mass is at `centre` (m), the shapes.
+    /// Attaches the shapes to a body whose centre of mass is at `centre` (m).
     pub(super) fn carry(&mut self, union: Union<S>, body: u32, material: u16, centre: &S::Vector) {
         let alone = union.only_ball().is_some();
         let balls = union.balls.into_iter().map(|(x, radius)| Ball {
@@ -211,7 +212,7 @@ impl<S: Dimensional> Builder<'_, S> {
         self.shapes.surfaces.extend(surfaces);
     }
 
-    /// The grains that are rigid unions.
+    /// Adds the grains that are rigid unions.
     pub(super) fn clusters(&mut self) -> Result<(), InputError> {
         for (k, spec) in self.case.grains.iter().enumerate() {
             let GrainSpec::Clusters { material, grains } = spec else {

@@ -1,4 +1,4 @@
-//! Surfaces that wear: which, and that something can wear them.
+//! Set-up of the surfaces that wear, with checks that a wear law can act on them.
 
 use super::{Builder, Dimensional};
 use crate::case::{BodySpec, InterfaceSpec};
@@ -7,7 +7,7 @@ use fretwork_core::laws::Kind;
 use fretwork_core::wear::Scar;
 
 impl<S: Dimensional> Builder<'_, S> {
-    /// Makes the scars of a body whose surfaces begin at a place of the list.
+    /// Makes the scars of a body whose surfaces begin at index `first` of the list.
     pub(super) fn wears(
         &mut self,
         here: &str,
@@ -34,7 +34,7 @@ impl<S: Dimensional> Builder<'_, S> {
             let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
             if !name.chars().all(plain) || self.scars.iter().any(|s| s.name == name) {
                 let message = format!(
-                    "the name `{name}` of a body that wears names columns and files: it must be of its own, of letters, digits, `-` and `_`"
+                    "the name `{name}` of a body that wears names columns and files: it must be unique and made of letters, digits, `-` and `_`"
                 );
                 return Err(self.fail(here, message));
             }
@@ -47,7 +47,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 .find_map(|line| line.windows(2).position(upright));
             if let (Some(k), Some(_)) = (at, &scar) {
                 let message = format!(
-                    "the profile stands upright between points {k} and {}, where it cannot recede; tilt it, or leave `wears` out",
+                    "the profile is vertical between points {k} and {}, where it cannot recede; tilt it, or leave `wears` out",
                     k + 1
                 );
                 return Err(self.fail(here, message));
@@ -69,7 +69,7 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(())
     }
 
-    /// Refuses surfaces that wear and that nothing can wear off.
+    /// Rejects surfaces that wear although no wear law can remove material from them.
     pub(super) fn refuse_idle_wear(&self) -> Result<(), InputError> {
         for (k, body) in self.case.bodies.iter().enumerate() {
             if body.wears.is_none() {
@@ -82,7 +82,7 @@ impl<S: Dimensional> Builder<'_, S> {
             let laws: Vec<&InterfaceSpec> = self.case.interfaces.iter().filter(of).collect();
             let wrong = if laws.is_empty() {
                 Some(format!(
-                    "no interface of the material `{}` has a wear law, so nothing wears the body `{}` off; give one `wear`, or leave `wears` out",
+                    "no interface of the material `{}` has a wear law, so the body `{}` cannot wear; give one a `wear` law, or leave `wears` out",
                     body.material, body.name
                 ))
             } else if laws.iter().all(|i| !self.slips(body, i)) {
@@ -118,8 +118,8 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(())
     }
 
-    /// Whether a body and one that an interface pairs it with can move along each other: unless all are held in all
-    /// degrees of freedom, at all times.
+    /// Whether a body can slide relative to a body that an interface pairs it with; false if all are held in
+    /// all degrees of freedom at all times.
     fn slips(&self, body: &BodySpec, law: &InterfaceSpec) -> bool {
         let other = if law.between.0 == body.material {
             &law.between.1

@@ -1,4 +1,4 @@
-//! Grains of a case.
+//! Specification of the grains in a case.
 
 use super::shapes::ShapeSpec;
 use crate::sample::spec::{BlockWallSpec, CsvSpec, DepositSpec, StateSpec, VoronoiSpec};
@@ -8,19 +8,19 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum GrainSpec {
-    /// One by one.
+    /// Balls, one by one.
     List {
         /// Material.
         material: String,
         /// Balls.
         grains: Vec<OneGrain>,
     },
-    /// A hexagonal (2D) or cubic (3D) lattice, radii drawn uniformly between two, shuffled by the seed;
-    /// no overlaps. Fills the box from its low corner up.
+    /// A hexagonal (2D) or cubic (3D) lattice without overlaps, radii drawn uniformly between two and
+    /// shuffled by the seed. Fills the box from its low corner up.
     Lattice {
         /// Material.
         material: String,
-        /// How many at most.
+        /// Largest number of grains.
         count: usize,
         /// Smallest and largest radius (m).
         radius: (f64, f64),
@@ -54,7 +54,7 @@ pub enum GrainSpec {
     Arch {
         /// Material.
         material: String,
-        /// How many.
+        /// Number of blocks.
         blocks: usize,
         /// Radius of the centre line (m).
         radius: f64,
@@ -66,7 +66,7 @@ pub enum GrainSpec {
         /// Angle of the whole arch (rad), symmetric about the vertical; half a circle by default.
         #[serde(default = "half_circle")]
         span: f64,
-        /// Whether blocks weigh as pieces of the ring, or have straight edges between their joints.
+        /// Whether a block has the mass of a ring sector or straight edges between its joints.
         #[serde(default)]
         edges: Edges,
     },
@@ -119,7 +119,7 @@ fn half_circle() -> f64 {
 /// The edges of a voussoir between its joints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Edges {
-    /// Arcs: mass and centre are those of a piece of the ring. It touches at its joints alone.
+    /// Arcs: mass and centre are those of a ring sector. The block makes contact at its joints only.
     #[default]
     Curved,
     /// Chords.
@@ -130,7 +130,7 @@ pub enum Edges {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct OnePolygon {
-    /// Where the origin of its corners stands (m).
+    /// Position of the origin of its corners (m).
     pub at: Vec<f64>,
     /// Corners (m), against the clock.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -138,10 +138,10 @@ pub struct OnePolygon {
     /// Sides and circumscribed radius (m) of a regular polygon, in place of points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub regular: Option<(usize, f64)>,
-    /// Radius of the rounding about it (m).
+    /// Rounding radius of the corners (m).
     #[serde(default)]
     pub rounding: f64,
-    /// Angle by which the corners are turned about their origin (rad).
+    /// Angle by which the corners are rotated about their origin (rad).
     #[serde(default)]
     pub angle: f64,
     /// Velocity of its centre of mass (m/s).
@@ -156,7 +156,7 @@ pub struct OnePolygon {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct OnePolyhedron {
-    /// Where the origin of its corners stands (m); the centre of a cuboid.
+    /// Position of the origin of its corners (m); for a cuboid its centre.
     pub at: Vec<f64>,
     /// Corners (m), in any order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -167,13 +167,13 @@ pub struct OnePolyhedron {
     /// An STL or OBJ file beside the case whose hull it is, in place of points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// By what the lengths of the file are multiplied.
+    /// Factor on the lengths in the file.
     #[serde(default = "one")]
     pub scale: f64,
     /// Rotation vector (rad) by which the corners are turned about their origin.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub turned: Vec<f64>,
-    /// Radius of the rounding about it (m).
+    /// Rounding radius of the edges (m).
     #[serde(default)]
     pub rounding: f64,
     /// Velocity of its centre of mass (m/s).
@@ -188,9 +188,9 @@ pub struct OnePolyhedron {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct OneCluster {
-    /// Where the origin of its shapes stands (m).
+    /// Position of the origin of its shapes (m).
     pub at: Vec<f64>,
-    /// Balls and convex shapes; where they overlap they weigh twice.
+    /// Balls and convex shapes; overlaps of them count twice in the mass.
     pub shapes: Vec<ShapeSpec>,
     /// Velocity of its centre of mass (m/s).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -1,4 +1,4 @@
-//! A case file: what the user writes.
+//! The case file as the user writes it.
 
 mod grains;
 mod interface;
@@ -34,12 +34,12 @@ pub struct Case {
     /// What it shows, and where its numbers come from.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub doc: String,
-    /// 2 or 3.
+    /// Dimension, 2 or 3.
     pub dimension: u32,
-    /// Seed of everything random.
+    /// Seed of all random numbers.
     #[serde(default)]
     pub seed: u64,
-    /// Step and end.
+    /// Time step and end time.
     pub time: TimeSpec,
     /// Acceleration of gravity (m/s^2), one number an axis.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -50,13 +50,13 @@ pub struct Case {
     /// Phases of the run, one after another.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub phases: Vec<PhaseSpec>,
-    /// Factor on all densities, for quasi-static runs without gravity: inertia is scaled so that steps
-    /// resolve the motion, not the sound (da Cruz et al. 2005: results do not depend on it while the
-    /// inertial number stays below 1e-3). Reported densities and wear are unscaled.
+    /// Factor on all densities, for quasi-static runs without gravity. With scaled inertia the time step has
+    /// to resolve the motion only, not sound waves; results do not depend on the factor while the inertial
+    /// number stays below 1e-3 (da Cruz et al. 2005). Reported densities and wear are unscaled.
     #[serde(default = "one")]
     pub inertia_scaling: f64,
     /// `Explicit` (the default), or `Implicit(tolerance: 1e-6, max_iterations: 50)`: the step is solved
-    /// again until its damage is the one that its openings give.
+    /// repeatedly until its damage is consistent with its openings.
     #[serde(default)]
     pub coupling: Coupling,
     /// Length of the periodic cell along an axis (m).
@@ -65,10 +65,10 @@ pub struct Case {
     /// Detection.
     #[serde(default, skip_serializing_if = "is_default")]
     pub detection: DetectionSpec,
-    /// The solver.
+    /// Options of the contact solver.
     #[serde(default)]
     pub solver: SolverSpec,
-    /// Name in this case, and name of the file in `materials/`.
+    /// Materials: name in this case, and name of the file in `materials/`.
     pub materials: BTreeMap<String, String>,
     /// Interface laws between materials.
     pub interfaces: Vec<InterfaceSpec>,
@@ -96,7 +96,7 @@ pub struct Case {
     /// Other quantities that are measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub measures: Vec<MeasureSpec>,
-    /// What is written, and how often.
+    /// Output files and their intervals.
     #[serde(default)]
     pub output: OutputSpec,
 }
@@ -105,11 +105,11 @@ pub struct Case {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct TimeSpec {
-    /// h (s).
+    /// Time step h (s).
     pub step: f64,
-    /// End (s).
+    /// End time (s).
     pub end: f64,
-    /// Theta of the scheme, 1/2 to 1.
+    /// Theta of the time-stepping scheme, 1/2 to 1.
     #[serde(default = "half")]
     pub theta: f64,
 }
@@ -161,21 +161,23 @@ pub struct SolverSpec {
     /// The method: `Auto`, `Nlgs`, `Anderson`, `Pg`, `Cpg`, `Pcpg`, `Apgd`, `Newton`, `Interior`; see
     /// `docs/solvers.md`.
     pub method: Method,
-    /// Error to reach.
+    /// Bound on the error.
     pub tolerance: f64,
-    /// How the error is measured: `Balance` or `Velocity`, see [`fretwork_core::solve::error`].
+    /// Definition of the error, `Balance` or `Velocity`, see [`fretwork_core::solve::error`].
     pub norm: Norm,
-    /// Sweeps at most in a step.
+    /// Largest number of iterations per step.
     pub max_iterations: u32,
-    /// Sweeps between convergence tests.
+    /// Iterations between convergence tests.
     pub test_every: u32,
-    /// Over-relaxation, 1 to below 2: how much farther than its own solution a contact goes in a sweep.
+    /// Over-relaxation factor, from 1 to below 2, on the change of each contact's impulse in an iteration.
     pub relaxation: f64,
-    /// Share of a penetration that a step takes back, 0 to 1. Rigid contacts under a slowly changing load creep into
-    /// each other by the solver's tolerance; 0.1 bounds that to ten steps' worth. Its work is an entry of the ledger.
+    /// Fraction of a penetration that is removed per step, 0 to 1. Rigid contacts under a slowly changing
+    /// load drift into penetration by the solver's tolerance; 0.1 bounds the penetration to that of ten
+    /// steps. The work of the correction is an entry of the energy ledger.
     pub correction: f64,
-    /// Overlap in parts of the smaller body's length (a grain's radius) beyond which bodies are moved apart, without
-    /// a change of velocity; 0 (the default) for never. See [`fretwork_core::step::projection`].
+    /// Penetration, as a fraction of the smaller body's length (a grain's radius), beyond which bodies are
+    /// moved apart without a change of velocity; 0 (the default) disables it. See
+    /// [`fretwork_core::step::projection`].
     pub projection: f64,
 }
 
@@ -200,9 +202,9 @@ impl Default for SolverSpec {
 pub struct BodySpec {
     /// Name.
     pub name: String,
-    /// Material, by its name in this case.
+    /// Name of its material in this case.
     pub material: String,
-    /// What it is made of.
+    /// Its shapes.
     pub shapes: Vec<ShapeSpec>,
     /// Position of its frame (m); the origin by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -278,7 +280,7 @@ pub struct FrictionSpec {
     /// Axis of the normal load.
     #[serde(default = "axis_y")]
     pub normal: usize,
-    /// When the motion starts to count (s).
+    /// Time at which the motion starts to count (s).
     #[serde(default)]
     pub start: f64,
     /// Length of a cycle (s); by default the period of the body's sine.
@@ -294,11 +296,11 @@ fn axis_y() -> usize {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct BiaxialSpec {
-    /// The walls on the low and the high side, along which the sample is sheared: names of bodies.
+    /// Names of the walls on the low and high side of the axis along which the sample is loaded.
     pub axial: (String, String),
-    /// The walls on the low and the high side of the other axis.
+    /// Names of the walls on the low and high side of the other axis.
     pub lateral: (String, String),
-    /// When the sample is confined and at rest: strains count from here (s).
+    /// Time at which the confined sample is at rest: strains are measured from here (s).
     #[serde(default)]
     pub start: f64,
 }
@@ -307,15 +309,15 @@ pub struct BiaxialSpec {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputSpec {
-    /// Pictures over the run.
+    /// Number of pictures over the run.
     pub frames: u32,
-    /// Recorded states in `results.h5` over the run.
+    /// Number of states recorded in `results.h5` over the run.
     pub views: u32,
-    /// Steps between two rows of the statistics.
+    /// Steps between rows of the statistics.
     pub every: u64,
-    /// Draw the figures at the end.
+    /// Whether figures are drawn at the end.
     pub figures: bool,
-    /// Width of a frame (pixels).
+    /// Width of a picture (pixels).
     pub width: u32,
     /// What frames show (m): xmin, xmax, ymin, ymax (2D); what there is by default.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -326,18 +328,18 @@ pub struct OutputSpec {
     /// The local shear that is darkest in pictures of it; recorded and drawn where given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shear: Option<f64>,
-    /// Steps between two that are written as FCLIB problems, `fclib/step-N.hdf5`; 0 for none.
+    /// Steps between those written as FCLIB problems, `fclib/step-N.hdf5`; 0 for none.
     pub fclib: u64,
-    /// When checkpoints are written, from which `--resume` goes on.
+    /// When checkpoints, from which `--resume` continues, are written.
     pub checkpoint: Checkpoint,
 }
 
 /// When checkpoints are written.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub enum Checkpoint {
-    /// Every so many seconds of wall time; less often where they would take more than a twentieth of the time.
+    /// At intervals of wall time (s); longer if checkpoints would take more than 5 % of the time.
     Seconds(f64),
-    /// Every so many steps.
+    /// At intervals of steps.
     Steps(u64),
     /// Never.
     Never,
@@ -361,7 +363,7 @@ impl Default for OutputSpec {
 }
 
 impl BodySpec {
-    /// The degrees of freedom in the order of the dimension.
+    /// The degrees of freedom in the order of the dimension: translations, then rotations.
     pub fn ordered(&self, dimension: usize) -> Vec<Dof> {
         let d = self.dofs.clone();
         if dimension == 2 {
@@ -371,7 +373,7 @@ impl BodySpec {
         }
     }
 
-    /// Names of the degrees of freedom, as [`BodySpec::ordered`].
+    /// Names of the degrees of freedom, in the order of [`BodySpec::ordered`].
     pub fn names(dimension: usize) -> &'static [&'static str] {
         if dimension == 2 {
             &["x", "y", "rz"]

@@ -1,4 +1,4 @@
-//! What first bodies are made of.
+//! Shapes of first bodies.
 
 use serde::ser::SerializeTuple;
 use serde::{Deserialize, Serialize};
@@ -25,7 +25,7 @@ pub enum StandardName {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum ShapeSpec {
-    /// Solid behind a plane; `at` is a point of it (m), `normal` points to the open side.
+    /// Half-space, solid behind the plane through `at` (m); `normal` points to the open side.
     HalfSpace {
         /// Outward normal.
         normal: Vec<f64>,
@@ -33,7 +33,7 @@ pub enum ShapeSpec {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         at: Vec<f64>,
     },
-    /// A profile by its points, left to right (2D).
+    /// A profile given by its points, left to right (2D).
     Profile {
         /// Points (m).
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -41,12 +41,12 @@ pub enum ShapeSpec {
         /// A table of them with the columns `x` and `z`, in place of `points`: a path relative to the case.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         file: Option<String>,
-        /// Where the solid is.
+        /// Side of the solid.
         side: Side,
     },
-    /// The profile of a standard (2D), see [`crate::standard`].
+    /// A standard profile (2D), see [`crate::standard`].
     StandardProfile {
-        /// Which.
+        /// Name of the profile.
         name: StandardName,
         /// Longest segment (m).
         #[serde(default = "half_millimetre")]
@@ -64,9 +64,9 @@ pub enum ShapeSpec {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         side: Option<Side>,
     },
-    /// A self-affine rough profile over the period of x (2D): random phases, spectrum |q|^(-1-2H).
+    /// A periodic, self-affine rough profile over the period of x (2D): random phases, spectrum |q|^(-1-2H).
     RoughProfile {
-        /// Points along the period.
+        /// Number of points along the period.
         points: usize,
         /// Root-mean-square height (m).
         rms: f64,
@@ -81,18 +81,18 @@ pub enum ShapeSpec {
         /// Mean height (m).
         #[serde(default)]
         height: f64,
-        /// Where the solid is.
+        /// Side of the solid.
         side: Side,
     },
     /// A convex polygon with rounded corners (2D).
     Polygon {
-        /// Corners (m), against the clock.
+        /// Corners (m), counter-clockwise.
         points: Vec<(f64, f64)>,
-        /// Radius of the rounding about it (m).
+        /// Rounding radius of the corners (m).
         #[serde(default)]
         rounding: f64,
     },
-    /// All that is within a radius of a segment.
+    /// Capsule: all points within a radius of a segment.
     Capsule {
         /// One end of the segment (m).
         from: Coordinates,
@@ -105,13 +105,13 @@ pub enum ShapeSpec {
     Polyhedron {
         /// Corners (m), in any order.
         points: Vec<(f64, f64, f64)>,
-        /// Radius of the rounding about it (m).
+        /// Rounding radius of the edges (m).
         #[serde(default)]
         rounding: f64,
     },
     /// A cuboid with rounded edges (3D).
     Box {
-        /// Lengths of its edges (m).
+        /// Edge lengths (m).
         size: (f64, f64, f64),
         /// Its centre (m).
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -119,24 +119,25 @@ pub enum ShapeSpec {
         /// Rotation vector (rad) by which it is turned about its centre.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         turned: Vec<f64>,
-        /// Radius of the rounding about it (m).
+        /// Rounding radius of the edges (m).
         #[serde(default)]
         rounding: f64,
     },
-    /// A surface of triangles from an STL or OBJ file (3D), solid behind them.
+    /// A surface of triangles from an STL or OBJ file (3D), with the solid behind it.
     Mesh {
         /// Path relative to the case.
         file: String,
-        /// By what the lengths of the file are multiplied.
+        /// Factor on the lengths in the file.
         #[serde(default = "one")]
         scale: f64,
         /// Where the origin of the file stands (m).
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         at: Vec<f64>,
     },
-    /// Balls fixed to the body: (position relative to the body's frame, radius).
+    /// Balls fixed to the body: (position in the body's frame, radius), in m.
     Balls(Vec<(Vec<f64>, f64)>),
-    /// A level plate of balls in rings about the z axis, with a round hole (3D): the balls touch z = 0 from below.
+    /// A horizontal plate of balls in rings about the z axis, with a round hole (3D): the balls touch z = 0
+    /// from below.
     Plate {
         /// Radius of the plate (m).
         radius: f64,
@@ -145,7 +146,7 @@ pub enum ShapeSpec {
         /// Radius of the balls (m).
         balls: f64,
     },
-    /// The inside of a cylinder about the body's origin, solid outside: a drum.
+    /// Drum: the inside of a cylinder about the body's origin, with the solid outside.
     Drum {
         /// Radius (m).
         radius: f64,
@@ -153,16 +154,16 @@ pub enum ShapeSpec {
         #[serde(default)]
         axis: usize,
     },
-    /// The cluster of this name in a scene file.
+    /// A cluster of a scene file.
     Cluster {
         /// Path relative to the case.
         file: String,
-        /// Name in the file.
+        /// Name of the cluster in the file.
         name: String,
     },
-    /// Heights over a regular grid (3D), solid below; periodic where the cell is.
+    /// Heights over a regular grid (3D), solid below; periodic if the cell is periodic.
     HeightField {
-        /// Points along x and y.
+        /// Number of points along x and y.
         points: (usize, usize),
         /// Spacing (m).
         spacing: (f64, f64),
@@ -183,7 +184,7 @@ fn one() -> f64 {
     1.0
 }
 
-/// A place by its coordinates, (x, y) or (x, y, z).
+/// A point by its coordinates (m), (x, y) or (x, y, z).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coordinates(pub Vec<f64>);
 

@@ -1,4 +1,4 @@
-//! How the surfaces of a first body follow their wear.
+//! Specification of a first body's wear.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct WearSpec {
     /// Depth at which a surface is worn through and the run stops (m).
     pub thickness: f64,
-    /// Steps between two at which surfaces follow.
+    /// Steps between updates of the surfaces.
     #[serde(default = "one")]
     pub every: u64,
 }

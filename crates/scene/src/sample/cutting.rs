@@ -1,6 +1,6 @@
-//! Convex polyhedra that are cut by planes: corners, each named after the three planes that meet there.
+//! Convex polyhedra cut by planes. Each corner carries the labels of the three planes that meet there.
 //!
-//! Two corners with two planes in common are the ends of an edge, so that nothing else has to be kept.
+//! Two corners that share two planes are the ends of an edge, so edges need not be stored.
 
 use fretwork_core::geometry::convex::polyhedron::across;
 use nalgebra::Vector3;
@@ -10,14 +10,14 @@ type V = Vector3<f64>;
 /// A corner, and the three planes that meet there.
 #[derive(Clone, Copy, Debug)]
 pub struct Corner<L> {
-    /// Where it is (m).
+    /// Position (m).
     pub at: V,
     /// The planes.
     pub sides: [L; 3],
 }
 
 impl<L: Copy + PartialEq> Corner<L> {
-    /// The two planes of the edge between two corners; none where there is no edge.
+    /// The two planes of the edge between two corners; `None` if no edge joins them.
     pub fn edge(&self, other: &Self) -> Option<[L; 2]> {
         let [a, b, c] = self.sides;
         let on = |s: L| other.sides.contains(&s);
@@ -30,8 +30,8 @@ impl<L: Copy + PartialEq> Corner<L> {
     }
 }
 
-/// Takes off what is above a plane: where a point's product with the normal is more than `height` (m). Whether there
-/// was anything.
+/// Cuts off the part above a plane, where the dot product of a point and the normal exceeds `height` (m).
+/// Returns whether anything was cut off.
 pub fn cut<L: Copy + PartialEq>(
     corners: &mut Vec<Corner<L>>,
     side: L,
@@ -39,7 +39,7 @@ pub fn cut<L: Copy + PartialEq>(
     height: f64,
 ) -> bool {
     let over = |c: &Corner<L>| c.at.dot(normal) - height;
-    // Most planes take nothing off.
+    // Early exit: most planes cut nothing off.
     if !corners.iter().any(|c| over(c) > 0.0) {
         return false;
     }
@@ -61,7 +61,7 @@ pub fn cut<L: Copy + PartialEq>(
     true
 }
 
-/// The corners on a plane, against the clock seen from outside.
+/// The corners on a plane, counter-clockwise seen from outside.
 pub fn ordered<L: Copy + PartialEq>(corners: &[Corner<L>], side: L, normal: &V) -> Vec<u32> {
     let mut on: Vec<u32> = (0..corners.len() as u32)
         .filter(|k| corners[*k as usize].sides.contains(&side))
@@ -78,7 +78,7 @@ pub fn ordered<L: Copy + PartialEq>(corners: &[Corner<L>], side: L, normal: &V) 
     on
 }
 
-/// The planes, in their order.
+/// The planes, sorted.
 pub fn sides_of<L: Copy + Ord>(corners: &[Corner<L>]) -> Vec<L> {
     let mut sides: Vec<L> = corners.iter().flat_map(|c| c.sides).collect();
     sides.sort_unstable();
@@ -86,11 +86,11 @@ pub fn sides_of<L: Copy + Ord>(corners: &[Corner<L>]) -> Vec<L> {
     sides
 }
 
-/// The centre of mass of a polyhedron about the origin (m).
+/// Centroid of a polyhedron that contains the origin (m).
 pub fn centre<L: Copy + Ord>(corners: &[Corner<L>]) -> V {
     let (mut first, mut volume) = (V::zeros(), 0.0);
     for side in sides_of(corners) {
-        // The origin is inside: a face's outward normal is on the side of its corners.
+        // The origin is inside: a face's outward normal points towards its corners.
         let on = || corners.iter().filter(|c| c.sides.contains(&side));
         let [a, b, c] = {
             let mut at = on().map(|c| c.at);

@@ -1,7 +1,7 @@
-//! A loose random deposit: grains put down one after another where there is room, the largest first.
+//! Loose random deposits: grains are placed one after another at random without overlaps, the largest first.
 //!
-//! Random sequential placing fills about 0.5 of a box in the plane and 0.35 in space before no room is found
-//! (0.547, Feder 1980, and 0.384, Cooper 1988, of equal balls in the limit); gravity or walls make it dense.
+//! Random sequential addition fills about 0.5 of a box in 2D and 0.35 in 3D before it fails (0.547, Feder
+//! 1980, and 0.384, Cooper 1988, in the limit for equal balls); gravity or walls compact the sample further.
 
 use super::sizes::Sizes;
 use fretwork_core::geometry::periodic::Periodic;
@@ -10,7 +10,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::collections::HashMap;
 
-/// Throws of one grain before it is given up.
+/// Attempts to place one grain.
 const THROWS: usize = 5_000;
 
 /// A box (m).
@@ -29,17 +29,17 @@ impl<V: VectorLike> Corners<V> {
     }
 }
 
-/// What was put down.
+/// Result of a deposit.
 #[derive(Clone, Debug)]
 pub struct Deposit<V> {
     /// Centres and radii (m), in random order of size.
     pub grains: Vec<(V, f64)>,
-    /// Share of the box that all grains that were asked for take.
+    /// Fraction of the box that all requested grains would fill.
     pub asked: f64,
 }
 
-/// Puts `count` grains into a box without overlaps, across a periodic axis where the box spans it; fewer when
-/// one finds no room.
+/// Places `count` grains in a box without overlaps, across a periodic axis if the box spans it; fewer if one
+/// of them cannot be placed.
 pub fn deposit<S: Space>(
     count: usize,
     sizes: &Sizes,
@@ -74,7 +74,7 @@ pub fn deposit<S: Space>(
     }
 }
 
-/// A place for a ball, thrown until it overlaps none.
+/// Draws positions for a ball until one overlaps no other; `None` after too many attempts.
 fn room<V: VectorLike>(
     rng: &mut Pcg64,
     radius: f64,
@@ -104,8 +104,9 @@ fn room<V: VectorLike>(
     None
 }
 
-/// Balls by size: each level holds radii within a factor of two of its widest, in cells as wide as that ball, so
-/// that a ball no larger than all placed meets those of a level in the nearest cells.
+/// Balls sorted by size: each level holds radii within a factor of two of its largest, in cells as wide as
+/// that ball. A ball not larger than all placed ones therefore meets the balls of a level in adjacent cells
+/// only.
 struct Levels<V>(Vec<Level<V>>);
 
 struct Level<V> {
@@ -119,7 +120,7 @@ impl<V> Default for Levels<V> {
     }
 }
 
-/// Cells of a level along an axis, and their width: around a period they fit it.
+/// Number of cells of a level along an axis, and their width, adjusted to the period.
 fn grid(widest: f64, period: Option<f64>) -> (f64, Option<i64>) {
     let width = 2.0 * widest;
     match period {
@@ -144,7 +145,7 @@ impl<V: VectorLike> Level<V> {
 }
 
 impl<V: VectorLike> Levels<V> {
-    /// Takes a ball in that is no larger than those before.
+    /// Inserts a ball that is not larger than those before.
     fn add(&mut self, at: V, radius: f64, periodic: &Periodic) {
         if self.0.last().is_none_or(|l| radius < 0.5 * l.widest) {
             self.0.push(Level {
@@ -158,7 +159,7 @@ impl<V: VectorLike> Levels<V> {
         }
     }
 
-    /// Whether a ball no larger than those before overlaps none of them.
+    /// Whether a ball that is not larger than those before overlaps none of them.
     fn free(&self, at: &V, radius: f64, periodic: &Periodic) -> bool {
         self.0.iter().all(|level| {
             let home = level.cell(at, periodic);

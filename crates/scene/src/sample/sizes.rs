@@ -1,7 +1,7 @@
-//! Distributions of grain sizes: pieces on each of which the density is a power of the radius.
+//! Grain size distributions, piecewise power laws of the radius.
 //!
-//! A distribution by mass is one by number with a steeper power: in dimension D a grain weighs r^D, so that a
-//! density f(r) of the mass is f(r) r^-D of the number.
+//! A distribution by mass is one by number with another exponent: in dimension D the mass of a grain is
+//! proportional to r^D, so a density f(r) by mass is f(r) r^-D by number.
 
 use rand::RngExt;
 use rand::seq::SliceRandom;
@@ -13,7 +13,7 @@ struct Piece {
     low: f64,
     high: f64,
     exponent: f64,
-    /// Share of the grains up to the end of this piece.
+    /// Cumulative fraction of the grains up to the end of this piece.
     until: f64,
 }
 
@@ -32,7 +32,7 @@ fn integral(low: f64, high: f64, exponent: f64) -> f64 {
 }
 
 impl Sizes {
-    /// A number density r^-exponent between two radii (m), positive and in order.
+    /// The distribution with a number density r^-exponent between two radii (m), positive and increasing.
     pub fn power(radius: (f64, f64), exponent: f64) -> Self {
         Self(vec![Piece {
             low: radius.0,
@@ -42,9 +42,9 @@ impl Sizes {
         }])
     }
 
-    /// From a grading curve: radii (m), rising, and the share of the mass of smaller grains, from 0 to 1. Between
-    /// two points the mass is spread evenly over the logarithm of the size, as curves on a logarithmic axis are
-    /// drawn.
+    /// The distribution of a grading curve: increasing radii (m), and the mass fraction of smaller grains,
+    /// from 0 to 1. Between two points the mass is uniform in the logarithm of the size, as grading curves
+    /// are drawn.
     pub fn sieve(curve: &[(f64, f64)], dimension: usize) -> Self {
         let exponent = 1.0 + dimension as f64;
         let mut pieces = Vec::new();
@@ -52,7 +52,7 @@ impl Sizes {
         for pair in curve.windows(2) {
             let [(low, before), (high, after)] = [pair[0], pair[1]];
             if after > before {
-                // In units of the largest radius: powers of small numbers vanish.
+                // In units of the largest radius, since powers of small numbers underflow.
                 let largest = curve[curve.len() - 1].0;
                 let (a, b) = (low / largest, high / largest);
                 total += (after - before) / (high / low).ln() * integral(a, b, exponent);
@@ -68,7 +68,7 @@ impl Sizes {
         Self(pieces)
     }
 
-    /// The radius (m) below which a share of the grains lies.
+    /// The radius (m) below which a given fraction of the grains lies.
     pub fn quantile(&self, share: f64) -> f64 {
         let mut before = 0.0;
         for (k, piece) in self.0.iter().enumerate() {
@@ -81,7 +81,7 @@ impl Sizes {
         f64::NAN
     }
 
-    /// The share of grains below a radius (m).
+    /// The fraction of grains below a radius (m).
     pub fn share_below(&self, radius: f64) -> f64 {
         let mut before = 0.0;
         for piece in &self.0 {
@@ -98,9 +98,9 @@ impl Sizes {
         1.0
     }
 
-    /// So many radii (m): one from each of as many equal slices of the distribution, in random order. Their
-    /// curve is off the distribution's by no more than one grain, which independent draws would be by the root of
-    /// their number.
+    /// Draws `count` radii (m), one from each of `count` equal quantile intervals, in random order. The
+    /// sample's cumulative curve differs from the distribution's by at most one grain, while independent
+    /// draws would differ by the square root of their number.
     pub fn draw(&self, count: usize, rng: &mut Pcg64) -> Vec<f64> {
         let mut radii: Vec<f64> = (0..count)
             .map(|k| self.quantile((k as f64 + rng.random_range(0.0..1.0)) / count as f64))
@@ -128,7 +128,7 @@ mod tests {
     use super::*;
     use rand::SeedableRng;
 
-    /// Largest distance of a sample's curve, weighted, from a given one.
+    /// Largest distance between a weighted sample's cumulative curve and a given one.
     fn kolmogorov(
         mut radii: Vec<f64>,
         weight: impl Fn(f64) -> f64,
@@ -146,8 +146,8 @@ mod tests {
         worst
     }
 
-    /// Each slice of the distribution has one grain, so that the curve by number is off by 1/n at most; the
-    /// curve by mass by what the heaviest grain weighs more than the lightest, twice for its total.
+    /// Each quantile interval has one grain, so the curve by number is off by 1/n at most, and the curve by
+    /// mass by the mass difference of the heaviest and lightest grain, twice, over the total mass.
     #[test]
     fn samples_follow_their_distribution_by_number_and_by_mass() {
         let n = 4_000;
@@ -166,7 +166,7 @@ mod tests {
                 let by = |r: f64| r.powi(d as i32);
                 let off = kolmogorov(radii.clone(), by, power(exponent - dim));
                 assert!(off <= bound, "{exponent} by mass: {off} of {bound}");
-                // By mass is not by number: the curves of the two are far apart.
+                // The curves by mass and by number differ clearly.
                 if by_mass {
                     assert!(kolmogorov(radii, |_| 1.0, power(exponent - dim)) > 0.05);
                 }
@@ -175,7 +175,7 @@ mod tests {
     }
 
     /// Against independent draws from the same generator: the Kolmogorov-Smirnov bound of 1.95/sqrt(n) holds
-    /// for 999 samples in 1000 (Smirnov 1948).
+    /// for 999 of 1000 samples (Smirnov 1948).
     #[test]
     fn quantiles_invert_the_curve() {
         let curve = [(1e-3, 0.0), (2e-3, 0.2), (4e-3, 0.2), (8e-3, 1.0)];

@@ -1,4 +1,4 @@
-//! What a case says about samples that are made or read.
+//! Specification of samples that are generated or read from files.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct DepositSpec {
     /// Material.
     pub material: String,
-    /// How many grains.
+    /// Number of grains.
     pub count: usize,
     /// Their sizes.
     pub sizes: SizeSpec,
@@ -24,19 +24,19 @@ pub struct DepositSpec {
 pub struct VoronoiSpec {
     /// Material.
     pub material: String,
-    /// Mean size of a cell, the root of its area, in 3D the cube root of its volume (m).
+    /// Mean size of a cell (m): the square root of its area, in 3D the cube root of its volume.
     pub size: f64,
     /// Low corner of the box (m).
     pub low: Vec<f64>,
     /// High corner of the box (m).
     pub high: Vec<f64>,
-    /// Lloyd's rounds: more make the cells more alike.
+    /// Lloyd iterations; more of them make the cells more uniform.
     #[serde(default)]
     pub rounds: usize,
-    /// Distance between neighbours (m).
+    /// Gap between neighbours (m).
     #[serde(default)]
     pub gap: f64,
-    /// Radius to which corners, in 3D edges too, are rounded (m).
+    /// Rounding radius of corners, in 3D also of edges (m).
     #[serde(default)]
     pub rounding: f64,
 }
@@ -48,9 +48,9 @@ pub struct VoronoiSpec {
 pub struct BlockWallSpec {
     /// Material.
     pub material: String,
-    /// Courses.
+    /// Number of courses.
     pub rows: usize,
-    /// Whole blocks in the lowest course.
+    /// Number of whole blocks in the lowest course.
     pub columns: usize,
     /// Width and height of a block (m).
     pub block: (f64, f64),
@@ -69,26 +69,26 @@ pub struct BlockWallSpec {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum SizeSpec {
-    /// Every radius between two is as frequent.
+    /// Uniform density of the radius.
     Uniform {
         /// Smallest and largest radius (m).
         radius: (f64, f64),
-        /// Whether grains or their masses are counted.
+        /// Whether the distribution is by number or by mass.
         #[serde(default)]
         by: Counted,
     },
-    /// The density falls as r^-exponent between two radii.
+    /// Density proportional to r^-exponent between two radii.
     PowerLaw {
         /// Exponent of the density.
         exponent: f64,
         /// Smallest and largest radius (m).
         radius: (f64, f64),
-        /// Whether grains or their masses are counted.
+        /// Whether the distribution is by number or by mass.
         #[serde(default)]
         by: Counted,
     },
-    /// A grading curve in a CSV file with the columns `size` (m), the opening of a sieve, which is a diameter, and
-    /// `passing`, the fraction of the mass that passes it.
+    /// A grading curve in a CSV file with the columns `size`, the sieve opening (m), which is a diameter, and
+    /// `passing`, the mass fraction that passes it.
     Sieve {
         /// Path relative to the case.
         file: String,
@@ -98,14 +98,14 @@ pub enum SizeSpec {
 /// What a distribution counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Counted {
-    /// Grains.
+    /// By number.
     #[default]
     Number,
-    /// Their masses.
+    /// By mass.
     Mass,
 }
 
-/// Grains of a CSV file with the columns x, y (z in 3D), radius, and where wanted velocity_x, velocity_y
+/// Grains of a CSV file with the columns x, y (z in 3D), radius, and optionally velocity_x, velocity_y
 /// (velocity_z) and spin (spin_x, spin_y, spin_z in 3D).
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
@@ -124,7 +124,7 @@ pub struct StateSpec {
     pub results: String,
     /// Material.
     pub material: String,
-    /// Which of its states.
+    /// The state to take.
     #[serde(default)]
     pub frame: FrameSpec,
 }
@@ -135,6 +135,6 @@ pub enum FrameSpec {
     /// The last one.
     #[default]
     Last,
-    /// One by its number, from 0.
+    /// A state by its index, from 0.
     Number(usize),
 }

@@ -1,11 +1,11 @@
-//! Tables of numbers in CSV: a header with the names of the columns, then one row a line.
+//! Reader of numeric CSV tables with a header of column names.
 
 use crate::source::{InputError, nearest, read_text};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::ops::Range;
 use std::path::Path;
 
-/// A table that was read.
+/// A numeric table.
 #[derive(Clone, Debug)]
 pub struct Table {
     name: String,
@@ -15,21 +15,21 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads a table of columns that must be there and columns that may. Lines that begin with `#` are comments.
+    /// Reads a table with required and optional columns. Lines that begin with `#` are comments.
     ///
     /// # Errors
-    /// The line that is wrong: a column that is missing, unknown or there twice, a row of another length, a value
-    /// that is no finite number.
+    /// An error at the line that is wrong: a missing, unknown or repeated column, a row of another length, or a value
+    /// that is not a finite number.
     pub fn read(path: &Path, required: &[&str], optional: &[&str]) -> Result<Self, InputError> {
         let text = read_text(path)?;
         let name = path.display().to_string();
         Self::parse(name, text, required, optional, false)
     }
 
-    /// The same for columns of lengths, which may have their unit behind the name, `z [mm]`; values are in metres.
+    /// Reads a table of lengths, whose columns may have a unit behind the name, `z [mm]`; values are converted to metres.
     ///
     /// # Errors
-    /// As [`Table::read`], or a unit that is no length.
+    /// As [`Table::read`], or a unit that is not a length.
     pub fn read_lengths(
         path: &Path,
         required: &[&str],
@@ -68,7 +68,7 @@ impl Table {
             let more = reader.read_record(&mut record);
             let span = line_before(&text, reader.position().byte() as usize);
             let fail = |message| InputError::at(&table.name, &text, span.clone(), message);
-            if !more.map_err(|e| fail(format!("this is no CSV: {e}")))? {
+            if !more.map_err(|e| fail(format!("this is not a valid CSV file: {e}")))? {
                 break;
             }
             if table.header.is_empty() {
@@ -108,10 +108,10 @@ impl Table {
                         row.push(x * metre);
                     }
                     None => {
-                        return Err(
-                            fail(format!("the value `{word}` of `{column}` is no number"))
-                                .expected("a finite number"),
-                        );
+                        return Err(fail(format!(
+                            "the value `{word}` of `{column}` is not a number"
+                        ))
+                        .expected("a finite number"));
                     }
                 }
             }
@@ -130,29 +130,29 @@ impl Table {
         self.rows.len()
     }
 
-    /// Whether there is no row; never, of a table that was read.
+    /// Whether there are no rows; never true for a table that was read.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 
-    /// The place of a column.
+    /// Index of a column, if the table has it.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.header.iter().position(|h| h == name)
     }
 
-    /// A value; 0 of a column that is not there.
+    /// A value; 0 for an absent column.
     pub fn value(&self, row: usize, column: Option<usize>) -> f64 {
         column.map_or(0.0, |c| self.rows[row].1[c])
     }
 
-    /// An error at a row.
+    /// Makes an error located at a row.
     pub fn fail(&self, row: usize, message: impl Into<String>) -> InputError {
         let span = self.rows[row].0.clone();
         InputError::at(&self.name, &self.text, span, message)
     }
 }
 
-/// A name without its unit, and the unit in metres.
+/// Splits a column's name into its name and its unit in metres.
 fn length(name: &str) -> Result<(String, f64), String> {
     let Some((short, unit)) = name.split_once('[') else {
         return Ok((name.to_owned(), 1.0));
@@ -162,7 +162,7 @@ fn length(name: &str) -> Result<(String, f64), String> {
         "mm" => 1e-3,
         "um" | "\u{b5}m" | "\u{3bc}m" => 1e-6,
         "nm" => 1e-9,
-        other => return Err(format!("`{other}` is no unit of length")),
+        other => return Err(format!("`{other}` is not a unit of length")),
     };
     Ok((short.trim().to_owned(), metre))
 }
@@ -187,7 +187,7 @@ fn check_header(
             let message = if name.parse::<f64>().is_ok() {
                 "the first line must name the columns".to_owned()
             } else {
-                format!("there is no use for a column `{name}`")
+                format!("unknown column `{name}`")
             };
             return Err((message, nearest(name, known()).map(str::to_owned)));
         }
@@ -198,7 +198,7 @@ fn check_header(
     }
 }
 
-/// The bytes of the line that ends before a place.
+/// Byte range of the line that ends before a position.
 fn line_before(text: &str, end: usize) -> Range<usize> {
     let before = text[..end.min(text.len())].trim_end_matches(['\r', '\n']);
     let start = before.rfind('\n').map_or(0, |k| k + 1);
@@ -229,7 +229,7 @@ mod tests {
             .err()
             .unwrap_or_else(|| panic!("passed"));
         assert!(
-            error.message().contains("`kg` is no unit of length"),
+            error.message().contains("`kg` is not a unit of length"),
             "{error}"
         );
         assert_eq!(error.position(), Some((1, 1)));
@@ -252,11 +252,11 @@ mod tests {
             (
                 "x,radius\n1,2\n1,two\n",
                 3,
-                "`two` of `radius` is no number",
+                "`two` of `radius` is not a number",
             ),
             ("x,radius\n1,2\n\n# c\n1,NaN\n", 5, "`NaN` of `radius`"),
             ("x,radius\n1,2,3\n", 2, "3 values and the header 2 columns"),
-            ("x,radius,radus\n1,2,3\n", 1, "no use for a column `radus`"),
+            ("x,radius,radus\n1,2,3\n", 1, "unknown column `radus`"),
             ("x,x,radius\n1,2,3\n", 1, "`x` is there twice"),
             ("x\n1\n", 1, "`radius` is missing"),
             ("x;radius\n1;2\n", 1, "separated by commas"),

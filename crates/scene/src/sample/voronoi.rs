@@ -1,8 +1,9 @@
-//! Voronoi cells that fill a box: a body of grains that fit each other side by side.
+//! Voronoi cells that fill a rectangle with grains that fit each other side by side.
 //!
-//! Sites thrown at random, half a cell size apart, are mirrored in the walls of the box, so that the cells of the real
-//! ones end there (Mollon, Tribol. Int. 90 (2015) 343 makes degradable bodies of such cells). Lloyd's rounds (IEEE Trans. Inf. Theory 28
-//! (1982) 129) move each site to the centre of its cell, which makes them alike and round.
+//! Random sites, at least half a cell size apart, are mirrored in the walls of the box, so that the cells end
+//! at the walls (Mollon, Tribol. Int. 90 (2015) 343 makes degradable bodies of such cells). Lloyd iterations
+//! (IEEE Trans. Inf. Theory 28 (1982) 129) move each site to the centroid of its cell, which makes the cells
+//! more uniform.
 
 use super::deposit::{Corners, deposit};
 use super::sizes::Sizes;
@@ -14,23 +15,23 @@ use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 type V = Vector2<f64>;
 
-/// Sides shorter than this part of the cell size are taken out: their ends become one corner.
+/// Sides shorter than this fraction of the cell size are removed: their ends are merged into one corner.
 pub const SHORTEST: f64 = 1e-3;
-/// Corners this near, as part of the cell size, are the same but for rounding, and so is a corner on a wall.
+/// Tolerance, as a fraction of the cell size, within which corners coincide, or a corner is on a wall.
 const SAME: f64 = 1e-7;
 
-/// The cells.
+/// A Voronoi tiling of a rectangle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tiling {
-    /// Corners of each cell (m), against the clock; neighbours have the same ends of their common side. Across a
-    /// period cells go beyond the box.
+    /// Corners of each cell (m), counter-clockwise; neighbours share both ends of their common side. Across a
+    /// period, cells extend beyond the box.
     pub cells: Vec<Vec<V>>,
-    /// Sides of cells that were too short and were taken out.
+    /// Number of short sides that were removed.
     pub merged: usize,
 }
 
-/// Fills a box with some area/size² cells; around the period of x where the box is as wide as that. None where the
-/// box is thinner than half a cell.
+/// Fills a box with about area/size² cells, periodic along x if the box is as wide as the period. `None` if
+/// the box is thinner than half a cell.
 pub fn tiling(
     corners: &Corners<V>,
     periodic: &Periodic,
@@ -65,13 +66,13 @@ pub fn tiling(
             }
         }
     }
-    // Neighbours in space become neighbours in memory.
+    // Sorted so that neighbours in space are neighbours in memory.
     sites.sort_by_cached_key(|p| [p.y, p.x].map(|x| (x / (2.0 * size)).floor() as i64));
     region.cells(&sites)
 }
 
-/// The part of a convex polygon that is `distance` (m) or more from its sides, without sides shorter than
-/// `shortest` (m); none where nothing is left.
+/// Offsets the sides of a convex polygon inwards by `distance` (m), and removes sides shorter than `shortest`
+/// (m). `None` if nothing is left.
 pub fn inset(points: &[V], distance: f64, shortest: f64) -> Option<Vec<V>> {
     let n = points.len();
     let mut left = points.to_vec();
@@ -103,7 +104,7 @@ pub fn inset(points: &[V], distance: f64, shortest: f64) -> Option<Vec<V>> {
     (out.len() > 2).then_some(out)
 }
 
-/// A site of the triangulation: its cell, where it is no image.
+/// A site of the triangulation, with the index of its cell unless it is an image.
 struct Site {
     at: Point2<f64>,
     cell: Option<usize>,
@@ -116,7 +117,7 @@ impl HasPosition for Site {
     }
 }
 
-/// What is filled.
+/// The region to fill.
 struct Region {
     corners: Corners<V>,
     around: Option<f64>,
@@ -124,7 +125,7 @@ struct Region {
 }
 
 impl Region {
-    /// The sites and their images in the walls, or across the period.
+    /// The sites and their images in the walls or across the period.
     fn with_images(&self, sites: &[V]) -> Vec<Site> {
         let (low, high) = (self.corners.low, self.corners.high);
         let mut out = Vec::with_capacity(5 * sites.len());
@@ -146,7 +147,7 @@ impl Region {
         out
     }
 
-    /// A corner, on the wall where it is near one.
+    /// Moves a corner onto the wall if it is within the tolerance of one.
     fn snapped(&self, mut p: V) -> V {
         for k in usize::from(self.around.is_some())..2 {
             for wall in [self.corners.low[k], self.corners.high[k]] {
@@ -158,7 +159,7 @@ impl Region {
         p
     }
 
-    /// Where corners that become one come to stand: on each wall that one of them is on, in their middle otherwise.
+    /// Position of merged corners: on each wall that one of them is on, otherwise their mean.
     fn joined(&self, members: &[V]) -> V {
         let mut at = members.iter().sum::<V>() / members.len() as f64;
         for k in usize::from(self.around.is_some())..2 {
@@ -171,7 +172,7 @@ impl Region {
         at
     }
 
-    /// The cells of the sites, in their order. None where a site's cell is lost to rounding.
+    /// The cells of the sites, in their order. `None` if rounding lost a site's cell.
     fn cells(&self, sites: &[V]) -> Option<Tiling> {
         let triangles = DelaunayTriangulation::<Site>::bulk_load(self.with_images(sites)).ok()?;
         let mut places = vec![V::zeros(); triangles.num_all_faces()];
@@ -203,7 +204,7 @@ impl Region {
                 continue;
             };
             let mut around = Vec::new();
-            // Against the clock.
+            // Counter-clockwise.
             for edge in vertex.out_edges() {
                 let face = edge.face().as_inner()?;
                 around.push(face.fix().index());
@@ -225,7 +226,7 @@ impl Region {
     }
 }
 
-/// The first of the corners that become one with this one.
+/// Representative of the corners that are merged with this one.
 fn root(roots: &[usize], mut k: usize) -> usize {
     while roots[k] != k {
         k = roots[k];
@@ -269,14 +270,14 @@ mod tests {
                 for cell in &tiling.cells {
                     Polygon::new(cell.clone()).unwrap_or_else(|e| panic!("{e}: {cell:?}"));
                 }
-                // No holes and, since no cell is turned inside out, no overlaps.
+                // There are no holes and, since no cell is inverted, no overlaps.
                 assert!((area(&tiling.cells) / whole - 1.0).abs() < 1e-13);
             }
         }
         assert!(merged > 0, "no side was short enough to test with");
     }
 
-    /// Every side is that of one neighbour too, end for end, or on a wall.
+    /// Every side coincides with a side of one neighbour, or lies on a wall.
     #[test]
     fn neighbours_share_their_sides() {
         for period in [None, Some(HIGH.x - LOW.x)] {
@@ -327,7 +328,7 @@ mod tests {
         assert_ne!(made(0.05, 2, None, 3), made(0.05, 2, None, 4));
     }
 
-    /// One cell is the box; a box too thin for a site has none.
+    /// A single cell is the box; a box too thin for a site has no cells.
     #[test]
     fn few_cells() {
         let square = Corners {
@@ -344,7 +345,8 @@ mod tests {
         assert!(tiling(&thin, &Periodic::default(), 0.05, 0, 1).is_none());
     }
 
-    /// Moving the sides of a polygon in by d takes perimeter d - d² (sum of cot of half angles) off.
+    /// Offsetting the sides of a polygon inwards by d reduces its area by d times the perimeter, less d² (sum
+    /// of cot of half angles).
     #[test]
     fn an_inset_takes_a_band_off() {
         let cells = made(0.1, 0, None, 5).cells;

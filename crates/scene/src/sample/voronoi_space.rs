@@ -1,9 +1,10 @@
-//! Voronoi cells that fill a box in space: polyhedra that fit each other face to face.
+//! Voronoi cells that fill a box: polyhedra that fit each other face to face.
 //!
-//! A cell is the box cut by the planes midway to the other sites, the nearest first, until no other is near enough to
-//! reach it: farther than twice the farthest corner (Rycroft, Chaos 19 (2009) 041111, cuts cells the same way). Three
-//! planes meet in a corner. With its cell they name it, and its place is computed from the name: all cells about it
-//! have the same. Taking out short edges would bend faces, so sites whose cells have one are moved a little instead.
+//! A cell is the box cut by the bisecting planes of the other sites, the nearest first, until the next site
+//! is farther away than twice the farthest corner and cannot cut the cell (as in Rycroft, Chaos 19 (2009)
+//! 041111). Three planes meet in a corner; they and the cell's site name it, and its position is computed
+//! from that name, so all cells around a corner have identical coordinates. Removing short edges would bend
+//! faces, so the sites of cells with short edges are moved a little instead.
 
 use super::cutting::{Corner, centre, cut, ordered, sides_of};
 use super::deposit::{Corners, deposit};
@@ -18,9 +19,9 @@ use rand_pcg::Pcg64;
 
 type V = Vector3<f64>;
 
-/// How far a site is moved whose cell has a short edge, as part of the cell size,
+/// Displacement of a site whose cell has a short edge, as a fraction of the cell size.
 const NUDGE: f64 = 0.02;
-/// and how often before that is given up: each time leaves some fifth of the short edges.
+/// Limit on the number of such rounds; each leaves about a fifth of the short edges.
 const NUDGES: usize = 100;
 
 /// A cell.
@@ -28,34 +29,35 @@ const NUDGES: usize = 100;
 pub struct Cell {
     /// Corners (m).
     pub points: Vec<V>,
-    /// Faces, against the clock seen from outside.
+    /// Faces as corner indices, counter-clockwise seen from outside.
     pub faces: Vec<Vec<u32>>,
-    /// The cell beyond each face; none beyond a wall.
+    /// Index of the cell beyond each face; `None` for a wall.
     pub beyond: Vec<Option<u32>>,
 }
 
-/// The cells.
+/// A Voronoi tiling of a box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tiling {
-    /// In an order in which neighbours in space are near. Across a period cells go beyond the box.
+    /// The cells, sorted so that neighbours in space are near in memory. Across a period, cells extend beyond
+    /// the box.
     pub cells: Vec<Cell>,
-    /// How often a site was moved.
+    /// Number of times a site was moved.
     pub moved: usize,
 }
 
-/// Why there is no tiling.
+/// Reason why no tiling was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
     /// The box is thinner than half a cell.
     Thin,
-    /// Short edges stay, wherever sites are moved.
+    /// Short edges remain however the sites are moved.
     Short,
 }
 
-/// Fills a box with some volume/size³ cells, around each period that it spans.
+/// Fills a box with about volume/size³ cells, periodic along each axis where the box spans the period.
 ///
 /// # Errors
-/// Sites find no room, or their cells keep edges shorter than [`SHORTEST`] of the size.
+/// The sites do not fit, or their cells keep edges shorter than [`SHORTEST`] times the size.
 pub fn tiling(
     corners: &Corners<V>,
     periodic: &Periodic,
@@ -84,7 +86,7 @@ pub fn tiling(
             *site = region.wrapped(*site + way);
         }
     }
-    // Neighbours in space become neighbours in memory.
+    // Sorted so that neighbours in space are neighbours in memory.
     sites.sort_by_cached_key(|p| [p.z, p.y, p.x].map(|x| (x / (2.0 * size)).floor() as i64));
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut moved = 0;
@@ -113,7 +115,7 @@ pub fn tiling(
     Err(Failure::Short)
 }
 
-/// The part of a cell that is `distance` (m) or more from its faces; none where nothing is left.
+/// Offsets the faces of a cell inwards by `distance` (m); `None` if nothing is left.
 pub fn inset(cell: &Cell, distance: f64) -> Option<(Vec<V>, Vec<Vec<u32>>)> {
     let normals: Vec<V> = cell.faces.iter().map(|f| normal(&cell.points, f)).collect();
     let mut sides: Vec<Vec<usize>> = vec![Vec::new(); cell.points.len()];
@@ -136,20 +138,20 @@ pub fn inset(cell: &Cell, distance: f64) -> Option<(Vec<V>, Vec<Vec<u32>>)> {
     (points.len() > 3).then_some((points, faces))
 }
 
-/// Which plane bounds a cell.
+/// A plane that bounds a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 enum Side {
-    /// Midway to a site, which stands so many periods away from its place.
+    /// The bisector with a site's image, and its offset in periods.
     Site(u32, [i8; 3]),
     /// A wall: its axis, and whether it is the high one.
     Wall(usize, bool),
 }
 
-/// A site, and how many periods away from its place its image stands.
+/// A site's image: the site, and its offset in periods.
 type Image = (u32, [i8; 3]);
 
-/// Sites and images by the cubes that they are in, from a low corner on. Where most cubes would be empty, so many of
-/// them as two to the power of `merged` along each axis count as one.
+/// Sites and images sorted into cubes, from a low corner on. If most cubes would be empty, 2^`merged` of them
+/// along each axis are combined.
 struct Cubes {
     merged: u32,
     low: [i64; 3],
@@ -159,7 +161,7 @@ struct Cubes {
 }
 
 impl Cubes {
-    /// From images and their cubes.
+    /// Builds the grid from the images and their cubes.
     fn new(placed: &[([i64; 3], Image)]) -> Self {
         let (mut low, mut high) = ([i64::MAX; 3], [i64::MIN; 3]);
         if placed.is_empty() {
@@ -209,7 +211,7 @@ impl Cubes {
         out
     }
 
-    /// All in the cubes from one to another.
+    /// Visits all images in a range of cubes.
     fn between(&self, from: [i64; 3], to: [i64; 3], mut found: impl FnMut(Image)) {
         let range = |k: usize| {
             let place = |cube: i64| (cube >> self.merged).saturating_sub(self.low[k]);
@@ -220,7 +222,7 @@ impl Cubes {
         let along = range(0);
         for z in range(2) {
             for y in range(1) {
-                // Cubes along x stand side by side.
+                // Cubes along x are adjacent in memory.
                 let row = (z * self.counts[1] + y) * self.counts[0];
                 let [first, last] = [along.start, along.end].map(|x| self.starts[row + x] as usize);
                 self.images[first..last.max(first)]
@@ -231,12 +233,12 @@ impl Cubes {
     }
 }
 
-/// Twice the distance of the farthest corner from the site: sites beyond do not cut the cell.
+/// Twice the distance of the farthest corner from the site: sites farther away do not cut the cell.
 fn farthest(corners: &[Corner<Side>]) -> f64 {
     2.0 * corners.iter().map(|c| c.at.norm()).fold(0.0, f64::max)
 }
 
-/// What is filled.
+/// The region to fill.
 struct Region {
     corners: Corners<V>,
     around: [Option<f64>; 3],
@@ -244,7 +246,7 @@ struct Region {
 }
 
 impl Region {
-    /// A place, in the box across periods, and otherwise no nearer to walls than a twentieth of a cell.
+    /// Wraps a position into the box across periods, and keeps it at least a twentieth of a cell from walls.
     fn wrapped(&self, mut at: V) -> V {
         for k in 0..3 {
             let (low, high) = (self.corners.low[k], self.corners.high[k]);
@@ -260,7 +262,7 @@ impl Region {
         V::from_fn(|k, _| self.around[k].map_or(0.0, |p| p * f64::from(periods[k])))
     }
 
-    /// The sites and their images, by cubes as wide as a cell.
+    /// The sites and their images, sorted into cubes of the cell size.
     fn cubes(&self, sites: &[V]) -> Cubes {
         let images = |k: usize| -> &[i8] {
             if self.around[k].is_some() {
@@ -287,7 +289,7 @@ impl Region {
         [0, 1, 2].map(|k| (at[k] / self.size).floor() as i64)
     }
 
-    /// The corners of the cells, from their sites.
+    /// Cuts all cells and returns their corners relative to their sites.
     fn cut_all(&self, sites: &[V]) -> Vec<Vec<Corner<Side>>> {
         let cubes = self.cubes(sites);
         (0..sites.len())
@@ -295,8 +297,8 @@ impl Region {
             .collect()
     }
 
-    /// Brings the corners up to date after some sites moved from where they were: those of cells near enough to notice.
-    /// A site farther away than twice the farthest corner of a cell never cut it, and never will. Gives the cells.
+    /// Updates the corners after some sites moved: only cells near enough to be affected. A site farther from
+    /// a cell than twice its farthest corner neither cut it before nor cuts it now. Returns the cells.
     fn cut_again(
         &self,
         sites: &[V],
@@ -324,13 +326,13 @@ impl Region {
         touched
     }
 
-    /// All in the cubes that come within a distance of a place.
+    /// Visits all images in the cubes within a distance of a point.
     fn near(&self, cubes: &Cubes, place: &V, reach: f64, found: impl FnMut(Image)) {
         let [low, high] = [-reach, reach].map(|r| self.cube(&(place + V::repeat(r))));
         cubes.between(low, high, found);
     }
 
-    /// The corners of a cell, from its site.
+    /// Cuts one cell and returns its corners relative to its site.
     fn cell(&self, sites: &[V], cubes: &Cubes, i: usize) -> Vec<Corner<Side>> {
         let own = sites[i];
         let mut corners = self.whole(i, &own);
@@ -340,7 +342,7 @@ impl Region {
             self.near(cubes, &own, reach, |(j, periods)| {
                 let way = sites[j as usize] + self.shift(periods) - own;
                 let far = way.norm();
-                // Its own images bound the box that it starts with.
+                // The initial box is already bounded by the site's own images.
                 if j as usize != i && far > done && far <= reach {
                     near.push((far, j, periods, way));
                 }
@@ -363,7 +365,7 @@ impl Region {
         }
     }
 
-    /// The corners of the box, from a site; half a period away across a period.
+    /// The corners of the initial box, relative to a site; half a period away along periodic axes.
     fn whole(&self, i: usize, own: &V) -> Vec<Corner<Side>> {
         let side = |k: usize, high: bool| match self.around[k] {
             Some(period) => {
@@ -388,7 +390,7 @@ impl Region {
             .collect()
     }
 
-    /// Whether a cell has a short edge, of which its site is the first.
+    /// Whether a cell has a short edge of which its site is the first.
     fn is_to_move(&self, i: usize, corners: &[Corner<Side>]) -> bool {
         let first = |s: &Side| match s {
             Side::Site(j, _) => i <= *j as usize,
@@ -402,7 +404,8 @@ impl Region {
         })
     }
 
-    /// A cell where it stands. None where a corner's place, computed from its name, is another.
+    /// The cell in absolute coordinates. `None` if a corner's position, computed from its name, is
+    /// inconsistent with the cut.
     fn finished(&self, sites: &[V], i: usize, corners: &[Corner<Side>]) -> Option<Cell> {
         let own = sites[i];
         let points: Option<Vec<V>> = corners
@@ -433,11 +436,11 @@ impl Region {
         })
     }
 
-    /// Where the planes of a corner meet, computed alike for all cells about it.
+    /// The intersection of a corner's planes, computed identically for all cells around it.
     fn place(&self, sites: &[V], i: usize, sides: &[Side; 3]) -> Option<V> {
         let mut name = [Side::Site(i as u32, [0; 3]), sides[0], sides[1], sides[2]];
         name.sort_unstable();
-        // Seen from its first site, of which there is one.
+        // Relative to its first site; there is always one.
         let Side::Site(first, base) = name[0] else {
             return None;
         };

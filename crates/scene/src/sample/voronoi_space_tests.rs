@@ -1,4 +1,4 @@
-//! Cells in space: what they fill, and what neighbours share.
+//! Tests of the Voronoi cells in space: the volume they fill, and the faces that neighbours share.
 
 use super::*;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
@@ -31,7 +31,7 @@ fn area(points: &[V], face: &[u32]) -> V {
         .sum()
 }
 
-/// Every cell is convex with plane faces and no short edge, and together they are the box.
+/// Every cell is convex with plane faces and no short edge, and together the cells fill the box.
 #[test]
 fn cells_are_convex_and_fill_the_box() {
     let whole = (HIGH - LOW).product();
@@ -50,11 +50,11 @@ fn cells_are_convex_and_fill_the_box() {
         );
         moved += tiling.moved;
         let sum: f64 = tiling.cells.iter().map(volume).sum();
-        // No holes and, since no cell is turned inside out, no overlaps.
+        // There are no holes and, since no cell is inverted, no overlaps.
         assert!((sum / whole - 1.0).abs() < 1e-13, "{:e}", sum / whole - 1.0);
         for cell in &tiling.cells {
             let core = polyhedron(cell);
-            // Euler, and three faces at every corner.
+            // Euler's formula, and three faces at every corner.
             let t = core.topology();
             assert_eq!(t.about.len() + t.faces.len(), t.edges.len() + 2);
             assert!(t.about.iter().all(|a| a.len() == 3));
@@ -77,8 +77,8 @@ fn cells_are_convex_and_fill_the_box() {
     assert!(moved > 0, "no edge was short enough to test with");
 }
 
-/// The face beyond which another cell lies is a face of that cell too: the same corners, bit by bit without periods,
-/// the same area, the opposite normal.
+/// The face shared with another cell is a face of that cell too: identical corners bit by bit without
+/// periods, equal area, opposite normal.
 #[test]
 fn neighbours_share_their_faces() {
     let tiling = made(0.06, 0, [false; 3], 7);
@@ -106,13 +106,13 @@ fn neighbours_share_their_faces() {
             shared += 1;
         }
     }
-    // Some fifteen a cell, fewer at walls.
+    // About fifteen per cell, fewer at walls.
     assert!(shared > 10 * tiling.cells.len());
     let box_walls = V::new(0.4 * 0.4, 0.6 * 0.4, 0.6 * 0.4) * 2.0;
     assert!((walls - box_walls).norm() < 1e-14);
 }
 
-/// Across a period the two sides of a face differ by it alone.
+/// Across a period the two sides of a face differ by the period only.
 #[test]
 fn neighbours_share_their_faces_across_periods() {
     let tiling = made(0.06, 3, [true, true, false], 8);
@@ -131,7 +131,8 @@ fn neighbours_share_their_faces_across_periods() {
     }
 }
 
-/// Poisson's cells would have volumes that spread by 0.42; sites apart spread less, Lloyd's rounds less again.
+/// The volumes of Poisson-Voronoi cells have a relative standard deviation of 0.42; sites kept apart give
+/// less, and Lloyd iterations less again.
 #[test]
 fn lloyds_rounds_make_cells_alike_and_seeds_make_them_differ() {
     let of = |rounds: usize| {
@@ -153,7 +154,7 @@ fn lloyds_rounds_make_cells_alike_and_seeds_make_them_differ() {
     assert_ne!(made(0.08, 2, [false; 3], 3), made(0.08, 2, [false; 3], 4));
 }
 
-/// One cell is the box; a box too thin for a site has none.
+/// A single cell is the box; a box too thin for a site has no cells.
 #[test]
 fn few_cells() {
     let cube = Corners {
@@ -171,7 +172,7 @@ fn few_cells() {
     assert_eq!(of(&thin, 0.05), Err(Failure::Thin));
 }
 
-/// Of a tetrahedron of inradius r, whose planes are moved in by d, (1 - d/r)³ is left.
+/// Offsetting the faces of a tetrahedron of inradius r inwards by d leaves (1 - d/r)³ of its volume.
 #[test]
 fn an_inset_keeps_its_distance() {
     let third = 1.0 / 3f64.sqrt();
@@ -205,7 +206,7 @@ fn an_inset_keeps_its_distance() {
         let (points, faces) = inset(cell, 5e-3).unwrap();
         let inner = Polyhedron::from_faces(points, faces).unwrap();
         let outer = polyhedron(cell);
-        // Every point is at least that deep, and on every face that is left one is so.
+        // Every point is at least that deep, and every remaining face has a point exactly that deep.
         let depth = |p: &V| -outer.distance(p).0;
         assert!(
             inner

@@ -1,4 +1,4 @@
-//! An error in an input: where it stands, what was expected, what may have been meant.
+//! Errors in input files, with location, expected value and suggestion.
 
 use std::fmt;
 use std::ops::Range;
@@ -9,30 +9,30 @@ use ariadne::{Config, IndexType, Label, Report, ReportKind};
 
 use super::nearest::nearest;
 
-/// Longer lines (in characters) are not shown: nobody finds the place in them.
+/// Lines longer than this (in characters) are not shown, since the location could not be found in them.
 const LONGEST_LINE: usize = 400;
 
-/// Beyond this many lines only the one-line form is given.
+/// For texts with more lines than this only the one-line form is given.
 const MAX_LINES: usize = 200_000;
 
-/// What is wrong with an input, and where.
+/// An error in an input, with its location.
 ///
-/// Displayed as one line, `file:line:column: error: message; expected ...; help`,
-/// then the source line with the place marked; see [`InputError::render`].
+/// Displayed as one line, `file:line:column: error: message; expected ...; help`, followed by the source line
+/// with the location marked; see [`InputError::render`].
 #[derive(Debug, Clone, thiserror::Error)]
 #[error("{}", self.render(false))]
 pub struct InputError {
-    /// The file, or the argument, that is at fault.
+    /// The file, or the argument, that has the error.
     pub file: String,
-    /// The line, from 1; 0 when the error is not at a place in a file.
+    /// The line, from 1; 0 if the error has no location in a file.
     pub line: usize,
-    /// The column in characters, from 1; 0 when there is no line.
+    /// The column in characters, from 1; 0 if there is no line.
     pub column: usize,
     /// What is wrong.
     pub message: String,
-    /// What was expected instead.
+    /// What was expected.
     pub expected: Option<String>,
-    /// What to do about it, such as "did you mean `mu`?".
+    /// A suggestion, such as "did you mean `mu`?".
     pub help: Option<String>,
     context: Box<Context>,
 }
@@ -41,18 +41,18 @@ pub struct InputError {
 struct Context {
     text: Option<Arc<str>>,
     span: Range<usize>,
-    /// The `--set` argument that brought the text, and the place in it.
+    /// The `--set` argument that contained the text, and the byte range in it.
     set: Option<(String, Range<usize>)>,
     note: Option<String>,
 }
 
 impl InputError {
-    /// An error at the bytes `span` of a text.
+    /// Makes an error at the bytes `span` of a text.
     pub fn at(file: &str, text: &str, span: Range<usize>, message: impl Into<String>) -> Self {
         Self::within(file, text.into(), span, message.into())
     }
 
-    /// The same with a text that is shared, not copied.
+    /// As [`InputError::at`], with a shared text.
     pub(super) fn within(file: &str, text: Arc<str>, span: Range<usize>, message: String) -> Self {
         let start = boundary(&text, span.start);
         let span = start..boundary(&text, span.end).max(start);
@@ -73,7 +73,7 @@ impl InputError {
         }
     }
 
-    /// An error about a whole file or argument.
+    /// Makes an error about a whole file or argument.
     pub fn about(subject: impl fmt::Display, message: impl Into<String>) -> Self {
         Self {
             file: subject.to_string(),
@@ -86,12 +86,12 @@ impl InputError {
         }
     }
 
-    /// An error in a command line argument, given as it was written.
+    /// Makes an error about a command line argument, quoted as written.
     pub fn argument(argument: impl fmt::Display, message: impl Into<String>) -> Self {
         Self::about(argument, message)
     }
 
-    /// A file that cannot be read; offers a file of a similar name.
+    /// Makes an error for a file that cannot be read; suggests a file of a similar name.
     pub fn file(path: &Path, error: &std::io::Error) -> Self {
         use std::io::ErrorKind;
         let why = match error.kind() {
@@ -107,7 +107,7 @@ impl InputError {
         }
     }
 
-    /// The same as [`InputError::file`].
+    /// As [`InputError::file`].
     pub fn unreadable(path: &Path, error: &std::io::Error) -> Self {
         Self::file(path, error)
     }
@@ -119,14 +119,14 @@ impl InputError {
         self
     }
 
-    /// Adds what to do about it.
+    /// Adds a suggestion.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// Proposes a name, where there is one near enough.
+    /// Suggests the nearest candidate if one is close enough.
     #[must_use]
     pub fn did_you_mean(self, name: Option<&str>) -> Self {
         match name {
@@ -142,29 +142,29 @@ impl InputError {
         self
     }
 
-    /// Says that the text came from a `--set` argument, from these bytes of it.
+    /// Records that the text came from these bytes of a `--set` argument.
     #[must_use]
     pub(super) fn brought_by(mut self, argument: &str, span: Range<usize>) -> Self {
         self.context.set = Some((argument.to_owned(), span));
         self
     }
 
-    /// The message without the place.
+    /// The message without its location.
     pub fn message(&self) -> &str {
         &self.message
     }
 
-    /// Line and column, if the error is at a place in a file.
+    /// Line and column, if the error has a location in a file.
     pub fn position(&self) -> Option<(usize, usize)> {
         (self.line > 0).then_some((self.line, self.column))
     }
 
-    /// File and message, as a part of another message.
+    /// File and message, for use within another message.
     pub fn in_short(&self) -> String {
         super::clean(&format!("{} {}", self.file, self.message))
     }
 
-    /// The same with what to do about it.
+    /// As `in_short`, with the suggestion.
     pub fn in_a_sentence(&self) -> String {
         match &self.help {
             Some(help) => format!("{}; {}", self.in_short(), super::clean(help)),
@@ -172,7 +172,7 @@ impl InputError {
         }
     }
 
-    /// Whether no line of a file is at fault, but all of it: it is missing, cannot be read, or is empty.
+    /// Whether the error concerns a whole file: it is missing, unreadable or empty.
     pub fn is_about_a_whole_file(&self) -> bool {
         self.context
             .text
@@ -180,12 +180,12 @@ impl InputError {
             .is_none_or(|text| text.is_empty())
     }
 
-    /// The bytes of the file at fault, if the error is at a place in a file.
+    /// Byte range in the file, if the error has a location in a file.
     pub fn span(&self) -> Option<Range<usize>> {
         (self.line > 0).then(|| self.context.span.clone())
     }
 
-    /// The `--set` argument that brought the text at fault.
+    /// The `--set` argument that contained the text.
     pub fn set(&self) -> Option<&str> {
         self.context.set.as_ref().map(|(set, _)| set.as_str())
     }
@@ -219,7 +219,8 @@ impl InputError {
         super::clean(&line)
     }
 
-    /// The error on one line, then the place in the text; with colours if asked.
+    /// The error on one line, followed by the source line with the location marked; with terminal colours if
+    /// `colour`.
     pub fn render(&self, colour: bool) -> String {
         let mut out = if colour {
             let line = self.compact();
@@ -272,7 +273,7 @@ impl InputError {
     }
 }
 
-/// The line of a place with the place marked, as ariadne draws it.
+/// The source line with the location marked, as drawn by ariadne.
 fn picture(
     file: &str,
     text: &str,
@@ -287,8 +288,8 @@ fn picture(
     let end = text[begin..]
         .find('\n')
         .map_or(text.len(), |length| begin + length);
-    // Only this line is handed over as it is, with what ariadne would take for a line
-    // break, or a terminal for a command, blanked: one character for one.
+    // Only this line is passed on. Characters that ariadne takes for a line break, or a terminal for a
+    // control sequence, are replaced by blanks one by one.
     let clean = |c: char| match c {
         '\t' => c,
         '\u{2028}' | '\u{2029}' => ' ',
@@ -299,7 +300,7 @@ fn picture(
     if line.chars().count() > LONGEST_LINE {
         return None;
     }
-    // Something to point at beyond the end of the line.
+    // A character to point at beyond the end of the line.
     line.push(' ');
     let from = text[start..begin].chars().count();
     let stop = boundary(text, span.end).clamp(begin, end);
@@ -308,7 +309,7 @@ fn picture(
     if number > MAX_LINES {
         return None;
     }
-    // ariadne numbers the lines it is given, so that those before must be there.
+    // ariadne numbers the lines of its input, so the lines before are added as empty ones.
     line.insert_str(0, &"\n".repeat(number));
     let (from, to) = (from + number, to + number);
     let config = Config::default()
@@ -324,13 +325,13 @@ fn picture(
     let mut drawn = Vec::new();
     report.finish().write((file, lines), &mut drawn).ok()?;
     let drawn = String::from_utf8(drawn).ok()?;
-    // The first line repeats what the one-line form has just said.
+    // The first line repeats the one-line form and is dropped.
     let (_, body) = drawn.split_once('\n')?;
     let lines: Vec<&str> = body.lines().map(str::trim_end).collect();
     Some(lines.join("\n").trim_end().to_owned())
 }
 
-/// The last character boundary at or before `at`.
+/// The last character boundary at or before byte `at`.
 fn boundary(text: &str, at: usize) -> usize {
     let mut at = at.min(text.len());
     while !text.is_char_boundary(at) {
@@ -339,7 +340,7 @@ fn boundary(text: &str, at: usize) -> usize {
     at
 }
 
-/// A file beside the missing one, with a name close to its.
+/// A file beside the missing one with a similar name.
 fn similar_file(path: &Path) -> Option<String> {
     let name = path.file_name()?.to_str()?;
     let folder = path.parent()?;

@@ -1,4 +1,4 @@
-//! Where two texts say different things: comments, blanks and how numbers are written do not count.
+//! Comparison of two texts by content: comments, white space and the format of numbers are ignored.
 
 use super::Source;
 use super::tree::{Group, Kind, Node, Shape, join_path};
@@ -8,13 +8,13 @@ use super::tree::{Group, Kind, Node, Shape, join_path};
 pub struct Difference {
     /// The dotted path.
     pub path: String,
-    /// What the one says there, if anything.
+    /// The value in the first text, if any.
     pub one: Option<String>,
-    /// What the other does.
+    /// The value in the second text, if any.
     pub other: Option<String>,
 }
 
-/// The first place where two texts differ, places below the dotted paths of `but` aside.
+/// The first difference between two texts, except below the dotted paths in `but`.
 pub fn first_difference(one: &Source, other: &Source, but: &[&str]) -> Option<Difference> {
     let mut path = Vec::new();
     let nodes = [&one.tree().root, &other.tree().root].map(Option::as_ref);
@@ -42,7 +42,7 @@ fn compare(
     let [Some(a), Some(b)] = nodes else {
         return match nodes {
             [None, None] => None,
-            // A group that holds nothing but what does not count is as good as none.
+            // A group that holds only ignored values equals an absent one.
             [a, b] => {
                 let holds = |p: &&str| p.strip_prefix(&here).is_some_and(|r| r.starts_with('.'));
                 let group = a.or(b).and_then(Node::group);
@@ -101,12 +101,12 @@ fn compare(
     None
 }
 
-/// Whether a group has named fields, or none at all.
+/// Whether a group has named fields, or is empty.
 fn plain(group: &Group) -> bool {
     group.shape == Shape::Struct || (group.shape == Shape::Tuple && group.entries.is_empty())
 }
 
-/// Whether two values that hold no others are the same.
+/// Whether two leaf values are equal.
 fn alike(texts: [&str; 2], nodes: [&Node; 2]) -> bool {
     let [a, b] = [0, 1].map(|k| &texts[k][nodes[k].span.clone()]);
     let number = |text: &str| text.replace('_', "").parse::<f64>().ok();
@@ -119,7 +119,7 @@ fn alike(texts: [&str; 2], nodes: [&Node; 2]) -> bool {
     }
 }
 
-/// A value in a few words.
+/// A value, shortened for a message.
 fn short(text: &str) -> String {
     const MAX_LENGTH: usize = 48;
     let line: String = text.split_whitespace().collect::<Vec<_>>().join(" ");

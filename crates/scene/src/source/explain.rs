@@ -1,4 +1,4 @@
-//! What ron refused, said in the terms of the file.
+//! Translation of errors from ron into messages about the user's file.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use super::tree::{Kind, Node, Shape, join_path, plain};
 use super::{InputError, MAX_DEPTH, Source, nearest};
 
 impl Source {
-    /// The byte of a position ron reports (lines and columns in characters).
+    /// Byte offset of a position reported by ron (lines and columns in characters).
     pub(super) fn offset(&self, position: &Position) -> usize {
         let lines = self.text.split_inclusive('\n');
         let before = lines.take(position.line.saturating_sub(1));
@@ -20,10 +20,10 @@ impl Source {
         column.map_or(self.text.len(), |(column, _)| start + column)
     }
 
-    /// An error of ron, at the token which caused it.
+    /// Converts an error from ron, located at the token that caused it.
     pub(super) fn explain(&self, error: &SpannedError) -> InputError {
         let told = self.tell(error);
-        // A bracket left open makes what follows look wrong: name it as well.
+        // An unclosed bracket makes the text after it look wrong: report it as well.
         match &self.tree.fault {
             Some(fault) if fault.message != told.message => {
                 let cause = self.error_in(&fault.span, "");
@@ -108,7 +108,7 @@ impl Source {
         }
     }
 
-    /// The first field of this name in the struct that has a field at `again`.
+    /// The first field of this name in the struct that contains the repeated field at `again`.
     fn earlier_field(&self, field: &str, again: &Range<usize>) -> Option<Range<usize>> {
         let group = self.tree.around(again.start)?.group()?;
         let mut keys = group.entries.iter().filter_map(|entry| entry.key.as_ref());
@@ -117,7 +117,7 @@ impl Source {
             .cloned()
     }
 
-    /// The last mention of a word up to `limit`.
+    /// The last occurrence of a word before `limit`.
     fn word(&self, word: &str, limit: usize) -> Range<usize> {
         let found = self.tree.last_word(&self.text, plain(word), limit);
         found.unwrap_or_else(|| {
@@ -127,7 +127,7 @@ impl Source {
         })
     }
 
-    /// ` in Name`, from the type, the name written, or the path of the struct.
+    /// ` in Name`, from the type, the written name, or the path of the struct.
     fn owner(&self, outer: Option<&str>, inside: &Range<usize>) -> String {
         let outer = outer.map(str::to_owned);
         let written = || {
@@ -151,7 +151,7 @@ impl Source {
     }
 
     fn missing(&self, field: &str, outer: Option<&str>, end: usize) -> InputError {
-        // ron stands at the closing bracket by now; the head says more.
+        // ron stopped at the closing bracket; pointing at the head of the struct is clearer.
         let around = self.tree.around(end).filter(|node| node.group().is_some());
         let Some(node) = around.or_else(|| self.tree.ending_at(end)) else {
             let place = outer
@@ -166,7 +166,7 @@ impl Source {
         let place = self.owner(outer, &inside);
         let message = format!("the field `{field}` is missing{place}");
         let error = self.error_in(&node.head(&self.text), message);
-        // A misspelt field shows as missing where unknown fields are let through.
+        // A misspelt field is reported as missing where unknown fields are accepted.
         let written = node.choices(&self.text);
         let near = nearest(field, written.iter().map(String::as_str));
         match near.filter(|near| *near != field) {
@@ -175,13 +175,14 @@ impl Source {
         }
     }
 
-    /// The value a type has just judged: the one that ends here, or stands here.
+    /// The value that a type has just validated: the one that ends or begins here.
     fn judged(&self, start: usize, end: usize) -> Range<usize> {
         let node = self.tree.ending_at(end).or_else(|| self.tree.around(end));
         node.map_or(start..end, |node| node.head(&self.text))
     }
 
-    /// A refusal by a type, which may read on from the name of the field.
+    /// An error reported by a type's validation; its message may continue a sentence that begins with the
+    /// field's name.
     fn judgement(&self, message: &str, start: usize, end: usize) -> InputError {
         let span = self.judged(start, end);
         let predicate = ["must ", "is ", "has ", "cannot "];
@@ -201,7 +202,7 @@ impl Source {
             return self.error_in(&fault.span, fault.message.clone());
         }
         let text = &self.text;
-        // Past the white space ron left before the token.
+        // Skips the white space that ron left before the token.
         let rest = text[end..].trim_start();
         let token = if rest.is_empty() {
             end
@@ -277,10 +278,10 @@ impl Source {
         }
     }
 
-    /// Whether a function of time stands where this value is.
+    /// Whether a function of time is expected at this value.
     fn is_time_function(&self, node: &Node) -> bool {
         let way = self.way_to(&node.span);
-        // The list of `Axes([...])` is a step of its own.
+        // The list of `Axes([...])` adds one level to the path.
         way.iter().rev().take(2).any(|step| match step {
             (Some("Velocity" | "Displacement" | "Force" | "Scaled" | "Axes"), _) => true,
             (Some("Pressure"), Step::Field(name)) => name == "value",
@@ -325,11 +326,11 @@ impl Source {
     }
 }
 
-/// How a function of time is written.
+/// Accepted notations of a function of time.
 const TIME_FUNCTION: &str =
     "a number, or a function of time: `Constant(...)`, `Ramp(...)`, `Sine(...)`, `Table([...])`";
 
-/// What the type at this place is written as.
+/// Description of the type expected at this location.
 fn expected_type(code: &RonError) -> Option<String> {
     Some(match code {
         RonError::ExpectedBoolean => "`true` or `false`".into(),
@@ -349,7 +350,7 @@ fn expected_type(code: &RonError) -> Option<String> {
     })
 }
 
-/// ron's own words, as the rest of a line.
+/// ron's message in lower case, to continue a sentence.
 fn sentence(code: &RonError) -> String {
     let words = code.to_string();
     let mut letters = words.chars();

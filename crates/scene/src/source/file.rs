@@ -1,4 +1,4 @@
-//! Files that the program reads: regular ones, not too large, and never waited for.
+//! Reading of input files: only regular files of limited size, so that reading never blocks.
 
 use std::fs::{File, Metadata};
 use std::io::Read;
@@ -6,17 +6,17 @@ use std::path::Path;
 
 use super::InputError;
 
-/// The largest text accepted, in bytes.
+/// Default limit on the size of a text file, in bytes.
 pub const MAX_BYTES: u64 = 64 << 20;
 
-/// Opens a regular file of at most `most` bytes; its length is returned beside it.
+/// Opens a regular file of at most `most` bytes and returns it with its length.
 ///
-/// The kind is looked at before the file is opened, since to open a pipe waits for its other end. A length of zero is
-/// taken at its word, since what the kernel shows below `/proc` declares none and some of it (`/proc/kmsg`) is waited
-/// for when it is read.
+/// The file type is checked before opening, since opening a pipe blocks until its other end is opened. A file of length
+/// zero is taken as empty and not read: files below `/proc` report no length, and reading some of them (`/proc/kmsg`)
+/// blocks.
 ///
 /// # Errors
-/// A file that is missing, unreadable, a folder, a device, a pipe or a socket, empty, or too large.
+/// The file is missing, unreadable, a folder, a device, a pipe or a socket, empty, or too large.
 pub fn open(path: &Path, most: u64) -> Result<(File, u64), InputError> {
     let unreadable = |error: std::io::Error| InputError::file(path, &error);
     let refused = |message: String| InputError::about(path.display(), message);
@@ -40,7 +40,7 @@ pub fn open(path: &Path, most: u64) -> Result<(File, u64), InputError> {
     };
     judge(&std::fs::metadata(path).map_err(unreadable)?)?;
     let file = File::open(path).map_err(unreadable)?;
-    // Again, by the handle: another file may have taken the place of the first.
+    // Checked again on the open handle, since the file may have been replaced in between.
     let length = judge(&file.metadata().map_err(unreadable)?)?;
     if length == 0 {
         return Err(empty(path));
@@ -52,10 +52,10 @@ fn empty(path: &Path) -> InputError {
     InputError::at(&path.display().to_string(), "", 0..0, "is empty")
 }
 
-/// Reads a whole file as [`open`] takes it.
+/// Reads a whole file with the checks of [`open`].
 ///
 /// # Errors
-/// As [`open`], or a file that grows beyond `most` bytes while it is read.
+/// As [`open`], or the file grows beyond `most` bytes while it is read.
 pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
     let (file, length) = open(path, most)?;
     let capacity = usize::try_from(length).unwrap_or(0);
@@ -82,7 +82,7 @@ fn read_at_most(
 /// Reads a text file.
 ///
 /// # Errors
-/// As [`read_bytes`], or a file that is not UTF-8 or holds white space alone.
+/// As [`read_bytes`], or the file is not UTF-8 or holds white space only.
 pub fn read_text(path: &Path) -> Result<String, InputError> {
     decode(path, read_bytes(path, MAX_BYTES)?)
 }

@@ -1,7 +1,7 @@
-//! Input text: read, changed by `--set`, parsed, and pointed at when something is wrong.
+//! Input text: reading, modification by `--set`, parsing, and location of errors.
 //!
-//! Every error names a file, a line and a column. The place comes from a [`Tree`]
-//! of the text, since the position ron reports often stands beside the cause.
+//! Every error names a file, a line and a column. The location comes from a [`Tree`] of the text, since the
+//! position reported by ron is often not that of the cause.
 
 mod diagnostic;
 mod difference;
@@ -39,7 +39,7 @@ pub use tree::{Entry, Fault as TextFault, Group, Kind, MAX_DEPTH, Node, Shape, T
 
 use pieces::SourceMap;
 
-/// A text and where it came from.
+/// An input text and its origin.
 #[derive(Debug, Clone)]
 pub struct Source {
     path: PathBuf,
@@ -61,11 +61,11 @@ impl Source {
         Ok(Self::from_text(path, read_text(path)?))
     }
 
-    /// Takes a text under a name, which errors give as the file.
+    /// Wraps a text under a name, which errors report as the file.
     pub fn from_text(name: impl AsRef<Path>, text: impl Into<String>) -> Self {
         let path = name.as_ref().to_path_buf();
         let mut text = text.into();
-        // The byte order mark some editors write is no part of RON.
+        // The byte order mark that some editors write is not part of RON.
         if text.starts_with('\u{feff}') {
             text.drain(..'\u{feff}'.len_utf8());
         }
@@ -80,17 +80,17 @@ impl Source {
         }
     }
 
-    /// The path of the file, or the name given.
+    /// Path of the file, or the given name.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The text in use, `--set` included.
+    /// The text, with `--set` applied.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The tree of the text in use.
+    /// The syntax tree of the text, with `--set` applied.
     pub fn tree(&self) -> &Tree {
         &self.tree
     }
@@ -102,19 +102,19 @@ impl Source {
 
     /// Parses the text.
     ///
-    /// `Some` may be left out, newtypes are written as their content, and the
-    /// fields of a struct in a variant may stand in the variant's own
+    /// `Some` may be omitted, newtypes are written as their content, and the
+    /// fields of a struct in a variant may be written in the variant's own
     /// parentheses, `Sine(frequency: 5)`, or in theirs, `Sine((frequency: 5))`.
-    /// Lists and tuples stand for each other, and a number for `Constant(number)`
+    /// Lists and tuples are interchangeable, and a number is accepted for `Constant(number)`
     /// where an enum has that variant.
     ///
     /// # Errors
-    /// What ron or `T` refuses, at the token at fault; a key that a map gives twice.
+    /// An error from ron or from the validation of `T`, at the token that caused it; or a key that a map gives twice.
     pub fn parse<T: DeserializeOwned>(&self) -> Result<T, InputError> {
         if let Some(refusal) = self.refuse_depth() {
             return Err(refusal);
         }
-        // What stands in brackets that do not match says nothing of its keys.
+        // Keys cannot be determined if brackets do not match.
         if self.tree.fault.is_none()
             && let Some(repeated) = self.repeated_key()
         {
@@ -131,7 +131,7 @@ impl Source {
             };
             match other.read_once() {
                 Ok(value) => return Ok(value),
-                // Only what brings ron past the value was meant.
+                // Keep only a spelling with which ron gets past the value.
                 Err(next) if passes(&other, &next, passed) => {
                     source = Cow::Owned(other);
                     error = next;
@@ -139,7 +139,7 @@ impl Source {
                 Err(_) => break,
             }
         }
-        // Whether a new field is a text shows only here: quote its value after all.
+        // Only the parser knows whether a newly set field is a text: quote its value and try again.
         if error.code == ron::Error::ExpectedString {
             let offset = source
                 .offset(&error.span.start)
@@ -152,7 +152,7 @@ impl Source {
         Err(source.explain(&error))
     }
 
-    /// Reads the text as it is spelt.
+    /// Parses the text as it is written.
     fn read_once<T: DeserializeOwned>(&self) -> Result<T, SpannedError> {
         let plain = Extensions::IMPLICIT_SOME | Extensions::UNWRAP_NEWTYPES;
         let options = |extensions| ron::Options::default().with_default_extension(extensions);
@@ -161,7 +161,7 @@ impl Source {
             Ok(value) => return Ok(value),
             Err(error) => error,
         };
-        // ron takes one spelling of newtype variants or the other, never both.
+        // ron accepts one of the two notations of newtype variants at a time.
         match options(plain).from_str(&self.text) {
             Ok(value) => Ok(value),
             Err(other) if further(&other, &error) => Err(other),
@@ -169,7 +169,7 @@ impl Source {
         }
     }
 
-    /// An error at a dotted path; at its nearest parent when the text leaves it out.
+    /// Makes an error at a dotted path, or at its nearest existing parent if the text omits it.
     pub fn error_at(&self, path: &str, message: impl Into<String>) -> InputError {
         let parts = tree::split_path(path).unwrap_or_default();
         match self.tree.find(&self.text, &parts) {
@@ -179,22 +179,22 @@ impl Source {
                     .parent
                     .map_or(0..0, |parent| parent.head(&self.text));
                 self.error_in(&head, message).note(format!(
-                    "`{path}` is not written in the file: its default stands"
+                    "`{path}` is not written in the file: its default applies"
                 ))
             }
         }
     }
 
-    /// The line and column of a path in the file, if the text holds it.
+    /// Line and column of a path in the file, if the text has it.
     pub fn position_of(&self, path: &str) -> Option<(usize, usize)> {
         let parts = tree::split_path(path)?;
         let node = self.tree.find(&self.text, &parts).ok()?;
         self.error_in(&node.span, "").position()
     }
 
-    /// An error of a file that the value at a path names. Where the file as a whole is at fault (it is not there, or
-    /// empty), the value is the place to look at; else the error keeps its place in the file, and a note tells of
-    /// the value.
+    /// Adds to an error in a file the path of the value that names that file. If the file as a whole is at
+    /// fault (missing, empty), the error is located at the value; otherwise it keeps its location in the file
+    /// and a note names the value.
     pub fn named_at(&self, path: &str, error: InputError) -> InputError {
         if error.is_about_a_whole_file() {
             let mut found = self.error_at(path, error.in_short());
@@ -206,7 +206,7 @@ impl Source {
         error.note(format!("the file is read for `{path}`{place}"))
     }
 
-    /// Finishes an error that knows its path.
+    /// Converts a validation error with a path into an error with a location.
     pub fn locate(&self, fault: Fault) -> InputError {
         let mut error = self.error_at(&fault.path, fault.message);
         if let Some(expected) = fault.expected {
@@ -215,7 +215,7 @@ impl Source {
         error.did_you_mean(fault.nearest.as_deref())
     }
 
-    /// An error at bytes of the text in use, told in terms of the file.
+    /// Makes an error at bytes of the text in use, located in the file.
     fn error_in(&self, span: &Range<usize>, message: impl Into<String>) -> InputError {
         let place = self.pieces.place(span);
         let error = InputError::within(
@@ -240,21 +240,22 @@ impl Source {
     }
 }
 
-/// Values that may be spelt otherwise than ron takes them, each with all at the same place of the schema.
+/// Limit on alternative spellings tried in a parse; each attempt changes all values at the same place of the
+/// schema.
 const MAX_SPELLINGS: usize = 256;
 
-/// Whether ron went past a byte, behind any white space.
+/// Whether ron parsed beyond a byte and the white space after it.
 fn passes(source: &Source, error: &SpannedError, byte: usize) -> bool {
     source.offset(&error.span.end) > byte
 }
 
-/// Whether `one` was found further into the text than `other`.
+/// Whether `one` occurred further on in the text than `other`.
 fn further(one: &SpannedError, other: &SpannedError) -> bool {
     let end = |error: &SpannedError| (error.span.end.line, error.span.end.col);
     end(one) > end(other)
 }
 
-/// A fault found after parsing: where (a dotted path), what, what was expected.
+/// A validation error: the dotted path of the value, the message, and what was expected.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
     /// The dotted path.
@@ -268,7 +269,7 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// A fault at a path.
+    /// Makes an error at a path.
     pub fn new(path: impl Into<String>, message: impl Into<String>) -> Self {
         Self {
             path: path.into(),
@@ -285,7 +286,7 @@ impl Fault {
         self
     }
 
-    /// Adds the names of `what` (in the plural) that the case has, or that it has none.
+    /// Adds the names of `what` (plural) that the case has, or that it has none.
     #[must_use]
     pub fn expected_name<'a>(self, names: impl IntoIterator<Item = &'a str>, what: &str) -> Self {
         let names: Vec<&str> = names.into_iter().collect();
@@ -303,7 +304,7 @@ impl Fault {
         self
     }
 
-    /// Puts a path in front of its own.
+    /// Prepends a prefix to the path.
     #[must_use]
     pub fn under(mut self, parent: &str) -> Self {
         self.path = if self.path.is_empty() {

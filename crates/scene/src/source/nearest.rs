@@ -1,12 +1,12 @@
-//! The candidate a misspelt name most probably stood for.
+//! Suggestion of the candidate that a misspelt name was most probably meant to be.
 
-/// Names longer than this are not compared: the distance costs their product.
+/// Longer names are not compared, since the cost is the product of the lengths.
 const LONGEST: usize = 64;
 
-/// The candidate closest to `name`, when it is close enough to be worth offering.
+/// The candidate nearest to `name`, if it is close enough to suggest.
 ///
-/// Case, underscores, hyphens and spaces do not count; beyond that one slip
-/// (insertion, deletion, substitution, transposition) per three letters is allowed, rounded to the nearest.
+/// Case, underscores, hyphens and spaces are ignored; beyond that one edit (insertion, deletion,
+/// substitution, transposition) per three letters is allowed, rounded to the nearest integer.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let wanted = fold(name)?;
     candidates
@@ -17,14 +17,14 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
             let distance = strsim::damerau_levenshtein(&wanted, &folded);
             let close =
                 distance == 0 || (distance < longest && distance <= ((longest + 1) / 3).max(1));
-            // The unfolded distance settles ties such as `Mu` between `mu` and `MU`.
+            // The unfolded distance breaks ties such as `Mu` between `mu` and `MU`.
             close.then(|| (distance, strsim::levenshtein(name, candidate), candidate))
         })
         .min_by_key(|&(distance, exact, _)| (distance, exact))
         .map(|(_, _, candidate)| candidate)
 }
 
-/// The letters that count, in lower case; nothing for an empty or overlong name.
+/// The significant letters in lower case; `None` for an empty or too long name.
 fn fold(name: &str) -> Option<String> {
     if name.len() > 4 * LONGEST || name.chars().count() > LONGEST {
         return None;

@@ -1,11 +1,11 @@
-//! Numbers which refuse, while they are read, the values that make no sense.
+//! Number types that validate their range while they are deserialized.
 //!
-//! RON reads `NaN`, `inf` and `1e400` (as infinity) as valid floats; these types
-//! stop them where they stand, so that the error keeps its line and column.
+//! RON reads `NaN`, `inf` and `1e400` (as infinity) as valid floats; these types reject them during parsing,
+//! so that the error has a line and column.
 
 use serde::{Deserialize, Serialize};
 
-/// Why a number was refused; reads after the name of the field.
+/// Reason for rejecting a number; continues a sentence that begins with the field's name.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NumberError {
     /// The value is not a number.
@@ -14,7 +14,7 @@ pub enum NumberError {
     /// The value is infinite, or was too large for a double.
     #[error("must be finite, got {0:?}")]
     Infinite(f64),
-    /// The value breaks the rule named first.
+    /// The value violates the rule given first.
     #[error("must be {0}, got {1:?}")]
     Outside(&'static str, f64),
 }
@@ -25,7 +25,7 @@ fn finite(value: f64) -> Result<f64, NumberError> {
     } else if value.is_infinite() {
         Err(NumberError::Infinite(value))
     } else {
-        // Turns -0.0 into 0.0: a sign on zero is never meant.
+        // Turns -0.0 into 0.0: a negative zero is never intended.
         Ok(value + 0.0)
     }
 }
@@ -38,7 +38,7 @@ macro_rules! number {
         pub struct $name(f64);
 
         impl $name {
-            /// Checks `value` and wraps it.
+            /// Validates `value` and wraps it.
             pub fn new(value: f64) -> Result<Self, NumberError> {
                 let value = finite(value)?;
                 let holds: fn(f64) -> bool = $holds;
@@ -86,7 +86,7 @@ macro_rules! number {
 }
 
 number!(
-    /// Any number but NaN and the infinities.
+    /// Any number except NaN and the infinities.
     Finite, "finite", |_| true
 );
 number!(

@@ -1,56 +1,56 @@
-//! Which bytes of the text in use came from the file, and which from a `--set`.
+//! Map from the text in use back to the file and the `--set` arguments it is made of.
 
 use std::ops::Range;
 
-/// A stretch of the text in use.
+/// A contiguous range of the text in use.
 #[derive(Debug, Clone)]
 struct SourceRange {
     length: usize,
     from: Origin,
 }
 
-/// Where a stretch of the text came from.
+/// Origin of a range of the text.
 #[derive(Debug, Clone)]
 enum Origin {
-    /// From the file, beginning at this byte.
+    /// The file, from this byte on.
     File(usize),
-    /// Written by the reader of the text, for what stands at this byte of the file.
+    /// Inserted by the parser for the text at this byte of the file.
     Added(usize),
-    /// From a `--set`.
+    /// A `--set` argument.
     Set {
-        /// Which one.
+        /// Its index.
         set: usize,
-        /// The bytes of its argument.
+        /// Byte range in the argument.
         argument: Range<usize>,
-        /// The bytes of the file it replaced.
+        /// Byte range of the file that it replaced.
         landed: Range<usize>,
     },
 }
 
-/// Where a span of the text in use belongs.
+/// Location of a range of the text in use.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Place {
-    /// The bytes of the file.
+    /// Byte range in the file.
     pub span: Range<usize>,
-    /// The `--set` which brought the text, and the bytes of its argument.
+    /// Index of the `--set` that contained the text, and the byte range in its argument.
     pub set: Option<(usize, Range<usize>)>,
 }
 
-/// The text in use, as stretches of the file and of `--set` arguments.
+/// The text in use, as ranges of the file and of `--set` arguments.
 ///
-/// It turns places in the changed text back into places in the file, whose line
-/// numbers are the only ones the reader of an error can look up.
+/// It maps positions in the modified text to positions in the file, whose line numbers are the only ones that
+/// the user can look up.
 #[derive(Debug, Clone)]
 pub(super) struct SourceMap(Vec<SourceRange>);
 
 impl SourceMap {
-    /// A file of this length, unchanged.
+    /// The map of an unmodified file of this length.
     pub fn whole(length: usize) -> Self {
         let from = Origin::File(0);
         Self(vec![SourceRange { length, from }])
     }
 
-    /// Where a span of the text in use belongs.
+    /// Location of a range of the text in use.
     pub fn place(&self, span: &Range<usize>) -> Place {
         let (start, first) = self.piece_at(span.start);
         match &first.from {
@@ -94,7 +94,7 @@ impl SourceMap {
         }
     }
 
-    /// The piece around a byte (the last one, for the end of the text) and its start.
+    /// The range that contains a byte (the last one, for the end of the text), and its start.
     fn piece_at(&self, at: usize) -> (usize, &SourceRange) {
         let mut start = 0;
         for piece in &self.0 {
@@ -111,7 +111,7 @@ impl SourceMap {
         (start - last.length, last)
     }
 
-    /// Puts text of the reader's own before a byte.
+    /// Records text inserted by the parser before a byte.
     pub fn insert(&mut self, at: usize, length: usize) {
         let place = self.place(&(at..at));
         let from = match place.set {
@@ -143,7 +143,7 @@ impl SourceMap {
         self.0 = pieces;
     }
 
-    /// Puts text of a `--set` in the place of `range`: lengths, and bytes of the argument.
+    /// Records that a `--set` replaced `range`: lengths, and byte ranges of the argument.
     pub fn replace(&mut self, range: &Range<usize>, set: usize, parts: &[(usize, Range<usize>)]) {
         let landed = self.place(range).span;
         let mut pieces = Vec::with_capacity(self.0.len() + parts.len() + 1);

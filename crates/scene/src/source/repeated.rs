@@ -1,4 +1,4 @@
-//! Keys that a map gives twice: ron takes the last of them without a word.
+//! Detection of keys that a map gives twice; ron would silently use the last one.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::tree::{Kind, Node, Shape};
 use super::{InputError, Source};
 
-/// A key that a map gives again.
+/// A repeated key of a map.
 struct Repeated {
     earlier: Range<usize>,
     again: Range<usize>,
@@ -15,7 +15,7 @@ struct Repeated {
 }
 
 impl Source {
-    /// The first key of a map that was given before in the same map.
+    /// An error at the first repeated key, if any.
     pub(super) fn repeated_key(&self) -> Option<InputError> {
         let mut found: Option<Repeated> = None;
         let mut stack: Vec<&Node> = self.tree.root.iter().collect();
@@ -57,7 +57,7 @@ impl Source {
         Some(self.error_in(&again, message).help("remove one of the two"))
     }
 
-    /// Line and column of a place, and the `--set` that brought it.
+    /// Line and column of a range, and the `--set` that contained it.
     pub(super) fn place_in_words(&self, span: &Range<usize>) -> String {
         let error = self.error_in(span, "");
         let (line, column) = error.position().unwrap_or_default();

@@ -1,8 +1,9 @@
-//! Spellings that ron itself does not take: a tuple for a list or a list for a tuple, and a number for a constant
-//! function of time.
+//! Alternative notations that ron does not accept: a tuple for a list or a list for a tuple, and a number for
+//! a constant function of time.
 //!
-//! ron says at which value it stopped. That value is written as the type wants it, together with all values that stand
-//! at the same place of the schema (the other points of a table, say), and the text is read again.
+//! ron reports the value at which it stopped. That value is rewritten in the expected notation, together with
+//! all values at the same place of the schema (for example the other points of a table), and the text is
+//! parsed again.
 
 use ron::error::{Error as RonError, SpannedError};
 use std::ops::Range;
@@ -10,7 +11,7 @@ use std::ops::Range;
 use super::Source;
 use super::tree::{Kind, Node, Shape, Tree};
 
-/// What is written anew.
+/// The rewriting of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Change {
     /// `(1, 2)` becomes `[1, 2]`.
@@ -23,20 +24,20 @@ enum Change {
 
 const CONSTANT: &str = "Constant(";
 
-/// A step from a value to one in it.
+/// A step of the path from a value to one inside it.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Step {
     /// A field of this name.
     Field(String),
-    /// A place in a tuple.
+    /// An index in a tuple.
     Place(usize),
     /// Any element of a list or a map.
     Any,
 }
 
 impl Source {
-    /// The same text with the value at which ron stopped spelt otherwise, and the byte that ron must pass for that to
-    /// have been meant; nothing where no other spelling could help.
+    /// The text with the value at which ron stopped rewritten, and the byte that ron must pass for the
+    /// rewriting to be correct; `None` if no other notation applies.
     pub(super) fn respelled(&self, error: &SpannedError) -> Option<(Source, usize)> {
         let node = self.stopped_at(error)?;
         let change = match (&error.code, &node.kind) {
@@ -64,13 +65,13 @@ impl Source {
             0
         };
         let before = alike.iter().filter(|s| s.start < node.span.start).count();
-        // The bracket of a group, all of a number.
+        // The bracket of a group, or the whole of a number.
         let pass = match change {
             Change::Constant => node.span.end + added * (before + 1) - 1,
             Change::List | Change::Tuple => node.span.start,
         };
         let mut other = self.clone();
-        // From the last on, so that the places of the others stay.
+        // From the last one on, so that the positions of the others stay valid.
         for span in alike.iter().rev() {
             other.write(span, change);
         }
@@ -123,7 +124,7 @@ impl Source {
         }
     }
 
-    /// Values at the end of this way that the change is for, in the order of the text.
+    /// Collects the values at the end of this path to which the change applies, in the order of the text.
     fn collect(
         &self,
         node: &Node,
@@ -164,7 +165,7 @@ impl Source {
                     self.text.insert_str(at, text);
                 }
             }
-            // Brackets are of one length: no place moves.
+            // Both kinds of brackets have one byte, so no position changes.
             Change::List | Change::Tuple => {
                 let (open, close) = if change == Change::List {
                     ("[", "]")

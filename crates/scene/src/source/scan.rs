@@ -1,10 +1,10 @@
-//! The scanner: RON text to a [`Tree`], tolerant of anything.
+//! Error-tolerant scanner from RON text to a [`Tree`].
 
 use std::ops::Range;
 
 use super::tree::{Entry, Fault, Group, Kind, MAX_DEPTH, Node, Shape, Tree};
 
-/// Scans `text`; what is malformed is noted as the first fault and stepped over.
+/// Scans `text`; the first malformed position is recorded and scanning continues.
 pub(super) fn scan(text: &str) -> Tree {
     let mut scanner = Scanner {
         text,
@@ -34,7 +34,7 @@ fn continues_word(c: char) -> bool {
     c == '_' || c.is_alphanumeric()
 }
 
-/// The white space of RON.
+/// White space as defined by RON.
 fn is_blank(c: char) -> bool {
     matches!(
         c,
@@ -58,12 +58,12 @@ impl<'a> Scanner<'a> {
         self.rest().chars().next()
     }
 
-    /// The span of the next character.
+    /// Byte range of the next character.
     fn here(&self) -> Range<usize> {
         self.at..self.at + self.peek().map_or(0, char::len_utf8)
     }
 
-    /// Only the first fault counts: later ones are mostly its echoes.
+    /// Only the first error is kept, since later ones are mostly consequences of it.
     fn fault(&mut self, span: Range<usize>, message: impl Into<String>) {
         if self.fault.is_none() {
             self.fault = Some(Fault {
@@ -79,7 +79,7 @@ impl<'a> Scanner<'a> {
         self.at += rest.find(|c| !keep(c)).unwrap_or(rest.len());
     }
 
-    /// Steps over white space and comments.
+    /// Skips white space and comments.
     fn blank(&mut self) {
         loop {
             self.skip_while(is_blank);
@@ -116,7 +116,7 @@ impl<'a> Scanner<'a> {
         self.at = self.text.len();
     }
 
-    /// Steps over `#![enable(...)]` and its like.
+    /// Skips `#![enable(...)]` and similar headers.
     fn headers(&mut self) {
         loop {
             self.blank();
@@ -194,7 +194,7 @@ impl<'a> Scanner<'a> {
         })
     }
 
-    /// An identifier, raw (`r#name`) or plain; the caller saw its first character.
+    /// Scans an identifier, raw (`r#name`) or plain, whose first character was checked by the caller.
     fn word(&mut self) {
         if self.rest().starts_with("r#") {
             self.at += 2;
@@ -222,7 +222,7 @@ impl<'a> Scanner<'a> {
         self.at = self.text.len();
     }
 
-    /// Reads `#*"..."#*` after a prefix; false, without moving, when none is there.
+    /// Scans `#*"..."#*` after a prefix; returns false without advancing if there is none.
     fn raw_string(&mut self, prefix: usize) -> bool {
         let body = &self.rest()[prefix..];
         let hashes = body.bytes().take_while(|&byte| byte == b'#').count();
@@ -263,7 +263,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// A bracketed group; the next character opens it.
+    /// Scans a bracketed group; the next character is its opening bracket.
     fn group(&mut self, start: usize, name: Option<Range<usize>>, depth: usize) -> Option<Node> {
         if depth >= MAX_DEPTH {
             self.too_deep.get_or_insert(self.at);
@@ -293,11 +293,11 @@ impl<'a> Scanner<'a> {
                 Some(c @ (')' | ']' | '}')) => {
                     let message = format!("`{c}` does not close the `{opener}` before it");
                     self.fault(self.here(), message);
-                    // Left in place: it most probably closes a group further out.
+                    // Not consumed: it most probably closes an outer group.
                     break;
                 }
                 Some(c @ (',' | ':')) => {
-                    self.fault(self.here(), format!("nothing stands before this `{c}`"));
+                    self.fault(self.here(), format!("a value is missing before this `{c}`"));
                     self.at += 1;
                     continue;
                 }
@@ -313,7 +313,7 @@ impl<'a> Scanner<'a> {
             match self.peek() {
                 Some(',') => self.at += 1,
                 Some(')' | ']' | '}') | None => {}
-                // A list has no names: it was left open before one.
+                // A list has no names: the list was not closed before this one.
                 Some(':') if shape == Shape::List => {
                     let message = format!("this `{opener}` is not closed by `{closer}`");
                     self.fault(open..open + 1, message);
@@ -333,7 +333,7 @@ impl<'a> Scanner<'a> {
         })
     }
 
-    /// One element: `name: value` in parentheses, `key: value` in braces, or a value.
+    /// Scans one element: `name: value` in parentheses, `key: value` in braces, or a value.
     fn entry(&mut self, shape: Shape, depth: usize) -> Option<Entry> {
         let start = self.at;
         let key = match shape {
@@ -353,7 +353,7 @@ impl<'a> Scanner<'a> {
         }
         let Some(value) = self.value(depth) else {
             if let Some(key) = key {
-                let message = format!("no value stands after `{}:`", &self.text[key.clone()]);
+                let message = format!("a value is missing after `{}:`", &self.text[key.clone()]);
                 self.fault(key, message);
             }
             return None;
@@ -361,7 +361,7 @@ impl<'a> Scanner<'a> {
         Some(Entry { key, value })
     }
 
-    /// The span of a field name followed by a colon, or nothing.
+    /// Byte range of a field name that is followed by a colon, if there is one.
     fn field_name(&mut self) -> Option<Range<usize>> {
         let start = self.at;
         if !self.peek().is_some_and(starts_word) || self.rest().starts_with("r\"") {

@@ -1,7 +1,7 @@
-//! What a type can hold at a path, whether the text writes it or not.
+//! Schema of a type along a path, independent of the text.
 //!
-//! serde's visitors know their fields. A deserializer that answers each of them with one value, the one on the path,
-//! walks down the type without any text, and notes what it passes.
+//! serde's visitors know their fields. A deserializer that answers each of them with the one value on the
+//! path descends into the type without any text, and records the types it passes.
 
 use std::marker::PhantomData;
 
@@ -14,10 +14,10 @@ use serde::forward_to_deserialize_any;
 
 use super::tree::Node;
 
-/// What a type holds at a place.
+/// The kind of a type at a position.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Level {
-    /// A struct of these fields.
+    /// A struct with these fields.
     Struct(Vec<&'static str>),
     /// A map with any keys.
     Map,
@@ -25,14 +25,14 @@ pub(super) enum Level {
     List,
     /// A tuple.
     Tuple,
-    /// One of these variants.
+    /// An enum with these variants.
     Enum(Vec<&'static str>),
-    /// One value.
+    /// A scalar.
     Value,
 }
 
-/// What `T` holds on the way along `path`: first at its root, then at each component, as far as the type has
-/// them. `root` is the value in the text, which says which variants are at hand.
+/// The types of `T` along `path`: first that of the root, then of each component, as far as the type has
+/// them. `root` is the value in the text; it determines the variants of enums.
 pub(super) fn levels<T: DeserializeOwned>(
     text: &str,
     root: Option<&Node>,
@@ -45,7 +45,7 @@ pub(super) fn levels<T: DeserializeOwned>(
         path,
         found: &mut found,
     };
-    // It never ends with a value: what it found on its way is the answer.
+    // The deserializer always ends with an error; the recorded levels are the result.
     let _ = PhantomData::<T>.deserialize(probe);
     found
 }
@@ -62,12 +62,12 @@ fn end() -> Error {
 }
 
 impl<'a> Probe<'a> {
-    /// Notes what is here.
+    /// Records the type at the current position.
     fn note(&mut self, level: Level) {
         self.found.push(level);
     }
 
-    /// The next component, and the probe of what it names.
+    /// The next component, and the probe for the value it names.
     fn deeper(self) -> Option<(&'a str, Probe<'a>)> {
         let (first, rest) = self.path.split_first()?;
         let node = self.node.and_then(|node| node.step(self.text, first));
@@ -79,7 +79,7 @@ impl<'a> Probe<'a> {
         Some((first, probe))
     }
 
-    /// Goes into a field.
+    /// Descends into a field.
     fn field<'de, V: Visitor<'de>>(
         mut self,
         fields: &'static [&'static str],
@@ -186,7 +186,7 @@ impl<'de> Deserializer<'de> for Probe<'_> {
     }
 }
 
-/// A struct or map of one entry, or a list of one element.
+/// A struct or map with one entry, or a list with one element.
 struct One<'a> {
     name: Option<&'a str>,
     probe: Option<Probe<'a>>,
@@ -220,7 +220,7 @@ impl<'de> SeqAccess<'de> for One<'_> {
     }
 }
 
-/// The variant that the text has.
+/// The variant present in the text.
 struct Variant<'a> {
     name: &'a str,
     probe: Probe<'a>,
@@ -247,7 +247,7 @@ impl<'de> VariantAccess<'de> for Probe<'_> {
     }
 
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(mut self, seed: T) -> Result<T::Value, Error> {
-        // The content has the variant's own components; its place `0` may stand before them.
+        // The content has the variant's own components; the index `0` may precede them.
         let wraps = self.path.first().is_some_and(|first| first == "0");
         if wraps {
             self.note(Level::Tuple);

@@ -1,4 +1,4 @@
-//! `--set key.path=value`: what it changes in the text.
+//! Application of `--set key.path=value` to an input text.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use super::schema::{self, Level};
 use super::tree::{Kind, Node, Shape, Tree, join_path, split_path};
 use super::{InputError, Source, scan};
 
-/// A `--set` argument taken apart; ranges are bytes of the argument.
+/// A parsed `--set` argument; ranges are bytes of the argument.
 struct Assignment<'a> {
     argument: &'a str,
     path: Vec<String>,
@@ -53,14 +53,14 @@ impl<'a> Assignment<'a> {
         &self.argument[self.value.clone()]
     }
 
-    /// Whether the value is a name, and could be a text whose quotes the shell took.
+    /// Whether the value is a name, and may be a text whose quotes the shell removed.
     fn is_word(&self) -> bool {
         let tree = scan::scan(self.value());
         let word = matches!(tree.root.map(|root| root.kind), Some(Kind::Word));
         word && !matches!(self.value(), "true" | "false")
     }
 
-    /// Whether the value is no RON at all, such as a path, and could be a text.
+    /// Whether the value is not valid RON, such as a path, and may be a text.
     fn is_bare(&self) -> bool {
         !self
             .value()
@@ -68,7 +68,7 @@ impl<'a> Assignment<'a> {
             && !is_value(self.value())
     }
 
-    /// The value, if it is one complete RON value.
+    /// The value, if it is one complete RON value; otherwise an error.
     fn complete(&self) -> Result<String, InputError> {
         let value = self.value();
         if is_value(value) {
@@ -84,7 +84,7 @@ impl<'a> Assignment<'a> {
         Err(error.expected("one number, text, name, list or struct"))
     }
 
-    /// What the first components name, for a sentence.
+    /// Name of the value that the first components lead to, for messages.
     fn place(&self, depth: usize) -> String {
         if depth == 0 {
             "the file".to_owned()
@@ -98,7 +98,7 @@ impl<'a> Assignment<'a> {
     }
 }
 
-/// The first `=` outside quotes: a quoted map key may hold one.
+/// Position of the first `=` outside quotes: a quoted map key may contain one.
 fn equals_sign(argument: &str) -> Option<usize> {
     let mut quoted = false;
     argument.bytes().position(|byte| {
@@ -121,12 +121,12 @@ fn quote(text: &str) -> String {
 }
 
 impl Source {
-    /// Applies `key.path=value` to the text of a `T`: replaces a value, or adds it where the text leaves it out,
-    /// with the structs and maps around it. The value is RON text; a bare word in the place of a text is quoted.
+    /// Applies `key.path=value` to the text of a `T`: replaces a value, or inserts it if the text omits it,
+    /// with the structs and maps around it. The value is RON text; a bare word where a text is expected is quoted.
     ///
     /// # Errors
-    /// A malformed argument, a key that `T` does not have, an element of a list that is not in the text, a value
-    /// which is not one complete RON value.
+    /// The argument is malformed, `T` does not have the key, a list element is not in the text, or the value
+    /// is not one complete RON value.
     pub fn set<T: DeserializeOwned>(&mut self, argument: &str) -> Result<(), InputError> {
         let wanted = Assignment::parse(argument)?;
         if let Some(refusal) = self.refuse_depth() {
@@ -171,7 +171,7 @@ impl Source {
         Ok(())
     }
 
-    /// Quotes the value of the `--set` that brought `offset`, unless it has quotes.
+    /// Quotes the value of the `--set` that inserted the text at `offset`, unless it has quotes.
     pub(super) fn quote_set_at(&mut self, offset: usize) -> bool {
         let Some((set, _)) = self.pieces.place(&(offset..offset)).set else {
             return false;
@@ -209,8 +209,9 @@ impl Source {
         self.sets.push(wanted.argument.to_owned());
     }
 
-    /// Where what is missing below `parent` goes, and the text before and after its value. The first `depth`
-    /// components of the key are in the text; `levels` are those of the type along the key, as far as it has them.
+    /// Position at which to insert what is missing below `parent`, and the text before and after its value.
+    /// The first `depth` components of the key are in the text; `levels` are the types along the key, as far
+    /// as the type has them.
     fn insertion(
         &self,
         wanted: &Assignment<'_>,
@@ -244,7 +245,7 @@ impl Source {
             Shape::Map => {
                 let quoted = |span: &Range<usize>| text[span.clone()].contains('"');
                 let mut keys = group.entries.iter().filter_map(|entry| entry.key.as_ref());
-                // A map without texts for keys has numbers or words, taken as they are.
+                // Unquoted map keys are numbers or identifiers and are used as written.
                 let words = !group.entries.is_empty() && !keys.any(quoted);
                 if words {
                     wanted.path[depth].clone()
@@ -254,7 +255,7 @@ impl Source {
             }
             Shape::Tuple | Shape::List => key(levels.get(depth), &wanted.path[depth]),
         };
-        // The structs and maps between the parent and the value, which the text leaves out.
+        // The structs and maps between the parent and the value, which the text omits.
         let (mut before, mut after) = (format!("{first}: "), String::new());
         for (k, part) in wanted.path.iter().enumerate().skip(depth + 1) {
             let level = levels.get(k);
@@ -271,7 +272,7 @@ impl Source {
                 entry.value.span.end
             }
             None => {
-                // An empty group may hold a comment up to its bracket; a comma is harmless.
+                // An empty group may contain a comment before its bracket; a trailing comma is allowed.
                 after.push(',');
                 group.open + 1
             }
@@ -279,7 +280,8 @@ impl Source {
         Ok((at, before, after))
     }
 
-    /// Refuses a component that neither the text nor the type has: the first one, with the nearest that is there.
+    /// Makes an error for the first component that neither the text nor the type has, with the nearest
+    /// existing name.
     fn refuse_unknown(
         &self,
         wanted: &Assignment<'_>,
@@ -294,7 +296,7 @@ impl Source {
                 .filter(|_| k == depth)
                 .map(|g| (g.shape, g.entries.len()));
             let listed = match shape {
-                // What reads the text says what is wrong with a name, at its place in the file.
+                // The parser reports an invalid name, at its position in the file.
                 Some((Shape::Struct | Shape::Map, _) | (Shape::Tuple, 0))
                     if k + 1 == wanted.path.len() =>
                 {
@@ -360,7 +362,7 @@ impl Source {
 }
 
 impl Node {
-    /// The value inside `Some(...)` and one-tuples, as far as they go.
+    /// The value inside nested `Some(...)` and one-tuples.
     fn inner(&self, text: &str) -> &Node {
         let mut node = self.peel(text);
         while let Some(group) = node.group() {
@@ -373,7 +375,7 @@ impl Node {
     }
 }
 
-/// The bytes to replace, and the text to put there.
+/// The byte range to replace, and the replacement.
 fn replacement(
     text: &str,
     node: &Node,
@@ -382,7 +384,7 @@ fn replacement(
     let value = wanted.value();
     let option = value == "None" || value.starts_with("Some(");
     let held = node.peel(text);
-    // The `Some` around an old value stays, unless the new value brings its own.
+    // An existing `Some` around the old value is kept, unless the new value has its own.
     let target = if option { node } else { held };
     let is_text = matches!(held.kind, Kind::Text);
     let unquoted = wanted.is_word() || wanted.is_bare();
@@ -394,8 +396,8 @@ fn replacement(
     Ok((target.span.clone(), new))
 }
 
-/// `coupling=Implicit(tolerance: ..., max_iterations: 3)` of `coupling.max_iterations=3`: the key above the last as a whole, with
-/// the first of its kinds that has such a field.
+/// Suggests `coupling=Implicit(tolerance: ..., max_iterations: 3)` for `coupling.max_iterations=3`: the
+/// parent key as a whole, with the first variant that has such a field.
 fn as_one_value<T: DeserializeOwned>(wanted: &Assignment<'_>, levels: &[Level]) -> Option<String> {
     let (last, above) = wanted.path.split_last()?;
     let Some(Level::Enum(variants)) = levels.get(above.len()) else {
@@ -435,7 +437,7 @@ pub(super) fn one_of<S: AsRef<str>>(names: &[S]) -> String {
     format!("{lead}{}{more}", quoted.join(", "))
 }
 
-/// Text for a message: one line, not too long.
+/// Shortens a text to one line for a message.
 pub(super) fn shorten(text: &str) -> String {
     const MAX_NAMED: usize = 40;
     let line = text.lines().next().unwrap_or_default().trim_end();

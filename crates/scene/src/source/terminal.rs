@@ -1,21 +1,21 @@
-//! Text of files and of plugins, made fit for a terminal where it is printed.
+//! Sanitizing of text from files and plugins before it is printed to a terminal.
 //!
-//! A title that holds escape sequences could otherwise clear the screen, set the window's title or hide lines of the
-//! output; marks that turn the direction of writing could show other words than there are.
+//! A title with escape sequences could clear the screen, set the window's title or hide lines of the output;
+//! bidirectional control characters could display other words than the file contains.
 
-/// Whether a terminal would take a character for a command, or write what follows in another direction.
+/// Whether a terminal interprets a character as a control sequence, or as a change of text direction.
 pub fn commands_a_terminal(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// The text on one line, with a blank in the place of each such character.
+/// The text on one line, with such characters replaced by blanks.
 pub fn clean(text: &str) -> String {
     let plain = |c| if commands_a_terminal(c) { ' ' } else { c };
     text.chars().map(plain).collect()
 }
 
-/// The same where lines and tabulators are meant.
+/// As [`clean`], but keeps line breaks and tabs.
 pub fn clean_lines(text: &str) -> String {
     let plain = |c| match c {
         '\n' | '\t' => c,
@@ -25,7 +25,7 @@ pub fn clean_lines(text: &str) -> String {
     text.chars().map(plain).collect()
 }
 
-/// JSON with these characters escaped: `serde_json` leaves those beyond ASCII as they are.
+/// JSON with such characters escaped: `serde_json` does not escape characters beyond ASCII.
 pub fn clean_json(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

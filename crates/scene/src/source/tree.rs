@@ -1,44 +1,44 @@
-//! The tree of a RON text: where every value stands, and lookup by dotted path.
+//! Syntax tree of a RON text with the location of every value, and lookup by dotted path.
 
 use std::ops::Range;
 
 use super::{nearest::nearest, scan};
 
-/// The deepest nesting accepted; more is refused before anything recurses into it.
+/// Largest nesting depth accepted; checked before anything recurses into the text.
 pub const MAX_DEPTH: usize = 128;
 
-/// What a text holds, as far as it is well formed.
+/// The well-formed part of a text.
 #[derive(Debug, Clone, Default)]
 pub struct Tree {
-    /// The value of the text, if there is one.
+    /// The top-level value, if there is one.
     pub root: Option<Node>,
-    /// The first place where the text is malformed.
+    /// The first malformed position.
     pub fault: Option<Fault>,
-    /// Where the nesting passed [`MAX_DEPTH`]; nothing is read beyond it.
+    /// Position where the nesting exceeded [`MAX_DEPTH`]; the text is not scanned beyond it.
     pub too_deep: Option<usize>,
 }
 
-/// A place where the text is malformed.
+/// A malformed position in the text.
 #[derive(Debug, Clone)]
 pub struct Fault {
-    /// How far the scanner had come when it noticed.
+    /// Position of the scanner when it detected the error.
     pub at: usize,
-    /// What to point at.
+    /// Range to mark.
     pub span: Range<usize>,
-    /// What is wrong, as a sentence.
+    /// Message.
     pub message: String,
 }
 
-/// A value and the bytes it takes, its name and brackets included.
+/// A value and its byte range, including its name and brackets.
 #[derive(Debug, Clone)]
 pub struct Node {
-    /// The bytes of the value.
+    /// Byte range of the value.
     pub span: Range<usize>,
-    /// What the value is.
+    /// Kind of the value.
     pub kind: Kind,
 }
 
-/// What a value is.
+/// Kind of a value.
 #[derive(Debug, Clone)]
 pub enum Kind {
     /// A number, `inf` and `NaN` included.
@@ -51,18 +51,18 @@ pub enum Kind {
     Word,
     /// Values in brackets.
     Group(Box<Group>),
-    /// Byte strings, and what could not be read.
+    /// Byte strings, and text that could not be scanned.
     Other,
 }
 
 /// Values in brackets.
 #[derive(Debug, Clone)]
 pub struct Group {
-    /// Which brackets, and whether the entries are named.
+    /// The kind of brackets, and whether the entries are named.
     pub shape: Shape,
     /// The name before the bracket.
     pub name: Option<Range<usize>>,
-    /// Where the opening bracket stands.
+    /// Position of the opening bracket.
     pub open: usize,
     /// The values, in the order of the text.
     pub entries: Vec<Entry>,
@@ -90,19 +90,19 @@ pub struct Entry {
     pub value: Node,
 }
 
-/// A path that leads nowhere, and how far it leads.
+/// A path that does not exist in the text, and how much of it does.
 #[derive(Debug)]
 pub struct Missing<'t> {
     /// The deepest value that exists.
     pub parent: Option<&'t Node>,
-    /// How many components led there.
+    /// Number of components that exist.
     pub depth: usize,
-    /// What the value offers as the next component.
+    /// Valid next components at that value.
     pub choices: Vec<String>,
 }
 
 impl Missing<'_> {
-    /// The path with its first wrong component put right, if something is close.
+    /// The path with its first wrong component corrected, if a similar one exists.
     pub fn correction(&self, path: &[String]) -> Option<Vec<String>> {
         let wrong = path.get(self.depth)?;
         let right = nearest(wrong, self.choices.iter().map(String::as_str))?;
@@ -112,7 +112,7 @@ impl Missing<'_> {
     }
 }
 
-/// Splits `a.b."c.d"` into its components; nothing when one is empty or unclosed.
+/// Splits `a.b."c.d"` into its components; `None` if one is empty or unclosed.
 pub fn split_path(path: &str) -> Option<Vec<String>> {
     let mut parts = Vec::new();
     let mut rest = path.trim();
@@ -133,7 +133,7 @@ pub fn split_path(path: &str) -> Option<Vec<String>> {
     }
 }
 
-/// The components joined again, quoted where they need it.
+/// Joins components, quoted where necessary.
 pub fn join_path(parts: &[String]) -> String {
     let quoted: Vec<String> = parts
         .iter()
@@ -154,11 +154,11 @@ impl Tree {
         scan::scan(text)
     }
 
-    /// The value at a path of components, or how far the path leads.
+    /// Finds the value at a path of components, or how much of the path exists.
     ///
-    /// Components are field names, map keys, indices, and in a list also the
-    /// `name` of an element. `Some(x)` counts as `x`; the value of a one-tuple
-    /// is its `.0`, and the components of that value may follow directly.
+    /// Components are field names, map keys, indices, and in a list also the `name` of an element. `Some(x)`
+    /// counts as `x`; the value of a one-tuple is its `.0`, and the components of that value may follow
+    /// directly.
     pub fn find(&self, text: &str, path: &[String]) -> Result<&Node, Missing<'_>> {
         let mut node = self.root.as_ref().ok_or(Missing {
             parent: None,
@@ -214,7 +214,7 @@ impl Tree {
         path
     }
 
-    /// The last key or name in the text before `limit` which reads `word`.
+    /// The last key or name equal to `word` in the text before `limit`.
     pub(super) fn last_word(&self, text: &str, word: &str, limit: usize) -> Option<Range<usize>> {
         let mut stack: Vec<&Node> = self.root.iter().collect();
         let mut best: Option<Range<usize>> = None;
@@ -258,7 +258,7 @@ impl Node {
         node
     }
 
-    /// What to point at: the whole value, or its head when it takes several lines.
+    /// Range to mark: the whole value, or its head if it spans several lines.
     pub fn head(&self, text: &str) -> Range<usize> {
         match self.group() {
             Some(group) if text[self.span.clone()].contains('\n') => {
@@ -268,7 +268,7 @@ impl Node {
         }
     }
 
-    /// The text of a string without its quotes and escapes, or of a word.
+    /// The content of a string without quotes and escapes, or a word.
     pub fn string(&self, text: &str) -> Option<String> {
         let written = &text[self.span.clone()];
         match self.kind {
@@ -327,7 +327,7 @@ impl Node {
         }
     }
 
-    /// What may follow this value in a path.
+    /// Valid components after this value in a path.
     pub(super) fn choices(&self, text: &str) -> Vec<String> {
         let node = self.peel(text);
         let Some(group) = node.group() else {

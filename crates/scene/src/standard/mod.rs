@@ -1,20 +1,21 @@
-//! Profiles of wheels and rails by their standards, as points of a chain.
+//! Standard wheel and rail profiles as polylines.
 //!
-//! In the case x is the standard's lateral axis and z points up: a wheel's profile is upside down, its flange at
-//! negative x reaches below; the gauge side of a rail is at negative x. The origin is the datum of the tread, or the
-//! middle of the running surface, of an inclined rail its highest point.
+//! In the case x is the standard's lateral axis and z points up. A wheel's profile is upside down, with its
+//! flange at negative x reaching below; the gauge side of a rail is at negative x. The origin is the datum of
+//! the tread for a wheel, and the middle of the running surface for a rail, or the highest point if the rail
+//! is inclined.
 
 mod rail_60e1;
 mod s1002;
 
 use super::case::{Side, StandardName};
 
-/// Which part of a profile, and how fine.
+/// Section of a profile, and its resolution.
 #[derive(Clone, Copy, Debug)]
 pub struct Cut {
     /// Longest segment (m).
     pub spacing: f64,
-    /// Beginning along the standard's lateral axis (m).
+    /// Start along the standard's lateral axis (m).
     pub from: Option<f64>,
     /// End (m).
     pub to: Option<f64>,
@@ -22,15 +23,16 @@ pub struct Cut {
     pub inclination: Option<f64>,
 }
 
-/// A profile as its standard draws it: lateral places and heights in mm, heights positive as in the standard.
+/// A profile as drawn in its standard: lateral positions and heights in mm, heights positive as in the
+/// standard.
 trait Drawing {
-    /// Places where its pieces meet, and its ends, from left to right (mm).
+    /// Lateral positions where its segments meet, and its ends, from left to right (mm).
     fn joints(&self) -> Vec<f64>;
-    /// Height at a place between the ends (mm).
+    /// Height at a lateral position between the ends (mm).
     fn height(&self, y: f64) -> f64;
 }
 
-/// Side on which the solid of a profile is.
+/// Side of the profile on which the solid is.
 pub fn side(name: StandardName) -> Side {
     match name {
         StandardName::S1002 => Side::Above,
@@ -38,10 +40,10 @@ pub fn side(name: StandardName) -> Side {
     }
 }
 
-/// The points of a profile, from left to right (m), no segment longer than the spacing, one at each joint of pieces.
+/// Samples the points of a profile, from left to right (m), at most `spacing` apart and with one at each joint of segments.
 ///
 /// # Errors
-/// The field at fault and why.
+/// The field at fault and the reason.
 pub fn points(name: StandardName, cut: &Cut) -> Result<Vec<(f64, f64)>, (&'static str, String)> {
     let rail;
     let drawing: &dyn Drawing = match name {
@@ -70,14 +72,14 @@ pub fn points(name: StandardName, cut: &Cut) -> Result<Vec<(f64, f64)>, (&'stati
         Some(y) if (first..=last).contains(&y) => Ok(y),
         Some(y) => Err((field, format!("{range}, not to {:e} m", 1e-3 * y))),
     };
-    // The flank below the head of a rail is left out where nothing asks for it: inclined 1:20 it is upright.
+    // The flank below a rail's head is omitted by default: on a rail inclined 1:20 it is vertical.
     let own = match name {
         StandardName::S1002 => (first, last),
         StandardName::Rail60E1 => (joints[1], joints[joints.len() - 2]),
     };
     let (from, to) = (end("from", cut.from, own.0)?, end("to", cut.to, own.1)?);
     if from >= to {
-        return Err(("to", format!("`from` is left of `to`; {range}")));
+        return Err(("to", format!("`from` must be left of `to`; {range}")));
     }
     let mut stops = vec![from];
     stops.extend(joints.iter().copied().filter(|y| from < *y && *y < to));
@@ -89,7 +91,10 @@ pub fn points(name: StandardName, cut: &Cut) -> Result<Vec<(f64, f64)>, (&'stati
     let tilt = match (name, cut.inclination) {
         (_, None) => None,
         (StandardName::S1002, Some(_)) => {
-            return Err(("inclination", "a wheel has none; incline the rail".into()));
+            return Err((
+                "inclination",
+                "a wheel has no inclination; incline the rail".into(),
+            ));
         }
         (StandardName::Rail60E1, Some(n)) if n.is_finite() && n >= 10.0 => Some(n),
         (StandardName::Rail60E1, Some(n)) => {
@@ -105,14 +110,14 @@ pub fn points(name: StandardName, cut: &Cut) -> Result<Vec<(f64, f64)>, (&'stati
             *point = rail.inclined(*point, n);
         }
     }
-    // Both standards count heights into the gap between wheel and rail, downwards.
+    // Both standards measure heights into the gap between wheel and rail, downwards.
     Ok(chain
         .into_iter()
         .map(|(y, z)| (1e-3 * y, -1e-3 * z))
         .collect())
 }
 
-/// Appends points up to `b` (mm), at equal lengths along the profile, all on it.
+/// Appends points up to `b` (mm), equidistant along the profile.
 fn divide(drawing: &dyn Drawing, a: f64, b: f64, spacing: f64, out: &mut Vec<(f64, f64)>) {
     const FINE: usize = 2000;
     let place = |k: usize| a + (b - a) * k as f64 / FINE as f64;
@@ -122,7 +127,7 @@ fn divide(drawing: &dyn Drawing, a: f64, b: f64, spacing: f64, out: &mut Vec<(f6
         length[k + 1] = length[k] + rise.hypot(place(k + 1) - place(k));
     }
     let whole = length[FINE];
-    // A hair more than needed: lengths between fine places are those of chords.
+    // Slightly more points than needed, since the length is measured along fine chords.
     let count = (1.001 * whole / spacing).ceil().max(1.0) as usize;
     for i in 1..count {
         let at = whole * i as f64 / count as f64;

@@ -1,27 +1,28 @@
-//! The head of the rail 60E1, formerly UIC 60.
+//! Head of the rail 60E1, formerly UIC 60.
 //!
-//! EN 13674-1 (2011+A1:2017): arcs of 300, 80 and 13 mm that meet tangentially at 20.456 and 52.053 mm of width, then
-//! a flank 1:20 to the vertical down to a depth of 35.27 mm, where the lower corner of the head begins. The same construction
-//! is in the GENSYS manual ("Creation of a rail profile from a drawing"). y across the rail, symmetric; z > 0 is the
-//! depth below the middle of the running surface.
+//! EN 13674-1 (2011+A1:2017): arcs of radius 300, 80 and 13 mm that meet tangentially at widths of 20.456 and
+//! 52.053 mm, then a flank inclined 1:20 to the vertical down to a depth of 35.27 mm, where the lower corner
+//! of the head begins. The same construction is in the GENSYS manual ("Creation of a rail profile from a
+//! drawing"). y is the lateral axis, about which the rail is symmetric; z > 0 is the depth below the middle
+//! of the running surface.
 
 use super::Drawing;
 
-/// Half the widths at which arcs meet (mm).
+/// Half of the widths at which the arcs meet (mm).
 const HALF: [f64; 2] = [20.456 / 2.0, 52.053 / 2.0];
 const CROWN: f64 = 300.0;
 const SHOULDER: f64 = 80.0;
 const CORNER: f64 = 13.0;
 /// Depth at which the flank ends (mm).
 const FLANK_END: f64 = 35.27;
-/// Rise of the flank over its run.
+/// Slope of the flank.
 const FLANK: f64 = 20.0;
 
 pub(super) struct Rail60E1 {
     /// Centres of the shoulder and the corner (mm).
     shoulder: [f64; 2],
     corner: [f64; 2],
-    /// Where the corner meets the flank (mm).
+    /// Point where the corner arc meets the flank (mm).
     tangent: [f64; 2],
 }
 
@@ -34,7 +35,7 @@ impl Rail60E1 {
         let s = (HALF[1] - shoulder[0]) / SHOULDER;
         let inner = SHOULDER - CORNER;
         let corner = [shoulder[0] + inner * s, shoulder[1] - inner * cosine(s)];
-        // The normal of the flank.
+        // Unit normal of the flank.
         let length = (1.0 + FLANK * FLANK).sqrt();
         let tangent = [
             corner[0] + CORNER * FLANK / length,
@@ -47,12 +48,12 @@ impl Rail60E1 {
         }
     }
 
-    /// Half the width at the end of the flank (mm).
+    /// Half of the width at the end of the flank (mm).
     fn reach(&self) -> f64 {
         self.tangent[0] + (FLANK_END - self.tangent[1]) / FLANK
     }
 
-    /// The highest point of the rail inclined 1:n, before it is turned (mm).
+    /// Highest point of the rail inclined 1:n, before rotation (mm).
     fn apex(&self, n: f64) -> [f64; 2] {
         let (sin, cos) = (1.0 / n).atan().sin_cos();
         if CROWN * sin <= HALF[0] {
@@ -65,7 +66,7 @@ impl Rail60E1 {
         }
     }
 
-    /// A point of the rail inclined 1:n towards negative y, its highest point at the origin (mm).
+    /// A point of the rail inclined 1:n towards negative y, with its highest point at the origin (mm).
     pub(super) fn inclined(&self, (y, z): (f64, f64), n: f64) -> (f64, f64) {
         let (sin, cos) = (1.0 / n).atan().sin_cos();
         let [ya, za] = self.apex(n);
@@ -103,7 +104,8 @@ impl Drawing for Rail60E1 {
 mod tests {
     use super::*;
 
-    /// The drawing gives the end of the corner as 36 mm from the middle, 14.3 mm deep, which it does not need.
+    /// The drawing gives the end of the corner arc as 36 mm from the middle and 14.3 mm deep, which the
+    /// construction does not use.
     #[test]
     fn the_corner_ends_where_the_drawing_says() {
         let [y, z] = Rail60E1::new().tangent;
@@ -124,7 +126,7 @@ mod tests {
             let d = 1e-6;
             let left = (rail.height(joint - d) - rail.height(joint - 2.0 * d)) / d;
             let right = (rail.height(joint + 2.0 * d) - rail.height(joint + d)) / d;
-            // Near the flank z turns fast with y: compare angles.
+            // Near the flank z changes rapidly with y: compare angles.
             assert!(
                 (left.atan() - right.atan()).abs() < 1e-5,
                 "{joint} {left} {right}"
@@ -134,7 +136,7 @@ mod tests {
         }
     }
 
-    /// Inclining turns: distances stay, and the top is level.
+    /// The inclination is a rotation: distances are preserved, and the top is level.
     #[test]
     fn inclining_turns_the_rail() {
         let rail = Rail60E1::new();
@@ -146,7 +148,7 @@ mod tests {
             let [y, _] = rail.apex(n);
             assert!(at(y).0.abs() < 1e-12 && at(y).1.abs() < 1e-12);
             assert!(at(y - 0.1).1 > 0.0 && at(y + 0.1).1 > 0.0);
-            // The top leans to the gauge side, at negative y, and falls towards it.
+            // The rail leans to the gauge side, at negative y, and falls towards it.
             assert!(at(-20.0).1 > rail.height(20.0) && at(20.0).1 < rail.height(20.0));
         }
     }

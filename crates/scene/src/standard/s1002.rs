@@ -1,10 +1,11 @@
-//! The wheel profile S1002, flange 28 mm high and 32.5 mm thick.
+//! Wheel profile S1002, flange 28 mm high and 32.5 mm thick.
 //!
-//! EN 13715 (2006+A1:2010, 2020), UIC 510-2 (2004). Coefficients as they are taught with the credit to H. Netter, DLR
-//! (a cone, two polynomials, four arcs, a line); the same profile is tabulated in the GENSYS manual (profiles of KPF)
-//! and in the Manchester contact benchmark, P. Shackleton, S. Iwnicki, Veh. Syst. Dyn. 46 (2008) 129-149.
-//! y > 0 points to the field side, z > 0 away from the axle; the origin is the datum of the tread, 70 mm from
-//! the back of the flange. The printed coefficients leave a step of 1.2e-4 mm at y = -35, their rounding.
+//! EN 13715 (2006+A1:2010, 2020), UIC 510-2 (2004). The coefficients are those commonly published with credit
+//! to H. Netter, DLR (a cone, two polynomials, four arcs, a line); the same profile is tabulated in the
+//! GENSYS manual (profiles of KPF) and in the Manchester contact benchmark, P. Shackleton, S. Iwnicki, Veh.
+//! Syst. Dyn. 46 (2008) 129-149. y > 0 points to the field side, z > 0 away from the axle; the origin is the
+//! datum of the tread, 70 mm from the back of the flange. Rounding of the printed coefficients leaves a step
+//! of 1.2e-4 mm at y = -35.
 
 use super::Drawing;
 
@@ -31,7 +32,7 @@ const THROAT: [f64; 8] = [
     -4.687195829e-5,
     -2.252755540e-7,
 ];
-/// Where pieces meet, and the ends (mm).
+/// Positions where the segments meet, and the ends (mm).
 const JOINTS: [f64; 9] = [
     -70.0,
     -62.764705882,
@@ -50,7 +51,7 @@ fn polynomial(coefficients: &[f64], y: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * y + c)
 }
 
-/// Height of a circle over its centre at a distance from it.
+/// Height of a circle above its centre at a lateral distance from it.
 fn arc(radius: f64, off: f64) -> f64 {
     (radius * radius - off * off).max(0.0).sqrt()
 }
@@ -93,9 +94,9 @@ mod tests {
     fn datum_tip_and_flank_are_those_of_the_standard() {
         assert_eq!(z(0.0), 0.0);
         assert!((z(-55.0) - 28.0).abs() < 1e-12);
-        // The flank stands at 70 degrees.
+        // The flank is inclined at 70 degrees.
         assert!((slope(-39.0) + 70f64.to_radians().tan()).abs() < 1e-6);
-        // The field side falls 1 in 15.
+        // The field side has a slope of 1 in 15.
         assert!((slope(50.0) + 1.0 / 15.0).abs() < 1e-8);
         // Back of the flange 70 mm from the datum; 49.5 + 20.5.
         assert!((z(-70.0) - 9.519259302).abs() < 1e-9);
@@ -121,7 +122,7 @@ mod tests {
         for joint in &JOINTS[1..8] {
             let d = 1e-9;
             let step = (z(joint + d) - z(joint - d)).abs();
-            // The printed digits of the polynomial of the throat.
+            // Limited by the printed digits of the throat's polynomial.
             let allowed = if *joint == -35.0 { 2e-4 } else { 5e-5 };
             assert!(step < allowed, "{joint}: {step}");
             let d = 1e-5;

@@ -1,77 +1,77 @@
-//! Why a run cannot go on.
+//! Errors in resuming a run.
 
 use fretwork_observe::code::CodeError;
 use std::path::PathBuf;
 
-/// Why a run cannot go on from what a folder holds.
+/// Reason why a run cannot be resumed from a folder.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ResumeError {
     /// The file cannot be read.
-    #[error("cannot read {}: {reason}; to begin anew leave --resume out", path.display())]
+    #[error("cannot read {}: {reason}; to start again from the beginning omit --resume", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Reason.
         reason: String,
     },
-    /// No checkpoint in it is whole.
+    /// All checkpoints in the file are damaged.
     #[error(
-        "the checkpoints in {} are damaged: there is none to go on from; to begin anew leave --resume out",
+        "the checkpoints in {} are damaged and cannot be resumed; to start again from the beginning omit --resume",
         path.display()
     )]
     Damaged {
         /// The file.
         path: PathBuf,
     },
-    /// It is of another version.
+    /// The file was written by another version.
     #[error(
-        "{} is of Fretwork {theirs}, this is {ours}, and the bits of two versions may differ: resume with the version \
-         that began it, or begin anew without --resume",
+        "{} was written by Fretwork {theirs}, this is {ours}, and results of two versions may differ in their bits: resume with the version \
+         that started it, or start again without --resume",
         path.display()
     )]
     Version {
         /// The file.
         path: PathBuf,
-        /// Version of the file, with the form of its checkpoints.
+        /// Version that wrote the file, with its checkpoint format.
         theirs: String,
-        /// Version of the program, likewise.
+        /// Version of this program, with its checkpoint format.
         ours: String,
     },
-    /// It is of another case.
+    /// The file belongs to another case.
     #[error(
-        "{} is of another case: {what}; resume with the same case and --set options, or choose another folder with \
+        "{} belongs to another case: {what}; resume with the same case and --set options, or choose another folder with \
          --out",
         path.display()
     )]
     Other {
         /// The file.
         path: PathBuf,
-        /// What differs.
+        /// Description of the difference.
         what: String,
     },
-    /// The run cannot go on beyond the end that it was begun with.
+    /// The run cannot be extended beyond its original end.
     #[error(
-        "the run in {} cannot go on beyond its `time.end`: {why}; run it anew without --resume",
+        "the run in {} cannot be extended beyond its `time.end`: {why}; run it again without --resume",
         path.display()
     )]
     Longer {
         /// The file.
         path: PathBuf,
-        /// What hangs on the end.
+        /// What depends on the end.
         why: &'static str,
     },
-    /// A checkpoint that is whole holds something else than the case carries.
-    #[error("the checkpoint in {} cannot be taken up: {source}; to begin anew leave --resume out", path.display())]
+    /// An intact checkpoint does not fit the case.
+    #[error("the checkpoint in {} cannot be restored: {source}; to start again from the beginning omit --resume", path.display())]
     State {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Reason.
         source: CodeError,
     },
 }
 
 impl ResumeError {
-    /// Whether the user gave something else than the run was begun with; else the file is at fault.
+    /// Whether the user's input differs from that of the original run; otherwise the file is at fault.
     pub fn is_input(&self) -> bool {
         matches!(
             self,

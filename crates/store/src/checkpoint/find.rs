@@ -1,46 +1,46 @@
-//! What a folder holds to go on from.
+//! Search of a results folder for a state to resume from.
 
 use super::{Frame, Identity, Kind, ResumeError};
 use crate::results::PreviousResults;
 use fretwork_observe::code::decode;
 use std::path::Path;
 
-/// What there is to go on from.
+/// Result of the search.
 #[derive(Debug)]
 pub enum Found {
-    /// Nothing: the run has not begun, or no state of it was kept yet.
+    /// No run was started in the folder, or no state of it was saved yet.
     Nothing,
-    /// A state.
+    /// A state to resume from.
     State(ResumePoint),
-    /// The run has come to its end.
+    /// The run is finished.
     Finished,
 }
 
-/// Where a run was stopped.
+/// A saved state of a stopped run.
 #[derive(Debug)]
 pub struct ResumePoint {
-    /// Its file, open.
+    /// Its results file, opened.
     pub kept: PreviousResults,
     /// Number of the frame.
     pub number: u64,
-    /// Bytes of its state.
+    /// Serialized state.
     pub state: Vec<u8>,
 }
 
-/// The file that a run writes last, and takes away before it begins: with it all others are there.
+/// The file that a run writes last, and removes before it starts: if it exists, all others are complete.
 pub const LAST: &str = "summary.json";
 
-/// Whether the run of a folder, of an identity of this name, came to its end, not to an error.
+/// Whether the run in a folder, with this identity, finished without an error.
 fn finished(folder: &Path, identity: &str) -> bool {
     let text = std::fs::read_to_string(folder.join(LAST)).unwrap_or_default();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
     summary["identity"] == identity && summary["steps"].is_number() && summary["stopped"].is_null()
 }
 
-/// Looks into a folder for a run of this identity.
+/// Searches a folder for a run with this identity.
 ///
 /// # Errors
-/// A file that cannot be read, whose checkpoints are damaged, or that is of another version or case.
+/// A file cannot be read, its checkpoints are damaged, or it belongs to another version or case.
 pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
     let path = folder.join("results.h5");
     if !path.exists() {
@@ -74,7 +74,7 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
         return Err(ResumeError::Other { path, what });
     }
     let later = theirs.ends_later(identity);
-    // The file says that it is whole, the summary of the same run that all others are.
+    // The results file is marked complete, and the summary of the same run shows that all others are.
     if !later && frame.kind == Kind::Ended && finished(folder, &Identity::name(&frame.identity)) {
         return Ok(Found::Finished);
     }

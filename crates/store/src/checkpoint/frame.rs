@@ -1,39 +1,39 @@
-//! A frame: the bytes of a checkpoint, under a checksum.
+//! Frame: the bytes of a checkpoint, protected by a checksum.
 //!
 //! ```text
 //! 0  "FRETWORK"       8  format (u32)       12  kind (u32)         16  number of the frame (u64)
 //! 24 bytes of the version, the identity and the state (3 u64)      48  SHA-256 of all the rest
 //! 80 version, identity, state
 //! ```
-//! Numbers are little-endian. This much is the same in all versions: another one can say which it is of.
+//! Numbers are little-endian. This header is the same in all versions, so that a version can report which one wrote a frame.
 
 use sha2::{Digest, Sha256};
 
-/// What a frame marks.
+/// Kind of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The run has begun: there is no state to go on from.
+    /// The run has started, without a state to resume from.
     Begun,
-    /// A state to go on from.
+    /// A state to resume from.
     State,
-    /// The run has come to its end: the state before it is in the other frame.
+    /// The run has finished; its last state is in the other frame.
     Ended,
 }
 
 /// A checkpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// What it marks.
+    /// Kind.
     pub kind: Kind,
-    /// Number of the frame in its run; the higher is the later.
+    /// Number of the frame in its run, increasing with time.
     pub number: u64,
-    /// Form of the identity and the state, see [`Frame::FORMAT`].
+    /// Format of the identity and the state, see [`Frame::FORMAT`].
     pub format: u32,
     /// Version of the program that wrote it.
     pub version: String,
-    /// Bytes of what the run is of.
+    /// Serialized identity of the run.
     pub identity: Vec<u8>,
-    /// Bytes of the state.
+    /// Serialized state.
     pub state: Vec<u8>,
 }
 
@@ -45,7 +45,7 @@ impl Frame {
     /// Form of identities and states that this program writes: one more whenever anything of them changes.
     pub const FORMAT: u32 = 6;
 
-    /// The frame as bytes.
+    /// Serializes the frame.
     pub fn bytes(&self) -> Vec<u8> {
         let kind: u32 = match self.kind {
             Kind::Begun => 0,
@@ -70,7 +70,7 @@ impl Frame {
         bytes
     }
 
-    /// The frame that stands at the head of bytes; none where it is not whole.
+    /// Reads the frame at the start of `bytes`; `None` if it is incomplete or damaged.
     pub fn read(bytes: &[u8]) -> Option<Self> {
         let word = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
         let long = |at: usize| Some(u64::from_le_bytes(bytes.get(at..at + 8)?.try_into().ok()?));
@@ -104,7 +104,7 @@ impl Frame {
     }
 }
 
-/// Of all bytes of a frame but the hash itself.
+/// Hash of all bytes of a frame except the hash itself.
 fn hash(frame: &[u8]) -> [u8; 32] {
     let mut hash = Sha256::new();
     hash.update(&frame[..HASH]);

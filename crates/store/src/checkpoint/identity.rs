@@ -1,4 +1,4 @@
-//! What a run is of: the same case, materials, laws and files give the same bits, others do not.
+//! Identity of a run: the case, materials, laws and files that determine its results bit by bit.
 
 use fretwork_core::geometry::space::Space;
 use fretwork_observe::code::{CodeError, encode};
@@ -8,33 +8,34 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
-/// What a resumed run may have otherwise: it changes no number.
+/// Values of the case that may differ in a resumed run, since they do not affect the computation.
 const FREE: [&str; 2] = ["output.checkpoint", "output.figures"];
-/// What may be later when a run goes on.
+/// Value that may increase in a resumed run.
 const END: &str = "time.end";
 
-/// What a run is of.
+/// Identity of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
-    /// 2 or 3.
+    /// Dimension, 2 or 3.
     dimension: u32,
-    /// The case as text, `--set` applied.
+    /// Text of the case, with `--set` applied.
     case: String,
-    /// When it ends (s).
+    /// End time (s).
     end: f64,
     /// Material files: name and text.
     materials: Vec<(String, String)>,
     /// Libraries of laws: kind with name, and SHA-256.
     plugins: Vec<(String, String)>,
-    /// SHA-256 of the scene as it was built: what files that the case names (profiles, meshes, samples) made of it.
+    /// SHA-256 of the built scene, which includes the effect of files named in the case (profiles, meshes,
+    /// samples).
     scene: String,
 }
 
 impl Identity {
-    /// Of a case and the scene that it builds, before its first step.
+    /// Identity of a case and its built scene, before the first step.
     ///
     /// # Errors
-    /// The scene cannot be put into bytes.
+    /// The scene cannot be serialized.
     pub fn of<S: Space>(loaded: &Loaded, built: &Built<S>) -> Result<Self, CodeError> {
         let s = &built.simulation;
         let mut plugins: Vec<(String, String)> = Vec::new();
@@ -47,7 +48,7 @@ impl Identity {
         }
         let mut hash = Hashed(Sha256::new());
         hash.0.update(encode(&s.save())?);
-        // Never fails: nothing is written anywhere.
+        // Writing to the hash never fails.
         let _ = write!(hash, "{:?}", s.shapes);
         Ok(Self {
             dimension: loaded.case.dimension,
@@ -59,17 +60,17 @@ impl Identity {
         })
     }
 
-    /// A name for one that was put into bytes: their SHA-256.
+    /// Name of a serialized identity: its SHA-256.
     pub fn name(bytes: &[u8]) -> String {
         hex(&Sha256::digest(bytes))
     }
 
-    /// Whether the same run ends later now.
+    /// Whether `now` is the same run with a later end.
     pub fn ends_later(&self, now: &Self) -> bool {
         now.end > self.end
     }
 
-    /// What differs in another one, in words; none where nothing that counts does, and it ends no earlier.
+    /// Describes the first relevant difference from `now`; `None` if there is none and `now` ends no earlier.
     pub fn differs(&self, now: &Self) -> Option<String> {
         if self.case != now.case {
             let [a, b] = [&self.case, &now.case].map(|t| Source::from_text("case", t.clone()));
@@ -80,7 +81,7 @@ impl Identity {
             if let Some(d) = first_difference(&a, &b, &free) {
                 let said = |text: Option<String>| text.unwrap_or("nothing".to_owned());
                 return Some(format!(
-                    "`{}` was {} there and is {} now",
+                    "`{}` was {} in the original run and is {} now",
                     d.path,
                     said(d.one),
                     said(d.other)
@@ -105,7 +106,7 @@ impl Identity {
                 Some(old) if old != *sha => {
                     let [old, new] = [&old, sha].map(|s| s.get(..12).unwrap_or(s).to_owned());
                     return Some(format!(
-                        "the library of the {name} is another one (SHA-256 {old}... there, {new}... now)"
+                        "the library of the {name} has changed (SHA-256 {old}... in the original run, {new}... now)"
                     ));
                 }
                 Some(_) => {}
@@ -128,7 +129,7 @@ fn hex(bytes: &[u8]) -> String {
     })
 }
 
-/// Hashes text as it is written.
+/// Writer that hashes the text.
 struct Hashed(Sha256);
 
 impl Write for Hashed {

@@ -1,14 +1,14 @@
-//! When checkpoints are written, and in which order.
+//! Schedule of checkpoints.
 
 use super::{Frame, Identity, Kind};
 use fretwork_observe::code::{CodeError, encode};
 use fretwork_scene::case::Checkpoint;
 use std::time::{Duration, Instant};
 
-/// Checkpoints by the clock take at most one part in so many of a run's time.
+/// Checkpoints at time intervals take at most 1/`SHARE` of a run's time.
 const SHARE: u32 = 20;
 
-/// Keeps a run's checkpoints.
+/// Writer of a run's checkpoints.
 #[derive(Debug)]
 pub struct CheckpointWriter {
     rule: Checkpoint,
@@ -20,10 +20,10 @@ pub struct CheckpointWriter {
 }
 
 impl CheckpointWriter {
-    /// Of a run of this identity, whose next frame has this number.
+    /// Makes a writer for a run with this identity, starting with this frame number.
     ///
     /// # Errors
-    /// The identity cannot be put into bytes.
+    /// The identity cannot be serialized.
     pub fn new(rule: Checkpoint, identity: &Identity, next: u64) -> Result<Self, CodeError> {
         Ok(Self {
             rule,
@@ -34,7 +34,7 @@ impl CheckpointWriter {
         })
     }
 
-    /// Whether one is due after so many steps.
+    /// Whether a checkpoint is due after this number of steps.
     pub fn due(&self, steps: u64) -> bool {
         match self.rule {
             Checkpoint::Never => false,
@@ -46,12 +46,12 @@ impl CheckpointWriter {
         }
     }
 
-    /// Name of what the run is of: stands in its summary.
+    /// Name of the run's identity, which its summary contains.
     pub fn name(&self) -> String {
         Identity::name(&self.identity)
     }
 
-    /// The next frame: its number, which says where it goes, and its bytes.
+    /// Makes the next frame: its number, which determines its slot, and its bytes.
     pub fn frame(&mut self, kind: Kind, state: Vec<u8>) -> (u64, Vec<u8>) {
         let frame = Frame {
             kind,
@@ -65,7 +65,7 @@ impl CheckpointWriter {
         (frame.number, frame.bytes())
     }
 
-    /// Takes in that a checkpoint was written, begun at an instant.
+    /// Records that a checkpoint was written, which started at this instant.
     pub fn written(&mut self, begun: Instant) {
         self.last = Instant::now();
         self.cost = begun.elapsed();

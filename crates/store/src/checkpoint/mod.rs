@@ -1,11 +1,11 @@
-//! Checkpoints: what `results.h5` keeps of a run, so that `--resume` ends in the bits of a run that was never stopped.
+//! Checkpoints in `results.h5`, from which `--resume` continues to results that are bit-identical to those of an uninterrupted run.
 //!
 //! ```text
 //! /checkpoints/even, /checkpoints/odd   bytes of a frame each, written in turn
 //! ```
-//! A frame holds what the run is of (case, materials, laws, scene: [`Identity`]) and what it carries from step to step,
-//! under a checksum. While one of the two is written the other is whole, so that there is one to go on from at any
-//! moment. What is promised is written in `docs/checkpoints.md`.
+//! A frame contains the identity of the run (case, materials, laws, scene: [`Identity`]) and its state, protected by a
+//! checksum. While one of the two frames is being written the other is intact, so there is always one to resume from.
+//! The guarantees are documented in `docs/checkpoints.md`.
 
 mod error;
 mod find;

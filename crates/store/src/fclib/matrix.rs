@@ -1,14 +1,14 @@
-//! A matrix group: sizes, a code of its storage, and three arrays.
+//! FCLIB matrix group: sizes, a storage code, and three arrays.
 //!
-//! `nz` >= 0: triplets, and then their number; -1: compressed columns; -2: compressed rows. In triplets
-//! `p` holds columns and `i` rows, as in CSparse and in every file of Siconos; the comment in `fclib.h` has
-//! them the other way round, and a file written by it is known by indices that fit only so.
+//! `nz` >= 0: triplets, with `nz` their number; -1: compressed columns; -2: compressed rows. In triplets `p`
+//! holds columns and `i` rows, as in CSparse and in every file written by Siconos. The comment in `fclib.h`
+//! states the opposite; a file that follows it is recognised if its indices are valid only in that order.
 
 use super::FclibError;
 use super::source::Source;
 use fretwork_core::solve::local::Csr;
 
-/// A matrix as it stands in the file.
+/// A matrix as stored in the file.
 pub struct Stored {
     name: String,
     rows: usize,
@@ -19,23 +19,23 @@ pub struct Stored {
     x: Vec<f64>,
 }
 
-/// What the two index arrays of triplets are.
+/// Meaning of the two index arrays of triplets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// p columns, i rows: CSparse.
+    /// p columns, i rows, as in CSparse.
     Columns,
-    /// p rows, i columns: the comment in the header.
+    /// p rows, i columns, as in the comment of the header.
     Rows,
 }
 
 impl Stored {
-    /// Reads the arrays; the sizes must be those that the vectors of the problem give.
+    /// Reads the arrays; the sizes must match those of the problem's vectors.
     ///
     /// # Errors
-    /// A dataset is missing, damaged, or not of the sizes expected.
+    /// A dataset is missing, damaged, or not of the expected size.
     pub fn read(source: &Source, name: &str, expected: (usize, usize)) -> Result<Self, FclibError> {
         if !source.has_group(name) {
-            let reason = "the layout demands this matrix";
+            let reason = "the layout requires this matrix";
             return Err(FclibError::missing(source.path(), name, reason));
         }
         let at = |part: &str| format!("{name}/{part}");
@@ -63,7 +63,7 @@ impl Stored {
             let reason = format!("is {nzmax}; it must be the number of entries or more");
             return wrong("nzmax", reason);
         }
-        // No entry at all: some writers then leave the arrays out.
+        // Some writers omit the arrays if the matrix has no entries.
         let arrays = ["p", "i", "x"].map(at);
         let none = nz == 0 || (nz < 0 && nzmax == 0);
         let there = |k: usize| !none || source.has(&arrays[k]);
@@ -102,7 +102,7 @@ impl Stored {
             if p[0] != 0 || p.windows(2).any(|w| w[1] < w[0]) {
                 return wrong(
                     "p",
-                    "the pointers must begin with 0 and never fall".to_owned(),
+                    "the pointers must begin with 0 and never decrease".to_owned(),
                 );
             }
             p[lines] as usize
@@ -126,10 +126,10 @@ impl Stored {
         Ok(stored)
     }
 
-    /// The order its indices allow, where they allow only one.
+    /// The order of its triplets, if its indices are valid in one order only.
     ///
     /// # Errors
-    /// They allow none: an index outside the matrix.
+    /// The indices are valid in neither order: one of them is outside the matrix.
     pub fn order(&self, source: &Source) -> Result<Option<Order>, FclibError> {
         if self.nz < 0 {
             return Ok(None);
@@ -149,10 +149,10 @@ impl Stored {
         }
     }
 
-    /// The matrix; what stands at one place twice is added.
+    /// Converts to compressed rows; repeated entries are added.
     ///
     /// # Errors
-    /// An index is outside the matrix, or a sum is beyond the range of a double.
+    /// An index is outside the matrix, or a sum exceeds the range of a double.
     pub fn into_csr(self, source: &Source, order: Order) -> Result<Csr, FclibError> {
         let (lines, ends) = if self.nz < 0 {
             (&[][..], &self.p[..])
@@ -187,7 +187,7 @@ impl Stored {
         if csr.values.iter().all(|x| x.is_finite()) {
             return Ok(csr);
         }
-        let reason = "values at one place add up beyond the range of a double";
+        let reason = "repeated entries add up beyond the range of a double";
         Err(FclibError::wrong(
             source.path(),
             &format!("{}/x", self.name),
@@ -220,10 +220,10 @@ impl Stored {
     }
 }
 
-/// The order of the triplets of a whole file: one writer, one order.
+/// Determines the order of the triplets of a whole file, since a writer uses one order.
 ///
 /// # Errors
-/// An index is outside its matrix in either order, or two matrices contradict each other.
+/// An index is outside its matrix in either order, or two matrices require different orders.
 pub fn order(source: &Source, matrices: &[&Stored]) -> Result<Order, FclibError> {
     let mut known: Option<(Order, &str)> = None;
     for matrix in matrices {

@@ -1,11 +1,11 @@
-//! The field's shared problem files: FCLIB's HDF5 layout, read and written.
+//! Reader and writer of FCLIB problem files (HDF5).
 //!
-//! The layout is that of `fclib.h` (github.com/FrictionalContactLibrary/fclib) and of the files at hand;
-//! where the header's comments and the files disagree, the files are followed. `docs/fclib.md` has it
-//! in words. The solver's side, with what the letters mean, is [`fretwork_core::solve::local`].
+//! The layout is that of `fclib.h` (github.com/FrictionalContactLibrary/fclib) and of the existing files;
+//! where the header's comments and the files disagree, the files are followed. It is described in
+//! `docs/fclib.md`. The solver's side, with the meaning of the symbols, is [`fretwork_core::solve::local`].
 //!
-//! A file comes from somebody else: whatever its bytes, [`read`] answers with a problem or a sentence,
-//! and takes no more memory than a small multiple of the file's size.
+//! Files are untrusted: for any content, [`read`] returns a problem or an error, and uses no more memory than
+//! a small multiple of the file's size.
 
 mod matrix;
 mod read;
@@ -22,7 +22,7 @@ pub use write::{write, write_global, write_local};
 use fretwork_core::solve::local::{GlobalProblem, LocalProblem, Multipliers};
 use std::path::{Path, PathBuf};
 
-/// What a file says about itself; bytes that are no text are replaced.
+/// Descriptive texts of a file; invalid UTF-8 is replaced.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Info {
     /// `info/title`.
@@ -42,7 +42,7 @@ pub enum Problem {
     Global(Global),
 }
 
-/// A local problem with what stands around it.
+/// A local problem with its multipliers and descriptive texts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Local {
     /// W, q, mu.
@@ -53,7 +53,7 @@ pub struct Local {
     pub info: Info,
 }
 
-/// A global problem with what stands around it.
+/// A global problem with its descriptive texts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Global {
     /// M, H, f, w, mu, and G, b.
@@ -63,7 +63,7 @@ pub struct Global {
 }
 
 impl Problem {
-    /// Components of a contact: 2 or 3.
+    /// Components per contact: 2 or 3.
     pub fn dimension(&self) -> usize {
         match self {
             Self::Local(l) => l.problem.dimension,
@@ -88,24 +88,24 @@ impl Problem {
     }
 }
 
-/// Why a file cannot be read or written.
+/// Error in reading or writing a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FclibError {
-    /// The system does not give the file.
+    /// The file cannot be opened.
     #[error("cannot read {}: {reason}", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Message of the operating system.
         reason: String,
     },
-    /// Another kind of file.
+    /// The file is not HDF5.
     #[error("{} is not an HDF5 file; `fretwork solve` reads FCLIB problems in HDF5", path.display())]
     NotHdf5 {
         /// The file.
         path: PathBuf,
     },
-    /// HDF5, but nothing of FCLIB's in it.
+    /// An HDF5 file without an FCLIB group.
     #[error(
         "{} is an HDF5 file without an FCLIB problem: it has neither /fclib_local nor /fclib_global",
         path.display()
@@ -114,37 +114,37 @@ pub enum FclibError {
         /// The file.
         path: PathBuf,
     },
-    /// Bytes that are not what HDF5 promises.
+    /// The content violates the HDF5 format.
     #[error("{}: {place} cannot be read: {reason}; the file is damaged or cut short", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
         /// Group or dataset.
         place: String,
-        /// What is wrong.
+        /// Reason.
         reason: String,
     },
-    /// Right in HDF5, not read here.
+    /// Valid HDF5 of a kind that is not supported.
     #[error("{}: {place}: {reason}", path.display())]
     Unsupported {
         /// The file.
         path: PathBuf,
         /// Group or dataset.
         place: String,
-        /// What it is and what to do.
+        /// What it is, and what to do.
         reason: String,
     },
-    /// Something the layout demands is not there.
+    /// A required group or dataset is missing.
     #[error("{}: {place} is missing; {reason}", path.display())]
     Missing {
         /// The file.
         path: PathBuf,
         /// Group or dataset.
         place: String,
-        /// What it is.
+        /// Description of the missing item.
         reason: String,
     },
-    /// Sizes, indices or values that make no problem.
+    /// Sizes, indices or values are inconsistent.
     #[error("{}: {place}: {reason}", path.display())]
     Wrong {
         /// The file.
@@ -159,7 +159,7 @@ pub enum FclibError {
     Unwritable {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Reason.
         reason: String,
     },
 }

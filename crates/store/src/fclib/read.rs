@@ -1,4 +1,4 @@
-//! Reading the problem of a file.
+//! Reader of FCLIB problems.
 
 use super::matrix::{Stored, order};
 use super::source::Source;
@@ -6,11 +6,11 @@ use super::{FclibError, Global, Info, Local, Problem};
 use fretwork_core::solve::local::{Equalities, GlobalProblem, LocalProblem, Multipliers};
 use std::path::Path;
 
-/// Reads the problem of a file: the global one where there are both, as FCLIB's own reader does.
+/// Reads the problem of a file: the global one if both are present, as FCLIB's own reader does.
 ///
 /// # Errors
-/// The file is not there, not HDF5, not FCLIB's, damaged, or its sizes, indices or values make no problem;
-/// the message is a sentence with the group or dataset at fault.
+/// The file is missing, not HDF5, without an FCLIB problem, damaged, or its sizes, indices or values are inconsistent;
+/// the message names the group or dataset.
 pub fn read(path: &Path) -> Result<Problem, FclibError> {
     let source = Source::open(path)?;
     if source.has_group("/fclib_global") {
@@ -141,7 +141,7 @@ fn dimension(source: &Source, place: &str) -> Result<usize, FclibError> {
     }
 }
 
-/// Friction coefficients, as many as `dimension` goes into the length of the vector beside them.
+/// Reads the friction coefficients, whose number must be the length of the vector divided by `dimension`.
 fn friction(
     source: &Source,
     place: &str,
@@ -151,7 +151,7 @@ fn friction(
     let mu = source.reals(place)?;
     if mu.len().checked_mul(dimension) != Some(beside.1) {
         let reason = format!(
-            "{} coefficients, but {} holds {} numbers: {dimension} a contact are expected",
+            "{} coefficients, but {} holds {} numbers: {dimension} per contact are expected",
             mu.len(),
             beside.0,
             beside.1

@@ -5,23 +5,23 @@ use super::write::{complete, put};
 use super::{FclibError, Problem};
 use std::path::Path;
 
-/// A solution, in the names of the layout.
+/// A solution, with the names of the layout.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solution {
-    /// Velocities of the degrees of freedom (n); of global problems only.
+    /// Velocities of the degrees of freedom (length n); global problems only.
     pub v: Vec<f64>,
-    /// Multipliers of the constraints (p).
+    /// Multipliers of the constraints (length p).
     pub l: Vec<f64>,
-    /// Relative velocities of the contacts (m).
+    /// Relative velocities of the contacts (length m).
     pub u: Vec<f64>,
-    /// Contact impulses (m).
+    /// Contact impulses (length m).
     pub r: Vec<f64>,
 }
 
-/// Writes a file with a problem and its solution: v only with a global problem, l only with constraints.
+/// Writes a file with a problem and its solution: v for a global problem only, l only with constraints.
 ///
 /// # Errors
-/// The file cannot be written, or a size is beyond the 32 bits of the layout.
+/// The file cannot be written, or a size exceeds the 32 bits of the layout.
 pub fn write_with_solution(
     path: &Path,
     problem: &Problem,
@@ -41,7 +41,7 @@ pub fn write_with_solution(
     })
 }
 
-/// The solution of a file, where it has the group. Many files have one that was never written and reads
+/// Reads the solution of a file, if it has the group. Many files have a group that was never written and reads
 /// as zeros.
 ///
 /// # Errors

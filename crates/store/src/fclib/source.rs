@@ -1,4 +1,4 @@
-//! An HDF5 file being read: the only file of this folder, with `target.rs`, that knows the HDF5 crate.
+//! Reading access to an HDF5 file. In this module only this file and `target.rs` use the HDF5 crate.
 
 use super::FclibError;
 use hdf5::{DatatypeMessage, H5Dataset, H5File, StorageLayout};
@@ -14,7 +14,7 @@ pub struct Source {
     file: H5File,
     datasets: HashSet<String>,
     path: PathBuf,
-    /// Bytes that one dataset may take.
+    /// Limit on the size of a dataset, in bytes.
     most: usize,
 }
 
@@ -22,7 +22,7 @@ impl Source {
     /// Opens a file and lists its datasets.
     ///
     /// # Errors
-    /// It is not there, not HDF5, or damaged.
+    /// It is missing, not HDF5, or damaged.
     pub fn open(path: &Path) -> Result<Self, FclibError> {
         let length = signed(path)?;
         let damaged = |reason| FclibError::Damaged {
@@ -47,8 +47,8 @@ impl Source {
             file,
             datasets: datasets.into_iter().collect(),
             path: path.to_owned(),
-            // What was never written takes no room in the file and reads as zeros, so that a dataset may
-            // be longer than the file; the pointers of a matrix take half of what a vector does.
+            // Unwritten data takes no space in the file and reads as zeros, so a dataset may be longer than
+            // the file; the pointers of a matrix take half the space of a vector.
             most: usize::try_from(length).unwrap_or(usize::MAX / 8) * 4 + (1 << 16),
         })
     }
@@ -58,7 +58,7 @@ impl Source {
         &self.path
     }
 
-    /// Whether there is a group, named with its path from the root.
+    /// Whether a group exists, given by its path from the root.
     pub fn has_group(&self, name: &str) -> bool {
         guard(|| {
             let mut group = self.file.root_group();
@@ -70,15 +70,15 @@ impl Source {
         .is_ok()
     }
 
-    /// Whether there is a dataset.
+    /// Whether a dataset exists.
     pub fn has(&self, name: &str) -> bool {
         self.datasets.contains(name.trim_start_matches('/'))
     }
 
-    /// A scalar: one whole number.
+    /// Reads a scalar integer.
     ///
     /// # Errors
-    /// It is missing, damaged, no whole number or not one.
+    /// It is missing, damaged, not an integer or not a scalar.
     pub fn integer(&self, name: &str) -> Result<i64, FclibError> {
         match self.integers(name)?[..] {
             [one] => Ok(one),
@@ -89,7 +89,7 @@ impl Source {
         }
     }
 
-    /// Whole numbers of any width.
+    /// Reads integers of any width.
     ///
     /// # Errors
     /// They are missing, damaged or of another type.
@@ -100,7 +100,7 @@ impl Source {
         guard(|| dataset.read_numeric_as::<i64>()).map_err(|e| self.damaged(name, e))
     }
 
-    /// Finite real numbers.
+    /// Reads finite real numbers.
     ///
     /// # Errors
     /// They are missing, damaged, of another type, or one is not finite.
@@ -123,7 +123,7 @@ impl Source {
         }
     }
 
-    /// A text, where there is one; nothing depends on it, so that one that cannot be read is none.
+    /// Reads an optional text; an unreadable one is treated as absent, since nothing depends on it.
     pub fn text(&self, name: &str) -> Option<String> {
         let is_text = |t: &DatatypeMessage| {
             matches!(
@@ -133,7 +133,7 @@ impl Source {
         };
         let dataset = self.dataset(name, "text", is_text).ok()?;
         let texts = guard(|| dataset.read_strings_lossy()).ok()?;
-        // Control characters of a foreign file do not reach a terminal.
+        // Control characters of an untrusted file must not reach a terminal.
         let clean = |t: &str| {
             t.chars()
                 .filter(|c| !c.is_control() || *c == '\n')
@@ -152,7 +152,7 @@ impl Source {
             return Err(FclibError::missing(
                 &self.path,
                 name,
-                "the layout demands it",
+                "the layout requires it",
             ));
         }
         let (dataset, datatype, layout) = guard(|| {
@@ -174,12 +174,12 @@ impl Source {
             return Err(FclibError::Unsupported {
                 path: self.path.clone(),
                 place: name.to_owned(),
-                reason: "it is stored in chunks, compressed or in another file, where FCLIB has one plain \
+                reason: "it is stored in chunks, compressed or in another file, while FCLIB requires one contiguous \
                          block; `h5repack -l CONTI -f NONE IN OUT` makes it so"
                     .to_owned(),
             });
         }
-        // The declared size is a claim: nothing is allocated by it that the file could not hold.
+        // The declared size is not trusted: no more is allocated than the file can hold.
         let bytes = dataset
             .shape()
             .iter()
@@ -202,13 +202,13 @@ impl Source {
     }
 }
 
-/// Length of a file that has HDF5's signature at one of the places where it may stand.
+/// Length of a file that has the HDF5 signature at one of its allowed positions.
 fn signed(path: &Path) -> Result<u64, FclibError> {
     let unreadable = |e: std::io::Error| FclibError::Unreadable {
         path: path.to_owned(),
         reason: e.to_string(),
     };
-    // Opening a pipe would wait for ever.
+    // Opening a pipe would block.
     if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
         return Err(unreadable(std::io::Error::other("it is not a file")));
     }
@@ -228,8 +228,8 @@ fn signed(path: &Path) -> Result<u64, FclibError> {
     })
 }
 
-/// Length that the superblock at the beginning of a file gives it. The HDF5 crate does not compare it with
-/// what is there, and reads what is left of a file that was cut.
+/// File length according to the superblock at the start of a file. The HDF5 crate does not compare it with
+/// the actual length, and reads what remains of a truncated file.
 fn promised(path: &Path) -> Option<u64> {
     let mut start = [0u8; 64];
     std::fs::File::open(path)
@@ -238,7 +238,7 @@ fn promised(path: &Path) -> Option<u64> {
         .ok()?;
     let at = match (start[8], &start[..4]) {
         (_, other) if other != b"\x89HDF" => return None,
-        // Sizes of addresses stand before it; other than 8 bytes are not compared.
+        // The sizes of addresses precede it; only 8-byte addresses are checked.
         (0, _) if start[13] == 8 => 40,
         (1, _) if start[13] == 8 => 44,
         (2 | 3, _) if start[9] == 8 => 28,
@@ -252,9 +252,9 @@ thread_local! {
     static QUIET: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Calls the HDF5 crate. It is young, and damaged bytes can bring it to a panic: that is caught here and
-/// becomes a sentence. The hook is wrapped once, and silent only on a thread that is inside such a call,
-/// so that other panics are told as ever.
+/// Calls the HDF5 crate and converts a panic, which damaged bytes can cause in it, to an error. The panic
+/// hook is wrapped once and suppresses messages only on a thread inside such a call, so that other panics are
+/// reported as usual.
 pub fn guard<T>(call: impl FnOnce() -> hdf5::Result<T>) -> Result<T, String> {
     static WRAPPED: Once = Once::new();
     WRAPPED.call_once(|| {

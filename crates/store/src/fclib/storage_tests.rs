@@ -1,4 +1,4 @@
-//! The same small problem in every storage, written dataset by dataset.
+//! Tests of reading one small problem in every storage format, written dataset by dataset.
 
 use super::target::Target;
 use super::write::complete;
@@ -44,7 +44,7 @@ fn matrix(t: &Target, name: &str, m: i64, n: i64, arrays: Arrays) -> Result<(), 
     t.reals(&format!("{name}/x"), x)
 }
 
-/// One contact in the plane with this W.
+/// One contact in 2D with this W.
 fn local(w: Arrays) -> File {
     File::with(|t| {
         t.group("/fclib_local")?;
@@ -68,7 +68,7 @@ fn every_storage_gives_the_same_matrix() {
     // [2 3; 0 4]
     let exact = Csr::from_triplets(2, 2, &[(0, 0, 2.0), (0, 1, 3.0), (1, 1, 4.0)]);
     let cases: [Arrays; 5] = [
-        // p columns, i rows, and room for more
+        // p columns, i rows, with unused capacity
         (3, 5, &[1, 0, 1], &[0, 0, 1], &[3.0, 2.0, 4.0]),
         (
             3,
@@ -79,7 +79,7 @@ fn every_storage_gives_the_same_matrix() {
         ),
         (-1, 3, &[0, 1, 3], &[0, 1, 0], &[2.0, 4.0, 3.0]),
         (-2, 3, &[0, 2, 3], &[1, 0, 1], &[3.0, 2.0, 4.0]),
-        // one entry in two halves
+        // one entry split into two
         (4, 4, &[1, 0, 1, 1], &[0, 0, 1, 0], &[1.0, 2.0, 4.0, 2.0]),
     ];
     for (k, case) in cases.into_iter().enumerate() {
@@ -98,7 +98,7 @@ fn explicit_zeros_and_empty_matrices_are_read() {
     }
 }
 
-/// M is [2 3; 0 4] on two degrees of freedom and more of unit mass; H has `contacts` in the plane.
+/// M is [2 3; 0 4] on two degrees of freedom, with unit mass on the others; H has `contacts` contacts in 2D.
 fn global(n: i64, m: i64, by_comment: bool) -> File {
     let turn = |p: &'static [i64], i: &'static [i64]| if by_comment { (i, p) } else { (p, i) };
     File::with(|t| {
@@ -127,7 +127,7 @@ fn triplets_by_the_comment_of_the_header_are_known_by_their_bounds() {
         let Problem::Global(g) = read(&global(3, 2, by_comment).0).unwrap() else {
             panic!("a global problem");
         };
-        // M is square and does not tell by itself: it follows H.
+        // M is square, so its order follows from H.
         let entries = |a: &Csr, r: usize| a.row(r).collect::<Vec<_>>();
         assert_eq!(entries(&g.problem.m, 0), [(0, 2.0), (1, 3.0)]);
         assert_eq!(entries(&g.problem.m, 1), [(1, 4.0)]);
@@ -162,7 +162,7 @@ fn what_makes_no_matrix_is_refused() {
         ),
         (
             (-1, 2, &[0, 2, 1], &[0, 1], x),
-            &["/fclib_local/W/p", "never fall"],
+            &["/fclib_local/W/p", "never decrease"],
         ),
         (
             (-1, 2, &[1, 1, 2], &[0, 1], x),
@@ -203,7 +203,7 @@ fn what_makes_no_matrix_is_refused() {
     );
 }
 
-/// A local problem with these sizes and coefficients around a W of two rows.
+/// A local problem with these sizes and coefficients, and a W of two rows.
 fn around(dimension: i64, q: &[f64], mu: &[f64], rows: i64) -> File {
     File::with(|t| {
         t.group("/fclib_local")?;

@@ -1,13 +1,14 @@
-//! An HDF5 file being written, in FCLIB's few shapes.
+//! Writing access to an HDF5 file, for the few data types of FCLIB.
 //!
-//! It grows beside its name and takes it when it is complete: a file of that name is never half written.
+//! The file is written under a temporary name and renamed when complete, so that the final name never refers
+//! to a partial file.
 
 use super::FclibError;
 use super::source::guard;
 use hdf5::{DatatypeMessage, H5File};
 use std::path::{Path, PathBuf};
 
-/// A file on its way.
+/// A file being written.
 pub struct Target {
     file: H5File,
     path: PathBuf,
@@ -15,10 +16,10 @@ pub struct Target {
 }
 
 impl Target {
-    /// Begins a file.
+    /// Creates a temporary file.
     ///
     /// # Errors
-    /// It cannot be written there.
+    /// It cannot be written.
     pub fn create(path: &Path) -> Result<Self, FclibError> {
         let mut name = path.file_name().unwrap_or_default().to_owned();
         name.push(format!(".{}.part", std::process::id()));
@@ -31,7 +32,7 @@ impl Target {
         })
     }
 
-    /// Makes a group, and those above it where they are not there.
+    /// Creates a group, and its missing parents.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -46,18 +47,18 @@ impl Target {
         })
     }
 
-    /// A scalar: one 32-bit number in an array of length 1.
+    /// Writes a scalar: a 32-bit integer in an array of length 1.
     ///
     /// # Errors
-    /// It does not fit 32 bits, or the file cannot be written.
+    /// It does not fit into 32 bits, or the file cannot be written.
     pub fn integer(&self, name: &str, value: i64) -> Result<(), FclibError> {
         self.integers(name, [value])
     }
 
-    /// 32-bit whole numbers.
+    /// Writes 32-bit integers.
     ///
     /// # Errors
-    /// One does not fit 32 bits, or the file cannot be written.
+    /// One does not fit into 32 bits, or the file cannot be written.
     pub fn integers(
         &self,
         name: &str,
@@ -65,13 +66,13 @@ impl Target {
     ) -> Result<(), FclibError> {
         let narrow: Result<Vec<i32>, _> = values.into_iter().map(i32::try_from).collect();
         let narrow = narrow.map_err(|_| {
-            let reason = format!("{name} does not fit the 32-bit whole numbers of FCLIB");
+            let reason = format!("{name} does not fit into the 32-bit integers of FCLIB");
             unwritable(&self.path, reason)
         })?;
         self.array(name, &narrow)
     }
 
-    /// 64-bit real numbers.
+    /// Writes 64-bit real numbers.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -79,7 +80,7 @@ impl Target {
         self.array(name, values)
     }
 
-    /// A text: null-terminated ASCII, rank 0; other characters become question marks.
+    /// Writes a text: null-terminated ASCII, rank 0; other characters become question marks.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -105,7 +106,7 @@ impl Target {
         })
     }
 
-    /// Completes the file and gives it its name.
+    /// Completes the file and renames it to its final name.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -119,7 +120,7 @@ impl Target {
         })
     }
 
-    /// Leaves nothing behind.
+    /// Removes the temporary file.
     pub fn discard(self) {
         drop(self.file);
         std::fs::remove_file(&self.part).ok();

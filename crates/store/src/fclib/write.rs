@@ -1,15 +1,15 @@
-//! Writing a problem.
+//! Writer of FCLIB problems.
 
 use super::target::Target;
 use super::{FclibError, Global, Info, Local, Problem};
 use fretwork_core::solve::local::{Csr, GlobalProblem, LocalProblem};
 use std::path::Path;
 
-/// Writes a local problem: W by compressed rows, columns rising, every block of a contact with another that
-/// has an entry in full, and the diagonal blocks always, as Siconos writes it.
+/// Writes a local problem: W in compressed rows, with increasing columns. Every block of two contacts that has an
+/// entry is written in full, and diagonal blocks always are, as Siconos does.
 ///
 /// # Errors
-/// The file cannot be written, or a size is beyond the 32 bits of the layout.
+/// The file cannot be written, or a size exceeds the 32 bits of the layout.
 pub fn write_local(
     path: &Path,
     problem: &LocalProblem,
@@ -21,10 +21,10 @@ pub fn write_local(
     })
 }
 
-/// Writes a global problem: every matrix as triplets, the only storage that Siconos' reader takes there.
+/// Writes a global problem: every matrix as triplets, the only storage that Siconos' reader accepts there.
 ///
 /// # Errors
-/// The file cannot be written, or a size is beyond the 32 bits of the layout.
+/// The file cannot be written, or a size exceeds the 32 bits of the layout.
 pub fn write_global(
     path: &Path,
     problem: &GlobalProblem,
@@ -36,10 +36,10 @@ pub fn write_global(
     })
 }
 
-/// Writes a problem as it was read: matrices by [`write_local`]'s and [`write_global`]'s rules.
+/// Writes a problem, with matrices as in [`write_local`] and [`write_global`].
 ///
 /// # Errors
-/// The file cannot be written, or a size is beyond the 32 bits of the layout.
+/// The file cannot be written, or a size exceeds the 32 bits of the layout.
 pub fn write(path: &Path, problem: &Problem) -> Result<(), FclibError> {
     complete(path, |file| put(file, problem))
 }
@@ -51,7 +51,7 @@ pub fn put(file: &Target, problem: &Problem) -> Result<(), FclibError> {
     }
 }
 
-/// Fills a file and completes it, or leaves none behind.
+/// Writes a file and completes it; on an error no file is left.
 pub fn complete(
     path: &Path,
     fill: impl FnOnce(&Target) -> Result<(), FclibError>,
@@ -124,7 +124,7 @@ fn about(file: &Target, group: &str, info: &Info) -> Result<(), FclibError> {
         return Ok(());
     }
     file.group(group)?;
-    // FCLIB's reader asks for all three where there is the group.
+    // FCLIB's reader requires all three texts if the group exists.
     for (name, text) in [
         ("title", &info.title),
         ("description", &info.description),
@@ -171,7 +171,7 @@ fn triplets(file: &Target, name: &str, a: &Csr) -> Result<(), FclibError> {
     file.reals(&format!("{name}/x"), &a.values)
 }
 
-/// W with zeros where a block has an entry but not all of them.
+/// W with explicit zeros in blocks that have some entries.
 fn full_blocks(w: &Csr, dimension: usize) -> Csr {
     let mut out = Csr {
         rows: w.rows,

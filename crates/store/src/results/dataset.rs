@@ -1,41 +1,41 @@
-//! What the store knows of its datasets: those that grow by rows, and slots that are written over.
+//! Bookkeeping of datasets: those that grow by rows, and slots that are overwritten.
 
-/// A dataset that grows along its first axis.
+/// Handle of a dataset that grows along its first axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Growing {
-    /// Its place in [`Store::grown`](super::store::Store::grown).
+    /// Index in [`Store::grown`](super::store::Store::grown).
     pub(super) place: usize,
 }
 
-/// What is known of a growing dataset.
+/// Bookkeeping of a growing dataset.
 #[derive(Clone, Debug)]
 pub struct Grown {
     /// Its path.
     pub path: String,
-    /// Rows so far, with those that are kept in memory.
+    /// Number of rows, including those buffered in memory.
     pub rows: u64,
-    /// CRC-32 of their bytes.
+    /// CRC-32 of the bytes of all rows.
     pub sum: u32,
-    /// Numbers a row.
+    /// Numbers per row.
     pub width: u64,
-    /// Whether they are whole numbers.
+    /// Whether they are integers.
     pub whole: bool,
-    /// Numbers of the last rows, as bits, that are not in the file yet.
+    /// Buffered numbers of the last rows, as bits.
     pub(super) held: Vec<u64>,
 }
 
 impl Grown {
-    /// Its name from the root on, as readers give it.
+    /// Its path from the root, as readers give it.
     pub fn name(&self) -> &str {
         self.path.trim_start_matches('/')
     }
 
-    /// Rows in the file.
+    /// Number of rows in the file.
     pub(super) fn written(&self) -> u64 {
         self.rows - self.held.len() as u64 / self.width
     }
 
-    /// A shape or place of so many rows.
+    /// A shape or offset for a number of rows.
     pub(super) fn shape(&self, rows: u64, width: u64) -> Vec<u64> {
         match self.width {
             1 => vec![rows],
@@ -44,20 +44,20 @@ impl Grown {
     }
 }
 
-/// Bytes that are written over again and again.
+/// Handle of a block of bytes that is overwritten repeatedly.
 #[derive(Clone, Copy, Debug)]
 pub struct Slot {
-    /// Its place in the store's list of slots.
+    /// Index in the store's list of slots.
     pub(super) place: usize,
 }
 
-/// What is known of a slot.
+/// Bookkeeping of a slot.
 #[derive(Debug, Default)]
 pub(super) struct Bytes {
     pub path: String,
-    /// Bytes that the file has room for.
+    /// Capacity in the file, in bytes.
     pub size: u64,
-    /// What is not in the file yet.
+    /// Content that is not in the file yet.
     pub held: Option<Vec<u8>>,
 }
 
@@ -67,9 +67,9 @@ impl Bytes {
     }
 }
 
-/// Numbers that are written.
+/// Number types that can be stored.
 pub trait Number: Copy {
-    /// Whether they are whole.
+    /// Whether the type is an integer.
     const WHOLE: bool;
     /// Little-endian bytes.
     fn bytes(self) -> [u8; 8];

@@ -1,16 +1,16 @@
-//! What the file of results holds, declared before the first row: groups, attributes, texts, datasets.
+//! Declaration of the contents of the results file before the first row: groups, attributes, texts, datasets.
 
 use super::dataset::{Growing, Number, Slot};
 use super::store::{ResultsError, Store};
 use hdf5::types::VarLenUnicode;
 use hdf5::{DatatypeMessage, H5Dataset, H5File, H5Group, H5Type};
 
-/// Bytes of a chunk of a slot.
+/// Chunk size of a slot, in bytes.
 const SLOT_CHUNK: usize = 1 << 15;
 
-/// Rows of a chunk of a dataset that gets many rows a state,
+/// Chunk size, in rows, of a dataset with many rows per state.
 pub const MANY: usize = 2048;
-/// and of one that gets one row a state.
+/// Chunk size, in rows, of a dataset with one row per state.
 pub const FEW: usize = 128;
 
 impl Store {
@@ -19,7 +19,7 @@ impl Store {
         self.named(group(file, path))
     }
 
-    /// Makes a group; its parent must exist.
+    /// Creates a group; its parent must exist.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -29,7 +29,7 @@ impl Store {
         self.named(parent.create_group(name)).map(drop)
     }
 
-    /// A second name for a group.
+    /// Creates a link to a group.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -39,7 +39,7 @@ impl Store {
         self.named(parent.link(name, target))
     }
 
-    /// A text attribute of a group.
+    /// Writes a text attribute of a group.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -53,7 +53,7 @@ impl Store {
         self.named(group.set_attr_string(name, text))
     }
 
-    /// A fixed-length ASCII attribute, as VTK wants it.
+    /// Writes a fixed-length ASCII attribute, as VTK requires.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -68,7 +68,7 @@ impl Store {
         self.named(group.set_attr_typed(name, datatype, text.as_bytes().to_vec()))
     }
 
-    /// Whole numbers as an attribute: a scalar when there is one.
+    /// Writes integers as an attribute, a scalar if there is one.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -85,7 +85,7 @@ impl Store {
         })
     }
 
-    /// A dataset of texts with a line of explanation, written once.
+    /// Writes a dataset of texts with a description.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -96,7 +96,7 @@ impl Store {
         self.named(text_attribute(&dataset, "doc", doc))
     }
 
-    /// A dataset of rows of `width` numbers, written once, with its unit and a line of explanation; none where there is no row.
+    /// Writes a dataset of rows of `width` numbers with its unit and description; no dataset if there are no rows.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -123,8 +123,8 @@ impl Store {
         self.named(describe(&dataset, unit, doc))
     }
 
-    /// A growing dataset of rows of `width` numbers (1: a plain column), with its unit and a line of
-    /// explanation, in chunks of so many rows ([`MANY`], [`FEW`]).
+    /// Declares a growing dataset of rows of `width` numbers (1: a plain column), with its unit and description,
+    /// and its chunk size in rows ([`MANY`], [`FEW`]).
     ///
     /// # Errors
     /// The file cannot be written.
@@ -153,7 +153,7 @@ impl Store {
         Ok(self.add_grown(path, width, T::WHOLE))
     }
 
-    /// Bytes that can be written over, with a line of explanation.
+    /// Declares a slot of bytes that can be overwritten, with a description.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -168,7 +168,7 @@ impl Store {
     }
 }
 
-/// A group of a file being written.
+/// Opens a group of a file being written.
 pub(super) fn group(file: &H5File, path: &str) -> hdf5::Result<H5Group> {
     let root = file.root_group();
     match path.trim_matches('/') {
@@ -177,7 +177,7 @@ pub(super) fn group(file: &H5File, path: &str) -> hdf5::Result<H5Group> {
     }
 }
 
-/// The unit of a dataset, `1` for pure numbers, and what its values are.
+/// Writes the attributes `unit` (`1` for pure numbers) and `doc` of a dataset.
 fn describe(dataset: &H5Dataset, unit: &str, doc: &str) -> hdf5::Result<()> {
     text_attribute(dataset, "unit", if unit.is_empty() { "1" } else { unit })?;
     text_attribute(dataset, "doc", doc)

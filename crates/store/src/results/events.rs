@@ -1,4 +1,4 @@
-//! Tables of events: columns that grow by a value an event, held back until the file is flushed.
+//! Event tables: columns that grow by one value per event, buffered until the file is flushed.
 
 use super::dataset::Growing;
 use super::declare::MANY;
@@ -13,7 +13,7 @@ pub(super) struct Events {
 }
 
 impl Events {
-    /// Declares the columns in a group; none make no group.
+    /// Declares the columns in a group; no group is created without columns.
     pub fn declare(
         store: &mut Store,
         group: &str,
@@ -33,19 +33,19 @@ impl Events {
         })
     }
 
-    /// Keeps an event until it is written.
+    /// Buffers an event.
     pub fn hold(&mut self, row: &[f64]) {
         for (column, value) in self.held.iter_mut().zip(row) {
             column.push(*value);
         }
     }
 
-    /// Events held back.
+    /// Number of buffered events.
     pub fn rows(&self) -> usize {
         self.held.first().map_or(0, Vec::len)
     }
 
-    /// Writes what is held back.
+    /// Writes the buffered events.
     pub fn write(&mut self, store: &mut Store) -> Result<(), ResultsError> {
         for (column, values) in self.columns.iter().zip(&mut self.held) {
             store.append(*column, values)?;

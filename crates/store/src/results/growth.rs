@@ -1,19 +1,19 @@
-//! A file that grows in place, by HDF5's single-writer multiple-reader protocol: rows first, then what finds them, then how
-//! many they are, so that it can be read at any moment.
+//! A file that grows in place by HDF5's single-writer multiple-reader protocol: first the rows are written,
+//! then their index, then their number, so that the file can be read at any moment.
 //!
-//! The crate syncs after each dataset of a flush: some 200 times for a file of results. So this is for files that are too
-//! large to be copied.
+//! The crate syncs the file after each dataset of a flush, some 200 times for a results file. In-place growth
+//! is therefore used only for files too large to be copied.
 
 use super::dataset::Grown;
 use hdf5::FileLocking;
 use hdf5::swmr::SwmrFileWriter;
 use std::path::Path;
 
-/// The writer of such a file; none once it is closed.
+/// Writer of such a file; `None` once it is closed.
 pub(super) struct Growth(Option<SwmrFileWriter>);
 
 impl Growth {
-    /// Takes up a file that was closed.
+    /// Opens a closed file for in-place growth.
     pub fn begin(path: &Path) -> hdf5::Result<Self> {
         let mut writer = SwmrFileWriter::open_append_with_locking(path, FileLocking::BestEffort)?;
         writer.start_swmr()?;
@@ -30,7 +30,7 @@ impl Growth {
         index.ok_or_else(|| hdf5::Hdf5Error::NotFound(name.to_owned()))
     }
 
-    /// Hands rows that are kept in memory to the system. Readers see them after the next [`Growth::flush`].
+    /// Writes rows to the file without a sync. Readers see them after the next [`Growth::flush`].
     pub fn write(&mut self, grown: &mut [Grown]) -> hdf5::Result<()> {
         for dataset in grown.iter_mut().filter(|g| !g.held.is_empty()) {
             let index = self.index(dataset.name())?;
@@ -45,12 +45,12 @@ impl Growth {
         Ok(())
     }
 
-    /// Makes what was written visible and safe.
+    /// Makes written rows visible to readers and syncs them to disk.
     pub fn flush(&mut self) -> hdf5::Result<()> {
         self.writer()?.flush()
     }
 
-    /// Writes over bytes of which the file has room for so many, its first `seal` last.
+    /// Overwrites bytes within the allocated capacity, the first `seal` of them last.
     pub fn write_over(
         &mut self,
         name: &str,
@@ -63,13 +63,13 @@ impl Growth {
         open.extend_from_slice(body);
         self.write_slot(name, size, &open)?;
         self.flush()?;
-        // A flush would go through all datasets again: whoever calls syncs the file.
+        // A flush would sync all datasets again; the caller syncs the file once.
         let index = self.index(name)?;
         self.writer()?
             .write_slice(index, &[0], &[seal as u64], head)
     }
 
-    /// Writes over bytes of which the file has room for so many.
+    /// Overwrites bytes within the allocated capacity.
     pub fn write_slot(&mut self, name: &str, size: &mut u64, bytes: &[u8]) -> hdf5::Result<()> {
         let index = self.index(name)?;
         let length = bytes.len() as u64;
@@ -81,13 +81,13 @@ impl Growth {
         writer.write_slice(index, &[0], &[length], bytes)
     }
 
-    /// An attribute of a group; in the file when it is closed.
+    /// Sets an attribute of a group, written when the file is closed.
     pub fn count(&mut self, group: &str, name: &str, value: i64) -> hdf5::Result<()> {
         self.writer()?
             .set_group_attr_numeric::<i64>(group, name, &value)
     }
 
-    /// Ends the file.
+    /// Closes the file.
     pub fn close(mut self) -> hdf5::Result<()> {
         self.0.take().map_or(Ok(()), SwmrFileWriter::close)
     }
@@ -95,7 +95,7 @@ impl Growth {
 
 impl Drop for Growth {
     fn drop(&mut self) {
-        // One that is dropped says on the terminal what went wrong; that was said before.
+        // Dropping the writer would print an error that was already reported.
         if let Some(writer) = self.0.take() {
             let _ = writer.close();
         }

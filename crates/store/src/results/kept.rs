@@ -1,4 +1,4 @@
-//! Reads back what `results.h5` keeps of a run that was stopped: its checkpoints, and its rows.
+//! Reads checkpoints and rows of a stopped run from its `results.h5`.
 
 use super::dataset::Grown;
 use super::store::{ResultsError, Store};
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// Rows copied at a time.
 const BLOCK: usize = 1 << 16;
 
-/// The file of a run that was stopped.
+/// Results file of a stopped run.
 pub struct PreviousResults {
     path: PathBuf,
     file: H5File,
@@ -26,10 +26,10 @@ impl std::fmt::Debug for PreviousResults {
 }
 
 impl PreviousResults {
-    /// Opens it.
+    /// Opens the file.
     ///
     /// # Errors
-    /// What is wrong with the file.
+    /// A description of what is wrong with the file.
     pub fn open(path: &Path) -> Result<Self, String> {
         match std::fs::metadata(path) {
             Ok(data) if data.is_file() => {}
@@ -51,10 +51,10 @@ impl PreviousResults {
         &self.path
     }
 
-    /// The bytes of its checkpoints, whole or not; what cannot be read is empty.
+    /// The bytes of its checkpoints, intact or not; empty if they cannot be read.
     ///
     /// # Errors
-    /// It has none: it is of an older version, or no file of results.
+    /// The file has no checkpoints: it was written by an older version, or is not a results file.
     pub fn checkpoints(&self) -> Result<[Vec<u8>; 2], String> {
         let names = CHECKPOINTS.map(|name| name.trim_start_matches('/'));
         if !names
@@ -62,14 +62,14 @@ impl PreviousResults {
             .all(|name| self.names.iter().any(|n| n == name))
         {
             return Err(
-                "it has no checkpoints: it is of an older version, or no `results.h5` of `fretwork run`"
+                "it has no checkpoints: it was written by an older version, or is not a `results.h5` of `fretwork run`"
                     .to_owned(),
             );
         }
         let length = std::fs::metadata(&self.path).map_or(0, |m| m.len());
         Ok(names.map(|name| {
             let rows = self.shape(name).map_or(0, |s| s[0]);
-            // A declared size is a claim: nothing is allocated by it that the file could not hold.
+            // The declared size is not trusted: no more is allocated than the file can hold.
             if rows == 0 || rows as u64 > length {
                 return Vec::new();
             }
@@ -85,10 +85,10 @@ impl PreviousResults {
         }
     }
 
-    /// Copies so many rows of each growing dataset, of this CRC-32, to a store that declares the same.
+    /// Copies the given number of rows of each growing dataset to a store with the same datasets, and checks their CRC-32.
     ///
     /// # Errors
-    /// The store cannot be written, or the rows are not there or others.
+    /// The store cannot be written, or the rows are missing or differ.
     pub(super) fn copy(&self, rows: &[(u64, u32)], to: &mut Store) -> Result<(), ResultsError> {
         let grown: Vec<Grown> = to.grown().to_vec();
         let fault = |reason: String| ResultsError::unreadable(&self.path, reason);
@@ -118,7 +118,7 @@ impl PreviousResults {
                 let bytes: Vec<u8> = bytes.map_err(fault)?;
                 to.append_bytes(place, &bytes)?;
             }
-            // What lies behind the end of a file that was cut is read as zeros.
+            // Data beyond the end of a truncated file reads as zeros.
             if to.grown()[place].sum != *sum {
                 return Err(fault(format!(
                     "the rows of `{name}` are not those that were written: the file was cut short or changed"
@@ -128,10 +128,10 @@ impl PreviousResults {
         Ok(())
     }
 
-    /// The rows of the statistics, column by column.
+    /// Reads the rows of the statistics, column by column.
     ///
     /// # Errors
-    /// The rows are not there.
+    /// The rows are missing.
     pub fn statistics(&self, names: &[String], rows: usize) -> Result<Vec<Vec<f64>>, ResultsError> {
         let column = |name: &String| self.slice(&format!("statistics/{name}"), 0, rows, None);
         let columns: Result<Vec<_>, _> = names.iter().map(column).collect();
@@ -159,10 +159,10 @@ impl PreviousResults {
 }
 
 impl Results {
-    /// Takes over the rows of a run that was stopped, as many as it had at its checkpoint.
+    /// Copies the rows of a stopped run up to its checkpoint.
     ///
     /// # Errors
-    /// The file cannot be written, or the rows are not there.
+    /// The file cannot be written, or the rows are missing.
     pub fn take_over(
         &mut self,
         from: &PreviousResults,

@@ -2,13 +2,13 @@
 //!
 //! ```text
 //! /            attributes: program, version, case, seed, dimension
-//! /case        the case as text, `--set` applied          /materials/NAME   their texts
-//! /shapes      of grains that are no lone balls, see [`shapes`]
+//! /case        text of the case, `--set` applied          /materials/NAME   texts of the material files
+//! /shapes      of grains other than single balls, see [`shapes`]
 //! /plugins     kind, name, version, sha256, path          /statistics/NAME  one column each, with unit
-//! /events/broken/NAME  one value a bond that broke         /events/debris/NAME  one a piece that came loose
+//! /events/broken/NAME  one value per broken bond           /events/debris/NAME  one value per debris piece
 //! /events/debris/grains  identities of their grains, piece after piece
 //! /views/grains, /views/contacts, /views/bodies           temporal VTKHDF PolyData
-//! /checkpoints/even, /checkpoints/odd                    what `--resume` goes on from, see [`crate::checkpoint`]
+//! /checkpoints/even, /checkpoints/odd                    states for `--resume`, see [`crate::checkpoint`]
 //! /VTKHDF      the grains' view, for ParaView             contacts.vtkhdf, bodies.vtkhdf: links to the others
 //! ```
 
@@ -40,12 +40,12 @@ use std::time::{Duration, Instant};
 use store::Store;
 use view::View;
 
-/// What is known before the first step.
+/// Contents that are known before the first step.
 #[derive(Clone, Debug, Default)]
 pub struct Header {
     /// Title of the case.
     pub case_name: String,
-    /// The case.
+    /// Text of the case.
     pub case_text: String,
     /// Material files: name and text.
     pub materials: Vec<(String, String)>,
@@ -53,7 +53,7 @@ pub struct Header {
     pub plugins: Vec<PluginStamp>,
     /// Seed.
     pub seed: u64,
-    /// 2 or 3.
+    /// Dimension, 2 or 3.
     pub dimension: usize,
     /// Version of the program.
     pub version: String,
@@ -61,33 +61,33 @@ pub struct Header {
     pub statistics: Vec<Column>,
     /// Fields of grains, contacts and bodies.
     pub fields: [Vec<Column>; 3],
-    /// Fields of them that are whole numbers.
+    /// Integer fields of grains, contacts and bodies.
     pub numbers: [Vec<Column>; 3],
-    /// Columns of the bonds that break; empty where nothing bonds.
+    /// Columns of broken bonds; empty if no interface has a cohesion law.
     pub broken: Vec<Column>,
     /// Columns of debris; empty without a circuit.
     pub debris: Vec<Column>,
-    /// Shapes of grains that are no lone balls.
+    /// Shapes of grains other than single balls.
     pub shapes: Shaped,
 }
 
-/// Most rows of statistics, or events, that are held back, however short the time since the last were written.
+/// Limit on buffered rows of statistics, or events, regardless of time.
 const MAX_HELD_ROWS: usize = 8192;
 
-/// The file is flushed no more often than this.
+/// Minimum time between flushes of a file.
 const PACE: Duration = Duration::from_secs(2);
 
-/// And one that grows in place no more often than this: its flush syncs once a dataset, some 200 times. Checkpoints, which
-/// flush it too, mostly come before; between them its rows are handed to the system all the same.
+/// Minimum time between flushes of a file that grows in place, since each flush syncs once per dataset, some
+/// 200 times. Checkpoints also flush it, usually earlier; in between, rows are written without a sync.
 const PACE_IN_PLACE: Duration = Duration::from_secs(60);
 
-/// And no more often than takes one part in so many of the time: files and disks differ.
+/// Flushes take at most 1/`PART` of the time, however slow the disk.
 const PART: u32 = 20;
 
-/// The checkpoints, written in turn.
+/// The two checkpoint slots, written in turn.
 const CHECKPOINTS: [&str; 2] = ["/checkpoints/even", "/checkpoints/odd"];
 
-/// The results file of a run; by default none, and what is appended to it is lost.
+/// Results file of a run. The default has no file, and discards what is appended.
 #[derive(Debug, Default)]
 pub struct Results {
     store: Option<Store>,
@@ -99,12 +99,12 @@ pub struct Results {
     held_grains: Vec<f64>,
     views: Vec<View>,
     checkpoints: Vec<Slot>,
-    /// When the file was flushed, and how long that took.
+    /// Time and duration of the last flush.
     flushed: Option<(Instant, Duration)>,
 }
 
 impl Results {
-    /// Creates the file and writes what is known. It has another name until [`Results::publish`].
+    /// Creates the file with a temporary name until [`Results::publish`], and writes what is known.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -202,7 +202,7 @@ impl Results {
         })
     }
 
-    /// Gives the file its name, with what was written so far: one that stood there is replaced.
+    /// Renames the file to its final name, with all rows so far; an existing file is replaced.
     ///
     /// # Errors
     /// The file cannot be written or renamed.
@@ -213,7 +213,7 @@ impl Results {
         store.publish(path)
     }
 
-    /// Rows of each growing dataset and the CRC-32 of their bytes, with those that are held back: these are written first.
+    /// Writes buffered rows, and returns the number of rows of each growing dataset and the CRC-32 of their bytes.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -225,7 +225,7 @@ impl Results {
             .collect())
     }
 
-    /// Writes a checkpoint, over the last but one; it is safe when this returns.
+    /// Writes a checkpoint over the older of the two; it is synced to disk on return.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -234,13 +234,14 @@ impl Results {
             return Ok(());
         };
         let clock = Instant::now();
-        // The rows that it counts must be there before it is: without its first word it is none.
+        // The rows that the checkpoint counts must be written first: without its first word the checkpoint is
+        // invalid.
         store.write(self.checkpoints[(number % 2) as usize], bytes, 8)?;
         self.flushed = Some((Instant::now(), clock.elapsed()));
         Ok(())
     }
 
-    /// Keeps a checkpoint for the end of the file, see [`Results::finish`].
+    /// Stores a checkpoint to be written at the end of the file, see [`Results::finish`].
     pub fn keep(&mut self, number: u64, bytes: &[u8]) {
         if let Some(store) = &mut self.store {
             store.keep(self.checkpoints[(number % 2) as usize], bytes);
@@ -258,7 +259,7 @@ impl Results {
         self.write_in_time(self.held.first().map_or(0, Vec::len))
     }
 
-    /// Appends an event to its table; one of a table that the file does not have is left out.
+    /// Appends a broken bond.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -277,7 +278,7 @@ impl Results {
         }
     }
 
-    /// Flushes the file if enough time has passed; many rows are not held back until then.
+    /// Flushes the file if enough time has passed, or if many rows are buffered.
     fn write_in_time(&mut self, rows: usize) -> Result<(), ResultsError> {
         if rows >= MAX_HELD_ROWS {
             self.write_held()?;
@@ -294,7 +295,7 @@ impl Results {
         Ok(())
     }
 
-    /// Makes all that was appended visible and safe.
+    /// Makes all appended rows visible to readers and syncs them to disk.
     fn flush(&mut self) -> Result<(), ResultsError> {
         self.write_held()?;
         let clock = Instant::now();
@@ -312,7 +313,7 @@ impl Results {
             values.clear();
         }
         self.broken.write(store)?;
-        // Identities first: a piece that can be read has all its grains.
+        // Grain identities first, so that every readable piece has all its grains.
         if let Some(list) = &self.debris_grains {
             store.append(*list, &self.held_grains)?;
             self.held_grains.clear();
@@ -334,7 +335,7 @@ impl Results {
         self.write_in_time(0)
     }
 
-    /// Ends the file and writes its companions beside it.
+    /// Completes the file and writes its companion files.
     ///
     /// # Errors
     /// A file cannot be written.

@@ -1,50 +1,22 @@
-//! Reads rows of datasets of `results.h5`, also of a file that was cut off or still grows.
+//! Reader of datasets of `results.h5`, also of a truncated or growing file.
 
 use crate::fclib::guard;
 use hdf5::{H5File, H5Type};
 use std::path::Path;
 
-/// A file of results, open for reading: its datasets by their paths, see [`crate::results`].
-///
-/// # Examples
-/// A file with one column of statistics is written, and read again.
-/// ```
-/// use fretwork_observe::statistics::Column;
-/// use fretwork_store::results::{Header, Reader, Results};
-///
-/// let folder = std::env::temp_dir().join(format!("fretwork-reader-{}", std::process::id()));
-/// std::fs::create_dir_all(&folder)?;
-/// let path = folder.join("results.h5");
-/// let header = Header {
-///     dimension: 2,
-///     statistics: vec![Column::new("time", "s", "time at the end of the step")],
-///     ..Header::default()
-/// };
-/// let mut results = Results::create(&path, &header)?;
-/// for step in 1..=3 {
-///     results.append_statistics(&[0.5 * f64::from(step)])?;
-/// }
-/// results.publish(&path)?;
-/// results.finish(&folder)?;
-///
-/// let reader = Reader::open(&path)?;
-/// let rows = reader.rows("statistics/time")?;
-/// assert_eq!(reader.numbers("statistics/time", (0, rows), 1)?, [0.5, 1.0, 1.5]);
-/// # std::fs::remove_dir_all(&folder)?;
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// An open results file.
 pub struct Reader {
     file: H5File,
     names: Vec<String>,
-    /// Numbers that one column may hold.
+    /// Limit on the numbers in one column.
     most: usize,
 }
 
 impl Reader {
-    /// Opens it.
+    /// Opens a results file.
     ///
     /// # Errors
-    /// What is wrong with the file.
+    /// A description of what is wrong with the file.
     pub fn open(path: &Path) -> Result<Self, String> {
         let length = match std::fs::metadata(path) {
             Ok(data) if data.is_file() => data.len(),
@@ -54,7 +26,7 @@ impl Reader {
         let file = guard(|| H5File::options().best_effort_locking().open(path))
             .map_err(|e| format!("it is not a file of results ({e})"))?;
         let names = guard(|| Ok(file.dataset_names()))?;
-        // A declared size is a claim: nothing is allocated by it that the file could not hold.
+        // The declared size is not trusted: no more is allocated than the file can hold.
         let bytes = usize::try_from(length).unwrap_or(usize::MAX / 8) * 4 + (1 << 16);
         Ok(Self {
             file,
@@ -68,19 +40,19 @@ impl Reader {
         self.names.iter().any(|n| n == name)
     }
 
-    /// Rows of a dataset.
+    /// Number of rows of a dataset.
     ///
     /// # Errors
-    /// There is none.
+    /// The dataset does not exist.
     pub fn rows(&self, name: &str) -> Result<usize, String> {
         let shape = guard(|| Ok(self.file.dataset(name)?.shape()))?;
         Ok(shape.first().copied().unwrap_or(0))
     }
 
-    /// Rows of a dataset of `width` numbers each, as one list.
+    /// Reads rows of a dataset with `width` numbers each, as one list.
     ///
     /// # Errors
-    /// They are not there.
+    /// The rows are missing.
     pub fn numbers(
         &self,
         name: &str,
@@ -90,10 +62,10 @@ impl Reader {
         self.slice(name, (first, count), width)
     }
 
-    /// The same of whole numbers.
+    /// Reads rows of integers, as [`Self::numbers`].
     ///
     /// # Errors
-    /// They are not there.
+    /// The rows are missing.
     pub fn whole(&self, name: &str, (first, count): (usize, usize)) -> Result<Vec<i64>, String> {
         self.slice(name, (first, count), 1)
     }

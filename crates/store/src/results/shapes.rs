@@ -1,27 +1,27 @@
-//! The shapes of the grains that are no lone balls, as `results.h5` keeps them: once, in the grains' own axes.
+//! Shapes of the grains other than single balls in `results.h5`, stored once in the grains' own frames.
 //!
 //! ```text
-//! /shapes/bodies/id, mass, density, length, inertia     one row a grain; inertia has 9 numbers, row by row
-//! /shapes/balls/body, radius, offset                    one row a ball of them
-//! /shapes/pieces/body, rounding, size, offset,          one row a convex piece: a core and a rounding about it,
-//!                corners, faces                         with how many corners and faces the core has
-//! /shapes/corners                                       of all cores, about their centres, piece after piece
-//! /shapes/faces                                         of all cores: how many corners a face has, then which
+//! /shapes/bodies/id, mass, density, length, inertia     one row per grain; inertia has 9 numbers, row by row
+//! /shapes/balls/body, radius, offset                    one row per ball of these grains
+//! /shapes/pieces/body, rounding, size, offset,          one row per convex part: a polytope with rounded edges,
+//!                corners, faces                         with its number of corners and faces
+//! /shapes/corners                                       of all parts, relative to their centres, part after part
+//! /shapes/faces                                         of all parts: number of corners of a face, then their indices
 //! ```
-//! With a state's places and orientations in `/views/grains` they say where every grain's outline is.
+//! Together with a state's positions and orientations in `/views/grains` they define every grain's outline.
 
 use super::reader::Reader;
 use super::store::{ResultsError, Store};
 pub use fretwork_scene::recorded::{ShapedBall, ShapedBody, ShapedPiece};
 
-/// All grains that are no lone balls, and what they are made of, in the order of the view of the grains.
+/// All grains other than single balls, with their parts, in the order of the grains' view.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shaped {
     /// The grains.
     pub bodies: Vec<ShapedBody>,
     /// Their balls.
     pub balls: Vec<ShapedBall>,
-    /// Their pieces.
+    /// Their convex parts.
     pub pieces: Vec<ShapedPiece>,
 }
 
@@ -33,7 +33,7 @@ const GROUPS: [&str; 4] = [
 ];
 
 impl Shaped {
-    /// Writes them, of a case of this dimension; nothing where there are none.
+    /// Writes the shapes for a case of this dimension; nothing if there are none.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -167,15 +167,15 @@ impl Shaped {
         store.numbers("/shapes/faces", 1, &listed, ("", "faces of all pieces: the number of corners of a face, then these, counted in their piece from 0"))
     }
 
-    /// Reads them; none where the file has none.
+    /// Reads the shapes; `None` if the file has none.
     ///
     /// # Errors
-    /// What is wrong with them.
+    /// A description of what is wrong with them.
     pub(super) fn read(reader: &Reader) -> Result<Option<Self>, String> {
         if !reader.has("shapes/bodies/id") {
             return Ok(None);
         }
-        // What holds nothing is not written.
+        // Empty datasets are not written.
         let numbers = |name: &str, width: usize| -> Result<Vec<f64>, String> {
             match reader.has(name) {
                 true => reader.numbers(name, (0, reader.rows(name)?), width),
@@ -280,7 +280,7 @@ impl Shaped {
     }
 }
 
-/// Refuses columns that are not as long as the first.
+/// Checks that the columns have the same length.
 fn same(group: &str, rows: usize, lengths: &[usize]) -> Result<(), String> {
     if lengths.iter().all(|n| *n == rows) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! Reads the grains of a state of `results.h5`, also of a run that was cut off or still goes on.
+//! Reads the grains of a recorded state of `results.h5`, also of a truncated file or a running run.
 
 use super::reader::Reader;
 use super::shapes::Shaped;
@@ -10,7 +10,7 @@ use std::path::Path;
 /// Reads a state (the last one without a `frame`) for a case of a dimension.
 ///
 /// # Errors
-/// A file that is not there, not of Fretwork, damaged, of the other dimension, without that state, or without the shapes
+/// The file is missing, not a results file, damaged, of the other dimension, without that state, or without the shapes
 /// of its grains.
 pub fn read(path: &Path, frame: Option<usize>, dimension: usize) -> Result<State, StateError> {
     let unreadable = |reason: String| StateError::Unreadable {
@@ -47,7 +47,7 @@ pub fn read(path: &Path, frame: Option<usize>, dimension: usize) -> Result<State
     let shaped = Shaped::read(&reader).map_err(unreadable)?;
     let turned = turns.iter().all(|t| has(&format!("PointData/{t}")));
     if shaped.is_some() && !turned {
-        let reason = "it has shapes of grains and no orientations: it is damaged";
+        let reason = "it has shapes of grains but no orientations: it is damaged";
         return Err(unreadable(reason.to_owned()));
     }
     let grains = Grains {
@@ -58,14 +58,14 @@ pub fn read(path: &Path, frame: Option<usize>, dimension: usize) -> Result<State
     grains.read(path, frame, shaped)
 }
 
-/// Where the view of the grains stands.
+/// Group of the grains' view.
 const ROOT: &str = "views/grains";
 
 struct Grains {
     reader: Reader,
-    /// Columns of the angular velocity,
+    /// Columns of the angular velocity.
     spins: &'static [&'static str],
-    /// and of the orientation; none where the file has none.
+    /// Columns of the orientation; empty if the file has none.
     turns: &'static [&'static str],
 }
 
@@ -80,7 +80,7 @@ impl Grains {
             path: path.to_owned(),
             reason,
         };
-        // Columns of a run that was cut off may differ by their last state.
+        // The columns of an interrupted run may differ in length by the last state.
         let states = ["Steps/Values", "Steps/PointOffsets", "NumberOfPoints"]
             .map(|n| self.reader.rows(&format!("{ROOT}/{n}")))
             .into_iter()
@@ -114,7 +114,7 @@ impl Grains {
         let points = self.reader.numbers(&format!("{ROOT}/Points"), rows, 3)?;
         let place = |name: &str| format!("{ROOT}/PointData/{name}");
         let column = |name: &str| self.reader.numbers(&place(name), rows, 1);
-        // What files of older versions, or of cases without such grains, do not list is zero.
+        // Columns absent from files of older versions, or of cases without such grains, are zero.
         let where_listed = |name: &str| match self.reader.has(&place(name)) {
             true => column(name),
             false => Ok(vec![0.0; count]),
@@ -152,7 +152,7 @@ impl Grains {
             let finite = |x: &f64| x.is_finite();
             if !(radius[k] > 0.0 && numbers.iter().flatten().chain(&turns).all(finite)) {
                 return Err(format!(
-                    "grain {k} of state {frame} has numbers that are none"
+                    "grain {k} of state {frame} has values that are not finite"
                 ));
             }
             let body = id[k] as u64;
@@ -185,16 +185,16 @@ fn shapeless(frame: usize) -> String {
     )
 }
 
-/// Shapes by the identities of their grains.
+/// Shapes by the identity of their grain.
 struct Sorted(HashMap<u64, Option<Box<ShapedGrain>>>);
 
-/// What is known of the grain of a row.
+/// The shape of the grain of a row.
 enum Known {
-    /// It has a shape, and this is its first part.
+    /// A shape, with its first part in this row.
     First(Box<ShapedGrain>),
-    /// It has a shape, and was met.
+    /// A shape that was returned for an earlier row.
     Again,
-    /// Nothing: it is a lone ball.
+    /// No shape: a single ball.
     Not,
 }
 
@@ -231,7 +231,7 @@ impl Sorted {
         Ok(Self(grains))
     }
 
-    /// The grain of a row of the state.
+    /// Takes the shape of the grain of a row.
     fn take(&mut self, body: u64, motion: Motion) -> Known {
         match self.0.get_mut(&body).map(Option::take) {
             None => Known::Not,

@@ -1,11 +1,12 @@
-//! The file of results: declared once, then growing by rows that are kept in memory and written by time.
+//! The results file: declared once, then growing by rows that are buffered in memory and written at
+//! intervals.
 //!
-//! While the file is small, it is never changed where it stands: a copy beside it gets the new rows, is synced, and takes
-//! its name. So whatever has the name is whole at any moment, and a flush takes one `fdatasync`. Beyond [`LARGE`] copies would
-//! cost more than they save, and the file grows in place by HDF5's single-writer protocol ([`super::growth`]), whose
-//! flush syncs once a dataset.
+//! A small file is never changed in place: a copy beside it gets the new rows, is synced, and is renamed over
+//! it. The named file is therefore always complete, and a flush takes one `fdatasync`. Beyond [`LARGE`] bytes
+//! copies would be too expensive, and the file grows in place by HDF5's single-writer protocol
+//! ([`super::growth`]), whose flush syncs once per dataset.
 //!
-//! This file, with `dataset.rs`, `growth.rs`, `reader.rs` and `kept.rs`, is all of this folder that knows the HDF5 crate.
+//! In this module only this file, `dataset.rs`, `growth.rs`, `reader.rs` and `kept.rs` use the HDF5 crate.
 
 use super::dataset::{Bytes, Growing, Grown, Number, Slot};
 use super::declare::group;
@@ -13,15 +14,15 @@ use super::growth::Growth;
 use hdf5::H5File;
 use std::path::{Path, PathBuf};
 
-/// A file of so many bytes is copied no more, and grows in place,
+/// Size from which a file grows in place, in bytes.
 const LARGE: u64 = 64 << 20;
-/// unless this variable of the environment says another number: where disks are far away copies cost more.
+/// Environment variable that overrides [`LARGE`], for slow (remote) disks.
 const LARGE_FROM: &str = "FRETWORK_COPY_LIMIT";
 
-/// Rows of so many bytes are not kept in memory until the next flush.
+/// Limit on the bytes of buffered rows.
 const MAX_HELD: usize = 8 << 20;
 
-/// Why results cannot be written, or those of a run that was stopped not be read.
+/// Error in writing results, or in reading those of a stopped run.
 #[derive(Debug, thiserror::Error)]
 pub enum ResultsError {
     /// They cannot be written.
@@ -29,15 +30,15 @@ pub enum ResultsError {
     Write {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// They cannot be read.
-    #[error("cannot read {}: {reason}; to begin anew leave --resume out", path.display())]
+    #[error("cannot read {}: {reason}; to start again from the beginning omit --resume", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Reason.
         reason: String,
     },
 }
@@ -53,21 +54,21 @@ impl ResultsError {
 
 /// An HDF5 file being written.
 pub struct Store {
-    /// Where it is written before it takes its name,
+    /// Temporary path at which it is written.
     part: PathBuf,
-    /// and its name, once it has one.
+    /// Its final path, once it is published.
     name: Option<PathBuf>,
-    /// The file, while things are declared.
+    /// The file, during the declarations.
     draft: Option<H5File>,
     /// The file, once it grows in place.
     growth: Option<Growth>,
     grown: Vec<Grown>,
     slots: Vec<Bytes>,
-    /// Attributes of groups that are not in the file yet: group, name, value.
+    /// Pending attributes of groups: group, name, value.
     attributes: Vec<(String, String, i64)>,
-    /// Bytes of the rows kept in memory.
+    /// Bytes of buffered rows.
     held: usize,
-    /// From so many bytes on the file grows in place.
+    /// Size from which the file grows in place, in bytes.
     large: u64,
 }
 
@@ -80,7 +81,7 @@ impl std::fmt::Debug for Store {
 }
 
 impl Store {
-    /// Creates the file, for things to be declared until [`Store::start`]. It has no name but `part` before
+    /// Creates the file for declarations, until [`Store::start`]. It has the temporary name `part` until
     /// [`Store::publish`].
     ///
     /// # Errors
@@ -103,7 +104,7 @@ impl Store {
         })
     }
 
-    /// Where the file stands now.
+    /// Current path of the file.
     fn path(&self) -> &Path {
         self.name.as_deref().unwrap_or(&self.part)
     }
@@ -143,8 +144,8 @@ impl Store {
         named(&self.part, result)
     }
 
-    /// Gives a whole number that is an attribute of a group another value, with the next flush; in a file that grows in
-    /// place when it is closed.
+    /// Sets an integer attribute of a group at the next flush, or, in a file that grows in place, when it is
+    /// closed.
     pub fn count(&mut self, group: &str, name: &str, value: i64) {
         let same = |a: &&mut (String, String, i64)| a.0 == group && a.1 == name;
         match self.attributes.iter_mut().find(same) {
@@ -155,7 +156,7 @@ impl Store {
         }
     }
 
-    /// Everything is declared.
+    /// Ends the declarations.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -164,7 +165,7 @@ impl Store {
         self.named(closed)
     }
 
-    /// Gives the file its name, with all that was appended: one that stood there is replaced.
+    /// Renames the file to its final name, with all appended rows; an existing file is replaced.
     ///
     /// # Errors
     /// The file cannot be written or renamed.
@@ -179,14 +180,14 @@ impl Store {
         Ok(())
     }
 
-    /// Keeps bytes for a slot: they are written with the next flush, or when the file is closed. A slot never shrinks:
-    /// what is longer than the bytes is left from before.
+    /// Stores bytes for a slot, to be written with the next flush or at close. A slot never shrinks: bytes
+    /// beyond the new content keep their old values.
     pub fn keep(&mut self, slot: Slot, bytes: &[u8]) {
         self.slots[slot.place].held = Some(bytes.to_vec());
     }
 
-    /// Writes over a slot: when this returns, it is on the disk with all that was appended before. At no moment are
-    /// the first `seal` bytes of it in the file without the rest.
+    /// Overwrites a slot. On return it is synced to disk together with all appended rows. At no moment does the file
+    /// contain the first `seal` bytes without the rest.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -207,17 +208,17 @@ impl Store {
         self.sync(self.path())
     }
 
-    /// The growing datasets, in the order of their declarations.
+    /// The growing datasets, in the order of their declaration.
     pub fn grown(&self) -> &[Grown] {
         &self.grown
     }
 
-    /// Rows of a dataset so far.
+    /// Number of rows of a dataset.
     pub fn rows(&self, dataset: Growing) -> u64 {
         self.grown[dataset.place].rows
     }
 
-    /// Appends rows; `values` has a whole number of them. They are kept in memory until the next flush, or until they are many.
+    /// Appends whole rows. They are buffered until the next flush, or until the buffer is full.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -230,7 +231,7 @@ impl Store {
         self.append_bytes(dataset.place, &bytes)
     }
 
-    /// Appends rows, given as the bytes of their numbers, to the dataset at a place of [`Store::grown`].
+    /// Appends rows, given as bytes, to the dataset with this index in [`Store::grown`].
     ///
     /// # Errors
     /// The file cannot be written.
@@ -247,29 +248,29 @@ impl Store {
             return Ok(());
         }
         match &mut self.growth {
-            // Handed to the system, but not counted in the file before the next flush.
+            // Written to the file, but not counted in it before the next flush.
             Some(growth) => {
                 let written = growth.write(&mut self.grown);
                 self.held = 0;
                 self.named(written)
             }
             None if self.name.is_none() => self.flush(),
-            // Half a state must not be seen: it waits for the flush.
+            // A partial state must not be visible: it waits for the flush.
             None => Ok(()),
         }
     }
 
-    /// Whether the file is so large that it grows in place, where a flush syncs once a dataset.
+    /// Whether the file is so large that it grows in place, where a flush syncs once per dataset.
     pub fn grows_in_place(&self) -> bool {
         self.growth.is_some()
     }
 
-    /// Whether so many rows are kept in memory that they are to be flushed.
+    /// Whether the buffer is full and should be flushed.
     pub fn full(&self) -> bool {
         self.held >= MAX_HELD
     }
 
-    /// Makes what was appended visible and safe.
+    /// Makes appended rows visible to readers and syncs them to disk.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -287,7 +288,7 @@ impl Store {
             None => self.renew(),
         };
         if flushed.is_err() && self.name.is_some() {
-            // What has the name is whole.
+            // The named file is complete.
             self.growth = None;
             let _ = std::fs::remove_file(&self.part);
         }
@@ -296,7 +297,7 @@ impl Store {
         Ok(())
     }
 
-    /// Puts a copy with the new rows in the place of the file.
+    /// Replaces the file by a copy with the new rows.
     fn replace(&mut self, name: &Path) -> Result<(), ResultsError> {
         self.named(std::fs::copy(name, &self.part))?;
         self.renew()?;
@@ -306,12 +307,12 @@ impl Store {
         self.take_name(name)
     }
 
-    /// Adds what is kept in memory to the file that has not its name; one that is large grows in place from here on.
+    /// Adds buffered rows to the temporary file; a large file grows in place from here on.
     fn renew(&mut self) -> Result<(), ResultsError> {
         let file = H5File::options().best_effort_locking().open_rw(&self.part);
         let file = self.named(file)?;
         let written = self.write_into(&file);
-        // A file that is dropped would be synced, and would say on the terminal what went wrong.
+        // Dropping the file would sync it, and would print errors to the terminal.
         let closed = file.close_no_sync();
         self.named(written.and(closed))?;
         let size = self.named(std::fs::metadata(&self.part))?.len();
@@ -321,13 +322,13 @@ impl Store {
         Ok(())
     }
 
-    /// Whether all is in the file.
+    /// Whether the buffers are empty.
     fn is_settled(&self) -> bool {
         let slots = self.slots.iter().all(|s| s.held.is_none());
         self.held == 0 && slots && self.attributes.is_empty()
     }
 
-    /// Takes in that all is in the file.
+    /// Marks the buffers as written.
     fn settle(&mut self) {
         for dataset in &mut self.grown {
             dataset.held = Vec::new();
@@ -375,7 +376,7 @@ impl Store {
         named(name, std::fs::rename(&self.part, name))
     }
 
-    /// Closes the file, with what was appended and kept: it is on the disk when this returns.
+    /// Closes the file with all appended and stored data; it is synced to disk on return.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -406,14 +407,14 @@ impl Store {
 
 impl Drop for Store {
     fn drop(&mut self) {
-        // Dropped without an end: what was handed to the system stays, and nothing is said on the terminal.
+        // Dropped without `close`: written data remains, and no errors are printed to the terminal.
         if let Some(file) = self.draft.take() {
             let _ = file.close_no_sync();
         }
     }
 }
 
-/// A name is safe when its folder is; not every system can say so of a folder.
+/// A rename is durable once the folder is synced, which not every system supports.
 fn sync_folder(path: &Path) {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     if let Ok(folder) = std::fs::File::open(folder.unwrap_or(Path::new("."))) {
@@ -421,7 +422,7 @@ fn sync_folder(path: &Path) {
     }
 }
 
-/// A small file whose `/VTKHDF` is a group of another file beside it.
+/// Writes a small file whose `/VTKHDF` links to a group of another file beside it.
 ///
 /// # Errors
 /// The file cannot be written.

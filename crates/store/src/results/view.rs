@@ -1,21 +1,21 @@
-//! A view: points, lines or polygons with data, step after step, as temporal VTKHDF PolyData.
+//! A view: points, lines or polygons with data for a sequence of states, as temporal VTKHDF PolyData.
 //!
-//! Layout: Kitware, VTKHDF file format, version 2.0 (the four kinds of cells must all be there).
+//! Layout: Kitware, VTKHDF file format, version 2.0 (all four kinds of cells must be present).
 
 use super::dataset::Growing;
 use super::declare::{FEW, MANY};
 use super::store::{ResultsError, Store};
 use fretwork_observe::statistics::Column;
 
-/// The cells of VTK's PolyData, in its order.
+/// The kinds of cells of VTK's PolyData, in order.
 const KINDS: [&str; 4] = ["Vertices", "Lines", "Polygons", "Strips"];
 
-/// What a view is made of.
+/// Kind of cells of a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cells {
-    /// One vertex a point; data on points.
+    /// One vertex per point; data on points.
     Vertices,
-    /// Chains of points; data on cells.
+    /// Polylines; data on cells.
     Lines,
     /// Polygons; data on cells.
     Polygons,
@@ -34,13 +34,13 @@ impl Cells {
 /// One state of a view.
 #[derive(Clone, Debug, Default)]
 pub struct Part {
-    /// Coordinates, three a point (m).
+    /// Coordinates, three per point (m).
     pub points: Vec<f64>,
     /// Points of each cell.
     pub cells: Vec<Vec<i64>>,
-    /// One column a field, one value a point (vertices) or cell.
+    /// One column per field, one value per point (vertices) or cell.
     pub data: Vec<Vec<f64>>,
-    /// The same of whole numbers.
+    /// Integer fields, likewise.
     pub numbers: Vec<Vec<i64>>,
 }
 
@@ -65,7 +65,7 @@ pub struct View {
 }
 
 impl View {
-    /// Declares a view in a group of its own.
+    /// Declares a view in its own group.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -197,7 +197,7 @@ impl View {
         time: f64,
         part: &Part,
     ) -> Result<(), ResultsError> {
-        // Where this part begins: before anything of it is appended.
+        // Offsets of this part, taken before anything is appended.
         let first_cells: Vec<i64> = (0..4)
             .map(|k| store.rows(self.offsets[k]) as i64 - self.count)
             .collect();
@@ -244,7 +244,7 @@ impl View {
         Ok(())
     }
 
-    /// Takes up the states that the file has.
+    /// Continues after the states that the file already has.
     pub fn resume(&mut self, store: &mut Store) {
         self.count = store.rows(self.values) as i64;
         store.count(&self.steps_path(), "NSteps", self.count);

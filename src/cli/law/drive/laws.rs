@@ -1,4 +1,4 @@
-//! The interface law on the bench: composed of named laws, or as a case has it.
+//! The interface law on the test bench: composed of named laws, or taken from a case.
 
 use super::super::super::{Failure, PluginArgs};
 use super::super::{all_used, named, values};
@@ -12,10 +12,10 @@ use crate::scene::source::nearest;
 use crate::scene::{Scene, load};
 use std::path::Path;
 
-/// Reduced radius of the contact, where neither the user nor a scene says (m).
+/// Default reduced radius of the contact (m).
 const RADIUS: f64 = 1e-5;
 
-/// What is driven: the bench, and what it is called.
+/// The bench with the laws to drive, and their title.
 pub(super) fn bench(args: &DriveArgs) -> Result<(Bench, String), Failure> {
     match &args.case {
         Some(case) => of_case(case, args),
@@ -27,7 +27,7 @@ pub(super) fn bench(args: &DriveArgs) -> Result<(Bench, String), Failure> {
     }
 }
 
-/// The laws of an interface as a case composes them, on the contacts of its scene.
+/// The laws of an interface as composed in a case, with the contacts of its scene.
 fn of_case(case: &Path, args: &DriveArgs) -> Result<(Bench, String), Failure> {
     let loaded = load(case, &args.sets)?;
     let names = || loaded.case.interfaces.iter().map(|i| i.name.as_str());

@@ -1,4 +1,4 @@
-//! The table of a drive: as text, CSV and pictures.
+//! Output of a driven path: text, CSV and pictures.
 
 use super::super::super::Failure;
 use super::table::Row;
@@ -43,7 +43,7 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
         .with(Series::new("", points(&Row::opening, &|r| r.friction)));
         return chart.draw(file).map_err(fail);
     }
-    // Signed along the first direction that opens, so that cycles are loops.
+    // Signed along the first opening direction, so that cycles plot as loops.
     let sign = |r: &Row| if r.opening_t1 < 0.0 { -1.0 } else { 1.0 };
     let signed = |r: &Row| sign(r) * r.opening();
     Chart::new(
@@ -69,7 +69,7 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
     .map_err(fail)
 }
 
-/// Some twenty rows, and what the whole path came to.
+/// About twenty rows, and the totals of the path.
 pub(super) fn text(rows: &[Row]) -> String {
     let mut out = format!(
         "{:>11} {:>12} {:>12} {:>13} {:>13} {:>9} {:>12} {:>12} {:>8} {:>13}\n",

@@ -1,4 +1,4 @@
-//! The path of a contact: a mode of opening, or a file.
+//! Path of a contact: a mode of opening, or a file.
 
 use super::super::super::Failure;
 use super::DriveArgs;
@@ -8,11 +8,11 @@ use crate::laws::bench::scale::{BondScale, Mode, attraction_reach};
 use crate::scene::sample::table::Table;
 use std::path::Path;
 
-/// Where a law has no scale of its own, and a sliding distance (m).
+/// Opening, or sliding distance, for laws without a length scale (m).
 const USUAL: f64 = 1e-5;
 
-/// How far the path goes, where `--to` does not say, by the law's own scale: a fifth beyond the opening at which a bond is
-/// broken (1.2 of the opening at the peak in cycles, 1.1 of the strength in force), or beyond the reach of an attraction.
+/// Default extent of the path from the law's own scale: 1.2 times the opening at break (cyclic: 1.2 times the
+/// opening at the peak; force: 1.1 times the strength), or beyond the range of an attraction.
 pub(super) fn extent(args: &DriveArgs, bench: &mut Bench) -> Result<f64, Failure> {
     if let Some(to) = args.to {
         return Ok(to);
@@ -28,7 +28,7 @@ pub(super) fn extent(args: &DriveArgs, bench: &mut Bench) -> Result<f64, Failure
     let shear = match args.mode.as_str() {
         "II" | "2" => true,
         "I" | "1" => false,
-        // Of a mixed path the mode that is nearer.
+        // A mixed path uses the nearer pure mode.
         "mixed" => args.angle.unwrap_or(45.0) > 45.0,
         _ => args.angle.unwrap_or(0.0) > 45.0,
     };
@@ -40,7 +40,7 @@ fn of_mode(mode: &str, scale: &BondScale, shear: bool) -> f64 {
     let strength = peak.map(|p| p.0);
     let opening = peak.map(|p| p.1);
     match mode {
-        // A bond that does not break is raised to a round traction.
+        // A bond that does not break is loaded up to a fixed traction.
         "force" => strength.map_or(1e6, |s| 1.1 * s),
         "cyclic" => opening.map_or(USUAL, |u| 1.2 * u),
         _ => match (broken, opening) {
@@ -51,7 +51,7 @@ fn of_mode(mode: &str, scale: &BondScale, shear: bool) -> f64 {
     }
 }
 
-/// Times at the ends of the steps (s) and openings there.
+/// Times (s) and openings (m) at the ends of the steps.
 pub(super) fn path(args: &DriveArgs, to: f64) -> Result<Vec<(f64, [f64; 3])>, Failure> {
     if let Some(file) = &args.path {
         return read_path(file);
@@ -76,7 +76,7 @@ pub(super) fn path(args: &DriveArgs, to: f64) -> Result<Vec<(f64, [f64; 3])>, Fa
         "mixed" => straight(args.angle.unwrap_or(45.0)),
         "cyclic" => {
             let degrees = args.angle.unwrap_or(0.0);
-            // Mode II goes to both sides; a normal opening goes from closed to open.
+            // Mode II is symmetric about zero; a normal opening starts closed.
             let both = (degrees - 90.0).abs() < 1e-9;
             let travel = to * if both { 4.0 } else { 2.0 };
             let point = |k: u32| {
@@ -127,7 +127,7 @@ fn read_path(file: &Path) -> Result<Vec<(f64, [f64; 3])>, Failure> {
         place("t1").is_some() && place("t").is_some(),
     ) else {
         return Err(fail(
-            "expected a heading with the columns time, n, t1 (or t) and perhaps t2".into(),
+            "expected a header with the columns time, n, t1 (or t) and perhaps t2".into(),
         ));
     };
     let (time, n, t2) = (place("time"), place("n"), place("t2"));

@@ -1,4 +1,4 @@
-//! What the laws answer along a path, row by row.
+//! Response of the laws along a path, row by row.
 
 use super::super::super::Failure;
 use super::super::super::output::report;
@@ -17,7 +17,7 @@ pub(super) struct Row {
     pub traction_t1: f64,
     pub traction_t2: f64,
     pub damage: f64,
-    /// Work done so far (J/m^2).
+    /// Cumulative work (J/m^2).
     pub work: f64,
     pub stored: f64,
     pub friction: f64,
@@ -34,7 +34,7 @@ pub(super) fn along(
     let mut rows = vec![Row::start(bench)];
     let failed = |e: crate::laws::LawError| Failure::Failed(e.to_string());
     if !bench.law().opens() {
-        // Bridges and necks form in contact: the path begins there.
+        // Capillary bridges and necks form in contact, so the path begins in contact.
         let touch = Motion {
             pressure: 1e6,
             ..Motion::default()
@@ -68,7 +68,7 @@ pub(super) fn along(
     Ok(rows)
 }
 
-/// Raises the traction to the target; where no opening carries more, the bond has failed.
+/// Increases the traction to the target; the bond has failed if no opening carries more.
 pub(super) fn by_force(bench: &mut Bench, args: &DriveArgs, to: f64) -> Result<Vec<Row>, Failure> {
     let mut state = [bench.fresh()];
     let mut rows = vec![Row::start(bench)];
@@ -90,7 +90,7 @@ pub(super) fn by_force(bench: &mut Bench, args: &DriveArgs, to: f64) -> Result<V
                 .map_err(|e| Failure::Failed(e.to_string()))?[0];
             Ok(a.traction[0] * angle.cos() + a.traction[1] * angle.sin())
         };
-        // The first opening that carries the target, found outwards from the last.
+        // The first opening that carries the target, searched outwards from the previous one.
         let (mut low, mut high, mut step) = (u, u, 1e-13f64.max(1e-3 * u));
         let mut found = false;
         while high < 1.0 {

@@ -1,9 +1,9 @@
-//! Sums over what lies in a bin, and their history: blocks of time, few enough to be kept.
+//! Sums over the bins of a layer, and their history in a limited number of time blocks.
 
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
-/// Stresses of a cell: across, along, shear, lateral (3D).
+/// Stress components of a cell: across, along, shear, lateral (3D).
 pub(super) const STRESSES: usize = 4;
 /// Mechanisms of dissipation.
 pub(super) const MECHANISMS: [&str; 5] =
@@ -22,25 +22,26 @@ pub(super) struct Cell {
     pub height: f64,
     /// Mass times v, the velocity along the sliding relative to the first body.
     pub momentum: f64,
-    /// Mass times v V, with V the velocity of the second body.
+    /// Mass times v V, where V is the velocity of the second body.
     pub drive: f64,
     /// Mass times V^2.
     pub square: f64,
     /// Mass times spin; its norm in 3D.
     pub spin: f64,
-    /// Mass times the granular temperature.
+    /// Mass times granular temperature.
     pub heat: f64,
-    /// Grains, by their shares in the bin.
+    /// Number of grains, by their volume fractions in the bin.
     pub grains: f64,
-    /// Their contacts that carry force.
+    /// Number of their contacts that carry force.
     pub contacts: f64,
-    /// Their bonds that hold.
+    /// Number of their intact bonds.
     pub bonds: f64,
-    /// Their bonds that broke.
+    /// Number of their broken bonds.
     pub broken: f64,
-    /// Sums f l (N m; N): see [`STRESSES`]. Over a time the shear counts with the sign of the sliding.
+    /// Sums f l (N m; N), see [`STRESSES`]. In time averages the shear is multiplied by the sign of the
+    /// sliding.
     pub moment: [f64; STRESSES],
-    /// Dissipated, by mechanism (J; J/m).
+    /// Dissipated energy by mechanism (J; J/m).
     pub energy: [f64; MECHANISMS.len()],
 }
 
@@ -66,12 +67,12 @@ impl AddAssign<&Cell> for Cell {
 }
 
 impl Cell {
-    /// Share of the volume that grains fill.
+    /// Solid fraction.
     pub fn solid(&self) -> f64 {
         self.volume / self.space
     }
 
-    /// Mean depth of the mass over the thickness.
+    /// Mass-weighted mean depth over the thickness.
     pub fn depth(&self) -> f64 {
         self.height / self.mass
     }
@@ -81,7 +82,8 @@ impl Cell {
         self.momentum / self.mass
     }
 
-    /// The same over the second body's, weighted by its square: <v V>/<V^2> serves a sliding that goes to and fro.
+    /// Velocity over that of the second body, weighted by its square: <v V>/<V^2>, which is also defined for
+    /// reciprocating sliding.
     pub fn carried(&self) -> f64 {
         self.drive / self.square
     }
@@ -91,29 +93,29 @@ impl Cell {
         self.moment.map(|m| m / self.space)
     }
 
-    /// Bonds that broke over those made, of the grains in it.
+    /// Broken bonds over bonds made, of the grains in it.
     pub fn damage(&self) -> f64 {
         self.broken / (self.broken + self.bonds)
     }
 }
 
-/// Sums over a time.
+/// Sums over a time interval.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Block {
-    /// From when to when (s).
+    /// Start and end (s).
     pub time: [f64; 2],
     /// Number of samples.
     pub samples: u64,
     /// Sum of thicknesses (m).
     pub thickness: f64,
-    /// Sum of mean cluster sizes.
+    /// Sum of the mean cluster sizes.
     pub cluster: f64,
-    /// The cells: bins, with one before the first and one after the last for what lies beyond the faces.
+    /// The bins, with one cell before the first and one after the last for material beyond the faces.
     pub cells: Vec<Cell>,
 }
 
 impl Block {
-    /// Takes in what follows.
+    /// Merges the block that follows.
     pub fn join(&mut self, next: &Block) {
         if self.samples == 0 {
             self.clone_from(next);
@@ -141,12 +143,12 @@ impl Block {
         self.thickness / self.samples.max(1) as f64
     }
 
-    /// How long it is (s).
+    /// Duration (s).
     pub fn duration(&self) -> f64 {
         self.time[1] - self.time[0]
     }
 
-    /// (depth over thickness, velocity over the second body's), where there is mass and sliding.
+    /// Pairs (depth over thickness, velocity over the second body's) of bins with mass, if there is sliding.
     pub fn profile(&self) -> Vec<(f64, f64)> {
         let full = self
             .bins()
@@ -156,7 +158,7 @@ impl Block {
     }
 }
 
-/// Blocks of equal numbers of samples; two become one when they are too many.
+/// History of blocks with equal numbers of samples; adjacent blocks are merged when there are too many.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct History {
     /// The blocks so far.
@@ -165,7 +167,7 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Most blocks.
+    /// Limit on the number of blocks.
     const MAX_BLOCKS: usize = 128;
 
     pub fn new() -> Self {
@@ -175,7 +177,7 @@ impl History {
         }
     }
 
-    /// Takes in a sample.
+    /// Adds a sample.
     pub fn add(&mut self, sample: Block) {
         if let Some(last) = self.blocks.last_mut().filter(|b| b.samples < self.each) {
             last.join(&sample);
@@ -189,19 +191,19 @@ impl History {
         self.blocks.push(sample);
     }
 
-    /// All of it in one.
+    /// The whole history as one block.
     pub fn whole(&self) -> Block {
         whole(&self.blocks)
     }
 
-    /// What lies for the most part after a time, in one; at least the last block.
+    /// The blocks that lie mostly after a time, merged; at least the last block.
     pub fn since(&self, time: f64) -> Block {
         let middle = |b: &Block| 0.5 * (b.time[0] + b.time[1]);
         let first = self.blocks.partition_point(|b| middle(b) < time);
         whole(&self.blocks[first.min(self.blocks.len().saturating_sub(1))..])
     }
 
-    /// In so many slices of about equal length.
+    /// The history merged into `count` slices of about equal duration.
     pub fn slices(&self, count: usize) -> Vec<Block> {
         let n = self.blocks.len();
         let ends = (0..count).map(|k| (n * k / count, n * (k + 1) / count));

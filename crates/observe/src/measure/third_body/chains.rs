@@ -1,10 +1,10 @@
 //! Force chains after Peters, Muthuswamy, Wibowo, Tordesillas, Phys. Rev. E 72 (2005) 041307.
 //!
-//! A grain's load is its own stress, sum f (x) l over its contacts over its volume. Of the grains whose major
-//! principal stress is at least the mean (over those that carry any), each looks both ways along that stress's
-//! direction; two are linked where the line between them is within 45 degrees of the directions of both. Where
-//! several stand in a grain's view on one side, the link is to the one with the largest force, and it holds if it is
-//! so from both ends: a chain does not branch. Three grains or more are a chain.
+//! The load of a grain is its own stress, sum f (x) l over its contacts divided by its volume. Candidates are
+//! the grains whose major principal stress is at least the mean over those that carry load. Two of them are
+//! linked if the line between them is within 45 degrees of the major principal directions of both. If there
+//! are several such neighbours on one side of a grain, the one with the largest force is chosen, and the link
+//! must be chosen from both ends, so that chains do not branch. A chain has at least three grains.
 
 use super::clusters::Sets;
 use nalgebra::{Matrix3, Vector3};
@@ -15,20 +15,20 @@ use std::f64::consts::FRAC_1_SQRT_2;
 pub(super) struct Pair {
     /// The grains.
     pub ends: [usize; 2],
-    /// From the first to the second (m).
+    /// Vector from the first to the second (m).
     pub branch: Vector3<f64>,
     /// Normal force (any unit).
     pub force: f64,
 }
 
-/// The chains at an instant.
+/// The force chains at an instant.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Chains {
     /// Number of chains.
     pub count: usize,
     /// Number of grains in them.
     pub grains: usize,
-    /// The links of chains, as indices of pairs.
+    /// Links of the chains, as indices of pairs.
     pub links: Vec<usize>,
 }
 
@@ -38,7 +38,7 @@ pub(super) fn chains(loads: &[Matrix3<f64>], flat: bool, pairs: &[Pair]) -> Chai
     let carrying = || major.iter().filter(|m| m.0 > 0.0);
     let mean = carrying().map(|m| m.0).sum::<f64>() / carrying().count().max(1) as f64;
     let heavy = |k: usize| major[k].0 > 0.0 && major[k].0 >= mean * (1.0 - 1e-12);
-    // The best pair of each grain on either side of it.
+    // The best pair of each grain on either side.
     let mut best: Vec<[Option<usize>; 2]> = vec![[None; 2]; loads.len()];
     let side = |pair: &Pair, end: usize| {
         let away = if end == 0 { pair.branch } else { -pair.branch };
@@ -100,7 +100,7 @@ fn principal(m: &Matrix3<f64>, flat: bool) -> (f64, Vector3<f64>) {
 mod tests {
     use super::*;
 
-    /// Grains on a line through the origin; `load` along it.
+    /// Grains on a line through the origin, with stress `load` along it.
     fn column(n: usize, direction: Vector3<f64>, load: f64) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
         let loads = vec![direction * direction.transpose() * load; n];
         let pair = |k: usize| Pair {
@@ -119,7 +119,7 @@ mod tests {
             (false, Vector3::new(0.48, 0.6, 0.64)),
         ] {
             let (mut loads, mut pairs) = column(7, direction, 5.0);
-            // Two weak grains beside it, one touching it.
+            // Two weakly loaded grains beside it, one of them touching it.
             loads.extend([Matrix3::identity() * 0.1; 2]);
             for ends in [[3, 7], [7, 8]] {
                 let branch = Vector3::new(0.8, -0.6, 0.0);
@@ -158,7 +158,7 @@ mod tests {
             branch: Vector3::new(0.5, 0.9, 0.0),
             force: 2.0,
         });
-        // 0-1-4 is the chain, 2-3 are left as a pair.
+        // 0-1-4 is the chain; 2-3 remain as a pair.
         let found = chains(&loads, true, &pairs);
         assert_eq!((found.count, found.grains), (1, 3));
         assert_eq!(found.links, [0, 3]);

@@ -1,25 +1,25 @@
-//! Clusters: grains that intact bonds tie together, two or more.
+//! Clusters: sets of at least two grains connected by intact bonds.
 
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Sets that grow together.
+/// Disjoint sets (union-find).
 #[derive(Clone, Debug)]
 pub(super) struct Sets {
     parent: Vec<u32>,
 }
 
 impl Sets {
-    /// So many, each alone.
+    /// `count` sets of one member each.
     pub fn new(count: usize) -> Self {
         Self {
             parent: (0..count as u32).collect(),
         }
     }
 
-    /// The name of a member's set.
+    /// Representative of a member's set.
     pub fn of(&mut self, member: usize) -> usize {
         let mut k = member;
         while self.parent[k] as usize != k {
@@ -29,7 +29,8 @@ impl Sets {
         k
     }
 
-    /// Makes the sets of two members one, which keeps the lower name: it does not depend on the order.
+    /// Merges the sets of two members; the lower representative is kept, so the result does not depend on the
+    /// order.
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.of(a), self.of(b));
         self.parent[a.max(b)] = a.min(b) as u32;
@@ -41,11 +42,12 @@ impl Sets {
 pub(super) struct Clusters {
     /// Number of sets of two grains or more.
     pub count: usize,
-    /// Number of grains of the largest; 1 where nothing is tied.
+    /// Number of grains of the largest; 1 if there are no bonds.
     pub largest: usize,
-    /// Mean size by mass, sum m n / sum m over all grains, each with the size n of its set: 1 where nothing is tied.
+    /// Mass-weighted mean size, sum m n / sum m over all grains, with n the size of a grain's cluster: 1 if
+    /// there are no bonds.
     pub mean: f64,
-    /// Number of sets and their mass by size (kg; kg/m in 2D), single grains included.
+    /// Number of clusters and their mass by size (kg; kg/m in 2D), including single grains.
     pub sizes: BTreeMap<usize, (usize, f64)>,
 }
 
@@ -90,7 +92,7 @@ mod tests {
 
     #[test]
     fn clusters_are_counted() {
-        // Body 0 is a wall to which two grains are tied: it ties them not to each other.
+        // Body 0 is a wall to which two grains are bonded; it does not connect them to each other.
         let grain = [false, true, true, true, true, true, true, true];
         let mass = [100.0, 1.0, 1.0, 2.0, 1.0, 1.0, 1.0, 3.0];
         let ties = [[1, 2], [3, 2], [0, 1], [0, 4], [5, 6]];

@@ -1,7 +1,8 @@
-//! How much of a grain lies below a depth.
+//! Volume fraction of a grain below a depth.
 //!
-//! Exact for disks (circular segments) and balls (spherical segments). A convex polygon is clipped; its area counts in
-//! proportion to its outline, in which roundings are polygons too. A polyhedron counts as the ball of its volume.
+//! Exact for disks (circular segments) and balls (spherical segments). A convex polygon is clipped; its area
+//! is distributed in proportion to its outline, in which rounded corners are polygonal too. A polyhedron is
+//! treated as the ball of the same volume.
 
 use super::gap::Gap;
 use crate::measure::Grain;
@@ -10,7 +11,7 @@ use fretwork_core::geometry::convex::Core;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
-/// Shares a grain's volume out over the cells of the gap.
+/// Distributes a grain's volume over the cells of the gap.
 pub(super) fn share<S: Space>(
     s: &Simulation<S>,
     gap: &Gap,

@@ -1,37 +1,37 @@
-//! The figure of a third body: profiles with the depth upwards, slice of time by slice of time where one quantity
-//! fills a panel, over all of the time where several do.
+//! Figure of a third body: profiles with the depth upwards. Panels of one quantity show it for each time
+//! slice; panels of several quantities show time averages.
 
 use super::cells::{Block, Cell, MECHANISMS};
 use super::tables::powers;
 use crate::chart::{Axis, Chart, Series, Style, quantity};
 
-/// What a figure shows.
+/// Content of the figure.
 pub(super) struct Figure<'a> {
     /// Title of the case.
     pub title: &'a str,
-    /// All of the time.
+    /// The whole time.
     pub whole: &'a Block,
-    /// Its slices.
+    /// Its time slices.
     pub slices: &'a [Block],
     /// The first bodies.
     pub between: &'a (String, String),
-    /// (time, thickness).
+    /// Pairs (time, thickness).
     pub thickness: Vec<(f64, f64)>,
-    /// (time, mean cluster by mass), (time, largest), where bonds tie grains.
+    /// Pairs (time, mean cluster size by mass) and (time, largest), if there are bonds.
     pub clusters: [Vec<(f64, f64)>; 2],
-    /// (time, share of the grains), (time, share of the force) of force chains.
+    /// Pairs (time, fraction of the grains) and (time, fraction of the force) in force chains.
     pub chains: [Vec<(f64, f64)>; 2],
-    /// (time, shear of the interior over the sliding).
+    /// Pairs (time, shear of the interior over the sliding).
     pub shear: Vec<(f64, f64)>,
-    /// 2 or 3.
+    /// Dimension, 2 or 3.
     pub dimension: usize,
 }
 
-/// Headings of the panels that name the slices of time.
+/// Headings of the panels that have a legend of the time slices.
 const VELOCITY: &str = "Velocity profile";
 const SOLID: &str = "Solid fraction";
 
-/// From early to late.
+/// Colours from early to late.
 const TIMES: [(u8, u8, u8); 4] = [(250, 176, 80), (226, 92, 70), (160, 30, 100), (50, 16, 96)];
 
 fn shade(k: usize, count: usize) -> (u8, u8, u8) {
@@ -42,7 +42,7 @@ fn shade(k: usize, count: usize) -> (u8, u8, u8) {
     (mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }
 
-/// A span of time, with the unit once where it is the same.
+/// Formats a time interval, with the unit once if it is the same.
 fn span(times: [f64; 2]) -> String {
     let [from, to] = times.map(|t| quantity(t, "s", 3));
     match (from.split_once(' '), to.split_once(' ')) {
@@ -67,12 +67,12 @@ impl Figure<'_> {
             .collect()
     }
 
-    /// The first two panels name the slices of time for all.
+    /// Whether a panel has the legend of the time slices; the first two do.
     fn labelled(chart: &Chart) -> bool {
         [VELOCITY, SOLID].contains(&chart.title.as_str())
     }
 
-    /// One quantity, a line for each slice of time.
+    /// A panel of one quantity, with a line for each time slice.
     fn in_time(&self, mut chart: Chart, value: impl Fn(&Cell) -> f64 + Copy) -> Chart {
         for (k, block) in self.slices.iter().enumerate() {
             let label = if Self::labelled(&chart) {
@@ -88,7 +88,7 @@ impl Figure<'_> {
         chart
     }
 
-    /// Several quantities over all of the time.
+    /// A panel of several quantities, averaged over the whole time.
     fn beside<'a>(
         &self,
         mut chart: Chart,
@@ -103,7 +103,7 @@ impl Figure<'_> {
     fn velocity(&self) -> Chart {
         let name = format!("velocity v/V, V of the {}", self.between.1);
         let chart = self.chart(VELOCITY, &name, "");
-        // The mean depth of the mass of a bin is where its mean velocity is.
+        // The mean velocity of a bin belongs at the mean depth of its mass.
         let mut chart = self.in_time(chart, Cell::carried);
         for (series, block) in chart.series.iter_mut().zip(self.slices) {
             series.points = block.profile().into_iter().map(|(y, w)| (w, y)).collect();
@@ -141,7 +141,7 @@ impl Figure<'_> {
         let peak = |points: &[(f64, f64)]| points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
         let lines: Vec<(&str, Vec<(f64, f64)>)> = lines.collect();
         let top = lines.iter().map(|l| peak(&l.1)).fold(0.0, f64::max);
-        // What would lie on the axis is left to the table.
+        // Lines that would coincide with the axis are omitted; the table has them.
         let lines = lines.into_iter().filter(|l| peak(&l.1) > 5e-3 * top);
         self.beside(chart, lines)
     }

@@ -1,8 +1,8 @@
-//! Where a third body lies: between the faces of two first bodies, and the bins across it.
+//! Position of a third body between the faces of two first bodies, and the bins across it.
 //!
-//! The face of a first body stands at the mean height of what of it looks at the layer, by its projection: of rough
-//! profiles and surfaces the mean line, of carried balls that of their caps (pi/4 of the radius for disks, 2/3 for
-//! spheres), of carried convex pieces their highest corner.
+//! The face of a first body is at the mean height of its parts that face the layer, weighted by their
+//! projection: the mean line of rough profiles and surfaces, the mean of the caps of balls (pi/4 of the
+//! radius for disks, 2/3 for spheres), and the highest corner of convex parts.
 
 use crate::measure::Grain;
 use fretwork_core::geometry::convex::Core;
@@ -12,14 +12,14 @@ use fretwork_scene::measures::Extent;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// The layer at an instant. Depths run from the first body's face to the second's.
+/// The layer at an instant. Depths are measured from the first body's face to the second's.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Gap {
     /// Axis across it.
     pub across: usize,
-    /// Where depth is zero, along `across` (m).
+    /// Coordinate along `across` at which the depth is zero (m).
     pub closest_point: f64,
-    /// 1 where depth grows with the coordinate, -1 where it falls.
+    /// 1 if depth increases with the coordinate, -1 if it decreases.
     pub side: f64,
     /// Its thickness (m).
     pub thickness: f64,
@@ -43,21 +43,21 @@ impl Gap {
     /// The cell of a depth: 0 before the first face, 1 to `bins`, one more beyond the second.
     pub fn cell(&self, depth: f64) -> usize {
         let place = (depth / self.thickness * self.bins as f64).floor();
-        // What is not a number is nowhere.
+        // NaN is mapped to the first cell.
         (place.max(-1.0) + 1.0).min(self.bins as f64 + 1.0) as usize
     }
 
-    /// The bin of a depth, from 1; what lies beyond a face counts in the bin there.
+    /// Bin of a depth, from 1; depths beyond a face count in the bin at that face.
     pub fn bin(&self, depth: f64) -> usize {
         self.cell(depth).clamp(1, self.bins)
     }
 
-    /// Depth at which a cell ends (m).
+    /// Depth of the end of a cell (m).
     pub fn end(&self, cell: usize) -> f64 {
         self.thickness * cell as f64 / self.bins as f64
     }
 
-    /// Shares out what reaches from one depth to another, with `below` the share of it below a depth.
+    /// Distributes an object over the cells between two depths; `below` gives its fraction below a depth.
     pub fn share(
         &self,
         low: f64,
@@ -76,20 +76,20 @@ impl Gap {
     }
 }
 
-/// Finds the gap, step by step.
+/// Tracker of the gap from step to step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Faces {
-    /// Places of the two first bodies among the driven ones.
+    /// Indices of the two first bodies among the driven ones.
     pub places: [usize; 2],
-    /// How far the faces stand from the origins of their bodies, along `across` (m).
+    /// Distance of the faces from the origins of their bodies, along `across` (m).
     offsets: [f64; 2],
-    /// Ends of the grains at the last look, where they bound the layer: lowest and highest coordinate (m).
+    /// Lowest and highest coordinate of the grains at the last update, if they bound the layer (m).
     grains: Option<[f64; 2]>,
     gap: Gap,
 }
 
 impl Faces {
-    /// From the state at hand; none where a body is missing.
+    /// Starts from the current state; `None` if a body is missing.
     pub fn new<S: Space>(
         s: &Simulation<S>,
         names: [&str; 2],
@@ -113,12 +113,12 @@ impl Faces {
         })
     }
 
-    /// Index of one of the bodies.
+    /// Index of one of the two bodies.
     pub fn body<S: Space>(&self, s: &Simulation<S>, k: usize) -> usize {
         s.bodies.driven[self.places[k]].body as usize
     }
 
-    /// Looks at the surfaces of the bodies, or at the grains where these bound the layer.
+    /// Updates the faces from the surfaces of the bodies, or from the grains if these bound the layer.
     pub fn look<S: Space>(&mut self, s: &Simulation<S>, extent: Extent, all: &[Grain<'_, S>]) {
         let gap = &mut self.gap;
         let across = gap.across;
@@ -131,7 +131,7 @@ impl Faces {
         gap.section = section(s, across, all);
     }
 
-    /// The layer now, with surfaces or grains as at the last look.
+    /// The layer at the current positions, with the faces of the last update.
     pub fn gap<S: Space>(&self, s: &Simulation<S>) -> Gap {
         let at = |k: usize| s.bodies.position[self.body(s, k)][self.gap.across] + self.offsets[k];
         let ends = match self.grains {
@@ -141,7 +141,7 @@ impl Faces {
         };
         Gap {
             closest_point: ends[0],
-            // A layer of no thickness has no profile; its bins stay in order.
+            // A layer of zero thickness has no profile, but its bins must stay in order.
             thickness: (self.gap.side * (ends[1] - ends[0])).max(f64::MIN_POSITIVE),
             ..self.gap
         }
@@ -155,7 +155,7 @@ impl Faces {
         })
     }
 
-    /// The same as [`Self::sliding`] over the last step, at v_theta.
+    /// As [`Self::sliding`], over the last step at v_theta.
     pub fn sliding_over_step<S: Space>(&self, s: &Simulation<S>) -> S::Vector {
         let theta = s.scheme.theta;
         let (_, before) = self.sliding_at::<S>(|k| s.started[self.places[k]]);
@@ -176,7 +176,8 @@ impl Faces {
     }
 }
 
-/// Mean coordinate of what of a body looks along an axis to one side, or of all of it where `towards` is 0 (m).
+/// Mean coordinate of the parts of a body that face one side along an axis, or of the whole body if `towards`
+/// is 0 (m).
 fn face<S: Space>(s: &Simulation<S>, body: u32, across: usize, towards: f64) -> f64 {
     let (mut sum, mut weight) = (0.0, 0.0);
     let mut add = |w: f64, height: f64| {
@@ -197,7 +198,7 @@ fn face<S: Space>(s: &Simulation<S>, body: u32, across: usize, towards: f64) -> 
                 parts.push(projection(&points, across));
             }
         }
-        // Sheets of triangles may be listed the other way round.
+        // The triangles of a sheet may be oriented either way.
         let looks = |sign: f64| parts.iter().any(|p| sign * towards * p.0 > 0.0);
         let sign = if looks(1.0) { 1.0 } else { -1.0 };
         for (area, height) in parts {
@@ -233,8 +234,9 @@ fn face<S: Space>(s: &Simulation<S>, body: u32, across: usize, towards: f64) -> 
     }
 }
 
-/// Area that a part of an outline shows along an axis, positive where it looks to the positive side, and its mean
-/// coordinate (m). In the plane a segment with the solid on its right, in space a polygon about its outward normal.
+/// Signed projected area of a part of an outline along an axis, positive if it faces the positive side, and
+/// its mean coordinate (m). In 2D a segment with the solid on its right, in 3D a polygon about its outward
+/// normal.
 fn projection<V: VectorLike>(points: &[V], across: usize) -> (f64, f64) {
     let mean = points.iter().map(|p| p[across]).sum::<f64>() / points.len().max(1) as f64;
     let (i, j) = match (V::N, across) {
@@ -254,7 +256,7 @@ fn projection<V: VectorLike>(points: &[V], across: usize) -> (f64, f64) {
     (0.5 * cross.sum::<f64>(), mean)
 }
 
-/// Heights with 1 % of the grains' mass below the lowest and above the highest points of them (m).
+/// Heights below and above which 1 % of the grains' mass lies (m).
 fn ends<S: Space>(all: &[Grain<'_, S>], across: usize) -> [f64; 2] {
     let total: f64 = all.iter().map(|g| g.mass).sum();
     let end = |sign: f64| {
@@ -271,7 +273,8 @@ fn ends<S: Space>(all: &[Grain<'_, S>], across: usize) -> [f64; 2] {
     [end(1.0), end(-1.0)]
 }
 
-/// Area of a section across the layer: the cell's along its periods, else as far as grains reach (m^2; m in 2D).
+/// Area of a section across the layer: the period along periodic axes, otherwise the extent of the grains
+/// (m^2; m in 2D).
 fn section<S: Space>(s: &Simulation<S>, across: usize, all: &[Grain<'_, S>]) -> f64 {
     let axes = (0..S::D).filter(|k| *k != across);
     let length = |k: usize| {
@@ -324,7 +327,7 @@ mod tests {
         let (a, b) = (Vector2::new(0.0, 1.0), Vector2::new(3.0, 2.0));
         assert_eq!(projection(&[a, b], 1), (3.0, 1.5));
         assert_eq!(projection(&[b, a], 1), (-3.0, 1.5));
-        // Walking down, the right is towards smaller x.
+        // Going down, the right side faces smaller x.
         assert_eq!(projection(&[b, a], 0).0, 1.0);
         let v = |x: f64, y: f64| Vector3::new(x, y, 5.0);
         let square = [v(0.0, 0.0), v(2.0, 0.0), v(2.0, 2.0), v(0.0, 2.0)];

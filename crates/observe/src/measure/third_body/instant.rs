@@ -1,4 +1,4 @@
-//! The layer at an instant: its cells, and what is said of it in a row of the statistics.
+//! State of the layer at an instant: its cells, and its values for a row of the statistics.
 
 use super::cells::Cell;
 use super::chains::{Pair, chains};
@@ -13,29 +13,29 @@ use fretwork_core::step::Simulation;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
-/// What force chains are, in numbers.
+/// Statistics of force chains.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ChainNumbers {
-    /// Share of the grains that are in chains.
+    /// Fraction of the grains in chains.
     pub grains: f64,
-    /// Share of the normal force between grains that their links carry.
+    /// Fraction of the normal force between grains that the links carry.
     pub force: f64,
-    /// Mean number of grains of a chain; 0 without.
+    /// Mean number of grains per chain; 0 without chains.
     pub length: f64,
-    /// Mean angle of their links from the normal of the layer towards the sliding (rad); not a number without.
+    /// Mean angle of the links from the normal of the layer towards the sliding (rad); NaN without chains.
     pub angle: f64,
 }
 
 /// The layer at an instant.
 #[derive(Clone, Debug)]
 pub(super) struct Instant {
-    /// Where it lies.
+    /// Position.
     pub gap: Gap,
     /// See [`super::cells::Block::cells`].
     pub cells: Vec<Cell>,
     /// Velocity of the second body's face relative to the first's, along the sliding (m/s).
     pub sliding: f64,
-    /// Contacts that carry force, mean over the bodies that are grains.
+    /// Mean number of contacts that carry force per grain.
     pub coordination: f64,
     /// Clusters.
     pub clusters: Clusters,
@@ -43,7 +43,7 @@ pub(super) struct Instant {
     pub chains: ChainNumbers,
 }
 
-/// Share of a grain in a cell.
+/// Volume fraction of a grain in a cell.
 struct Share {
     grain: u32,
     cell: u32,
@@ -51,7 +51,7 @@ struct Share {
 }
 
 impl Instant {
-    /// Looks at the layer. `lost` is the number of bonds of each body that broke.
+    /// Evaluates the layer. `lost` is the number of broken bonds of each body.
     pub fn new<S: Space>(
         s: &Simulation<S>,
         faces: &Faces,
@@ -126,8 +126,8 @@ impl Instant {
     }
 }
 
-/// Mass times |v - <v>(y)|^2/D, with <v>(y) on straight lines between the mean places and velocities of the bins: a
-/// field that is affine has none.
+/// Mass times granular temperature |v - <v>(y)|^2/D, with <v>(y) interpolated linearly between the mean
+/// positions and velocities of the bins, so that an affine field has zero temperature.
 fn temperature<S: Space>(
     s: &Simulation<S>,
     gap: &Gap,
@@ -150,7 +150,7 @@ fn temperature<S: Space>(
     }
 }
 
-/// On the straight line between the points beside a place, or through the last two.
+/// Linear interpolation between the adjacent points, or extrapolation from the last two.
 fn mean_at<V: VectorLike>(points: &[(f64, V)], place: f64) -> V {
     if points.len() < 2 {
         return points.first().map_or(V::zero(), |p| p.1);
@@ -161,12 +161,13 @@ fn mean_at<V: VectorLike>(points: &[(f64, V)], place: f64) -> V {
     if b.0 <= a.0 {
         return a.1;
     }
-    // Thin bins at a wall may hold the same grains, their means nearly the same place: no far reach from there.
+    // Thin bins at a wall may hold the same grains at nearly the same mean position, so the extrapolation is
+    // limited.
     let ratio = ((place - a.0) / (b.0 - a.0)).clamp(-1.0, 2.0);
     a.1 + (b.1 - a.1) * ratio
 }
 
-/// Bonds that hold, of each body.
+/// Number of intact bonds of each body.
 fn held<S: Space>(s: &Simulation<S>) -> Vec<f64> {
     let mut held = vec![0.0; s.bodies.len()];
     let n = &s.network;
@@ -180,7 +181,7 @@ fn held<S: Space>(s: &Simulation<S>) -> Vec<f64> {
     held
 }
 
-/// Love and Weber's stress, each branch shared out by its lengths in the bins.
+/// Love-Weber stress, with each branch distributed by its length in the bins.
 fn stress<S: Space>(s: &Simulation<S>, gap: &Gap, along: usize, cells: &mut [Cell]) {
     let across = gap.across;
     let lateral = (0..S::D).find(|k| *k != across && *k != along);
@@ -190,7 +191,7 @@ fn stress<S: Space>(s: &Simulation<S>, gap: &Gap, along: usize, cells: &mut [Cel
         let moment = [
             force[across] * branch[across],
             force[along] * branch[along],
-            // What the side of the second body pulls that of the first along.
+            // Traction of the second body's side on the first body's side along the sliding.
             -gap.side * force[along] * branch[across],
             lateral.map_or(0.0, |k| force[k] * branch[k]),
         ];
@@ -203,7 +204,7 @@ fn stress<S: Space>(s: &Simulation<S>, gap: &Gap, along: usize, cells: &mut [Cel
     });
 }
 
-/// The links of force chains, as sorted pairs of bodies.
+/// Links of the force chains, as sorted pairs of bodies.
 pub(super) fn links<S: Space>(s: &Simulation<S>) -> Vec<[u32; 2]> {
     let (loads, pairs) = loads(s, &s.bodies.grain_flags());
     let found = chains(&loads, S::D == 2, &pairs);
@@ -225,7 +226,7 @@ fn chain_numbers<S: Space>(
     let (mut force, mut sin, mut cos) = (0.0, 0.0, 0.0);
     for pair in found.links.iter().map(|k| &pairs[*k]) {
         force += pair.force;
-        // A link has no sense: its angle counts twice, so that half a turn is none.
+        // A link has no orientation: doubling its angle makes opposite directions equal.
         let angle = 2.0 * pair.branch[along].atan2(gap.side * pair.branch[gap.across]);
         sin += angle.sin();
         cos += angle.cos();
@@ -243,7 +244,7 @@ fn chain_numbers<S: Space>(
     }
 }
 
-/// Stresses of the bodies that are grains, and the pairs of them that press on each other.
+/// Stresses of the grains, and the pairs of grains that press on each other.
 fn loads<S: Space>(s: &Simulation<S>, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
     let mut volume = vec![0.0; s.bodies.len()];
     for ball in &s.shapes.balls {

@@ -1,5 +1,5 @@
-//! The third body: profiles across its thickness and in time, clusters, force chains, flow regime, and where energy
-//! is dissipated. Definitions and criteria are in `docs/third_body.md`.
+//! Third body: profiles across its thickness and over time, clusters, force chains, flow regime, and the
+//! distribution of dissipation. Definitions and criteria are in `docs/third_body.md`.
 
 mod cells;
 mod chains;
@@ -28,32 +28,33 @@ use regime::{Flow, Regime, flow};
 use serde::{Deserialize, Serialize};
 use spent::{Dissipation, Place};
 
-/// See [`fretwork_scene::measures::MeasureSpec::ThirdBody`].
+/// Observer for [`fretwork_scene::measures::MeasureSpec::ThirdBody`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct ThirdBody<S: Space> {
     spec: ThirdBodySpec,
     faces: Option<Faces>,
     spent: Dissipation<S>,
-    /// Bonds of each body that broke.
+    /// Number of broken bonds of each body.
     lost: Vec<f64>,
     history: History,
     clusters: Clusters,
-    /// Factor by which masses are larger than they are.
+    /// Factor to divide out of masses.
     inertia_scaling: f64,
-    /// When the last sample was taken, or the count began (s).
+    /// Time of the last sample, or of the start (s).
     seen: f64,
-    /// Fastest sliding so far (m/s).
+    /// Largest sliding velocity so far (m/s).
     fastest: f64,
-    /// Rows so far, and what stands in them until the next look.
+    /// Number of rows so far, and the values that rows repeat until the next evaluation.
     rows: usize,
     row: Vec<f64>,
 }
 
-/// Sliding below this share of the fastest so far is a turning point: no regime is told there.
+/// Below this fraction of the largest sliding velocity the motion is at a reversal, and no regime is
+/// determined.
 const TURNING: f64 = 1e-2;
 
-/// Name, unit and meaning of the columns; `stress_lateral` is one in space only.
+/// Name, unit and description of the columns; `stress_lateral` exists in 3D only.
 const COLUMNS: [(&str, &str, &str); 20] = [
     ("thickness", "m", "thickness of the third body"),
     ("solid_fraction", "", "solid fraction between the faces"),
@@ -80,7 +81,7 @@ const COLUMNS: [(&str, &str, &str); 20] = [
     (
         "stress_shear",
         "Pa",
-        "shear stress: what the side of the second body pulls that of the first along",
+        "shear stress: traction of the second body's side on the first body's side",
     ),
     (
         "stress_lateral",
@@ -105,11 +106,15 @@ const COLUMNS: [(&str, &str, &str); 20] = [
     ("clusters", "", "clusters of two bonded grains or more"),
     ("cluster_mean", "", "grains of a cluster, mean by mass"),
     ("cluster_largest", "", "grains of the largest cluster"),
-    ("chains", "", "share of the grains that are in force chains"),
+    (
+        "chains",
+        "",
+        "fraction of the grains that are in force chains",
+    ),
     (
         "chain_force",
         "",
-        "share of the normal force between grains that chains carry",
+        "fraction of the normal force between grains that chains carry",
     ),
     ("chain_length", "", "grains of a force chain, mean"),
     (
@@ -160,8 +165,8 @@ impl<S: Space> ThirdBody<S> {
         s.time + s.scheme.h > self.spec.start
     }
 
-    /// The flow at the end, over the last complete cycle of the friction test or the second half of the time, the mean size of
-    /// the clusters by mass there, and which of the two it is.
+    /// The flow at the end (over the last complete cycle of the friction test, or the second half of the
+    /// time), the mass-weighted mean cluster size there, and a description of that interval.
     fn flow(&self, table: &Table) -> (Option<Flow>, f64, String) {
         let all = self.history.whole().time;
         let cycle = table.last_cycle().filter(|(_, start)| *start >= all[0]);
@@ -267,7 +272,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
         let mut now = Instant::new(s, faces, &all, self.spec.along, &self.lost);
         self.row = self.row(&now);
         if self.spent.counts() && s.time > self.seen {
-            // What resists a sliding to and fro keeps its sign.
+            // Resistance to a reciprocating sliding keeps its sign.
             let sign = now.sliding.signum();
             now.cells.iter_mut().for_each(|c| c.moment[2] *= sign);
             for (cell, energy) in now.cells[1..].iter_mut().zip(self.spent.take()) {
@@ -320,7 +325,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
         if let Some(mu) = self.spent.friction() {
             out.push((self.column("mu_from_forces"), self.spent.work / load));
             out.push((self.column("mu_from_dissipation"), mu));
-            // Kept by the grains and their bonds, or given by the bodies otherwise than by sliding.
+            // Energy stored by the grains and their bonds, or supplied by the bodies other than by sliding.
             out.push((self.column("mu_kept"), mu - total / load));
         }
         for (place, energies) in Place::ALL.iter().zip(&self.spent.places) {

@@ -1,52 +1,52 @@
-//! The flow regime of a third body, from the velocity across it.
+//! Flow regime of a third body, from the velocity profile across it.
 //!
-//! w(y) is the velocity of the grains relative to the first body over that of the second, 0 at the one wall and 1 at
-//! the other where nothing slips; y is over the thickness. The words are those of Mollon, Tribol. Lett. 67 (2019) 120;
-//! the criteria are ours:
+//! w(y) is the velocity of the grains relative to the first body over that of the second, 0 at the first wall and 1 at
+//! the second without slip; y is normalised by the thickness. The terms are those of Mollon, Tribol. Lett. 67 (2019) 120;
+//! the criteria are our own:
 //!
-//! - plug with wall slip: the interior, from y = 0.1 to 0.9, shears by less than 20 % of the sliding;
-//! - Couette: it shears by more than 50 %, and a straight line through w there has R^2 above 0.9;
-//! - agglomerated: neither, and the mean cluster by mass has more than 10 grains;
-//! - mixed: none of these: shear that is localised, or slip at a wall and flow together.
+//! - plug with wall slip: the interior, from y = 0.1 to 0.9, takes less than 20 % of the sliding;
+//! - Couette: it takes more than 50 %, and a straight line through w there has R^2 above 0.9;
+//! - agglomerated: neither, and the mass-weighted mean cluster has more than 10 grains;
+//! - mixed: none of these, such as localised shear, or wall slip together with flow.
 
-/// Name of a regime; its number is its code in the statistics.
+/// A flow regime; its discriminant is its code in the statistics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Regime {
-    /// Nothing slides, or there are too few bins.
+    /// There is no sliding, or there are too few bins.
     None = 0,
-    /// Sheared throughout.
+    /// Sheared throughout the thickness.
     Couette = 1,
     /// Agglomerates roll and shear.
     Agglomerated = 2,
-    /// Moves as one, slips at the walls.
+    /// Moves as a rigid layer, with slip at the walls.
     Plug = 3,
     /// None of the others.
     Mixed = 4,
 }
 
-/// Least interior shear that is no plug, and least of a Couette flow, over the sliding.
+/// Interior shear over the sliding: upper limit of a plug, and lower limit of a Couette flow.
 const SHEARED: [f64; 2] = [0.2, 0.5];
-/// Least coefficient of determination of a straight profile.
+/// Smallest coefficient of determination of a linear profile.
 const STRAIGHT: f64 = 0.9;
-/// Most grains of the mean cluster where there are no agglomerates.
+/// Mean cluster size up to which there are no agglomerates.
 const LOOSE: f64 = 10.0;
-/// The interior, over the thickness.
+/// Range of the interior, over the thickness.
 const INTERIOR: [f64; 2] = [0.1, 0.9];
 
-/// What a profile of w tells.
+/// Characteristics of a profile of w.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Flow {
     /// w(0.9) - w(0.1).
     pub interior: f64,
-    /// R^2 of the straight line through the points between; 0 where w is constant.
+    /// R^2 of the least-squares line through the interior points; 0 if w is constant.
     pub straight: f64,
-    /// w of the bin at the first body: the slip there over the sliding.
+    /// w of the bin at the first body: the wall slip there over the sliding.
     pub slip_first: f64,
-    /// 1 - w of the bin at the second body.
+    /// 1 - w of the bin at the second body: the wall slip there.
     pub slip_second: f64,
 }
 
-/// Reads a profile of (y, w), in the order of y; needs three points in the interior.
+/// Evaluates a profile of (y, w), ordered by y; needs three points in the interior.
 pub(super) fn flow(points: &[(f64, f64)]) -> Option<Flow> {
     let inner: Vec<(f64, f64)> = points
         .iter()
@@ -65,7 +65,7 @@ pub(super) fn flow(points: &[(f64, f64)]) -> Option<Flow> {
     })
 }
 
-/// Value at a place: between the points on straight lines, beyond them as at the nearest.
+/// Linear interpolation, constant beyond the ends.
 fn at(points: &[(f64, f64)], y: f64) -> f64 {
     let k = points.partition_point(|p| p.0 < y);
     match (k.checked_sub(1).map(|i| points[i]), points.get(k)) {
@@ -76,7 +76,7 @@ fn at(points: &[(f64, f64)], y: f64) -> f64 {
     }
 }
 
-/// R^2 of the straight line through points by least squares.
+/// R^2 of the least-squares line through points.
 fn determination(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;
     let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / n;
@@ -92,7 +92,7 @@ fn determination(points: &[(f64, f64)]) -> f64 {
 }
 
 impl Regime {
-    /// Of a flow, with the mean size of the clusters by mass.
+    /// The regime of a flow with a mass-weighted mean cluster size.
     pub fn of(flow: Option<&Flow>, cluster: f64) -> Self {
         let Some(flow) = flow else { return Self::None };
         if flow.interior < SHEARED[0] {
@@ -106,10 +106,11 @@ impl Regime {
         }
     }
 
-    /// Its name and why, in a sentence.
+    /// Name and criteria as a sentence.
     pub fn said(self, flow: Option<&Flow>, cluster: f64) -> String {
         let Some(f) = flow else {
-            return "none: nothing slides, or fewer than three bins lie in the interior".to_owned();
+            return "none: there is no sliding, or fewer than three bins lie in the interior"
+                .to_owned();
         };
         let seen = format!(
             "the interior shears by {:.0} % of the sliding with R^2 {:.2}, slip {:.0} % and {:.0} % at the walls, \
@@ -148,16 +149,16 @@ mod tests {
         assert!((linear.interior - 0.8).abs() < 1e-12 && (linear.straight - 1.0).abs() < 1e-12);
         assert!((linear.slip_first - 0.025).abs() < 1e-12);
         assert_eq!(Regime::of(Some(&linear), 500.0), Regime::Couette);
-        // A plug carried along with the first wall at 30 % of the sliding: slip 0.3 and 0.7.
+        // A plug that moves with the first wall at 30 % of the sliding: slip 0.3 and 0.7.
         let plug = profile(|_| 0.3);
         assert_eq!(Regime::of(Some(&plug), 500.0), Regime::Plug);
         assert!((plug.slip_first - 0.3).abs() < 1e-12 && (plug.slip_second - 0.7).abs() < 1e-12);
-        // All in a band in the middle: R^2 of a step is 3/4.
+        // All shear in a band in the middle: R^2 of a step is 3/4.
         let step = profile(|y| if y < 0.5 { 0.0 } else { 1.0 });
         assert!((step.straight - 0.75).abs() < 0.01, "{}", step.straight);
         assert_eq!(Regime::of(Some(&step), 1.0), Regime::Mixed);
         assert_eq!(Regime::of(Some(&step), 30.0), Regime::Agglomerated);
-        // Half of the sliding at a wall, the other half spread out evenly: 40 % in the interior.
+        // Half of the sliding at a wall, the other half distributed uniformly: 40 % in the interior.
         assert_eq!(Regime::of(Some(&profile(|y| 0.5 * y)), 1.0), Regime::Mixed);
         assert_eq!(Regime::of(None, 1.0), Regime::None);
         assert!(flow(&[(0.25, 0.0), (0.75, 1.0)]).is_none());

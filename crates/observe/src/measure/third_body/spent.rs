@@ -1,7 +1,8 @@
-//! Where energy is dissipated: by depth, and by pair of bodies; and what of the friction coefficient that is.
+//! Distribution of dissipated energy by depth and by pair of bodies, and its contribution to the friction
+//! coefficient.
 //!
-//! A contact's energy counts at its point; what is beyond a face counts in the bin there. A bond that is torn as its
-//! contact leaves all reach counts where it was.
+//! A contact's energy counts at its contact point; beyond a face it counts in the bin at that face. A bond
+//! that breaks because its bodies moved out of range counts at its last position.
 
 use super::cells::MECHANISMS;
 use super::gap::{Faces, Gap};
@@ -14,18 +15,18 @@ use serde::{Deserialize, Serialize};
 /// Energies by mechanism (J; J/m in 2D).
 pub(super) type Energies = [f64; MECHANISMS.len()];
 
-/// Pairs of bodies that are told apart.
+/// Kinds of pairs of bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     /// Two grains.
     Grains,
-    /// The first of the two first bodies and a grain.
+    /// The first of the two first bodies, and a grain.
     First,
-    /// The second and a grain.
+    /// The second of the two first bodies, and a grain.
     Second,
     /// The two first bodies.
     Bodies,
-    /// Another driven body in it.
+    /// Any other driven body.
     Others,
 }
 
@@ -63,27 +64,28 @@ impl Place {
     }
 }
 
-/// The energies since the measure began to count.
+/// Energies since the start of the account.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(super) struct Dissipation<S: Space> {
-    /// By bin, since the last sample.
+    /// Per bin, since the last sample.
     pub pending: Vec<Energies>,
-    /// By bin, all of it.
+    /// Per bin, in total.
     pub bins: Vec<Energies>,
     /// By place, in the order of [`Place::ALL`].
     pub places: [Energies; Place::ALL.len()],
-    /// Work of the sliding on the layer, the integral of Q V (J).
+    /// Work of the sliding on the layer, the integral of Q V dt (J).
     pub work: f64,
-    /// The integral of P |V| (J).
+    /// The integral of P |V| dt (J).
     pub load: f64,
-    /// What is dissipated and kept, and all work of the driven bodies; their balance when the count began, and now.
+    /// Observer of dissipated and stored energy and of the work of all driven bodies, with its balance at the
+    /// start of the account and now.
     ledger: Option<(Layer<S>, Balance, Balance)>,
     grain: Vec<bool>,
 }
 
 impl<S: Space> Dissipation<S> {
-    /// Nothing yet.
+    /// An account that has not started.
     pub fn new(bins: usize, grain: Vec<bool>) -> Self {
         Self {
             pending: vec![Energies::default(); bins],
@@ -96,27 +98,27 @@ impl<S: Space> Dissipation<S> {
         }
     }
 
-    /// Counts from the state at hand on.
+    /// Starts the account from the current state.
     pub fn begin(&mut self, s: &Simulation<S>) {
         let layer = Layer::new(s);
         let balance = layer.balance(s);
         self.ledger = Some((layer, balance, balance));
     }
 
-    /// Whether it counts.
+    /// Whether the account has started.
     pub fn counts(&self) -> bool {
         self.ledger.is_some()
     }
 
-    /// Friction coefficient from the ledger: what was dissipated and kept, less the work of the driven bodies other
-    /// than that of the sliding, over the integral of P |V|.
+    /// Friction coefficient from the ledger: dissipated and stored energy, less the work of the driven bodies
+    /// other than by sliding, over the integral of P |V| dt.
     pub fn friction(&self) -> Option<f64> {
         let (_, start, end) = self.ledger.as_ref()?;
         let other = end.other - start.other - self.work;
         (self.load > 0.0).then(|| (end.taken - start.taken - other) / self.load)
     }
 
-    /// Takes in the last step.
+    /// Processes the last step.
     pub fn follow(&mut self, s: &Simulation<S>, faces: &Faces, gap: &Gap, along: usize) {
         let ends = [0, 1].map(|k| faces.body(s, k) as u32);
         let n = &s.network;
@@ -145,7 +147,7 @@ impl<S: Space> Dissipation<S> {
             self.load += gap.side * impulse[gap.across] * sliding.abs();
         }
         if let Some((layer, _, end)) = &mut self.ledger {
-            // No body's work is kept apart here.
+            // The work of no body is excluded here.
             layer.follow(s, (usize::MAX, 0));
             *end = layer.balance(s);
         }
@@ -160,13 +162,13 @@ impl<S: Space> Dissipation<S> {
         }
     }
 
-    /// Since the last sample, by bin.
+    /// Energies per bin since the last sample; resets them.
     pub fn take(&mut self) -> Vec<Energies> {
         let none = vec![Energies::default(); self.pending.len()];
         std::mem::replace(&mut self.pending, none)
     }
 
-    /// All of it.
+    /// Total energy.
     pub fn total(&self) -> f64 {
         self.places.iter().flatten().sum()
     }

@@ -1,4 +1,4 @@
-//! The files of a third body: profiles by slice of time, energies by place, sizes of clusters.
+//! Tables of a third body: profiles by time slice, energies by pair of bodies and by bin, cluster sizes.
 
 use super::cells::{Block, Cell, MECHANISMS};
 use super::clusters::Clusters;
@@ -31,7 +31,7 @@ const PROFILE: [&str; 22] = [
     "correction [W/m^3]",
 ];
 
-/// Powers of a cell by volume and mechanism (W/m^3), of a block of so many samples.
+/// Dissipated power density of a cell by mechanism (W/m^3), averaged over a block.
 pub(super) fn powers(cell: &Cell, block: &Block) -> [f64; MECHANISMS.len()] {
     let volume = cell.space / block.samples.max(1) as f64;
     cell.energy.map(|e| e / (volume * block.duration()))
@@ -63,9 +63,9 @@ fn row(slice: usize, k: usize, cell: &Cell, block: &Block) -> Vec<f64> {
     row
 }
 
-/// The profiles: slice 0 is all of the time, the others follow; a value that nothing gives is `NaN`.
+/// The profiles: slice 0 is the whole time, followed by the time slices; undefined values are `NaN`.
 pub(super) fn profiles(whole: &Block, slices: &[Block], dimension: usize) -> String {
-    // Across, along and their shear are all of a stress in the plane.
+    // In 2D the stress has no lateral component.
     let lateral = |k: &usize| dimension == 3 || *k != 15;
     let header = (0..PROFILE.len())
         .filter(lateral)
@@ -81,7 +81,7 @@ pub(super) fn profiles(whole: &Block, slices: &[Block], dimension: usize) -> Str
     joined(&lines)
 }
 
-/// The energies by place and by bin, each with its share of all.
+/// The energies by pair of bodies and by bin, each with its fraction of the total.
 pub(super) fn energies<S: Space>(spent: &Dissipation<S>, between: &(String, String)) -> String {
     let unit = if S::D == 2 { "J/m" } else { "J" };
     let mut header = vec!["place".to_owned()];
@@ -115,7 +115,7 @@ pub(super) fn energies<S: Space>(spent: &Dissipation<S>, between: &(String, Stri
     joined(&lines)
 }
 
-/// How many clusters there are of each size, and their mass without `inertia_scaling`.
+/// Number of clusters of each size, and their mass without `inertia_scaling`.
 pub(super) fn clusters(clusters: &Clusters, inertia_scaling: f64, dimension: usize) -> String {
     let unit = if dimension == 2 { "kg/m" } else { "kg" };
     let mut lines = vec![vec![
@@ -141,7 +141,7 @@ fn joined(lines: &[Vec<String>]) -> String {
 mod tests {
     use super::*;
 
-    /// The mass of the clusters is that of the material, whatever the inertia is scaled by.
+    /// The mass of the clusters is the physical one, for any inertia scaling.
     #[test]
     fn masses_are_without_the_scaling_of_inertia() {
         let of = Clusters {

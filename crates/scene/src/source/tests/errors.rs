@@ -1,4 +1,4 @@
-//! Errors stand where their causes are.
+//! Tests of the location of errors.
 
 use super::*;
 
@@ -124,7 +124,8 @@ fn more_ron_errors() {
 #[test]
 fn malformed_text_points_at_its_cause() {
     let error = |old, new| refusal(old, new);
-    // What is read before the fault is noticed may be refused first: the fault is a note then.
+    // The parser may reject an earlier value before it reaches the malformed position, which then becomes a
+    // note.
     let open = text().replace("frequency: 5.0,\n    ),", "frequency: 5.0,\n    ");
     let open = Source::from_text("case.ron", open);
     let shown = open.parse::<Case>().unwrap_err().to_string();
@@ -148,7 +149,9 @@ fn malformed_text_points_at_its_cause() {
         error("1.0e-3,", "1.0e-3").contains("case.ron:8:9: error: a comma is missing before this")
     );
     assert!(error("frequency: 5.0", "frequency 5.0").starts_with("case.ron:8:"));
-    assert!(error("frequency: 5.0", "frequency: ").contains("no value stands after `frequency:`"));
+    assert!(
+        error("frequency: 5.0", "frequency: ").contains("a value is missing after `frequency:`")
+    );
     assert!(
         error("*/ still */", "*/ still")
             .contains("case.ron:5:5: error: this comment is never closed")
@@ -192,7 +195,7 @@ fn error_at_points_at_the_value_or_its_parent() {
     assert_eq!(source.error_at("loading", "x").position(), Some((6, 14)));
     let error = source.error_at("loading.phase.deep", "x");
     assert_eq!(error.position(), Some((6, 14)));
-    assert!(error.to_string().contains("its default stands"));
+    assert!(error.to_string().contains("its default applies"));
     assert_eq!(source.error_at("nothing", "x").position(), Some((3, 1)));
     assert_eq!(source.error_at("", "x").position(), Some((3, 1)));
     let fault = Fault::new("mass", "x")

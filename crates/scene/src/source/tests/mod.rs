@@ -1,4 +1,4 @@
-//! Tests of reading, setting, parsing and pointing.
+//! Tests of reading, `--set`, parsing and locating errors.
 
 use std::collections::BTreeMap;
 
@@ -102,7 +102,7 @@ Case(
 )
 "##;
 
-/// `TEXT` with the one `Some` that no type asks for taken out.
+/// `TEXT` without the one `Some` that no type requires.
 fn text() -> String {
     TEXT.replace("Some(7.0e3)", "7.0e3")
 }

@@ -1,4 +1,4 @@
-//! Whatever the text, nothing panics or hangs.
+//! Fuzz-like tests: no text makes the parser panic or hang.
 
 use super::*;
 use std::time::{Duration, Instant};
@@ -24,7 +24,7 @@ fn deep_nesting_is_refused() {
         .parse::<u8>()
         .unwrap_err();
     assert!(error.message.contains("comment is never closed"));
-    // Depth in a value that is skipped, and depth brought by sets, count as well.
+    // Nesting in a skipped value, and nesting inserted by `--set`, count as well.
     let fine = format!("{}1{}", "[".repeat(100), "]".repeat(100));
     let mut source = Source::from_text("d.ron", format!("(a: {fine})"));
     source
@@ -34,7 +34,7 @@ fn deep_nesting_is_refused() {
     assert!(error.set().is_some() && error.message.contains("more than 128"));
 }
 
-/// A small generator, so that the same mutations come every time.
+/// A small deterministic generator, so that the mutations are reproducible.
 struct Random(u64);
 
 impl Random {
@@ -139,7 +139,7 @@ fn mutations_never_panic() {
         }
     }
     assert!(refused > rounds / 4);
-    // None of them takes long: quadratic ones would take minutes.
+    // Bound on the time: quadratic behaviour would take minutes.
     let limit = Duration::from_secs(60);
     assert!(begun.elapsed() < limit, "{:?}", begun.elapsed());
 }

@@ -1,4 +1,4 @@
-//! Values set from outside.
+//! Tests of `--set`.
 
 use super::*;
 
@@ -152,7 +152,7 @@ fn errors_in_sets_name_the_set_and_the_line() {
         "{error}"
     );
 
-    // What stands after a value of several lines keeps its own line.
+    // The text after a replaced value of several lines keeps its own line number.
     let mut source = Source::from_text("case.ron", text().replace("mu: 0.3", "mu: -0.3"));
     source.set::<Case>("bodies=[\n\n\n]").unwrap();
     source.set::<Case>("loading.phase=1.0").unwrap();

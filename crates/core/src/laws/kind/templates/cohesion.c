@@ -1,5 +1,5 @@
 /* @NAME@: a @KIND@ law for Fretwork. Fill in the two functions marked (1) and (2).
- * What every column holds, in which units, and when a call is made: fretwork.h. */
+ * fretwork.h documents the content and unit of every column, and when each call is made. */
 #include <math.h>
 #include <string.h>
 #include "fretwork.h"
@@ -10,7 +10,7 @@ static const fw_field parameters[] = {
     {"k_t", "Pa/m", "tangential stiffness of the intact bond", 1e12, 1.0, 1e30, 0},
 };
 
-/* Ends a call with a sentence; contacts are counted from 0. */
+/* Returns an error with a message; contacts are counted from 0. */
 static int32_t fail(fw_message *message, size_t contact, const char *text) {
     message->contact = (int64_t)contact;
     if (message->capacity > 0) {
@@ -20,11 +20,11 @@ static int32_t fail(fw_message *message, size_t contact, const char *text) {
     return FW_ERROR;
 }
 
-/* (1) Stiffness that is left at damage D: traction = left(D) k x and psi = left(D) k x^2/2 must agree, and with
+/* (1) Remaining stiffness fraction at damage D: traction = left(D) k x and psi = left(D) k x^2/2 must agree, and with
  * `degradation` in the table, left = (1 - D)^m. */
 static double left(double damage) { return 1.0 - damage; }
 
-/* (2) Energy stored by the undamaged bond (J/m^2); only a normal opening above zero pulls. */
+/* (2) Energy stored by the undamaged bond (J/m^2); a normal opening contributes only if positive. */
 static double stored(const double *p, double n, double t) {
     n = fmax(n, 0.0);
     return 0.5 * (p[K_N] * n * n + p[K_T] * t * t);

@@ -1,5 +1,5 @@
 ! @NAME@: a cohesion law for Fretwork. Fill in the two functions marked (1) and (2).
-! What every column holds, in which units, and when a call is made: fretwork.h.
+! fretwork.h documents the content and unit of every column, and when each call is made.
 module law
   use, intrinsic :: iso_c_binding
   use, intrinsic :: ieee_arithmetic
@@ -15,14 +15,14 @@ module law
 
 contains
 
-  ! (1) Stiffness left at damage D: traction = left k x, psi = left k x^2/2; with `degradation` m, (1 - D)^m.
+  ! (1) Remaining stiffness fraction "left" at damage D: traction = left k x, psi = left k x^2/2; with `degradation` m, (1 - D)^m.
   pure function left(damage)
     real(c_double), intent(in) :: damage
     real(c_double) :: left
     left = 1 - damage
   end function left
 
-  ! (2) Energy stored by the undamaged bond (J/m^2); only a normal opening above zero pulls.
+  ! (2) Energy stored by the undamaged bond (J/m^2); a normal opening contributes only if positive.
   pure function stored(p, n, t)
     real(c_double), intent(in) :: p(:), n, t
     real(c_double) :: stored
@@ -117,7 +117,7 @@ contains
     plugin = c_loc(table)
   end function fretwork_plugin
 
-  ! Text with a NUL at its end.
+  ! Null-terminated text.
   pure function text(words) result(out)
     character(*), intent(in) :: words
     character(kind=c_char) :: out(longest)

@@ -1,5 +1,5 @@
 /* @NAME@: a @KIND@ law for Fretwork. Fill in the two functions marked (1) and (2).
- * What every column holds, in which units, and when a call is made: fretwork.h. */
+ * fretwork.h documents the content and unit of every column, and when each call is made. */
 #include <math.h>
 #include <string.h>
 #include "fretwork.h"
@@ -11,7 +11,7 @@ static const fw_field parameters[] = {
     {"v", "m/s", "velocity over which it falls", 0.1, 1e-12, 1e30, 0},
 };
 
-/* Ends a call with a sentence; contacts are counted from 0. */
+/* Returns an error with a message; contacts are counted from 0. */
 static int32_t fail(fw_message *message, size_t contact, const char *text) {
     message->contact = (int64_t)contact;
     if (message->capacity > 0) {

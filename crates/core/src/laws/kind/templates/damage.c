@@ -1,5 +1,5 @@
 /* @NAME@: a @KIND@ law for Fretwork. Fill in the two functions marked (1) and (2).
- * What every column holds, in which units, and when a call is made: fretwork.h. */
+ * fretwork.h documents the content and unit of every column, and when each call is made. */
 #include <math.h>
 #include <string.h>
 #include "fretwork.h"
@@ -10,7 +10,7 @@ static const fw_field parameters[] = {
     {"energy", "J/m^2", "fracture energy: area under the traction-opening curve", 0.5, 1e-30, 1e30, 0},
 };
 
-/* Ends a call with a sentence; contacts are counted from 0. */
+/* Returns an error with a message; contacts are counted from 0. */
 static int32_t fail(fw_message *message, size_t contact, const char *text) {
     message->contact = (int64_t)contact;
     if (message->capacity > 0) {
@@ -20,7 +20,7 @@ static int32_t fail(fw_message *message, size_t contact, const char *text) {
     return FW_ERROR;
 }
 
-/* (1) D at the end of the step of a bond that would, undamaged, carry the traction t0 (Pa) at the opening u
+/* (1) D at the end of the step, where t0 (Pa) is the traction that the undamaged bond would carry at the opening u
  * (m), so that psi = (1 - D)^m psi_0. Here: a line from the strength to zero. */
 static double damage(const double *p, double t0, double u, double m) {
     double first = p[STRENGTH] * u / t0, last = 2.0 * p[ENERGY] / p[STRENGTH];
@@ -29,7 +29,7 @@ static double damage(const double *p, double t0, double u, double m) {
     return 1.0 - pow(p[STRENGTH] * (last - u) / (last - first) / t0, 1.0 / m);
 }
 
-/* (2) What certify is to find as the area under the curve at any angle; NAN for nothing. */
+/* (2) Area under the curve that `law certify` compares with, at any angle; NAN to skip the test. */
 static double fracture_energy(const double *p, double angle) {
     (void)angle;
     return p[ENERGY];

@@ -1,5 +1,5 @@
 ! @NAME@: a damage law for Fretwork. Fill in the two functions marked (1) and (2).
-! What every column holds, in which units, and when a call is made: fretwork.h.
+! fretwork.h documents the content and unit of every column, and when each call is made.
 module law
   use, intrinsic :: iso_c_binding
   use, intrinsic :: ieee_arithmetic
@@ -15,7 +15,7 @@ module law
 
 contains
 
-  ! (1) D of a bond that would, undamaged, carry t0 (Pa) at the opening u (m), psi = (1 - D)^m psi_0.
+  ! (1) D for the traction t0 (Pa) of the undamaged bond at the opening u (m); psi = (1 - D)^m psi_0.
   pure function damage(p, t0, u, m) result(d)
     real(c_double), intent(in) :: p(:), t0, u, m
     real(c_double) :: d, first, last
@@ -30,7 +30,7 @@ contains
     end if
   end function damage
 
-  ! (2) What certify is to find as the area under the curve at any angle.
+  ! (2) Area under the curve that `law certify` compares with, at any angle.
   function fracture_energy(values, angle) bind(c) result(energy)
     type(c_ptr), value :: values
     real(c_double), value :: angle
@@ -99,7 +99,7 @@ contains
     plugin = c_loc(table)
   end function fretwork_plugin
 
-  ! Text with a NUL at its end.
+  ! Null-terminated text.
   pure function text(words) result(out)
     character(*), intent(in) :: words
     character(kind=c_char) :: out(longest)

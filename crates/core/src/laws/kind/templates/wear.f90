@@ -1,5 +1,5 @@
 ! @NAME@: a wear law for Fretwork. Fill in the two functions marked (1) and (2).
-! What every column holds, in which units, and when a call is made: fretwork.h.
+! fretwork.h documents the content and unit of every column, and when each call is made.
 module law
   use, intrinsic :: iso_c_binding
   use, intrinsic :: ieee_arithmetic
@@ -79,7 +79,7 @@ contains
     plugin = c_loc(table)
   end function fretwork_plugin
 
-  ! Text with a NUL at its end.
+  ! Null-terminated text.
   pure function text(words) result(out)
     character(*), intent(in) :: words
     character(kind=c_char) :: out(longest)
