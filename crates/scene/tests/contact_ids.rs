@@ -49,7 +49,7 @@ fn solid(scene: Scene) -> Simulation<Dim3> {
     }
 }
 
-fn steps<S: Space>(s: &mut Simulation<S>, count: u32) {
+fn steps<S: Steps>(s: &mut Simulation<S>, count: u32) {
     (0..count).for_each(|_| drop(s.step().unwrap()));
 }
 

@@ -46,7 +46,7 @@ fn go<S: Steps>(s: &mut Simulation<S>, steps: usize) {
 
 /// The same where a heap is hyperstatic, which sweeps may not solve to the tolerance: the ledger closes and bits are equal all the
 /// same.
-fn falls<S: Space>(s: &mut Simulation<S>, steps: usize) {
+fn falls<S: Steps>(s: &mut Simulation<S>, steps: usize) {
     for _ in 0..steps {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }
