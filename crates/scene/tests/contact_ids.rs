@@ -3,7 +3,7 @@
 use fretwork_core::contact::{ContactId, ContactNames};
 use fretwork_core::geometry::space::{Dim2, Dim3, Space};
 use fretwork_core::laws::{BuiltInLaws, SearchPath};
-use fretwork_core::step::{Saved, Simulation};
+use fretwork_core::step::{Saved, Simulation, Steps};
 use fretwork_scene::{Scene, load};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -90,7 +90,7 @@ fn boxes() -> Vec<String> {
 }
 
 /// The scene with its grains listed backwards, under the identities they had.
-fn backwards<S: Space>(mut s: Simulation<S>, grains: usize) -> Simulation<S> {
+fn backwards<S: Steps>(mut s: Simulation<S>, grains: usize) -> Simulation<S> {
     let ids: Vec<u64> = s.bodies.id.clone();
     let grain: Vec<usize> = (0..s.bodies.len())
         .filter(|b| !s.bodies.driven.iter().any(|d| d.body as usize == *b))
@@ -102,7 +102,7 @@ fn backwards<S: Space>(mut s: Simulation<S>, grains: usize) -> Simulation<S> {
     s
 }
 
-fn same_names<S: Space>(mut one: Simulation<S>, mut other: Simulation<S>) -> usize {
+fn same_names<S: Steps>(mut one: Simulation<S>, mut other: Simulation<S>) -> usize {
     steps(&mut one, 20);
     steps(&mut other, 20);
     let (a, b) = (named(&one), named(&other));
