@@ -157,10 +157,8 @@ impl Interface {
     /// Sorts the slots, numbers the internal variables and checks that the slots fit together.
     fn arrange(&mut self) -> Result<(), LawError> {
         self.slots.sort_by_key(|l| l.plugin.kind);
-        let kinds = self.slots.windows(2);
-        let twice = kinds
-            .filter(|w| w[0].plugin.kind == w[1].plugin.kind)
-            .next();
+        let mut pairs = self.slots.windows(2);
+        let twice = pairs.find(|w| w[0].plugin.kind == w[1].plugin.kind);
         let reason = match (twice, self.slots.first().map(|l| l.plugin.kind)) {
             (Some(w), _) => Some(format!(
                 "interface `{}` has two {} laws, `{}` and `{}`; it takes one of each kind",
