@@ -294,8 +294,8 @@ impl<S: Space> Observers<S> {
     /// # Errors
     /// One cannot be put into bytes.
     pub fn save(&self) -> Result<Vec<ObserverState>, CodeError> {
-        let one = |o: &Box<dyn Observer<S>>| Ok((o.name(), o.save()?));
-        self.list.iter().map(one).collect()
+        let list = self.list.iter();
+        list.map(|o| Ok((o.name(), o.save()?))).collect()
     }
 
     /// Goes on from what [`Observers::save`] gave.

@@ -98,8 +98,13 @@ __attribute__((constructor)) static void loaded(void) { rename("next", "libfretw
 #endif
 static int32_t prepare(const fw_batch *b, fw_message *m) {
     (void)m;
+#ifdef SPOOFS
+    int calls = 0; // what is static is not certified
+#else
     static int calls;
+#endif
     ++calls;
+    (void)calls;
 #ifdef LOOPS
     for (volatile int on = calls > 3000; on;) {}
 #endif

@@ -65,8 +65,8 @@ impl<S: Space> Simulation<S> {
     /// # Errors
     /// One cannot be put into bytes.
     pub fn save_processes(&self) -> Result<Vec<ProcessState>, CodeError> {
-        let one = |p: &Box<dyn Process<S>>| Ok((p.name().to_owned(), p.save()?));
-        self.processes.iter().map(one).collect()
+        let list = self.processes.iter();
+        list.map(|p| Ok((p.name().to_owned(), p.save()?))).collect()
     }
 
     /// Has the processes go on from what [`Simulation::save_processes`] gave of a simulation with the same ones.
