@@ -1,6 +1,8 @@
 //! A fifth kind of interface law, made here: one entry of the registry, and no other place knows of it. It watches contacts
 //! and keeps the work of friction; scenes that have it give the bits of those that do not.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
+
 use fretwork_abi as abi;
 use fretwork_core::certify::certify;
 use fretwork_core::geometry::space::{Space, VectorLike};
