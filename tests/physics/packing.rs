@@ -36,9 +36,13 @@ fn steps(mu: &str) -> Vec<LocalProblem> {
     problems
 }
 
-/// Where sliding contacts fell behind their thresholds, stick and slip took turns in every iteration and the
-/// conjugate gradients were no faster than plain ones. Over several steps, since how much faster they are on one
-/// hangs on the packing.
+/// Most iterations of a method.
+const MAX_ITERATIONS: u32 = 20_000;
+
+/// Where sliding contacts fell behind their thresholds, stick and slip alternated in every iteration and the
+/// conjugate gradients were no faster than the plain ones. How much faster they are depends on the packing: the
+/// preconditioned ones take less than half of the iterations of NLGS on every step that either solves, the others on half
+/// of the steps at least.
 #[test]
 fn conjugate_gradients_are_faster_than_sweeps() {
     for mu in ["0", "0.1", "0.4"] {
@@ -47,17 +51,27 @@ fn conjugate_gradients_are_faster_than_sweeps() {
             let limits = Limits {
                 tolerance: 1e-6,
                 scale_free: None,
-                max_iterations: 20_000,
+                max_iterations: MAX_ITERATIONS,
                 seconds: 60.0,
             };
             let solved = problems.iter().map(|p| solve(p, method, &limits));
             let each: Vec<u32> = solved.map(|outcome| outcome.iterations).collect();
             println!("mu {mu}, {}: {each:?}", method.name());
-            each.iter().sum::<u32>()
+            each
         };
         let [nlgs, pg, cpg, pcpg] =
             [Method::Nlgs, Method::Pg, Method::Cpg, Method::Pcpg].map(iterations);
-        assert!(2 * cpg < nlgs && 2 * cpg < pg, "mu {mu}: {cpg} of {nlgs}");
-        assert!(2 * pcpg < nlgs, "mu {mu}: {pcpg} of {nlgs}");
+        for plain in [&nlgs, &pg] {
+            let faster = cpg.iter().zip(plain).filter(|(c, p)| 2 * **c < **p);
+            assert!(
+                2 * faster.count() >= cpg.len(),
+                "mu {mu}: {cpg:?} of {plain:?}"
+            );
+        }
+        let mut both = pcpg.iter().zip(&nlgs);
+        assert!(
+            both.all(|(c, n)| 2 * c < *n || (*c == MAX_ITERATIONS && *n == MAX_ITERATIONS)),
+            "mu {mu}: {pcpg:?} of {nlgs:?}"
+        );
     }
 }

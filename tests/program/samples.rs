@@ -36,7 +36,7 @@ fn a_deposit_is_what_the_case_asks_for() {
     assert!(built.samples[0].contains("300 grains placed at random"));
     let none = folder.sample::<Dim2>(&DEPOSIT.replace("count: 300", "count: 30000"));
     let said = refusal(none);
-    assert!(said.contains("of 30000 grains found room"), "{said}");
+    assert!(said.contains("of 30000 grains fit"), "{said}");
     for (old, new, says) in [
         (
             "(2e-3, 8e-3)",

@@ -136,7 +136,7 @@ mod tests {
             "1.50",
             ": hyperstatic",
             "newton converged in 1 of 2",
-            "interior 1 of 1",
+            "interior in 1 of 1",
         ] {
             assert!(why.contains(part), "{why}");
         }

@@ -227,7 +227,7 @@ mod tests {
         // A tenth of the contacts of a packing: at most ten times as long.
         let loose = trial.text(10_000, 1000, 2);
         assert!(
-            loose.contains("and 20 min") && loose.contains("some 2000 contacts"),
+            loose.contains("and 20 min") && loose.contains("about 2000 contacts"),
             "{loose}"
         );
         // A step that does not finish counts: (2 x 4 ms + 1 s)/3 each.

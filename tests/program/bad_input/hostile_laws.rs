@@ -159,7 +159,7 @@ fn a_law_that_ends_the_process_at_once() {
     let refused = run(&trial, &[&LONG[..], &["--resume"]].concat());
     refusal(
         &refused,
-        &["the library of the contact law `own` is another one"],
+        &["the library of the contact law `own` has changed"],
     );
 }
 

@@ -91,7 +91,7 @@ fn numbers_of_the_command_line() {
     for value in ["NaN", "NaNs", "-5m", "-5m10m", "inf", "0", "1e400s"] {
         refusal(
             &trial.call(&["trade", "case.ron", &format!("--budget={value}")]),
-            &["is no time"],
+            &["is not a time"],
         );
     }
     for (option, value) in [

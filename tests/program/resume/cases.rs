@@ -9,7 +9,7 @@ fn resumes(name: &str, job: Job<'_>, states: u64) {
         let stopped = Folder::new(&format!("{name}-{threads}"));
         job.killed_after(&stopped.0, states);
         let told = job.done(&stopped.0, &["--resume", "--threads", threads]);
-        assert!(told.contains("resumes the run"), "{told}");
+        assert!(told.contains("resuming the run"), "{told}");
         same(&whole.0, &stopped.0);
         let again = job.done(&stopped.0, &["--resume"]);
         assert!(again.contains("is finished"), "{again}");

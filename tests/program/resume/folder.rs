@@ -27,7 +27,7 @@ fn checkpoints_and_figures_may_be_others_when_a_run_goes_on() {
     let (out, whole) = (Folder::new("free"), Folder::new("free-whole"));
     job(&SETS).killed_after(&out.0, 2);
     let told = job(&OTHER).done(&out.0, &["--resume"]);
-    assert!(told.contains("resumes the run"), "{told}");
+    assert!(told.contains("resuming the run"), "{told}");
     job(&OTHER).done(&whole.0, &[]);
     assert!(out.0.join("energy.png").exists());
     same(&whole.0, &out.0);
@@ -101,13 +101,13 @@ fn a_summary_of_another_run_ends_none() {
         job(&SETS).killed_after(&out.0, 2);
         std::fs::copy(from.0.join("summary.json"), out.0.join("summary.json")).unwrap();
         let told = job(&SETS).done(&out.0, &["--resume"]);
-        assert!(told.contains("resumes the run"), "{told}");
+        assert!(told.contains("resuming the run"), "{told}");
         same(&whole.0, &out.0);
     }
     // At its end, but beside the summary of another case.
     std::fs::copy(other.0.join("summary.json"), out.0.join("summary.json")).unwrap();
     let told = job(&SETS).done(&out.0, &["--resume"]);
-    assert!(told.contains("resumes the run"), "{told}");
+    assert!(told.contains("resuming the run"), "{told}");
     same(&whole.0, &out.0);
     let told = job(&SETS).done(&out.0, &["--resume"]);
     assert!(told.contains("is finished"), "{told}");
@@ -144,7 +144,7 @@ fn a_run_goes_on_beyond_its_end() {
             job(&SHORT).done(&out.0, &[]);
         }
         let told = job(&LONG).done(&out.0, &["--resume"]);
-        assert!(told.contains("resumes the run"), "{told}");
+        assert!(told.contains("resuming the run"), "{told}");
         same(&long.0, &out.0);
         // Back to an earlier end there is no way.
         let told = said(&job(&SHORT).run(&out.0, &["--resume"]), 2);

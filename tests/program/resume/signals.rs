@@ -105,7 +105,7 @@ fn a_run_that_is_interrupted_ends_well_and_goes_on_with_the_same_bits() {
             .current_dir(env!("CARGO_MANIFEST_DIR"));
         let resumed = shell.output().unwrap();
         assert!(resumed.status.success(), "{resumed:?}");
-        assert!(String::from_utf8_lossy(&resumed.stdout).contains("resumes the run"));
+        assert!(String::from_utf8_lossy(&resumed.stdout).contains("resuming the run"));
         let first = String::from_utf8_lossy(&resumed.stderr);
         let first = first.lines().find_map(|l| l.strip_prefix("step ")).unwrap();
         let step: u64 = first.split('/').next().unwrap().parse().unwrap();

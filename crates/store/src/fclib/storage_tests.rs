@@ -228,7 +228,7 @@ fn what_makes_no_problem_is_refused() {
     );
     refused(
         &around(3, &q, &[0.1], 2),
-        &["/fclib_local/vectors/mu", "2 numbers", "3 a contact"],
+        &["/fclib_local/vectors/mu", "2 numbers", "3 per contact"],
     );
     refused(
         &around(2, &q, &[-0.1], 2),
