@@ -4,14 +4,14 @@
 //! [`Simulation::fields`] before the first state is written:
 //!
 //! ```
+//! use fretwork_core::contact::Contact;
 //! use fretwork_core::fields::Field;
 //! use fretwork_core::geometry::space::Dim2;
 //! use fretwork_core::step::Simulation;
 //!
 //! fn watch_age(simulation: &mut Simulation<Dim2>) {
-//!     let age = Field::number("age", "s", "time since the contact formed", |s: &Simulation<Dim2>, c| {
-//!         s.time - c.born
-//!     });
+//!     let age = |s: &Simulation<Dim2>, contact: &Contact<Dim2>| s.time - contact.formed_at;
+//!     let age = Field::number("age", "s", "time since the contact formed", age);
 //!     simulation.fields.contacts.add(age);
 //! }
 //! ```
