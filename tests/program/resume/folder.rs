@@ -148,7 +148,10 @@ fn a_run_goes_on_beyond_its_end() {
         same(&long.0, &out.0);
         // Back to an earlier end there is no way.
         let told = said(&job(&SHORT).run(&out.0, &["--resume"]), 2);
-        assert!(told.contains("`time.end` was 0.06 there"), "{told}");
+        assert!(
+            told.contains("`time.end` was 0.06 in the original run"),
+            "{told}"
+        );
     }
 }
 
