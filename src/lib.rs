@@ -1,11 +1,64 @@
 //! Fretwork: tribology of dry contacts by non-smooth contact dynamics, with interface laws loaded at run
 //! time.
 //!
-//! This crate is the program, and re-exports all layers below it. A [`scene`] creates [`bodies`] with
-//! [`geometry`]; each [`step`] detects [`contact`]s, evaluates the interface [`laws`], [`solve`]s the contact
-//! problem and advances the bodies; [`process`]es act between steps, and [`record`] writes the run's results.
-//! To use a single layer, depend on its crate: `fretwork-core`, `fretwork-scene`, `fretwork-observe`,
-//! `fretwork-store` or `fretwork-plot`.
+//! # One step
+//!
+//! ```text
+//!  case.ron ─► scene ─► bodies with shapes ─┐
+//!                                           ▼
+//!       ┌───────────────────────────────► detect ─► contacts (memory: bonds, damage, variables of laws)
+//!       │                                           │
+//!       │                                  laws: prepare (batches, plugin ABI)
+//!       │                                           ▼
+//!       │                                  solve: standard local form ─► impulses, velocities
+//!       │                                           │
+//!       │                                  laws: commit (damage, breaks, wear, dissipation)
+//!       │                                           ▼
+//!       └─ advance ◄─ wear ◄─ processes ◄─ energy ledger ─► observers, results, pictures
+//! ```
+//!
+//! | word in the picture | module |
+//! |---|---|
+//! | case, scene | [`scene`]: [`load`](scene::load) a file, or make a case by a [`CaseBuilder`](scene::CaseBuilder) |
+//! | bodies, shapes | [`bodies`]: columns of all [`Bodies`](bodies::Bodies); [`geometry`]: dimension, algebra, shapes |
+//! | detect, contacts, memory | [`contact`]: the [`Network`](contact::Network) of all contacts |
+//! | laws | [`laws`]: an [`Interface`](laws::Interface) of [`Plugin`](laws::Plugin)s, found by a [`SearchPath`](laws::SearchPath); [`certify`] tests what they promise |
+//! | solve | [`solve`]: a [`Problem`](solve::Problem), its methods and the error that they reach |
+//! | energy ledger | [`energy`]: [`Energy`](energy::Energy) |
+//! | processes, wear | [`process`], [`wear`] |
+//! | the step itself | [`step`]: [`Simulation::step`](step::Simulation::step), [`run_until`](step::Simulation::run_until) |
+//! | observers, results | [`record`]: the run loop, analysis, `results.h5`, checkpoints |
+//! | pictures | [`report`]: charts and pictures |
+//!
+//! Each module is the front of a layer below: `fretwork-core`, `fretwork-scene`, `fretwork-observe`, `fretwork-store`,
+//! `fretwork-plot`. Here they meet: [`cli`] is the command line, [`trade`] compares accuracy and cost, [`shipped`] has the laws
+//! that come with the program.
+//!
+//! # A scene without files
+//!
+//! A ball dropped on a plane rests there, and the plane carries its weight. The page `docs/library.md` has more.
+//!
+//! ```
+//! use fretwork::scene::case::{BodySpec, GrainSpec, InterfaceSpec, OneGrain, ShapeSpec};
+//! use fretwork::scene::{CaseBuilder, Dim3};
+//! use std::ops::ControlFlow;
+//!
+//! let mut simulation = CaseBuilder::<Dim3>::new("a ball on a plane")
+//!     .time(1e-3, 0.2)
+//!     .gravity([0.0, 0.0, -9.81])
+//!     .own_material("glass", 2500.0, "data sheet")
+//!     .interface(InterfaceSpec::new("dry", ("glass", "glass"), "coulomb", &[("mu", 0.3)]))
+//!     .body(BodySpec::new("floor", "glass", ShapeSpec::half_space([0.0, 0.0, 1.0], [])))
+//!     .grains(GrainSpec::balls("glass", [OneGrain::new([0.0, 0.0, 0.02], 0.01)]))
+//!     .build(&fretwork::shipped::search_path())?
+//!     .simulation;
+//! simulation.run_until(0.2, |_, _| ControlFlow::<()>::Continue(()))?;
+//!
+//! let (force, _) = simulation.contact_force_on("floor").ok_or("no floor")?;
+//! let weight = 2500.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.01f64.powi(3) * 9.81;
+//! assert!((-force.z - weight).abs() < 1e-3 * weight, "{force}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 // A failed write to a terminal or pipe must not end a run: all output goes through `cli::output`.
 #![deny(clippy::print_stdout, clippy::print_stderr)]

@@ -9,7 +9,19 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 /// damage", Wear 200 (1996) 186.
 pub const TRANSITION: f64 = 0.2;
 
-/// Sliding regime of a contact.
+/// How a contact slides.
+///
+/// # Examples
+/// ```
+/// use fretwork_observe::fretting::Regime;
+///
+/// // A loop that is a rectangle of height 2 Q and width 2 delta dissipates 4 Q delta: gross slip.
+/// let (q, delta) = (30.0, 5e-6);
+/// let dissipated: f64 = 2.0 * q * 2.0 * delta;
+/// assert_eq!(Regime::of(dissipated / (4.0 * q * delta)), Regime::Gross);
+/// // A thin loop: most of the displacement is elastic.
+/// assert_eq!(Regime::of(0.05), Regime::Partial);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Regime {

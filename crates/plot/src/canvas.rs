@@ -279,8 +279,8 @@ impl Canvas {
         }
     }
 
-    /// Writes the opaque surface to a PNG file. The encoder of plotters is about ten times as fast as that of
-    /// tiny-skia.
+    /// Writes the surface, which is opaque, to a PNG file: without its alpha channel and compressed fast, some ten times
+    /// as fast as tiny-skia's own writer.
     pub fn save(&self, path: &Path) -> Result<(), ReportError> {
         match notice::current() {
             Some(text) => notice::banded(self, &text)?.write_file(path),

@@ -22,7 +22,7 @@ pub struct Made<'a, S: Space> {
     pub densities: &'a [f64],
 }
 
-/// Contents of the file before the first step.
+/// What the file says before the first step, with the columns of the statistics and those of the grains that observers have.
 pub fn header<S: Space>(
     loaded: &Loaded,
     built: &Made<'_, S>,
@@ -162,7 +162,7 @@ pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
     [8 * (3 + 2 + grain), 8 * (6 + 3 + contact)]
 }
 
-/// Appends the current state; `shear` is a column of the grains if the header has it.
+/// Appends the state at hand of a case, with the values of the observers' columns of the grains, in the order of the header.
 ///
 /// # Errors
 /// The file cannot be written.

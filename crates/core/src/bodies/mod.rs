@@ -1,4 +1,5 @@
-//! Rigid bodies: state, inertia, and driven degrees of freedom.
+//! Rigid bodies: their state, inertia, and the degrees of freedom that are driven; and dynamical systems that are more than
+//! rigid.
 pub mod delay;
 pub mod drive;
 pub mod dynamical_system;

@@ -262,7 +262,7 @@ impl<S: Space> Bodies<S> {
         self.inverse_inertia[body] = 0.0;
     }
 
-    /// Returns which bodies are grains: neither driven nor removed.
+    /// Which bodies are grains: those that are not driven or carried by a system, and are still there.
     pub fn grain_flags(&self) -> Vec<bool> {
         let mut grain: Vec<bool> = self.removed.iter().map(|g| !g).collect();
         for (grain, carrier) in grain.iter_mut().zip(&self.carriers) {

@@ -28,8 +28,8 @@ fn by_default(path: &SearchPath, kind: Kind, name: &str) -> Result<Loaded, LawEr
 }
 
 impl Rig {
-    /// Builds the rigs for a law; for a damage law either with the given cohesion, or with a linear bond (m
-    /// = 1) and with the MAC bond (m = 2).
+    /// The law in its slot, beside each set of partners of its kind: a damage law with this cohesion, or once with a linear
+    /// bond (m = 1), once with MAC's (m = 2).
     pub fn all(
         plugin: &Plugin,
         parameters: &[f64],

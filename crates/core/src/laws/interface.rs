@@ -84,7 +84,7 @@ impl AreaRule {
     }
 }
 
-/// The interface law of a pair of materials.
+/// The law of a pair of materials: slots of laws, in the order of their kinds.
 #[derive(Clone, Debug)]
 pub struct Interface {
     /// Name in the case.

@@ -37,7 +37,7 @@ pub enum SolvePath {
         /// Result of the interior point.
         interior: Attempt,
     },
-    /// Gauss-Seidel used its allowance and continued, because Newton does not support rolling friction.
+    /// Sweeps had taken their share, and went on: Newton does not serve friction against rotation, nor dynamical systems.
     Unserved,
     /// Gauss-Seidel used its allowance and continued, because the set is too large to factorise.
     Large,

@@ -169,7 +169,41 @@ pub(super) enum Place {
     System(u32),
 }
 
-/// The contact problem of one step. Push the bodies first, then the contacts.
+/// The contact problem of one step. Push the bodies, then the contacts.
+///
+/// # Examples
+/// A disk of 2 kg rests on an immovable plane; in a step of 1 ms gravity would give it 0.01 m/s downwards, and 0.001 m/s
+/// sideways, which is within what Coulomb friction with mu = 0.5 holds.
+/// ```
+/// use fretwork_core::geometry::space::{Dim2, Space, VectorLike};
+/// use fretwork_core::solve::{ContactForm, Options, Problem, nlgs};
+/// use nalgebra::{Matrix1, Vector1, Vector2};
+///
+/// let mut problem = Problem::<Dim2>::default();
+/// let (spin, turned) = (Vector1::new(0.0), Matrix1::new(0.0));
+/// let free = Vector2::new(1e-3, -1e-2);
+/// problem.push_body(free, spin, Vector2::new(0.5, 0.5), turned, 0.01);
+/// problem.push_body(Vector2::zero(), spin, Vector2::zero(), turned, 0.01);
+/// problem.push(&ContactForm {
+///     bodies: [0, 1],
+///     normal: Vector2::new(0.0, 1.0),
+///     arms: [Vector2::new(0.0, -0.01), Vector2::zero()],
+///     central: true,
+///     shift_n: 0.0,
+///     shift_t: <Dim2 as Space>::Tangent::zero(),
+///     friction: 0.5,
+///     tension: 0.0,
+///     cohesion: 0.0,
+///     elastic: None,
+///     impulse: Vector2::zero(),
+/// });
+/// let report = nlgs::solve(&mut problem, &Options { tolerance: 1e-10, ..Options::default() });
+/// assert!(report.converged);
+/// // The impulse that stops it: its mass times the change of velocity (N s).
+/// let impulse = problem.solution(0).impulse;
+/// assert!((impulse - Vector2::new(-2e-3, 2e-2)).norm() < 1e-9, "{impulse}");
+/// assert!(problem.velocity(0).0.norm() < 1e-9);
+/// ```
 #[derive(Debug)]
 pub struct Problem<S: Space> {
     /// Velocities, updated in place, one record per body.

@@ -26,7 +26,8 @@ impl Steps for Dim3 {
 }
 
 impl<S: Steps> Simulation<S> {
-    /// Performs one step of length h.
+    /// One step of h. Processes act at its named moments, see [`crate::process`]; those that are due between the last step and
+    /// this one first, where [`Simulation::between_steps`] was not called.
     ///
     /// # Errors
     /// A law failed or a velocity is not finite; the state is then that of the failed step. A surface was

@@ -370,8 +370,8 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Returns the last solved problem in the form of public friction-contact collections; `None` if bonds,
-    /// cohesion or rolling friction were active, which that form cannot represent.
+    /// The problem of the last step solved, in the form of the field's collection; none where a bond,
+    /// cohesion, friction against rotation or a dynamical system was at work, which that form does not hold.
     pub fn local_problem(&self) -> Option<solve::local::LocalProblem> {
         solve::choose::coulomb(
             &self.workspace.problem,
@@ -462,7 +462,7 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
-    /// Adds the step to the energy ledger.
+    /// Ends the step of dynamical systems and books the step in the energy ledger.
     fn book(&mut self, start: &StepStart<S>, totals: &Totals) {
         let mut received = vec![(S::Vector::zero(), S::Spin::zero()); self.bodies.driven.len()];
         let mut place = vec![usize::MAX; self.bodies.len()];

@@ -259,7 +259,7 @@ impl Results {
         self.write_in_time(self.held.first().map_or(0, Vec::len))
     }
 
-    /// Appends a broken bond.
+    /// Appends an event to its table; one of a table that the file does not have is left out.
     ///
     /// # Errors
     /// The file cannot be written.

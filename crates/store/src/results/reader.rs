@@ -4,7 +4,35 @@ use crate::fclib::guard;
 use hdf5::{H5File, H5Type};
 use std::path::Path;
 
-/// An open results file.
+/// A file of results, open for reading: its datasets by their paths, see [`crate::results`].
+///
+/// # Examples
+/// A file with one column of statistics is written, and read again.
+/// ```
+/// use fretwork_observe::statistics::Column;
+/// use fretwork_store::results::{Header, Reader, Results};
+///
+/// let folder = std::env::temp_dir().join(format!("fretwork-reader-{}", std::process::id()));
+/// std::fs::create_dir_all(&folder)?;
+/// let path = folder.join("results.h5");
+/// let header = Header {
+///     dimension: 2,
+///     statistics: vec![Column::new("time", "s", "time at the end of the step")],
+///     ..Header::default()
+/// };
+/// let mut results = Results::create(&path, &header)?;
+/// for step in 1..=3 {
+///     results.append_statistics(&[0.5 * f64::from(step)])?;
+/// }
+/// results.publish(&path)?;
+/// results.finish(&folder)?;
+///
+/// let reader = Reader::open(&path)?;
+/// let rows = reader.rows("statistics/time")?;
+/// assert_eq!(reader.numbers("statistics/time", (0, rows), 1)?, [0.5, 1.0, 1.5]);
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Reader {
     file: H5File,
     names: Vec<String>,

@@ -161,8 +161,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Returns the motion that the rest condition tests: that of the grains and of bodies without imposed
-    /// motion or force.
+    /// What a condition of rest looks at: the grains, first bodies of which nothing is imposed, and dynamical systems.
     fn motion_of_free(&self) -> phases::Motion {
         let bodies = &self.bodies;
         let free = |b: &usize| (0..S::D).all(|k| bodies.inverse_mass[*b][k] > 0.0);
