@@ -2,6 +2,7 @@
 //! arrow round by naming a layer, or brings HDF5 or fonts into the core by a library.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 /// Each layer, the layers it may name, and libraries that neither it nor what it stands on may bring.
 const LAYERS: [(&str, &[&str], &[&str]); 5] = [
@@ -131,4 +132,62 @@ fn lower_layers_bring_no_files_pictures_or_command_line() {
             assert!(!brings.contains(library), "{package} brings {library}");
         }
     }
+}
+
+/// Modules of the core, each after those that it may name.
+const MODULES: [&str; 11] = [
+    "code", "geometry", "bodies", "contact", "solve", "laws", "certify", "energy", "wear", "step",
+    "process",
+];
+
+/// Modules of the core that a file's code names.
+fn named(text: &str) -> impl Iterator<Item = &str> {
+    let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+    code.flat_map(|line| line.split("crate::").skip(1))
+        .map(|rest| rest.split(|c: char| !(c.is_alphanumeric() || c == '_')))
+        .filter_map(|mut words| words.next())
+}
+
+fn source_files(folder: &Path, out: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            source_files(&path, out);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            out.push(path);
+        }
+    }
+}
+
+/// No module of the core names one above it, so that there is no circle between them.
+#[test]
+fn modules_of_the_core_name_those_below_them() {
+    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/crates/core/src"));
+    let place = |name: &str| MODULES.iter().position(|m| *m == name);
+    let (mut files, mut seen) = (Vec::new(), BTreeSet::new());
+    source_files(root, &mut files);
+    for file in files {
+        let inside = file.strip_prefix(root).unwrap();
+        let own = inside.components().next().unwrap().as_os_str();
+        let own = own.to_string_lossy().trim_end_matches(".rs").to_owned();
+        if own == "lib" {
+            continue;
+        }
+        let above = place(&own).unwrap_or_else(|| panic!("the module {own} has no place"));
+        let text = std::fs::read_to_string(&file).unwrap();
+        for name in named(&text) {
+            // Macros stand at the root of the crate.
+            if name == "commit_hook" {
+                continue;
+            }
+            let below = place(name);
+            assert!(
+                below.is_some_and(|below| below <= above),
+                "{}: crate::{name}",
+                inside.display()
+            );
+            seen.insert((own.clone(), name.to_owned()));
+        }
+    }
+    assert!(seen.contains(&("step".to_owned(), "laws".to_owned())));
 }

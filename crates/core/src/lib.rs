@@ -52,10 +52,11 @@ pub mod certify;
 pub mod code;
 pub mod contact;
 pub mod energy;
-pub mod fields;
 pub mod geometry;
 pub mod laws;
 pub mod process;
 pub mod solve;
 pub mod step;
 pub mod wear;
+
+pub use step::fields;

@@ -1,7 +1,7 @@
 //! Errors of a time step.
 
+use super::process::ProcessError;
 use crate::laws::LawError;
-use crate::process::ProcessError;
 use crate::wear::WornThrough;
 
 /// Reason why a step failed.

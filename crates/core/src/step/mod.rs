@@ -10,7 +10,7 @@
 //!       │                         laws: commit (damage, broken, wear, dissipation)
 //!       └── advance bodies ◄─────────────────────┤
 //!                                                ▼
-//!                               record (ledgers, statistics, files)
+//!                               energy ledger, processes ─► observers and files, in the layers above
 //! ```
 mod answers;
 mod columns;
@@ -18,10 +18,12 @@ mod compiled;
 pub mod control;
 pub mod coupling;
 mod error;
+pub mod fields;
 mod finite;
 mod foresight;
 mod imposed;
 pub mod motion;
+pub mod process;
 mod processes;
 pub mod projection;
 mod removal;

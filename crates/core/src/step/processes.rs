@@ -1,10 +1,10 @@
 //! The stepper's part of processes: when they act, and how they are kept.
 
+use super::process::{Process, ProcessError};
 use super::{Simulation, StepError};
 use crate::code::CodeError;
 use crate::geometry::algebra::{MatrixLike, VectorLike};
 use crate::geometry::space::Space;
-use crate::process::{Process, ProcessError};
 use std::any::Any;
 
 /// The state of one process: its name and its bytes.

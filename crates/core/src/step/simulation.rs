@@ -4,6 +4,7 @@ use super::StepError;
 use super::answers::Solved;
 use super::coupling::{Coupling, CouplingReport, Progress};
 use super::motion::{self, StepStart};
+use super::process::Process;
 use super::projection::Projected;
 use crate::bodies::{Bodies, Systems};
 use crate::contact::detect::{self, LawTable, detect};
@@ -14,7 +15,6 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
 use crate::laws::pass::LawEvaluator;
 use crate::laws::{ContactStep, Interface, LawError, Totals};
-use crate::process::Process;
 use crate::solve::local::solver::Method;
 use crate::solve::{self, ContactForm, MomentForm, Problem};
 use crate::wear::{Scar, WornThrough};
@@ -102,7 +102,7 @@ pub struct Simulation<S: Space> {
     /// The first surface that was worn through, if any.
     pub worn_through: Option<WornThrough>,
     /// What grains and contacts carry for output, by name.
-    pub fields: crate::fields::Fields<S>,
+    pub fields: super::fields::Fields<S>,
     /// What acts from outside and changes in time.
     pub control: super::control::Control<S>,
     /// What acts at the named moments of a step, in this order.
