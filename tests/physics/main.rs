@@ -14,6 +14,7 @@ mod masonry;
 mod packing;
 mod peer_traps;
 mod periodic_cell;
+mod processes;
 mod programme;
 mod projection;
 mod rolling;

@@ -222,6 +222,17 @@ fn a_word_or_code_has_one_kind() {
         word: "other",
         ..SAME
     };
+    static EARLY: KindSpec = KindSpec {
+        code: -3,
+        word: "early",
+        ..SAME
+    };
+    static BONDS: KindSpec = KindSpec {
+        code: 108,
+        word: "onbonds",
+        domain: Domain::ByOpening,
+        ..SAME
+    };
     static NAME: KindSpec = KindSpec {
         code: 107,
         word: "Heat 1",
@@ -243,7 +254,7 @@ fn a_word_or_code_has_one_kind() {
         partners: &[&[]],
         checks: CheckSet::Contact,
     };
-    for wrong in [&WORD, &CODE, &NAME] {
+    for wrong in [&WORD, &CODE, &EARLY, &BONDS, &NAME] {
         let error = Kind::register(wrong).unwrap_err().to_string();
         assert!(error.contains("kind"), "{error}");
     }

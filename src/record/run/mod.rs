@@ -289,7 +289,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         }
     }
 
-    /// Steps to the end, or until one is asked for: why, then.
+    /// Steps to the end or until a stop is requested; returns the reason of the stop.
     fn run_steps(&mut self, progress: &mut OnProgress<'_>) -> Result<Option<String>, RunError> {
         if self.simulation.steps == 0 {
             self.views()?;

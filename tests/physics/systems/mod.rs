@@ -483,3 +483,39 @@ fn methods_that_need_the_matrix_are_refused_with_a_sentence() {
         }
     }
 }
+
+/// A system that moves when it is added keeps its kinetic energy in the ledger where imposed motion begins after it.
+#[test]
+fn imposed_motion_that_begins_later_leaves_the_energy_of_systems() {
+    let mut s = built::<Dim2>(&Sketch {
+        gravity: 0.0,
+        bodies: floor::<Dim2>(),
+        ..sketch()
+    });
+    let spring = Spring::<Dim2>::new(
+        [2.0, 3.0],
+        4e3,
+        R,
+        [at::<Dim2>(0.0, 2.0), at::<Dim2>(1.0, 2.0)],
+    );
+    s.add_system(Box::new(spring.moving(1.0, 0.0)));
+    s.set_in_motion();
+    assert_eq!(s.energy.kinetic, 1.0);
+    assert_eq!(s.energy.initial_kinetic, 1.0);
+    go(&mut s, 10);
+    closes(&s, 1e-12);
+}
+
+/// A law that resists rotation is refused where a dynamical system would have to take up its moment.
+#[test]
+fn friction_against_rotation_is_refused_on_systems() {
+    let mut s = built::<Dim2>(&Sketch {
+        contact: "rolling-friction",
+        bodies: floor::<Dim2>(),
+        ..sketch()
+    });
+    let spring = Spring::<Dim2>::new([2.0, 3.0], 4e3, R, [at::<Dim2>(0.0, R), at::<Dim2>(1.0, R)]);
+    s.add_system(Box::new(spring));
+    let error = s.step().unwrap_err().to_string();
+    assert!(error.contains("resists rotation"), "{error}");
+}

@@ -226,18 +226,19 @@ impl<S: Space> Systems<S> {
     }
 
     /// The states of all systems.
-    pub fn save(&self) -> Vec<Vec<u8>> {
-        self.entries.iter().map(|e| e.system.save()).collect()
+    pub fn save(&self) -> Vec<(String, Vec<u8>)> {
+        let one = |e: &Entry<S>| (e.system.name().to_owned(), e.system.save());
+        self.entries.iter().map(one).collect()
     }
 
     /// The same systems in states that they saved; none where they are not theirs.
-    pub fn restored(&self, saved: &[Vec<u8>]) -> Option<Self> {
+    pub fn restored(&self, saved: &[(String, Vec<u8>)]) -> Option<Self> {
         if saved.len() != self.entries.len() {
             return None;
         }
         let mut systems = self.clone();
-        for (entry, bytes) in systems.entries.iter_mut().zip(saved) {
-            if !entry.system.restore(bytes) {
+        for (entry, (name, bytes)) in systems.entries.iter_mut().zip(saved) {
+            if entry.system.name() != name.as_str() || !entry.system.restore(bytes) {
                 return None;
             }
             entry.start = entry.system.velocity().to_vec();

@@ -26,7 +26,7 @@ pub enum ContactorKind {
 
 /// A part of a body that can touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub struct Contactor {
+pub struct ContactorId {
     /// What it is.
     pub kind: ContactorKind,
     /// Identity of the body, [`Bodies::id`].
@@ -39,7 +39,7 @@ pub struct Contactor {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ContactId {
     /// The contactors, the smaller first: what detection takes for the candidate may be either.
-    pub sides: [Contactor; 2],
+    pub sides: [ContactorId; 2],
     /// The feature as [`Key::feature`], with the first side as the candidate.
     pub feature: u64,
 }
@@ -47,9 +47,9 @@ pub struct ContactId {
 /// The contactors of a scene by the places that keys have for them.
 #[derive(Clone, Debug, Default)]
 pub struct ContactNames {
-    balls: Vec<Contactor>,
-    pieces: Vec<Contactor>,
-    surfaces: Vec<Contactor>,
+    balls: Vec<ContactorId>,
+    pieces: Vec<ContactorId>,
+    surfaces: Vec<ContactorId>,
 }
 
 impl ContactNames {
@@ -60,7 +60,7 @@ impl ContactNames {
             of.map(|body| {
                 let number = count[body as usize];
                 count[body as usize] += 1;
-                Contactor {
+                ContactorId {
                     kind,
                     body: bodies.id[body as usize],
                     number,
@@ -85,7 +85,7 @@ impl ContactNames {
     }
 
     /// The contactor of a part of a key.
-    fn contactor(&self, part: u32) -> Option<Contactor> {
+    fn contactor(&self, part: u32) -> Option<ContactorId> {
         let index = (part & !(Key::SURFACE | Key::PIECE)) as usize;
         let list = match (part & Key::SURFACE != 0, part & Key::PIECE != 0) {
             (true, _) => &self.surfaces,
@@ -95,12 +95,17 @@ impl ContactNames {
         list.get(index).copied()
     }
 
-    /// The name of the contact of a key; none where the scene has no such contactors.
-    pub fn id<S: Space>(&self, key: &Key) -> Option<ContactId> {
-        let sides = [
+    /// The contactors of a key, the candidate first; none where the scene has no such contactors.
+    pub fn sides(&self, key: &Key) -> Option<[ContactorId; 2]> {
+        Some([
             self.contactor(key.candidate)?,
             self.contactor(key.antagonist)?,
-        ];
+        ])
+    }
+
+    /// The name of the contact of a key; none where the scene has no such contactors.
+    pub fn id<S: Space>(&self, key: &Key) -> Option<ContactId> {
+        let sides = self.sides(key)?;
         if sides[0] <= sides[1] {
             let feature = key.feature;
             return Some(ContactId { sides, feature });

@@ -7,7 +7,7 @@ pub mod network;
 pub mod step_size;
 
 pub use events::{Break, ContactDissipation, Life, Loss};
-pub use id::{ContactId, ContactNames, Contactor, ContactorKind};
+pub use id::{ContactId, ContactNames, ContactorId, ContactorKind};
 pub use memory::{Bond, BondState, Memory};
 pub use network::{Contact, Key, Network};
 pub use step_size::StepSizeDiagnostics;

@@ -167,7 +167,7 @@ impl Guarded {
         })?;
         if let Some(input) = self.columns.iter().find(|c| c.holds(wrong)) {
             return Some(format!(
-                "wrote to the input `{}` (its value {})",
+                "wrote to the input `{}` (element {} of it)",
                 input.name,
                 wrong - input.start
             ));

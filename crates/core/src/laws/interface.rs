@@ -202,7 +202,7 @@ impl Interface {
 
     /// The contact law.
     pub fn contact(&self) -> &Loaded {
-        // `arrange` refuses an interface whose first slot is none.
+        // `arrange` refuses an interface whose first slot is not a contact law.
         &self.slots[0]
     }
 

@@ -1,6 +1,6 @@
 //! Surfaces follow their wear.
 //!
-//! What a step wears off is put on the scars with the feet of its contacts, at q_m. The surfaces fall after the step's
+//! What a step wears off is put on the scars with the closest points of its contacts, at q_m. The surfaces fall after the step's
 //! motion: the gap that opens is met by the next step's detection. Nobody does work in between: a load that
 //! sinks into the gap gives its potential energy in the next step, as it does over any open gap.
 
@@ -27,7 +27,7 @@ impl<S: Space> Process<S> for Recession {
     /// Lowers the surfaces whose turn it is.
     fn after_move(&mut self, s: &mut Simulation<S>, _: &StepReport) -> Result<(), ProcessError> {
         let steps = s.steps;
-        // A step that wears for many is followed at once: the contact must find what stands proud.
+        // A step that wears for many is followed at once: the contact must find what protrudes.
         let many = s.network.cycle_multiplier > 1.0;
         lower(s, |scar| many || steps.is_multiple_of(scar.every));
         Ok(())

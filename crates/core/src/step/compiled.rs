@@ -30,8 +30,9 @@ impl<S: Steps> Simulation<S> {
     /// this one first, where [`Simulation::between_steps`] was not called.
     ///
     /// # Errors
-    /// A law failed or a velocity is not finite; the state is then that of the failed step. A surface was
-    /// worn through in the previous step; the state is then that at its end.
+    /// A law or a process failed, the method does not support what the laws require, or a velocity is not finite; the state is
+    /// then that of the failed step, or of the end of the previous one if a process failed between the two. A surface was worn
+    /// through in the previous step; the state is then that at its end.
     pub fn step(&mut self) -> Result<StepReport, StepError> {
         S::step(self)
     }

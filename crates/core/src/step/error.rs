@@ -49,6 +49,17 @@ pub enum StepError {
         /// What it said.
         source: ProcessError,
     },
+    /// A law resists rotation at a contact with a dynamical system, which takes up forces alone.
+    #[error(
+        "step {step}: the law of a contact with the system `{system}` resists rotation (rolling friction, spinning friction or \
+         bending of a bond), which dynamical systems do not take up; use a law without it there"
+    )]
+    SystemRotation {
+        /// Number of the step.
+        step: u64,
+        /// Name of the system.
+        system: String,
+    },
     /// A velocity is not finite.
     #[error(
         "step {step} at t = {time:.6e} s: the velocity of body {body} is not finite; use a smaller step or softer parameters"

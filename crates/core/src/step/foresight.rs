@@ -40,6 +40,20 @@ impl<S: Space> Simulation<S> {
         );
     }
 
+    /// Reports penetrations and passages in the move before detection if a process has applied an impulse.
+    pub(super) fn watch_push(&mut self) {
+        let length = (1.0 - self.scheme.theta) * self.scheme.h;
+        let (network, bodies) = (&mut self.network, &self.bodies);
+        let velocities = bodies.velocity.iter().copied();
+        let velocities = velocities.zip(bodies.spin.iter().copied());
+        if self.workspace.pushed
+            && !detect::is_calm(network, &self.shapes, bodies, velocities, length)
+        {
+            let (shapes, table) = (&self.shapes, &self.table);
+            detect::report_first_move(network, shapes, bodies, table, self.time, length);
+        }
+    }
+
     /// Returns whether the jumps of imposed velocities give a body a large displacement within a time (s).
     fn velocities_jump(&self, before: &[(S::Vector, S::Spin)], time: f64) -> bool {
         let bodies = &self.bodies;

@@ -39,7 +39,7 @@ impl<S: Space> Simulation<S> {
                 }
             }
         }
-        let kinetic = self.bodies.kinetic_energy();
+        let kinetic = self.bodies.kinetic_energy() + self.systems.energies().0;
         (self.energy.kinetic, self.energy.initial_kinetic) = (kinetic, kinetic);
         self.started = self.motion_of_driven();
     }

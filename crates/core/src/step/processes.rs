@@ -26,7 +26,8 @@ impl<S: Space> Simulation<S> {
     /// looks at each step calls it when that is done.
     ///
     /// # Errors
-    /// Why a process cannot go on.
+    /// Why a process cannot go on. The processes after it have not acted then, and do not act on this state any more: the
+    /// simulation has ended.
     pub fn between_steps(&mut self) -> Result<(), StepError> {
         if std::mem::replace(&mut self.settled, true) {
             return Ok(());
@@ -34,11 +35,12 @@ impl<S: Space> Simulation<S> {
         self.act(|process, simulation| process.between_steps(simulation))
     }
 
-    /// Has the processes do after the last step what they do every so many steps.
+    /// Has the processes do after the last step what they do every so many steps, and first what is due between steps.
     ///
     /// # Errors
     /// Why a process cannot.
     pub fn end(&mut self) -> Result<(), StepError> {
+        self.between_steps()?;
         self.act(|process, simulation| process.at_end(simulation))
     }
 
@@ -48,7 +50,8 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Gives a body an impulse (N s; N s/m in 2D) at its centre and an angular impulse (N m s; N s in 2D), and books the work in
-    /// the energy ledger. Degrees of freedom whose motion is imposed take none.
+    /// the energy ledger. Degrees of freedom whose motion is imposed take none, nor does a body that stands for a contactor of a
+    /// dynamical system.
     pub fn apply_impulse(&mut self, body: usize, impulse: &S::Vector, angular: &S::Spin) {
         let bodies = &mut self.bodies;
         let before = bodies.energy_of(body);
@@ -56,6 +59,7 @@ impl<S: Space> Simulation<S> {
         let spin = bodies.inverse_tensor(body).apply(angular);
         bodies.spin[body] += spin;
         let work = bodies.energy_of(body) - before;
+        self.workspace.pushed = true;
         self.energy.see(work);
         self.energy.external_work += work;
     }
@@ -72,7 +76,7 @@ impl<S: Space> Simulation<S> {
     /// Has the processes go on from what [`Simulation::save_processes`] gave of a simulation with the same ones.
     ///
     /// # Errors
-    /// The states are of other processes.
+    /// The states are of other processes; where one cannot be read, those before it are restored already.
     pub fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError> {
         let names = self.processes.iter().map(|p| p.name());
         if !names.eq(from.iter().map(|(name, _)| name.as_str())) {
@@ -92,8 +96,13 @@ impl<S: Space> Simulation<S> {
             let source = moment(process.as_mut(), self).err()?;
             Some((process.name().to_owned(), source))
         });
-        // What a process added acts after those that were there.
-        list.append(&mut self.processes);
+        // A process that was added acts after those that were there; while they acted it could not see them.
+        let added = std::mem::take(&mut self.processes);
+        for process in added {
+            if list.iter().all(|p| p.name() != process.name()) {
+                list.push(process);
+            }
+        }
         self.processes = list;
         match failed {
             None => Ok(()),

@@ -21,8 +21,8 @@ use std::borrow::Cow;
 #[serde(bound = "")]
 pub struct Saved<'a, S: Space> {
     bodies: Cow<'a, Bodies<S>>,
-    /// What each dynamical system saves of itself.
-    systems: Vec<Vec<u8>>,
+    /// The name of each dynamical system, and what it saves of itself.
+    systems: Vec<(String, Vec<u8>)>,
     network: Cow<'a, Network<S>>,
     gravity: S::Vector,
     tolerance: f64,
@@ -39,6 +39,8 @@ pub struct Saved<'a, S: Space> {
     control: Control<S>,
     habit: AutoState,
     carried: Carried,
+    /// Whether the processes have acted on the state, see [`Simulation::between_steps`].
+    settled: bool,
 }
 
 impl<S: Space> Saved<'_, S> {
@@ -52,6 +54,7 @@ impl<S: Space> Saved<'_, S> {
         let parameters = self.contact_parameters.iter().map(Vec::len);
         self.bodies.len() == s.bodies.len()
             && self.bodies.is_complete()
+            && self.bodies.carriers == s.bodies.carriers
             && self.bodies.driven.len() == s.bodies.driven.len()
             && (self.bodies.driven.iter().zip(&s.bodies.driven)).all(|(a, b)| a.body == b.body)
             && self.network.names_bodies_below(s.bodies.len())
@@ -85,6 +88,7 @@ impl<S: Space> Simulation<S> {
             control,
             habit,
             passes,
+            settled,
             // Follows from the state.
             started: _,
             // The case gives it; of the laws and the solver phases change a part.
@@ -96,9 +100,8 @@ impl<S: Space> Simulation<S> {
             coupling: _,
             // What carries the fields is registered by the program.
             fields: _,
-            // Processes save themselves; a state is kept when they have acted.
+            // Processes save themselves, see [`Simulation::save_processes`].
             processes: _,
-            settled: _,
             // Of one step alone.
             workspace: _,
         } = self;
@@ -121,6 +124,7 @@ impl<S: Space> Simulation<S> {
             control: control.clone(),
             habit: *habit,
             carried: passes.carried(),
+            settled: *settled,
         }
     }
 
@@ -136,6 +140,7 @@ impl<S: Space> Simulation<S> {
             return false;
         };
         self.systems = systems;
+        self.settled = saved.settled;
         self.bodies = saved.bodies.into_owned();
         let kept = std::mem::replace(&mut self.network, saved.network.into_owned());
         // Results of a step are recorded again where an output requests them.

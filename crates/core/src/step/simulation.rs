@@ -127,6 +127,8 @@ pub(super) struct Workspace<S: Space> {
     pub moments: Vec<MomentForm<S>>,
     /// What contacts did in the step.
     pub solved: Solved<S>,
+    /// Whether a process has given a body an impulse in the step, see [`Simulation::apply_impulse`].
+    pub pushed: bool,
 }
 
 impl<S: Space> Default for Workspace<S> {
@@ -136,6 +138,7 @@ impl<S: Space> Default for Workspace<S> {
             forms: Vec::new(),
             moments: Vec::new(),
             solved: Solved::default(),
+            pushed: false,
         }
     }
 }
@@ -224,7 +227,9 @@ impl<S: Space> Simulation<S> {
         let driven = self.motion_of_driven();
         self.begin_motion();
         self.watch_first_move(&driven);
+        self.workspace.pushed = false;
         self.act(|process, simulation| process.before_detection(simulation))?;
+        self.watch_push();
         let mut start = StepStart::new(&self.bodies);
         let clock = Instant::now();
         motion::advance(&mut self.bodies, (1.0 - theta) * h);
@@ -345,6 +350,18 @@ impl<S: Space> Simulation<S> {
     /// Checks that the method supports the current forms; some requirements of laws appear only during a
     /// step.
     fn served(&self) -> Result<(), StepError> {
+        let turns = |m: &MomentForm<S>| self.network.contacts[m.contact as usize].bodies;
+        let moments = self.workspace.moments.iter();
+        let carrier = moments
+            .flat_map(turns)
+            .find_map(|b| self.bodies.carrier(b as usize));
+        if let Some(carrier) = carrier {
+            let system = self.systems.get(carrier.system as usize);
+            return Err(StepError::SystemRotation {
+                step: self.steps + 1,
+                system: system.map_or_else(String::new, |s| s.name().to_owned()),
+            });
+        }
         let (method, operator) = (self.solver.method, self.workspace.problem.operator());
         let by_law = matches!(method, Method::Newton | Method::Interior);
         if !by_law && method.operator() <= operator {

@@ -439,11 +439,11 @@ pub(super) fn one_of<S: AsRef<str>>(names: &[S]) -> String {
 
 /// Shortens a text to one line for a message.
 pub(super) fn shorten(text: &str) -> String {
-    const MAX_NAMED: usize = 40;
+    const MAX_LENGTH: usize = 40;
     let line = text.lines().next().unwrap_or_default().trim_end();
     let mut short: String = line
         .chars()
-        .take(MAX_NAMED)
+        .take(MAX_LENGTH)
         .map(|c| {
             if super::commands_a_terminal(c) {
                 ' '

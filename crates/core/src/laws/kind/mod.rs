@@ -53,7 +53,7 @@ pub struct KindSpec {
 /// At which contacts laws of a kind act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Domain {
-    /// All, also those that are there for their speed only.
+    /// All, also those made ahead of the step that closes them because the bodies are fast.
     All,
     /// Those within the alert distance or held by a bond.
     Near,
@@ -101,15 +101,15 @@ pub type CommitFn<S> = for<'a, 'b> fn(&'a mut SlotCommit<'b, S>) -> Result<(), L
 #[derive(Clone, Copy)]
 pub struct CommitHook {
     /// In two dimensions.
-    pub plane: CommitFn<Dim2>,
+    pub dim2: CommitFn<Dim2>,
     /// In three.
-    pub solid: CommitFn<Dim3>,
+    pub dim3: CommitFn<Dim3>,
 }
 
 impl CommitHook {
     /// The function for a space.
     pub(super) fn of<S: Space>(&self) -> Option<CommitFn<S>> {
-        let known: [&dyn Any; 2] = [&self.plane, &self.solid];
+        let known: [&dyn Any; 2] = [&self.dim2, &self.dim3];
         let mut fitting = known.into_iter().filter_map(|f| f.downcast_ref());
         fitting.next().copied()
     }
@@ -120,8 +120,8 @@ impl CommitHook {
 macro_rules! commit_hook {
     ($function:path) => {
         $crate::laws::kind::CommitHook {
-            plane: |slot| $function(slot),
-            solid: |slot| $function(slot),
+            dim2: |slot| $function(slot),
+            dim3: |slot| $function(slot),
         }
     };
 }
@@ -231,11 +231,26 @@ impl Kind {
     /// its code. A kind that is registered already is returned as it is.
     ///
     /// # Errors
-    /// A word that is none, or a word or code that another kind has.
+    /// A word of other letters than a-z, a word that another kind has, a code below those of other kinds or that another has, or
+    /// a domain of bonds.
     pub fn register(spec: &'static KindSpec) -> Result<Self, LawError> {
         let refuse = |reason: String| Err(LawError::Kind { reason });
         if spec.word.is_empty() || !spec.word.chars().all(|c| c.is_ascii_lowercase()) {
             return refuse(format!("the kind `{}` must be named by a-z", spec.word));
+        }
+        if spec.code <= Self::WEAR.code() {
+            return refuse(format!(
+                "the kind `{}` cannot have the code {}: codes up to {} are those of the kinds of the plugin interface",
+                spec.word,
+                spec.code,
+                Self::WEAR.code()
+            ));
+        }
+        if !matches!(spec.domain, Domain::All | Domain::Near) {
+            return refuse(format!(
+                "the kind `{}` asks for intact bonds, on which cohesion and damage laws act alone; take Domain::All or Domain::Near",
+                spec.word
+            ));
         }
         let mut registered = REGISTERED.write().unwrap_or_else(PoisonError::into_inner);
         if let Some(same) = registered.iter().find(|k| std::ptr::eq(k.0, spec)) {

@@ -167,35 +167,52 @@ fn frame<S: Space>() -> Vec<Field<S, Contact<S>>> {
     fields
 }
 
-/// The parts of a [`ContactId`](crate::contact::ContactId) that `body_1` and `body_2` do not give: number of each contactor
-/// within its body, and the feature, each seen from the side that stands there. For programs that match contacts of several
-/// files; of the shapes and bodies at hand.
+/// The parts of a [`ContactId`](crate::contact::ContactId) that `body_1` and `body_2` do not give: kind and number of the contactor of
+/// each of these bodies, in the same order, and the feature of the name. For programs that match contacts of several files; of
+/// the present shapes and bodies.
 pub fn id_fields<S: Space>(s: &Simulation<S>) -> Vec<Field<S, Contact<S>>> {
     let names = std::sync::Arc::new(ContactNames::of(&s.shapes, &s.bodies));
-    let part = |name, doc, part: usize| {
+    let side = |name, doc, side: usize, number: bool| {
         let names = names.clone();
         Field::whole(name, doc, move |_: &Simulation<S>, c: &Contact<S>| {
-            names.id::<S>(&c.key).map_or(-1, |id| match part {
-                2 => id.feature as i64,
-                side => i64::from(id.sides[side].number),
+            names.sides(&c.key).map_or(-1, |sides| match number {
+                true => i64::from(sides[side].number),
+                false => sides[side].kind as i64,
             })
         })
     };
+    let features = names.clone();
     vec![
-        part(
+        side(
             "contactor_1",
-            "number of the first contactor of the contact's name within its body",
+            "number of the contactor of body_1 among those of its kind of the body",
             0,
+            true,
         ),
-        part(
+        side(
             "contactor_2",
-            "number of the second contactor of the contact's name within its body",
+            "number of the contactor of body_2 among those of its kind of the body",
             1,
+            true,
         ),
-        part(
+        side(
+            "contactor_kind_1",
+            "kind of the contactor of body_1: 0 ball, 1 convex piece, 2 surface",
+            0,
+            false,
+        ),
+        side(
+            "contactor_kind_2",
+            "kind of the contactor of body_2: 0 ball, 1 convex piece, 2 surface",
+            1,
+            false,
+        ),
+        Field::whole(
             "feature",
-            "feature that is touched, of the contact's name",
-            2,
+            "feature that is touched, as in the contact's name: seen with the contactor of lower kind, then lower body, first",
+            move |_: &Simulation<S>, c: &Contact<S>| {
+                features.id::<S>(&c.key).map_or(-1, |id| id.feature as i64)
+            },
         ),
     ]
 }
