@@ -1,9 +1,9 @@
 //! Processes beside a scene that is stepped by hand: what they do between steps survives a saved state and the end, and what
 //! their impulses send bodies through is reported.
 
-use fretwork::record::code::{CodeError, decode, encode};
 use fretwork::geometry::space::{Dim2, Space};
 use fretwork::process::{Process, ProcessError};
+use fretwork::record::code::{CodeError, decode, encode};
 use fretwork::scene::CaseBuilder;
 use fretwork::scene::case::{GrainSpec, InterfaceSpec, OneGrain};
 use fretwork::shipped::search_path;

@@ -96,7 +96,7 @@ fn read(file: &str) -> String {
 fn layers_name_only_what_is_below_them() {
     for (layer, below, _) in LAYERS {
         let named = dependencies(&read(&format!("crates/{layer}/Cargo.toml")));
-        assert!(named.contains("serde"), "{layer}: {named:?}");
+        assert!(named.len() > 3, "{layer}: {named:?}");
         let ours: BTreeSet<&str> = named
             .iter()
             .filter_map(|n| n.strip_prefix("fretwork-"))

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Counts over the steps of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Choice {
+pub struct SolverStats {
     /// Steps in which Newton or the interior point solver was tried.
     pub factorised: u64,
     /// Steps in which Newton was tried.
@@ -31,7 +31,7 @@ pub struct Choice {
     pub too_large: u64,
 }
 
-impl Choice {
+impl SolverStats {
     /// Adds a step.
     pub fn add(&mut self, report: &Report) {
         match report.chosen {
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn the_sentence_says_what_was_counted() {
-        let mut choice = Choice::default();
+        let mut choice = SolverStats::default();
         choice.add(&Report::default());
         assert!(choice.why(Method::Auto, 1).starts_with("sweeps"));
         assert_eq!(choice.why(Method::Pg, 1), "pg was requested");
@@ -140,9 +140,9 @@ mod tests {
         ] {
             assert!(why.contains(part), "{why}");
         }
-        let unserved = Choice {
+        let unserved = SolverStats {
             newton_unserved: 4,
-            ..Choice::default()
+            ..SolverStats::default()
         };
         assert!(unserved.why(Method::Auto, 9).contains("4 of 9"));
     }

@@ -1,6 +1,6 @@
 //! Solver statistics of a run.
 
-use super::choice::Choice;
+use super::choice::SolverStats;
 use serde::{Deserialize, Serialize};
 
 /// Solver statistics over the steps of a run.
@@ -37,7 +37,7 @@ pub struct SolverSummary {
     /// Reason for the choice, as a sentence.
     pub why: String,
     /// Statistics of the solvers that `auto` chose.
-    pub choice: Choice,
+    pub choice: SolverStats,
     /// Steps written as FCLIB problems.
     pub fclib_written: u64,
     /// Steps that could not be written as FCLIB problems, since the format cannot represent them.

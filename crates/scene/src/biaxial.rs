@@ -1,31 +1,31 @@
 //! Validation of a case's biaxial test: it needs four flat walls that face each other along two axes.
 
 use super::case::{BiaxialSpec, BodySpec, Case, ShapeSpec};
-use super::source::{Fault, nearest};
+use super::source::{ValidationError, nearest};
 use fretwork_core::bodies::Dof;
 
 /// Checks that the test can be measured on the walls it names.
 ///
 /// # Errors
 /// The first error, with its path in the case.
-pub(super) fn check(case: &Case) -> Result<(), Fault> {
+pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     let Some(test) = &case.biaxial else {
         return Ok(());
     };
     if case.dimension != 2 {
         let message = "a biaxial test needs two dimensions";
-        return Err(Fault::new("biaxial", message));
+        return Err(ValidationError::new("biaxial", message));
     }
     if !(test.start.is_finite() && test.start < case.time.end) {
         let message = format!("the test starts at {} s, after the run ends", test.start);
-        return Err(Fault::new("biaxial.start", message)
+        return Err(ValidationError::new("biaxial.start", message)
             .expected(format!("a time before {} s", case.time.end)));
     }
     let names = names(test);
     for (k, (path, name)) in names.iter().enumerate() {
         if names[..k].iter().any(|n| n.1 == *name) {
             let message = format!("the wall `{name}` is named twice");
-            return Err(Fault::new(*path, message).expected("four different walls"));
+            return Err(ValidationError::new(*path, message).expected("four different walls"));
         }
     }
     let mut axes = [0; 2];
@@ -37,9 +37,8 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
                 "the open side of the wall `{}` must face `{}`",
                 low.1, high.1
             );
-            return Err(
-                Fault::new(low.0, message).expected("the low wall first, then the high one")
-            );
+            return Err(ValidationError::new(low.0, message)
+                .expected("the low wall first, then the high one"));
         }
         let (other, side) = facing(case, high)?;
         if other != axis || side > 0.0 {
@@ -47,13 +46,13 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
                 "the walls `{}` and `{}` do not face each other",
                 low.1, high.1
             );
-            return Err(Fault::new(high.0, message));
+            return Err(ValidationError::new(high.0, message));
         }
         axes[pair] = axis;
     }
     if axes[0] == axes[1] {
         let message = "the lateral walls stand across the same axis as the axial ones";
-        return Err(Fault::new("biaxial.lateral", message));
+        return Err(ValidationError::new("biaxial.lateral", message));
     }
     Ok(())
 }
@@ -69,16 +68,18 @@ fn names(test: &BiaxialSpec) -> [(&'static str, &str); 4] {
 }
 
 /// The axis normal to a wall, and the sign of the wall's normal along it.
-fn facing(case: &Case, (path, name): (&str, &str)) -> Result<(usize, f64), Fault> {
+fn facing(case: &Case, (path, name): (&str, &str)) -> Result<(usize, f64), ValidationError> {
     let Some(body) = case.bodies.iter().find(|b| b.name == name) else {
         let all: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
-        return Err(Fault::new(path, format!("there is no body `{name}`"))
-            .expected_name(all.iter().copied(), "bodies")
-            .nearest(nearest(name, all.iter().copied())));
+        return Err(
+            ValidationError::new(path, format!("there is no body `{name}`"))
+                .expected_name(all.iter().copied(), "bodies")
+                .nearest(nearest(name, all.iter().copied())),
+        );
     };
     flat(body).ok_or_else(|| {
         let message = format!("the wall `{name}` is not flat, upright or level, and unturning");
-        Fault::new(path, message)
+        ValidationError::new(path, message)
             .expected("a body of one HalfSpace with its normal along x or y and `rz` fixed")
     })
 }

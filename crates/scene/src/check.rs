@@ -2,7 +2,7 @@
 
 use super::build::Origin;
 use super::case::{BodySpec, Case, Checkpoint};
-use super::source::Fault;
+use super::source::ValidationError;
 use fretwork_core::bodies::Dof;
 use fretwork_core::contact::detect::detect;
 use fretwork_core::geometry::space::Space;
@@ -13,16 +13,19 @@ use fretwork_core::step::coupling::Coupling;
 ///
 /// # Errors
 /// The first invalid one, with its path.
-pub fn numbers(case: &Case) -> Result<(), Fault> {
+pub fn numbers(case: &Case) -> Result<(), ValidationError> {
     let positive = |path: &str, x: f64| {
         if x.is_finite() && x > 0.0 {
             Ok(())
         } else {
-            Err(Fault::new(path, format!("must be positive, got {x}")))
+            Err(ValidationError::new(
+                path,
+                format!("must be positive, got {x}"),
+            ))
         }
     };
     if case.dimension != 2 && case.dimension != 3 {
-        return Err(Fault::new(
+        return Err(ValidationError::new(
             "dimension",
             format!("dimension {} is not possible", case.dimension),
         )
@@ -32,8 +35,10 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
     positive("time.step", case.time.step)?;
     positive("time.end", case.time.end)?;
     if !(0.5..=1.0).contains(&case.time.theta) {
-        return Err(Fault::new("time.theta", format!("got {}", case.time.theta))
-            .expected("a number between 0.5 and 1"));
+        return Err(
+            ValidationError::new("time.theta", format!("got {}", case.time.theta))
+                .expected("a number between 0.5 and 1"),
+        );
     }
     let square = case.time.step * case.time.step;
     if !square.is_normal() {
@@ -41,10 +46,10 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
             "the square of a step of {:e} s is outside the range of the computation; check its unit",
             case.time.step
         );
-        return Err(Fault::new("time.step", message));
+        return Err(ValidationError::new("time.step", message));
     }
     if case.time.end / case.time.step > 1e12 {
-        return Err(Fault::new(
+        return Err(ValidationError::new(
             "time.step",
             "the run would take more than 1e12 steps; use a larger step or an earlier end",
         ));
@@ -54,20 +59,20 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
             "a step of {} s is longer than the run of {} s",
             case.time.step, case.time.end
         );
-        return Err(Fault::new("time.step", message));
+        return Err(ValidationError::new("time.step", message));
     }
     if case.output.every == 0 {
         let message = "must be at least 1: steps between two rows of the statistics";
-        return Err(Fault::new("output.every", message));
+        return Err(ValidationError::new("output.every", message));
     }
     match case.output.checkpoint {
         Checkpoint::Steps(0) => {
             let message = "must be at least 1: steps between two checkpoints; use Never for none";
-            return Err(Fault::new("output.checkpoint", message));
+            return Err(ValidationError::new("output.checkpoint", message));
         }
         Checkpoint::Seconds(s) if !(s.is_finite() && s >= 0.0) => {
             let message = format!("seconds between two checkpoints must not be negative, got {s}");
-            return Err(Fault::new("output.checkpoint", message));
+            return Err(ValidationError::new("output.checkpoint", message));
         }
         _ => {}
     }
@@ -79,47 +84,56 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
     {
         positive("coupling.tolerance", tolerance)?;
         if max_iterations == 0 {
-            return Err(Fault::new("coupling.max_iterations", "must be at least 1"));
+            return Err(ValidationError::new(
+                "coupling.max_iterations",
+                "must be at least 1",
+            ));
         }
     }
     let s = &case.solver;
     if !(s.tolerance.is_finite() && s.tolerance >= 0.0) {
-        return Err(Fault::new(
+        return Err(ValidationError::new(
             "solver.tolerance",
             format!("must not be negative, got {}", s.tolerance),
         ));
     }
     if !(0.0..=1.0).contains(&s.correction) {
         return Err(
-            Fault::new("solver.correction", format!("got {}", s.correction))
+            ValidationError::new("solver.correction", format!("got {}", s.correction))
                 .expected("a number between 0 and 1"),
         );
     }
     if !(0.0..1.0).contains(&s.projection) {
         return Err(
-            Fault::new("solver.projection", format!("got {}", s.projection)).expected(
+            ValidationError::new("solver.projection", format!("got {}", s.projection)).expected(
                 "0 (never) or the part of a radius beyond which an overlap is taken out, below 1",
             ),
         );
     }
     if !(1.0..2.0).contains(&s.relaxation) {
         return Err(
-            Fault::new("solver.relaxation", format!("got {}", s.relaxation))
+            ValidationError::new("solver.relaxation", format!("got {}", s.relaxation))
                 .expected("a number from 1 (none) to below 2"),
         );
     }
     if s.test_every == 0 {
-        return Err(Fault::new("solver.test_every", "must be at least 1"));
+        return Err(ValidationError::new(
+            "solver.test_every",
+            "must be at least 1",
+        ));
     }
     let weighs = case.gravity_drive.is_some() || case.gravity.iter().any(|g| *g != 0.0);
     if case.inertia_scaling != 1.0 && weighs {
-        return Err(Fault::new(
+        return Err(ValidationError::new(
             "inertia_scaling",
             "scales weights with the masses; switch gravity off, or leave the scaling out",
         ));
     }
     if s.max_iterations == 0 {
-        return Err(Fault::new("solver.max_iterations", "must be at least 1"));
+        return Err(ValidationError::new(
+            "solver.max_iterations",
+            "must be at least 1",
+        ));
     }
     for (name, period) in [
         ("x", case.periodic.x),
@@ -131,7 +145,10 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
         }
     }
     if case.periodic.z.is_some() && dimension == 2 {
-        return Err(Fault::new("periodic.z", "there is no z in two dimensions"));
+        return Err(ValidationError::new(
+            "periodic.z",
+            "there is no z in two dimensions",
+        ));
     }
     for (name, distance) in [
         ("alert", case.detection.alert),
@@ -142,7 +159,7 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
         }
     }
     if case.materials.is_empty() {
-        return Err(Fault::new(
+        return Err(ValidationError::new(
             "materials",
             "a case needs at least one material",
         ));
@@ -150,7 +167,7 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
     for (k, body) in case.bodies.iter().enumerate() {
         body_numbers(body, dimension).map_err(|f| f.under(&format!("bodies.{k}")))?;
         if case.bodies[..k].iter().any(|b| b.name == body.name) {
-            return Err(Fault::new(
+            return Err(ValidationError::new(
                 format!("bodies.{k}.name"),
                 format!("two bodies are named `{}`", body.name),
             ));
@@ -160,7 +177,7 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
         && !(w.iter().all(|x| x.is_finite()) && w[0] < w[1] && w[2] < w[3])
     {
         let message = "a window is (xmin, xmax, ymin, ymax) with xmin < xmax and ymin < ymax";
-        return Err(Fault::new("output.window", message));
+        return Err(ValidationError::new("output.window", message));
     }
     if let Some(layers) = case.output.layers {
         positive("output.layers", layers)?;
@@ -170,7 +187,7 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
     }
     if case.output.frames > 0 && !(200..=16_384).contains(&case.output.width) {
         let message = format!("a frame cannot be {} pixels wide", case.output.width);
-        return Err(Fault::new("output.width", message).expected("200 to 16384 pixels"));
+        return Err(ValidationError::new("output.width", message).expected("200 to 16384 pixels"));
     }
     super::biaxial::check(case)?;
     super::phases::gravity_drive(case.gravity_drive.as_ref(), dimension)?;
@@ -181,7 +198,7 @@ pub fn numbers(case: &Case) -> Result<(), Fault> {
     super::circuit::check(case)
 }
 
-fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), Fault> {
+fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), ValidationError> {
     for (name, value) in [
         ("mass", body.mass),
         ("inertia", body.inertia),
@@ -190,14 +207,17 @@ fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), Fault> {
         if let Some(value) = value
             && !(value.is_finite() && value > 0.0)
         {
-            return Err(Fault::new(name, format!("must be positive, got {value}")));
+            return Err(ValidationError::new(
+                name,
+                format!("must be positive, got {value}"),
+            ));
         }
     }
     if dimension == 2 {
         let d = &body.dofs;
         for (name, dof) in [("z", &d.z), ("rx", &d.rx), ("ry", &d.ry)] {
             if *dof != Dof::Fixed {
-                return Err(Fault::new(
+                return Err(ValidationError::new(
                     format!("dofs.{name}"),
                     format!("there is no {name} in two dimensions"),
                 )
@@ -209,27 +229,28 @@ fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), Fault> {
     for (name, dof) in BodySpec::names(dimension).iter().zip(&dofs) {
         if let Some((below, fault)) = dof.fault() {
             let path = format!("dofs.{name}.{below}");
-            return Err(Fault::new(path.trim_end_matches('.'), fault));
+            return Err(ValidationError::new(path.trim_end_matches('.'), fault));
         }
     }
     Ok(())
 }
 
-fn friction(case: &Case, dimension: usize) -> Result<(), Fault> {
+fn friction(case: &Case, dimension: usize) -> Result<(), ValidationError> {
     let Some(test) = &case.friction else {
         return Ok(());
     };
     if !case.bodies.iter().any(|b| b.name == test.body) {
         let names: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
-        return Err(
-            Fault::new("friction.body", format!("there is no body `{}`", test.body))
-                .expected_name(names.iter().copied(), "bodies")
-                .nearest(super::source::nearest(&test.body, names.iter().copied())),
-        );
+        return Err(ValidationError::new(
+            "friction.body",
+            format!("there is no body `{}`", test.body),
+        )
+        .expected_name(names.iter().copied(), "bodies")
+        .nearest(super::source::nearest(&test.body, names.iter().copied())));
     }
     for (name, axis) in [("along", test.along), ("normal", test.normal)] {
         if axis >= dimension {
-            return Err(Fault::new(
+            return Err(ValidationError::new(
                 format!("friction.{name}"),
                 format!("axis {axis} does not exist"),
             )
@@ -237,16 +258,19 @@ fn friction(case: &Case, dimension: usize) -> Result<(), Fault> {
         }
     }
     if !test.start.is_finite() {
-        return Err(Fault::new(
+        return Err(ValidationError::new(
             "friction.start",
             format!("must be finite, got {}", test.start),
         ));
     }
     if test.along == test.normal {
-        return Err(Fault::new("friction.normal", "must differ from `along`"));
+        return Err(ValidationError::new(
+            "friction.normal",
+            "must differ from `along`",
+        ));
     }
     if test.period.is_some_and(|p| !(p.is_finite() && p > 0.0)) {
-        return Err(Fault::new("friction.period", "must be positive"));
+        return Err(ValidationError::new("friction.period", "must be positive"));
     }
     Ok(())
 }
@@ -260,7 +284,7 @@ pub(super) fn overlaps<S: Space>(
     simulation: &mut Simulation<S>,
     smallest: f64,
     origins: &[Origin],
-) -> Result<(), Fault> {
+) -> Result<(), ValidationError> {
     let s = simulation;
     detect(&mut s.network, &s.shapes, &s.bodies, &s.table, 0.0, 0.0);
     let worst = s
@@ -302,5 +326,5 @@ pub(super) fn overlaps<S: Space>(
     });
     let origin = at.and_then(|b| origins.get(*b as usize));
     let path = origin.map_or_else(|| "grains".to_owned(), |o| o.path());
-    Err(Fault::new(path, message))
+    Err(ValidationError::new(path, message))
 }

@@ -2,7 +2,7 @@
 //! grains leave.
 
 use super::case::Case;
-use super::source::{Fault, nearest};
+use super::source::{ValidationError, nearest};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::laws::{Interface, Kind};
 use fretwork_core::process::circuit::{Fate, Spec, Zone};
@@ -57,19 +57,22 @@ pub struct ZoneSpec {
 ///
 /// # Errors
 /// The first error, with its path.
-pub(super) fn check(case: &Case) -> Result<(), Fault> {
+pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     let Some(circuit) = &case.circuit else {
         return Ok(());
     };
     if circuit.bases.is_empty() {
         let message = "a circuit needs a first body that grains can belong to; name one in `bases`";
-        return Err(Fault::new("circuit.bases", message));
+        return Err(ValidationError::new("circuit.bases", message));
     }
     for (k, base) in circuit.bases.iter().enumerate() {
         let path = format!("circuit.bases.{k}");
         body(case, &path, base)?;
         if circuit.bases[..k].contains(base) {
-            return Err(Fault::new(path, format!("`{base}` is named twice")));
+            return Err(ValidationError::new(
+                path,
+                format!("`{base}` is named twice"),
+            ));
         }
     }
     let ties = tying(case, circuit)?;
@@ -93,7 +96,7 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
                  grains to it, or leave it out",
                 names.join(", ")
             );
-            return Err(Fault::new(format!("circuit.bases.{k}"), message));
+            return Err(ValidationError::new(format!("circuit.bases.{k}"), message));
         }
     }
     if !(circuit.start.is_finite() && circuit.start >= 0.0 && circuit.start < case.time.end) {
@@ -101,18 +104,21 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
             "the account must begin within the run, got {}",
             circuit.start
         );
-        return Err(Fault::new("circuit.start", message)
+        return Err(ValidationError::new("circuit.start", message)
             .expected(format!("a time from 0 to below {}", case.time.end)));
     }
     if circuit.every == 0 {
-        return Err(Fault::new("circuit.every", "must be at least 1"));
+        return Err(ValidationError::new("circuit.every", "must be at least 1"));
     }
     for (k, zone) in circuit.zones.iter().enumerate() {
         self::zone(case, zone).map_err(|f| f.under(&format!("circuit.zones.{k}")))?;
         for other in &circuit.zones[..k] {
             if other.name == zone.name {
                 let message = format!("two zones are named `{}`", zone.name);
-                return Err(Fault::new(format!("circuit.zones.{k}.name"), message));
+                return Err(ValidationError::new(
+                    format!("circuit.zones.{k}.name"),
+                    message,
+                ));
             }
             let overlap = other.carried_by == zone.carried_by
                 && (0..zone.low.len())
@@ -122,25 +128,27 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
                     "`{}` overlaps `{}`: a grain there would be in both; move one",
                     zone.name, other.name
                 );
-                return Err(Fault::new(format!("circuit.zones.{k}"), message));
+                return Err(ValidationError::new(format!("circuit.zones.{k}"), message));
             }
         }
     }
     Ok(())
 }
 
-fn body(case: &Case, path: &str, name: &str) -> Result<(), Fault> {
+fn body(case: &Case, path: &str, name: &str) -> Result<(), ValidationError> {
     if case.bodies.iter().any(|b| b.name == name) {
         return Ok(());
     }
     let names: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
-    Err(Fault::new(path, format!("there is no body `{name}`"))
-        .expected_name(names.iter().copied(), "bodies")
-        .nearest(nearest(name, names.iter().copied())))
+    Err(
+        ValidationError::new(path, format!("there is no body `{name}`"))
+            .expected_name(names.iter().copied(), "bodies")
+            .nearest(nearest(name, names.iter().copied())),
+    )
 }
 
 /// Indices of the interfaces whose bonds attach grains.
-fn tying(case: &Case, circuit: &CircuitSpec) -> Result<Vec<usize>, Fault> {
+fn tying(case: &Case, circuit: &CircuitSpec) -> Result<Vec<usize>, ValidationError> {
     let all =
         || (0..case.interfaces.len()).filter(|i| case.interfaces[*i].law(Kind::COHESION).is_some());
     let Some(names) = &circuit.bonds else {
@@ -151,25 +159,27 @@ fn tying(case: &Case, circuit: &CircuitSpec) -> Result<Vec<usize>, Fault> {
         let path = format!("circuit.bonds.{k}");
         let Some(at) = case.interfaces.iter().position(|i| i.name == *name) else {
             let known: Vec<&str> = case.interfaces.iter().map(|i| i.name.as_str()).collect();
-            return Err(Fault::new(path, format!("there is no interface `{name}`"))
-                .expected_name(known.iter().copied(), "interfaces")
-                .nearest(nearest(name, known.iter().copied())));
+            return Err(
+                ValidationError::new(path, format!("there is no interface `{name}`"))
+                    .expected_name(known.iter().copied(), "interfaces")
+                    .nearest(nearest(name, known.iter().copied())),
+            );
         };
         if case.interfaces[at].law(Kind::COHESION).is_none() {
             let message = format!("the interface `{name}` has no cohesion law, it makes no bonds");
-            return Err(Fault::new(path, message));
+            return Err(ValidationError::new(path, message));
         }
         out.push(at);
     }
     Ok(out)
 }
 
-fn zone(case: &Case, zone: &ZoneSpec) -> Result<(), Fault> {
+fn zone(case: &Case, zone: &ZoneSpec) -> Result<(), ValidationError> {
     let dimension = case.dimension as usize;
     for (field, corner) in [("low", &zone.low), ("high", &zone.high)] {
         if corner.len() != dimension || corner.iter().any(|x| x.is_nan()) {
             let message = format!("a corner has {dimension} numbers in this case, got {corner:?}");
-            return Err(Fault::new(field, message).expected("numbers, -inf or inf"));
+            return Err(ValidationError::new(field, message).expected("numbers, -inf or inf"));
         }
     }
     let periods = [case.periodic.x, case.periodic.y, case.periodic.z];
@@ -179,21 +189,21 @@ fn zone(case: &Case, zone: &ZoneSpec) -> Result<(), Fault> {
             let message = format!(
                 "a zone of {width} m along axis {a} is wider than the period of {period} m"
             );
-            return Err(Fault::new("high", message));
+            return Err(ValidationError::new("high", message));
         }
         if periods[a].is_some() && low.is_finite() != high.is_finite() {
             let message = format!(
                 "along axis {a}, which is periodic, a zone open on one side is the whole cell, got {low} to {high}; give \
                  both sides, or leave both open"
             );
-            return Err(Fault::new(
+            return Err(ValidationError::new(
                 if low.is_finite() { "high" } else { "low" },
                 message,
             ));
         }
         if low >= high {
             let message = format!("must be above {low} along axis {a}, got {high}");
-            return Err(Fault::new("high", message));
+            return Err(ValidationError::new("high", message));
         }
     }
     if let Some(name) = &zone.carried_by {
@@ -202,7 +212,7 @@ fn zone(case: &Case, zone: &ZoneSpec) -> Result<(), Fault> {
     match zone.lost_after {
         Some(time) if !(time.is_finite() && time >= 0.0) => {
             let message = format!("a time must not be negative, got {time}");
-            Err(Fault::new("lost_after", message))
+            Err(ValidationError::new("lost_after", message))
         }
         _ => Ok(()),
     }

@@ -2,7 +2,7 @@
 
 use super::case::{Case, InterfaceSpec};
 use super::material::{Given, InterfaceParameters, MaterialLibrary, Sourced};
-use super::source::{Fault, InputError, Source, nearest};
+use super::source::{InputError, Source, ValidationError, nearest};
 use super::units;
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
 use fretwork_core::contact::detect::LawTable;
@@ -45,18 +45,18 @@ pub fn build(
     }));
     for (k, spec) in case.interfaces.iter().enumerate() {
         let here = format!("interfaces.{k}");
-        let at = |f: Fault| source.locate(f.under(&here));
+        let at = |f: ValidationError| source.locate(f.under(&here));
         if case.interfaces[..k].iter().any(|i| i.name == spec.name) {
             let message = format!(
                 "two interfaces are named `{}`; give them different names, since phases and `--set` refer to them by name",
                 spec.name
             );
-            return Err(at(Fault::new("name", message)));
+            return Err(at(ValidationError::new("name", message)));
         }
         let mut pair = [0u16; 2];
         for (side, name) in [&spec.between.0, &spec.between.1].into_iter().enumerate() {
             let found = materials.iter().position(|m| *m == name).ok_or_else(|| {
-                at(Fault::new(
+                at(ValidationError::new(
                     format!("between.{side}"),
                     format!("the case has no material `{name}`"),
                 )
@@ -73,16 +73,19 @@ pub fn build(
             pair[side] = found as u16;
         }
         if out.table.get(pair[0], pair[1]).is_some() {
-            return Err(at(Fault::new(
+            return Err(at(ValidationError::new(
                 "between",
                 "this pair of materials has an interface already",
             )));
         }
         if spec.healing.is_some_and(|t| !(t.is_finite() && t >= 0.0)) {
-            return Err(at(Fault::new("healing", "must be a time, not negative")));
+            return Err(at(ValidationError::new(
+                "healing",
+                "must be a time, not negative",
+            )));
         }
         if !(spec.area_factor.is_finite() && spec.area_factor > 0.0) {
-            return Err(at(Fault::new("area_factor", "must be positive")));
+            return Err(at(ValidationError::new("area_factor", "must be positive")));
         }
         let (parameters, file) = read_parameters(spec, shelf, &mut out.files, source, &here, &at)?;
         let interface = compose(case, spec, &parameters, path).map_err(|wrong| match &file {
@@ -133,7 +136,7 @@ pub fn without_interface<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<String
 }
 
 /// Rejects pins that are malformed, or of laws that the case does not use.
-fn pins(case: &Case) -> Result<(), Fault> {
+fn pins(case: &Case) -> Result<(), ValidationError> {
     let wanted = case.interfaces.iter().flat_map(used);
     let used: Vec<String> = wanted
         .map(|(kind, name)| format!("{kind}/{name}"))
@@ -142,15 +145,14 @@ fn pins(case: &Case) -> Result<(), Fault> {
         let path = format!("pins.{law}");
         if !used.contains(law) {
             let message = format!("no interface uses the law `{law}` that is pinned");
-            return Err(Fault::new(path, message)
+            return Err(ValidationError::new(path, message)
                 .expected(format!("one of {}", used.join(", ")))
                 .nearest(nearest(law, used.iter().map(String::as_str))));
         }
         if pin.len() != 64 || !pin.chars().all(|c| c.is_ascii_hexdigit()) {
             let message = format!("a pin is a SHA-256 of 64 hexadecimal digits, got `{pin}`");
-            return Err(
-                Fault::new(path, message).expected("what `fretwork law show` prints as sha256")
-            );
+            return Err(ValidationError::new(path, message)
+                .expected("what `fretwork law show` prints as sha256"));
         }
     }
     Ok(())
@@ -162,14 +164,14 @@ fn read_parameters(
     files: &mut Vec<(String, String)>,
     source: &Source,
     here: &str,
-    at: &impl Fn(Fault) -> InputError,
+    at: &impl Fn(ValidationError) -> InputError,
 ) -> Result<(InterfaceParameters, Option<Source>), InputError> {
     let Some(name) = &spec.parameters_from else {
         return Ok((InterfaceParameters::default(), None));
     };
     let file = shelf.read(name).map_err(|e| match e {
         Err(error) => source.named_at(&format!("{here}.parameters_from"), error),
-        Ok(missing) => at(Fault::new(
+        Ok(missing) => at(ValidationError::new(
             "parameters_from",
             format!("there is no file `{name}.ron` in {}", missing.looked),
         )
@@ -186,12 +188,12 @@ fn read_parameters(
 
 /// An error in the case or in its parameter file.
 struct Wrong {
-    fault: Fault,
+    fault: ValidationError,
     in_file: bool,
 }
 
-impl From<Fault> for Wrong {
-    fn from(fault: Fault) -> Self {
+impl From<ValidationError> for Wrong {
+    fn from(fault: ValidationError) -> Self {
         Self {
             fault,
             in_file: false,
@@ -208,7 +210,7 @@ fn compose(
     if let BondRule::At(time) = spec.bonds
         && !(time.is_finite() && time >= 0.0)
     {
-        return Err(Fault::new(
+        return Err(ValidationError::new(
             "bonds",
             "the time at which bonds are made must not be negative",
         )
@@ -216,7 +218,7 @@ fn compose(
     }
     for (slot, given) in spec.parameters.iter() {
         if let (None, Some(name)) = (spec.law(slot), given.keys().next()) {
-            let fault = Fault::new(
+            let fault = ValidationError::new(
                 format!("parameters.{slot}.{name}"),
                 format!("`{name}` is a parameter of the {slot} law, and there is no {slot} law"),
             );
@@ -235,7 +237,7 @@ fn compose(
         laws.push(load(case, kind, name, of_file, own, path)?);
     }
     // What does not fit is said of the damage law, or of `healing`.
-    let unfit = |e: LawError| Wrong::from(Fault::new("damage", e.to_string()));
+    let unfit = |e: LawError| Wrong::from(ValidationError::new("damage", e.to_string()));
     let mut interface = Interface::new(spec.name.clone(), laws).map_err(unfit)?;
     interface.area = AreaRule {
         factor: spec.area_factor,
@@ -262,14 +264,14 @@ fn load(
             nearest,
             looked,
             ..
-        } => Fault::new(
+        } => ValidationError::new(
             slot,
             format!("there is no {kind} law named `{name}` in {looked}"),
         )
         .expected(format!("one of {available}"))
         .nearest(nearest.as_deref()),
-        LawError::Pinned { .. } => Fault::new(format!("pins.{key}"), e.to_string()),
-        other => Fault::new(slot, other.to_string()),
+        LawError::Pinned { .. } => ValidationError::new(format!("pins.{key}"), e.to_string()),
+        other => ValidationError::new(slot, other.to_string()),
     })?;
     for (flag, only, dimension) in [(FLAG_2D_ONLY, "two", 2), (FLAG_3D_ONLY, "three", 3)] {
         if plugin.flags & flag != 0 && case.dimension != dimension {
@@ -277,7 +279,7 @@ fn load(
                 "the {kind} law `{name}` is for {only} dimensions only, the case has {}",
                 case.dimension
             );
-            return Err(Fault::new(slot, message).into());
+            return Err(ValidationError::new(slot, message).into());
         }
     }
     // Value, unit, path, and whether it is written in the case itself.
@@ -306,13 +308,13 @@ fn load(
         } else {
             format!("{at}.value")
         };
-        let wrong = |fault: Fault| Wrong {
+        let wrong = |fault: ValidationError| Wrong {
             fault,
             in_file: !in_case,
         };
         let Some(field) = plugin.parameters.iter().find(|p| p.name == *parameter) else {
             return Err(wrong(
-                Fault::new(
+                ValidationError::new(
                     at_value,
                     format!("the {kind} law `{name}` has no parameter `{parameter}`"),
                 )
@@ -335,7 +337,7 @@ fn load(
                 field.minimum, field.maximum, field.unit
             );
             return Err(wrong(
-                Fault::new(
+                ValidationError::new(
                     at_value,
                     format!("`{parameter}` of the {kind} law `{name}` is {value}"),
                 )
@@ -350,6 +352,6 @@ fn load(
         .collect();
     plugin
         .validate(&parameters)
-        .map_err(|e| Fault::new(slot, e.to_string()))?;
+        .map_err(|e| ValidationError::new(slot, e.to_string()))?;
     Ok(Loaded::new(plugin, parameters))
 }

@@ -1,7 +1,7 @@
 //! Validation of a case's jumps over cycles.
 
 use super::case::{BodySpec, Case};
-use super::source::Fault;
+use super::source::ValidationError;
 use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_core::laws::Kind;
 pub use fretwork_core::process::jump::JumpSpec;
@@ -13,11 +13,11 @@ const MAX_CYCLES: u32 = 100_000;
 ///
 /// # Errors
 /// The first error, with its path.
-pub(super) fn check(case: &Case) -> Result<(), Fault> {
+pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     let Some(jump) = &case.jump else {
         return Ok(());
     };
-    let fault = |path: &str, message: &str| Err(Fault::new(path, message));
+    let fault = |path: &str, message: &str| Err(ValidationError::new(path, message));
     let Some(test) = &case.friction else {
         let message = "a jump goes over cycles, and without `friction` there are none; name the body that rubs in \
                        `friction`, or leave `jump` out";
@@ -29,7 +29,7 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
              friction.period",
             test.body
         );
-        return Err(Fault::new("jump", message));
+        return Err(ValidationError::new("jump", message));
     }
     repeats(case, jump)?;
     let wears = case.bodies.iter().any(|b| b.wears.is_some());
@@ -53,7 +53,7 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
         }
         if count > MAX_CYCLES {
             let message = format!("{count} is too many; at most {MAX_CYCLES}");
-            return Err(Fault::new(format!("jump.{name}"), message));
+            return Err(ValidationError::new(format!("jump.{name}"), message));
         }
     }
     if jump.after == 0 {
@@ -66,7 +66,7 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
     for (name, value) in [("tolerance", jump.tolerance), ("growth", jump.growth)] {
         if !(value.is_finite() && value > 0.0) {
             let message = format!("must be positive, got {value}");
-            return Err(Fault::new(format!("jump.{name}"), message));
+            return Err(ValidationError::new(format!("jump.{name}"), message));
         }
     }
     let steps = period(case).unwrap_or(0.0) / case.time.step;
@@ -74,25 +74,25 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
         let message = format!(
             "a cycle takes {steps} steps, so a jump would not begin and end with a step; choose a time.step that divides the cycle"
         );
-        return Err(Fault::new("jump", message));
+        return Err(ValidationError::new("jump", message));
     }
     Ok(())
 }
 
 /// Rejects drives, phases and gravity that do not repeat with every cycle: a jump skips cycles, and the
 /// simulated time stands still in it.
-fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), Fault> {
+fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), ValidationError> {
     let (Some(test), Some(cycle)) = (&case.friction, period(case)) else {
         return Ok(());
     };
     if !case.phases.is_empty() {
         let message = "phases follow the simulated time, and a jump skips cycles; make a separate case of the phase that \
                        jumps (grains of the last state by `State`), or leave `jump` out";
-        return Err(Fault::new("phases", message));
+        return Err(ValidationError::new("phases", message));
     }
     if case.gravity_drive.is_some() {
         let message = "gravity that changes does not repeat with every cycle; leave `gravity_drive` or `jump` out";
-        return Err(Fault::new("gravity_drive", message));
+        return Err(ValidationError::new("gravity_drive", message));
     }
     let begins = test.start + f64::from(jump.after) * cycle;
     for body in &case.bodies {
@@ -104,7 +104,7 @@ fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), Fault> {
                     "a jump skips whole cycles of {cycle:e} s from {begins:e} s on, so all drives must repeat with each cycle, \
                      but {why}; keep it constant from then on, give it a period that divides the cycle, or leave `jump` out"
                 );
-                return Err(Fault::new(path, message));
+                return Err(ValidationError::new(path, message));
             }
         }
     }

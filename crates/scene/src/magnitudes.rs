@@ -2,7 +2,7 @@
 //! energies that overflow, and displacements per step lost to rounding.
 
 use super::build::Origin;
-use super::source::Fault;
+use super::source::ValidationError;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 
@@ -18,13 +18,13 @@ pub(super) fn check<S: Space>(
     s: &Simulation<S>,
     origins: &[Origin],
     end: f64,
-) -> Result<(), Fault> {
+) -> Result<(), ValidationError> {
     let bodies = &s.bodies;
     let h = s.scheme.h;
     for b in 0..bodies.len() {
         let refuse = |message: String| {
             let path = origins.get(b).map_or("grains".to_owned(), |o| o.path());
-            Err(Fault::new(path, message))
+            Err(ValidationError::new(path, message))
         };
         let (mass, inertia) = (bodies.mass[b], bodies.inertia[b]);
         if !(mass.is_normal() && mass > 0.0 && (1.0 / mass).is_normal()) {
@@ -70,7 +70,7 @@ pub(super) fn check<S: Space>(
         let message = format!(
             "under {gravity:e} m/s2 a fall over the run ends with an energy of {fall} J, which cannot be computed with"
         );
-        return Err(Fault::new("gravity", message));
+        return Err(ValidationError::new("gravity", message));
     }
     Ok(())
 }

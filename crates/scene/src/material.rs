@@ -1,7 +1,7 @@
 //! Materials and parameters of interface laws: numbers with their units and sources.
 
 use super::shipped_materials;
-use super::source::{Fault, InputError, Source, nearest};
+use super::source::{InputError, Source, ValidationError, nearest};
 use super::units::{self, UnitError};
 use crate::case::slots::{BySlot, Field, FieldName, with_kinds};
 use serde::de::value::MapAccessDeserializer;
@@ -131,20 +131,20 @@ impl Material {
     ///
     /// # Errors
     /// The density is not positive, or a unit is unknown or of another dimension: with its path.
-    pub fn density(&self) -> Result<f64, Fault> {
+    pub fn density(&self) -> Result<f64, ValidationError> {
         let density = self
             .density
             .in_unit("kg/m^3")
             .map_err(|e| e.at("density.unit"))?;
         if !(density.is_finite() && density > 0.0) {
             let message = format!("a density must be positive, got {density}");
-            return Err(Fault::new("density.value", message));
+            return Err(ValidationError::new("density.value", message));
         }
         for (name, property) in &self.properties {
             let at = |field: &str| format!("properties.{name}.{field}");
             if !property.value.is_finite() {
                 let message = format!("`{name}` must be finite, got {}", property.value);
-                return Err(Fault::new(at("value"), message));
+                return Err(ValidationError::new(at("value"), message));
             }
             let wanted = PROPERTIES.iter().find(|p| p.0 == name).map(|p| p.1);
             let pressed = name == "hardness" && units::hardness(&property.unit).is_none();
@@ -221,7 +221,7 @@ impl InterfaceParameters {
     ///
     /// # Errors
     /// The first invalid unit, with its path.
-    pub fn units(&self) -> Result<(), Fault> {
+    pub fn units(&self) -> Result<(), ValidationError> {
         for (slot, laws) in self.slots.iter() {
             for (law, parameters) in laws {
                 for (name, number) in parameters {

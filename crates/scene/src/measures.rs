@@ -1,7 +1,7 @@
 //! Measured quantities of a case other than friction and biaxial tests.
 
 use super::case::Case;
-use super::source::{Fault, nearest};
+use super::source::{ValidationError, nearest};
 use serde::{Deserialize, Serialize};
 
 /// A quantity, or a few that belong together. "Up" is the last axis: y in 2D, z in 3D.
@@ -175,7 +175,7 @@ impl MeasureSpec {
 ///
 /// # Errors
 /// The first error, with its path.
-pub(super) fn check(case: &Case) -> Result<(), Fault> {
+pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     for (k, spec) in case.measures.iter().enumerate() {
         let twice = case.measures[..k].iter().any(|m| m.name() == spec.name());
         let said = if twice {
@@ -183,7 +183,9 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
         } else {
             one(case, spec)
         };
-        said.map_err(|(field, message)| Fault::new(format!("measures.{k}.{field}"), message))?;
+        said.map_err(|(field, message)| {
+            ValidationError::new(format!("measures.{k}.{field}"), message)
+        })?;
         if let MeasureSpec::ThirdBody(layer) = spec {
             known(case, layer).map_err(|f| f.under(&format!("measures.{k}")))?;
         }
@@ -192,12 +194,13 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
 }
 
 /// Checks that the first bodies of a layer exist.
-fn known(case: &Case, layer: &ThirdBodySpec) -> Result<(), Fault> {
+fn known(case: &Case, layer: &ThirdBodySpec) -> Result<(), ValidationError> {
     let names = || case.bodies.iter().map(|b| b.name.as_str());
     for (k, name) in [&layer.between.0, &layer.between.1].into_iter().enumerate() {
         if !names().any(|n| n == name) {
             let all: Vec<&str> = names().collect();
-            let fault = Fault::new(format!("between.{k}"), format!("there is no body `{name}`"));
+            let fault =
+                ValidationError::new(format!("between.{k}"), format!("there is no body `{name}`"));
             return Err(fault
                 .expected_name(all, "bodies")
                 .nearest(nearest(name, names())));

@@ -1,7 +1,7 @@
 //! Phases of a case: what each changes and when it ends; checks them and converts them for the simulation.
 
 use super::case::{BodySpec, Case};
-use super::source::{Fault, nearest};
+use super::source::{ValidationError, nearest};
 use fretwork_core::bodies::Dof;
 use fretwork_core::bodies::pressure::Servo;
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -112,7 +112,7 @@ pub fn drives_of(case: &Case, body: &BodySpec) -> Vec<(usize, Dof)> {
 ///
 /// # Errors
 /// The first error, with its path.
-pub(super) fn check(case: &Case) -> Result<(), Fault> {
+pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     for (k, phase) in case.phases.iter().enumerate() {
         let last = k + 1 == case.phases.len();
         let name = &phase.name;
@@ -120,7 +120,7 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
             let message = format!(
                 "a phase before it is called `{name}` too; give each another name, `repeat` and `--set` go by it"
             );
-            return Err(Fault::new(format!("phases.{k}.name"), message));
+            return Err(ValidationError::new(format!("phases.{k}.name"), message));
         }
         one(case, phase, last)
             .and_then(|()| repeat(case, k))
@@ -131,7 +131,7 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
         .sum();
     if all > MAX_PHASES {
         let message = format!("{all} phases with their repeats; a run has at most {MAX_PHASES}");
-        return Err(Fault::new("phases", message));
+        return Err(ValidationError::new("phases", message));
     }
     Ok(())
 }
@@ -140,17 +140,17 @@ pub(super) fn check(case: &Case) -> Result<(), Fault> {
 const MAX_PHASES: u64 = 1_000_000;
 
 /// Checks the repetition at phase `k`.
-fn repeat(case: &Case, k: usize) -> Result<(), Fault> {
+fn repeat(case: &Case, k: usize) -> Result<(), ValidationError> {
     let Some(spec) = &case.phases[k].repeat else {
         return Ok(());
     };
     if spec.times == 0 {
         let message = "a group of phases is done at least once";
-        return Err(Fault::new("repeat.times", message).expected("a number from 1"));
+        return Err(ValidationError::new("repeat.times", message).expected("a number from 1"));
     }
     if case.phases[k].until.is_none() {
         let message = format!("`{}` is repeated, so it needs `until`", case.phases[k].name);
-        return Err(Fault::new("repeat", message));
+        return Err(ValidationError::new("repeat", message));
     }
     let Some(from) = &spec.from else {
         return Ok(());
@@ -161,7 +161,7 @@ fn repeat(case: &Case, k: usize) -> Result<(), Fault> {
     if case.phases[first..k].iter().any(|p| p.repeat.is_some()) {
         let message =
             format!("the group from `{from}` holds another repeat; one group cannot hold another");
-        return Err(Fault::new("repeat.from", message));
+        return Err(ValidationError::new("repeat.from", message));
     }
     Ok(())
 }
@@ -184,17 +184,17 @@ fn groups(case: &Case) -> impl Iterator<Item = (std::ops::Range<usize>, u32)> + 
     groups.into_iter()
 }
 
-fn one(case: &Case, phase: &PhaseSpec, last: bool) -> Result<(), Fault> {
+fn one(case: &Case, phase: &PhaseSpec, last: bool) -> Result<(), ValidationError> {
     match &phase.until {
         None if !last => {
             let message = format!(
                 "another phase follows `{}`, so it needs `until`",
                 phase.name
             );
-            return Err(Fault::new("", message)
+            return Err(ValidationError::new("", message)
                 .expected("Time(s), After(s), Steps(n) or AtRest(share, held)"));
         }
-        Some(until) => ends(until, weighs(case)).map_err(|m| Fault::new("until", m))?,
+        Some(until) => ends(until, weighs(case)).map_err(|m| ValidationError::new("until", m))?,
         None => {}
     }
     let dimension = case.dimension as usize;
@@ -209,11 +209,13 @@ fn one(case: &Case, phase: &PhaseSpec, last: bool) -> Result<(), Fault> {
         for (dof, place, drive) in redriven.given(dimension) {
             if place.is_none() {
                 let message = format!("there is no {dof} in two dimensions");
-                return Err(Fault::new(format!("{path}.{dof}"), message).expected("x, y or rz"));
+                return Err(
+                    ValidationError::new(format!("{path}.{dof}"), message).expected("x, y or rz")
+                );
             }
             if let Some((below, fault)) = drive.fault() {
                 let at = format!("{path}.{dof}.{below}");
-                return Err(Fault::new(at.trim_end_matches('.'), fault));
+                return Err(ValidationError::new(at.trim_end_matches('.'), fault));
             }
         }
     }
@@ -233,16 +235,18 @@ fn one(case: &Case, phase: &PhaseSpec, last: bool) -> Result<(), Fault> {
         && (g.len() != dimension || g.iter().any(|x| !x.is_finite()))
     {
         let message = "gravity needs one finite number an axis";
-        return Err(Fault::new("gravity", message).expected(format!("{dimension} numbers")));
+        return Err(
+            ValidationError::new("gravity", message).expected(format!("{dimension} numbers"))
+        );
     }
     gravity_drive(phase.gravity_drive.as_ref(), dimension)?;
     if (phase.gravity.is_some() || phase.gravity_drive.is_some()) && case.inertia_scaling != 1.0 {
         let message =
             "a phase with gravity cannot have scaled inertia; leave `inertia_scaling` out";
-        return Err(Fault::new("", message));
+        return Err(ValidationError::new("", message));
     }
     match phase.tolerance {
-        Some(t) if !(t.is_finite() && t >= 0.0) => Err(Fault::new(
+        Some(t) if !(t.is_finite() && t >= 0.0) => Err(ValidationError::new(
             "tolerance",
             format!("must not be negative, got {t}"),
         )),
@@ -254,11 +258,14 @@ fn one(case: &Case, phase: &PhaseSpec, last: bool) -> Result<(), Fault> {
 ///
 /// # Errors
 /// The first error, with its path below `gravity_drive`.
-pub(super) fn gravity_drive(drive: Option<&GravityDrive>, dimension: usize) -> Result<(), Fault> {
+pub(super) fn gravity_drive(
+    drive: Option<&GravityDrive>,
+    dimension: usize,
+) -> Result<(), ValidationError> {
     match drive.and_then(|d| d.fault(dimension)) {
         Some((below, message)) => {
             let path = format!("gravity_drive.{below}");
-            Err(Fault::new(path.trim_end_matches('.'), message))
+            Err(ValidationError::new(path.trim_end_matches('.'), message))
         }
         None => Ok(()),
     }
@@ -314,7 +321,7 @@ fn known<'a>(
     what: &str,
     name: &str,
     names: impl Iterator<Item = &'a str> + Clone,
-) -> Result<(), Fault> {
+) -> Result<(), ValidationError> {
     if names.clone().any(|n| n == name) {
         return Ok(());
     }
@@ -323,16 +330,18 @@ fn known<'a>(
     } else {
         "interfaces"
     };
-    Err(Fault::new(path, format!("there is no {what} `{name}`"))
-        .expected_name(names.clone(), plural)
-        .nearest(nearest(name, names)))
+    Err(
+        ValidationError::new(path, format!("there is no {what} `{name}`"))
+            .expected_name(names.clone(), plural)
+            .nearest(nearest(name, names)),
+    )
 }
 
 /// Installs gravity, servo drives, gates and phases of a checked case in its simulation.
 ///
 /// # Errors
 /// A pressure without an area, or a friction coefficient that the law does not have: with its path.
-pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<(), Fault> {
+pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<(), ValidationError> {
     s.control.gravity = s.gravity;
     s.control.gravity_drive.clone_from(&case.gravity_drive);
     for (k, body) in case.bodies.iter().enumerate() {
@@ -342,7 +351,7 @@ pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<()
         for (dof, drive) in body.ordered(S::D).iter().enumerate() {
             let name = BodySpec::names(S::D)[dof];
             let servos = Servo::of(&s.bodies, &s.shapes, place, dof, drive)
-                .map_err(|m| Fault::new(format!("bodies.{k}.dofs.{name}"), m))?;
+                .map_err(|m| ValidationError::new(format!("bodies.{k}.dofs.{name}"), m))?;
             s.control.servos.extend(servos);
         }
         if let Some(time) = body.vanishes {
@@ -373,7 +382,7 @@ fn place<S: Space>(s: &Simulation<S>, name: &str) -> Option<usize> {
     s.bodies.driven.iter().position(|d| d.name == name)
 }
 
-fn changes<S: Space>(spec: &PhaseSpec, s: &Simulation<S>) -> Result<Changes<S>, Fault> {
+fn changes<S: Space>(spec: &PhaseSpec, s: &Simulation<S>) -> Result<Changes<S>, ValidationError> {
     let mut drives = Vec::new();
     for (name, redriven) in &spec.drives {
         for (dof, k, drive) in redriven.given(S::D) {
@@ -381,7 +390,7 @@ fn changes<S: Space>(spec: &PhaseSpec, s: &Simulation<S>) -> Result<Changes<S>, 
                 continue;
             };
             Servo::of(&s.bodies, &s.shapes, place, k, drive)
-                .map_err(|m| Fault::new(format!("drives.{name}.{dof}"), m))?;
+                .map_err(|m| ValidationError::new(format!("drives.{name}.{dof}"), m))?;
             drives.push((place, k, drive.clone()));
         }
     }
@@ -397,13 +406,15 @@ fn changes<S: Space>(spec: &PhaseSpec, s: &Simulation<S>) -> Result<Changes<S>, 
                 "the contact law `{}` has no parameter `mu` to change",
                 law.plugin.name
             );
-            return Err(Fault::new(path, message).expected("an interface whose law has `mu`"));
+            return Err(
+                ValidationError::new(path, message).expected("an interface whose law has `mu`")
+            );
         };
         let mut values = law.parameters.clone();
         values[p] = *mu;
         law.plugin
             .validate(&values)
-            .map_err(|e| Fault::new(path, e.to_string()))?;
+            .map_err(|e| ValidationError::new(path, e.to_string()))?;
         contact.push((k, p, *mu));
     }
     Ok(Changes {

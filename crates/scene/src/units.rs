@@ -3,7 +3,7 @@
 //! Names, prefixes and products are those of the crate `runits`. This module adds angles (which `runits`
 //! takes for pure numbers, so that a friction coefficient in degrees would pass) and hardness scales.
 
-use super::source::{Fault, nearest};
+use super::source::{ValidationError, nearest};
 use runits::{Dimension, ParseError, UnknownUnit};
 
 /// Units that are suggested for a wrong or unknown one.
@@ -31,8 +31,8 @@ pub struct UnitError {
 
 impl UnitError {
     /// Converts to a validation error at a path.
-    pub fn at(self, path: impl Into<String>) -> Fault {
-        let mut fault = Fault::new(path, self.message).nearest(self.nearest.as_deref());
+    pub fn at(self, path: impl Into<String>) -> ValidationError {
+        let mut fault = ValidationError::new(path, self.message).nearest(self.nearest.as_deref());
         fault.expected = self.expected;
         fault
     }

@@ -6,7 +6,7 @@ use crate::sample::deposit::Corners;
 use crate::sample::spec::{BlockWallSpec, VoronoiSpec};
 use crate::sample::voronoi::{self, SHORTEST};
 use crate::sample::voronoi_space::{self, Failure};
-use crate::source::{Fault, InputError};
+use crate::source::{InputError, ValidationError};
 use fretwork_core::geometry::convex::ConvexPart;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
 use fretwork_core::geometry::space::VectorLike;
@@ -42,7 +42,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let cells = corners.volume() / size.powi(S::D as i32);
         if cells > MAX_BLOCKS as f64 {
             let message = format!("the region would hold {cells:.3e} cells of this size");
-            let fault = Fault::new(format!("{here}.size"), message);
+            let fault = ValidationError::new(format!("{here}.size"), message);
             let advice = format!("larger cells, at most {MAX_BLOCKS}");
             return Err(self.source.locate(fault.expected(advice)));
         }
@@ -218,7 +218,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let blocks = spec.rows.saturating_mul(spec.columns.saturating_add(1));
         if blocks > MAX_BLOCKS {
             let message = format!("{blocks} blocks are too many");
-            let fault = Fault::new(format!("{here}.rows"), message);
+            let fault = ValidationError::new(format!("{here}.rows"), message);
             return Err(self
                 .source
                 .locate(fault.expected(format!("at most {MAX_BLOCKS}"))));

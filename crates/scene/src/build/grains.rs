@@ -3,7 +3,7 @@
 use super::{Builder, Dimensional, Origin};
 use crate::case::GrainSpec;
 use crate::sample;
-use crate::source::{Fault, InputError};
+use crate::source::{InputError, ValidationError};
 use fretwork_core::bodies::Driven;
 use fretwork_core::geometry::shape::{Ball, Carried, HalfSpace, Surface};
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -95,7 +95,7 @@ impl<S: Dimensional> Builder<'_, S> {
                         let message =
                             format!("only {} of {count} grains fit into the box", list.len());
                         return Err(self.source.locate(
-                            Fault::new(format!("{here}.count"), message)
+                            ValidationError::new(format!("{here}.count"), message)
                                 .expected("a larger box, smaller grains or fewer"),
                         ));
                     }
@@ -197,7 +197,7 @@ impl<S: Dimensional> Builder<'_, S> {
     pub(super) fn corner(&self, path: &str, corner: &[f64]) -> Result<S::Vector, InputError> {
         if corner.is_empty() {
             return Err(self.source.locate(
-                Fault::new(path, "a corner of the box is empty")
+                ValidationError::new(path, "a corner of the box is empty")
                     .expected(format!("{} numbers", S::D)),
             ));
         }
@@ -213,7 +213,7 @@ impl<S: Dimensional> Builder<'_, S> {
         if count <= most {
             return Ok(());
         }
-        let fault = Fault::new(path, format!("{count} grains are too many"));
+        let fault = ValidationError::new(path, format!("{count} grains are too many"));
         let fault = fault.expected(format!("at most {most}"));
         Err(self.source.locate(fault))
     }

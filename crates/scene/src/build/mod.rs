@@ -22,7 +22,7 @@ use super::material::{Material, MaterialLibrary};
 use super::methods::{Demands, Service};
 use super::recorded::RecordReader;
 use super::scene_file::{self, SceneFile};
-use super::source::{Fault, InputError, Source};
+use super::source::{InputError, Source, ValidationError};
 use fretwork_core::bodies::Bodies;
 use fretwork_core::contact::detect::{LawTable, centre};
 use fretwork_core::geometry::grid;
@@ -175,7 +175,7 @@ impl Loaded {
             let source = shelf.read(file).map_err(|e| match e {
                 Err(error) => self.source.named_at(&here, error),
                 Ok(missing) => self.source.locate(
-                    Fault::new(
+                    ValidationError::new(
                         format!("materials.{name}"),
                         format!("there is no file `{file}.ron` in {}", missing.looked),
                     )
@@ -240,14 +240,14 @@ impl Origin {
 
 impl<S: Dimensional> Builder<'_, S> {
     fn fail(&self, path: impl Into<String>, message: impl Into<String>) -> InputError {
-        self.source.locate(Fault::new(path, message))
+        self.source.locate(ValidationError::new(path, message))
     }
 
     fn material(&self, path: &str, name: &str) -> Result<(u16, f64), InputError> {
         self.densities.get(name).copied().ok_or_else(|| {
             let names: Vec<&str> = self.densities.keys().map(String::as_str).collect();
             self.source.locate(
-                Fault::new(path, format!("the case has no material `{name}`"))
+                ValidationError::new(path, format!("the case has no material `{name}`"))
                     .expected_name(names.iter().copied(), "materials")
                     .nearest(super::source::nearest(name, names.iter().copied())),
             )
@@ -264,9 +264,9 @@ impl<S: Dimensional> Builder<'_, S> {
                 values.len(),
                 S::D
             );
-            return Err(self
-                .source
-                .locate(Fault::new(path, message).expected(format!("{} numbers", S::D))));
+            return Err(self.source.locate(
+                ValidationError::new(path, message).expected(format!("{} numbers", S::D)),
+            ));
         }
         if values.iter().any(|x| !x.is_finite()) {
             return Err(self.fail(path, "the components must be finite numbers"));
@@ -278,7 +278,7 @@ impl<S: Dimensional> Builder<'_, S> {
         if radius.is_finite() && radius > 0.0 {
             return Ok(radius);
         }
-        Err(self.source.locate(Fault::new(
+        Err(self.source.locate(ValidationError::new(
             path,
             format!("a radius must be positive, got {radius}"),
         )))
@@ -318,7 +318,9 @@ impl<S: Dimensional> Builder<'_, S> {
         );
         let service = Demands::of(&simulation).service(case.solver.method);
         if let Service::Refuses(reason) = service {
-            return Err(self.source.locate(Fault::new("solver.method", reason)));
+            return Err(self
+                .source
+                .locate(ValidationError::new("solver.method", reason)));
         }
         simulation.gravity = gravity;
         for scar in self.scars {
@@ -429,7 +431,7 @@ impl<S: Dimensional> Builder<'_, S> {
             .origins
             .get(body as usize)
             .map_or_else(|| "grains".to_owned(), |o| o.path());
-        let fault = Fault::new(origin, message).expected(
+        let fault = ValidationError::new(origin, message).expected(
             "grains beside each other: look for positions that occur twice, radii in another unit, or too large a \
              `detection.alert`",
         );

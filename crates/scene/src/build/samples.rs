@@ -6,7 +6,7 @@ use crate::sample::deposit::{Corners, deposit};
 use crate::sample::sizes::Sizes;
 use crate::sample::spec::{Counted, CsvSpec, DepositSpec, SizeSpec};
 use crate::sample::table::Table;
-use crate::source::{Fault, InputError};
+use crate::source::{InputError, ValidationError};
 use fretwork_core::geometry::space::VectorLike;
 
 impl<S: Dimensional> Builder<'_, S> {
@@ -41,7 +41,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 100.0 * made.asked,
                 if S::D == 2 { 50 } else { 35 }
             );
-            let fault = Fault::new(path, message);
+            let fault = ValidationError::new(path, message);
             let advice = "a larger box, smaller grains or fewer; a `Lattice` is denser";
             return Err(self.source.locate(fault.expected(advice)));
         }
@@ -73,7 +73,7 @@ impl<S: Dimensional> Builder<'_, S> {
             return Err(self.fail(format!("{here}.radius"), message));
         }
         if exponent.is_nan() || exponent.abs() > 20.0 {
-            let fault = Fault::new(format!("{here}.exponent"), format!("got {exponent}"));
+            let fault = ValidationError::new(format!("{here}.exponent"), format!("got {exponent}"));
             let expected = "a number between -20 and 20";
             return Err(self.source.locate(fault.expected(expected)));
         }

@@ -3,7 +3,7 @@
 use super::surface::Placed;
 use super::{Builder, Dimensional, Origin};
 use crate::case::{GrainSpec, ShapeSpec};
-use crate::source::{self, Fault, InputError};
+use crate::source::{self, InputError, ValidationError};
 use fretwork_core::bodies::tensor;
 use fretwork_core::geometry::convex::ConvexPart;
 use fretwork_core::geometry::shape::{Ball, Carried};
@@ -134,7 +134,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let names = || scene.clusters.iter().map(|c| c.0.as_str());
         let Some(cluster) = scene.clusters.iter().find(|c| c.0 == name) else {
             let message = format!("the scene has no cluster `{name}`");
-            let fault = Fault::new(format!("{here}.name"), message)
+            let fault = ValidationError::new(format!("{here}.name"), message)
                 .expected_name(names(), "clusters in its scene file")
                 .nearest(source::nearest(name, names()));
             return Err(self.source.locate(fault));

@@ -35,7 +35,7 @@ pub use difference::{Difference, first_difference};
 pub use file::{MAX_BYTES, open, read_bytes, read_text, read_text_from};
 pub use nearest::nearest;
 pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};
-pub use tree::{Entry, Fault as TextFault, Group, Kind, MAX_DEPTH, Node, Shape, Tree};
+pub use tree::{Entry, Group, Kind, MAX_DEPTH, Node, Shape, SyntaxError, Tree};
 
 use pieces::SourceMap;
 
@@ -207,7 +207,7 @@ impl Source {
     }
 
     /// Converts a validation error with a path into an error with a location.
-    pub fn locate(&self, fault: Fault) -> InputError {
+    pub fn locate(&self, fault: ValidationError) -> InputError {
         let mut error = self.error_at(&fault.path, fault.message);
         if let Some(expected) = fault.expected {
             error = error.expected(expected);
@@ -257,7 +257,7 @@ fn further(one: &SpannedError, other: &SpannedError) -> bool {
 
 /// A validation error: the dotted path of the value, the message, and what was expected.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fault {
+pub struct ValidationError {
     /// The dotted path.
     pub path: String,
     /// What is wrong.
@@ -268,7 +268,7 @@ pub struct Fault {
     pub nearest: Option<String>,
 }
 
-impl Fault {
+impl ValidationError {
     /// Makes an error at a path.
     pub fn new(path: impl Into<String>, message: impl Into<String>) -> Self {
         Self {

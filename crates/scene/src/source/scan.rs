@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::tree::{Entry, Fault, Group, Kind, MAX_DEPTH, Node, Shape, Tree};
+use super::tree::{Entry, Group, Kind, MAX_DEPTH, Node, Shape, SyntaxError, Tree};
 
 /// Scans `text`; the first malformed position is recorded and scanning continues.
 pub(super) fn scan(text: &str) -> Tree {
@@ -45,7 +45,7 @@ fn is_blank(c: char) -> bool {
 struct Scanner<'a> {
     text: &'a str,
     at: usize,
-    fault: Option<Fault>,
+    fault: Option<SyntaxError>,
     too_deep: Option<usize>,
 }
 
@@ -66,7 +66,7 @@ impl<'a> Scanner<'a> {
     /// Only the first error is kept, since later ones are mostly consequences of it.
     fn fault(&mut self, span: Range<usize>, message: impl Into<String>) {
         if self.fault.is_none() {
-            self.fault = Some(Fault {
+            self.fault = Some(SyntaxError {
                 at: self.at,
                 span,
                 message: message.into(),

@@ -13,14 +13,14 @@ pub struct Tree {
     /// The top-level value, if there is one.
     pub root: Option<Node>,
     /// The first malformed position.
-    pub fault: Option<Fault>,
+    pub fault: Option<SyntaxError>,
     /// Position where the nesting exceeded [`MAX_DEPTH`]; the text is not scanned beyond it.
     pub too_deep: Option<usize>,
 }
 
 /// A malformed position in the text.
 #[derive(Debug, Clone)]
-pub struct Fault {
+pub struct SyntaxError {
     /// Position of the scanner when it detected the error.
     pub at: usize,
     /// Range to mark.

@@ -20,7 +20,7 @@ use std::path::Path;
 ///     statistics: vec![Column::new("time", "s", "time at the end of the step")],
 ///     ..Header::default()
 /// };
-/// let mut results = Results::create(&path, &header)?;
+/// let mut results = Results::create(&folder.join("results.h5.part"), &header)?;
 /// for step in 1..=3 {
 ///     results.append_statistics(&[0.5 * f64::from(step)])?;
 /// }

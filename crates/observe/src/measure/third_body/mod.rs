@@ -7,8 +7,8 @@ mod clusters;
 mod cut;
 mod figure;
 mod gap;
-mod instant;
 mod regime;
+mod snapshot;
 mod spent;
 mod tables;
 
@@ -23,9 +23,9 @@ use fretwork_core::geometry::space::Space;
 use fretwork_core::step::{Simulation, StepReport};
 use fretwork_scene::measures::ThirdBodySpec;
 use gap::Faces;
-use instant::Instant;
 use regime::{Flow, Regime, flow};
 use serde::{Deserialize, Serialize};
+use snapshot::LayerSnapshot;
 use spent::{Dissipation, Place};
 
 /// Observer for [`fretwork_scene::measures::MeasureSpec::ThirdBody`].
@@ -179,7 +179,7 @@ impl<S: Space> ThirdBody<S> {
         (flow(&late.profile()), cluster, over)
     }
 
-    fn row(&mut self, now: &Instant) -> Vec<f64> {
+    fn row(&mut self, now: &LayerSnapshot) -> Vec<f64> {
         let whole = now.whole();
         let block = Block {
             cells: now.cells.clone(),
@@ -269,7 +269,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
         };
         let all = grains(s);
         faces.look(s, self.spec.extent, &all);
-        let mut now = Instant::new(s, faces, &all, self.spec.along, &self.lost);
+        let mut now = LayerSnapshot::new(s, faces, &all, self.spec.along, &self.lost);
         self.row = self.row(&now);
         if self.spent.counts() && s.time > self.seen {
             // Resistance to a reciprocating sliding keeps its sign.
@@ -360,7 +360,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
     fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
         vec![Picture {
             name: "chains",
-            shows: Shows::Chains(instant::links(s)),
+            shows: Shows::Chains(snapshot::links(s)),
         }]
     }
 

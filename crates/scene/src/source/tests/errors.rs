@@ -198,7 +198,7 @@ fn error_at_points_at_the_value_or_its_parent() {
     assert!(error.to_string().contains("its default applies"));
     assert_eq!(source.error_at("nothing", "x").position(), Some((3, 1)));
     assert_eq!(source.error_at("", "x").position(), Some((3, 1)));
-    let fault = Fault::new("mass", "x")
+    let fault = ValidationError::new("mass", "x")
         .nearest(Some("y"))
         .under("bodies.wheel");
     assert_eq!(

@@ -28,7 +28,7 @@ pub(super) struct ChainNumbers {
 
 /// The layer at an instant.
 #[derive(Clone, Debug)]
-pub(super) struct Instant {
+pub(super) struct LayerSnapshot {
     /// Position.
     pub gap: Gap,
     /// See [`super::cells::Block::cells`].
@@ -50,7 +50,7 @@ struct Share {
     share: f64,
 }
 
-impl Instant {
+impl LayerSnapshot {
     /// Evaluates the layer. `lost` is the number of broken bonds of each body.
     pub fn new<S: Space>(
         s: &Simulation<S>,
