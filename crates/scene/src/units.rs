@@ -162,7 +162,7 @@ fn read(text: &str) -> Result<Unit, UnitError> {
     };
     if let Some(word) = far(&plain) {
         let small = word.replacen('M', "m", 1);
-        let near = read(&small).is_ok().then(|| text.replacen(word, &small, 1));
+        let near = (small != word && read(&small).is_ok()).then(|| text.replacen(word, &small, 1));
         return Err(UnitError {
             message: format!(
                 "`{word}` is a length of a thousand kilometres or more, which no case has; a millimetre is `mm`"
@@ -431,6 +431,7 @@ mod tests {
             ("N/Mm", Some("N/mm")),
             ("kg/Mm3", Some("kg/mm3")),
             ("Gm", None),
+            ("N/megametre", None),
         ] {
             let error = known(given).err();
             let error = error.unwrap_or_else(|| panic!("{given} passes"));
