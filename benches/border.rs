@@ -120,7 +120,7 @@ fn share(call: f64) {
         .build_in(&SearchPath::new(&[]))
         .unwrap_or_else(|e| panic!("{e}"))
         .simulation;
-    while s.time < 0.07 {
+    while s.state.time < 0.07 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }
     let (clock, steps) = (Instant::now(), 100);

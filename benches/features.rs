@@ -69,17 +69,18 @@ fn run<S: Dimensional>(scene: &str, case: &str) {
     }
     for t in &trials {
         let s = &t.simulation;
-        let n = s.network.contacts.len() as f64;
+        let n = s.state.network.contacts.len() as f64;
         let [step, detect, laws, sweep] = t.least.map(|x| 1e9 * x / n);
         let [plain, full, _] = Problem::<S>::BYTES_A_CONTACT;
-        let bonds: usize = s.network.memory.iter().map(|m| m.bonds.len()).sum();
+        let bonds: usize = s.state.network.memory.iter().map(|m| m.bonds.len()).sum();
         let kept: usize = s
+            .state
             .network
             .memory
             .iter()
             .map(|m| m.bonds.len() * (size_of::<Bond<S>>() + 8 * m.variables.len()))
             .sum();
-        let held = s.network.memory.iter().flat_map(|m| &m.bonds);
+        let held = s.state.network.memory.iter().flat_map(|m| &m.bonds);
         let row = if held.filter(|b| b.intact()).count() > 0 {
             full
         } else {
@@ -99,7 +100,7 @@ fn trial<S: Dimensional>(case: &str, feature: &Feature) -> Trial<S> {
     let built = loaded.build_in::<S>(&SearchPath::new(&[]));
     let mut simulation = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     // The load crosses the packing first; a frictionless one would flow for long.
-    simulation.solver.max_iterations = 200;
+    simulation.options.solver.max_iterations = 200;
     for _ in 0..10 {
         simulation
             .step()

@@ -82,13 +82,13 @@ fn bench<S: Steps>(name: &str, mut s: Simulation<S>, steps: u32, peer_ms: f64, p
         solve += ms(r.timing.solve);
         iterations += u64::from(r.solver.iterations);
         unconverged += u32::from(!r.solver.converged);
-        sweeps_ns += r.timing.solve.as_secs_f64() * 1e9 / s.network.contacts.len() as f64;
+        sweeps_ns += r.timing.solve.as_secs_f64() * 1e9 / s.state.network.contacts.len() as f64;
     }
     let n = f64::from(steps);
     let per = sweeps_ns / iterations as f64;
     println!(
         "{name:<22} {:>9} {cold_ms:>9.1} {:>10} {:>6.1} {:>9.2} {:>8.2} {:>8.2} {:>8.2} {per:>9.1} {:>7.1} {:>7.1}{}",
-        s.network.contacts.len(),
+        s.state.network.contacts.len(),
         cold.solver.iterations,
         iterations as f64 / n,
         total / n,

@@ -193,9 +193,9 @@ fn roll(bare: bool, creepage: f64, seed: u64) -> Result<Rolling, Failure> {
     }
     let loaded = load(&case, &sets)?;
     let mut s = loaded.build_in::<Dim2>(&SearchPath::new(&[]))?.simulation;
-    let place = s.bodies.driven.iter().position(|d| d.name == "wheel");
+    let place = s.state.bodies.driven.iter().position(|d| d.name == "wheel");
     let place = place.ok_or("the case has no wheel")?;
-    let wheel = s.bodies.driven[place].body as usize;
+    let wheel = s.state.bodies.driven[place].body as usize;
     let mut seen = Rolling {
         creepage,
         bare,
@@ -211,28 +211,28 @@ fn roll(bare: bool, creepage: f64, seed: u64) -> Result<Rolling, Failure> {
         iterations: 0.0,
     };
     let (mut load, mut counted) = (0.0, 0.0);
-    let mut start = s.energy;
-    while s.time < loaded.case.time.end - 1e-9 {
-        let before = s.bodies.velocity[wheel][1];
+    let mut start = s.state.energy;
+    while s.state.time < loaded.case.time.end - 1e-9 {
+        let before = s.state.bodies.velocity[wheel][1];
         let report = s.step()?;
         seen.steps += 1;
         seen.missed += u32::from(!report.solver.converged);
         seen.iterations += f64::from(report.solver.iterations);
-        if s.time <= START {
-            start = s.energy;
+        if s.state.time <= START {
+            start = s.state.energy;
             continue;
         }
-        let (impulse, moment) = s.received[place];
+        let (impulse, moment) = s.state.received[place];
         load += impulse[1];
         seen.force += impulse[0];
         seen.moment += moment[0] / RADIUS;
-        let theta = s.scheme.theta;
-        let rise = theta * s.bodies.velocity[wheel][1] + (1.0 - theta) * before;
+        let theta = s.options.scheme.theta;
+        let rise = theta * s.state.bodies.velocity[wheel][1] + (1.0 - theta) * before;
         seen.power -= impulse[0] * SPEED + moment[0] * spin + impulse[1] * rise;
-        seen.height += s.bodies.position[wheel][1] - RADIUS - 5e-4;
+        seen.height += s.state.bodies.position[wheel][1] - RADIUS - 5e-4;
         counted += 1.0;
     }
-    let e = &s.energy;
+    let e = &s.state.energy;
     let passed = load * SPEED;
     seen.friction = (e.friction - start.friction) / passed;
     seen.lost = (e.dissipated() + e.scheme - start.dissipated() - start.scheme) / passed;

@@ -39,7 +39,7 @@ fn main() -> Result<(), Failure> {
 /// Penetrations in radii of the smaller grain: the deepest, and the mean over closed contacts.
 fn penetrations(s: &Simulation<Dim3>) -> (f64, f64) {
     let (mut deepest, mut sum, mut closed) = (0.0f64, 0.0, 0u32);
-    for contact in s.network.contacts.iter().filter(|c| c.gap < 0.0) {
+    for contact in s.state.network.contacts.iter().filter(|c| c.gap < 0.0) {
         let radius = |ball: u32| s.shapes.balls[ball as usize].radius;
         let mut least = radius(contact.key.candidate);
         if contact.key.surface().is_none() {
@@ -77,7 +77,7 @@ fn run(setting: &str, steps: u64) -> Result<(), Failure> {
         if step % part != 0 && step != steps {
             continue;
         }
-        let e = &s.energy;
+        let e = &s.state.energy;
         let work = e.external_work.abs().max(f64::MIN_POSITIVE);
         println!(
             "| {setting} | {step} | {deepest:.1e} | {most:.1e} | {mean:.1e} | {projected} | {} | {:.1e} | {:.1e} | {:.2} ms |",

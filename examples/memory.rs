@@ -209,8 +209,8 @@ fn measure<S: Dimensional>(
         step = step.max(most);
     }
     Ok(Held {
-        grains: s.bodies.len() as f64,
-        contacts: s.network.contacts.len() as f64,
+        grains: s.state.bodies.len() as f64,
+        contacts: s.state.network.contacts.len() as f64,
         live: live as f64,
         step: step as f64,
     })

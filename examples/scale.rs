@@ -215,7 +215,7 @@ fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
     // Number of steps for about ten million contact updates.
     let steps = (3_000_000 / count).clamp(8, 200);
     let (mut parts, mut step) = ([0.0; 3], f64::INFINITY);
-    let (mut sweeps, rebuilds) = (0.0, s.network.rebuilds);
+    let (mut sweeps, rebuilds) = (0.0, s.state.network.rebuilds);
     for _ in 0..steps {
         let clock = Instant::now();
         let report = s.step()?;
@@ -228,14 +228,14 @@ fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
         sweeps += f64::from(report.solver.iterations) / steps as f64;
     }
     let memory = peak();
-    let rebuilt = (s.network.rebuilds - rebuilds) as f64 / steps as f64;
+    let rebuilt = (s.state.network.rebuilds - rebuilds) as f64 / steps as f64;
     let balls = &s.shapes.balls;
     let radii: Vec<f64> = balls.iter().map(|b| b.radius).collect();
     let centres: Vec<S::Vector> = balls
         .iter()
-        .map(|b| s.bodies.position[b.body as usize])
+        .map(|b| s.state.bodies.position[b.body as usize])
         .collect();
-    let reach = s.network.alert + s.network.skin;
+    let reach = s.state.network.alert + s.state.network.skin;
     let mut list = f64::INFINITY;
     for _ in 0..5 {
         let clock = Instant::now();
@@ -251,7 +251,7 @@ fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
     }
     Ok(Row {
         grains: balls.len() as f64,
-        contacts: s.network.contacts.len() as f64,
+        contacts: s.state.network.contacts.len() as f64,
         step,
         parts,
         sweeps,
@@ -263,7 +263,7 @@ fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
 
 /// Steps until the layer is at rest: ten steps in a row that converge at the first test.
 fn settle<S: Steps>(s: &mut Simulation<S>) -> Result<(), Failure> {
-    let (first, mut calm) = (s.solver.test_every.div_ceil(2), 0);
+    let (first, mut calm) = (s.options.solver.test_every.div_ceil(2), 0);
     for _ in 0..SETTLING {
         let sweeps = s.step()?.solver.iterations;
         calm = if sweeps <= first { calm + 1 } else { 0 };

@@ -160,9 +160,9 @@ fn go<S: Dimensional>(
     let mut tally = Tally::default();
     let clock = Instant::now();
     while tally.steps < steps && clock.elapsed().as_secs_f64() < budget {
-        let bodies = s.bodies.driven.iter().map(|d| d.body as usize);
+        let bodies = s.state.bodies.driven.iter().map(|d| d.body as usize);
         let before: Vec<_> = bodies
-            .map(|b| (s.bodies.velocity[b], s.bodies.spin[b]))
+            .map(|b| (s.state.bodies.velocity[b], s.state.bodies.spin[b]))
             .collect();
         match s.step() {
             Ok(report) => {
@@ -198,22 +198,22 @@ fn fretting(tolerance: &str, method: Method, seed: u64, budget: f64) -> Result<S
     let mut s = built.simulation;
     let total = (loaded.case.time.end / loaded.case.time.step).round() as u64;
     go(&mut s, SETTLE, f64::INFINITY, |_, _| {});
-    (s.solver.method, s.solver.tolerance) = (method, tolerance.parse()?);
-    s.solver.max_iterations = most_in_fretting(method, tolerance);
-    let wheel = s.bodies.driven.iter().position(|d| d.name == "wheel");
+    (s.options.solver.method, s.options.solver.tolerance) = (method, tolerance.parse()?);
+    s.options.solver.max_iterations = most_in_fretting(method, tolerance);
+    let wheel = s.state.bodies.driven.iter().position(|d| d.name == "wheel");
     let wheel = wheel.ok_or("no wheel")?;
     let (start, period) = (0.05, 0.05);
     // Work and loaded path of each cycle.
     let mut cycles: BTreeMap<u32, (f64, f64, u32)> = BTreeMap::new();
     let tally = go(&mut s, total - SETTLE, budget, |s, before| {
-        let at = s.time - start;
+        let at = s.state.time - start;
         if at <= 0.0 {
             return;
         }
-        let theta = s.scheme.theta;
-        let body = s.bodies.driven[wheel].body as usize;
-        let speed = before[wheel].0.x * (1.0 - theta) + s.bodies.velocity[body].x * theta;
-        let impulse = s.received[wheel].0;
+        let theta = s.options.scheme.theta;
+        let body = s.state.bodies.driven[wheel].body as usize;
+        let speed = before[wheel].0.x * (1.0 - theta) + s.state.bodies.velocity[body].x * theta;
+        let impulse = s.state.received[wheel].0;
         let cycle = cycles
             .entry((at / period - 1e-9).floor() as u32 + 1)
             .or_default();
@@ -231,7 +231,7 @@ fn fretting(tolerance: &str, method: Method, seed: u64, budget: f64) -> Result<S
         tally.worst,
         tally.newton,
     );
-    let whole = (period / s.scheme.h).round() as u32;
+    let whole = (period / s.options.scheme.h).round() as u32;
     let mu: Vec<String> = cycles
         .values()
         .map(|(work, path, steps)| {

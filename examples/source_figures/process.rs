@@ -52,9 +52,9 @@ pub fn run(case: &Path, sets: &[String], until: Option<f64>) -> Result<Trace, Bo
         .as_ref()
         .and_then(|spec| Biaxial::new(spec, &s));
     let end = until.unwrap_or(loaded.case.time.end);
-    let count = (end / s.scheme.h).round() as u64;
+    let count = (end / s.options.scheme.h).round() as u64;
     let mut trace = Trace {
-        tolerance: s.solver.tolerance,
+        tolerance: s.options.solver.tolerance,
         ..Trace::default()
     };
     for _ in 0..count {
@@ -63,7 +63,7 @@ pub fn run(case: &Path, sets: &[String], until: Option<f64>) -> Result<Trace, Bo
             test.follow(&s);
         }
         trace.steps.push(Step {
-            time: s.time,
+            time: s.state.time,
             iterations: report.solver.iterations,
             converged: report.solver.converged,
             seconds: report.timing.solve.as_secs_f64(),
@@ -77,9 +77,9 @@ pub fn run(case: &Path, sets: &[String], until: Option<f64>) -> Result<Trace, Bo
         });
     }
     trace.last = s.local_problem();
-    let driven = |body: u32| s.bodies.driven.iter().any(|d| d.body == body);
+    let driven = |body: u32| s.state.bodies.driven.iter().any(|d| d.body == body);
     for ball in s.shapes.balls.iter().filter(|b| !driven(b.body)) {
-        let at = s.bodies.position[ball.body as usize];
+        let at = s.state.bodies.position[ball.body as usize];
         trace.grains.push(([at[0], at[1]], ball.radius));
     }
     Ok(trace)
@@ -87,7 +87,7 @@ pub fn run(case: &Path, sets: &[String], until: Option<f64>) -> Result<Trace, Bo
 
 /// Kinetic energy of translation of a body (J/m).
 fn kinetic(s: &Simulation<Dim2>, body: usize) -> f64 {
-    0.5 * s.bodies.mass[body] * s.bodies.velocity[body].norm_squared()
+    0.5 * s.state.bodies.mass[body] * s.state.bodies.velocity[body].norm_squared()
 }
 
 impl Trace {

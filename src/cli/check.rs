@@ -45,7 +45,7 @@ fn whole<S: Steps>(loaded: &Loaded, built: Built<S>, args: &CheckArgs) -> Result
     if !args.no_timing {
         let time = &loaded.case.time;
         let steps = (time.end / time.step - 1e-6).ceil().max(1.0) as u64;
-        let grains = built.simulation.bodies.grains().count();
+        let grains = built.simulation.state.bodies.grains().count();
         let text = Trial::of(built.simulation, steps).text(steps, grains, S::D);
         answer(&format!("  {:<20} {text}", "run time"))?;
     }
@@ -85,7 +85,13 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
         line("convex pieces", text);
     }
     let high = high.max(most);
-    let names: Vec<&str> = s.bodies.driven.iter().map(|d| d.name.as_str()).collect();
+    let names: Vec<&str> = s
+        .state
+        .bodies
+        .driven
+        .iter()
+        .map(|d| d.name.as_str())
+        .collect();
     line(
         "first bodies",
         format!(
@@ -95,16 +101,19 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
             s.shapes.surfaces.len()
         ),
     );
-    line("contacts at start", s.network.contacts.len().to_string());
+    line(
+        "contacts at start",
+        s.state.network.contacts.len().to_string(),
+    );
     line(
         "solver",
         format!(
             "{} ({}), tolerance {:e}, at most {} iterations, tested every {}",
-            s.solver.method.name(),
-            s.solver.method.about(),
-            s.solver.tolerance,
-            s.solver.max_iterations,
-            s.solver.test_every
+            s.options.solver.method.name(),
+            s.options.solver.method.about(),
+            s.options.solver.tolerance,
+            s.options.solver.max_iterations,
+            s.options.solver.test_every
         ),
     );
     methods(s, &mut line);
@@ -171,7 +180,7 @@ fn methods<S: Space>(simulation: &Simulation<S>, line: &mut impl FnMut(&str, Str
             Service::Refuses(reason) => reasons.push(format!("not {}, {reason}", method.name())),
         }
     }
-    let chosen = simulation.solver.method;
+    let chosen = simulation.options.solver.method;
     let served = match demands.service(chosen) {
         Service::Serves => "supports this case".to_owned(),
         Service::May(reason) | Service::Refuses(reason) => reason,
@@ -199,7 +208,7 @@ fn biaxial_groups<S: Space>(
     };
     // From the start of the test to its end, over all walls: at least one of them is driven.
     let largest = |names: &(String, String), f: &dyn Fn(&Dof, f64) -> f64| {
-        let walls = s.bodies.driven.iter();
+        let walls = s.state.bodies.driven.iter();
         let walls = walls.filter(|d| d.name == names.0 || d.name == names.1);
         walls
             .flat_map(|d| &d.dofs[..S::D])
@@ -242,7 +251,7 @@ fn groups<S: Space>(
 ) {
     let (case, s) = (&loaded.case, &built.simulation);
     let Some(test) = &case.friction else { return };
-    let Some(driven) = s.bodies.driven.iter().find(|d| d.name == test.body) else {
+    let Some(driven) = s.state.bodies.driven.iter().find(|d| d.name == test.body) else {
         return;
     };
     let samples = |f: &dyn Fn(f64) -> f64| {
@@ -265,7 +274,7 @@ fn groups<S: Space>(
         return;
     };
     line("pressure", format!("{pressure:.3e} Pa"));
-    let flags = s.bodies.grain_flags();
+    let flags = s.state.bodies.grain_flags();
     // For convex parts the radius of the ball of the same volume.
     let balls = s.shapes.balls.iter().map(|b| (b.body, b.radius));
     let pieces = s.shapes.pieces.iter().map(|p| (p.body, p.size));
@@ -274,7 +283,7 @@ fn groups<S: Space>(
         .filter(|(body, _)| flags[*body as usize])
         .map(|(_, radius)| S::ball_volume(radius))
         .sum();
-    let masses = s.bodies.mass.iter().zip(&flags);
+    let masses = s.state.bodies.mass.iter().zip(&flags);
     let mass: f64 = masses.filter(|(_, grain)| **grain).map(|(m, _)| m).sum();
     if volume > 0.0 {
         let density = mass / volume;

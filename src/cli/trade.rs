@@ -369,7 +369,7 @@ impl Facts {
             &mut hash,
             format_args!(
                 "{:?}{:?}{:?}",
-                s.shapes, s.bodies.position, s.bodies.velocity
+                s.shapes, s.state.bodies.position, s.state.bodies.velocity
             ),
         );
         Self {

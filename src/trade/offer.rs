@@ -38,7 +38,7 @@ impl Offer {
         let s = &built.simulation;
         let bonds =
             |l: &Interface| l.opens() && (l.bonding_time().is_some() || l.healing.is_some());
-        let bonded = s.laws.iter().any(bonds) || s.network.bonds_made() > 0;
+        let bonded = s.laws.iter().any(bonds) || s.state.network.bonds_made() > 0;
         let damaged = bonded && s.laws.iter().any(Interface::damages);
         let wears = s.laws.iter().any(|l| l.wear().is_some());
         let circuit = case.circuit.is_some();
@@ -80,7 +80,7 @@ impl Offer {
             ),
             (
                 &["scars"],
-                !s.scars.is_empty(),
+                !s.state.scars.is_empty(),
                 "no surface of the case recedes by wear (`wears`)",
             ),
         ];

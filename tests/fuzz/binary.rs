@@ -10,7 +10,7 @@ use fretwork::record::code::{decode, encode};
 use fretwork::record::fclib;
 use fretwork::record::results::{PreviousResults, state};
 use fretwork::scene::{Loaded, load};
-use fretwork::step::Saved;
+use fretwork::step::State;
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use std::path::{Path, PathBuf};
@@ -180,10 +180,10 @@ fn damaged_states() {
     let laws = SearchPath::new(&[]);
     let mut built = loaded(&case).build_in::<Dim2>(&laws).unwrap();
     (0..5).for_each(|_| built.simulation.step().map(drop).unwrap());
-    let whole = encode(&built.simulation.save()).unwrap();
+    let whole = encode(&built.simulation.state).unwrap();
     campaign.run(&folder, damaged("state", vec![whole]), move |path| {
         let bytes = std::fs::read(path).unwrap();
-        let Ok(saved) = decode::<Saved<'_, Dim2>>(&bytes) else {
+        let Ok(saved) = decode::<State<Dim2>>(&bytes) else {
             return false;
         };
         let mut again = loaded(&case).build_in::<Dim2>(&laws).unwrap();

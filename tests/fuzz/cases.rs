@@ -63,8 +63,8 @@ pub fn furnish(folder: &Path) {
 /// Two steps, with limits on iterations of this test: those of a case may be as many as its writer likes.
 fn steps<S: Steps>(mut built: Built<S>) {
     let s = &mut built.simulation;
-    s.solver.max_iterations = s.solver.max_iterations.min(20);
-    if let Coupling::Implicit { max_iterations, .. } = &mut s.coupling {
+    s.options.solver.max_iterations = s.options.solver.max_iterations.min(20);
+    if let Coupling::Implicit { max_iterations, .. } = &mut s.options.coupling {
         *max_iterations = (*max_iterations).min(3);
     }
     for _ in 0..2 {

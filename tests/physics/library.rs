@@ -110,7 +110,7 @@ fn bits<S: Dimensional>(builder: CaseBuilder<S>, through_text: bool) -> Vec<u64>
         ControlFlow::<()>::Continue(())
     });
     assert!(matches!(ended, Ok(ControlFlow::Continue(()))), "{ended:?}");
-    assert_eq!((steps, s.steps), (100, 100));
+    assert_eq!((steps, s.state.steps), (100, 100));
     let (ledger, scale) = (s.energies().residual, s.energies().scale);
     assert!(ledger.abs() < 1e-3 * scale, "{ledger:e} of {scale:e}");
     let mut out = Vec::new();
@@ -158,8 +158,8 @@ fn contacts_carry_the_weight_of_a_cuboid() {
     let mut s = built.simulation;
     // Stopped from within at the tenth step, then gone on.
     let ended = s.run_until(1.0, |now, _| {
-        if now.steps == 10 {
-            ControlFlow::Break(now.time)
+        if now.state.steps == 10 {
+            ControlFlow::Break(now.state.time)
         } else {
             ControlFlow::Continue(())
         }
@@ -176,7 +176,7 @@ fn contacts_carry_the_weight_of_a_cuboid() {
         }
         ControlFlow::<()>::Continue(())
     });
-    assert!(matches!(ended, Ok(ControlFlow::Continue(()))) && s.steps == 20);
+    assert!(matches!(ended, Ok(ControlFlow::Continue(()))) && s.state.steps == 20);
     assert_eq!(s.contact_force_on("ceiling"), None);
 }
 

@@ -21,16 +21,16 @@ fn scene(case: &str, sets: &[String]) -> Simulation<Dim2> {
 
 /// Steps until a time; every step must converge.
 fn until(s: &mut Simulation<Dim2>, end: f64) {
-    while s.time < end - 0.5 * s.scheme.h {
+    while s.state.time < end - 0.5 * s.options.scheme.h {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         let solver = &report.solver;
-        assert!(solver.converged, "step {}: {solver:?}", s.steps);
+        assert!(solver.converged, "step {}: {solver:?}", s.state.steps);
     }
 }
 
 /// One step.
 fn one(s: &mut Simulation<Dim2>) {
-    let end = s.time + s.scheme.h;
+    let end = s.state.time + s.options.scheme.h;
     until(s, end);
 }
 
@@ -41,13 +41,13 @@ fn tilted(degrees: f64) -> String {
 
 /// The greatest speed of a grain (m/s).
 fn fastest(s: &Simulation<Dim2>) -> f64 {
-    let speeds = s.bodies.velocity.iter().map(|v| v.norm());
+    let speeds = s.state.bodies.velocity.iter().map(|v| v.norm());
     speeds.fold(0.0, f64::max)
 }
 
 /// Names of all contacts.
 fn names(s: &Simulation<Dim2>) -> Vec<Key> {
-    s.network.contacts.iter().map(|c| c.key).collect()
+    s.state.network.contacts.iter().map(|c| c.key).collect()
 }
 
 #[test]
@@ -60,8 +60,8 @@ fn a_block_at_rest_keeps_its_two_points() {
         one(&mut s);
         assert_eq!(names(&s), first);
     }
-    assert!(s.network.contacts.iter().all(|c| c.formed_at < 1e-3));
-    assert!(fastest(&s) < 1e-9 && s.bodies.rotation[0].abs() < 1e-9);
+    assert!(s.state.network.contacts.iter().all(|c| c.formed_at < 1e-3));
+    assert!(fastest(&s) < 1e-9 && s.state.bodies.rotation[0].abs() < 1e-9);
 }
 
 #[test]
@@ -77,18 +77,18 @@ fn a_block_slides_at_atan_mu_or_topples_at_atan_of_its_shape() {
         let (slides, topples) = (mu.atan().to_degrees(), f64::atan(b / h).to_degrees());
         let critical = slides.min(topples);
         let s = run(critical - 0.1, 0.5);
-        assert!(fastest(&s) < 1e-9 && s.bodies.spin[0][0].abs() < 1e-9);
+        assert!(fastest(&s) < 1e-9 && s.state.bodies.spin[0][0].abs() < 1e-9);
         let a = (critical + 0.1).to_radians();
         if slides < topples {
             let s = run(critical + 0.1, 0.5);
             let expected = G * (a.sin() - mu * a.cos());
-            let found = s.bodies.velocity[0].x / s.time;
+            let found = s.state.bodies.velocity[0].x / s.state.time;
             assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
         } else {
             // About the lower corner: (b^2 + h^2)/3 alpha = g (h sin - b cos)/2, growing little at first.
             let s = run(critical + 0.1, 0.02);
             let expected = -0.5 * G * (h * a.sin() - b * a.cos()) / ((b * b + h * h) / 3.0);
-            let found = s.bodies.spin[0][0] / s.time;
+            let found = s.state.bodies.spin[0][0] / s.state.time;
             assert!((found / expected - 1.0).abs() < 1e-2, "{found} {expected}");
         }
     }
@@ -114,16 +114,16 @@ fn a_wall_slides_at_atan_mu() {
 fn a_tower_carries_its_weight_and_a_leaning_one_falls_where_it_should() {
     let mut s = scene("block_tower", &[]);
     until(&mut s, 0.1);
-    let weight = s.bodies.mass[0] * G;
+    let weight = s.state.bodies.mass[0] * G;
     for k in 0..8 {
         // The joint below block k carries it and those above it.
-        let joint = s.network.contacts.iter().filter(|c| {
+        let joint = s.state.network.contacts.iter().filter(|c| {
             let mut of = c.bodies;
             of.sort_unstable();
             of == if k == 0 { [0, 8] } else { [k - 1, k] }
         });
         let forces: Vec<f64> = joint
-            .map(|c| c.impulse.dot(&c.normal).abs() / s.scheme.h)
+            .map(|c| c.impulse.dot(&c.normal).abs() / s.options.scheme.h)
             .collect();
         assert_eq!(forces.len(), 2);
         let carried: f64 = forces.iter().sum();
@@ -192,24 +192,25 @@ fn an_arch_needs_friction() {
 fn a_capsule_falls_and_lies() {
     let mut s = scene("verification/falling_capsule", &[]);
     let (r, l) = (0.05, 0.4);
-    let body = (0..s.bodies.len())
-        .find(|b| !s.bodies.immovable(*b))
+    let body = (0..s.state.bodies.len())
+        .find(|b| !s.state.bodies.immovable(*b))
         .unwrap();
     let other = scene("verification/tilted_block", &[]);
-    let density = other.bodies.mass[0] / 0.08;
+    let density = other.state.bodies.mass[0] / 0.08;
     let mass = density * (2.0 * r * l + std::f64::consts::PI * r * r);
-    assert!((s.bodies.mass[body] / mass - 1.0).abs() < 1e-12);
-    assert!((s.bodies.position[body].x - 0.2).abs() < 1e-12);
+    assert!((s.state.bodies.mass[body] / mass - 1.0).abs() < 1e-12);
+    assert!((s.state.bodies.position[body].x - 0.2).abs() < 1e-12);
     until(&mut s, 0.1);
-    let fallen = 0.15 - s.bodies.position[body].y;
+    let fallen = 0.15 - s.state.bodies.position[body].y;
     assert!((fallen - 0.5 * G * 0.01).abs() < 1e-12);
     until(&mut s, 0.3);
-    assert!((s.bodies.position[body].y - r).abs() < 1e-4 && fastest(&s) < 1e-9);
+    assert!((s.state.bodies.position[body].y - r).abs() < 1e-4 && fastest(&s) < 1e-9);
     let forces: Vec<f64> = s
+        .state
         .network
         .contacts
         .iter()
-        .map(|c| c.impulse.dot(&c.normal) / s.scheme.h)
+        .map(|c| c.impulse.dot(&c.normal) / s.options.scheme.h)
         .collect();
     assert_eq!(forces.len(), 2);
     for force in forces {
@@ -221,9 +222,9 @@ fn a_capsule_falls_and_lies() {
 fn painleves_rod_has_a_finite_impulse() {
     let mut s = scene("painleve_rod", &[]);
     let energy = |s: &Simulation<Dim2>| {
-        s.bodies.kinetic_energy() + s.bodies.mass[0] * G * s.bodies.position[0].y
+        s.state.bodies.kinetic_energy() + s.state.bodies.mass[0] * G * s.state.bodies.position[0].y
     };
-    let (start, mass) = (energy(&s), s.bodies.mass[0]);
+    let (start, mass) = (energy(&s), s.state.bodies.mass[0]);
     let mut before = start;
     let mut largest = 0.0f64;
     for _ in 0..1000 {
@@ -232,7 +233,7 @@ fn painleves_rod_has_a_finite_impulse() {
         // The turning of the arms within a step is of second order in it.
         assert!(now <= before + 1e-6 * start, "{now} {before}");
         before = now;
-        for c in &s.network.contacts {
+        for c in &s.state.network.contacts {
             largest = largest.max(c.impulse.norm());
         }
     }
@@ -243,16 +244,16 @@ fn painleves_rod_has_a_finite_impulse() {
 #[test]
 fn a_heap_of_polygons_settles_and_its_ledger_closes() {
     let mut s = scene("verification/polygon_heap", &[]);
-    let fixed = s.bodies.still();
-    let moving = (0..s.bodies.len()).filter(|b| !fixed[*b]);
-    let weight: f64 = moving.map(|b| s.bodies.mass[b]).sum::<f64>() * G;
+    let fixed = s.state.bodies.still();
+    let moving = (0..s.state.bodies.len()).filter(|b| !fixed[*b]);
+    let weight: f64 = moving.map(|b| s.state.bodies.mass[b]).sum::<f64>() * G;
     let (mut carried, mut deepest) = (0.0, 0.0f64);
-    while s.time < 1.0 {
+    while s.state.time < 1.0 {
         one(&mut s);
-        let gaps = s.network.contacts.iter().map(|c| c.gap);
+        let gaps = s.state.network.contacts.iter().map(|c| c.gap);
         deepest = deepest.min(gaps.fold(0.0, f64::min));
-        if s.time > 0.8 {
-            for (driven, (impulse, _)) in s.bodies.driven.iter().zip(&s.received) {
+        if s.state.time > 0.8 {
+            for (driven, (impulse, _)) in s.state.bodies.driven.iter().zip(&s.state.received) {
                 if fixed[driven.body as usize] {
                     carried -= impulse.y;
                 }
@@ -262,7 +263,7 @@ fn a_heap_of_polygons_settles_and_its_ledger_closes() {
     println!("speed {:e}, deepest {deepest:e}", fastest(&s));
     let carried = carried / 0.2;
     assert!((carried / weight - 1.0).abs() < 0.01, "{carried} {weight}");
-    assert!(s.energy.relative_residual() < 1e-9);
+    assert!(s.state.energy.relative_residual() < 1e-9);
     // A thirtieth of a grain: steps of the fall and turning corners.
     assert!(deepest > -1e-3, "{deepest:e}");
 }

@@ -29,7 +29,7 @@ fn steps(mu: &str, seed: u64) -> Vec<LocalProblem> {
     let mut s = built.simulation;
     let mut problems = Vec::new();
     for time in [0.44, 0.48, 0.52, 0.56] {
-        while s.time < time {
+        while s.state.time < time {
             s.step().unwrap_or_else(|e| panic!("{e}"));
         }
         problems.push(s.local_problem().expect("Coulomb contacts alone"));

@@ -23,7 +23,7 @@ fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
 /// and every operation only changes exponents.
 fn shrink(s: &mut Simulation<Dim2>) {
     let (length, time) = (2f64.powi(-20), 2f64.powi(-10));
-    let b = &mut s.bodies;
+    let b = &mut s.state.bodies;
     for k in 0..b.len() {
         b.position[k] *= length;
         b.velocity[k] *= length / time;
@@ -37,12 +37,12 @@ fn shrink(s: &mut Simulation<Dim2>) {
         ball.radius *= length;
         ball.offset *= length;
     }
-    s.network.alert *= length;
-    s.network.skin *= length;
-    s.scheme.h *= time;
+    s.state.network.alert *= length;
+    s.state.network.skin *= length;
+    s.options.scheme.h *= time;
     // The neighbour list was made for the large scene.
-    let (alert, skin) = (s.network.alert, s.network.skin);
-    s.network = fretwork::contact::Network::new(alert, skin, &[0]);
+    let (alert, skin) = (s.state.network.alert, s.state.network.skin);
+    s.state.network = fretwork::contact::Network::new(alert, skin, &[0]);
 }
 
 #[test]
@@ -53,19 +53,32 @@ fn a_scene_has_no_scale() {
     shrink(&mut small);
     for _ in 0..2 {
         let (a, b) = (large.step().unwrap(), small.step().unwrap());
-        assert_eq!(large.network.contacts.len(), small.network.contacts.len());
+        assert_eq!(
+            large.state.network.contacts.len(),
+            small.state.network.contacts.len()
+        );
         assert_eq!(a.solver.iterations, b.solver.iterations);
         assert_eq!(a.solver.error.to_bits(), b.solver.error.to_bits());
     }
-    let same = large.bodies.position.iter().zip(&small.bodies.position);
+    let same = large
+        .state
+        .bodies
+        .position
+        .iter()
+        .zip(&small.state.bodies.position);
     assert!(same.into_iter().all(|(a, b)| *a == *b * 2f64.powi(20)));
 }
 
 /// Share of the grains' weight that the walls carry.
 fn carried(s: &Simulation<Dim2>) -> f64 {
-    let movable = (0..s.bodies.len()).filter(|b| !s.bodies.immovable(*b));
-    let weight: f64 = movable.map(|b| s.bodies.mass[b] * 9.81).sum();
-    let walls: f64 = s.received.iter().map(|r| -r.0.y / s.scheme.h).sum();
+    let movable = (0..s.state.bodies.len()).filter(|b| !s.state.bodies.immovable(*b));
+    let weight: f64 = movable.map(|b| s.state.bodies.mass[b] * 9.81).sum();
+    let walls: f64 = s
+        .state
+        .received
+        .iter()
+        .map(|r| -r.0.y / s.options.scheme.h)
+        .sum();
     walls / weight
 }
 
@@ -118,19 +131,19 @@ fn bits<S: Dimensional>(case: &str, threads: usize, steps: usize) -> Vec<u64> {
         .unwrap();
     pool.install(|| {
         let mut s: Simulation<S> = scene(case, &["solver.max_iterations=300"]);
-        s.solver.parallel = threads > 1;
+        s.options.solver.parallel = threads > 1;
         for _ in 0..steps {
             s.step().unwrap();
         }
         let mut out = Vec::new();
-        for b in 0..s.bodies.len() {
+        for b in 0..s.state.bodies.len() {
             for k in 0..S::D {
-                out.push(s.bodies.position[b][k].to_bits());
-                out.push(s.bodies.velocity[b][k].to_bits());
+                out.push(s.state.bodies.position[b][k].to_bits());
+                out.push(s.state.bodies.velocity[b][k].to_bits());
             }
         }
-        out.push(s.energy.friction.to_bits());
-        out.push(s.energy.residual.to_bits());
+        out.push(s.state.energy.friction.to_bits());
+        out.push(s.state.energy.residual.to_bits());
         out
     })
 }

@@ -41,20 +41,22 @@ fn cell() -> Simulation<Dim3> {
 }
 
 fn momentum(s: &Simulation<Dim3>) -> Vector3<f64> {
-    s.bodies
+    s.state
+        .bodies
         .grains()
-        .map(|b| s.bodies.velocity[b] * s.bodies.mass[b])
+        .map(|b| s.state.bodies.velocity[b] * s.state.bodies.mass[b])
         .sum()
 }
 
 /// Contacts between grains that carry an impulse across the boundary of an axis.
 fn across(s: &Simulation<Dim3>, axis: usize) -> usize {
-    let place = |b: u32| s.bodies.position[b as usize][axis].rem_euclid(CELL[axis]);
+    let place = |b: u32| s.state.bodies.position[b as usize][axis].rem_euclid(CELL[axis]);
     let far = |c: &&fretwork::contact::Contact<Dim3>| {
         (place(c.bodies[0]) - place(c.bodies[1])).abs() > 0.5 * CELL[axis]
     };
-    let grain = s.bodies.grain_flags();
+    let grain = s.state.bodies.grain_flags();
     let between = s
+        .state
         .network
         .contacts
         .iter()
@@ -70,22 +72,27 @@ fn across(s: &Simulation<Dim3>, axis: usize) -> usize {
 #[test]
 fn a_cell_keeps_mass_and_momentum() {
     let mut s = cell();
-    let mass: f64 = s.bodies.grains().map(|b| s.bodies.mass[b]).sum();
+    let mass: f64 = s
+        .state
+        .bodies
+        .grains()
+        .map(|b| s.state.bodies.mass[b])
+        .sum();
     let mut crossing = [0, 0];
     let mut given = Vector3::zeros();
     for _ in 0..STEPS {
         let before = momentum(&s);
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         assert!(report.solver.converged);
-        let walls: Vector3<f64> = s.received.iter().map(|r| r.0).sum();
+        let walls: Vector3<f64> = s.state.received.iter().map(|r| r.0).sum();
         let (gain, scale) = (
             momentum(&s) - before,
-            s.received.iter().map(|r| r.0.norm()).sum::<f64>(),
+            s.state.received.iter().map(|r| r.0.norm()).sum::<f64>(),
         );
         assert!(
             (gain + walls).norm() < 1e-10 * scale.max(1e-6),
             "{gain} and {walls} in step {}",
-            s.steps
+            s.state.steps
         );
         given -= walls;
         for (axis, count) in crossing.iter_mut().enumerate() {
@@ -95,15 +102,21 @@ fn a_cell_keeps_mass_and_momentum() {
     // The lid drags the grains along, obliquely as it moves; the layer is loaded across both boundaries.
     assert!(given.x > 0.0 && given.y < 0.0, "{given}");
     assert!(crossing.iter().all(|n| *n > 1000), "{crossing:?}");
-    let after: f64 = s.bodies.grains().map(|b| s.bodies.mass[b]).sum();
-    assert_eq!(mass, after);
-    let held = s
+    let after: f64 = s
+        .state
         .bodies
         .grains()
-        .filter(|b| (0.0..0.05).contains(&s.bodies.position[*b].z))
+        .map(|b| s.state.bodies.mass[b])
+        .sum();
+    assert_eq!(mass, after);
+    let held = s
+        .state
+        .bodies
+        .grains()
+        .filter(|b| (0.0..0.05).contains(&s.state.bodies.position[*b].z))
         .count();
     assert_eq!(held, 120);
-    assert!(s.energy.relative_residual() < 1e-9);
+    assert!(s.state.energy.relative_residual() < 1e-9);
 }
 
 /// Two thirds of the grains are replaced by images of theirs, whole periods away: nothing else changes. Rounding grows by
@@ -116,18 +129,21 @@ fn an_image_is_as_good_as_its_grain() {
         1 => Vector3::new(-CELL[0], 0.0, 0.0),
         _ => Vector3::zeros(),
     };
-    let grains: Vec<usize> = one.bodies.grains().collect();
+    let grains: Vec<usize> = one.state.bodies.grains().collect();
     for b in &grains {
-        twin.bodies.position[*b] += shift(*b);
+        twin.state.bodies.position[*b] += shift(*b);
     }
     for _ in 0..200 {
         one.step().unwrap_or_else(|e| panic!("{e}"));
         twin.step().unwrap_or_else(|e| panic!("{e}"));
     }
-    assert_eq!(one.network.contacts.len(), twin.network.contacts.len());
-    assert!(one.network.contacts.len() > 200);
+    assert_eq!(
+        one.state.network.contacts.len(),
+        twin.state.network.contacts.len()
+    );
+    assert!(one.state.network.contacts.len() > 200);
     for b in grains {
-        let apart = twin.bodies.position[b] - shift(b) - one.bodies.position[b];
+        let apart = twin.state.bodies.position[b] - shift(b) - one.state.bodies.position[b];
         assert!(apart.norm() < 1e-6 * CELL[0], "grain {b}: {apart}");
     }
 }

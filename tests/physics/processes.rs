@@ -44,7 +44,7 @@ impl Process<Dim2> for Throw {
     }
 
     fn before_detection(&mut self, s: &mut Simulation<Dim2>) -> Result<(), ProcessError> {
-        let impulse = Vector2::new(s.bodies.mass[0] * std::mem::take(&mut self.0), 0.0);
+        let impulse = Vector2::new(s.state.bodies.mass[0] * std::mem::take(&mut self.0), 0.0);
         if impulse.x != 0.0 {
             s.apply_impulse(0, &impulse, &Default::default());
         }
@@ -87,7 +87,7 @@ fn what_is_due_between_steps_is_not_lost() {
     assert_eq!(count(&s), 2);
     let mut resumed = two_grains();
     resumed.add_process(Counter::default());
-    assert!(resumed.restore(s.save()));
+    assert!(resumed.restore(s.state.clone()));
     resumed
         .restore_processes(&s.save_processes().unwrap())
         .unwrap();
@@ -107,7 +107,7 @@ fn an_impulse_that_sends_a_grain_through_another_is_reported() {
         let mut s = two_grains();
         s.add_process(Throw(speed));
         s.step().unwrap();
-        let passed = s.network.step_size.passed;
+        let passed = s.state.network.step_size.passed;
         assert_eq!(passed > 0, told, "{speed} m/s: {passed}");
     }
 }

@@ -84,10 +84,10 @@ fn gravity_turns() {
         grains: [List(material: \"glass\", grains: [(at: [0.0, 0.0], radius: 0.01)])]",
     );
     steps(&mut s, 1000);
-    let v = s.bodies.velocity[0];
+    let v = s.state.bodies.velocity[0];
     close(v.x, G * 2.0 / PI, 1e-5);
     close(v.y, -G * 2.0 / PI, 1e-5);
-    assert!(s.energy.relative_residual() < 1e-12);
+    assert!(s.state.energy.relative_residual() < 1e-12);
 }
 
 /// A lid under p between walls that part at V: v = p (L0 t + V t^2/2)/m.
@@ -105,10 +105,10 @@ fn a_servo_follows_the_length() {
         ]",
     );
     steps(&mut s, 4000);
-    let lid = body(&s.bodies, "lid");
+    let lid = body(&s.state.bodies, "lid");
     let exact = p * (l0 * t + speed * t * t / 2.0) / m;
-    close(s.bodies.velocity[lid].y, exact, 1e-4 * exact.abs());
-    assert!(s.energy.relative_residual() < 1e-12);
+    close(s.state.bodies.velocity[lid].y, exact, 1e-4 * exact.abs());
+    assert!(s.state.energy.relative_residual() < 1e-12);
     refused(
         "time: (step: 1e-3, end: 1.0), bodies: [(name: \"lid\", material: \"glass\", mass: 1.0,
             shapes: [HalfSpace(normal: [0.0, -1.0])], dofs: (y: Pressure(value: Constant(-1.0))))]",
@@ -125,10 +125,10 @@ fn a_gate_vanishes() {
         grains: [List(material: \"glass\", grains: [(at: [0.0, 0.01], radius: 0.01)])]",
     );
     steps(&mut s, 100);
-    close(s.bodies.position[0].y, 0.01, 1e-12);
+    close(s.state.bodies.position[0].y, 0.01, 1e-12);
     steps(&mut s, 200);
-    close(s.bodies.position[0].y, 0.01 - 0.5 * G * 0.04, 1e-9);
-    assert!(s.network.contacts.is_empty());
+    close(s.state.bodies.position[0].y, 0.01 - 0.5 * G * 0.04, 1e-9);
+    assert!(s.state.network.contacts.is_empty());
 }
 
 /// A block is pushed for 0.2 s without friction, then slides freely with a friction of 0.3 until it rests: it
@@ -150,12 +150,17 @@ fn phases_hand_the_state_over() {
              drives: {\"block\": (x: Velocity(Ramp(from: 0.0, to: 2.0, start: 0.1, end: 0.2)))}),
         ]",
     );
-    let block = body(&s.bodies, "block");
+    let block = body(&s.state.bodies, "block");
     let mut places = Vec::new();
-    while !s.control.finished() {
+    while !s.phases_finished() {
         steps(&mut s, 1);
-        if s.control.begun().last().is_some_and(|b| b.end.is_some()) {
-            places.push(s.bodies.position[block].x);
+        if s.state
+            .control
+            .begun()
+            .last()
+            .is_some_and(|b| b.end.is_some())
+        {
+            places.push(s.state.bodies.position[block].x);
         }
     }
     let slid = 1.0 / (2.0 * 0.3 * G);
@@ -163,12 +168,12 @@ fn phases_hand_the_state_over() {
     close(places[1] - places[0], slid, 1e-3);
     // The ramp runs on the time since the phase began: 0.1 s of rest, then 0.1 s to 2 m/s.
     close(places[2] - places[1], 0.5 * 2.0 * 0.1, 1e-14);
-    let begun = s.control.begun();
+    let begun = s.state.control.begun();
     let ends: Vec<_> = begun.iter().map(|b| b.ended_by).collect();
     assert_eq!(ends, [Some("duration"), Some("steps"), Some("time")]);
     close(begun[2].start, 0.6, 1e-9);
-    close(s.time, 0.8, 1e-9);
-    assert!(s.energy.relative_residual() < 1e-9);
+    close(s.state.time, 0.8, 1e-9);
+    assert!(s.state.energy.relative_residual() < 1e-9);
 }
 
 /// A grain falls by h: rest comes after the fall, sqrt(2 h/g), and `held`.
@@ -180,11 +185,11 @@ fn a_phase_ends_at_rest() {
         grains: [List(material: \"glass\", grains: [(at: [0.0, 0.11], radius: 0.01)])],
         phases: [(name: \"fall\", until: AtRest(share: 1e-4, held: 0.02))]",
     );
-    while !s.control.finished() {
+    while !s.phases_finished() {
         steps(&mut s, 1);
     }
-    close(s.time, (2.0 * 0.1 / G).sqrt() + 0.02, 5e-4);
-    assert_eq!(s.control.begun()[0].ended_by, Some("rest"));
+    close(s.state.time, (2.0 * 0.1 / G).sqrt() + 0.02, 5e-4);
+    assert_eq!(s.state.control.begun()[0].ended_by, Some("rest"));
 }
 
 #[test]
@@ -243,11 +248,11 @@ fn a_disk_rolls_in_a_drum() {
         grains: [List(material: \"glass\", grains: [(at: [0.0, -0.15], radius: 0.05, spin: [12.0])])]",
     );
     steps(&mut s, 500);
-    close(s.bodies.spin[0][0], 12.0, 1e-3);
-    close(s.bodies.position[0].x, 0.0, 1e-5);
-    let drum = s.received[0];
+    close(s.state.bodies.spin[0][0], 12.0, 1e-3);
+    close(s.state.bodies.position[0].x, 0.0, 1e-5);
+    let drum = s.state.received[0];
     // The drum carries the weight; nothing is dragged.
-    let weight = s.bodies.mass[0] * G * s.scheme.h;
+    let weight = s.state.bodies.mass[0] * G * s.options.scheme.h;
     close(drum.0.y / weight, -1.0, 1e-4);
     close(drum.1[0] / weight / 0.2, 0.0, 1e-4);
 }
@@ -265,14 +270,14 @@ fn a_sphere_swings_in_a_cylinder() {
     ));
     let period = 2.0 * PI * (7.0 / 5.0 * reach / G).sqrt();
     let mut before = (0.0, x);
-    while s.bodies.position[0].x > 0.0 {
-        before = (s.time, s.bodies.position[0].x);
+    while s.state.bodies.position[0].x > 0.0 {
+        before = (s.state.time, s.state.bodies.position[0].x);
         steps(&mut s, 1);
     }
-    let now = (s.time, s.bodies.position[0].x);
+    let now = (s.state.time, s.state.bodies.position[0].x);
     let crossing = before.0 + (now.0 - before.0) * before.1 / (before.1 - now.1);
     close(crossing / (0.25 * period), 1.0, 2e-3);
-    close(s.bodies.position[0].y, 0.3, 1e-9);
+    close(s.state.bodies.position[0].y, 0.3, 1e-9);
 }
 
 /// A block rubs to and fro under its weight, five cycles of a group of two phases: it ends where it began, and
@@ -294,20 +299,26 @@ fn a_group_of_phases_is_repeated() {
             (name: \"last\", until: Steps(1), drives: {\"block\": (x: Velocity(Constant(0.0)))}),
         ]",
     );
-    let block = body(&s.bodies, "block");
+    let block = body(&s.state.bodies, "block");
     let mut furthest = 0.0f64;
-    while !s.control.finished() {
+    while !s.phases_finished() {
         steps(&mut s, 1);
-        furthest = furthest.max(s.bodies.position[block].x);
+        furthest = furthest.max(s.state.bodies.position[block].x);
     }
-    let names: Vec<&str> = s.control.begun().iter().map(|b| b.name.as_str()).collect();
+    let names: Vec<&str> = s
+        .state
+        .control
+        .begun()
+        .iter()
+        .map(|b| b.name.as_str())
+        .collect();
     let group = ["to", "fro"].repeat(cycles);
     assert_eq!(names, [&["rest"][..], &group, &["last"]].concat());
     close(furthest, stroke, 1e-15);
-    close(s.bodies.position[block].x, 0.0, 1e-15);
-    let work = 0.5 * s.bodies.mass[block] * G * 2.0 * stroke * cycles as f64;
-    close(s.energy.friction / work, 1.0, 0.02);
-    assert!(s.energy.relative_residual() < 1e-9);
+    close(s.state.bodies.position[block].x, 0.0, 1e-15);
+    let work = 0.5 * s.state.bodies.mass[block] * G * 2.0 * stroke * cycles as f64;
+    close(s.state.energy.friction / work, 1.0, 0.02);
+    assert!(s.state.energy.relative_residual() < 1e-9);
 }
 
 /// A floor taps a grain three times: it flies for 2 V/g each time, and the next tap waits until it rests.
@@ -324,10 +335,15 @@ fn taps_wait_for_rest() {
              repeat: (from: \"tap\", times: 3)),
         ]",
     );
-    while !s.control.finished() {
+    while !s.phases_finished() {
         steps(&mut s, 1);
     }
-    let settled = s.control.begun().iter().filter(|b| b.name == "settle");
+    let settled = s
+        .state
+        .control
+        .begun()
+        .iter()
+        .filter(|b| b.name == "settle");
     let times: Vec<f64> = settled
         .map(|b| b.end.unwrap_or(f64::NAN) - b.start)
         .collect();

@@ -54,21 +54,23 @@ fn two_disks_come_apart_by_their_masses_and_stay_at_rest() {
             grains: [List(material: "grain", grains: [
                 (at: [{shift:?}, 0.0], radius: 0.1), (at: [{x:?}, {y:?}], radius: 0.05)])],"#
         ));
-        let from = s.bodies.position.clone();
+        let from = s.state.bodies.position.clone();
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         let projected = report.projected.expect("the overlap is beyond the bound");
         close(projected.before, DEPTH / 0.05, 1e-9);
         close(projected.after, 0.0, 1e-12);
-        let moved: Vec<_> = (0..2).map(|b| s.bodies.position[b] - from[b]).collect();
+        let moved: Vec<_> = (0..2)
+            .map(|b| s.state.bodies.position[b] - from[b])
+            .collect();
         let normal = Vector2::new(0.8, 0.6);
         // Grains are put in order along space.
-        let light = usize::from(s.bodies.mass[1] < s.bodies.mass[0]);
+        let light = usize::from(s.state.bodies.mass[1] < s.state.bodies.mass[0]);
         for (moved, wanted) in [(moved[1 - light], -0.2), (moved[light], 0.8)] {
             close(moved.dot(&normal), wanted * DEPTH, 1e-15);
             close(moved.perp(&normal), 0.0, 1e-15);
         }
-        assert!(s.bodies.velocity.iter().all(|v| v.norm() == 0.0));
-        let e = &s.energy;
+        assert!(s.state.bodies.velocity.iter().all(|v| v.norm() == 0.0));
+        let e = &s.state.energy;
         assert_eq!([e.kinetic, e.potential, e.correction, e.residual], [0.0; 4]);
         // Nothing is left to be done.
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
@@ -84,11 +86,11 @@ fn what_is_within_the_bound_stays() {
         grains: [List(material: "grain", grains: [
             (at: [0.0, 0.0], radius: 0.1), (at: [0.19961, 0.0], radius: 0.1)])],"#
     ));
-    s.projection = 4e-3;
-    let from = s.bodies.position.clone();
+    s.options.projection = 4e-3;
+    let from = s.state.bodies.position.clone();
     let report = s.step().unwrap_or_else(|e| panic!("{e}"));
-    assert!(report.projected.is_none() && s.bodies.position == from);
-    s.projection = 3.8e-3;
+    assert!(report.projected.is_none() && s.state.bodies.position == from);
+    s.options.projection = 3.8e-3;
     let report = s.step().unwrap_or_else(|e| panic!("{e}"));
     assert!(report.projected.is_some());
 }
@@ -103,26 +105,26 @@ fn a_column_is_lifted_and_its_weight_is_booked() {
         grains: [List(material: "grain", grains: [
             (at: [0.0, {low:?}], radius: 0.1), (at: [0.0, {high:?}], radius: 0.1)])],"#
     ));
-    let grains: Vec<usize> = s.bodies.grains().collect();
+    let grains: Vec<usize> = s.state.bodies.grains().collect();
     let floor = (0..3).find(|b| !grains.contains(b)).expect("a floor");
-    let weight = G * s.bodies.mass[grains[0]];
+    let weight = G * s.state.bodies.mass[grains[0]];
     let given = 3.0 * weight * DEPTH;
-    let (ground, heights) = (s.bodies.position[floor], [low, high]);
+    let (ground, heights) = (s.state.bodies.position[floor], [low, high]);
     let report = s.step().unwrap_or_else(|e| panic!("{e}"));
     assert!(report.projected.is_some());
     // To the tolerance of the moves.
     for (k, b) in grains.iter().enumerate() {
-        let risen = s.bodies.position[*b].y - heights[k];
+        let risen = s.state.bodies.position[*b].y - heights[k];
         close(risen, (k as f64 + 1.0) * DEPTH, 2e-3 * DEPTH);
     }
-    assert_eq!(s.bodies.position[floor], ground);
-    close(-s.energy.correction, given, 2e-3 * given);
-    let first = s.energy.correction;
+    assert_eq!(s.state.bodies.position[floor], ground);
+    close(-s.state.energy.correction, given, 2e-3 * given);
+    let first = s.state.energy.correction;
     for _ in 0..200 {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         assert!(report.projected.is_none());
     }
-    let e = &s.energy;
+    let e = &s.state.energy;
     assert_eq!(e.correction, first);
     close(e.potential, given, 2e-3 * given);
     assert!(e.kinetic < 1e-9 * given);
@@ -144,21 +146,21 @@ fn walls_that_are_fixed_stay_and_a_load_is_lifted() {
         grains: [List(material: "grain", grains: [(at: [0.0, {disk:?}], radius: 0.1)])],"#
     ));
     let place = |s: &Simulation<Dim2>, name: &str| {
-        let driven = s.bodies.driven.iter().find(|d| d.name == name);
+        let driven = s.state.bodies.driven.iter().find(|d| d.name == name);
         driven.expect("the body").body as usize
     };
     let [floor, lid] = [place(&s, "floor"), place(&s, "lid")];
-    let from = s.bodies.position.clone();
+    let from = s.state.bodies.position.clone();
     let report = s.step().unwrap_or_else(|e| panic!("{e}"));
     let projected = report.projected.expect("overlaps are beyond the bound");
-    let moved = s.bodies.position[lid] - from[lid];
+    let moved = s.state.bodies.position[lid] - from[lid];
     close(moved.y, 2.0 * DEPTH, 4e-3 * DEPTH);
     // The imposed motion is what it was, 0.25 h.
     close(moved.x, 0.25e-3, 1e-15);
-    assert_eq!(s.bodies.position[floor], from[floor]);
+    assert_eq!(s.state.bodies.position[floor], from[floor]);
     let given = 2.0 * LOAD * DEPTH;
     close(projected.against_loads, given, 2e-3 * given);
-    let e = &s.energy;
+    let e = &s.state.energy;
     assert_eq!(e.correction, -projected.against_loads);
     assert!(e.residual.abs() < 1e-12 * e.scale, "{:e}", e.residual);
 }
@@ -182,28 +184,33 @@ fn a_bond_that_holds_is_not_pulled_apart() {
         ],"#
     ));
     // Bonds are made in the first step, over the overlap.
-    let bound = std::mem::replace(&mut s.projection, 0.0);
+    let bound = std::mem::replace(&mut s.options.projection, 0.0);
     s.step().unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(s.network.bonds_made(), 1);
-    s.projection = bound;
+    assert_eq!(s.state.network.bonds_made(), 1);
+    s.options.projection = bound;
     let report = s.step().unwrap_or_else(|e| panic!("{e}"));
     assert!(
         report.projected.is_none(),
         "what a bond fills is no overlap"
     );
 
-    s.bodies.position[2].x -= DEPTH;
-    let (from, elastic) = (s.bodies.position.clone(), s.network.elastic_energy());
+    s.state.bodies.position[2].x -= DEPTH;
+    let (from, elastic) = (
+        s.state.bodies.position.clone(),
+        s.state.network.elastic_energy(),
+    );
     let report = s.step().unwrap_or_else(|e| panic!("{e}"));
     assert!(report.projected.is_some());
-    let moved: Vec<f64> = (0..3).map(|b| (s.bodies.position[b] - from[b]).x).collect();
-    let [pair, bead] = [2.0 * s.bodies.mass[0], s.bodies.mass[2]];
+    let moved: Vec<f64> = (0..3)
+        .map(|b| (s.state.bodies.position[b] - from[b]).x)
+        .collect();
+    let [pair, bead] = [2.0 * s.state.bodies.mass[0], s.state.bodies.mass[2]];
     let share = bead / (pair + bead);
     close(moved[1], -share * DEPTH, 2e-3 * DEPTH);
     close(moved[2], (1.0 - share) * DEPTH, 2e-3 * DEPTH);
     close(moved[0], moved[1], 2e-3 * DEPTH);
-    close(s.network.elastic_energy(), elastic, 0.0);
-    close(s.energy.kinetic, 0.0, 0.0);
+    close(s.state.network.elastic_energy(), elastic, 0.0);
+    close(s.state.energy.kinetic, 0.0, 0.0);
 }
 
 /// A cuboid that spins about no axis of its own, a corner in a wall and leaving it: it turns, and no energy comes of it.
@@ -225,14 +232,17 @@ fn a_body_whose_inertia_differs_by_axis_keeps_its_energy_as_it_is_turned() {
         grains: [Polyhedra(material: "grain", grains: [(at: [0.0, 0.0, {height:?}], size: (0.3, 0.2, 0.1),
             turned: [0.4, -0.7, 0.2], velocity: [0.0, 0.0, 3.0], spin: [1.0, 2.0, -1.5])])],"#
     ));
-    s.scheme.h = 1e-9;
-    let grain = s.bodies.grains().next().expect("a grain");
-    let (before, kinetic) = (s.bodies.rotation[grain], s.bodies.kinetic_energy());
+    s.options.scheme.h = 1e-9;
+    let grain = s.state.bodies.grains().next().expect("a grain");
+    let (before, kinetic) = (
+        s.state.bodies.rotation[grain],
+        s.state.bodies.kinetic_energy(),
+    );
     let report = s.step().unwrap_or_else(|e| panic!("{e}"));
     let projected = report.projected.expect("the overlap is beyond the bound");
     assert!(projected.after < 1e-2 * projected.before, "{projected:?}");
-    let angle = before.angle_to(&s.bodies.rotation[grain]);
+    let angle = before.angle_to(&s.state.bodies.rotation[grain]);
     assert!(angle > 0.1 * DEPTH, "it turned by {angle:e}");
-    close(s.bodies.kinetic_energy(), kinetic, 1e-12 * kinetic);
-    assert!(s.energy.residual.abs() < 1e-12 * kinetic);
+    close(s.state.bodies.kinetic_energy(), kinetic, 1e-12 * kinetic);
+    assert!(s.state.energy.residual.abs() < 1e-12 * kinetic);
 }

@@ -46,39 +46,39 @@ fn roll(creepage: f64, step: f64, layered: bool) -> Rolling {
     let loaded = load(&case, &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
-    let place = s.bodies.driven.iter().position(|d| d.name == "wheel");
+    let place = s.state.bodies.driven.iter().position(|d| d.name == "wheel");
     let place = place.expect("the case has a wheel");
-    let wheel = s.bodies.driven[place].body;
+    let wheel = s.state.bodies.driven[place].body;
     let (mut seen, mut load, mut counted) = (Rolling::default(), 0.0, 0.0);
-    let mut start = s.energy;
-    while s.time < end - 1e-9 {
-        let before = s.bodies.velocity[wheel as usize][1];
+    let mut start = s.state.energy;
+    while s.state.time < end - 1e-9 {
+        let before = s.state.bodies.velocity[wheel as usize][1];
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         seen.missed += u32::from(!report.solver.converged);
-        if s.time <= 0.03 {
-            start = s.energy;
+        if s.state.time <= 0.03 {
+            start = s.state.energy;
             continue;
         }
-        let (impulse, moment) = s.received[place];
+        let (impulse, moment) = s.state.received[place];
         load += impulse[1];
         seen.force += impulse[0];
         seen.moment += moment[0] / RADIUS;
-        let theta = s.scheme.theta;
-        let rise = theta * s.bodies.velocity[wheel as usize][1] + (1.0 - theta) * before;
+        let theta = s.options.scheme.theta;
+        let rise = theta * s.state.bodies.velocity[wheel as usize][1] + (1.0 - theta) * before;
         seen.power -= impulse[0] + moment[0] * spin + impulse[1] * rise;
-        let contacts = &s.network.contacts;
+        let contacts = &s.state.network.contacts;
         let touching = |b: &[u32; 2], p: f64| b.contains(&wheel) && p > 0.0;
         let carrying = contacts
             .iter()
             .filter(|c| touching(&c.bodies, c.impulse.norm()));
         seen.length += 2e-4 * carrying.count() as f64;
-        seen.depth += RADIUS + 5e-4 - s.bodies.position[wheel as usize][1];
+        seen.depth += RADIUS + 5e-4 - s.state.bodies.position[wheel as usize][1];
         counted += 1.0;
     }
     seen.force /= load;
     seen.moment /= load;
     seen.power /= load;
-    let e = &s.energy;
+    let e = &s.state.energy;
     seen.heat = (e.friction - start.friction) / load;
     seen.lost = (e.dissipated() + e.scheme - start.dissipated() - start.scheme) / load;
     seen.stored = (e.kinetic + e.elastic - start.kinetic - start.elastic) / load;
@@ -170,7 +170,7 @@ fn a_foundation_over_an_overlap_is_at_rest() {
     for _ in 0..100 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }
-    assert_eq!(s.network.bonds_made(), 1);
-    let e = &s.energy;
+    assert_eq!(s.state.network.bonds_made(), 1);
+    let e = &s.state.energy;
     assert_eq!([e.elastic, e.correction, e.kinetic], [0.0; 3], "{e:?}");
 }

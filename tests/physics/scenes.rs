@@ -48,15 +48,15 @@ fn recorded<S: Dimensional>(loaded: &Loaded, built: Built<S>, look: impl FnOnce(
 }
 
 fn place(s: &Simulation<Dim2>, name: &str) -> usize {
-    let found = s.bodies.driven.iter().position(|d| d.name == name);
+    let found = s.state.bodies.driven.iter().position(|d| d.name == name);
     found.unwrap_or_else(|| panic!("a body named {name}"))
 }
 
 fn held(s: &Simulation<Dim2>) -> f64 {
-    let grains =
-        (0..s.bodies.len()).filter(|b| s.bodies.driven.iter().all(|d| d.body as usize != *b));
-    let inside = grains.filter(|b| s.bodies.position[*b].y > 0.0);
-    inside.map(|b| s.bodies.mass[b]).sum()
+    let grains = (0..s.state.bodies.len())
+        .filter(|b| s.state.bodies.driven.iter().all(|d| d.body as usize != *b));
+    let inside = grains.filter(|b| s.state.bodies.position[*b].y > 0.0);
+    inside.map(|b| s.state.bodies.mass[b]).sum()
 }
 
 /// While the gate is lowered slowly gate and walls carry the weight together, the walls a good part of it (Janssen). Opened, the silo
@@ -68,11 +68,11 @@ fn a_silo_saturates_and_drains_at_a_constant_rate() {
     let all = held(&s);
     let [gate_at, left, right] = ["gate", "left", "right"].map(|n| place(&s, n));
     let (mut gate, mut walls, mut count) = (0.0, 0.0, 0.0);
-    while s.control.phase() < 3 {
+    while s.state.control.phase() < 3 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
-        let begun = s.control.begun().last();
-        if begun.is_some_and(|b| b.name == "lower" && s.time > b.start + 0.03) {
-            let up = |k: usize| -s.received[k].0.y / s.scheme.h;
+        let begun = s.state.control.begun().last();
+        if begun.is_some_and(|b| b.name == "lower" && s.state.time > b.start + 0.03) {
+            let up = |k: usize| -s.state.received[k].0.y / s.options.scheme.h;
             (gate, walls) = (gate + up(gate_at), walls + up(left) + up(right));
             count += 1.0;
         }
@@ -82,13 +82,13 @@ fn a_silo_saturates_and_drains_at_a_constant_rate() {
     println!("gate {gate:.3}, walls {walls:.3} of the weight");
     assert!((gate + walls - 1.0).abs() < 0.03, "{gate} + {walls}");
     assert!(gate < 0.9 && walls > 0.1, "{gate} and {walls}");
-    let start = s.time;
+    let start = s.state.time;
     let mut times = Vec::new();
     let parts = [0.9, 0.7, 0.5];
-    while times.len() < parts.len() && s.time < start + 4.0 {
+    while times.len() < parts.len() && s.state.time < start + 4.0 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
         if held(&s) < parts[times.len()] * all {
-            times.push(s.time);
+            times.push(s.state.time);
         }
     }
     assert_eq!(times.len(), parts.len(), "the silo drains");
@@ -182,26 +182,26 @@ fn cohesion_strengthens_a_sheared_layer_as_mohr_and_coulomb_say() {
     let (low, high, force, range) = (0.03, 0.13, 16.0, 1e-4);
     let (_, built) = case("cohesive_shear", &QUIET);
     let mut s = built.simulation;
-    let grain = s.bodies.grain_flags();
+    let grain = s.state.bodies.grain_flags();
     let (mut tau, mut pressure, mut attraction) = (0.0, 0.0, 0.0);
     let (mut speeds, mut samples) = (0.0, 0.0);
-    while s.time < 2.4 {
+    while s.state.time < 2.4 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
-        if s.time < 1.2 || s.steps % 10 != 0 {
+        if s.state.time < 1.2 || s.state.steps % 10 != 0 {
             continue;
         }
         let area = 0.2 * (high - low);
         samples += 1.0;
-        for c in &s.network.contacts {
+        for c in &s.state.network.contacts {
             let ball = |k: u32| &s.shapes.balls[k as usize];
             let (a, b) = (ball(c.key.candidate), ball(c.key.antagonist));
-            let middle = 0.5 * (centre(a, &s.bodies).y + centre(b, &s.bodies).y);
+            let middle = 0.5 * (centre(a, &s.state.bodies).y + centre(b, &s.state.bodies).y);
             if !(low..high).contains(&middle) {
                 continue;
             }
             let length = a.radius + b.radius + c.gap;
             let branch = c.normal * length;
-            let f = c.impulse * (1.0 / s.scheme.h);
+            let f = c.impulse * (1.0 / s.options.scheme.h);
             tau -= f.x * branch.y / area;
             pressure += f.y * branch.y / area;
             if c.gap <= range {
@@ -210,10 +210,11 @@ fn cohesion_strengthens_a_sheared_layer_as_mohr_and_coulomb_say() {
         }
         // The shear rate from the mean velocities of the two halves.
         let mean = |from: f64, to: f64| {
-            let inside = |b: &usize| grain[*b] && (from..to).contains(&s.bodies.position[*b].y);
-            let v: Vec<f64> = (0..s.bodies.len())
+            let inside =
+                |b: &usize| grain[*b] && (from..to).contains(&s.state.bodies.position[*b].y);
+            let v: Vec<f64> = (0..s.state.bodies.len())
                 .filter(inside)
-                .map(|b| s.bodies.velocity[b].x)
+                .map(|b| s.state.bodies.velocity[b].x)
                 .collect();
             v.iter().sum::<f64>() / v.len().max(1) as f64
         };
@@ -327,18 +328,23 @@ struct Moved {
 
 impl Moved {
     fn new(mut s: Simulation<Dim2>) -> Self {
-        let mut before = s.bodies.position.clone();
-        while !s.control.finished() {
-            if s.control.phase() < 2 {
-                before.clone_from(&s.bodies.position);
+        let mut before = s.state.bodies.position.clone();
+        while !s.phases_finished() {
+            if s.state.control.phase() < 2 {
+                before.clone_from(&s.state.bodies.position);
             }
             s.step().unwrap_or_else(|e| panic!("{e}"));
         }
-        assert!(s.energy.relative_residual() < 1e-9);
-        let block = s.bodies.driven[place(&s, "block")].body as usize;
-        let gone = |b: usize| s.bodies.position[b] - before[b];
+        assert!(s.state.energy.relative_residual() < 1e-9);
+        let block = s.state.bodies.driven[place(&s, "block")].body as usize;
+        let gone = |b: usize| s.state.bodies.position[b] - before[b];
         Self {
-            grains: s.bodies.grains().map(|b| (before[b], gone(b))).collect(),
+            grains: s
+                .state
+                .bodies
+                .grains()
+                .map(|b| (before[b], gone(b)))
+                .collect(),
             block: gone(block),
         }
     }
@@ -368,8 +374,8 @@ impl Moved {
 /// A case with its grains in the mirror x = 0.25 m.
 fn mirrored(name: &str, sets: &[&str]) -> Simulation<Dim2> {
     let mut s = case(name, sets).1.simulation;
-    for b in s.bodies.grains().collect::<Vec<_>>() {
-        s.bodies.position[b].x = 0.5 - s.bodies.position[b].x;
+    for b in s.state.bodies.grains().collect::<Vec<_>>() {
+        s.state.bodies.position[b].x = 0.5 - s.state.bodies.position[b].x;
     }
     s
 }
@@ -426,10 +432,10 @@ fn a_fold_lifts_its_layer_with_the_block() {
 fn as_many_balls_leave_a_cradle_as_come() {
     let (_, built) = case_in::<Dim3>("newton_cradle", &[]);
     let mut s = built.simulation;
-    while s.time < 0.06 {
+    while s.state.time < 0.06 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }
-    let speeds: Vec<f64> = s.bodies.velocity.iter().map(|v| v.x).collect();
+    let speeds: Vec<f64> = s.state.bodies.velocity.iter().map(|v| v.x).collect();
     let known = [0.0, 0.0, 0.0, 1.0, 1.0];
     let far = speeds.iter().zip(known).map(|(v, k)| (v - k).abs());
     assert!(far.fold(0.0, f64::max) < 1e-12, "{speeds:?}");

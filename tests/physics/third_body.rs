@@ -92,7 +92,7 @@ fn seen<S: Dimensional>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> 
     let mut observers = measures::<S>(&loaded.case.measures, loaded.case.inertia_scaling);
     observers.begin(&mut s);
     change(&mut s);
-    s.time += 1.0;
+    s.state.time += 1.0;
     let values = observers.sample(&s);
     let columns = observers.columns();
     let out = own("");
@@ -160,17 +160,17 @@ fn lattice() -> Vec<([f64; 3], f64)> {
 }
 
 fn body<S: Space>(s: &Simulation<S>, name: &str) -> usize {
-    let found = s.bodies.driven.iter().find(|d| d.name == name);
+    let found = s.state.bodies.driven.iter().find(|d| d.name == name);
     found.map_or_else(|| panic!("no body {name}"), |d| d.body as usize)
 }
 
 /// Gives grains and wheel velocities along x that depend on the height.
 fn sheared(s: &mut Simulation<Dim2>, v: impl Fn(f64) -> f64) {
     let wheel = body(s, "wheel");
-    for b in s.bodies.grains().collect::<Vec<_>>() {
-        s.bodies.velocity[b].x = v(s.bodies.position[b].y);
+    for b in s.state.bodies.grains().collect::<Vec<_>>() {
+        s.state.bodies.velocity[b].x = v(s.state.bodies.position[b].y);
     }
-    s.bodies.velocity[wheel].x = v(2.0);
+    s.state.bodies.velocity[wheel].x = v(2.0);
 }
 
 /// An affine field: the profile is straight and through both walls, the granular temperature null, whether bins
@@ -238,13 +238,14 @@ fn a_temperature_is_the_mean_square_by_the_dimension() {
     let text = between::<Dim2>(2.0, &lattice(), 10);
     let seen = seen::<Dim2>(&text, |s| {
         for (k, b) in s
+            .state
             .bodies
             .grains()
             .collect::<Vec<_>>()
             .into_iter()
             .enumerate()
         {
-            s.bodies.velocity[b].y = if k % 2 == 0 { 0.2 } else { -0.2 };
+            s.state.bodies.velocity[b].y = if k % 2 == 0 { 0.2 } else { -0.2 };
         }
     });
     assert!(
@@ -293,8 +294,8 @@ fn a_column_carries_the_weight_above() {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     });
     let s = &seen.simulation;
-    let grain = s.bodies.grains().next().unwrap_or_default();
-    let weight = 9.81 * s.bodies.mass[grain];
+    let grain = s.state.bodies.grains().next().unwrap_or_default();
+    let weight = 9.81 * s.state.bodies.mass[grain];
     for (k, p) in seen.profile["stress_across"].iter().enumerate() {
         // Lower half of disk j: its own weight too.
         let above = (8 - k.div_ceil(2)) as f64;

@@ -40,7 +40,7 @@ const STATE: &str = r#"State(results: "out", material: "grain")"#;
 /// All numbers of a grain: those that must agree to the bit, and those that may differ by round-off (its place where
 /// that follows from one of its parts, and what is in the world's axes).
 fn numbers<S: Space>(s: &Simulation<S>, b: usize) -> (Vec<f64>, Vec<f64>) {
-    let bodies = &s.bodies;
+    let bodies = &s.state.bodies;
     let mut same = bodies.velocity[b].padded().to_vec();
     same.extend(bodies.spin[b].padded());
     same.extend(S::rotation_numbers(&bodies.rotation[b]));
@@ -66,14 +66,14 @@ fn numbers<S: Space>(s: &Simulation<S>, b: usize) -> (Vec<f64>, Vec<f64>) {
 
 /// The grains of two simulations are the same; gives how many.
 fn compare<S: Space>(first: &Simulation<S>, second: &Simulation<S>) -> usize {
-    let of = |s: &Simulation<S>| s.bodies.grains().collect::<Vec<_>>();
+    let of = |s: &Simulation<S>| s.state.bodies.grains().collect::<Vec<_>>();
     let (ours, mut theirs) = (of(first), of(second));
     assert_eq!(ours.len(), theirs.len());
     let periodic = &first.shapes.periodic;
     for a in &ours {
         let (same, near) = numbers(first, *a);
         let apart = |b: usize| {
-            let d = first.bodies.position[*a] - second.bodies.position[b];
+            let d = first.state.bodies.position[*a] - second.state.bodies.position[b];
             periodic.shortest(d).norm()
         };
         let nearest = (0..theirs.len())
@@ -94,6 +94,7 @@ fn begins_where_the_other_ended<S: Dimensional>(name: &str, grains: &str, count:
     let first = folder.run::<S>(&case(S::D, "stone", grains, ""));
     assert!(
         first
+            .state
             .network
             .contacts
             .iter()
@@ -116,8 +117,12 @@ fn begins_where_the_other_ended<S: Dimensional>(name: &str, grains: &str, count:
     assert_eq!(compare(&case_itself.simulation, &start.simulation), count);
     // Twice the density: twice the mass and inertia, to the bit.
     let heavy = folder.build::<S>(&case(S::D, "heavy", STATE, ""));
-    let heavy = heavy.unwrap_or_else(|e| panic!("{e}")).simulation.bodies;
-    let light = &second.simulation.bodies;
+    let heavy = heavy
+        .unwrap_or_else(|e| panic!("{e}"))
+        .simulation
+        .state
+        .bodies;
+    let light = &second.simulation.state.bodies;
     for b in light.grains() {
         assert_eq!(heavy.mass[b], 2.0 * light.mass[b]);
         assert_eq!(heavy.inertia[b], 2.0 * light.inertia[b]);
@@ -182,8 +187,8 @@ fn a_layer_of_polygons_settles_in_one_run_and_is_sheared_in_the_next() {
     let mut second = second.unwrap_or_else(|e| panic!("{e}")).simulation;
     assert_eq!(compare(&first, &second), 53);
     let momentum = |s: &Simulation<Dim2>| -> f64 {
-        let along = |b: usize| s.bodies.mass[b] * s.bodies.velocity[b].x;
-        s.bodies.grains().map(along).sum()
+        let along = |b: usize| s.state.bodies.mass[b] * s.state.bodies.velocity[b].x;
+        s.state.bodies.grains().map(along).sum()
     };
     let before = momentum(&second);
     for _ in 0..STEPS {

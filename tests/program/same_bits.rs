@@ -33,22 +33,22 @@ fn stepped<S: Dimensional>(s: &mut Simulation<S>, steps: Result<u64, Duration>) 
         Ok(n) => done < n,
         Err(time) => done < 3 || (done < 400 && clock.elapsed() < time),
     };
-    while goes_on(s.steps) {
+    while goes_on(s.state.steps) {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }
     let mut bits = Vec::new();
     let mut push = |v: &S::Vector| bits.extend((0..S::D).map(|k| v[k].to_bits()));
-    s.bodies.position.iter().for_each(&mut push);
-    s.bodies.velocity.iter().for_each(&mut push);
-    for c in &s.network.contacts {
+    s.state.bodies.position.iter().for_each(&mut push);
+    s.state.bodies.velocity.iter().for_each(&mut push);
+    for c in &s.state.network.contacts {
         push(&c.impulse);
     }
-    for memory in &s.network.memory {
+    for memory in &s.state.network.memory {
         bits.extend(memory.bonds.iter().map(|b| b.damage.to_bits()));
         bits.extend(memory.variables.iter().flatten().map(|x| x.to_bits()));
     }
-    bits.push(s.energy.residual.to_bits());
-    (bits, s.steps)
+    bits.push(s.state.energy.residual.to_bits());
+    (bits, s.state.steps)
 }
 
 fn bits(loaded: &Loaded, threads: usize, steps: Result<u64, Duration>) -> (Vec<u64>, u64) {
@@ -58,11 +58,11 @@ fn bits(loaded: &Loaded, threads: usize, steps: Result<u64, Duration>) -> (Vec<u
         .unwrap();
     pool.install(|| match built(loaded) {
         Scene::Dim2(mut b) => {
-            b.simulation.solver.parallel = threads > 1;
+            b.simulation.options.solver.parallel = threads > 1;
             stepped(&mut b.simulation, steps)
         }
         Scene::Dim3(mut b) => {
-            b.simulation.solver.parallel = threads > 1;
+            b.simulation.options.solver.parallel = threads > 1;
             stepped(&mut b.simulation, steps)
         }
     })
@@ -97,7 +97,7 @@ struct Sums {
 /// sides of contacts follow.
 fn sums<S: Dimensional>(s: &mut Simulation<S>, turned: bool, steps: u64) -> Sums {
     if turned {
-        let grain: Vec<bool> = s.bodies.grain_flags();
+        let grain: Vec<bool> = s.state.bodies.grain_flags();
         let of_grains = |b: &usize| grain[s.shapes.balls[*b].body as usize];
         let places: Vec<usize> = (0..s.shapes.balls.len()).filter(of_grains).collect();
         let balls: Vec<_> = places.iter().map(|p| s.shapes.balls[*p].clone()).collect();
@@ -106,18 +106,18 @@ fn sums<S: Dimensional>(s: &mut Simulation<S>, turned: bool, steps: u64) -> Sums
         }
     }
     let mut pressed = 0.0;
-    while s.steps < steps {
+    while s.state.steps < steps {
         s.step().unwrap_or_else(|e| panic!("{e}"));
-        let contacts = s.network.contacts.iter();
+        let contacts = s.state.network.contacts.iter();
         pressed += contacts.map(|c| c.impulse.dot(&c.normal)).sum::<f64>();
     }
-    let names: Vec<Key> = s.network.contacts.iter().map(|c| c.key).collect();
+    let names: Vec<Key> = s.state.network.contacts.iter().map(|c| c.key).collect();
     assert!(names.is_sorted());
     Sums {
         pressed,
-        lost: s.energy.friction + s.energy.impact,
-        contacts: s.network.contacts.len(),
-        broken: s.network.bonds_broken(),
+        lost: s.state.energy.friction + s.state.energy.impact,
+        contacts: s.state.network.contacts.len(),
+        broken: s.state.network.bonds_broken(),
     }
 }
 

@@ -106,7 +106,10 @@ fn a_table_gives_grains() {
     let built = folder
         .sample::<Dim2>(grains)
         .unwrap_or_else(|e| panic!("{e}"));
-    let (bodies, balls) = (&built.simulation.bodies, &built.simulation.shapes.balls);
+    let (bodies, balls) = (
+        &built.simulation.state.bodies,
+        &built.simulation.shapes.balls,
+    );
     assert_eq!((balls[0].radius, balls[1].radius), (1e-2, 2e-2));
     assert_eq!(bodies.position[0].padded(), [0.05, 0.01, 0.0]);
     assert_eq!((bodies.velocity[0].y, bodies.spin[0].x), (-1.0, 3.0));
@@ -183,8 +186,15 @@ fn round_trip<S: Dimensional>(name: &str, grains: &str) {
             .iter()
             .map(|ball| {
                 let b = ball.body as usize;
-                let at = s.shapes.periodic.wrapped(s.bodies.position[b]).padded();
-                let (v, w) = (s.bodies.velocity[b].padded(), s.bodies.spin[b].padded());
+                let at = s
+                    .shapes
+                    .periodic
+                    .wrapped(s.state.bodies.position[b])
+                    .padded();
+                let (v, w) = (
+                    s.state.bodies.velocity[b].padded(),
+                    s.state.bodies.spin[b].padded(),
+                );
                 let numbers = [at, v, w, [ball.radius, 0.0, 0.0]].concat();
                 // -0 is 0.
                 numbers.iter().map(|x| (x + 0.0).to_bits()).collect()
@@ -194,7 +204,14 @@ fn round_trip<S: Dimensional>(name: &str, grains: &str) {
         all
     };
     assert_eq!(all(&first), all(&second.simulation));
-    assert!(first.bodies.spin.iter().any(|w| *w != S::Spin::zero()));
+    assert!(
+        first
+            .state
+            .bodies
+            .spin
+            .iter()
+            .any(|w| *w != S::Spin::zero())
+    );
     // An earlier state, and one that is not there.
     let number = |n: u32| state.replace(")", &format!(", frame: Number({n}))"));
     let start = folder

@@ -6,7 +6,8 @@
 //! plugin host), [`certify`] (what a law promises, tested), [`wear`], [`energy`] (the ledger of a step), [`step`] (the time
 //! step), and [`process`] (what acts on a simulation at the named moments of a step). State goes to bytes and back by [`code`].
 //!
-//! A [`Simulation`](step::Simulation) steps; its [`contacts`](step::Simulation::contacts),
+//! A [`Simulation`](step::Simulation) holds what a case gives (shapes, laws, phases), the [`Options`](step::Options) of the
+//! computation, which no step changes, and its [`State`](step::State), which a checkpoint holds whole. It steps; its [`contacts`](step::Simulation::contacts),
 //! [`positions`](step::Simulation::positions) and [`energies`](step::Simulation::energies) are read between steps:
 //!
 //! ```
@@ -30,8 +31,8 @@
 //!     periodic: Periodic { period: [None; 3] },
 //! };
 //! let mut simulation = Simulation::new(bodies, shapes, Vec::new(), LawTable::new(1), 1e-3, 1e-3);
-//! simulation.gravity = Vector2::new(0.0, -9.81);
-//! simulation.scheme = Scheme { h: 1e-3, theta: 0.5 };
+//! simulation.state.gravity = Vector2::new(0.0, -9.81);
+//! simulation.options.scheme = Scheme { h: 1e-3, theta: 0.5 };
 //! let end = simulation.run_until(0.1, |_, _| ControlFlow::<()>::Continue(()))?;
 //! assert_eq!(end, ControlFlow::Continue(()));
 //! // The theta scheme is exact for a constant acceleration.

@@ -34,13 +34,13 @@ impl<S: Space> Observer<S> for BrokenBonds {
 
     fn after_processes(&mut self, s: &Simulation<S>) -> Vec<Event> {
         let mut events = Vec::new();
-        for b in &s.network.bond_breaks {
+        for b in &s.state.network.bond_breaks {
             let at = s.shapes.periodic.wrapped(b.place).padded();
-            let id = |k: usize| s.bodies.id[b.bodies[k] as usize] as f64;
+            let id = |k: usize| s.state.bodies.id[b.bodies[k] as usize] as f64;
             self.count += 1;
             let row = vec![
                 self.count as f64,
-                s.time,
+                s.state.time,
                 id(0),
                 id(1),
                 f64::from(b.law),
@@ -124,7 +124,7 @@ impl CircuitAccount {
                 at[0],
                 at[1],
                 at[2],
-                s.bodies.id[d.base as usize] as f64,
+                s.state.bodies.id[d.base as usize] as f64,
                 d.mode_mix,
                 d.energy,
                 d.bonds as f64,
@@ -166,7 +166,8 @@ impl CircuitAccount {
             steady::flow(&points, middle, end)
         };
         let name = |b: u32| {
-            s.bodies
+            s.state
+                .bodies
                 .driven
                 .iter()
                 .find(|d| d.body == b)
@@ -217,7 +218,7 @@ impl<S: Space> Observer<S> for CircuitAccount {
         };
         let ledger = &circuit.ledger;
         let contact = ledger.contents.contact.mass;
-        self.state.series.add((s.time, ledger.flows, contact));
+        self.state.series.add((s.state.time, ledger.flows, contact));
         let pieces = circuit.debris.iter();
         pieces.map(|d| self.event(s, d)).collect()
     }
@@ -279,7 +280,7 @@ impl<S: Space> Observer<S> for CircuitAccount {
         let s = end.simulation;
         summary.circuit = self.summary(s, end.wall);
         if let Some(circuit) = &summary.circuit {
-            let span = (s.time - circuit.start).max(f64::MIN_POSITIVE);
+            let span = (s.state.time - circuit.start).max(f64::MIN_POSITIVE);
             summary.wear.Qs += circuit.flows.source.mass / span;
             summary.wear.Qe = Some(circuit.flows.ejected.mass / span);
             summary.wear.Qw = Some(circuit.flows.wear.mass / span);

@@ -21,12 +21,12 @@ pub struct Coordination {
 
 /// Counts the contacts of the last step.
 pub fn coordination<S: Space>(s: &Simulation<S>) -> Coordination {
-    count_pairs(&s.bodies.grain_flags(), &bearing(s))
+    count_pairs(&s.state.bodies.grain_flags(), &bearing(s))
 }
 
 /// Number of contacts of each body that carry force in the last step, with the threshold of [`coordination`].
 pub fn degrees<S: Space>(s: &Simulation<S>) -> Vec<u32> {
-    let mut degree = vec![0; s.bodies.len()];
+    let mut degree = vec![0; s.state.bodies.len()];
     for body in bearing(s).into_iter().flatten() {
         degree[body as usize] += 1;
     }
@@ -36,10 +36,10 @@ pub fn degrees<S: Space>(s: &Simulation<S>) -> Vec<u32> {
 /// Bodies of the contacts that carry force.
 fn bearing<S: Space>(s: &Simulation<S>) -> Vec<[u32; 2]> {
     let force = |c: &fretwork_core::contact::Contact<S>| c.normal.dot(&c.impulse);
-    let carrying = s.network.contacts.iter().filter(|c| force(c) > 0.0);
+    let carrying = s.state.network.contacts.iter().filter(|c| force(c) > 0.0);
     let (sum, count) = carrying.fold((0.0, 0), |(f, n), c| (f + force(c), n + 1));
     let least = FAINT * sum / f64::from(count.max(1));
-    let pairs = s.network.contacts.iter().filter(|c| force(c) > least);
+    let pairs = s.state.network.contacts.iter().filter(|c| force(c) > least);
     pairs.map(|c| c.bodies).collect()
 }
 

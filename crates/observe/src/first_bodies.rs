@@ -24,12 +24,12 @@ pub struct BodyWear {
 /// What each first body lost: volume and depths of its scars. A friction test adds the specific wear rate.
 pub fn wear<S: Space>(s: &Simulation<S>) -> Vec<BodyWear> {
     let mut bodies: BTreeMap<u32, Worn> = BTreeMap::new();
-    for (surface, volume) in &s.network.worn {
+    for (surface, volume) in &s.state.network.worn {
         if let Some(carried) = s.shapes.surfaces.get(*surface) {
             bodies.entry(carried.body).or_default().volume += volume;
         }
     }
-    for scar in s.scars.iter().filter(|scar| scar.volume() > 0.0) {
+    for scar in s.state.scars.iter().filter(|scar| scar.volume() > 0.0) {
         let Some(carried) = s.shapes.surfaces.get(scar.surface) else {
             continue;
         };
@@ -63,9 +63,9 @@ struct Worn {
 }
 
 fn name<S: Space>(s: &Simulation<S>, body: u32) -> String {
-    let driven = s.bodies.driven.iter().find(|d| d.body == body);
+    let driven = s.state.bodies.driven.iter().find(|d| d.body == body);
     driven.map_or_else(
-        || format!("body {}", s.bodies.id[body as usize]),
+        || format!("body {}", s.state.bodies.id[body as usize]),
         |d| d.name.clone(),
     )
 }

@@ -59,7 +59,7 @@ impl<S: Space> FrictionTest<S> {
     fn cumulated(&self, s: &Simulation<S>) -> State {
         State {
             balance: self.state.layer.balance(s),
-            broken: s.network.bonds_broken(),
+            broken: s.state.network.bonds_broken(),
             worn: self.state.worn,
         }
     }
@@ -70,9 +70,9 @@ impl<S: Space> FrictionTest<S> {
         let slide = self.body.slide(s);
         let q = self.body.tangential_force(s);
         Sample {
-            time: s.time,
+            time: s.state.time,
             q,
-            p: s.received[place].0[normal] * facing(s, place, normal) / s.scheme.h,
+            p: s.state.received[place].0[normal] * facing(s, place, normal) / s.options.scheme.h,
             slide,
             work: q * slide,
         }
@@ -81,8 +81,9 @@ impl<S: Space> FrictionTest<S> {
 
 /// The side on which the contacts of a driven body push it along an axis: 1 or -1.
 fn facing<S: Space>(s: &Simulation<S>, place: usize, axis: usize) -> f64 {
-    let body = s.bodies.driven[place].body;
+    let body = s.state.bodies.driven[place].body;
     let push: f64 = s
+        .state
         .network
         .contacts
         .iter()
@@ -118,14 +119,18 @@ impl<S: Space> Observer<S> for FrictionTest<S> {
         let after = self.cumulated(s);
         let (sample, state) = (&self.sample, &mut self.state);
         state.slide += sample.slide;
-        state.load_path += s.network.cycle_multiplier * sample.p * sample.slide.abs();
-        state
-            .cycles
-            .add(sample, s.scheme.h, self.before, after, damage_ratio(s));
+        state.load_path += s.state.network.cycle_multiplier * sample.p * sample.slide.abs();
+        state.cycles.add(
+            sample,
+            s.options.scheme.h,
+            self.before,
+            after,
+            damage_ratio(s),
+        );
         // The cycle at hand may stand for others, see the process of cycle jumps.
-        let number = state.cycles.number(s.time);
+        let number = state.cycles.number(s.state.time);
         if let Some(cycle) = state.cycles.list.last_mut().filter(|c| c.cycle == number) {
-            cycle.jumped = s.network.cycle_multiplier as u32 - 1;
+            cycle.jumped = s.state.network.cycle_multiplier as u32 - 1;
         }
     }
 
@@ -154,7 +159,7 @@ impl<S: Space> Observer<S> for FrictionTest<S> {
     fn caption(&self, s: &Simulation<S>) -> Vec<String> {
         let cycles = &self.state.cycles;
         let mut caption = Vec::new();
-        let number = cycles.number(s.time);
+        let number = cycles.number(s.state.time);
         if number > 0 && cycles.oscillates() {
             caption.push(format!("cycle {number} of {}", cycles.total()));
         }

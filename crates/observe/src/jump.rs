@@ -30,7 +30,7 @@ impl<S: Space> Observer<S> for CycleJumps {
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
         let jumps = s.process::<Jumps>();
-        vec![jumps.map_or(f64::NAN, |j| j.cycles_at(s.time))]
+        vec![jumps.map_or(f64::NAN, |j| j.cycles_at(s.state.time))]
     }
 
     fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {

@@ -41,11 +41,11 @@ impl<S: Space> Layer<S> {
 
     /// Takes in the last step. `test` is the driven body and the axis whose work is kept apart.
     pub fn follow(&mut self, s: &Simulation<S>, test: (usize, usize)) {
-        let (h, theta) = (s.scheme.h, s.scheme.theta);
+        let (h, theta) = (s.options.scheme.h, s.options.scheme.theta);
         let now = velocities(s);
-        let steps = s.started.iter().zip(&now).zip(&s.received);
+        let steps = s.state.started.iter().zip(&now).zip(&s.state.received);
         for (d, (((v0, w0), (v1, w1)), (impulse, moment))) in steps.enumerate() {
-            let b = s.bodies.driven[d].body as usize;
+            let b = s.state.bodies.driven[d].body as usize;
             let (v, w) = (
                 *v0 * (1.0 - theta) + *v1 * theta,
                 *w0 * (1.0 - theta) + *w1 * theta,
@@ -55,27 +55,29 @@ impl<S: Space> Layer<S> {
                 self.other += impulse[test.1] * v[test.1];
             }
             let (dv, dw) = (*v1 - *v0, *w1 - *w0);
-            self.apart -= h * s.bodies.mass[b] * s.gravity.dot(&v);
+            self.apart -= h * s.state.bodies.mass[b] * s.state.gravity.dot(&v);
             self.apart += (theta - 0.5)
-                * (s.bodies.mass[b] * dv.dot(&dv) + dw.dot(&s.bodies.angular_momentum(b, &dw)));
+                * (s.state.bodies.mass[b] * dv.dot(&dv)
+                    + dw.dot(&s.state.bodies.angular_momentum(b, &dw)));
         }
         self.velocity = now;
     }
 
     /// The balance at the end of the last processed step.
     pub fn balance(&self, s: &Simulation<S>) -> Balance {
-        let e = &s.energy;
-        let driven = s.bodies.driven.iter().zip(&self.velocity);
+        let e = &s.state.energy;
+        let driven = s.state.bodies.driven.iter().zip(&self.velocity);
         let kinetic: f64 = driven
             .map(|(driven, (v, w))| {
                 let b = driven.body as usize;
-                0.5 * (s.bodies.mass[b] * v.dot(v) + w.dot(&s.bodies.angular_momentum(b, w)))
+                0.5 * (s.state.bodies.mass[b] * v.dot(v)
+                    + w.dot(&s.state.bodies.angular_momentum(b, w)))
             })
             .sum();
         let kept = e.kinetic - kinetic + e.potential + e.elastic + e.carried;
         Balance {
             // Work of the projection against loads does not pass through a contact.
-            taken: e.dissipated() + e.scheme + kept + s.lifted - self.apart,
+            taken: e.dissipated() + e.scheme + kept + s.state.lifted - self.apart,
             other: self.other,
         }
     }
@@ -84,9 +86,9 @@ impl<S: Space> Layer<S> {
 fn velocities<S: Space>(s: &Simulation<S>) -> Vec<(S::Vector, S::Spin)> {
     let of = |body: u32| {
         (
-            s.bodies.velocity[body as usize],
-            s.bodies.spin[body as usize],
+            s.state.bodies.velocity[body as usize],
+            s.state.bodies.spin[body as usize],
         )
     };
-    s.bodies.driven.iter().map(|d| of(d.body)).collect()
+    s.state.bodies.driven.iter().map(|d| of(d.body)).collect()
 }

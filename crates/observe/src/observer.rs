@@ -202,7 +202,7 @@ impl<S: Space> Observers<S> {
     /// See [`Observer::begin`].
     pub fn begin(&mut self, s: &mut Simulation<S>) {
         if self.list.iter().any(|o| o.needs_dissipation()) {
-            s.network.spent.get_or_insert_default();
+            s.options.record_dissipation = true;
         }
         self.list.iter_mut().for_each(|o| o.begin(s));
     }

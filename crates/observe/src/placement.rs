@@ -8,7 +8,7 @@ use fretwork_core::step::Simulation;
 
 /// Centre of a convex part (m).
 pub fn piece_centre<S: Space>(s: &Simulation<S>, piece: &ConvexCollider<S>) -> S::Vector {
-    fretwork_core::contact::detect::piece_centre(piece, &s.bodies)
+    fretwork_core::contact::detect::piece_centre(piece, &s.state.bodies)
 }
 
 /// Corners of a convex part (m): its outline in 2D, its faces in 3D.
@@ -16,7 +16,7 @@ pub fn piece_outline<S: Space>(
     s: &Simulation<S>,
     piece: &ConvexCollider<S>,
 ) -> Vec<Vec<S::Vector>> {
-    let rotation = &s.bodies.rotation[piece.body as usize];
+    let rotation = &s.state.bodies.rotation[piece.body as usize];
     let faces = piece.core.turned(rotation).outline(piece.rounding);
     let centre = s.shapes.periodic.wrapped(piece_centre(s, piece));
     let moved = |face: Vec<S::Vector>| face.iter().map(|c| *c + centre).collect();
@@ -25,12 +25,12 @@ pub fn piece_outline<S: Space>(
 
 /// Whether a body is a first body.
 pub fn is_first<S: Space>(s: &Simulation<S>, body: u32) -> bool {
-    s.bodies.driven.iter().any(|d| d.body == body)
+    s.state.bodies.driven.iter().any(|d| d.body == body)
 }
 
 /// The state of the bond of a contact.
 pub fn bond_state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> BondState {
-    s.network.bond_state(contact)
+    s.state.network.bond_state(contact)
 }
 
 /// End points of a contact: the candidate's centre, and the antagonist's centre or the closest point on its
@@ -41,7 +41,7 @@ pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S:
         return ends_of_piece(s, contact);
     };
     let ball = &s.shapes.balls[candidate];
-    let a = fretwork_core::contact::detect::centre(ball, &s.bodies);
+    let a = fretwork_core::contact::detect::centre(ball, &s.state.bodies);
     let length = match key.surface() {
         Some(_) => ball.radius + contact.gap,
         None => {
@@ -54,7 +54,7 @@ pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S:
 
 /// End points of a contact with a convex part: via the contact point, which is the end at a first body.
 fn ends_of_piece<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
-    let centre = s.bodies.position[contact.bodies[0] as usize];
+    let centre = s.state.bodies.position[contact.bodies[0] as usize];
     let at = centre + contact.arms[0];
     let closest_point = at - contact.normal * contact.gap;
     let [first, other] = contact.bodies.map(|b| is_first(s, b));

@@ -16,7 +16,7 @@ use fretwork_scene::case::Case;
 
 /// Broken bonds over bonds made.
 pub fn damage_ratio<S: Space>(s: &Simulation<S>) -> f64 {
-    let n = &s.network;
+    let n = &s.state.network;
     if n.bonds_made() > 0 {
         n.bonds_broken() as f64 / n.bonds_made() as f64
     } else {
@@ -40,17 +40,17 @@ struct Counts {
 
 impl Counts {
     fn of<S: Space>(s: &Simulation<S>) -> Self {
-        let n = &s.network;
+        let n = &s.state.network;
         Self {
-            steps: s.steps,
-            time: s.time,
-            bodies: s.bodies.len(),
+            steps: s.state.steps,
+            time: s.state.time,
+            bodies: s.state.bodies.len(),
             contacts: n.contact_count(),
             bonds: n.bonds_made(),
             broken: n.bonds_broken(),
             damage_ratio: damage_ratio(s),
             step_size: n.step_size.clone(),
-            energy: s.energy,
+            energy: s.state.energy,
         }
     }
 
@@ -138,7 +138,7 @@ impl<S: Space> Observer<S> for RunState {
         }
         if !report.solver.converged {
             if solver.unconverged_steps == 0 {
-                solver.first_unconverged = s.steps;
+                solver.first_unconverged = s.state.steps;
             }
             solver.unconverged_steps += 1;
         }
@@ -173,11 +173,11 @@ impl<S: Space> Observer<S> for RunState {
     }
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let n = &s.network;
-        let cycle = self.clock.map_or(0, |c| c.number(s.time));
+        let n = &s.state.network;
+        let cycle = self.clock.map_or(0, |c| c.number(s.state.time));
         let mut row = vec![
-            s.steps as f64,
-            s.time,
+            s.state.steps as f64,
+            s.state.time,
             f64::from(cycle),
             n.contact_count() as f64,
         ];
@@ -188,15 +188,18 @@ impl<S: Space> Observer<S> for RunState {
             damage_ratio(s),
             n.mean_damage(),
         ]);
-        row.extend(s.energy.entries().map(|(_, _, value)| value));
+        row.extend(s.state.energy.entries().map(|(_, _, value)| value));
         row
     }
 
     fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
         let s = end.simulation;
         self.put(&Counts::of(s), summary);
-        summary.mean_damage = s.network.mean_damage();
-        summary.solver.why = self.solver.choice.why(s.solver.method, s.steps);
+        summary.mean_damage = s.state.network.mean_damage();
+        summary.solver.why = self
+            .solver
+            .choice
+            .why(s.options.solver.method, s.state.steps);
     }
 
     fn summarise_so_far(&self, summary: &mut Summary) {
@@ -230,7 +233,7 @@ impl Phases {
     /// Of the phases of a simulation.
     pub fn of<S: Space>(s: &Simulation<S>) -> Self {
         Self {
-            any: !s.control.phases.is_empty(),
+            any: !s.phases.is_empty(),
         }
     }
 }
@@ -250,14 +253,14 @@ impl<S: Space> Observer<S> for Phases {
     }
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let phase = || s.control.phase() as f64;
+        let phase = || s.state.control.phase() as f64;
         self.any.then(phase).into_iter().collect()
     }
 
     fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
-        let control = &end.simulation.control;
+        let control = &end.simulation.state.control;
         summary.phases = control.begun().to_vec();
-        let phases = control.phases.iter().skip(summary.phases.len());
+        let phases = end.simulation.phases.iter().skip(summary.phases.len());
         summary.phases_missed = phases.map(|p| p.name.clone()).collect();
         summary.phases_missed.dedup();
     }
@@ -275,7 +278,7 @@ pub struct DrivenBodies {
 impl DrivenBodies {
     /// Of the driven bodies of a simulation; a body and an axis whose force is drawn elsewhere may be left out of the figures.
     pub fn of<S: Space>(s: &Simulation<S>, test: Option<(String, usize)>) -> Self {
-        let named = s.bodies.driven.iter().enumerate();
+        let named = s.state.bodies.driven.iter().enumerate();
         // Walls that a scene file brought are not worth columns.
         let shown = named.filter(|(_, d)| !d.name.starts_with("wall_"));
         Self {
@@ -313,9 +316,13 @@ impl<S: Space> Observer<S> for DrivenBodies {
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
         let mut row = Vec::with_capacity(self.shown.len() * 3 * S::D);
         for (d, _) in &self.shown {
-            let b = s.bodies.driven[*d].body as usize;
-            let force = s.received[*d].0 * (1.0 / s.scheme.h);
-            for values in [s.bodies.position[b], s.bodies.velocity[b], force] {
+            let b = s.state.bodies.driven[*d].body as usize;
+            let force = s.state.received[*d].0 * (1.0 / s.options.scheme.h);
+            for values in [
+                s.state.bodies.position[b],
+                s.state.bodies.velocity[b],
+                force,
+            ] {
                 row.extend((0..S::D).map(|k| values[k]));
             }
         }

@@ -85,7 +85,7 @@ impl Scars {
     /// Of the surfaces of a simulation that follow their wear.
     pub fn of<S: Space>(s: &Simulation<S>) -> Self {
         Self {
-            names: s.scars.iter().map(|scar| scar.name.clone()).collect(),
+            names: s.state.scars.iter().map(|scar| scar.name.clone()).collect(),
         }
     }
 }
@@ -113,11 +113,17 @@ impl<S: Space> Observer<S> for Scars {
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
         let two = |scar: &Scar<S>| [scar.volume(), scar.deepest()];
-        s.scars.iter().flat_map(two).collect()
+        s.state.scars.iter().flat_map(two).collect()
     }
 
     fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
-        summary.scars = end.simulation.scars.iter().map(ScarSummary::of).collect();
+        summary.scars = end
+            .simulation
+            .state
+            .scars
+            .iter()
+            .map(ScarSummary::of)
+            .collect();
     }
 
     /// The tables of all scars, `scar_NAME.csv`.
@@ -127,7 +133,7 @@ impl<S: Space> Observer<S> for Scars {
             file: format!("{}.csv", file_name(&scar.name)),
             text: table(s, scar),
         };
-        s.scars.iter().map(file).collect()
+        s.state.scars.iter().map(file).collect()
     }
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {

@@ -39,9 +39,9 @@ impl<S: Space> Strain<S> {
     /// diameter: two shells, so that no single neighbour dominates.
     pub fn new(s: &Simulation<S>) -> Self {
         let balls = &s.shapes.balls;
-        let centres: Vec<S::Vector> = balls.iter().map(|b| centre(b, &s.bodies)).collect();
+        let centres: Vec<S::Vector> = balls.iter().map(|b| centre(b, &s.state.bodies)).collect();
         let radii: Vec<f64> = balls.iter().map(|b| b.radius).collect();
-        let grain = s.bodies.grain_flags();
+        let grain = s.state.bodies.grain_flags();
         let counts = |b: u32| grain[balls[b as usize].body as usize];
         let grains = balls.iter().filter(|b| grain[b.body as usize]);
         let (sum, n) = grains.fold((0.0, 0.0), |(sum, n), b| (sum + 2.0 * b.radius, n + 1.0));
@@ -72,7 +72,7 @@ impl<S: Space> Strain<S> {
             .shapes
             .balls
             .iter()
-            .map(|b| centre(b, &s.bodies))
+            .map(|b| centre(b, &s.state.bodies))
             .collect();
         let all = self.around.iter().enumerate();
         let of = |(a, around): (usize, &Vec<Neighbour<S::Vector>>)| {

@@ -26,8 +26,8 @@ pub fn each_moment<S: Space>(
     s: &Simulation<S>,
     mut take: impl FnMut(usize, &S::Vector, &S::Vector),
 ) {
-    let free = s.bodies.grain_flags();
-    for contact in &s.network.contacts {
+    let free = s.state.bodies.grain_flags();
+    for contact in &s.state.network.contacts {
         let members = contact.bodies.map(|b| free[b as usize]);
         let share = if members == [true, true] { 0.5 } else { 1.0 };
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
@@ -35,7 +35,7 @@ pub fn each_moment<S: Space>(
                 continue;
             }
             let arm = contact.arms[side] + contact.normal * (sign * share * contact.gap);
-            let force = contact.impulse * (sign / s.scheme.h);
+            let force = contact.impulse * (sign / s.options.scheme.h);
             take(contact.bodies[side] as usize, &force, &arm);
         }
     }

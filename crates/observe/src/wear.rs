@@ -81,7 +81,7 @@ impl<S: Space> Observer<S> for Wear {
         let (s, state) = (end.simulation, &self.state);
         // Wear goes on over the cycles that were jumped over.
         let jumps = s.process::<Jumps>();
-        let over = jumps.map_or(0.0, |j| j.jumped_at(s.time) * j.period());
+        let over = jumps.map_or(0.0, |j| j.jumped_at(s.state.time) * j.period());
         // Nothing leaves a contact that is periodic along the sliding.
         let closed = s.shapes.periodic.period[self.along].map(|_| 0.0);
         summary.wear = summary::Wear {
@@ -134,8 +134,8 @@ impl Flows {
 
     /// Takes in a step: the sliding axis, the inertia scaling of the case, and the volume worn off first bodies so far.
     fn add<S: Space>(&mut self, s: &Simulation<S>, along: usize, scaling: f64, worn: f64) {
-        let h = s.scheme.h;
-        if s.time - 0.5 * h < self.start {
+        let h = s.options.scheme.h;
+        if s.state.time - 0.5 * h < self.start {
             self.before = worn;
             return;
         }
@@ -162,11 +162,12 @@ fn mean(amount: f64, time: f64) -> f64 {
 /// Mass of the third body that crosses a section a second: sum m |v| / L along the sliding.
 fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
     let grains = || {
-        (0..s.bodies.len())
-            .filter(|b| s.bodies.inverse_mass[*b][along] > 0.0 && s.bodies.length[*b] > 0.0)
+        (0..s.state.bodies.len()).filter(|b| {
+            s.state.bodies.inverse_mass[*b][along] > 0.0 && s.state.bodies.length[*b] > 0.0
+        })
     };
     let length = s.shapes.periodic.period[along].unwrap_or_else(|| {
-        let x = |b: usize| s.bodies.position[b][along];
+        let x = |b: usize| s.state.bodies.position[b][along];
         let (low, high) = grains().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), b| {
             (l.min(x(b)), h.max(x(b)))
         });
@@ -175,10 +176,10 @@ fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
     if !(length.is_finite() && length > 0.0) {
         return 0.0;
     }
-    let grain = s.bodies.grain_flags();
+    let grain = s.state.bodies.grain_flags();
     grains()
         .filter(|b| grain[*b])
-        .map(|b| s.bodies.mass[b] * s.bodies.velocity[b][along].abs())
+        .map(|b| s.state.bodies.mass[b] * s.state.bodies.velocity[b][along].abs())
         .sum::<f64>()
         / length
 }

@@ -69,7 +69,7 @@ impl Camera {
     /// Colours the grains by the layers in which they are now.
     pub fn dye<S: Space>(&mut self, simulation: &Simulation<S>) {
         let Some(thickness) = self.layers else { return };
-        let grain = simulation.bodies.grain_flags();
+        let grain = simulation.state.bodies.grain_flags();
         let all = simulation.shapes.balls.iter().zip(balls(simulation));
         let paint = |(ball, (centre, _)): (&Ball<S>, (S::Vector, f64))| {
             if grain[ball.body as usize] {
@@ -220,7 +220,7 @@ impl Camera {
 fn balls<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (S::Vector, f64)> + '_ {
     s.shapes.balls.iter().map(|b| {
         (
-            fretwork_core::contact::detect::centre(b, &s.bodies),
+            fretwork_core::contact::detect::centre(b, &s.state.bodies),
             b.radius,
         )
     })
@@ -230,7 +230,7 @@ fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Ve
     let period = s.shapes.periodic.period[0];
     let mut out = Vec::with_capacity(s.shapes.pieces.len());
     for (k, piece) in s.shapes.pieces.iter().enumerate() {
-        if s.bodies.removed[piece.body as usize] {
+        if s.state.bodies.removed[piece.body as usize] {
             continue;
         }
         let shade = (!is_first(s, piece.body)).then_some(0.25);
@@ -254,10 +254,13 @@ pub fn named_balls<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline
     const CORNERS: u32 = 256;
     let least = 0.1 * (window[1] - window[0]).min(window[3] - window[2]);
     let mut out = Vec::new();
-    for driven in &s.bodies.driven {
+    for driven in &s.state.bodies.driven {
         let surfaces = s.shapes.surfaces.iter().map(|f| f.body);
         let labelled = surfaces.into_iter().any(|body| body == driven.body);
-        if labelled || s.bodies.removed[driven.body as usize] || driven.name.starts_with("wall_") {
+        if labelled
+            || s.state.bodies.removed[driven.body as usize]
+            || driven.name.starts_with("wall_")
+        {
             continue;
         }
         let own = s.shapes.balls.iter().zip(balls(s));
@@ -298,10 +301,10 @@ fn disks<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Vec
     let period = s.shapes.periodic.period[0];
     let mut out = Vec::with_capacity(s.shapes.balls.len());
     for (k, (ball, (centre, radius))) in s.shapes.balls.iter().zip(balls(s)).enumerate() {
-        if s.bodies.removed[ball.body as usize] {
+        if s.state.bodies.removed[ball.body as usize] {
             continue;
         }
-        let angle = S::rotation_numbers(&s.bodies.rotation[ball.body as usize])[0];
+        let angle = S::rotation_numbers(&s.state.bodies.rotation[ball.body as usize])[0];
         let first = is_first(s, ball.body);
         for x in images(centre[0], radius, window, period) {
             out.push(Disk {
@@ -329,11 +332,12 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
     let period = s.shapes.periodic.period[0];
     let far = 2.0 * ((window[1] - window[0]) + (window[3] - window[2]));
     let mut out = Vec::new();
-    let shown = |body: u32| !s.bodies.removed[body as usize];
+    let shown = |body: u32| !s.state.bodies.removed[body as usize];
     for surface in s.shapes.surfaces.iter().filter(|f| shown(f.body)) {
         let b = surface.body as usize;
-        let (position, rotation) = (s.bodies.position[b], s.bodies.rotation[b]);
+        let (position, rotation) = (s.state.bodies.position[b], s.state.bodies.rotation[b]);
         let name = s
+            .state
             .bodies
             .driven
             .iter()

@@ -32,17 +32,17 @@ impl BondSites {
             shear: 0.0,
         };
         let mut radii = Vec::new();
-        let contacts = s.network.contacts.iter();
+        let contacts = s.state.network.contacts.iter();
         for c in contacts.filter(|c| usize::from(c.law) == law && c.radius > 0.0) {
             let area = s.laws[law].area.area(S::D, c.radius);
             let (mut normal, mut shear) = (0.0, 0.0);
             for (body, arm) in c.bodies.iter().zip(&c.arms) {
                 let body = *body as usize;
-                let inverse = &s.bodies.inverse_mass[body];
+                let inverse = &s.state.bodies.inverse_mass[body];
                 let along: f64 = (0..S::D).map(|k| inverse[k] * c.normal[k].powi(2)).sum();
                 let most = (0..S::D).map(|k| inverse[k]).fold(0.0, f64::max);
                 normal += along;
-                shear += most + arm.norm().powi(2) * s.bodies.inverse_inertia[body];
+                shear += most + arm.norm().powi(2) * s.state.bodies.inverse_inertia[body];
             }
             radii.push(c.radius);
             out.normal = out.normal.max(area * normal);
@@ -85,9 +85,9 @@ impl BondSites {
             }
             let area = s.laws[law].area.area(S::D, 0.5 * radius);
             let body = body as usize;
-            let inverse = &s.bodies.inverse_mass[body];
+            let inverse = &s.state.bodies.inverse_mass[body];
             let inverse = (0..S::D).map(|k| inverse[k]).fold(0.0, f64::max);
-            let turning = radius * radius * s.bodies.inverse_inertia[body];
+            let turning = radius * radius * s.state.bodies.inverse_inertia[body];
             radii.push(0.5 * radius);
             normal = normal.max(2.0 * area * inverse);
             shear = shear.max(2.0 * area * (inverse + turning));

@@ -286,8 +286,16 @@ pub(super) fn overlaps<S: Space>(
     origins: &[Origin],
 ) -> Result<(), ValidationError> {
     let s = simulation;
-    detect(&mut s.network, &s.shapes, &s.bodies, &s.table, 0.0, 0.0);
+    detect(
+        &mut s.state.network,
+        &s.shapes,
+        &s.state.bodies,
+        &s.table,
+        0.0,
+        0.0,
+    );
     let worst = s
+        .state
         .network
         .contacts
         .iter()
@@ -296,8 +304,8 @@ pub(super) fn overlaps<S: Space>(
         return Ok(());
     };
     let name = |body: u32| {
-        let driven = s.bodies.driven.iter().find(|d| d.body == body);
-        let at = s.bodies.position[body as usize];
+        let driven = s.state.bodies.driven.iter().find(|d| d.body == body);
+        let at = s.state.bodies.position[body as usize];
         match driven {
             Some(d) => format!("the body `{}`", d.name),
             None => format!(
@@ -316,7 +324,7 @@ pub(super) fn overlaps<S: Space>(
     );
     // The error is reported at the last grain of the pair in the case, or at the body if neither is a grain.
     let at = worst.bodies.iter().max_by_key(|b| {
-        let driven = s.bodies.driven.iter().any(|d| d.body == **b);
+        let driven = s.state.bodies.driven.iter().any(|d| d.body == **b);
         let place = match origins.get(**b as usize) {
             Some(Origin::Grain(k, g)) => (*k, g.unwrap_or(0)),
             Some(Origin::Body(k)) => (*k, 0),

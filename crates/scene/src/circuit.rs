@@ -222,7 +222,8 @@ fn zone(case: &Case, zone: &ZoneSpec) -> Result<(), ValidationError> {
 pub fn install<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Spec<S>> {
     let circuit = case.circuit.as_ref()?;
     let index = |name: &String| {
-        s.bodies
+        s.state
+            .bodies
             .driven
             .iter()
             .find(|d| d.name == *name)

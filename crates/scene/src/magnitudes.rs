@@ -19,8 +19,8 @@ pub(super) fn check<S: Space>(
     origins: &[Origin],
     end: f64,
 ) -> Result<(), ValidationError> {
-    let bodies = &s.bodies;
-    let h = s.scheme.h;
+    let bodies = &s.state.bodies;
+    let h = s.options.scheme.h;
     for b in 0..bodies.len() {
         let refuse = |message: String| {
             let path = origins.get(b).map_or("grains".to_owned(), |o| o.path());
@@ -51,8 +51,8 @@ pub(super) fn check<S: Space>(
         let fastest = (0..S::D).max_by(|i, j| v[*i].abs().total_cmp(&v[*j].abs()));
         if let Some(k) = fastest
             && v[k] != 0.0
-            && x[k] + v[k] * (s.scheme.theta * h) == x[k]
-            && v[k].abs() * end > LOST * s.network.alert
+            && x[k] + v[k] * (s.options.scheme.theta * h) == x[k]
+            && v[k].abs() * end > LOST * s.state.network.alert
         {
             return refuse(format!(
                 "at {:e} m from the origin adjacent numbers are {:.1e} m apart, and it moves {:.1e} m in a step: it would never \
@@ -64,7 +64,7 @@ pub(super) fn check<S: Space>(
         }
     }
     let heaviest = bodies.mass.iter().copied().fold(0.0, f64::max);
-    let gravity = (0..S::D).fold(0.0f64, |g, k| g.max(s.gravity[k].abs()));
+    let gravity = (0..S::D).fold(0.0f64, |g, k| g.max(s.state.gravity[k].abs()));
     let fall = 0.5 * heaviest * (gravity * end) * (gravity * end);
     if !(gravity.is_finite() && fall.is_finite()) {
         let message = format!(

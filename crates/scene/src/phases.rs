@@ -342,20 +342,23 @@ fn known<'a>(
 /// # Errors
 /// A pressure without an area, or a friction coefficient that the law does not have: with its path.
 pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<(), ValidationError> {
-    s.control.gravity = s.gravity;
-    s.control.gravity_drive.clone_from(&case.gravity_drive);
+    s.state.control.gravity = s.state.gravity;
+    s.state
+        .control
+        .gravity_drive
+        .clone_from(&case.gravity_drive);
     for (k, body) in case.bodies.iter().enumerate() {
         let Some(place) = place(s, &body.name) else {
             continue;
         };
         for (dof, drive) in body.ordered(S::D).iter().enumerate() {
             let name = BodySpec::names(S::D)[dof];
-            let servos = Servo::of(&s.bodies, &s.shapes, place, dof, drive)
+            let servos = Servo::of(&s.state.bodies, &s.shapes, place, dof, drive)
                 .map_err(|m| ValidationError::new(format!("bodies.{k}.dofs.{name}"), m))?;
-            s.control.servos.extend(servos);
+            s.state.control.servos.extend(servos);
         }
         if let Some(time) = body.vanishes {
-            s.control.gates.push((place, time));
+            s.state.control.gates.push((place, time));
         }
     }
     let mut phases = Vec::new();
@@ -371,7 +374,7 @@ pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<()
         for round in 1..=times {
             let recurs = round < times;
             let once = phases[group.clone()].iter().cloned();
-            s.control.phases.extend(once.map(|p| Phase { recurs, ..p }));
+            s.phases.extend(once.map(|p| Phase { recurs, ..p }));
         }
     }
     s.measure_areas();
@@ -379,7 +382,7 @@ pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<()
 }
 
 fn place<S: Space>(s: &Simulation<S>, name: &str) -> Option<usize> {
-    s.bodies.driven.iter().position(|d| d.name == name)
+    s.state.bodies.driven.iter().position(|d| d.name == name)
 }
 
 fn changes<S: Space>(spec: &PhaseSpec, s: &Simulation<S>) -> Result<Changes<S>, ValidationError> {
@@ -389,7 +392,7 @@ fn changes<S: Space>(spec: &PhaseSpec, s: &Simulation<S>) -> Result<Changes<S>, 
             let (Some(place), Some(k)) = (place(s, name), k) else {
                 continue;
             };
-            Servo::of(&s.bodies, &s.shapes, place, k, drive)
+            Servo::of(&s.state.bodies, &s.shapes, place, k, drive)
                 .map_err(|m| ValidationError::new(format!("drives.{name}.{dof}"), m))?;
             drives.push((place, k, drive.clone()));
         }

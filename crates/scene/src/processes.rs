@@ -24,8 +24,13 @@ impl FrictionTest {
     /// Finds the test of a case in its scene; none where the case has none.
     pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Self> {
         let test = case.friction.as_ref()?;
-        let place = s.bodies.driven.iter().position(|d| d.name == test.body)?;
-        let dof = &s.bodies.driven[place].dofs[test.along];
+        let place = s
+            .state
+            .bodies
+            .driven
+            .iter()
+            .position(|d| d.name == test.body)?;
+        let dof = &s.state.bodies.driven[place].dofs[test.along];
         let period = test
             .period
             .or(dof.function().and_then(TimeFunction::period));

@@ -5,7 +5,7 @@
 use fretwork_core::contact::{ContactId, ContactNames};
 use fretwork_core::geometry::space::{Dim2, Dim3, Space};
 use fretwork_core::laws::{BuiltInLaws, SearchPath};
-use fretwork_core::step::{Saved, Simulation, Steps};
+use fretwork_core::step::{Simulation, State, Steps};
 use fretwork_scene::{Scene, load};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -59,10 +59,14 @@ fn steps<S: Steps>(s: &mut Simulation<S>, count: u32) {
 
 /// Gaps by the names of the contacts; all have one of their own.
 fn named<S: Space>(s: &Simulation<S>) -> BTreeMap<ContactId, f64> {
-    let names = ContactNames::of(&s.shapes, &s.bodies);
-    let places = names.places(&s.network);
-    assert_eq!(places.len(), s.network.contacts.len(), "two of one name");
-    let gap = |k: usize| s.network.contacts[k].gap;
+    let names = ContactNames::of(&s.shapes, &s.state.bodies);
+    let places = names.places(&s.state.network);
+    assert_eq!(
+        places.len(),
+        s.state.network.contacts.len(),
+        "two of one name"
+    );
+    let gap = |k: usize| s.state.network.contacts[k].gap;
     places.into_iter().map(|(id, k)| (id, gap(k))).collect()
 }
 
@@ -95,13 +99,13 @@ fn boxes() -> Vec<String> {
 
 /// The scene with its grains listed backwards, under the identities they had.
 fn backwards<S: Steps>(mut s: Simulation<S>, grains: usize) -> Simulation<S> {
-    let ids: Vec<u64> = s.bodies.id.clone();
-    let grain: Vec<usize> = (0..s.bodies.len())
-        .filter(|b| !s.bodies.driven.iter().any(|d| d.body as usize == *b))
+    let ids: Vec<u64> = s.state.bodies.id.clone();
+    let grain: Vec<usize> = (0..s.state.bodies.len())
+        .filter(|b| !s.state.bodies.driven.iter().any(|d| d.body as usize == *b))
         .collect();
     assert_eq!(grain.len(), grains);
     for (k, b) in grain.iter().enumerate() {
-        s.bodies.id[*b] = ids[grain[grains - 1 - k]];
+        s.state.bodies.id[*b] = ids[grain[grains - 1 - k]];
     }
     s
 }
@@ -137,14 +141,14 @@ fn without_another_grain() {
     let all = blocks();
     let mut whole = plane(scene("whole", 2, "Polygons", &all));
     steps(&mut whole, 1);
-    let (a, ids) = (named(&whole), whole.bodies.id.clone());
+    let (a, ids) = (named(&whole), whole.state.bodies.id.clone());
     // Of a stack without its top, or without its lowest block, the others keep their identities, and so does the ground.
     for (name, gone) in [("top", 3), ("lowest", 0)] {
         let mut left = all.clone();
         left.remove(gone);
         let mut short = plane(scene(name, 2, "Polygons", &left));
-        short.bodies.id = ids.clone();
-        short.bodies.id.remove(gone);
+        short.state.bodies.id = ids.clone();
+        short.state.bodies.id.remove(gone);
         steps(&mut short, 1);
         let b = named(&short);
         let stays = |id: &&ContactId| id.sides.iter().all(|s| s.body != ids[gone]);
@@ -152,8 +156,9 @@ fn without_another_grain() {
         assert!(kept.len() >= 4 && kept.len() < a.len(), "{name}");
         assert!(kept.iter().all(|id| b.contains_key(id)), "{name}: {b:?}");
         // Keys count contactors as they are listed: they do not tell.
-        let names = |s: &Simulation<Dim2>| ContactNames::of(&s.shapes, &s.bodies);
-        let matched = names(&whole).matched(&whole.network, &names(&short), &short.network);
+        let names = |s: &Simulation<Dim2>| ContactNames::of(&s.shapes, &s.state.bodies);
+        let matched =
+            names(&whole).matched(&whole.state.network, &names(&short), &short.state.network);
         assert_eq!(matched.len(), kept.len(), "{name}");
         assert!(matched.iter().all(|(x, y)| (x.gap - y.gap).abs() < 1e-6));
         assert_eq!(matched.iter().any(|(x, y)| x.key != y.key), gone == 0);
@@ -165,9 +170,9 @@ fn over_a_restart() {
     let mut whole = solid(scene("before", 3, "Polyhedra", &boxes()));
     steps(&mut whole, 30);
     let before = named(&whole);
-    let bytes = postcard::to_stdvec(&whole.save()).unwrap();
+    let bytes = postcard::to_stdvec(&whole.state).unwrap();
     let mut resumed = solid(scene("after", 3, "Polyhedra", &boxes()));
-    let saved: Saved<'_, Dim3> = postcard::from_bytes(&bytes).unwrap();
+    let saved: State<Dim3> = postcard::from_bytes(&bytes).unwrap();
     assert!(resumed.restore(saved));
     assert!(before.len() >= 12);
     assert_eq!(named(&resumed), before);

@@ -115,19 +115,23 @@ fn run<S: Steps>(s: &mut Simulation<S>, steps: u32) -> (Vec<u64>, f64) {
     }
     let mut bits = Vec::new();
     let mut push = |v: &S::Vector| bits.extend((0..S::D).map(|k| v[k].to_bits()));
-    s.bodies.position.iter().for_each(&mut push);
-    s.bodies.velocity.iter().for_each(&mut push);
-    s.network.contacts.iter().for_each(|c| push(&c.impulse));
-    for memory in &s.network.memory {
+    s.state.bodies.position.iter().for_each(&mut push);
+    s.state.bodies.velocity.iter().for_each(&mut push);
+    s.state
+        .network
+        .contacts
+        .iter()
+        .for_each(|c| push(&c.impulse));
+    for memory in &s.state.network.memory {
         // A slot of a contact with variables and no bond is one of the record.
         let intact = memory.bonds.iter().filter(|b| b.intact());
         bits.extend(intact.map(|b| b.damage.to_bits()));
     }
-    let e = s.energy;
-    bits.extend([e.residual, s.network.worn.values().sum()].map(f64::to_bits));
+    let e = s.state.energy;
+    bits.extend([e.residual, s.state.network.worn.values().sum()].map(f64::to_bits));
     let kind = Kind::register(&RECORD).unwrap();
     let (mut off, mut most) = (0.0f64, 0.0f64);
-    for contact in &s.network.contacts {
+    for contact in &s.state.network.contacts {
         let law = &s.laws[contact.law as usize];
         let (Some(record), Some(slot)) = (law.law(kind), contact.memory()) else {
             continue;
@@ -136,7 +140,8 @@ fn run<S: Steps>(s: &mut Simulation<S>, steps: u32) -> (Vec<u64>, f64) {
         if contact.moment != S::Spin::zero() {
             continue;
         }
-        let own = s.network.memory[contact.law as usize].variables[record.first_variable][slot];
+        let own =
+            s.state.network.memory[contact.law as usize].variables[record.first_variable][slot];
         off = off.max((own - contact.friction_work).abs());
         most = most.max(contact.friction_work.abs());
     }

@@ -10,7 +10,7 @@ use fretwork_core::step::Simulation;
 /// The grains other than single balls, with the densities of the materials (kg/m^3).
 pub fn of<S: Space>(s: &Simulation<S>, densities: &[f64]) -> Shaped {
     let grains = shaped(s);
-    let (bodies, shapes) = (&s.bodies, &s.shapes);
+    let (bodies, shapes) = (&s.state.bodies, &s.shapes);
     let mut out = Shaped::default();
     let mut material = vec![None; bodies.len()];
     for ball in shapes.balls.iter().filter(|b| grains[b.body as usize]) {
@@ -55,7 +55,7 @@ pub fn needed<S: Space>(s: &Simulation<S>) -> bool {
 
 /// Which bodies are grains other than single balls.
 fn shaped<S: Space>(s: &Simulation<S>) -> Vec<bool> {
-    let mut parts = vec![0u32; s.bodies.len()];
+    let mut parts = vec![0u32; s.state.bodies.len()];
     // A single convex part counts as two parts, and so does a ball with an offset.
     let aside = |b: &Ball<S>| 1 + u32::from(b.offset != S::Vector::zero());
     for ball in &s.shapes.balls {
@@ -64,7 +64,7 @@ fn shaped<S: Space>(s: &Simulation<S>) -> Vec<bool> {
     for piece in &s.shapes.pieces {
         parts[piece.body as usize] += 2;
     }
-    for driven in &s.bodies.driven {
+    for driven in &s.state.bodies.driven {
         parts[driven.body as usize] = 0;
     }
     parts.into_iter().map(|n| n > 1).collect()

@@ -179,7 +179,7 @@ pub fn append<S: Space>(
         column.resize(count, f64::NAN);
         column
     }));
-    results.append_views(s.time, &[grains, contacts(s, &fields), bodies(s)])
+    results.append_views(s.state.time, &[grains, contacts(s, &fields), bodies(s)])
 }
 
 fn grains<S: Space>(s: &Simulation<S>, fields: &Fields<S>) -> Part {
@@ -195,7 +195,7 @@ fn grains<S: Space>(s: &Simulation<S>, fields: &Fields<S>) -> Part {
 
 fn contacts<S: Space>(s: &Simulation<S>, fields: &Fields<S>) -> Part {
     let mut part = empty(&fields.contacts);
-    for (k, contact) in s.network.counted_contacts().enumerate() {
+    for (k, contact) in s.state.network.counted_contacts().enumerate() {
         let (a, b) = placement::ends(s, contact);
         let at = s.shapes.periodic.wrapped(a);
         part.points.extend(at.padded());
@@ -211,19 +211,19 @@ fn bodies<S: Space>(s: &Simulation<S>) -> Part {
         data: vec![Vec::new(); 1],
         ..Part::default()
     };
-    let shown = |body: u32| !s.bodies.removed[body as usize];
+    let shown = |body: u32| !s.state.bodies.removed[body as usize];
     for surface in s.shapes.surfaces.iter().filter(|f| shown(f.body)) {
         let b = surface.body as usize;
         for chain in surface.shape.outline() {
             let first = part.points.len() as i64 / 3;
             for p in &chain {
-                let x =
-                    s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &(surface.offset + *p));
+                let x = s.state.bodies.position[b]
+                    + S::rotate(&s.state.bodies.rotation[b], &(surface.offset + *p));
                 part.points.extend(x.padded());
             }
             part.cells
                 .push((first..first + chain.len() as i64).collect());
-            push(&mut part, &[s.bodies.id[b] as f64]);
+            push(&mut part, &[s.state.bodies.id[b] as f64]);
         }
     }
     for piece in &s.shapes.pieces {
@@ -237,7 +237,7 @@ fn bodies<S: Space>(s: &Simulation<S>) -> Part {
                 .extend(corners.iter().flat_map(VectorLike::padded));
             part.cells
                 .push((first..first + corners.len() as i64).collect());
-            push(&mut part, &[s.bodies.id[piece.body as usize] as f64]);
+            push(&mut part, &[s.state.bodies.id[piece.body as usize] as f64]);
         }
     }
     part

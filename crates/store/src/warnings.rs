@@ -44,7 +44,7 @@ impl Missed {
         if self.steps == 0 {
             return None;
         }
-        let options = &simulation.solver;
+        let options = simulation.solver_in_force();
         let demands = Demands::of(simulation);
         let others = [Method::Auto, Method::Newton, Method::Interior].into_iter();
         let others = others

@@ -37,8 +37,8 @@ pub fn watch<S: Steps>(
             Ok(report) => {
                 ran.steps += 1;
                 ran.iterations = ran.iterations.max(report.solver.iterations);
-                ran.missed.add(&report.solver, s.steps);
-                ran.liveliest = ran.liveliest.max(s.energy.kinetic);
+                ran.missed.add(&report.solver, s.state.steps);
+                ran.liveliest = ran.liveliest.max(s.state.energy.kinetic);
                 look(s);
             }
             Err(e) => {
@@ -56,7 +56,7 @@ impl Ran {
         let mut told = Vec::new();
         let stopped = self.stopped.iter().cloned();
         told.extend(stopped.map(|words| (Cause::Stopped, words)));
-        let step_size = &s.network.step_size;
+        let step_size = &s.state.network.step_size;
         // One message covers all of them.
         let warning = step_size.warning().unwrap_or_default();
         let causes = [
@@ -79,9 +79,9 @@ impl Ran {
         met: bool,
         expected: Expected,
     ) -> Row {
-        let sound = s.bodies.position.iter().all(VectorLike::is_finite)
-            && s.bodies.velocity.iter().all(VectorLike::is_finite)
-            && s.energy.relative_residual() < 1e-6;
+        let sound = s.state.bodies.position.iter().all(VectorLike::is_finite)
+            && s.state.bodies.velocity.iter().all(VectorLike::is_finite)
+            && s.state.energy.relative_residual() < 1e-6;
         Row {
             value,
             found,
@@ -92,12 +92,14 @@ impl Ran {
 
 /// Deepest overlap of the current contacts, as a fraction of their radius.
 pub fn overlap<S: Space>(s: &Simulation<S>) -> f64 {
-    let deep = s.network.contacts.iter().map(|c| -c.gap / c.radius);
+    let deep = s.state.network.contacts.iter().map(|c| -c.gap / c.radius);
     deep.fold(0.0, f64::max)
 }
 
 /// Force along the last axis on a first body in the last step (N/m; N).
 pub fn carried<S: Space>(s: &Simulation<S>, name: &str) -> f64 {
-    let driven = s.bodies.driven.iter().position(|d| d.name == name);
-    driven.map_or(f64::NAN, |d| -s.received[d].0[S::D - 1] / s.scheme.h)
+    let driven = s.state.bodies.driven.iter().position(|d| d.name == name);
+    driven.map_or(f64::NAN, |d| {
+        -s.state.received[d].0[S::D - 1] / s.options.scheme.h
+    })
 }

@@ -57,14 +57,14 @@ fn hanging<S: Dimensional>(k: f64, theta: f64, expected: Expected) -> Row {
         Ok(s) => s,
         Err(e) => return refused(value, expected, &e),
     };
-    let gravity = s.gravity[S::D - 1].abs();
+    let gravity = s.state.gravity[S::D - 1].abs();
     let mut longest = 0.0f64;
     let ran = watch(&mut s, 1000, |s| longest = longest.max(opening(s)));
-    let bond = s.network.memory[0].bonds.first();
+    let bond = s.state.network.memory[0].bonds.first();
     let rest = mass * gravity / (k * bond.map_or(f64::NAN, |b| b.area));
     let rounding = f64::EPSILON * gravity * step * step / rest;
     let last = opening(&s) / rest - 1.0;
-    let residual = s.energy.relative_residual();
+    let residual = s.state.energy.relative_residual();
     let met = residual < 1e-9
         && if theta < 1.0 {
             longest / rest < 2.0 + 2e-6 + 4000.0 * rounding
@@ -80,7 +80,7 @@ fn hanging<S: Dimensional>(k: f64, theta: f64, expected: Expected) -> Row {
 
 /// Opening of the first bond (m).
 fn opening<S: Dimensional>(s: &Simulation<S>) -> f64 {
-    s.network.memory[0]
+    s.state.network.memory[0]
         .bonds
         .first()
         .map_or(f64::NAN, |b| b.opening_n)
@@ -117,10 +117,10 @@ fn torn<S: Dimensional>() -> Vec<Row> {
         };
         let mut at_once = 0;
         let ran = watch(&mut s, 200, |s| {
-            at_once = at_once.max(s.network.bond_breaks.len() as u64);
+            at_once = at_once.max(s.state.network.bond_breaks.len() as u64);
         });
-        let (made, broken) = (s.network.bonds_made(), s.network.bonds_broken());
-        let residual = s.energy.relative_residual();
+        let (made, broken) = (s.state.network.bonds_made(), s.state.network.bonds_broken());
+        let residual = s.state.energy.relative_residual();
         let found =
             format!("{broken} of {made} broke, {at_once} in one step; residual {residual:.1e}");
         let met = made == bonds && at_once == made && residual < 1e-9;

@@ -45,11 +45,11 @@ fn standing<S: Dimensional>(value: String, blocks: &[String], width: f64, mu: f6
         Ok(s) => s,
         Err(e) => return refused(value, HELD, &e),
     };
-    let upright: Vec<S::Rotation> = s.bodies.rotation.clone();
+    let upright: Vec<S::Rotation> = s.state.bodies.rotation.clone();
     let ran = go(&mut s, 50);
     let each = width * 0.1f64.powi(S::D as i32 - 1);
     let bears = carried(&s, "floor") / (1e3 * each * blocks.len() as f64 * G) - 1.0;
-    let fast = s.bodies.velocity.iter().map(VectorLike::norm);
+    let fast = s.state.bodies.velocity.iter().map(VectorLike::norm);
     let fast = fast.fold(0.0, f64::max);
     // Displacement of the ends of the axes by the rotation.
     let turned = |(a, b): (&S::Rotation, &S::Rotation)| {
@@ -60,9 +60,9 @@ fn standing<S: Dimensional>(value: String, blocks: &[String], width: f64, mu: f6
         });
         ends.fold(0.0, f64::max)
     };
-    let turns = upright.iter().zip(&s.bodies.rotation).map(turned);
+    let turns = upright.iter().zip(&s.state.bodies.rotation).map(turned);
     let turns = turns.fold(0.0, f64::max);
-    let deep = s.network.contacts.iter().map(|c| -c.gap);
+    let deep = s.state.network.contacts.iter().map(|c| -c.gap);
     let deep = deep.fold(0.0, f64::max) / 0.1;
     let met = bears.abs() < 1e-6 && fast < 1e-6 && deep < 1e-9 && turns < 1e-9;
     let found = format!(

@@ -41,7 +41,7 @@ fn coincident<S: Dimensional>() -> Vec<Row> {
             Ok(s) => s,
             Err(e) => return refused(words.to_owned(), expected, &e),
         };
-        let start = s.energy.kinetic;
+        let start = s.state.energy.kinetic;
         let ran = go(&mut s, 100);
         let (deep, gained) = (overlap(&s), ran.liveliest / start - 1.0);
         let found = format!("overlap {deep:.1e}, kinetic energy {gained:.1e} above the start");
@@ -91,7 +91,7 @@ fn lengths<S: Dimensional>() -> Vec<Row> {
             let report = s.step().map_err(|e| e.to_string())?;
             sweeps.push(report.solver.iterations);
         }
-        let places = s.bodies.position.iter();
+        let places = s.state.bodies.position.iter();
         let places = places.map(|x| x.padded().map(|x| x / scale)).collect();
         Ok((sweeps, places, s))
     };

@@ -61,12 +61,13 @@ fn pair<S: Dimensional>(
     let weight = |k: usize| densities[k] * volume::<S>(radii[k]) * G;
     let all = carried(&s, "floor") / (weight(0) + weight(1)) - 1.0;
     let joint = s
+        .state
         .network
         .contacts
         .iter()
         .find(|c| c.bodies[1] < 2 && c.bodies[0] < 2);
     let joint = joint.map_or(f64::NAN, |c| {
-        c.impulse.norm() / s.scheme.h / weight(1) - 1.0
+        c.impulse.norm() / s.options.scheme.h / weight(1) - 1.0
     });
     let deep = overlap(&s);
     let found = format!(
@@ -74,7 +75,7 @@ fn pair<S: Dimensional>(
         ran.iterations
     );
     let share = tolerance.sqrt();
-    let sinks = ran.steps as f64 * share * G * s.scheme.h.powi(2) / a.min(b);
+    let sinks = ran.steps as f64 * share * G * s.options.scheme.h.powi(2) / a.min(b);
     let met = all.abs() < share && joint.abs() < share && deep < 1e-6 + sinks;
     ran.row(&s, (value, found), met, expected)
 }
@@ -141,7 +142,8 @@ fn column<S: Dimensional>((n, method, expected): (usize, &str, Expected)) -> Row
     };
     let ran = go(&mut s, 2);
     let all = carried(&s, "floor") / (n as f64 * 1e3 * volume::<S>(0.1) * G) - 1.0;
-    let places = (n as f64).sqrt() * f64::EPSILON * 0.2 * n as f64 / (G * s.scheme.h.powi(2));
+    let places =
+        (n as f64).sqrt() * f64::EPSILON * 0.2 * n as f64 / (G * s.options.scheme.h.powi(2));
     let found = format!("floor {all:.1e}, {} sweeps at most", ran.iterations);
     ran.row(&s, (value, found), all.abs() < 1e-6 + places, expected)
 }

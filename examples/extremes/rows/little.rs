@@ -36,10 +36,10 @@ fn weightless<S: Dimensional>() -> Vec<Row> {
         Ok(s) => s,
         Err(e) => return vec![refused(value, HELD, &e)],
     };
-    let (places, velocity) = (s.bodies.position.clone(), s.bodies.velocity[2]);
+    let (places, velocity) = (s.state.bodies.position.clone(), s.state.bodies.velocity[2]);
     let ran = go(&mut s, 1000);
-    let rest = s.bodies.position[..2] == places[..2];
-    let moves = s.bodies.velocity[2] == velocity;
+    let rest = s.state.bodies.position[..2] == places[..2];
+    let moves = s.state.bodies.velocity[2] == velocity;
     let found = format!("at rest: {rest}, velocity kept: {moves}");
     vec![ran.row(&s, (value, found), rest && moves, HELD)]
 }
@@ -62,19 +62,19 @@ fn few<S: Dimensional>() -> Vec<Row> {
     };
     let one = grains("m0", &[ball(&place::<S>(0.0, 0.0, 0.1), 0.1)]);
     let floor = floor::<S>();
-    let steps: Look<S> = |s| (format!("{} steps", s.steps), s.steps == 100);
+    let steps: Look<S> = |s| (format!("{} steps", s.state.steps), s.state.steps == 100);
     vec![
         scene("nothing at all", "", "", steps),
         scene("a floor, no grains", &floor, "", steps),
         scene("one ball, nothing else", "", &one, |s| {
             // From rest at theta = 1/2 the fall is exact.
-            let fallen = 0.1 - s.bodies.position[0][S::D - 1];
-            let off = fallen / (0.5 * G * s.time * s.time) - 1.0;
+            let fallen = 0.1 - s.state.bodies.position[0][S::D - 1];
+            let off = fallen / (0.5 * G * s.state.time * s.state.time) - 1.0;
             (format!("fall {off:.1e} off"), off.abs() < 1e-12)
         }),
         scene("one ball on a floor", &floor, &one, |s| {
-            let weight = s.bodies.mass[0] * G * s.scheme.h;
-            let off = s.network.contacts[0].impulse[S::D - 1] / weight - 1.0;
+            let weight = s.state.bodies.mass[0] * G * s.options.scheme.h;
+            let off = s.state.network.contacts[0].impulse[S::D - 1] / weight - 1.0;
             (format!("contact {off:.1e} off"), off.abs() < 1e-9)
         }),
     ]

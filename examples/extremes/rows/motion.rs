@@ -51,15 +51,16 @@ fn speeds<S: Dimensional>() -> Vec<Row> {
             Ok(s) => s,
             Err(e) => return refused(value, expected, &e),
         };
-        let start = s.energy.kinetic;
-        let steps = (2.0 / (v * s.scheme.h)).ceil().max(10.0) as u64;
+        let start = s.state.energy.kinetic;
+        let steps = (2.0 / (v * s.options.scheme.h)).ceil().max(10.0) as u64;
         let ran = go(&mut s, steps);
         let x = s
+            .state
             .bodies
             .grains()
             .next()
-            .map_or(f64::NAN, |b| s.bodies.position[b][0]);
-        let gained = s.energy.kinetic / start - 1.0;
+            .map_or(f64::NAN, |b| s.state.bodies.position[b][0]);
+        let gained = s.state.energy.kinetic / start - 1.0;
         let found = format!("at x = {x:.3} m, the post's side at 0.8; energy {gained:.1e}");
         let met = x < 0.8 + 1e-6 && gained <= 1e-12;
         ran.row(&s, (value, found), met, expected)
@@ -126,11 +127,11 @@ fn corners<S: Dimensional>() -> Vec<Row> {
             Ok(s) => s,
             Err(e) => return refused(value, expected, &e),
         };
-        let start = s.energy.kinetic;
+        let start = s.state.energy.kinetic;
         let ran = go(&mut s, 10);
-        let b = s.bodies.grains().next();
-        let up = b.map_or(f64::NAN, |b| s.bodies.position[b][S::D - 1]);
-        let gained = s.energy.kinetic / start - 1.0;
+        let b = s.state.bodies.grains().next();
+        let up = b.map_or(f64::NAN, |b| s.state.bodies.position[b][S::D - 1]);
+        let gained = s.state.energy.kinetic / start - 1.0;
         let found = format!("at height {up:.3} m, {half:.3} at rest; energy {gained:.1e}");
         let met = up > 0.0 && gained <= 1e-12;
         ran.row(&s, (value, found), met, expected)

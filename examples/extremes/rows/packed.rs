@@ -65,14 +65,14 @@ fn friction<S: Dimensional>() -> Vec<Row> {
         if S::D == 3 {
             slope[1] = 0.6;
         }
-        s.gravity = slope * (G * angle.sin());
-        s.gravity[S::D - 1] = -G * angle.cos();
+        s.state.gravity = slope * (G * angle.sin());
+        s.state.gravity[S::D - 1] = -G * angle.cos();
         let ran = go(&mut s, 100);
-        let expected = (angle.sin() - mu * angle.cos()).max(0.0) * G * s.time;
-        let block = s.bodies.driven[1].body as usize;
-        let mut off = s.bodies.velocity[block] - slope * expected;
+        let expected = (angle.sin() - mu * angle.cos()).max(0.0) * G * s.state.time;
+        let block = s.state.bodies.driven[1].body as usize;
+        let mut off = s.state.bodies.velocity[block] - slope * expected;
         off[S::D - 1] = 0.0;
-        let off = off.norm() / (G * s.time);
+        let off = off.norm() / (G * s.state.time);
         let found = format!("v {off:.1e} off, overlap {:.1e}", overlap(&s));
         ran.row(&s, (value, found), off < 1e-9, HELD)
     };
@@ -98,7 +98,7 @@ fn wedge<S: Dimensional>() -> Vec<Row> {
         let ran = go(&mut s, 50);
         let weight = 1e3 * volume::<S>(0.1) * G;
         let both = (carried(&s, "left") + carried(&s, "right")) / weight - 1.0;
-        let left = s.received[0].0.norm() / s.scheme.h;
+        let left = s.state.received[0].0.norm() / s.options.scheme.h;
         let side = left * 2.0 * a.sin() / weight - 1.0;
         let met = both.abs() < 1e-6 && (mu > 0.0 || side.abs() < 1e-6);
         let found = format!("together {both:.1e}, one side {side:.1e}");
@@ -134,13 +134,13 @@ fn rod() -> Vec<Row> {
             Ok(s) => s,
             Err(e) => return refused(value, HELD, &e),
         };
-        let start = s.energy.kinetic;
+        let start = s.state.energy.kinetic;
         let mut most = 0.0f64;
         let ran = watch(&mut s, 1000, |s| {
-            most = most.max(s.energy.kinetic + s.energy.potential);
+            most = most.max(s.state.energy.kinetic + s.state.energy.potential);
         });
         let gained = most / start - 1.0;
-        let residual = s.energy.relative_residual();
+        let residual = s.state.energy.relative_residual();
         let found = format!(
             "energy {gained:.1e} above the start, residual {residual:.1e}, {} steps not converged",
             ran.missed.steps

@@ -74,11 +74,11 @@ fn steps<S: Dimensional>() -> Vec<Row> {
         };
         let (mut most, mut deepest) = (f64::NEG_INFINITY, 0.0f64);
         let ran = watch(&mut s, 200, |s| {
-            most = most.max(s.energy.kinetic + s.energy.potential);
+            most = most.max(s.state.energy.kinetic + s.state.energy.potential);
             deepest = deepest.max(overlap(s));
         });
-        let residual = s.energy.relative_residual();
-        let gained = most / s.energy.scale.max(f64::MIN_POSITIVE);
+        let residual = s.state.energy.relative_residual();
+        let gained = most / s.state.energy.scale.max(f64::MIN_POSITIVE);
         let found =
             format!("energy at most {gained:.1e}, residual {residual:.1e}, overlap {deepest:.1e}");
         let met = gained < 1e-9 && residual < 1e-9 && deepest < 1e-3;
@@ -118,9 +118,9 @@ fn jumps<S: Dimensional>() -> Vec<Row> {
             Err(e) => return refused(words.to_owned(), expected, &e),
         };
         let ran = go(&mut s, 100);
-        let residual = s.energy.relative_residual();
-        let lid = s.bodies.position[s.bodies.driven[1].body as usize][0];
-        let floor = s.bodies.position[s.bodies.driven[0].body as usize].norm();
+        let residual = s.state.energy.relative_residual();
+        let lid = s.state.bodies.position[s.state.bodies.driven[1].body as usize][0];
+        let floor = s.state.bodies.position[s.state.bodies.driven[0].body as usize].norm();
         let found = format!(
             "residual {residual:.1e}, lid moved by {:.1e} of its way less one",
             lid / way - 1.0
@@ -181,14 +181,14 @@ fn many() -> Vec<Row> {
         Ok(s) => s,
         Err(e) => return vec![refused(value, HELD, &e)],
     };
-    let start = s.bodies.position.clone();
+    let start = s.state.bodies.position.clone();
     let ran = go(&mut s, 1_000_000);
     let moved = start
         .iter()
-        .zip(&s.bodies.position)
+        .zip(&s.state.bodies.position)
         .map(|(a, b)| (a - b).norm());
     let moved = moved.fold(0.0, f64::max) / r;
-    let residual = s.energy.relative_residual();
+    let residual = s.state.energy.relative_residual();
     let found = format!("moved {moved:.1e} of the radius, residual {residual:.1e}");
     let met = moved < 1e-6 && residual < 1e-9;
     vec![ran.row(&s, (value, found), met, HELD)]

@@ -60,7 +60,7 @@ impl Trial {
                 let told = simulation.step().map_err(|e| e.to_string());
                 let told = told.map(|report| Timed {
                     seconds: clock.elapsed().as_secs_f64(),
-                    contacts: simulation.network.contacts.len(),
+                    contacts: simulation.state.network.contacts.len(),
                     iterations: report.solver.iterations,
                 });
                 let failed = told.is_err();

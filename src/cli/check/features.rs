@@ -45,10 +45,10 @@ impl Features {
     fn motion<S: Space>(&mut self, s: &Simulation<S>) {
         let text = format!("{} velocities, {} spins a body", S::D, S::Spin::N);
         self.say("dimensions", Some(text));
-        let turning = s.bodies.inverse_inertia.iter().filter(|i| **i > 0.0);
+        let turning = s.state.bodies.inverse_inertia.iter().filter(|i| **i > 0.0);
         let turning = turning.count();
         // Only a contact whose force does not pass through the centre exerts a moment.
-        let levers = s.network.contacts.iter().any(|c| !c.central);
+        let levers = s.state.network.contacts.iter().any(|c| !c.central);
         let turned = levers || asks(s, |d| d.friction) || s.laws.iter().any(Interface::opens);
         let text = format!("{turning} bodies turn freely");
         self.say("rotation", (turned && turning > 0).then_some(text));
@@ -61,7 +61,7 @@ impl Features {
             "periodic",
             (!axes.is_empty()).then(|| format!("along {}", axes.join(", "))),
         );
-        let g = s.gravity.norm();
+        let g = s.state.gravity.norm();
         self.say("gravity", (g > 0.0).then(|| format!("{g:.3e} m/s^2")));
     }
 
@@ -93,15 +93,15 @@ impl Features {
         self.list("imposed force", drives(|d| matches!(d, Dof::Force(_))));
         let servo = |d: &Dof| matches!(d, Dof::Pressure { .. });
         self.list("servo pressure", drives(servo));
-        let gates = s.control.gates.iter();
-        let timed =
-            gates.map(|(place, time)| format!("{} at {time:e} s", s.bodies.driven[*place].name));
+        let gates = s.state.control.gates.iter();
+        let timed = gates
+            .map(|(place, time)| format!("{} at {time:e} s", s.state.bodies.driven[*place].name));
         let opened = case.phases.iter().flat_map(|p| {
             let open = p.open.iter();
             open.map(|body| format!("{body} with phase {}", p.name))
         });
         self.list("gates", timed.chain(opened));
-        let turns = s.control.gravity_drive.is_some()
+        let turns = s.state.control.gravity_drive.is_some()
             || case.phases.iter().any(|p| p.gravity_drive.is_some());
         self.say(
             "gravity that changes",
@@ -166,7 +166,7 @@ impl Features {
                 by.map(|l| l.plugin.name.clone())
             }),
         );
-        let scars = s.scars.iter().map(|c| {
+        let scars = s.state.scars.iter().map(|c| {
             let vertices = c.vertices().count();
             format!("{}, {vertices} vertices, {:e} m thick", c.name, c.thickness)
         });
@@ -196,17 +196,17 @@ impl Features {
     }
 
     fn scheme<S: Space>(&mut self, case: &Case, s: &Simulation<S>) {
-        let share = s.correction;
+        let share = s.options.correction;
         self.say(
             "position correction",
             (share > 0.0).then(|| format!("{share} of a penetration a step")),
         );
-        let bound = s.projection;
+        let bound = s.options.projection;
         self.say(
             "projection of overlaps",
             (bound > 0.0).then(|| format!("beyond {bound:e} of the smaller body's length")),
         );
-        let implicit = match s.coupling {
+        let implicit = match s.options.coupling {
             Coupling::Implicit { tolerance, .. } => Some(format!("to {tolerance:e}")),
             Coupling::Explicit => None,
         };
@@ -280,7 +280,7 @@ pub fn memory<S: Space>(s: &Simulation<S>) -> [String; 2] {
     let kept = state + size_of::<Ball<S>>() + size_of::<S::Vector>();
     let [plain, full, general] = Problem::<S>::BYTES_A_CONTACT;
     let bonded = s.laws.iter().any(|law| law.cohesion().is_some());
-    let central = s.network.contacts.iter().all(|c| c.central);
+    let central = s.state.network.contacts.iter().all(|c| c.central);
     let mut rows = vec![if bonded {
         format!("{full} bytes in the sweep")
     } else {

@@ -85,7 +85,7 @@ fn fastest(case: &Case, counts: impl Fn(&str, usize) -> bool) -> Option<(f64, St
 /// Imposed force over the contact area of the test.
 pub fn friction_pressure<S: Space>(case: &Case, built: &Built<S>) -> Option<f64> {
     let (test, s) = (case.friction.as_ref()?, &built.simulation);
-    let driven = s.bodies.driven.iter().find(|d| d.name == test.body)?;
+    let driven = s.state.bodies.driven.iter().find(|d| d.name == test.body)?;
     let force = largest(case.time.end, |t| driven.dofs[test.normal].force(t));
     let pressure = force / friction_area::<S>(case, built)?;
     (pressure > 0.0).then_some(pressure)
@@ -106,7 +106,7 @@ pub fn friction_area<S: Space>(case: &Case, built: &Built<S>) -> Option<f64> {
 fn biaxial_pressure<S: Space>(case: &Case, built: &Built<S>) -> Option<f64> {
     let (spec, s) = (case.biaxial.as_ref()?, &built.simulation);
     let test = Biaxial::new(spec, s)?;
-    let walls = s.bodies.driven.iter();
+    let walls = s.state.bodies.driven.iter();
     let walls = walls.filter(|d| d.name == spec.lateral.0 || d.name == spec.lateral.1);
     let forces = walls.flat_map(|d| &d.dofs[..S::D]);
     let force = forces.map(|dof| largest(case.time.end, |t| dof.force(t)));
@@ -130,16 +130,23 @@ fn servo_pressure(case: &Case) -> Option<f64> {
 /// Weight of all grains over the base area below them.
 fn weight<S: Space>(built: &Built<S>) -> Option<f64> {
     let s = &built.simulation;
-    let g = s.gravity.norm();
-    let down = (0..S::D).max_by(|a, b| s.gravity[*a].abs().total_cmp(&s.gravity[*b].abs()))?;
+    let g = s.state.gravity.norm();
+    let down = (0..S::D).max_by(|a, b| {
+        s.state.gravity[*a]
+            .abs()
+            .total_cmp(&s.state.gravity[*b].abs())
+    })?;
     let (mut mass, mut area) = (0.0, 1.0);
-    for body in s.bodies.grains() {
-        mass += s.bodies.mass[body];
+    for body in s.state.bodies.grains() {
+        mass += s.state.bodies.mass[body];
     }
     for k in (0..S::D).filter(|k| *k != down) {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for body in s.bodies.grains() {
-            let (x, r) = (s.bodies.position[body][k], s.bodies.length[body]);
+        for body in s.state.bodies.grains() {
+            let (x, r) = (
+                s.state.bodies.position[body][k],
+                s.state.bodies.length[body],
+            );
             (low, high) = (low.min(x - r), high.max(x + r));
         }
         area *= s.shapes.periodic.period[k].unwrap_or(high - low);

@@ -78,7 +78,7 @@ pub fn budget(args: &TradeArgs, loaded: &Loaded, scene: Scene) -> Result<(), Fai
 fn budget_of<S: Steps>(args: &TradeArgs, loaded: &Loaded, built: Built<S>) -> Result<(), Failure> {
     let time = &loaded.case.time;
     let steps = (time.end / time.step - 1e-6).ceil().max(1.0) as u64;
-    let grains = built.simulation.bodies.grains().count();
+    let grains = built.simulation.state.bodies.grains().count();
     let trial = Trial::of(built.simulation, steps);
     let budget = args.budget.as_secs_f64();
     let Some(run) = trial.run_time(steps, grains, S::D) else {

@@ -27,9 +27,9 @@ impl<S: Dimensional> Recorder<'_, S> {
              of a penetration, restitution). r: impulses of the step times {scale:e}, so that the mean \
              normal diagonal of W is 1; r/{scale:e} is in N s{per}. Step {:e} s, theta {}, time {:e} s; solved \
              in the run by {} to an error of {:.1e}, {}.",
-            s.scheme.h,
-            s.scheme.theta,
-            s.time,
+            s.options.scheme.h,
+            s.options.scheme.theta,
+            s.state.time,
             report.solver.used.name(),
             report.solver.error,
             case.solver.norm.formula(),

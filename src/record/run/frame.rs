@@ -16,12 +16,15 @@ impl<S: Dimensional> Recorder<'_, S> {
         if self.loaded.case.output.frames == 0 {
             return Ok(());
         }
-        let mut caption = vec![format!("t = {}", quantity(self.simulation.time, "s", 4))];
-        if let Some(phase) = self.simulation.control.begun().last() {
+        let mut caption = vec![format!(
+            "t = {}",
+            quantity(self.simulation.state.time, "s", 4)
+        )];
+        if let Some(phase) = self.simulation.state.control.begun().last() {
             caption.push(phase.name.clone());
         }
         caption.extend(self.observers.caption(&self.simulation));
-        if self.simulation.network.bonds_made() > 0 {
+        if self.simulation.state.network.bonds_made() > 0 {
             caption.push(format!(
                 "damage ratio {:.3}",
                 damage_ratio(&self.simulation)
@@ -30,7 +33,9 @@ impl<S: Dimensional> Recorder<'_, S> {
         self.camera.follow(&self.simulation);
         let pictures = self.observers.pictures(&self.simulation);
         let mut subjects = vec![("frame", Subject::Scene)];
-        if self.loaded.case.output.layers.is_some() && self.simulation.network.bonds_made() > 0 {
+        if self.loaded.case.output.layers.is_some()
+            && self.simulation.state.network.bonds_made() > 0
+        {
             subjects.push(("bonds", Subject::Bonds));
         }
         subjects.extend(

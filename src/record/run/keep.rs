@@ -7,7 +7,7 @@ use crate::record::checkpoint::{Kind, LAST, ResumeError, ResumePoint};
 use crate::record::code::{CodeError, decode, encode};
 use crate::report::Paint;
 use crate::scene::build::Dimensional;
-use crate::step::{ProcessState, Saved};
+use crate::step::{ProcessState, State};
 use fretwork_observe::observer::ObserverState;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 #[derive(Serialize, Deserialize)]
 #[serde(bound = "")]
 struct Carried<'a, S: Space> {
-    simulation: Saved<'a, S>,
+    simulation: Cow<'a, State<S>>,
     /// Number of steps over which states and pictures are distributed.
     spread: u64,
     /// Rows and chunks of each growing dataset of the results, in the order of their declaration.
@@ -76,7 +76,7 @@ impl<S: Dimensional> Recorder<'_, S> {
     fn state(&mut self) -> Result<Vec<u8>, RunError> {
         let rows = self.results.rows()?;
         Ok(encode(&Carried {
-            simulation: self.simulation.save(),
+            simulation: Cow::Borrowed(&self.simulation.state),
             spread: self.spread,
             rows,
             paints: Cow::Borrowed(self.camera.paints()),
@@ -98,7 +98,7 @@ impl<S: Dimensional> Recorder<'_, S> {
             source,
         };
         let kept: Carried<'_, S> = decode(&stop.state).map_err(refused)?;
-        if !self.simulation.restore(kept.simulation) {
+        if !self.simulation.restore(kept.simulation.into_owned()) {
             return Err(refused(CodeError::other("bodies or laws")).into());
         }
         let processes = self.simulation.restore_processes(&kept.processes);
@@ -106,7 +106,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         self.observers.restore(&kept.observers).map_err(refused)?;
         self.set_end(kept.spread, &path)?;
         self.camera.paint(kept.paints.into_owned());
-        self.resumed_at = self.simulation.steps;
+        self.resumed_at = self.simulation.state.steps;
         (self.problems, self.unconverged) = (kept.problems, kept.unconverged);
         self.spent = (kept.wall, kept.processor);
         self.results.take_over(&stop.kept, &kept.rows)?;

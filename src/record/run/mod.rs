@@ -231,9 +231,10 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let identity = Identity::of(loaded, &built)?;
         let keeper = CheckpointWriter::new(case.output.checkpoint, &identity, number)?;
         let simulation = &mut built.simulation;
-        simulation.solver.parallel = options.threads > 1;
+        simulation.options.solver.parallel = options.threads > 1;
         processes::install(case, simulation);
-        let any = !(simulation.shapes.surfaces.is_empty() && simulation.bodies.driven.is_empty());
+        let any =
+            !(simulation.shapes.surfaces.is_empty() && simulation.state.bodies.driven.is_empty());
         let mut observers = standard::observers(case, simulation, density_of(loaded, any));
         observers.append(run.observers);
         let summary = Summary {
@@ -291,17 +292,17 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
 
     /// Steps to the end or until a stop is requested; returns the reason of the stop.
     fn run_steps(&mut self, progress: &mut OnProgress<'_>) -> Result<Option<String>, RunError> {
-        if self.simulation.steps == 0 {
+        if self.simulation.state.steps == 0 {
             self.views()?;
             self.frame(0)?;
         }
-        for step in self.simulation.steps + 1..=self.total {
-            let phase = self.simulation.control.phase();
-            let recurs = self.simulation.control.recurs();
+        for step in self.simulation.state.steps + 1..=self.total {
+            let phase = self.simulation.state.control.phase();
+            let recurs = self.simulation.phase_recurs();
             let report = self.step()?;
             self.unconverged += u64::from(!report.solver.converged);
             self.observers.after_step(&self.simulation, &report);
-            if phase == 1 && self.simulation.control.phase() == 2 {
+            if phase == 1 && self.simulation.state.control.phase() == 2 {
                 self.camera.dye(&self.simulation);
                 self.observers.begin(&mut self.simulation);
             }
@@ -309,7 +310,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             let worn_through = self.simulation.check_worn_through();
             let finished = self.simulation.finished() || worn_through.is_err();
             let last = step == self.total || finished;
-            let turned = phase > 0 && self.simulation.control.phase() > phase && !recurs;
+            let turned = phase > 0 && self.simulation.state.control.phase() > phase && !recurs;
             self.record(&report, last, finished, turned)?;
             let wish = progress(&self.progress(step, &report));
             worn_through?;
@@ -337,7 +338,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         finished: bool,
         turned: bool,
     ) -> Result<(), RunError> {
-        let (output, step) = (&self.loaded.case.output, self.simulation.steps);
+        let (output, step) = (&self.loaded.case.output, self.simulation.state.steps);
         if last {
             self.simulation.end()?;
         }
@@ -385,8 +386,8 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         Progress {
             steps: (step, self.total),
             resumed_at: self.resumed_at,
-            cycle: self.observers.cycle(s.time).unwrap_or((0, 0)),
-            contacts: s.network.contact_count(),
+            cycle: self.observers.cycle(s.state.time).unwrap_or((0, 0)),
+            contacts: s.state.network.contact_count(),
             iterations: report.solver.iterations,
             error: report.solver.error,
             unconverged: self.unconverged,

@@ -31,7 +31,7 @@ impl<S: Space> Recorder<'_, S> {
     /// Adds the warnings of the whole run to the complete summary.
     pub(super) fn warn(&mut self) -> Option<String> {
         let missed = warnings::missed(&self.summary);
-        let advice = missed.warning(&self.simulation, self.simulation.steps);
+        let advice = missed.warning(&self.simulation, self.simulation.state.steps);
         let list = warnings::of(&self.summary, advice);
         judge(&mut self.summary, &list);
         band(&list)

@@ -11,16 +11,16 @@ pub fn opens_by_its_law<S: Dimensional>(case: &str, bonds: u64, face: f64, part:
     let mut s = scene::<S>(case, &[]);
     let (mut peak, mut work, mut begun, mut open) = (0.0f64, 0.0, None, 0.0);
     let grip = driven(&s, "grip");
-    while s.network.bonds_broken() < bonds {
+    while s.state.network.bonds_broken() < bonds {
         step(&mut s);
         assert!(open < 2.0 * last);
-        let pull = -s.received[grip].0[S::D - 1] / s.scheme.h;
+        let pull = -s.state.received[grip].0[S::D - 1] / s.options.scheme.h;
         let before = open;
         // From rest, over the first step the grip moves half.
-        open += 0.01 * s.scheme.h * if s.steps == 1 { 0.5 } else { 1.0 };
+        open += 0.01 * s.options.scheme.h * if s.state.steps == 1 { 0.5 } else { 1.0 };
         work += pull * (open - before);
         peak = peak.max(pull);
-        let list = &s.network.memory[0].bonds;
+        let list = &s.state.network.memory[0].bonds;
         if begun.is_none() && list.iter().any(|b| b.damage > 0.0) {
             begun = Some((pull, open));
         }
@@ -31,12 +31,12 @@ pub fn opens_by_its_law<S: Dimensional>(case: &str, bonds: u64, face: f64, part:
     }
     let (force, at) = begun.unwrap();
     println!("peak {peak:e}, damage from {force:e} at {at:e}, work {work:e}, open to {open:e}");
-    assert_eq!(s.network.bonds_made(), bonds);
-    let bonded: f64 = s.network.memory[0].bonds.iter().map(|b| b.area).sum();
+    assert_eq!(s.state.network.bonds_made(), bonds);
+    let bonded: f64 = s.state.network.memory[0].bonds.iter().map(|b| b.area).sum();
     assert!(close(bonded, face, part), "{bonded}");
     assert!(close(peak, strength * face, 1e-3));
     assert!(close(force, strength * face, 1e-3) && close(at, first, 1e-3));
     assert!(close(open, last, 1e-3) && close(work, energy * face, 1e-3));
-    assert!(close(s.energy.fracture, energy * face, 1e-3));
-    assert!(s.energy.relative_residual() < 1e-12);
+    assert!(close(s.state.energy.fracture, energy * face, 1e-3));
+    assert!(s.state.energy.relative_residual() < 1e-12);
 }

@@ -27,13 +27,13 @@ fn step<S: Dimensional>(s: &mut Simulation<S>) {
     assert!(
         report.solver.converged,
         "step {}: {:?}",
-        s.steps, report.solver
+        s.state.steps, report.solver
     );
 }
 
 /// The place of a driven body among them.
 fn driven<S: Dimensional>(s: &Simulation<S>, name: &str) -> usize {
-    let mut all = s.bodies.driven.iter();
+    let mut all = s.state.bodies.driven.iter();
     all.position(|d| d.name == name).unwrap()
 }
 

@@ -13,8 +13,8 @@ use std::collections::HashMap;
 fn corners(s: &Simulation<Dim2>, piece: usize) -> Vec<Vector2<f64>> {
     let piece = &s.shapes.pieces[piece];
     let b = piece.body as usize;
-    let core = piece.core.turned(&s.bodies.rotation[b]);
-    let at = s.bodies.position[b] + piece.offset;
+    let core = piece.core.turned(&s.state.bodies.rotation[b]);
+    let at = s.state.bodies.position[b] + piece.offset;
     core.outline(0.0).concat().iter().map(|c| c + at).collect()
 }
 
@@ -39,8 +39,8 @@ fn common(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
 fn a_wall_in_running_bond() {
     let s = scene::<Dim2>("block_wall", &[]);
     assert_eq!(s.shapes.pieces.len(), 22);
-    let density = s.bodies.mass[0] / 0.02;
-    let mass: f64 = (0..22).map(|b| s.bodies.mass[b]).sum();
+    let density = s.state.bodies.mass[0] / 0.02;
+    let mass: f64 = (0..22).map(|b| s.state.bodies.mass[b]).sum();
     assert!((mass / (density * 0.8 * 0.5) - 1.0).abs() < 1e-14);
     let open = ["grains.0.gap=0.01", "grains.0.at=[0.3, 0.2]"];
     let s = scene::<Dim2>("block_wall", &open);
@@ -62,13 +62,13 @@ fn a_wall_in_running_bond() {
 fn neighbours_are_bonded_over_their_sides_and_nothing_else_is() {
     for rounds in ["grains.0.rounds=0", "grains.0.rounds=5"] {
         let mut s = scene::<Dim2>("verification/voronoi_plate", &[rounds]);
-        let area: f64 = s.bodies.mass[..150].iter().sum();
-        let density = scene::<Dim2>("block_wall", &[]).bodies.mass[0] / 0.02;
+        let area: f64 = s.state.bodies.mass[..150].iter().sum();
+        let density = scene::<Dim2>("block_wall", &[]).state.bodies.mass[0] / 0.02;
         assert!((area / (density * 0.06) - 1.0).abs() < 1e-13);
         step(&mut s);
         let mut held: HashMap<(u32, u32), f64> = HashMap::new();
-        for c in &s.network.contacts {
-            if s.network.bond(c).is_some_and(|b| b.intact()) {
+        for c in &s.state.network.contacts {
+            if s.state.network.bond(c).is_some_and(|b| b.intact()) {
                 *held.entry(c.key.pair()).or_default() += c.radius;
             }
         }

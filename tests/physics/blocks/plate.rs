@@ -25,8 +25,8 @@ fn pays<S: Dimensional>(case: &str, end: f64, cracked: u64) {
 fn paid<S: Dimensional>(case: &str, end: f64, cracked: u64, part: f64) -> f64 {
     let (strength, energy, stiffness) = (1e6, 10.0, 1e12);
     let mut s = scene::<S>(case, &[]);
-    s.scheme.h *= part;
-    while s.time < end {
+    s.options.scheme.h *= part;
+    while s.state.time < end {
         step(&mut s);
     }
     let (first, last) = (strength / stiffness, 2.0 * energy / strength);
@@ -41,16 +41,16 @@ fn paid<S: Dimensional>(case: &str, end: f64, cracked: u64, part: f64) -> f64 {
             energy - 0.5 * t * last
         }
     };
-    let memory = &s.network.memory[0];
+    let memory = &s.state.network.memory[0];
     assert_eq!(memory.bonds.len() as u64, memory.made);
     let expected: f64 = memory.bonds.iter().map(|b| b.area * lost(b.damage)).sum();
     let broken = memory.bonds.iter().filter(|b| b.damage >= 1.0).count() as u64;
-    let found = s.energy.fracture;
+    let found = s.state.energy.fracture;
     println!(
         "broken {broken} of {}, fracture {found:e} of {expected:e}, {:?}",
-        memory.made, s.energy
+        memory.made, s.state.energy
     );
-    assert!(broken > cracked && broken == s.network.bonds_broken());
-    assert!(s.energy.relative_residual() < 1e-9);
+    assert!(broken > cracked && broken == s.state.network.bonds_broken());
+    assert!(s.state.energy.relative_residual() < 1e-9);
     found / expected
 }

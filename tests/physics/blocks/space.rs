@@ -21,8 +21,8 @@ type V = Vector3<f64>;
 fn faces(s: &Simulation<Dim3>, piece: usize) -> Vec<Vec<V>> {
     let piece = &s.shapes.pieces[piece];
     let b = piece.body as usize;
-    let core = piece.core.turned(&s.bodies.rotation[b]);
-    let at = s.bodies.position[b] + piece.offset;
+    let core = piece.core.turned(&s.state.bodies.rotation[b]);
+    let at = s.state.bodies.position[b] + piece.offset;
     let faces = core.outline(0.0).into_iter();
     faces.map(|f| f.iter().map(|c| c + at).collect()).collect()
 }
@@ -61,8 +61,8 @@ const WALL: [&str; 5] = [
 fn a_wall_in_running_bond() {
     let s = scene::<Dim3>("block_wall", &WALL);
     assert_eq!(s.shapes.pieces.len(), 22);
-    let density = s.bodies.mass[0] / (0.02 * 0.15);
-    let mass: f64 = (0..22).map(|b| s.bodies.mass[b]).sum();
+    let density = s.state.bodies.mass[0] / (0.02 * 0.15);
+    let mass: f64 = (0..22).map(|b| s.state.bodies.mass[b]).sum();
     assert!((mass / (density * 0.8 * 0.5 * 0.15) - 1.0).abs() < 1e-14);
     for k in 0..22 {
         let points = faces(&s, k).concat();
@@ -85,12 +85,16 @@ fn a_wall_stands_below_its_angle_of_friction_and_slides_above() {
         let mu_set = format!("interfaces.joints.parameters.contact.mu={mu}");
         let sets = [&WALL[..], &[mu_set.as_str()]].concat();
         let mut s = scene::<Dim3>("block_wall", &sets);
-        while s.time < 0.05 {
+        while s.state.time < 0.05 {
             step(&mut s);
         }
         let fall = f64::sin(20f64.to_radians()) - mu * f64::cos(20f64.to_radians());
-        let known = if slides { 9.81 * fall * s.time } else { 0.0 };
-        for v in &s.bodies.velocity[..22] {
+        let known = if slides {
+            9.81 * fall * s.state.time
+        } else {
+            0.0
+        };
+        for v in &s.state.bodies.velocity[..22] {
             assert!((v.x - known).abs() < 1e-4, "{v:?} {known}");
         }
     }
@@ -118,21 +122,25 @@ fn a_face_that_is_bent_and_twisted_resists_at_its_corners() {
     let set = format!("bodies.grip.dofs=(x: {dx}, y: {dy}, z: {z}, rx: {x}, ry: {y}, rz: {t})");
     let mut s = scene::<Dim3>("verification/bonded_face_3d", &[&set]);
     let grip = driven(&s, "grip");
-    while s.time < 4.2e-6 {
+    while s.state.time < 4.2e-6 {
         step(&mut s);
-        assert!(s.energy.relative_residual() < 1e-12, "{:?}", s.energy);
+        assert!(
+            s.state.energy.relative_residual() < 1e-12,
+            "{:?}",
+            s.state.energy
+        );
     }
-    let (force, moment) = s.received[grip];
-    let (force, moment) = (-force / s.scheme.h, -moment / s.scheme.h);
+    let (force, moment) = s.state.received[grip];
+    let (force, moment) = (-force / s.options.scheme.h, -moment / s.options.scheme.h);
     // Where it stands: turns about several axes at once are those of the step's velocities, closer than the square of
     // the angles.
-    let b_grip = s.bodies.driven[grip].body as usize;
-    let u = s.bodies.position[b_grip].z - 1.0;
-    let turned = s.bodies.rotation[b_grip].scaled_axis();
+    let b_grip = s.state.bodies.driven[grip].body as usize;
+    let u = s.state.bodies.position[b_grip].z - 1.0;
+    let turned = s.state.bodies.rotation[b_grip].scaled_axis();
     let near = |x: f64, asked: f64| (x / asked - 1.0).abs() < 1e-6;
     assert!(near(u, asked.0) && near(turned.x, rx) && near(turned.y, ry) && near(turned.z, rz));
     let n = k_n * face * u;
-    println!("{force:?} {moment:?} {:?}", s.energy);
+    println!("{force:?} {moment:?} {:?}", s.state.energy);
     assert!(close(force.z, n, 1e-6), "{} {n}", force.z);
     assert!(force.xy().norm() < 1e-6 * n);
     let known = V::new(
@@ -146,11 +154,11 @@ fn a_face_that_is_bent_and_twisted_resists_at_its_corners() {
     );
     let stored = 0.5 * (n * u + known.dot(&turned));
     assert!(
-        close(s.energy.elastic, stored, 1e-5),
+        close(s.state.energy.elastic, stored, 1e-5),
         "{} {stored}",
-        s.energy.elastic
+        s.state.energy.elastic
     );
-    assert!(s.energy.fracture == 0.0);
+    assert!(s.state.energy.fracture == 0.0);
 }
 
 #[test]
@@ -159,13 +167,13 @@ fn neighbours_are_bonded_over_their_faces_and_nothing_else_is() {
         let mut s = scene::<Dim3>("verification/voronoi_plate_3d", &[rounds]);
         let cells = s.shapes.pieces.len() - 2;
         assert_eq!(cells, 60);
-        let density = scene::<Dim3>("block_wall", &WALL).bodies.mass[0] / (0.02 * 0.15);
-        let mass: f64 = s.bodies.mass[..cells].iter().sum();
+        let density = scene::<Dim3>("block_wall", &WALL).state.bodies.mass[0] / (0.02 * 0.15);
+        let mass: f64 = s.state.bodies.mass[..cells].iter().sum();
         assert!((mass / (density * 0.12 * 0.08 * 0.04) - 1.0).abs() < 1e-13);
         step(&mut s);
         let mut held: HashMap<(u32, u32), f64> = HashMap::new();
-        for c in &s.network.contacts {
-            if let Some(b) = s.network.bond(c).filter(|b| b.intact()) {
+        for c in &s.state.network.contacts {
+            if let Some(b) = s.state.network.bond(c).filter(|b| b.intact()) {
                 *held.entry(c.key.pair()).or_default() += b.area;
             }
         }
@@ -205,7 +213,7 @@ fn blocks_are_measured() {
     let mut scaled = measures::<Dim3>(std::slice::from_ref(&mass), 1e3);
     let mut mass = measures::<Dim3>(&[mass], 1.0);
     let mut s = scene::<Dim3>("block_wall", &WALL);
-    let whole: f64 = s.bodies.mass[..22].iter().sum();
+    let whole: f64 = s.state.bodies.mass[..22].iter().sum();
     // Centres of three of the five courses are above.
     assert!(close(mass.sample(&s)[0], 0.6 * whole, 1e-14));
     // Of a case whose bodies are a thousand times too heavy: the mass as it is.

@@ -25,21 +25,21 @@ fn go<S: Steps>(s: &mut Simulation<S>, steps: usize) {
 }
 
 fn momentum<S: Space>(s: &Simulation<S>) -> S::Vector {
-    let bodies = s.bodies.grains();
+    let bodies = s.state.bodies.grains();
     bodies.fold(S::Vector::zero(), |p, b| {
-        p + s.bodies.velocity[b] * s.bodies.mass[b]
+        p + s.state.bodies.velocity[b] * s.state.bodies.mass[b]
     })
 }
 
 /// The only body that moves at the start.
 fn moving<S: Space>(s: &Simulation<S>) -> usize {
-    let moves = |b: &usize| s.bodies.energy_of(*b) > 0.0;
-    s.bodies.grains().find(moves).expect("one that moves")
+    let moves = |b: &usize| s.state.bodies.energy_of(*b) > 0.0;
+    s.state.bodies.grains().find(moves).expect("one that moves")
 }
 
 /// No warning: nothing was passed through, nothing was seen late.
 fn silent<S: Space>(s: &Simulation<S>) {
-    assert_eq!(s.network.step_size.warning(), None);
+    assert_eq!(s.state.network.step_size.warning(), None);
 }
 
 /// A blade of half the grains' thickness is driven by ten times its thickness a step along a row of grains.
@@ -55,12 +55,12 @@ fn a_driven_blade_takes_along_what_it_meets() {
         grains: grains("m0", &row),
         ..still()
     });
-    let blade = s.bodies.driven[0].body as usize;
+    let blade = s.state.bodies.driven[0].body as usize;
     for _ in 0..20 {
         go(&mut s, 1);
-        let side = s.bodies.position[blade].x + 0.005;
-        for b in s.bodies.grains() {
-            let near = s.bodies.position[b].x - 0.01;
+        let side = s.state.bodies.position[blade].x + 0.005;
+        for b in s.state.bodies.grains() {
+            let near = s.state.bodies.position[b].x - 0.01;
             assert!(near > side - 1e-3, "{near} {side}");
         }
     }
@@ -85,9 +85,9 @@ fn a_thin_capsule_does_not_fall_through_a_row_of_grains() {
     let thrown = moving(&s);
     for _ in 0..20 {
         go(&mut s, 1);
-        let plate = s.bodies.position[thrown].y;
+        let plate = s.state.bodies.position[thrown].y;
         for b in (0..10).filter(|b| *b != thrown) {
-            let up = s.bodies.position[b].y;
+            let up = s.state.bodies.position[b].y;
             assert!(up + 0.015 < plate + 2e-3, "{up} {plate}");
         }
     }
@@ -115,7 +115,7 @@ fn a_spinning_rod_hits_the_grain_in_its_way() {
     };
     let mut s = built::<Dim2>(&paddle);
     go(&mut s, 3);
-    let v = s.bodies.velocity[0];
+    let v = s.state.bodies.velocity[0];
     // Pushed in the sense of the rotation, no faster than where it was touched.
     let along = -v.x * angle.sin() + v.y * angle.cos();
     assert!(along > 1.0 && along < 1.5 * 300.0 * 0.5, "{v:?}");
@@ -133,9 +133,9 @@ fn a_spinning_rod_hits_the_grain_in_its_way() {
     let rod = moving(&s);
     let grain = 1 - rod;
     go(&mut s, 3);
-    assert!(s.bodies.velocity[grain].norm() > 1.0);
-    assert!(s.bodies.spin[rod][0] < 299.0);
-    let scale = s.bodies.mass[grain] * s.bodies.velocity[grain].norm();
+    assert!(s.state.bodies.velocity[grain].norm() > 1.0);
+    assert!(s.state.bodies.spin[rod][0] < 299.0);
+    let scale = s.state.bodies.mass[grain] * s.state.bodies.velocity[grain].norm();
     assert!((momentum(&s) - before).norm() < 1e-9 * scale);
 }
 
@@ -160,12 +160,12 @@ fn head_on<S: Dimensional>() {
         assert!((momentum(&s) - before).norm() < 1e-12 * before.norm());
         for (b, v) in expected.into_iter().enumerate() {
             assert!(
-                (s.bodies.velocity[b][0] - v).abs() < 1e-6,
+                (s.state.bodies.velocity[b][0] - v).abs() < 1e-6,
                 "e = {e}: {:?}",
-                s.bodies.velocity
+                s.state.bodies.velocity
             );
         }
-        assert!(s.bodies.position[1][0] - s.bodies.position[0][0] > 0.0199);
+        assert!(s.state.bodies.position[1][0] - s.state.bodies.position[0][0] > 0.0199);
         silent(&s);
     }
 }
@@ -187,8 +187,8 @@ fn fast_balls_that_miss_each_other_do_not_meet() {
             ..still()
         });
         go(&mut s, 5);
-        assert_eq!(s.bodies.velocity[0].x, 200.0, "{x} {aside}");
-        assert_eq!(s.bodies.velocity[1], nalgebra::Vector3::zeros());
+        assert_eq!(s.state.bodies.velocity[0].x, 200.0, "{x} {aside}");
+        assert_eq!(s.state.bodies.velocity[1], nalgebra::Vector3::zeros());
         silent(&s);
     }
 }
@@ -216,7 +216,7 @@ fn a_fast_sphere_stays_in_front_of_a_wall() {
             Err(e) => panic!("{e}"),
         };
         go(&mut s, 20);
-        let z = s.bodies.position[0].z;
+        let z = s.state.bodies.position[0].z;
         assert!((z - top - 0.01).abs() < 1e-6, "{shape}: {z}");
         silent(&s);
     }
@@ -234,9 +234,9 @@ fn speed_makes_no_bonds() {
     });
     let before = momentum(&s);
     go(&mut s, 3);
-    assert!(s.network.step_size.foreseen > 0);
-    assert_eq!(s.network.bonds_made(), 0);
-    assert!((s.bodies.velocity[1].x - 15.0).abs() < 1e-6);
+    assert!(s.state.network.step_size.foreseen > 0);
+    assert_eq!(s.state.network.bonds_made(), 0);
+    assert!((s.state.bodies.velocity[1].x - 15.0).abs() < 1e-6);
     assert!((momentum(&s) - before).norm() < 1e-12 * before.norm());
 }
 
@@ -259,7 +259,7 @@ fn slow_scenes_do_without() {
         ..still()
     });
     go(&mut s, 500);
-    let step_size = &s.network.step_size;
+    let step_size = &s.state.network.step_size;
     assert_eq!((step_size.foreseen, step_size.repeated_solves), (0, 0));
     silent(&s);
 }
@@ -275,11 +275,11 @@ fn a_surface_that_starts_to_turn_holds_a_slow_ball() {
         grains: grains("m0", &[thrown]),
         ..still()
     });
-    let floor = s.bodies.driven[0].body as usize;
+    let floor = s.state.bodies.driven[0].body as usize;
     for _ in 0..150 {
         go(&mut s, 1);
-        let normal = Dim2::rotate(&s.bodies.rotation[floor], &nalgebra::Vector2::y());
-        let height = normal.dot(&s.bodies.position[0]);
+        let normal = Dim2::rotate(&s.state.bodies.rotation[floor], &nalgebra::Vector2::y());
+        let height = normal.dot(&s.state.bodies.position[0]);
         assert!(height > 0.01 - 5e-4, "{height}");
     }
     silent(&s);
@@ -297,14 +297,14 @@ fn a_flap_that_starts_to_turn_hits_what_is_in_its_way() {
     });
     go(&mut s, 14);
     assert!(
-        s.bodies.velocity[0].norm() > 1.0,
+        s.state.bodies.velocity[0].norm() > 1.0,
         "{:?}",
-        s.bodies.velocity[0]
+        s.state.bodies.velocity[0]
     );
 }
 
 fn passed<S: Space>(s: &Simulation<S>) {
-    let told = s.network.step_size.warning().unwrap_or_default();
+    let told = s.state.network.step_size.warning().unwrap_or_default();
     assert!(told.contains("penetrated or passed through"), "{told}");
 }
 
@@ -334,7 +334,11 @@ fn what_is_passed_before_detection_is_reported() {
     // Beyond the half move it is met.
     let s = kicked(0.08);
     silent(&s);
-    assert!(s.bodies.velocity[0].x > 99.0, "{:?}", s.bodies.velocity[0]);
+    assert!(
+        s.state.bodies.velocity[0].x > 99.0,
+        "{:?}",
+        s.state.bodies.velocity[0]
+    );
 }
 
 /// A ball at 200 m/s on to two at rest, with restitution.
@@ -349,17 +353,17 @@ fn row_of_three(e: f64, step: f64, places: [f64; 2], steps: usize) -> Simulation
         ..still()
     });
     let before = momentum(&s);
-    let energy = s.bodies.kinetic_energy();
+    let energy = s.state.bodies.kinetic_energy();
     for _ in 0..steps {
         go(&mut s, 1);
         // None goes through another.
         for pair in [0, 1] {
-            let apart = s.bodies.position[pair + 1].x - s.bodies.position[pair].x;
+            let apart = s.state.bodies.position[pair + 1].x - s.state.bodies.position[pair].x;
             assert!(apart > 0.015, "{apart}");
         }
     }
     assert!((momentum(&s) - before).norm() < 1e-12 * before.norm());
-    assert!(s.bodies.kinetic_energy() < energy * (1.0 + 1e-12));
+    assert!(s.state.bodies.kinetic_energy() < energy * (1.0 + 1e-12));
     s
 }
 
@@ -376,12 +380,12 @@ fn impacts_with_restitution_one_after_the_other() {
                 0.25 * (1.0 - e * e) * v,
                 0.25 * (1.0 + e).powi(2) * v,
             ];
-            for (now, known) in s.bodies.velocity.iter().zip(known) {
+            for (now, known) in s.state.bodies.velocity.iter().zip(known) {
                 assert!((now.x - known).abs() < 1e-6 * v, "{e} {now:?} {known}");
             }
             silent(&s);
             let s = row_of_three(e, 1e-3, places, wait);
-            let step_size = &s.network.step_size;
+            let step_size = &s.state.network.step_size;
             assert!(
                 step_size.held_back > 0 && step_size.passed == 0,
                 "{step_size:?}"
@@ -405,10 +409,10 @@ fn a_ball_does_not_bounce_through_another() {
     });
     for _ in 0..20 {
         go(&mut s, 1);
-        let [rear, front] = [0, 1].map(|b: usize| s.bodies.position[b].x);
+        let [rear, front] = [0, 1].map(|b: usize| s.state.bodies.position[b].x);
         assert!(front - rear > 0.015 && front < 0.991, "{rear} {front}");
     }
-    let step_size = &s.network.step_size;
+    let step_size = &s.state.network.step_size;
     assert!(
         step_size.held_back > 0 && step_size.passed == 0,
         "{step_size:?}"

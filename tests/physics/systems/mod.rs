@@ -10,7 +10,7 @@ use fretwork::scene::build::Dimensional;
 use fretwork::solve::Options;
 use fretwork::solve::local::solver::Method;
 use fretwork::step::Steps;
-use fretwork::step::{Saved, Simulation, StepError};
+use fretwork::step::{Simulation, State, StepError};
 use spring::{Spring, Touching};
 
 const R: f64 = 0.1;
@@ -39,7 +39,7 @@ fn go<S: Steps>(s: &mut Simulation<S>, steps: usize) {
         assert!(
             report.solver.converged,
             "step {}: {:?}",
-            s.steps, report.solver
+            s.state.steps, report.solver
         );
     }
 }
@@ -54,14 +54,16 @@ fn falls<S: Steps>(s: &mut Simulation<S>, steps: usize) {
 
 /// Positions of the contactors of the first system.
 fn contactors<S: Space>(s: &Simulation<S>) -> Vec<S::Vector> {
-    let bodies = s.systems.bodies(0).iter();
-    bodies.map(|b| s.bodies.position[*b as usize]).collect()
+    let bodies = s.state.systems.bodies(0).iter();
+    bodies
+        .map(|b| s.state.bodies.position[*b as usize])
+        .collect()
 }
 
 /// The ledger closes to rounding.
 fn closes<S: Space>(s: &Simulation<S>, tolerance: f64) {
-    let off = s.energy.relative_residual();
-    assert!(off < tolerance, "{off:e}: {:?}", s.energy);
+    let off = s.state.energy.relative_residual();
+    assert!(off < tolerance, "{off:e}: {:?}", s.state.energy);
 }
 
 fn near(expected: f64, obtained: f64, tolerance: f64) {
@@ -76,11 +78,12 @@ fn near(expected: f64, obtained: f64, tolerance: f64) {
 /// Momentum of the grains and of the first system, along the first axis.
 fn momentum<S: Space>(s: &Simulation<S>, mass: [f64; 2]) -> f64 {
     let grains: f64 = s
+        .state
         .bodies
         .grains()
-        .map(|b| s.bodies.mass[b] * s.bodies.velocity[b][0])
+        .map(|b| s.state.bodies.mass[b] * s.state.bodies.velocity[b][0])
         .sum();
-    let velocity = s.systems.get(0).unwrap().velocity();
+    let velocity = s.state.systems.get(0).unwrap().velocity();
     grains + mass[0] * velocity[0] + mass[1] * velocity[S::D]
 }
 
@@ -96,9 +99,9 @@ fn vibrates<S: Dimensional>() {
     spring.displacement[S::D] = stretch;
     s.add_system(Box::new(spring));
     let stored = 0.5 * k * stretch * stretch;
-    assert_eq!(s.energy.elastic, stored);
+    assert_eq!(s.state.energy.elastic, stored);
     let omega = (k / (mass[0] * mass[1] / (mass[0] + mass[1]))).sqrt();
-    let phase = 2.0 * (0.5 * omega * s.scheme.h).atan();
+    let phase = 2.0 * (0.5 * omega * s.options.scheme.h).atan();
     for n in 1..=2000 {
         go(&mut s, 1);
         let [a, b] = contactors(&s)[..] else {
@@ -106,7 +109,11 @@ fn vibrates<S: Dimensional>() {
         };
         let expected = stretch * (phase * f64::from(n)).cos();
         assert!((b[0] - a[0] - 1.0 - expected).abs() < 1e-11 * f64::from(n));
-        near(stored, s.energy.kinetic + s.energy.elastic, 1e-11);
+        near(
+            stored,
+            s.state.energy.kinetic + s.state.energy.elastic,
+            1e-11,
+        );
     }
     closes(&s, 1e-12);
 }
@@ -131,7 +138,7 @@ fn comes_to_rest<S: Dimensional>() {
     let up = S::D - 1;
     near(
         (mass[0] + mass[1]) * G,
-        -s.received[0].0[up] / s.scheme.h,
+        -s.state.received[0].0[up] / s.options.scheme.h,
         1e-9,
     );
     let [a, b] = contactors(&s)[..] else {
@@ -140,7 +147,7 @@ fn comes_to_rest<S: Dimensional>() {
     near(mass[1] * G / k, 0.49 - (b[up] - a[up]), 1e-9);
     // The step in which the ball meets the floor ends the gap that it began with.
     near(R, a[up], 1e-9);
-    assert!(s.energy.viscous > 0.0 && s.energy.impact > 0.0);
+    assert!(s.state.energy.viscous > 0.0 && s.state.energy.impact > 0.0);
     closes(&s, 1e-12);
 }
 
@@ -162,7 +169,7 @@ fn slides<S: Dimensional>() {
     s.add_system(Box::new(spring.moving(v, v)));
     for n in 1..=300 {
         go(&mut s, 1);
-        let t = f64::from(n) * s.scheme.h;
+        let t = f64::from(n) * s.options.scheme.h;
         let [a, b] = contactors(&s)[..] else {
             panic!("two contactors")
         };
@@ -170,7 +177,7 @@ fn slides<S: Dimensional>() {
         assert!((b[0] - a[0] - 0.5).abs() < 1e-9);
     }
     go(&mut s, 200);
-    near(0.5 * 5.0 * v * v, s.energy.friction, 1e-6);
+    near(0.5 * 5.0 * v * v, s.state.energy.friction, 1e-6);
     near(v * v / (2.0 * mu * G), contactors(&s)[0][0], 1e-5);
     closes(&s, 1e-12);
 }
@@ -200,14 +207,16 @@ fn strikes<S: Dimensional>(touching: Touching, theta: f64) {
     }
     s.add_system(Box::new(spring.moving(0.5, 0.5)));
     let before = momentum(&s, mass);
-    let first = s.systems.bodies(0)[s.systems.bodies(0).len() - 1] as usize;
-    let grain = s.bodies.grains().next().unwrap();
-    let approach = |s: &Simulation<S>| s.bodies.velocity[first][0] - s.bodies.velocity[grain][0];
+    let first = s.state.systems.bodies(0)[s.state.systems.bodies(0).len() - 1] as usize;
+    let grain = s.state.bodies.grains().next().unwrap();
+    let approach =
+        |s: &Simulation<S>| s.state.bodies.velocity[first][0] - s.state.bodies.velocity[grain][0];
     let mut struck = 0;
     for _ in 0..400 {
         let came = approach(&s);
         go(&mut s, 1);
-        if s.network
+        if s.state
+            .network
             .contacts
             .iter()
             .any(|c| c.impulse != S::Vector::zero())
@@ -217,9 +226,9 @@ fn strikes<S: Dimensional>(touching: Touching, theta: f64) {
         }
         near(before, momentum(&s, mass), 1e-12);
     }
-    assert!(struck > 0 && s.energy.elastic > 0.0);
+    assert!(struck > 0 && s.state.energy.elastic > 0.0);
     // Velocities are averaged by theta: beyond 1/2 the scheme books a part of what the impact takes, and more.
-    let sinks = (s.energy.impact, s.energy.scheme);
+    let sinks = (s.state.energy.impact, s.state.energy.scheme);
     assert!(
         sinks.0 + sinks.1 > 0.0
             && if theta == 0.5 {
@@ -258,13 +267,13 @@ fn is_a_grain<S: Dimensional>() {
     let m = 1000.0 * volume::<S>(R);
     let spring = Spring::<S>::new([m, m], 0.0, R, [at::<S>(0.0, 0.5), at::<S>(3.0, 0.8)]);
     s.add_system(Box::new(spring));
-    let (at, up) = (grain.bodies.grains().next().unwrap(), S::D - 1);
+    let (at, up) = (grain.state.bodies.grains().next().unwrap(), S::D - 1);
     for _ in 0..1200 {
         go(&mut grain, 1);
         go(&mut s, 1);
-        assert!((grain.bodies.position[at][up] - contactors(&s)[0][up]).abs() < 1e-12);
+        assert!((grain.state.bodies.position[at][up] - contactors(&s)[0][up]).abs() < 1e-12);
     }
-    assert!(grain.energy.impact > 0.0);
+    assert!(grain.state.energy.impact > 0.0);
 }
 
 #[test]
@@ -301,19 +310,19 @@ fn is_bonded<S: Dimensional>() {
     });
     let spring = Spring::<S>::new([m, m], k, R, [at::<S>(-1.0, 1.0), at::<S>(0.0, 1.0)]);
     s.add_system(Box::new(spring.moving(-v, 0.0)));
-    let grain = s.bodies.grains().next().unwrap();
-    let phase = 2.0 * (0.5 * omega * s.scheme.h).atan();
+    let grain = s.state.bodies.grains().next().unwrap();
+    let phase = 2.0 * (0.5 * omega * s.options.scheme.h).atan();
     let half = (std::f64::consts::PI / phase) as u32;
     assert!(half > 40);
     for n in 1..half {
         go(&mut s, 1);
         let opened = v / omega * (phase * f64::from(n)).sin();
-        let moved = s.bodies.position[grain][0] - 2.0 * R;
+        let moved = s.state.bodies.position[grain][0] - 2.0 * R;
         assert!(
             (moved - opened).abs() < 1e-9 * v / omega,
             "{moved:e}, {opened:e}"
         );
-        assert_eq!(s.network.bonds_made(), 1);
+        assert_eq!(s.state.network.bonds_made(), 1);
     }
     closes(&s, 1e-12);
 }
@@ -373,11 +382,11 @@ fn heap<S: Dimensional>(theta: f64) -> Simulation<S> {
 
 /// Grains and contactors bear on each other, contactors on contactors of their own and of another system.
 fn kinds<S: Space>(s: &Simulation<S>, seen: &mut [bool; 3]) {
-    for c in &s.network.contacts {
+    for c in &s.state.network.contacts {
         if c.impulse == S::Vector::zero() {
             continue;
         }
-        match c.bodies.map(|b| s.bodies.carrier(b as usize)) {
+        match c.bodies.map(|b| s.state.bodies.carrier(b as usize)) {
             [None, None] => {}
             [Some(a), Some(b)] => seen[if a.system == b.system { 1 } else { 2 }] = true,
             _ => seen[0] = true,
@@ -393,7 +402,7 @@ fn ledger_of_heap<S: Dimensional>(theta: f64, steps: usize, tolerance: f64) {
         kinds(&s, &mut seen);
     }
     assert_eq!(seen, [true; 3]);
-    assert!(s.energy.friction > 0.0 && s.energy.viscous > 0.0);
+    assert!(s.state.energy.friction > 0.0 && s.state.energy.viscous > 0.0);
     closes(&s, tolerance);
 }
 
@@ -405,14 +414,14 @@ fn a_heap_on_two_of_them_closes_the_ledger() {
 }
 
 fn state<S: Space>(s: &Simulation<S>) -> Vec<u8> {
-    encode(&s.save()).unwrap()
+    encode(&s.state).unwrap()
 }
 
 fn goes_on<S: Dimensional>() {
     let (mut whole, mut resumed) = (heap::<S>(0.5), heap::<S>(0.5));
     falls(&mut whole, 300);
     let bytes = state(&whole);
-    let saved: Saved<'_, S> = decode(&bytes).unwrap();
+    let saved: State<S> = decode(&bytes).unwrap();
     assert!(resumed.restore(saved));
     assert!(
         state(&resumed) == bytes,
@@ -433,7 +442,7 @@ fn goes_on<S: Dimensional>() {
         [at::<S>(0.5, 9.0), at::<S>(1.0, 9.0)],
     )));
     let before = state(&other);
-    let saved: Saved<'_, S> = decode(&bytes).unwrap();
+    let saved: State<S> = decode(&bytes).unwrap();
     assert!(!other.restore(saved) && state(&other) == before);
 }
 
@@ -449,7 +458,7 @@ fn threads_do_not_change_its_bits() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.unwrap().install(|| {
             let mut s = heap::<Dim2>(0.5);
-            s.solver.parallel = threads > 1;
+            s.options.solver.parallel = threads > 1;
             falls(&mut s, 400);
             state(&s)
         })
@@ -462,7 +471,10 @@ fn threads_do_not_change_its_bits() {
 fn methods_that_need_the_matrix_are_refused_with_a_sentence() {
     for method in Method::ALL.iter().copied() {
         let mut s = heap::<Dim2>(0.5);
-        s.solver = Options { method, ..s.solver };
+        s.options.solver = Options {
+            method,
+            ..s.options.solver
+        };
         let served = matches!(method, Method::Auto | Method::Nlgs | Method::Anderson);
         let mut end = Ok(());
         for _ in 0..80 {
@@ -500,8 +512,8 @@ fn imposed_motion_that_begins_later_leaves_the_energy_of_systems() {
     );
     s.add_system(Box::new(spring.moving(1.0, 0.0)));
     s.set_in_motion();
-    assert_eq!(s.energy.kinetic, 1.0);
-    assert_eq!(s.energy.initial_kinetic, 1.0);
+    assert_eq!(s.state.energy.kinetic, 1.0);
+    assert_eq!(s.state.energy.initial_kinetic, 1.0);
     go(&mut s, 10);
     closes(&s, 1e-12);
 }

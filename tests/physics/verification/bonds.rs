@@ -18,13 +18,14 @@ pub fn all(table: &mut Table) {
 /// Traction on the grip along its motion (Pa).
 fn traction(s: &Simulation<Dim2>) -> f64 {
     let grip = s
+        .state
         .bodies
         .driven
         .iter()
         .position(|d| d.name == "grip")
         .unwrap();
-    let v = s.bodies.velocity[s.bodies.driven[grip].body as usize];
-    -s.received[grip].0.dot(&v) / v.norm() / s.scheme.h / AREA
+    let v = s.state.bodies.velocity[s.state.bodies.driven[grip].body as usize];
+    -s.state.received[grip].0.dot(&v) / v.norm() / s.options.scheme.h / AREA
 }
 
 /// Pulls to an opening: peak traction (Pa) and work (J/m^2).
@@ -33,7 +34,7 @@ fn pull(case: &str, sets: &[&str], reach: f64) -> (f64, f64) {
     let (mut peak, mut work, mut opening) = (0.0f64, 0.0, 0.0);
     while opening < reach {
         s.step().unwrap_or_else(|e| panic!("{e}"));
-        let du = 0.045 * s.scheme.h;
+        let du = 0.045 * s.options.scheme.h;
         opening += du;
         let t = traction(&s);
         peak = peak.max(t);
@@ -101,13 +102,13 @@ fn unload(table: &mut Table) {
     let mut s = plane("bond_unload", &[]);
     let bond = |s: &Simulation<Dim2>| {
         // There is no bond before the first step.
-        s.network.memory[0]
+        s.state.network.memory[0]
             .bonds
             .first()
             .map_or((0.0, 0.0), |b| (b.opening_n, b.damage))
     };
     let (mut most, mut at_turn, mut worst, mut gained) = (0.0f64, f64::NAN, 0.0f64, 0.0f64);
-    while s.time < 7e-5 - 0.5 * s.scheme.h {
+    while s.state.time < 7e-5 - 0.5 * s.options.scheme.h {
         let (before, damage) = bond(&s);
         s.step().unwrap_or_else(|e| panic!("{e}"));
         let (after, now) = bond(&s);
@@ -117,12 +118,13 @@ fn unload(table: &mut Table) {
             gained = gained.max(now - damage);
             // The step's traction is the secant at its theta-point.
             let grip = s
+                .state
                 .bodies
                 .driven
                 .iter()
                 .position(|d| d.name == "grip")
                 .unwrap();
-            let got = -s.received[grip].0.y / s.scheme.h / AREA;
+            let got = -s.state.received[grip].0.y / s.options.scheme.h / AREA;
             let expected = (1.0 - damage).powi(2) * C * 0.5 * (before + after);
             worst = worst.max((got / expected - 1.0).abs());
         }

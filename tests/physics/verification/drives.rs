@@ -140,8 +140,8 @@ fn off<S: Steps>(mut s: Simulation<S>, way: Way, at: impl Fn(&Simulation<S>) -> 
     let mut worst = at(&s).abs();
     for _ in 0..150 {
         step(&mut s);
-        worst = worst.max((at(&s) - way(s.time)).abs());
-        let e = &s.energy;
+        worst = worst.max((at(&s) - way(s.state.time)).abs());
+        let e = &s.state.energy;
         assert!(e.residual.abs() <= 1e-13 * e.scale, "{e:?}");
     }
     worst
@@ -159,17 +159,17 @@ fn imposed_translations_are_on_their_paths() {
         for theta in [0.5, 0.7, 1.0] {
             let s = driven::<Dim2>("x", drive, theta, "gravity: [3.0, -9.81],");
             // Once in motion, from the beginning: to the step's order.
-            let v = s.bodies.velocity[0].x;
+            let v = s.state.bodies.velocity[0].x;
             let order = if theta == 0.5 { 2e-3 } else { 0.1 };
             assert!(
                 (v - first).abs() <= order * first.abs().max(0.1),
                 "{drive}: {v} {first}"
             );
-            assert!((s.energy.initial_kinetic - 1.5 * v * v).abs() < 1e-15);
-            let worst = off(s, way, |s| s.bodies.position[0].x - 0.25);
+            assert!((s.state.energy.initial_kinetic - 1.5 * v * v).abs() < 1e-15);
+            let worst = off(s, way, |s| s.state.bodies.position[0].x - 0.25);
             assert!(worst <= bound, "{drive}, theta {theta}: {worst:e}");
             let s = driven::<Dim3>("z", drive, theta, "gravity: [0.0, 2.0, -9.81],");
-            let worst = off(s, way, |s| s.bodies.position[0].z - 0.25);
+            let worst = off(s, way, |s| s.state.bodies.position[0].z - 0.25);
             assert!(worst <= bound, "{drive}, theta {theta}: {worst:e}");
         }
     }
@@ -185,12 +185,14 @@ fn imposed_rotations_are_on_their_paths() {
         };
         for theta in [0.5, 1.0] {
             let s = driven::<Dim2>("rz", drive, theta, "");
-            assert!((s.bodies.spin[0].x - first).abs() <= 0.1 * first.abs().max(0.1));
-            let worst = off(s, way, |s| s.bodies.rotation[0]);
+            assert!((s.state.bodies.spin[0].x - first).abs() <= 0.1 * first.abs().max(0.1));
+            let worst = off(s, way, |s| s.state.bodies.rotation[0]);
             assert!(worst <= bound, "{drive}, theta {theta}: {worst:e}");
             for (name, axis) in [("rx", Vector3::x()), ("ry", Vector3::y())] {
                 let s = driven::<Dim3>(name, drive, theta, "");
-                let worst = off(s, way, |s| s.bodies.rotation[0].scaled_axis().dot(&axis));
+                let worst = off(s, way, |s| {
+                    s.state.bodies.rotation[0].scaled_axis().dot(&axis)
+                });
                 assert!(worst <= bound, "{drive}, theta {theta}: {worst:e}");
             }
         }
@@ -221,13 +223,17 @@ fn stages_take_over_where_the_body_is() {
     };
     for _ in 0..100 {
         step(&mut s);
-        let (x, expected) = (s.bodies.position[0].x, place(s.time));
-        assert!((x - expected).abs() < 1e-15, "{} s: {x} {expected}", s.time);
-        let e = &s.energy;
+        let (x, expected) = (s.state.bodies.position[0].x, place(s.state.time));
+        assert!(
+            (x - expected).abs() < 1e-15,
+            "{} s: {x} {expected}",
+            s.state.time
+        );
+        let e = &s.state.energy;
         assert!(e.residual.abs() <= 1e-14 * e.scale, "{e:?}");
     }
-    assert_eq!(s.energy.kinetic, 0.0);
-    assert!(s.energy.external_work.abs() < 1e-14);
+    assert_eq!(s.state.energy.kinetic, 0.0);
+    assert!(s.state.energy.external_work.abs() < 1e-14);
 }
 
 /// Functions of a phase run on its own time; a repeated phase begins again where the body is.
@@ -244,14 +250,14 @@ fn phases_begin_where_the_body_is() {
              repeat: (times: 3)),
         ],"#,
     );
-    assert!((s.bodies.velocity[0].x / (0.01 * TAU * 20.0) - 1.0).abs() < 2e-3);
-    assert!(s.energy.initial_kinetic > 0.0);
-    let mut started = s.bodies.position[0].x;
+    assert!((s.state.bodies.velocity[0].x / (0.01 * TAU * 20.0) - 1.0).abs() < 2e-3);
+    assert!(s.state.energy.initial_kinetic > 0.0);
+    let mut started = s.state.bodies.position[0].x;
     for _ in 0..130 {
         step(&mut s);
-        let begun = s.control.begun();
+        let begun = s.state.control.begun();
         let now = &begun[begun.len() - 1];
-        let t = s.time - now.start;
+        let t = s.state.time - now.start;
         let way = match now.name.as_str() {
             "go" => 0.01 * (TAU * 20.0 * t).sin(),
             "on" => {
@@ -260,14 +266,14 @@ fn phases_begin_where_the_body_is() {
             }
             _ => 0.01 * (1.0 - (t / 0.0055 - 1.0).abs()).max(0.0),
         };
-        let x = s.bodies.position[0].x;
-        assert!((x - started - way).abs() < 2e-15, "{}: {x}", s.time);
-        assert!(s.energy.residual.abs() <= 1e-13 * s.energy.scale);
+        let x = s.state.bodies.position[0].x;
+        assert!((x - started - way).abs() < 2e-15, "{}: {x}", s.state.time);
+        assert!(s.state.energy.residual.abs() <= 1e-13 * s.state.energy.scale);
         if now.end.is_some() {
             started = x;
         }
     }
-    assert!(s.control.finished());
+    assert!(s.phases_finished());
 }
 
 /// After 100,000 steps bodies are where they should be, as exactly as a time and an angle of that size are numbers.
@@ -280,11 +286,11 @@ fn a_long_run_does_not_drift() {
         for n in 1..=STEPS {
             step(&mut s);
             let t = f64::from(n) * H;
-            assert!((s.time - t).abs() <= 2.0 * f64::EPSILON * t);
-            worst = worst.max((s.bodies.position[0].x - 0.25 - way(t)).abs());
+            assert!((s.state.time - t).abs() <= 2.0 * f64::EPSILON * t);
+            worst = worst.max((s.state.bodies.position[0].x - 0.25 - way(t)).abs());
         }
         let angle = TAU * 20.0 * f64::from(STEPS) * H;
-        let bound = 4.0 * f64::EPSILON * (0.01 * angle + way(s.time).abs());
+        let bound = 4.0 * f64::EPSILON * (0.01 * angle + way(s.state.time).abs());
         assert!(worst <= bound, "{drive}: {worst:e}, {bound:e}");
     }
     // A table of a saw's teeth for the velocity: its sum too.
@@ -302,12 +308,12 @@ fn a_long_run_does_not_drift() {
     for _ in 0..STEPS {
         step(&mut s);
     }
-    let teeth = (s.time / 0.0203).floor();
-    let left = s.time - 0.0203 * teeth;
+    let teeth = (s.state.time / 0.0203).floor();
+    let left = s.state.time - 0.0203 * teeth;
     let rising = teeth % 2.0 == 0.0;
     let part = 0.5 * 0.3 * left * left / 0.0203;
     let way = 0.15 * 0.0203 * teeth + if rising { part } else { 0.3 * left - part };
-    let x = s.bodies.position[0].x - 0.25;
+    let x = s.state.bodies.position[0].x - 0.25;
     assert!((x - way).abs() < 1e-13 * way, "{x} {way}");
 }
 
@@ -321,16 +327,16 @@ fn jumps_of_the_velocity_are_work_of_the_drive() {
         for (steps, v, work) in expected {
             for _ in 0..steps {
                 step(&mut s);
-                assert!((s.bodies.velocity[0].x - v).abs() < 1e-12);
+                assert!((s.state.bodies.velocity[0].x - v).abs() < 1e-12);
                 assert!(
-                    (s.energy.external_work - work).abs() < 1e-11,
+                    (s.state.energy.external_work - work).abs() < 1e-11,
                     "{:?}",
-                    s.energy
+                    s.state.energy
                 );
-                assert!((s.energy.kinetic - 1.5 * v * v).abs() < 1e-11);
+                assert!((s.state.energy.kinetic - 1.5 * v * v).abs() < 1e-11);
             }
         }
-        assert!((s.energy.initial_kinetic - 6.0).abs() < 1e-12);
+        assert!((s.state.energy.initial_kinetic - 6.0).abs() < 1e-12);
     }
 }
 
@@ -345,12 +351,12 @@ fn a_wall_hits_with_the_velocity_it_starts_with() {
                   dofs: (x: Displacement(Ramp(from: 0.0, to: 1.0, start: 0.0, end: 2.0))))],
         grains: [List(material: "glass", grains: [(at: [0.01, 0.0], radius: 0.01)])],"#,
     );
-    let grain = s.bodies.grains().next().unwrap();
+    let grain = s.state.bodies.grains().next().unwrap();
     for _ in 0..3 {
         step(&mut s);
-        let v = s.bodies.velocity[grain].x;
+        let v = s.state.bodies.velocity[grain].x;
         assert!((v - 1.6 * 0.5).abs() < 1e-12, "{v}");
-        assert!(s.energy.residual.abs() < 1e-13 * s.energy.scale);
+        assert!(s.state.energy.residual.abs() < 1e-13 * s.state.energy.scale);
     }
 }
 
@@ -372,8 +378,9 @@ fn what_sticks_goes_along() {
             ],"#,
             0.25 * TAU
         ));
-        let body =
-            |s: &Simulation<Dim2>, k: usize| s.bodies.position[s.bodies.driven[k].body as usize].x;
+        let body = |s: &Simulation<Dim2>, k: usize| {
+            s.state.bodies.position[s.state.bodies.driven[k].body as usize].x
+        };
         let (floor, block) = (body(&s, 0), body(&s, 1));
         let steps = (10.0 / f / h).round() as u32;
         let mut worst = 0.0f64;
@@ -381,7 +388,7 @@ fn what_sticks_goes_along() {
             step(&mut s);
             worst = worst.max((body(&s, 1) - block - (body(&s, 0) - floor)).abs());
         }
-        assert!(s.energy.residual.abs() < 1e-10 * s.energy.scale);
+        assert!(s.state.energy.residual.abs() < 1e-10 * s.state.energy.scale);
         worst
     };
     for h in [2e-3f64, 1e-3] {
@@ -407,11 +414,11 @@ fn a_kept_state_goes_on_along_its_paths() {
     );
     let mut one: Simulation<Dim2> = build(&lines);
     for at in [7, 30, 45] {
-        while one.steps < at {
+        while one.state.steps < at {
             step(&mut one);
         }
         let mut other: Simulation<Dim2> = build(&lines);
-        let bytes = encode(&one.save()).unwrap();
+        let bytes = encode(&one.state).unwrap();
         assert!(other.restore(decode(&bytes).unwrap()));
         let mut alone: Simulation<Dim2> = build(&lines);
         for _ in 0..at {
@@ -421,7 +428,7 @@ fn a_kept_state_goes_on_along_its_paths() {
             step(&mut other);
             step(&mut alone);
             let state = |s: &Simulation<Dim2>| {
-                let b = &s.bodies;
+                let b = &s.state.bodies;
                 let all = [
                     b.position[0].x,
                     b.position[0].y,
@@ -430,9 +437,9 @@ fn a_kept_state_goes_on_along_its_paths() {
                 ];
                 let more = [
                     b.spin[0].x,
-                    s.time,
-                    s.energy.external_work,
-                    s.energy.kinetic,
+                    s.state.time,
+                    s.state.energy.external_work,
+                    s.state.energy.kinetic,
                 ];
                 [all, more]
                     .concat()

@@ -16,8 +16,8 @@ pub fn all(table: &mut Table) {
 
 /// The body that is no floor: the last one added, or the first grain.
 fn mover<S: Space>(s: &Simulation<S>) -> usize {
-    (0..s.bodies.len())
-        .find(|b| !s.bodies.immovable(*b))
+    (0..s.state.bodies.len())
+        .find(|b| !s.state.bodies.immovable(*b))
         .unwrap()
 }
 
@@ -27,10 +27,13 @@ fn bouncing_ball(table: &mut Table) {
     let ball = mover(&s);
     let (mut apexes, mut rising, mut top, mut last_bounce) = (Vec::new(), false, 0.0f64, 0.0);
     until(&mut s, 4.3, |s| {
-        let (y, v) = (s.bodies.position[ball].y - r, s.bodies.velocity[ball].y);
+        let (y, v) = (
+            s.state.bodies.position[ball].y - r,
+            s.state.bodies.velocity[ball].y,
+        );
         if v > 0.0 {
             if !rising {
-                last_bounce = s.time;
+                last_bounce = s.state.time;
             }
             rising = true;
             top = top.max(y);
@@ -59,8 +62,8 @@ fn incline(table: &mut Table) {
         let block = mover(&s);
         until(&mut s, 0.5, |_| {});
         (
-            s.bodies.velocity[block].x / s.time,
-            s.bodies.position[block].x,
+            s.state.bodies.velocity[block].x / s.state.time,
+            s.state.bodies.position[block].x,
         )
     };
     let expected = G * (angle.sin() - 0.3 * angle.cos());
@@ -98,18 +101,18 @@ fn slide_to_stop(table: &mut Table) {
     let mut s = plane("slide_to_stop", &[]);
     let block = mover(&s);
     // Cases give first bodies no initial velocity.
-    s.bodies.velocity[block].x = v;
+    s.state.bodies.velocity[block].x = v;
     let mut stopped = f64::NAN;
     until(&mut s, 0.4, |s| {
-        if stopped.is_nan() && s.bodies.velocity[block].x.abs() < 1e-12 {
-            stopped = s.time;
+        if stopped.is_nan() && s.state.bodies.velocity[block].x.abs() < 1e-12 {
+            stopped = s.state.time;
         }
     });
     table.compare(
         "slide_to_stop",
         "v^2/(2 mu g) (m)",
         v * v / (2.0 * mu * G),
-        s.bodies.position[block].x,
+        s.state.bodies.position[block].x,
         5e-3,
     );
     table.compare("slide_to_stop", "v/(mu g) (s)", v / (mu * G), stopped, 5e-3);
@@ -123,13 +126,16 @@ fn rolling<S: fretwork::scene::build::Dimensional>(
     let (ball, r) = (mover(s), 0.1);
     let mut at = None;
     until(s, 0.2, |s| {
-        let (v, w) = (s.bodies.velocity[ball][0], s.bodies.spin[ball][axis].abs());
+        let (v, w) = (
+            s.state.bodies.velocity[ball][0],
+            s.state.bodies.spin[ball][axis].abs(),
+        );
         if at.is_none() && (v - r * w).abs() < 1e-9 {
-            at = Some((s.time, s.bodies.position[ball][0]));
+            at = Some((s.state.time, s.state.bodies.position[ball][0]));
         }
     });
     let (t, x) = at.expect("the ball rolls");
-    (s.bodies.velocity[ball][0], t, x)
+    (s.state.bodies.velocity[ball][0], t, x)
 }
 
 fn slide_to_roll(table: &mut Table) {
@@ -167,8 +173,8 @@ fn roll_down(table: &mut Table) {
         let b = mover(&s);
         until(&mut s, 0.5, |_| {});
         (
-            s.bodies.velocity[b].x / s.time,
-            0.1 * s.bodies.spin[b].norm() / s.time,
+            s.state.bodies.velocity[b].x / s.state.time,
+            0.1 * s.state.bodies.spin[b].norm() / s.state.time,
         )
     };
     let sphere = |sets: &[&str]| {
@@ -176,8 +182,8 @@ fn roll_down(table: &mut Table) {
         let b = mover(&s);
         until(&mut s, 0.5, |_| {});
         (
-            s.bodies.velocity[b].x / s.time,
-            0.1 * s.bodies.spin[b].norm() / s.time,
+            s.state.bodies.velocity[b].x / s.state.time,
+            0.1 * s.state.bodies.spin[b].norm() / s.state.time,
         )
     };
     for (case, k, run) in [
@@ -225,10 +231,14 @@ fn cradle(table: &mut Table) {
         let mut s = plane(case, &[]);
         until(&mut s, end, |_| {});
         let mut order: Vec<usize> = (0..3).collect();
-        order.sort_by(|a, b| s.bodies.position[*a].x.total_cmp(&s.bodies.position[*b].x));
+        order.sort_by(|a, b| {
+            s.state.bodies.position[*a]
+                .x
+                .total_cmp(&s.state.bodies.position[*b].x)
+        });
         for (k, (ball, v)) in order.iter().zip(expected).enumerate() {
             let quantity = format!("velocity of ball {} (m/s)", k + 1);
-            table.compare(case, &quantity, v, s.bodies.velocity[*ball].x, 1e-8);
+            table.compare(case, &quantity, v, s.state.bodies.velocity[*ball].x, 1e-8);
         }
     }
 }
@@ -236,12 +246,13 @@ fn cradle(table: &mut Table) {
 fn column(table: &mut Table) {
     let mut s: Simulation<Dim2> = plane("column", &["solver.tolerance=1e-10"]);
     until(&mut s, 2e-3, |_| {});
-    let weight = s.bodies.mass[mover(&s)] * G;
+    let weight = s.state.bodies.mass[mover(&s)] * G;
     let mut forces: Vec<f64> = s
+        .state
         .network
         .contacts
         .iter()
-        .map(|c| c.normal.dot(&c.impulse) / s.scheme.h)
+        .map(|c| c.normal.dot(&c.impulse) / s.options.scheme.h)
         .collect();
     forces.sort_by(f64::total_cmp);
     for (k, force) in forces.iter().enumerate() {

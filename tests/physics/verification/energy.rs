@@ -89,21 +89,21 @@ fn three_dimensions(table: &mut Table) {
         .unwrap_or_else(|e| panic!("{e}"))
         .simulation;
     let mut momentum = 0.0f64;
-    while s.time < 0.07 {
-        let before: Vec<_> = s.bodies.velocity.clone();
+    while s.state.time < 0.07 {
+        let before: Vec<_> = s.state.bodies.velocity.clone();
         s.step().unwrap_or_else(|e| panic!("{e}"));
         // What the free grains gained is what the driven bodies lost, gravity being off.
-        let driven = |b: usize| s.bodies.driven.iter().any(|d| d.body as usize == b);
-        let gained: nalgebra::Vector3<f64> = (0..s.bodies.len())
+        let driven = |b: usize| s.state.bodies.driven.iter().any(|d| d.body as usize == b);
+        let gained: nalgebra::Vector3<f64> = (0..s.state.bodies.len())
             .filter(|b| !driven(*b))
-            .map(|b| (s.bodies.velocity[b] - before[b]) * s.bodies.mass[b])
+            .map(|b| (s.state.bodies.velocity[b] - before[b]) * s.state.bodies.mass[b])
             .sum();
-        let lost: nalgebra::Vector3<f64> = s.received.iter().map(|r| r.0).sum();
-        let scale: f64 = s.received.iter().map(|r| r.0.norm()).sum::<f64>() + 1e-12;
+        let lost: nalgebra::Vector3<f64> = s.state.received.iter().map(|r| r.0).sum();
+        let scale: f64 = s.state.received.iter().map(|r| r.0.norm()).sum::<f64>() + 1e-12;
         momentum = momentum.max((gained + lost).norm() / scale);
     }
     assert!(
-        s.energy.friction > 0.0 && s.network.contacts.len() > 500,
+        s.state.energy.friction > 0.0 && s.state.network.contacts.len() > 500,
         "the cell is under load"
     );
     table.compare(
@@ -117,7 +117,7 @@ fn three_dimensions(table: &mut Table) {
         "shear_cell_3d",
         "residual over largest energy",
         0.0,
-        s.energy.relative_residual(),
+        s.state.energy.relative_residual(),
         1e-9,
     );
 }

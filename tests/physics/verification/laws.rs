@@ -16,8 +16,8 @@ pub fn all(table: &mut Table) {
 }
 
 fn grain<S: Space>(s: &Simulation<S>) -> usize {
-    (0..s.bodies.len())
-        .find(|b| !s.bodies.immovable(*b))
+    (0..s.state.bodies.len())
+        .find(|b| !s.state.bodies.immovable(*b))
         .unwrap()
 }
 
@@ -27,13 +27,13 @@ fn rolling(table: &mut Table) {
         let b = grain(&s);
         let mut seen = Vec::new();
         until(&mut s, 2.5, |s| {
-            seen.push((s.time, s.bodies.velocity[b][0]))
+            seen.push((s.state.time, s.state.bodies.velocity[b][0]))
         });
         let at = |t: f64| *seen.iter().find(|x| x.0 >= t).unwrap();
         let ((t0, v0), (t1, v1)) = (at(0.3), at(0.8));
         let rest = seen.last().unwrap().1;
         // Nothing of the energy it was thrown with is left.
-        let lost = s.energy.friction / s.energy.initial_kinetic;
+        let lost = s.state.energy.friction / s.state.energy.initial_kinetic;
         assert!(rest.abs() < 1e-9, "it rests");
         ((v0 - v1) / (t1 - t0), lost)
     }
@@ -60,11 +60,11 @@ fn beams(table: &mut Table) {
     fn held<S: fretwork::scene::build::Dimensional>(mut s: Simulation<S>) -> [f64; 4] {
         until(&mut s, 1.0, |_| {});
         let b = grain(&s);
-        let weight = s.bodies.mass[b] * G;
-        let contact = &s.network.contacts[0];
+        let weight = s.state.bodies.mass[b] * G;
+        let contact = &s.state.network.contacts[0];
         let slot = contact.memory().unwrap();
-        let bond = &s.network.memory[0].bonds[slot];
-        let turn = s.network.memory[0].rotations[slot];
+        let bond = &s.state.network.memory[0].bonds[slot];
+        let turn = s.state.network.memory[0].rotations[slot];
         let shear = S::lift(&contact.normal, &bond.opening_t);
         use fretwork::geometry::space::VectorLike;
         [weight, bond.area, shear.norm(), turn.norm()]
@@ -98,8 +98,8 @@ fn hanging(table: &mut Table) {
     let mut s = plane("hanging", &[]);
     until(&mut s, 0.1, |_| {});
     let b = grain(&s);
-    let weight = s.bodies.mass[b] * G;
-    let carried = s.network.contacts[0].impulse.norm() / s.scheme.h;
+    let weight = s.state.bodies.mass[b] * G;
+    let carried = s.state.network.contacts[0].impulse.norm() / s.options.scheme.h;
     table.compare(
         "hanging",
         "force of the ceiling m g (N/m)",
@@ -111,14 +111,14 @@ fn hanging(table: &mut Table) {
         "hanging",
         "velocity, f > m g (m/s)",
         0.0,
-        s.bodies.velocity[b].y,
+        s.state.bodies.velocity[b].y,
         1e-12,
     );
     let set = "interfaces.grain.parameters.cohesion.force=307.0";
     let mut s = plane("hanging", &[set]);
     until(&mut s, 0.1, |_| {});
     // Held back for the steps in which the gap is within the range of 1 um.
-    let fall = -s.bodies.velocity[b].y;
+    let fall = -s.state.bodies.velocity[b].y;
     table.compare(
         "hanging",
         "velocity, f < m g: about g t (m/s)",
@@ -133,8 +133,8 @@ fn healing(table: &mut Table) {
     let mut made = Vec::new();
     let mut broken = Vec::new();
     until(&mut s, 0.4, |s| {
-        made.push((s.time, s.network.bonds_made()));
-        broken.push((s.time, s.network.bonds_broken()));
+        made.push((s.state.time, s.state.network.bonds_made()));
+        broken.push((s.state.time, s.state.network.bonds_broken()));
     });
     let first =
         |list: &[(f64, u64)], n: u64| list.iter().find(|x| x.1 >= n).map_or(f64::NAN, |x| x.0);
@@ -152,7 +152,7 @@ fn healing(table: &mut Table) {
         "healing",
         "bonds made",
         1.0,
-        s.network.bonds_made() as f64,
+        s.state.network.bonds_made() as f64,
         0.0,
     );
     let stronger = "bodies.1.dofs.y=Force(Table([(0.0, -1e3), (0.1, -1e3), (0.1001, 1e4), (0.11, 1e4), (0.1101, -2e4), (0.2, -2e4), (0.3, -2e4)]))";
@@ -162,14 +162,14 @@ fn healing(table: &mut Table) {
         "healing",
         "broken once, made twice",
         2.0,
-        s.network.bonds_made() as f64,
+        s.state.network.bonds_made() as f64,
         0.0,
     );
     table.compare(
         "healing",
         "broken",
         1.0,
-        s.network.bonds_broken() as f64,
+        s.state.network.bonds_broken() as f64,
         0.0,
     );
 }
@@ -185,13 +185,13 @@ fn coupling(table: &mut Table) {
         ];
         let mut s = plane("bond_mode_1", &sets);
         let mut missed = 0;
-        while s.time < 60e-6 {
+        while s.state.time < 60e-6 {
             missed += u32::from(s.step().unwrap_or_else(|e| panic!("{e}")).coupling.missed);
         }
         assert_eq!(missed, 0, "damage and opening agree in every step");
-        let residual = s.energy.relative_residual();
+        let residual = s.state.energy.relative_residual();
         assert!(residual < 1e-12, "{coupling}: residual {residual}");
-        s.energy.fracture / 0.5
+        s.state.energy.fracture / 0.5
     };
     let implicit = "coupling=Implicit(tolerance: 1e-12, max_iterations: 50)";
     let mut orders = Vec::new();
@@ -229,7 +229,7 @@ fn coupling(table: &mut Table) {
 fn turned(table: &mut Table) {
     let mut s = solid("turned_twist", &[]);
     until(&mut s, 0.2, |_| {});
-    let before = s.energy.elastic;
+    let before = s.state.energy.elastic;
     // R = 0.05 m: J = pi R^4/2, twisted by 0.01 rad less a step at its start and end.
     let expected = 0.5 * 1e10 * 0.5 * PI * 0.05f64.powi(4) * 1e-4;
     table.compare(
@@ -244,21 +244,21 @@ fn turned(table: &mut Table) {
         "turned_twist",
         "energy after a turn of 90 degrees (J)",
         before,
-        s.energy.elastic,
+        s.state.energy.elastic,
         1e-4,
     );
     table.compare(
         "turned_twist",
         "dissipated (J)",
         0.0,
-        s.energy.dissipated(),
+        s.state.energy.dissipated(),
         1e-6,
     );
     let mut s = solid("turned_shear", &[]);
     until(&mut s, 0.2, |_| {});
-    let force = s.received[0].0;
+    let force = s.state.received[0].0;
     until(&mut s, 0.357, |_| {});
-    let turned = s.received[0].0;
+    let turned = s.state.received[0].0;
     assert!(force.z.abs() > 1e3 * force.y.abs());
     table.compare(
         "turned_shear",
@@ -273,7 +273,7 @@ fn turned(table: &mut Table) {
 fn held(table: &mut Table) {
     let mut s = plane("stretched_on_surface", &[]);
     until(&mut s, 0.1, |_| {});
-    let broken = s.network.bonds_broken() as f64;
+    let broken = s.state.network.bonds_broken() as f64;
     table.compare(
         "stretched_on_surface",
         "bonds broken without a damage law",
@@ -287,14 +287,14 @@ fn held(table: &mut Table) {
         "stretched_on_surface",
         "k A u^2/2 (J/m)",
         energy,
-        s.energy.elastic,
+        s.state.energy.elastic,
         2e-3,
     );
     for e in ["0.0", "0.1"] {
         let set = format!("interfaces.grain.parameters.contact.restitution_n={e}");
         let mut s = plane("bond_over_a_gap", &[&set]);
         until(&mut s, 0.5, |_| {});
-        let y = s.bodies.position[1].y;
+        let y = s.state.bodies.position[1].y;
         table.compare(
             "bond_over_a_gap",
             &format!("rests where it was bonded, e = {e} (m)"),
@@ -305,13 +305,15 @@ fn held(table: &mut Table) {
     }
     let mut s = plane("pinned_roller", &[]);
     let mut most = 0;
-    until(&mut s, 0.05, |s| most = most.max(s.network.contacts.len()));
+    until(&mut s, 0.05, |s| {
+        most = most.max(s.state.network.contacts.len())
+    });
     table.compare("pinned_roller", "contacts", 1.0, most as f64, 0.0);
     // What the drive gave is in the roller's spin and, by friction at 1 m, in the grain: I w + m |v_x| R = M t.
-    let roller = s.bodies.driven[0].body as usize;
-    let on_top = (0..s.bodies.len()).find(|b| *b != roller).unwrap();
-    let spun = s.bodies.inertia[roller] * s.bodies.spin[roller][0].abs();
-    let given = spun + s.bodies.mass[on_top] * s.bodies.velocity[on_top].x.abs();
+    let roller = s.state.bodies.driven[0].body as usize;
+    let on_top = (0..s.state.bodies.len()).find(|b| *b != roller).unwrap();
+    let spun = s.state.bodies.inertia[roller] * s.state.bodies.spin[roller][0].abs();
+    let given = spun + s.state.bodies.mass[on_top] * s.state.bodies.velocity[on_top].x.abs();
     table.compare(
         "pinned_roller",
         "I w + m |v_x| R = M t (N m s/m)",

@@ -74,12 +74,12 @@ fn solid(case: &str, sets: &[&str]) -> Simulation<Dim3> {
 
 /// Steps until a time and calls `seen` after each.
 fn until<S: Dimensional>(s: &mut Simulation<S>, end: f64, mut seen: impl FnMut(&Simulation<S>)) {
-    while s.time < end - 0.5 * s.scheme.h {
+    while s.state.time < end - 0.5 * s.options.scheme.h {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         assert!(
             report.solver.converged,
             "step {} did not converge: {:?}",
-            s.steps, report.solver
+            s.state.steps, report.solver
         );
         seen(s);
     }

@@ -17,42 +17,42 @@ pub fn all(table: &mut Table) {
 }
 
 fn driven<S: Space>(s: &Simulation<S>, name: &str) -> usize {
-    let at = s.bodies.driven.iter().position(|d| d.name == name);
+    let at = s.state.bodies.driven.iter().position(|d| d.name == name);
     at.unwrap_or_else(|| panic!("there is a body `{name}`"))
 }
 
 /// What slides loses to friction: all of m v^2/2, or k/(1 + k) of it when it ends rolling (rows 3, 4).
 fn friction(table: &mut Table) {
     let mut s = plane("slide_to_stop", &[]);
-    let b = s.bodies.driven[driven(&s, "block")].body as usize;
-    s.bodies.velocity[b].x = 1.0;
+    let b = s.state.bodies.driven[driven(&s, "block")].body as usize;
+    s.state.bodies.velocity[b].x = 1.0;
     until(&mut s, 0.4, |_| {});
-    let heat = 0.5 * s.bodies.mass[b];
+    let heat = 0.5 * s.state.bodies.mass[b];
     table.compare(
         "slide_to_stop",
         "friction m v^2/2 (J/m)",
         heat,
-        s.energy.friction,
+        s.state.energy.friction,
         1e-9,
     );
     let mut s = plane("slide_to_roll_disk", &[]);
     until(&mut s, 0.2, |_| {});
-    let heat = s.energy.initial_kinetic * 0.5 / 1.5;
+    let heat = s.state.energy.initial_kinetic * 0.5 / 1.5;
     table.compare(
         "slide_to_roll_disk",
         "friction m v^2/6 (J/m)",
         heat,
-        s.energy.friction,
+        s.state.energy.friction,
         1e-9,
     );
     let mut s = solid("slide_to_roll_sphere", &[]);
     until(&mut s, 0.2, |_| {});
-    let heat = s.energy.initial_kinetic * 0.4 / 1.4;
+    let heat = s.state.energy.initial_kinetic * 0.4 / 1.4;
     table.compare(
         "slide_to_roll_sphere",
         "friction m v^2/7 (J)",
         heat,
-        s.energy.friction,
+        s.state.energy.friction,
         1e-9,
     );
 }
@@ -61,15 +61,15 @@ fn friction(table: &mut Table) {
 fn impacts(table: &mut Table) {
     let mut s = plane("bouncing_ball", &[]);
     until(&mut s, 4.3, |_| {});
-    let ball = (0..s.bodies.len())
-        .find(|b| !s.bodies.immovable(*b))
+    let ball = (0..s.state.bodies.len())
+        .find(|b| !s.state.bodies.immovable(*b))
         .unwrap();
-    let heat = s.bodies.mass[ball] * G;
+    let heat = s.state.bodies.mass[ball] * G;
     table.compare(
         "bouncing_ball",
         "impact m g h0 (J/m)",
         heat,
-        s.energy.impact,
+        s.state.energy.impact,
         1e-2,
     );
     // A bounce loses (1 - e^2) m v^2/2 and is no lift, also where overlaps are taken out by a velocity.
@@ -77,21 +77,21 @@ fn impacts(table: &mut Table) {
         let restitution = format!("interfaces.grain.parameters.contact.restitution_n={e}");
         let sets = ["gravity=[0.0, 0.0]", "solver.correction=0.2", &restitution];
         let mut s = plane("bouncing_ball", &sets);
-        s.bodies.velocity[ball].y = -10.0;
+        s.state.bodies.velocity[ball].y = -10.0;
         until(&mut s, 0.15, |_| {});
-        let before = 50.0 * s.bodies.mass[ball];
-        let up = s.bodies.velocity[ball].y;
+        let before = 50.0 * s.state.bodies.mass[ball];
+        let up = s.state.bodies.velocity[ball].y;
         for (quantity, expected, obtained) in [
             ("velocity e v (m/s)", 10.0 * e, up),
             (
                 "impact (1 - e^2) m v^2/2, over m v^2/2",
                 1.0 - e * e,
-                s.energy.impact / before,
+                s.state.energy.impact / before,
             ),
             (
                 "correction, over m v^2/2",
                 0.0,
-                s.energy.correction / before,
+                s.state.energy.correction / before,
             ),
         ] {
             table.compare(
@@ -106,7 +106,7 @@ fn impacts(table: &mut Table) {
     for (case, end) in [("cradle_touching", 5e-4), ("cradle_apart", 0.2)] {
         let mut s = plane(case, &[]);
         until(&mut s, end, |_| {});
-        let lost = s.energy.impact / s.energy.initial_kinetic;
+        let lost = s.state.energy.impact / s.state.energy.initial_kinetic;
         table.compare(case, "impact over kinetic energy, e = 1", 0.0, lost, 1e-9);
     }
 }
@@ -118,7 +118,10 @@ fn fracture(table: &mut Table) {
     for case in ["bond_mode_1", "bond_mode_2", "bond_mixed"] {
         let mut s = plane(case, &["time.step=2e-9"]);
         until(&mut s, 10.0 * (w / c).sqrt() / 0.045, |_| {});
-        let (released, stored) = (s.energy.fracture / area, s.energy.elastic / area);
+        let (released, stored) = (
+            s.state.energy.fracture / area,
+            s.state.energy.elastic / area,
+        );
         table.compare(case, "fracture 0.99 w (J/m^2)", 0.99 * w, released, 1e-3);
         table.compare(case, "still stored w/200 (J/m^2)", w / 200.0, stored, 1e-3);
     }
@@ -128,13 +131,13 @@ fn fracture(table: &mut Table) {
 fn column(table: &mut Table) {
     let mut s = plane("column", &["solver.tolerance=1e-10"]);
     until(&mut s, 2e-3, |_| {});
-    let weight = s.bodies.mass.iter().copied().fold(0.0, f64::max) * G;
+    let weight = s.state.bodies.mass.iter().copied().fold(0.0, f64::max) * G;
     let mut carried: Vec<(f64, f64)> = Vec::new();
-    for c in &s.network.contacts {
-        let closest_point = s.bodies.position[c.bodies[0] as usize] + c.arms[0];
+    for c in &s.state.network.contacts {
+        let closest_point = s.state.bodies.position[c.bodies[0] as usize] + c.arms[0];
         carried.push((
             closest_point.y,
-            c.normal.dot(&c.impulse) / s.scheme.h / weight,
+            c.normal.dot(&c.impulse) / s.options.scheme.h / weight,
         ));
     }
     carried.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -157,10 +160,10 @@ fn column(table: &mut Table) {
 fn rolling_limit(table: &mut Table) {
     fn slip<S: fretwork::scene::build::Dimensional>(mut s: Simulation<S>) -> f64 {
         until(&mut s, 0.5, |_| {});
-        let b = (0..s.bodies.len())
-            .find(|b| !s.bodies.immovable(*b))
+        let b = (0..s.state.bodies.len())
+            .find(|b| !s.state.bodies.immovable(*b))
             .unwrap();
-        (s.bodies.velocity[b][0] - 0.1 * s.bodies.spin[b].norm()).abs()
+        (s.state.bodies.velocity[b][0] - 0.1 * s.state.bodies.spin[b].norm()).abs()
     }
     let set = |k: f64| {
         let mu = 1.01 * k / (1.0 + k) * 30f64.to_radians().tan();
@@ -205,9 +208,10 @@ impl Lid {
     /// mu from forces less mu from heat. The layer takes what the lid gives: drag + press = heat + stored,
     /// the lid's own kinetic energy apart, so mu from heat is (heat + stored - press)/(P V).
     fn compare<S: Space>(&self, table: &mut Table, case: &str, s: &Simulation<S>, lid: usize) {
-        let e = &s.energy;
-        let v = s.bodies.velocity[lid];
-        let layer = e.kinetic - 0.5 * s.bodies.mass[lid] * v.dot(&v) + e.potential + e.elastic;
+        let e = &s.state.energy;
+        let v = s.state.bodies.velocity[lid];
+        let layer =
+            e.kinetic - 0.5 * s.state.bodies.mass[lid] * v.dot(&v) + e.potential + e.elastic;
         let heat = e.dissipated() + layer - self.press;
         let (forces, heat) = (self.drag / self.pressure_path, heat / self.pressure_path);
         table.compare(case, "mu from heat is mu from forces", forces, heat, 1e-9);
@@ -218,20 +222,20 @@ impl Lid {
 fn lid(table: &mut Table) {
     let mut s: Simulation<Dim2> = plane("energy", &[]);
     let d = driven(&s, "top");
-    let b = s.bodies.driven[d].body as usize;
-    let (mut lid, mut last) = (Lid::default(), s.bodies.position[b]);
+    let b = s.state.bodies.driven[d].body as usize;
+    let (mut lid, mut last) = (Lid::default(), s.state.bodies.position[b]);
     until(&mut s, 0.1, |s| {
-        let now = s.bodies.position[b];
-        lid.add::<Dim2>(&s.received[d].0, s.scheme.h, &(now - last), 1);
+        let now = s.state.bodies.position[b];
+        lid.add::<Dim2>(&s.state.received[d].0, s.options.scheme.h, &(now - last), 1);
         last = now;
     });
-    let e = &s.energy;
+    let e = &s.state.energy;
     assert!(e.friction > 0.0 && e.elastic > 0.0 && e.impact >= 0.0);
     table.compare(
         "energy",
         "bonds broken",
         0.0,
-        s.network.bonds_broken() as f64,
+        s.state.network.bonds_broken() as f64,
         0.0,
     );
     table.compare(
@@ -257,38 +261,39 @@ fn shear(table: &mut Table) {
     let case = "shear_3d";
     let mut s = solid(case, &[]);
     let d = driven(&s, "top");
-    let b = s.bodies.driven[d].body as usize;
-    let held: Vec<bool> = (0..s.bodies.len())
-        .map(|b| s.bodies.driven.iter().any(|d| d.body as usize == b))
+    let b = s.state.bodies.driven[d].body as usize;
+    let held: Vec<bool> = (0..s.state.bodies.len())
+        .map(|b| s.state.bodies.driven.iter().any(|d| d.body as usize == b))
         .collect();
-    let (mut lid, mut last) = (Lid::default(), s.bodies.position[b]);
-    let (mut velocity, mut unbalanced) = (s.bodies.velocity.clone(), 0.0f64);
+    let (mut lid, mut last) = (Lid::default(), s.state.bodies.position[b]);
+    let (mut velocity, mut unbalanced) = (s.state.bodies.velocity.clone(), 0.0f64);
     until(&mut s, 0.6, |s| {
-        let now = s.bodies.position[b];
-        lid.add::<Dim3>(&s.received[d].0, s.scheme.h, &(now - last), 2);
+        let now = s.state.bodies.position[b];
+        lid.add::<Dim3>(&s.state.received[d].0, s.options.scheme.h, &(now - last), 2);
         last = now;
         // Without gravity grains gain what contacts give them, and driven bodies receive the opposite.
         let (mut sum, mut scale): (Vector3<f64>, f64) = (Vector3::zeros(), 0.0);
         for (k, v) in s
+            .state
             .bodies
             .velocity
             .iter()
             .enumerate()
             .filter(|(k, _)| !held[*k])
         {
-            sum += (v - velocity[k]) * s.bodies.mass[k];
+            sum += (v - velocity[k]) * s.state.bodies.mass[k];
         }
-        for (impulse, _) in &s.received {
+        for (impulse, _) in &s.state.received {
             sum += impulse;
             scale += impulse.norm();
         }
         if scale > 0.0 {
             unbalanced = unbalanced.max(sum.norm() / scale);
         }
-        velocity.clone_from(&s.bodies.velocity);
+        velocity.clone_from(&s.state.bodies.velocity);
     });
-    let e = &s.energy;
-    assert!(e.friction > 0.0 && e.impact >= 0.0 && s.network.contacts.len() > 32);
+    let e = &s.state.energy;
+    assert!(e.friction > 0.0 && e.impact >= 0.0 && s.state.network.contacts.len() > 32);
     table.compare(
         case,
         "sum of impulses over those on walls",

@@ -61,9 +61,9 @@ fn column(table: &mut Table) {
             let report = s.step().unwrap_or_else(|e| panic!("{method}: {e}"));
             assert!(report.solver.converged, "{method}: {:?}", report.solver);
         }
-        let movable = (0..s.bodies.len()).filter(|b| !s.bodies.immovable(*b));
-        let weight: f64 = movable.map(|b| s.bodies.mass[b] * G).sum();
-        let carried = -s.received[0].0.y / s.scheme.h;
+        let movable = (0..s.state.bodies.len()).filter(|b| !s.state.bodies.immovable(*b));
+        let weight: f64 = movable.map(|b| s.state.bodies.mass[b] * G).sum();
+        let carried = -s.state.received[0].0.y / s.options.scheme.h;
         let quantity = format!("weight on the floor by {method}");
         table.compare("column", &quantity, weight, carried, 1e-9);
     }
@@ -85,8 +85,8 @@ fn dragged(table: &mut Table) {
             let report = s.step().unwrap_or_else(|e| panic!("{method}: {e}"));
             assert!(report.solver.converged, "{method}: {:?}", report.solver);
         }
-        let floor = s.received[0].0 * (1.0 / s.scheme.h);
-        let weight = s.bodies.mass[s.bodies.driven[1].body as usize] * G;
+        let floor = s.state.received[0].0 * (1.0 / s.options.scheme.h);
+        let weight = s.state.bodies.mass[s.state.bodies.driven[1].body as usize] * G;
         let quantity = format!("weight of the block by {method}");
         table.compare("dragged", &quantity, weight, -floor.y, 1e-5);
         let quantity = format!("its friction by {method}");
@@ -112,8 +112,8 @@ fn thrown(table: &mut Table) {
                     "gravity=[0,0]",
                 ],
             );
-            let ball = (0..s.bodies.len())
-                .find(|b| !s.bodies.immovable(*b))
+            let ball = (0..s.state.bodies.len())
+                .find(|b| !s.state.bodies.immovable(*b))
                 .expect("there is a ball");
             let mut taken = 0.0;
             for _ in 0..4 {
@@ -123,9 +123,9 @@ fn thrown(table: &mut Table) {
                     "mu {mu}, {method}: {:?}",
                     report.solver
                 );
-                taken -= s.received[0].0.y;
+                taken -= s.state.received[0].0.y;
             }
-            let m = s.bodies.mass[ball];
+            let m = s.state.bodies.mass[ball];
             let quantity = format!("normal impulse over m v, mu {mu}, {method}");
             // What the step leaves of the gap is closed at once.
             table.compare("thrown", &quantity, 1.0, taken / m, 1e-3);
@@ -134,7 +134,7 @@ fn thrown(table: &mut Table) {
                 "thrown",
                 &quantity,
                 0.1 / 1.5,
-                s.bodies.velocity[ball].x,
+                s.state.bodies.velocity[ball].x,
                 1e-3,
             );
         }
@@ -155,7 +155,7 @@ fn alike<S: Dimensional>(table: &mut Table, case: &str, sets: &[&str], methods: 
         let loaded = load(Path::new(&file), &owned).unwrap_or_else(|e| panic!("{e}"));
         let steps = (loaded.case.time.end / loaded.case.time.step).round() as u64;
         let mut s: Simulation<S> = scene(case, &all);
-        let start = s.bodies.position.clone();
+        let start = s.state.bodies.position.clone();
         for _ in 0..steps {
             let report = s.step().unwrap_or_else(|e| panic!("{method}: {e}"));
             assert!(
@@ -164,7 +164,7 @@ fn alike<S: Dimensional>(table: &mut Table, case: &str, sets: &[&str], methods: 
                 report.solver
             );
         }
-        let moved = s.bodies.position.iter().zip(&start);
+        let moved = s.state.bodies.position.iter().zip(&start);
         moved.map(|(a, b)| *a - *b).collect::<Vec<S::Vector>>()
     };
     let norm = |v: &[S::Vector]| v.iter().map(|v| v.dot(v)).sum::<f64>().sqrt();
@@ -201,7 +201,7 @@ fn refused() {
     }
 
     let mut s: Simulation<Dim3> = scene("rolling_stop_sphere", &[]);
-    s.solver.method = Method::Newton;
+    s.options.solver.method = Method::Newton;
     let error = s.step().expect_err("is refused").to_string();
     assert!(error.contains("rotation"), "{error}");
 }

@@ -16,7 +16,7 @@ pub fn all(table: &mut Table) {
 }
 
 fn place(s: &Simulation<Dim2>, name: &str) -> usize {
-    let found = s.bodies.driven.iter().position(|d| d.name == name);
+    let found = s.state.bodies.driven.iter().position(|d| d.name == name);
     found.unwrap_or_else(|| panic!("a body named {name}"))
 }
 
@@ -24,24 +24,33 @@ fn place(s: &Simulation<Dim2>, name: &str) -> usize {
 fn cart(table: &mut Table) {
     let (f, m, v2, t1) = (10.0, 5.0, -0.7, 0.2);
     let mut s = plane("staged_drive", &[]);
-    let b = s.bodies.driven[place(&s, "cart")].body as usize;
-    let x0 = s.bodies.position[b].x;
+    let b = s.state.bodies.driven[place(&s, "cart")].body as usize;
+    let x0 = s.state.bodies.position[b].x;
     let name = "staged_drive";
     until(&mut s, t1, |_| {});
     let v1 = f * t1 / m;
     let x1 = 0.5 * v1 * t1;
-    let (v, x) = (s.bodies.velocity[b].x, s.bodies.position[b].x - x0);
+    let (v, x) = (
+        s.state.bodies.velocity[b].x,
+        s.state.bodies.position[b].x - x0,
+    );
     table.compare(name, "pushed: F t/m (m/s)", v1, v, 1e-12);
     table.compare(name, "pushed: F t^2/(2 m) (m)", x1, x, 1e-12);
     until(&mut s, 0.3, |_| {});
     let x2 = x1 + v2 * 0.1;
-    let (v, x) = (s.bodies.velocity[b].x, s.bodies.position[b].x - x0);
+    let (v, x) = (
+        s.state.bodies.velocity[b].x,
+        s.state.bodies.position[b].x - x0,
+    );
     table.compare(name, "moved: V (m/s)", v2, v, 0.0);
     table.compare(name, "moved: place (m)", x2, x, 1e-12);
     until(&mut s, 0.5, |_| {});
     let (v3, t) = (v2 - f * 0.2 / m, 0.2);
     let x3 = x2 + v2 * t - 0.5 * f / m * t * t;
-    let (v, x) = (s.bodies.velocity[b].x, s.bodies.position[b].x - x0);
+    let (v, x) = (
+        s.state.bodies.velocity[b].x,
+        s.state.bodies.position[b].x - x0,
+    );
     table.compare(name, "pushed again: V - F t/m (m/s)", v3, v, 1e-12);
     table.compare(name, "pushed again: place (m)", x3, x, 1e-12);
 }
@@ -53,22 +62,22 @@ fn lid(table: &mut Table) {
     let mut s = plane("staged_drive", &[]);
     let name = "staged_drive";
     let lid = place(&s, "lid");
-    let cart = s.bodies.driven[place(&s, "cart")].body as usize;
-    let cart_work = |s: &Simulation<Dim2>| 0.5 * 5.0 * s.bodies.velocity[cart].x.powi(2);
+    let cart = s.state.bodies.driven[place(&s, "cart")].body as usize;
+    let cart_work = |s: &Simulation<Dim2>| 0.5 * 5.0 * s.state.bodies.velocity[cart].x.powi(2);
     until(&mut s, 0.2, |_| {});
-    let felt = s.received[lid].0.y / s.scheme.h;
+    let felt = s.state.received[lid].0.y / s.options.scheme.h;
     table.compare(name, "the lid feels F (N/m)", f, felt, 1e-9);
-    let work = s.energy.external_work - cart_work(&s);
+    let work = s.state.energy.external_work - cart_work(&s);
     table.compare(name, "work F g (J/m)", f * gap, work, 1e-9);
     until(&mut s, 0.25, |_| {});
     table.compare(
         name,
         "lifted it feels nothing (N/m)",
         0.0,
-        s.received[lid].0.y,
+        s.state.received[lid].0.y,
         0.0,
     );
-    let work = s.energy.external_work - cart_work(&s);
+    let work = s.state.energy.external_work - cart_work(&s);
     table.compare(
         name,
         "work F g + m V^2/2 (J/m)",
@@ -80,7 +89,7 @@ fn lid(table: &mut Table) {
         name,
         "residual over largest energy",
         0.0,
-        s.energy.relative_residual(),
+        s.state.energy.relative_residual(),
         1e-12,
     );
 }
@@ -88,14 +97,14 @@ fn lid(table: &mut Table) {
 /// Momentum of the driven walls and half of that of the grains: its rate is how much the mean push on two walls
 /// exceeds the load.
 fn momentum(s: &Simulation<Dim2>) -> [f64; 2] {
-    let walls = ["right", "top"].map(|name| s.bodies.driven[place(s, name)].body as usize);
+    let walls = ["right", "top"].map(|name| s.state.bodies.driven[place(s, name)].body as usize);
     let mut sum = [0.0; 2];
-    for b in 0..s.bodies.len() {
+    for b in 0..s.state.bodies.len() {
         let share = if walls.contains(&b) { 1.0 } else { 0.5 };
-        let v = s.bodies.velocity[b];
+        let v = s.state.bodies.velocity[b];
         for (k, v) in [v.x, v.y].into_iter().enumerate() {
-            if s.bodies.inverse_mass[b][k] > 0.0 {
-                sum[k] += share * s.bodies.mass[b] * v;
+            if s.state.bodies.inverse_mass[b][k] > 0.0 {
+                sum[k] += share * s.state.bodies.mass[b] * v;
             }
         }
     }
@@ -117,23 +126,23 @@ fn biaxial(table: &mut Table) {
         .unwrap_or_else(|| panic!("a test"));
     let mut test = Biaxial::new(spec, &s).unwrap_or_else(|| panic!("its walls"));
     // While grains collide the forces need no digits; at rest all that there are.
-    let tolerance = s.solver.tolerance;
+    let tolerance = s.options.solver.tolerance;
     until(&mut s, 0.3, |s| test.follow(s));
-    s.solver.tolerance = 1e-9;
-    let last = 0.4 - 1.5 * s.scheme.h;
+    s.options.solver.tolerance = 1e-9;
+    let last = 0.4 - 1.5 * s.options.scheme.h;
     until(&mut s, last, |s| test.follow(s));
     let before = momentum(&s);
     until(&mut s, 0.4, |s| test.follow(s));
     let after = momentum(&s);
     let at = |s: &Simulation<Dim2>, name: &str| {
-        s.bodies.position[s.bodies.driven[place(s, name)].body as usize]
+        s.state.bodies.position[s.state.bodies.driven[place(s, name)].body as usize]
     };
     // The left wall stands 0.01 m below zero, the right one 0.14 m from its frame.
     let width = at(&s, "right").x + 0.14 + 0.01;
     let height = at(&s, "top").y;
     let state = test.state(&s);
     // Not quite at rest: on a driven wall push F and its inertia, on the one across the inertia of grains too.
-    let inertia = [0, 1].map(|k| (after[k] - before[k]) / s.scheme.h);
+    let inertia = [0, 1].map(|k| (after[k] - before[k]) / s.options.scheme.h);
     table.compare(
         name,
         "axial stress F/L at rest (Pa)",
@@ -161,7 +170,7 @@ fn biaxial(table: &mut Table) {
         let quantity = format!("Love-Weber stress, {axis} (Pa)");
         table.compare(name, &quantity, state.walls[1 - k], stress[k][k], 1e-6);
     }
-    s.solver.tolerance = tolerance;
+    s.options.solver.tolerance = tolerance;
     until(&mut s, 0.5, |s| test.follow(s));
     let strain = test.state(&s).axial_strain;
     let expected = 0.02 * 0.1 / height;
@@ -170,7 +179,7 @@ fn biaxial(table: &mut Table) {
         name,
         "residual over largest energy",
         0.0,
-        s.energy.relative_residual(),
+        s.state.energy.relative_residual(),
         1e-9,
     );
 }

@@ -86,11 +86,11 @@ fn debris_remembers_the_bonds_that_broke_before_the_last() {
     s.step().unwrap();
     let mut account = Circuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);
     let (mut when, mut cost) = (Vec::new(), 0.0);
-    while account.debris.is_empty() && s.time < 0.8 {
+    while account.debris.is_empty() && s.state.time < 0.8 {
         s.step().unwrap();
         account.note(&s);
-        for b in &s.network.bond_breaks {
-            when.push(s.time);
+        for b in &s.state.network.bond_breaks {
+            when.push(s.state.time);
             cost += b.life.fracture;
         }
         account.update(&mut s);

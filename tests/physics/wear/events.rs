@@ -15,25 +15,31 @@ fn told<S: Dimensional>(case: &str, sets: &[&str], steps: usize) -> u64 {
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<S>(&SearchPath::new(&[]));
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
-    s.network.spent = Some(Vec::new());
+    s.state.network.spent = Some(Vec::new());
     let (mut fracture, mut breaks, mut most) = (0.0, 0, 0.0f64);
     for _ in 0..steps {
         let totals = s.step().unwrap_or_else(|e| panic!("{e}")).totals;
-        let spent = s.network.spent.as_ref().unwrap();
-        assert_eq!(spent.len(), s.network.contacts.len());
+        let spent = s.state.network.spent.as_ref().unwrap();
+        assert_eq!(spent.len(), s.state.network.contacts.len());
         let sum = |of: fn(&ContactDissipation) -> f64| spent.iter().map(of).sum::<f64>();
-        let torn: f64 = s.network.bond_breaks.iter().map(|b| b.life.fracture).sum();
+        let torn: f64 = s
+            .state
+            .network
+            .bond_breaks
+            .iter()
+            .map(|b| b.life.fracture)
+            .sum();
         let pairs = [
             (sum(|s| s.friction), totals.friction),
             (sum(|s| s.impact), totals.impact),
             (sum(|s| s.adhesion), totals.adhesion),
             (sum(|s| s.viscous), totals.viscous),
         ];
-        let scale = s.energy.scale.max(f64::MIN_POSITIVE);
+        let scale = s.state.energy.scale.max(f64::MIN_POSITIVE);
         for (by_contact, booked) in pairs {
             assert!((by_contact - booked).abs() < 1e-13 * scale);
         }
-        for b in &s.network.bond_breaks {
+        for b in &s.state.network.bond_breaks {
             let life = &b.life;
             let work: f64 = life.work.iter().sum();
             // All that was done on the bond was released or damped.
@@ -43,16 +49,17 @@ fn told<S: Dimensional>(case: &str, sets: &[&str], steps: usize) -> u64 {
             assert!(missing.abs() < 1e-9 * most, "{missing} of {b:?}");
             assert!((0.0..=1.0).contains(&life.mode_mix()));
             let near = b.bodies.iter().any(|i| {
-                let d = s.bodies.position[*i as usize] - b.place;
-                d.norm() < 3.0 * s.bodies.length[*i as usize].max(1e-12)
+                let d = s.state.bodies.position[*i as usize] - b.place;
+                d.norm() < 3.0 * s.state.bodies.length[*i as usize].max(1e-12)
             });
             assert!(near, "{b:?}");
         }
         fracture += torn;
-        breaks += s.network.bond_breaks.len() as u64;
+        breaks += s.state.network.bond_breaks.len() as u64;
     }
-    assert_eq!(breaks, s.network.bonds_broken());
+    assert_eq!(breaks, s.state.network.bonds_broken());
     let intact: f64 = s
+        .state
         .network
         .memory
         .iter()
@@ -60,7 +67,7 @@ fn told<S: Dimensional>(case: &str, sets: &[&str], steps: usize) -> u64 {
         .filter(|b| b.intact())
         .map(|b| b.life.fracture)
         .sum();
-    let booked = s.energy.fracture;
+    let booked = s.state.energy.fracture;
     assert!(
         (fracture + intact - booked).abs() < 1e-9 * booked,
         "{fracture} + {intact} told, {booked} booked"

@@ -17,7 +17,7 @@ fn scene<S: Dimensional>(name: &str, sets: &[&str]) -> Simulation<S> {
     let loaded = load(&case(name), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<S>(&SearchPath::new(&[]));
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
-    s.network.spent = Some(Vec::new());
+    s.state.network.spent = Some(Vec::new());
     s
 }
 
@@ -51,27 +51,27 @@ fn worn<S: Dimensional>(
     law: impl Fn(f64, &Rubbed) -> f64,
 ) -> Simulation<S> {
     let mut s = scene::<S>(name, sets);
-    let slider = s.bodies.driven[1].body as usize;
-    let steps = (0.5 / s.scheme.h).round() as usize;
+    let slider = s.state.bodies.driven[1].body as usize;
+    let steps = (0.5 / s.options.scheme.h).round() as usize;
     let before = under(&s);
     let (mut expected, mut booked) = (0.0, 0.0);
     for _ in 0..steps {
-        let from = s.bodies.position[slider];
+        let from = s.state.bodies.position[slider];
         booked += s.step().unwrap_or_else(|e| panic!("{e}")).totals.worn_first;
-        let way = s.bodies.position[slider] - from;
-        let spent = s.network.spent.as_ref().unwrap();
-        for (c, spent) in s.network.contacts.iter().zip(spent) {
+        let way = s.state.bodies.position[slider] - from;
+        let spent = s.state.network.spent.as_ref().unwrap();
+        for (c, spent) in s.state.network.contacts.iter().zip(spent) {
             let rubbed = Rubbed {
-                force: c.impulse.dot(&c.normal) / s.scheme.h,
+                force: c.impulse.dot(&c.normal) / s.options.scheme.h,
                 slip: S::tangential(&c.normal, &way).norm(),
                 work: spent.friction,
                 area: s.laws[c.law as usize].area.area(S::D, c.radius),
             };
-            expected += law(s.scheme.h, &rubbed);
+            expected += law(s.options.scheme.h, &rubbed);
         }
     }
     let gone = before - under(&s);
-    let scar = &s.scars[0];
+    let scar = &s.state.scars[0];
     for (what, volume) in [("booked", booked), ("scar", scar.volume()), ("gone", gone)] {
         assert!(
             (volume / expected - 1.0).abs() < 1e-10,
@@ -79,7 +79,7 @@ fn worn<S: Dimensional>(
         );
     }
     assert!(scar.deepest() > 1e-6, "{}", scar.deepest());
-    let residual = s.energy.relative_residual();
+    let residual = s.state.energy.relative_residual();
     assert!(residual.abs() < 1e-9, "{name}: {residual:e}");
     println!(
         "{name} {sets:?}: V {expected:.6e}, gone {:.1e} off, residual {residual:.1e}",
@@ -96,7 +96,7 @@ fn archard(k: f64) -> impl Fn(f64, &Rubbed) -> f64 {
 fn archards_volume_is_gone_from_a_profile() {
     let s = worn::<Dim2>("verification/worn_slide", &[], archard(1e-8));
     // Pressed by 2000 N/m over 0.35 m, were the profile flat: 7e-6 m^2; it is within some per cent.
-    assert!((s.scars[0].volume() / 7e-6 - 1.0).abs() < 0.05);
+    assert!((s.state.scars[0].volume() / 7e-6 - 1.0).abs() < 0.05);
 }
 
 #[test]
@@ -122,12 +122,12 @@ fn volume_is_alpha_times_the_energy_of_the_ledger() {
     let s = worn::<Dim2>("verification/worn_slide", &sets, |_, r| {
         alpha * r.work.max(0.0)
     });
-    let ratio = s.scars[0].volume() / (alpha * s.energy.friction);
+    let ratio = s.state.scars[0].volume() / (alpha * s.state.energy.friction);
     assert!((ratio - 1.0).abs() < 1e-10, "{ratio}");
     let s = worn::<Dim3>("verification/worn_slide_3d", &sets, |_, r| {
         alpha * r.work.max(0.0)
     });
-    let ratio = s.scars[0].volume() / (alpha * s.energy.friction);
+    let ratio = s.state.scars[0].volume() / (alpha * s.state.energy.friction);
     assert!((ratio - 1.0).abs() < 1e-10, "{ratio}");
 }
 
@@ -191,18 +191,21 @@ fn a_block_sinks_into_what_it_covers() {
     for _ in 0..10_000 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }
-    let b = s.bodies.driven[1].body as usize;
-    let (sunk, volume) = (half - s.bodies.position[b][1], s.scars[0].volume());
+    let b = s.state.bodies.driven[1].body as usize;
+    let (sunk, volume) = (
+        half - s.state.bodies.position[b][1],
+        s.state.scars[0].volume(),
+    );
     let expected = volume / (width + 2.0 * amplitude);
     println!(
         "sunk {sunk:.6e} m, V/length {expected:.6e} m, ledger {:.1e}",
-        s.energy.relative_residual()
+        s.state.energy.relative_residual()
     );
     // Ends of the stroke are covered for a moment only: a segment more or less at each.
     assert!((sunk / expected - 1.0).abs() < 0.05, "{sunk} {expected}");
-    assert!(s.energy.relative_residual().abs() < 1e-9);
+    assert!(s.state.energy.relative_residual().abs() < 1e-9);
     // What the load gave went to friction, and to the sinking.
-    let o = shape::outline(&s.scars[0].along());
+    let o = shape::outline(&s.state.scars[0].along());
     assert_eq!(o.form, Form::U);
     assert!((o.to - o.from - width - 2.0 * amplitude).abs() < 4.0 * spacing);
 }
@@ -215,15 +218,15 @@ fn a_block_sinks_into_what_it_covers() {
 fn the_scar_of_a_cylinder_tends_to_its_form() {
     let (radius, a) = (0.05f64, 2e-4);
     let mut s = scene::<Dim2>("fretting_scar", &[]);
-    let cylinder = s.bodies.driven[1].body as usize;
+    let cylinder = s.state.bodies.driven[1].body as usize;
     let mut curvatures = Vec::new();
     for cycle in 1..=50 {
         let mut high = f64::NEG_INFINITY;
         for _ in 0..200 {
             s.step().unwrap_or_else(|e| panic!("{e}"));
-            high = high.max(s.bodies.position[cylinder][1]);
+            high = high.max(s.state.bodies.position[cylinder][1]);
         }
-        let volume = s.scars[0].volume();
+        let volume = s.state.scars[0].volume();
         let (mut low, mut up) = (a, 1e-2);
         for _ in 0..100 {
             let b = 0.5 * (low + up);
@@ -238,12 +241,12 @@ fn the_scar_of_a_cylinder_tends_to_its_form() {
             continue;
         }
         let mut off = 0.0f64;
-        for (v, d) in s.scars[0].vertices() {
+        for (v, d) in s.state.scars[0].vertices() {
             let parabola = depth * (1.0 - (v.at[0] / b).powi(2));
             off = off.max((d - parabola.max(0.0)).abs());
         }
-        let sunk = radius - s.bodies.position[cylinder][1];
-        let rides = high - s.bodies.position[cylinder][1];
+        let sunk = radius - s.state.bodies.position[cylinder][1];
+        let rides = high - s.state.bodies.position[cylinder][1];
         println!(
             "{cycle} cycles: b {b:.3e}, depth {depth:.4e}, sunk {sunk:.4e}, form off by {:.3} of it, rides up {rides:.2e} of {:.2e}",
             off / depth,
@@ -254,13 +257,13 @@ fn the_scar_of_a_cylinder_tends_to_its_form() {
         curvatures.push(1.0 - a / b);
     }
     assert!(curvatures.windows(2).all(|w| w[0] < w[1] && w[1] < 1.0));
-    let o = shape::outline(&s.scars[0].along());
+    let o = shape::outline(&s.state.scars[0].along());
     assert_eq!(o.form, Form::U);
     // k N s, the slip being that of the cylinder but for its rise.
     let kns = 3e-11 * 1e5 * 200.0 * a;
-    let volume = s.scars[0].volume();
+    let volume = s.state.scars[0].volume();
     assert!((volume / kns - 1.0).abs() < 0.01, "{volume} {kns}");
-    assert!(s.energy.relative_residual().abs() < 1e-9);
+    assert!(s.state.energy.relative_residual().abs() < 1e-9);
 }
 
 /// A punch drawn 2 mm above its face, 4 mm wide: friction turns it onto its leading edge, and the scar is deeper at both
@@ -272,7 +275,10 @@ fn a_punch_that_rocks_wears_a_w_and_one_that_is_held_a_u() {
         for _ in 0..4000 {
             s.step().unwrap_or_else(|e| panic!("{e}"));
         }
-        (shape::outline(&s.scars[0].along()), s.scars[0].volume())
+        (
+            shape::outline(&s.state.scars[0].along()),
+            s.state.scars[0].volume(),
+        )
     };
     let (rocks, _) = form(&["time.step=5e-5"]);
     println!("{rocks:?}");
@@ -294,12 +300,12 @@ fn volume_is_alpha_times_the_energy_where_the_motion_turns() {
     let path = fretwork::laws::SearchPath::new(&[]);
     let mut s = loaded.build_in::<Dim2>(&path).unwrap().simulation;
     let (mut volume, mut given) = (0.0, 0);
-    while s.time < 0.1 {
+    while s.state.time < 0.1 {
         let totals = s.step().unwrap().totals;
         volume += totals.worn_first;
         given += u32::from(totals.friction < 0.0);
     }
     assert!(given > 5, "the motion turned {given} times");
-    let ratio = volume / (5e-11 * s.energy.friction);
+    let ratio = volume / (5e-11 * s.state.energy.friction);
     assert!((ratio - 1.0).abs() < 1e-10, "{ratio}");
 }

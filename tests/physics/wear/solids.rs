@@ -21,12 +21,12 @@ fn a_plate_of_polyhedra_comes_loose() {
 
 /// The bodies that unbroken bonds tie to one, by a walk over all of them.
 fn walk<S: Dimensional>(s: &Simulation<S>, from: u32) -> Vec<bool> {
-    let grains: HashSet<u32> = s.bodies.grains().map(|b| b as u32).collect();
-    let mut tied = vec![false; s.bodies.len()];
+    let grains: HashSet<u32> = s.state.bodies.grains().map(|b| b as u32).collect();
+    let mut tied = vec![false; s.state.bodies.len()];
     tied[from as usize] = true;
-    let contacts = s.network.contacts.iter();
+    let contacts = s.state.network.contacts.iter();
     let bonds: Vec<[u32; 2]> = contacts
-        .filter(|c| s.network.bond(c).is_some_and(|b| b.intact()))
+        .filter(|c| s.state.network.bond(c).is_some_and(|b| b.intact()))
         .map(|c| c.bodies)
         // Nothing belongs to one grip through the other.
         .filter(|b| b.iter().all(|b| *b == from || grains.contains(b)))
@@ -57,7 +57,7 @@ fn comes_loose<S: Dimensional>(case: &str, steps: u64) {
     let base = account.bases()[0];
     let whole = account.tied_to(base);
     let (mut pieces, mut grains, mut mass) = (0, 0, 0.0);
-    while s.steps < steps {
+    while s.state.steps < steps {
         s.step().unwrap();
         account.note(&s);
         account.update(&mut s);
@@ -72,7 +72,7 @@ fn comes_loose<S: Dimensional>(case: &str, steps: u64) {
         }
         // Faces hold while one of their points does.
         let tied = walk(&s, base);
-        let free: Vec<usize> = s.bodies.grains().collect();
+        let free: Vec<usize> = s.state.bodies.grains().collect();
         let places = free.iter().map(|b| (account.place(*b), tied[*b]));
         for (place, tied) in places {
             let here = matches!(place, Some(fretwork::wear::ledger::Place::Tied(_)));
@@ -82,7 +82,7 @@ fn comes_loose<S: Dimensional>(case: &str, steps: u64) {
     let f = account.ledger.flows;
     println!(
         "{} bonds broke, {pieces} pieces of {grains} grains out of {whole}",
-        s.network.bonds_broken()
+        s.state.network.bonds_broken()
     );
     assert!(grains > 1 && grains < whole);
     assert_eq!(f.source.grains, grains as i64);

@@ -182,10 +182,10 @@ fn a_wrong_energy_shows_in_the_residual() {
             .build_in(&SearchPath::new(&[place]))
             .unwrap_or_else(|e| panic!("{e}"))
             .simulation;
-        while s.time < 5e-6 {
+        while s.state.time < 5e-6 {
             s.step().unwrap_or_else(|e| panic!("{e}"));
         }
-        s.energy.relative_residual()
+        s.state.energy.relative_residual()
     };
     assert!(residual("NOTHING") < 1e-9);
     let wrong = residual("DISSIPATION");

@@ -14,7 +14,7 @@ use std::path::Path;
 /// Registers two fields, runs the case and reads back what the last state has of them.
 fn ran<S: Dimensional>(loaded: &Loaded, mut built: Built<S>, out: &Path) {
     let s = &mut built.simulation;
-    let age = |s: &Simulation<S>, c: &fretwork::contact::Contact<S>| s.time - c.formed_at;
+    let age = |s: &Simulation<S>, c: &fretwork::contact::Contact<S>| s.state.time - c.formed_at;
     let age = Field::number("age", "s", "time since the contact formed", age);
     s.fields.contacts.add(age);
     let names = id_fields(s);
@@ -70,8 +70,8 @@ fn ran<S: Dimensional>(loaded: &Loaded, mut built: Built<S>, out: &Path) {
 
 fn kinetic<S: Space>(s: &Simulation<S>, body: usize) -> f64 {
     use fretwork::geometry::space::VectorLike;
-    let v = &s.bodies.velocity[body];
-    0.5 * s.bodies.mass[body] * v.dot(v)
+    let v = &s.state.bodies.velocity[body];
+    0.5 * s.state.bodies.mass[body] * v.dot(v)
 }
 
 #[test]

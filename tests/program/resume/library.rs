@@ -24,7 +24,7 @@ struct MeanGap {
 }
 
 fn mean_gap<S: Space>(s: &Simulation<S>) -> f64 {
-    let contacts = &s.network.contacts;
+    let contacts = &s.state.network.contacts;
     contacts.iter().map(|c| c.gap).sum::<f64>() / contacts.len().max(1) as f64
 }
 
@@ -55,7 +55,7 @@ impl<S: Space> Observer<S> for MeanGap {
     }
 
     fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        let text = format!("{} steps, {:e}\n", end.simulation.steps, self.sum);
+        let text = format!("{} steps, {:e}\n", end.simulation.state.steps, self.sum);
         let file = "mean_gap.txt".to_owned();
         vec![Output::Text { file, text }]
     }
@@ -87,7 +87,7 @@ impl<S: Space> Process<S> for Push {
 
     fn before_detection(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
         let mut impulse = S::Vector::zero();
-        impulse[0] = s.scheme.h * FORCE * (1.0 - self.given / LIMIT);
+        impulse[0] = s.options.scheme.h * FORCE * (1.0 - self.given / LIMIT);
         self.given += impulse[0];
         s.apply_impulse(self.body, &impulse, &S::Spin::zero());
         Ok(())
@@ -155,7 +155,7 @@ fn resume(folder: &Folder, observer: Option<MeanGap>) -> Result<Summary, RunErro
 fn an_observer_and_a_process_of_a_user_are_recorded() {
     let folder = Folder::new("library-whole");
     let (loaded, built) = cradle();
-    let mass = built.simulation.bodies.mass[0];
+    let mass = built.simulation.state.bodies.mass[0];
     let options = options(&folder);
     let run = Run::new(&loaded, built, &options).observe(MeanGap::default());
     let summary = run.execute(&mut |_| ControlFlow::Continue(())).unwrap();

@@ -5,7 +5,7 @@ use fretwork::record::code::{decode, encode};
 use fretwork::scene::{Built, Scene, load};
 use fretwork::solve::local::solver::Method;
 use fretwork::step::Steps;
-use fretwork::step::{Saved, Simulation};
+use fretwork::step::{Simulation, State};
 use std::path::Path;
 
 fn built(case: &str, sets: &[&str]) -> Scene {
@@ -18,7 +18,7 @@ fn built(case: &str, sets: &[&str]) -> Scene {
 
 /// All that a simulation holds, as text: numbers are printed so that they read back as they are.
 fn all<S: Steps>(s: &Simulation<S>) -> Vec<u8> {
-    encode(&s.save()).unwrap()
+    encode(&s.state).unwrap()
 }
 
 fn steps<S: Steps>(s: &mut Simulation<S>, count: u32) {
@@ -31,7 +31,7 @@ pub fn goes_on<S: Steps>([one, other]: [Built<S>; 2], before: u32, after: u32) {
     let (mut whole, mut resumed) = (one.simulation, other.simulation);
     steps(&mut whole, before);
     let bytes = all(&whole);
-    let saved: Saved<'_, S> = decode(&bytes).unwrap();
+    let saved: State<S> = decode(&bytes).unwrap();
     assert!(resumed.restore(saved));
     assert!(
         all(&resumed) == bytes,
@@ -39,12 +39,12 @@ pub fn goes_on<S: Steps>([one, other]: [Built<S>; 2], before: u32, after: u32) {
     );
     steps(&mut whole, after);
     steps(&mut resumed, after);
-    assert!(whole.steps == u64::from(before + after));
+    assert!(whole.state.steps == u64::from(before + after));
     assert!(all(&whole) == all(&resumed), "the steps after it differ");
     let impulses = |s: &Simulation<S>| -> Vec<S::Vector> {
-        s.network.contacts.iter().map(|c| c.impulse).collect()
+        s.state.network.contacts.iter().map(|c| c.impulse).collect()
     };
-    assert!(!whole.network.contacts.is_empty());
+    assert!(!whole.state.network.contacts.is_empty());
     assert_eq!(impulses(&whole), impulses(&resumed));
 }
 
@@ -125,7 +125,7 @@ fn what_auto_learned_goes_on_with_the_same_bits() {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         assert!(report.solver.converged, "{:?}", report.solver);
         assert_eq!(report.solver.used, Method::Interior);
-        s.gravity += s.gravity;
+        s.state.gravity += s.state.gravity;
     }
     let (mut whole, mut resumed, mut threads) = (build(), build(), build());
     step(&mut whole);
@@ -135,7 +135,7 @@ fn what_auto_learned_goes_on_with_the_same_bits() {
     step(&mut whole);
     step(&mut resumed);
     assert!(all(&whole) == all(&resumed), "the step after it differs");
-    threads.solver.parallel = true;
+    threads.options.solver.parallel = true;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
     pool.unwrap().install(|| {
         step(&mut threads);

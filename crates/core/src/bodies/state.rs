@@ -221,6 +221,12 @@ impl<S: Space> Bodies<S> {
         )
     }
 
+    /// Returns the velocities and spins of the driven bodies, in their order.
+    pub(crate) fn motion_of_driven(&self) -> Vec<(S::Vector, S::Spin)> {
+        let of = |b: usize| (self.velocity[b], self.spin[b]);
+        self.driven.iter().map(|d| of(d.body as usize)).collect()
+    }
+
     /// Makes a body driven, with the drives of time zero.
     pub fn drive(&mut self, driven: Driven) {
         self.paths.push(Paths::new(driven.dofs.len()));

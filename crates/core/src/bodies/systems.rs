@@ -3,7 +3,8 @@
 use super::dynamical_system::{Contactor, DynamicalSystem, Nodes, SystemStep, SystemWork};
 use super::state::Bodies;
 use crate::geometry::space::{Space, VectorLike};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
 
 /// Which contactor of which system a body stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,16 +29,39 @@ struct Entry<S: Space> {
     free: Vec<f64>,
 }
 
+/// The name of a system, and what it saves of itself.
+type SystemState = (String, Vec<u8>);
+
 /// All systems of a scene that are not rigid bodies.
+///
+/// They are serialised as their names and states. Read back there are the states alone, until [`Systems::take_up`] puts them
+/// into systems that were built again.
 #[derive(Clone, Debug)]
 pub struct Systems<S: Space> {
     entries: Vec<Entry<S>>,
+    /// States that were read and are in no system yet.
+    read: Vec<SystemState>,
+}
+
+impl<S: Space> Serialize for Systems<S> {
+    fn serialize<T: Serializer>(&self, to: T) -> Result<T::Ok, T::Error> {
+        self.states().serialize(to)
+    }
+}
+
+impl<'de, S: Space> Deserialize<'de> for Systems<S> {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let read = Vec::deserialize(from)?;
+        let entries = Vec::new();
+        Ok(Self { entries, read })
+    }
 }
 
 impl<S: Space> Default for Systems<S> {
     fn default() -> Self {
         Self {
             entries: Vec::new(),
+            read: Vec::new(),
         }
     }
 }
@@ -226,24 +250,31 @@ impl<S: Space> Systems<S> {
     }
 
     /// The states of all systems.
-    pub fn save(&self) -> Vec<(String, Vec<u8>)> {
+    fn states(&self) -> Cow<'_, [SystemState]> {
+        if !self.read.is_empty() {
+            return Cow::Borrowed(&self.read);
+        }
         let one = |e: &Entry<S>| (e.system.name().to_owned(), e.system.save());
         self.entries.iter().map(one).collect()
     }
 
-    /// The same systems in states that they saved; none where they are not theirs.
-    pub fn restored(&self, saved: &[(String, Vec<u8>)]) -> Option<Self> {
-        if saved.len() != self.entries.len() {
-            return None;
+    /// Becomes the systems of a scene that was built again, in the states that these have. False, and nothing changed, where
+    /// the states are not theirs.
+    #[must_use]
+    pub fn take_up(&mut self, built: &Self) -> bool {
+        let states = self.states();
+        if states.len() != built.entries.len() {
+            return false;
         }
-        let mut systems = self.clone();
-        for (entry, (name, bytes)) in systems.entries.iter_mut().zip(saved) {
+        let mut systems = built.clone();
+        for (entry, (name, bytes)) in systems.entries.iter_mut().zip(states.iter()) {
             if entry.system.name() != name.as_str() || !entry.system.restore(bytes) {
-                return None;
+                return false;
             }
             entry.start = entry.system.velocity().to_vec();
             entry.free.clone_from(&entry.start);
         }
-        Some(systems)
+        *self = systems;
+        true
     }
 }

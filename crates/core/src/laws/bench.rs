@@ -5,6 +5,7 @@ pub mod scale;
 
 use super::bonds::Held;
 use super::columns::StepInfo;
+use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::kind::Kind;
 use super::library::{Call, LawError};
@@ -73,7 +74,8 @@ pub struct Bench {
     dimension: u32,
     area: f64,
     radius: f64,
-    passes: LawEvaluator,
+    evaluator: LawEvaluator,
+    history: LawHistory,
     said: Vec<f64>,
 }
 
@@ -86,7 +88,8 @@ impl Bench {
             dimension,
             area,
             radius,
-            passes: LawEvaluator::default(),
+            evaluator: LawEvaluator::default(),
+            history: LawHistory::default(),
             said: Vec::new(),
         }
     }
@@ -94,21 +97,21 @@ impl Bench {
     /// Accepts outputs outside their physical range, such as negative friction, for callers that check them.
     #[must_use]
     pub fn lenient(mut self) -> Self {
-        self.passes.care = Care::Lenient;
+        self.evaluator.care = Care::Lenient;
         self
     }
 
     /// Makes every law call twice in guarded memory, so that every invalid write is detected; slow.
     #[must_use]
     pub fn guarded(mut self) -> Self {
-        self.passes.care = Care::Guarded(Box::default());
+        self.evaluator.care = Care::Guarded(Box::default());
         self
     }
 
     /// Repeats every law call and compares the outputs, to detect data races between threads.
     #[must_use]
     pub fn repeating(mut self) -> Self {
-        self.passes.care = Care::Repeated;
+        self.evaluator.care = Care::Repeated;
         self
     }
 
@@ -181,7 +184,7 @@ impl Bench {
 
     /// Fills the input columns of the laws with the openings at the start or the end of the step.
     fn fill(&mut self, states: &[State], motions: &[Motion], info: &StepInfo, end: bool) {
-        let c = &mut self.passes.columns;
+        let c = &mut self.evaluator.columns;
         c.clear();
         c.n = states.len();
         let rotates = self.law.rotates();
@@ -214,7 +217,7 @@ impl Bench {
     }
 
     fn keep(&self, states: &mut [State]) {
-        for (v, column) in self.passes.columns.state_next.iter().enumerate() {
+        for (v, column) in self.evaluator.columns.state_next.iter().enumerate() {
             for (state, value) in states.iter_mut().zip(column) {
                 state.variables[v] = *value;
             }
@@ -230,8 +233,9 @@ impl Bench {
     ) -> Result<(), LawError> {
         self.fill(states, motions, info, false);
         let contact = self.law.contact().clone();
-        self.passes.run(&contact, info, 0.0, Call::Prepare)?;
-        let out = &self.passes.columns.out;
+        self.evaluator
+            .run(&contact, &mut self.history, info, 0.0, Call::Prepare)?;
+        let out = &self.evaluator.columns.out;
         for (k, answer) in answers.iter_mut().enumerate() {
             answer.mu = out.friction[k];
             answer.restitution = [out.restitution_n[k], out.restitution_t[k]];
@@ -250,8 +254,9 @@ impl Bench {
         let mut held = Held::default();
         if self.law.opens() {
             self.fill(states, motions, info, true);
-            self.passes.grow(&self.law, info, &mut held)?;
-            self.said.clone_from(&self.passes.columns.out.damage);
+            self.evaluator
+                .grow(&self.law, &mut self.history, info, &mut held)?;
+            self.said.clone_from(&self.evaluator.columns.out.damage);
             self.keep(states);
         }
         Ok(held)
@@ -271,10 +276,11 @@ impl Bench {
         self.fill(states, motions, info, true);
         let opens = self.law.opens();
         if opens {
-            self.passes.columns.damage.clone_from(&held.damage);
+            self.evaluator.columns.damage.clone_from(&held.damage);
         }
-        self.passes.run(&cohesion, info, 0.0, Call::Prepare)?;
-        let out = &self.passes.columns.out;
+        self.evaluator
+            .run(&cohesion, &mut self.history, info, 0.0, Call::Prepare)?;
+        let out = &self.evaluator.columns.out;
         for (k, answer) in answers.iter_mut().enumerate() {
             answer.strength[0] += out.tension_strength[k];
             answer.strength[1] += out.shear_cohesion[k];
@@ -320,9 +326,10 @@ impl Bench {
             if !answers_first {
                 self.slide(motions, info, damage, answers);
             }
-            self.passes.run(&loaded, info, 0.0, Call::Commit)?;
+            self.evaluator
+                .run(&loaded, &mut self.history, info, 0.0, Call::Commit)?;
             if loaded.plugin.kind == Kind::WEAR {
-                for (answer, volume) in answers.iter_mut().zip(&self.passes.columns.out.volume) {
+                for (answer, volume) in answers.iter_mut().zip(&self.evaluator.columns.out.volume) {
                     answer.worn = *volume;
                 }
             }
@@ -333,7 +340,7 @@ impl Bench {
 
     /// Damage, slip and friction work at the end of a step.
     fn slide(&mut self, motions: &[Motion], info: &StepInfo, damage: &[f64], answers: &[Answer]) {
-        let c = &mut self.passes.columns;
+        let c = &mut self.evaluator.columns;
         c.damage.copy_from_slice(damage);
         for (k, answer) in answers.iter().enumerate() {
             let slip = info.h * c.velocity[1][k].hypot(c.velocity[2][k]);

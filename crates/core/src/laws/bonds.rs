@@ -1,6 +1,7 @@
 //! Commit of bonds: updates openings, damage and energies, and breaks bonds.
 
 use super::columns::StepInfo;
+use super::history::LawHistory;
 use super::interface::Interface;
 use super::library::{Call, LawError};
 use super::pass::{ContactStep, LawEvaluator, MomentStep, Totals};
@@ -42,6 +43,7 @@ impl LawEvaluator {
         &mut self,
         index: usize,
         law: &Interface,
+        history: &mut LawHistory,
         network: &mut Network<S>,
         sites: &[ContactStep<S>],
         turns: &[MomentStep<S>],
@@ -51,7 +53,7 @@ impl LawEvaluator {
         let mut held = std::mem::take(&mut self.held);
         self.open(index, law, network, sites, turns, info, &mut held);
         self.gather_after(law, network, sites, info);
-        self.grow(law, info, &mut held)
+        self.grow(law, history, info, &mut held)
             .map_err(|e| self.at(law, network, e))?;
         for (at, damage) in self.members.iter().zip(&mut held.damage) {
             let bond = network.bond(&network.contacts[*at]);
@@ -75,6 +77,7 @@ impl LawEvaluator {
     pub fn trial<S: Space>(
         &mut self,
         laws: &[Interface],
+        history: &mut LawHistory,
         network: &mut Network<S>,
         sites: &[ContactStep<S>],
         turns: &[MomentStep<S>],
@@ -93,7 +96,7 @@ impl LawEvaluator {
             let mut held = std::mem::take(&mut self.held);
             self.open(index, law, network, sites, turns, info, &mut held);
             self.gather_after(law, network, sites, info);
-            self.grow(law, info, &mut held)
+            self.grow(law, history, info, &mut held)
                 .map_err(|e| self.at(law, network, e))?;
             network.memory[index].restore_openings(before);
             for (k, at) in self.members.iter().enumerate() {
@@ -125,6 +128,7 @@ impl LawEvaluator {
     pub(super) fn grow(
         &mut self,
         law: &Interface,
+        history: &mut LawHistory,
         info: &StepInfo,
         held: &mut Held,
     ) -> Result<(), LawError> {
@@ -138,15 +142,15 @@ impl LawEvaluator {
         if law.damages() {
             self.columns.damage.fill(0.0);
         }
-        self.run(cohesion, info, 0.0, Call::Energy)?;
+        self.run(cohesion, history, info, 0.0, Call::Energy)?;
         held.intact.clone_from(&self.columns.out.energy);
         if law.damage().is_some() {
-            self.run(cohesion, info, 0.0, Call::Prepare)?;
+            self.run(cohesion, history, info, 0.0, Call::Prepare)?;
         }
         self.columns.damage.clone_from(&held.damage);
         if cohesion.plugin.commits() {
             self.columns.out.damage.clone_from(&held.damage);
-            self.run(cohesion, info, 0.0, Call::Commit)?;
+            self.run(cohesion, history, info, 0.0, Call::Commit)?;
             if law.damages() {
                 raise(&mut held.damage, &self.columns.out.damage);
             }
@@ -154,7 +158,7 @@ impl LawEvaluator {
         if let Some(damage) = law.damage() {
             // The damage law sees what the undamaged bond would carry and store.
             self.columns.expose_intact();
-            self.run(damage, info, m, Call::Commit)?;
+            self.run(damage, history, info, m, Call::Commit)?;
             raise(&mut held.damage, &self.columns.out.damage);
         }
         Ok(())

@@ -1,6 +1,7 @@
 //! Commit: the laws' update at the end of a solved step.
 
 use super::columns::{Columns, StepInfo};
+use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::kind::Domain;
 use super::library::{Call, LawError};
@@ -17,6 +18,7 @@ impl LawEvaluator {
     pub fn commit<S: Space>(
         &mut self,
         laws: &[Interface],
+        history: &mut LawHistory,
         network: &mut Network<S>,
         sites: &[ContactStep<S>],
         turns: &[MomentStep<S>],
@@ -80,7 +82,16 @@ impl LawEvaluator {
             if law.opens() {
                 self.select(network, |c| c.law as usize == index && bonded(network, c));
                 if !self.members.is_empty() {
-                    self.commit_bonds(index, law, network, sites, turns, info, &mut totals)?;
+                    self.commit_bonds(
+                        index,
+                        law,
+                        history,
+                        network,
+                        sites,
+                        turns,
+                        info,
+                        &mut totals,
+                    )?;
                 }
             }
             for loaded in law.loaded().filter(|l| !law.acts_on_bonds(l)) {
@@ -100,7 +111,8 @@ impl LawEvaluator {
                     sites,
                     info,
                     totals: &mut totals,
-                    passes: self,
+                    evaluator: self,
+                    history,
                     index,
                 })?;
             }
@@ -121,16 +133,6 @@ impl LawEvaluator {
             }
         }
     }
-
-    /// Drops the deferred negative friction work of separated pairs once they outnumber the contacts.
-    fn forget_debts<S: Space>(&mut self, network: &Network<S>) {
-        let contacts = &network.contacts;
-        if self.negative_friction_work.len() > 2 * contacts.len() {
-            let near = |pair: &(u32, u32)| contacts.binary_search_by_key(pair, |c| c.key.pair());
-            self.negative_friction_work
-                .retain(|pair, _| near(pair).is_ok());
-        }
-    }
 }
 
 /// The end of a step for one law of an interface that acts on contacts: what a [`CommitHook`](super::kind::CommitHook) works
@@ -149,56 +151,61 @@ pub struct SlotCommit<'a, S: Space> {
     pub info: &'a StepInfo,
     /// Energies and volumes of the step.
     pub totals: &'a mut Totals,
-    pub(super) passes: &'a mut LawEvaluator,
+    pub(super) evaluator: &'a mut LawEvaluator,
+    history: &'a mut LawHistory,
     index: usize,
 }
 
 impl<S: Space> SlotCommit<'_, S> {
     /// The contacts that the law acts on, as places in the network; values of columns are in their order.
     pub fn contacts(&self) -> &[usize] {
-        &self.passes.members
+        &self.evaluator.members
     }
 
     /// The columns, as the last call left them.
     pub fn columns(&self) -> &Columns {
-        &self.passes.columns
+        &self.evaluator.columns
     }
 
     /// Fills the columns by the end of the step.
     pub fn gather(&mut self) {
-        let Self { passes, .. } = self;
-        passes.gather_after(self.interface, self.network, self.sites, self.info);
-        passes.columns.size_outputs();
+        let Self { evaluator, .. } = self;
+        evaluator.gather_after(self.interface, self.network, self.sites, self.info);
+        evaluator.columns.size_outputs();
     }
 
     /// Adds the columns of slip (m) and friction work (J) over the step, negative where friction gave back.
     pub fn add_slip(&mut self) {
-        let Self { passes, .. } = self;
-        for at in &passes.members {
+        let Self { evaluator, .. } = self;
+        for at in &evaluator.members {
             let (contact, site) = (&self.network.contacts[*at], &self.sites[*at]);
             let ut = S::tangential(&contact.normal, &site.average);
-            passes.columns.slip.push(self.info.h * ut.norm());
+            evaluator.columns.slip.push(self.info.h * ut.norm());
             let work = -site.solution.unilateral_t.dot(&ut);
-            passes.columns.friction_work.push(work);
+            evaluator.columns.friction_work.push(work);
         }
     }
 
     /// The same with friction work that is not negative: where the velocity turns within a step, friction gives work back,
     /// and later steps owe it to the law.
     pub(super) fn add_slip_and_owed_work(&mut self) {
-        self.passes.forget_debts(self.network);
+        self.history.forget_separated(&self.network.contacts);
         self.add_slip();
-        let Self { passes, .. } = self;
-        let works = &mut passes.columns.friction_work;
-        for (at, work) in passes.members.iter().zip(works) {
+        let Self { evaluator, .. } = self;
+        let works = &mut evaluator.columns.friction_work;
+        for (at, work) in evaluator.members.iter().zip(works) {
             let pair = self.network.contacts[*at].key.pair();
-            let owed = match passes.negative_friction_work.is_empty() {
+            let owed = match self.history.negative_friction_work.is_empty() {
                 true => 0.0,
-                false => passes.negative_friction_work.remove(&pair).unwrap_or(0.0),
+                false => self
+                    .history
+                    .negative_friction_work
+                    .remove(&pair)
+                    .unwrap_or(0.0),
             };
             *work += owed;
             if *work < 0.0 {
-                passes.negative_friction_work.insert(pair, *work);
+                self.history.negative_friction_work.insert(pair, *work);
             }
             *work = work.max(0.0);
         }
@@ -209,12 +216,14 @@ impl<S: Space> SlotCommit<'_, S> {
     /// # Errors
     /// Its own error, with the contact at fault.
     pub fn call(&mut self) -> Result<(), LawError> {
-        let called = self.passes.run(self.law, self.info, 0.0, Call::Commit);
-        called.map_err(|e| self.passes.at(self.interface, self.network, e))
+        let called = self
+            .evaluator
+            .run(self.law, self.history, self.info, 0.0, Call::Commit);
+        called.map_err(|e| self.evaluator.at(self.interface, self.network, e))
     }
 
     /// Stores the new internal variables.
     pub fn keep_state(&mut self) {
-        self.passes.keep_state(self.index, self.network);
+        self.evaluator.keep_state(self.index, self.network);
     }
 }

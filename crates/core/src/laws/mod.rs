@@ -9,6 +9,7 @@ pub mod commit;
 pub mod demand;
 mod gather;
 mod guarded;
+mod history;
 pub mod interface;
 pub mod kind;
 pub mod library;
@@ -20,6 +21,7 @@ mod trust;
 pub mod watch;
 
 pub use built_in::BuiltInLaws;
+pub use history::LawHistory;
 pub use interface::{AreaRule, BondRule, Interface, Loaded};
 pub use kind::{Kind, KindSpec};
 pub use library::{Call, LawError, Plugin};

@@ -7,15 +7,14 @@ use super::bonds::Held;
 use super::columns::{Columns, StepInfo, not_finite};
 use super::gather::contact_area;
 use super::guarded::{self, Guarded};
+use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::library::{Call, LawError};
-use super::range::{Largest, settle};
+use super::range::settle;
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
 use crate::solve::{MomentForm, MomentSolution};
-use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
 
 /// Result of one contact over the step.
 #[derive(Clone, Copy, Debug)]
@@ -88,7 +87,7 @@ pub struct Totals {
     pub worn_third: f64,
 }
 
-/// Evaluates the laws; owns the working memory of prepare and commit.
+/// Evaluates the laws; owns the working memory of prepare and commit, and nothing that outlasts a step.
 #[derive(Debug, Default)]
 pub struct LawEvaluator {
     pub(super) columns: Columns,
@@ -96,17 +95,11 @@ pub struct LawEvaluator {
     pub(super) held: Held,
     /// Interface, slot and damage of the bonds in the last trial of an implicit coupling.
     pub(super) trials: Vec<(usize, usize, f64)>,
-    /// Negative friction work of pairs, deferred to later steps of the wear laws (J).
-    pub(super) negative_friction_work: HashMap<(u32, u32), f64>,
     /// Contacts of the last solve that close within the step and were kept from closing although their law
     /// has restitution.
     pub(crate) held_back: Vec<usize>,
-    /// Interfaces whose bonds have been formed.
-    bonded: Vec<bool>,
     /// Which checks are made on law calls.
     pub(super) care: Care,
-    /// Largest value of each output, the reference for its rounding errors.
-    largest: Largest,
 }
 
 /// Checks made on the outputs of law calls.
@@ -123,15 +116,6 @@ pub(super) enum Care {
     Repeated,
 }
 
-/// State that is carried from step to step.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Carried {
-    /// Deferred negative friction work by pair, sorted by pair; see [`LawEvaluator`].
-    negative_friction_work: Vec<((u32, u32), f64)>,
-    bonded: Vec<bool>,
-    largest: Largest,
-}
-
 /// Friction and restitution of one contact.
 #[derive(Clone, Copy, Default)]
 struct Friction {
@@ -145,28 +129,6 @@ struct Friction {
 }
 
 impl LawEvaluator {
-    /// Returns the state carried from step to step.
-    pub fn carried(&self) -> Carried {
-        let mut negative_friction_work: Vec<_> = self
-            .negative_friction_work
-            .iter()
-            .map(|(k, v)| (*k, *v))
-            .collect();
-        negative_friction_work.sort_unstable_by_key(|d| d.0);
-        Carried {
-            negative_friction_work,
-            bonded: self.bonded.clone(),
-            largest: self.largest.clone(),
-        }
-    }
-
-    /// Restores the state of a saved run.
-    pub fn carry_on(&mut self, from: Carried) {
-        self.negative_friction_work = from.negative_friction_work.into_iter().collect();
-        self.bonded = from.bonded;
-        self.largest = from.largest;
-    }
-
     /// Allocates the internal variables of contacts and forms the bonds that are due: by the case's bond
     /// rule, and by compression time (healing).
     ///
@@ -175,16 +137,17 @@ impl LawEvaluator {
     pub fn remember<S: Space>(
         &mut self,
         laws: &[Interface],
+        history: &mut LawHistory,
         network: &mut Network<S>,
         info: &StepInfo,
     ) -> Result<(), LawError> {
-        self.bonded.resize(laws.len(), false);
+        history.bonded.resize(laws.len(), false);
         for (index, law) in laws.iter().enumerate() {
             // Times are sums of steps, so that comparing at half a step is safe from rounding.
             let reached = |now: f64, time: f64| now > time - 0.5 * info.h;
             let due =
-                !self.bonded[index] && law.bonding_time().is_some_and(|t| reached(info.time, t));
-            self.bonded[index] |= due;
+                !history.bonded[index] && law.bonding_time().is_some_and(|t| reached(info.time, t));
+            history.bonded[index] |= due;
             let remembers = law.variables_of_contacts() > 0;
             if !due && !remembers && law.healing.is_none() {
                 continue;
@@ -234,7 +197,7 @@ impl LawEvaluator {
                     network.broken_pairs.remove(&contact.key.pair());
                 }
             }
-            self.initialise(index, law, network, info)?;
+            self.initialise(index, law, history, network, info)?;
         }
         Ok(())
     }
@@ -244,6 +207,7 @@ impl LawEvaluator {
         &mut self,
         index: usize,
         law: &Interface,
+        history: &mut LawHistory,
         network: &mut Network<S>,
         info: &StepInfo,
     ) -> Result<(), LawError> {
@@ -254,7 +218,7 @@ impl LawEvaluator {
         self.gather(law, network, &still, info);
         self.columns.size_outputs();
         for loaded in law.loaded() {
-            self.run(loaded, info, 0.0, Call::Initialise)
+            self.run(loaded, history, info, 0.0, Call::Initialise)
                 .map_err(|e| self.at(law, network, e))?;
         }
         self.keep_state(index, network);
@@ -265,9 +229,11 @@ impl LawEvaluator {
     ///
     /// # Errors
     /// The law's error, with the contact.
+    #[allow(clippy::too_many_arguments)]
     pub fn prepare<S: Space>(
         &mut self,
         laws: &[Interface],
+        history: &mut LawHistory,
         network: &Network<S>,
         before: &Velocities<S>,
         info: &StepInfo,
@@ -302,7 +268,7 @@ impl LawEvaluator {
                 self.gather(law, network, &before.relative, info);
             }
             self.columns.size_outputs();
-            self.run(law.contact(), info, 0.0, Call::Prepare)
+            self.run(law.contact(), history, info, 0.0, Call::Prepare)
                 .map_err(|e| self.at(law, network, e))?;
             let answer = |out: &super::columns::Outputs, k: usize| Friction {
                 mu: out.friction[k],
@@ -356,7 +322,7 @@ impl LawEvaluator {
                 self.columns.truncate(head);
             }
             self.columns.size_outputs();
-            self.run(cohesion, info, 0.0, Call::Prepare)
+            self.run(cohesion, history, info, 0.0, Call::Prepare)
                 .map_err(|e| self.at(law, network, e))?;
             for (k, at) in self.members.iter().enumerate() {
                 self.apply_cohesion(law, k, &before.relative[*at], info, &mut forms[*at]);
@@ -395,6 +361,7 @@ impl LawEvaluator {
     pub(super) fn run(
         &mut self,
         loaded: &Loaded,
+        history: &mut LawHistory,
         info: &StepInfo,
         degradation: f64,
         call: Call,
@@ -454,7 +421,7 @@ impl LawEvaluator {
         if matches!(self.care, Care::Lenient | Care::Repeated) {
             return Ok(());
         }
-        match settle(&mut outputs, plugin.kind, &mut self.largest) {
+        match settle(&mut outputs, plugin.kind, &mut history.largest) {
             None => Ok(()),
             Some(outside) => Err(LawError::OutOfRange {
                 kind: plugin.kind,

@@ -130,21 +130,21 @@ pub struct Circuit<S: Space> {
 impl<S: Space> Circuit<S> {
     /// Creates the circuit from the current bonds.
     pub fn new(spec: Spec<S>, s: &Simulation<S>) -> Self {
-        let grains: Vec<u32> = s.bodies.grains().map(|b| b as u32).collect();
-        let mut number = vec![None; s.bodies.len()];
+        let grains: Vec<u32> = s.state.bodies.grains().map(|b| b as u32).collect();
+        let mut number = vec![None; s.state.bodies.len()];
         for (k, b) in grains.iter().enumerate() {
             number[*b as usize] = Some(k as u32);
         }
         let between = |b: &[u32; 2]| b.iter().all(|b| counts(*b, &number, &spec));
-        let bonds = bonds(&s.network, &spec.interfaces).filter(between);
-        let ties = Ties::new(s.bodies.len(), &spec.bases, bonds);
+        let bonds = bonds(&s.state.network, &spec.interfaces).filter(between);
+        let ties = Ties::new(s.state.bodies.len(), &spec.bases, bonds);
         let masses = grains
             .iter()
-            .map(|b| s.bodies.mass[*b as usize] / spec.scaling);
+            .map(|b| s.state.bodies.mass[*b as usize] / spec.scaling);
         let masses: Vec<f64> = masses.collect();
         let mut circuit = Self {
             ledger: Ledger::new(masses.clone(), vec![Place::Contact; grains.len()]),
-            since: vec![s.time; grains.len()],
+            since: vec![s.state.time; grains.len()],
             number,
             ties,
             grains,
@@ -187,12 +187,13 @@ impl<S: Space> Circuit<S> {
         let ties = |bodies: &[u32; 2], law: u16| {
             spec.interfaces.contains(&law) && bodies.iter().all(|b| counts(*b, number, spec))
         };
-        for (bodies, law) in &s.network.bonds_formed {
+        for (bodies, law) in &s.state.network.bonds_formed {
             if ties(bodies, *law) {
                 self.made.push(*bodies);
             }
         }
         for b in s
+            .state
             .network
             .bond_breaks
             .iter()
@@ -260,20 +261,20 @@ impl<S: Space> Circuit<S> {
                 places.push(Place::Tied(base));
                 continue;
             }
-            let (at, periodic) = (&s.bodies.position[*body as usize], &s.shapes.periodic);
+            let (at, periodic) = (&s.state.bodies.position[*body as usize], &s.shapes.periodic);
             let mut zones = self.spec.zones.iter();
-            let zone = zones.position(|z| z.holds(&s.bodies, periodic, at));
+            let zone = zones.position(|z| z.holds(&s.state.bodies, periodic, at));
             let Some(zone) = zone else {
                 places.push(Place::Contact);
                 continue;
             };
             let now = Place::Ejected(zone as u32);
             if old != now {
-                self.since[k] = s.time;
+                self.since[k] = s.state.time;
             }
             let lost = match self.spec.zones[zone].fate {
                 Fate::Stays => false,
-                Fate::LostAfter(time) => s.time - self.since[k] >= time,
+                Fate::LostAfter(time) => s.state.time - self.since[k] >= time,
             };
             places.push(if lost { Place::Lost } else { now });
         }
@@ -281,10 +282,13 @@ impl<S: Space> Circuit<S> {
     }
 
     fn debris_of(&self, s: &Simulation<S>, base: u32, piece: &[u32]) -> Debris<S> {
-        let first = s.bodies.position[piece[0] as usize];
+        let first = s.state.bodies.position[piece[0] as usize];
         let (mut mass, mut moment) = (0.0, S::Vector::zero());
         for b in piece {
-            let (m, at) = (s.bodies.mass[*b as usize], s.bodies.position[*b as usize]);
+            let (m, at) = (
+                s.state.bodies.mass[*b as usize],
+                s.state.bodies.position[*b as usize],
+            );
             mass += m;
             moment += s.shapes.periodic.shortest(at - first) * m;
         }
@@ -303,8 +307,11 @@ impl<S: Space> Circuit<S> {
         }
         let all = work[0] + work[1];
         Debris {
-            time: s.time,
-            grains: piece.iter().map(|b| s.bodies.id[*b as usize]).collect(),
+            time: s.state.time,
+            grains: piece
+                .iter()
+                .map(|b| s.state.bodies.id[*b as usize])
+                .collect(),
             mass: mass / self.spec.scaling,
             place: s.shapes.periodic.wrapped(first + moment * (1.0 / mass)),
             base,
@@ -382,14 +389,14 @@ impl<S: Space> CircuitProcess<S> {
 
     /// Whether it was brought up to date after the last step of a simulation.
     pub fn is_up_to_date(&self, s: &Simulation<S>) -> bool {
-        self.state.updated == s.steps
+        self.state.updated == s.state.steps
     }
 
     fn begin(&mut self, s: &Simulation<S>) -> Result<(), NoBonds> {
         let circuit = Circuit::new(self.spec.clone(), s);
         let untied = |base: &&u32| circuit.tied_to(**base) == 0;
         if let Some(base) = circuit.bases().iter().find(untied) {
-            let driven = s.bodies.driven.iter().find(|d| d.body == *base);
+            let driven = s.state.bodies.driven.iter().find(|d| d.body == *base);
             return Err(NoBonds {
                 body: driven.map_or(String::new(), |d| d.name.clone()),
             });
@@ -401,7 +408,7 @@ impl<S: Space> CircuitProcess<S> {
     fn update(&mut self, s: &mut Simulation<S>) {
         if let Some(circuit) = &mut self.state.circuit {
             circuit.update(s);
-            self.state.updated = s.steps;
+            self.state.updated = s.state.steps;
         }
     }
 }
@@ -412,15 +419,15 @@ impl<S: Space> Process<S> for CircuitProcess<S> {
     }
 
     fn between_steps(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
-        if s.time < self.start - 0.5 * s.scheme.h {
+        if s.state.time < self.start - 0.5 * s.options.scheme.h {
             return Ok(());
         }
         let Some(circuit) = &mut self.state.circuit else {
             return Ok(self.begin(s)?);
         };
         circuit.note(s);
-        self.state.noted = s.steps;
-        let due = |every: u64| s.steps.is_multiple_of(every);
+        self.state.noted = s.state.steps;
+        let due = |every: u64| s.state.steps.is_multiple_of(every);
         if due(self.intervals.every) || self.intervals.rows.is_some_and(due) {
             self.update(s);
         }
@@ -428,7 +435,7 @@ impl<S: Space> Process<S> for CircuitProcess<S> {
     }
 
     fn at_end(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
-        if self.state.noted == s.steps && self.state.updated != s.steps {
+        if self.state.noted == s.state.steps && self.state.updated != s.state.steps {
             self.update(s);
         }
         Ok(())

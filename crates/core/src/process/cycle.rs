@@ -65,18 +65,18 @@ pub struct RubbedBody {
 impl RubbedBody {
     /// Tangential force that moves it, the mean over the last step (N; N/m in 2D).
     pub fn tangential_force<S: Space>(&self, s: &Simulation<S>) -> f64 {
-        -s.received[self.place].0[self.along] / s.scheme.h
+        -s.state.received[self.place].0[self.along] / s.options.scheme.h
     }
 
     /// Its sliding over the last step (m), signed.
     pub fn slide<S: Space>(&self, s: &Simulation<S>) -> f64 {
-        s.scheme.h * step_velocity(s, self.place)[self.along]
+        s.options.scheme.h * step_velocity(s, self.place)[self.along]
     }
 }
 
 /// Velocity of a driven body over the last step, v_theta, by its place among them (m/s).
 pub fn step_velocity<S: Space>(s: &Simulation<S>, place: usize) -> S::Vector {
-    let theta = s.scheme.theta;
-    let now = s.bodies.velocity[s.bodies.driven[place].body as usize];
-    s.started[place].0 * (1.0 - theta) + now * theta
+    let theta = s.options.scheme.theta;
+    let now = s.state.bodies.velocity[s.state.bodies.driven[place].body as usize];
+    s.state.started[place].0 * (1.0 - theta) + now * theta
 }

@@ -179,7 +179,7 @@ impl Jumps {
             current: (0, 0.0),
             steps,
             work: 0.0,
-            number: clock.number(s.time + s.scheme.h),
+            number: clock.number(s.state.time + s.options.scheme.h),
             cycle_multiplier: 1,
             computed: 0,
             represented: 0,
@@ -236,7 +236,7 @@ impl Jumps {
 
     /// Adds the work of the last step to that of its cycle.
     fn add_work<S: Space>(&mut self, s: &Simulation<S>) {
-        let cycle = self.clock.number(s.time);
+        let cycle = self.clock.number(s.state.time);
         if self.current.0 != cycle {
             self.current = (cycle, 0.0);
         }
@@ -253,7 +253,7 @@ impl Jumps {
             cycles: self.represented,
             cycle_multiplier: self.cycle_multiplier,
             wear_volume: self.worn.0,
-            mean_damage: s.network.mean_damage(),
+            mean_damage: s.state.network.mean_damage(),
         });
         if self.cycle_multiplier > 1 {
             self.pending = Some(Pending {
@@ -328,7 +328,7 @@ impl Jumps {
             if all <= 0.0 {
                 continue;
             }
-            let off = if q < s.scars.len() {
+            let off = if q < s.state.scars.len() {
                 let form = misplaced(added, self.last.as_ref().map_or(rates[1], |l| &l[q]));
                 self.form[q] = form.max(left(self.form[q], all));
                 worst = worst.max(form / (total * to_come));
@@ -360,12 +360,12 @@ impl Jumps {
     fn next<S: Space>(&mut self, s: &Simulation<S>) -> u32 {
         // A jump and its control cycles must fit before the end.
         let [cycle, run] = self.steps;
-        if run.saturating_sub(s.steps) < cycle * (1 + u64::from(self.spec.control)) {
+        if run.saturating_sub(s.state.steps) < cycle * (1 + u64::from(self.spec.control)) {
             return 1;
         }
         // At least two, so that lengths can grow again; `at_most` may be one.
         self.length = self.length.max(2.0).min(f64::from(self.spec.at_most));
-        let damage = self.rate.iter().skip(s.scars.len() + 1).flatten();
+        let damage = self.rate.iter().skip(s.state.scars.len() + 1).flatten();
         let fastest = damage.fold(0.0, |m: f64, x| m.max(*x));
         let by_damage = if fastest > 0.0 {
             self.spec.growth / fastest
@@ -430,7 +430,7 @@ impl<S: Space> Process<S> for Jumps {
     /// Closes the cycle that the step ended, and begins the next one.
     fn between_steps(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
         self.add_work(s);
-        let next = self.clock.number(s.time + s.scheme.h);
+        let next = self.clock.number(s.state.time + s.options.scheme.h);
         if next == self.number {
             return Ok(());
         }
@@ -440,7 +440,7 @@ impl<S: Space> Process<S> for Jumps {
         }
         self.number = next;
         self.opened = amounts(s, self.worn.1);
-        s.network.cycle_multiplier = f64::from(self.cycle_multiplier);
+        s.state.network.cycle_multiplier = f64::from(self.cycle_multiplier);
         Ok(())
     }
 
@@ -463,7 +463,7 @@ impl<S: Space> Process<S> for Jumps {
 /// by interface.
 fn amounts<S: Space>(s: &Simulation<S>, worn_third: f64) -> Amounts {
     let mut all: Amounts = Vec::new();
-    for scar in &s.scars {
+    for scar in &s.state.scars {
         let volume = |(v, depth): (&Vertex<S::Vector>, f64)| v.tributary * depth;
         all.push(scar.vertices().map(volume).collect());
     }
@@ -473,7 +473,7 @@ fn amounts<S: Space>(s: &Simulation<S>, worn_third: f64) -> Amounts {
         true => b.damage,
         false => 0.0,
     };
-    let memory = s.network.memory.iter();
+    let memory = s.state.network.memory.iter();
     all.extend(memory.map(|m| m.bonds.iter().map(held).collect()));
     all
 }

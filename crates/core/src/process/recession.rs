@@ -26,9 +26,9 @@ impl<S: Space> Process<S> for Recession {
 
     /// Lowers the surfaces whose turn it is.
     fn after_move(&mut self, s: &mut Simulation<S>, _: &StepReport) -> Result<(), ProcessError> {
-        let steps = s.steps;
+        let steps = s.state.steps;
         // A step that wears for many is followed at once: the contact must find what protrudes.
-        let many = s.network.cycle_multiplier > 1.0;
+        let many = s.state.network.cycle_multiplier > 1.0;
         lower(s, |scar| many || steps.is_multiple_of(scar.every));
         Ok(())
     }
@@ -41,13 +41,12 @@ impl<S: Space> Process<S> for Recession {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Has a surface worn by its contacts; the network keeps their losses from now on.
+    /// Has a surface worn by its contacts; the network records their losses from the next step on.
     pub fn follow_wear(&mut self, scar: Scar<S>) {
         if self.process::<Recession>().is_none() {
             self.add_process(Recession);
         }
-        self.network.losses.get_or_insert_default();
-        self.scars.push(scar);
+        self.state.scars.push(scar);
     }
 
     /// Whether no surface is worn through.
@@ -56,41 +55,44 @@ impl<S: Space> Simulation<S> {
     /// Which is, and where.
     pub fn check_worn_through(&self) -> Result<(), StepError> {
         let error = |source: &WornThrough| StepError::WornThrough {
-            step: self.steps,
-            time: self.time,
+            step: self.state.steps,
+            time: self.state.time,
             source: source.clone(),
         };
-        self.worn_through.as_ref().map_or(Ok(()), |w| Err(error(w)))
+        self.state
+            .worn_through
+            .as_ref()
+            .map_or(Ok(()), |w| Err(error(w)))
     }
 }
 
 /// Puts what the step wore off on the scars.
 fn put_losses<S: Space>(s: &mut Simulation<S>) {
-    let Some(losses) = &s.network.losses else {
+    let Some(losses) = &s.state.network.losses else {
         return;
     };
     for loss in losses {
-        let contact = &s.network.contacts[loss.contact as usize];
+        let contact = &s.state.network.contacts[loss.contact as usize];
         let surface = contact.key.surface();
-        let mut scars = s.scars.iter_mut();
+        let mut scars = s.state.scars.iter_mut();
         let Some(scar) = scars.find(|s| Some(s.surface) == surface) else {
             continue;
         };
         let carried = &s.shapes.surfaces[scar.surface];
-        let rotation = &s.bodies.rotation[carried.body as usize];
+        let rotation = &s.state.bodies.rotation[carried.body as usize];
         let closest_point = closest_point(carried, rotation, &contact.arms[1]);
         let put = scar.put(&s.shapes, &closest_point, loss.volume);
-        s.worn_through = s.worn_through.take().or(put.err());
+        s.state.worn_through = s.state.worn_through.take().or(put.err());
     }
 }
 
 fn lower<S: Space>(s: &mut Simulation<S>, due: impl Fn(&Scar<S>) -> bool) {
-    let bound = 0.5 * s.network.skin;
+    let bound = 0.5 * s.state.network.skin;
     let mut far = false;
-    for scar in s.scars.iter_mut().filter(|scar| due(scar)) {
+    for scar in s.state.scars.iter_mut().filter(|scar| due(scar)) {
         far |= scar.show(&mut s.shapes, bound);
     }
     if far {
-        s.network.forget_neighbours();
+        s.state.network.forget_neighbours();
     }
 }

@@ -63,7 +63,7 @@ pub fn solve<S: Space>(
     forms: &[ContactForm<S>],
     moments: &[MomentForm<S>],
     options: &Options,
-    habit: &mut AutoState,
+    auto_state: &mut AutoState,
 ) -> Report {
     let pieces = SolveContext {
         forms,
@@ -73,7 +73,7 @@ pub fn solve<S: Space>(
     match options.method {
         Method::Nlgs => pieces.sweep(problem, false, options.max_iterations),
         Method::Anderson => pieces.sweep(problem, true, options.max_iterations),
-        Method::Auto => pieces.auto(problem, habit),
+        Method::Auto => pieces.auto(problem, auto_state),
         method => pieces.by(problem, method),
     }
 }
@@ -148,7 +148,7 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    fn auto(&self, problem: &mut Problem<S>, habit: &mut AutoState) -> Report {
+    fn auto(&self, problem: &mut Problem<S>, auto_state: &mut AutoState) -> Report {
         /// Cost of Gauss-Seidel before Newton in factorisations, at a loose and at a tight tolerance.
         const LOOSE: f64 = 40.0;
         const TIGHT: f64 = 20.0;
@@ -178,7 +178,7 @@ impl<S: Space> SolveContext<'_, S> {
             .moments
             .iter()
             .any(|m| m.rolling > 0.0 || m.spinning > 0.0);
-        let sweeps = worth * per * habit.patience;
+        let sweeps = worth * per * auto_state.patience;
         let sweeps = sweeps.clamp(200.0, f64::from(u32::MAX / 2)) as u32;
         let mut features = Features {
             rotation: rolls,
@@ -213,13 +213,13 @@ impl<S: Space> SolveContext<'_, S> {
         features.cohesion = self.forms.iter().any(|f| f.cohesion > 0.0);
         let mut interior = hyperstaticity < DETERMINED
             && refusal(Method::Interior, &features).is_none()
-            && habit.interior_is_due();
+            && auto_state.interior_is_due();
         let (mut newton, mut inside) = (Attempt::No, Attempt::No);
         let mut round = 0;
         while !report.converged && report.iterations < options.max_iterations {
-            let first = round == 0 && interior && habit.interior_first;
+            let first = round == 0 && interior && auto_state.interior_first;
             if first {
-                inside = self.interior(problem, &mut report, INTERIOR, habit);
+                inside = self.interior(problem, &mut report, INTERIOR, auto_state);
                 interior = false;
             }
             let steps = NEWTON << round.min(16);
@@ -230,7 +230,7 @@ impl<S: Space> SolveContext<'_, S> {
                 newton = self.attempt(problem, &mut report, Method::Newton, steps, anew);
             }
             if !report.converged && interior {
-                inside = self.interior(problem, &mut report, INTERIOR, habit);
+                inside = self.interior(problem, &mut report, INTERIOR, auto_state);
                 interior = false;
             }
             report.chosen = SolvePath::Factorised {
@@ -248,8 +248,8 @@ impl<S: Space> SolveContext<'_, S> {
         }
         if let SolvePath::Factorised { .. } = report.chosen {
             let ended = newton == Attempt::Ended || inside == Attempt::Ended;
-            habit.patience *= if ended { 0.5 } else { 2.0 };
-            habit.patience = habit.patience.clamp(1.0, 64.0);
+            auto_state.patience *= if ended { 0.5 } else { 2.0 };
+            auto_state.patience = auto_state.patience.clamp(1.0, 64.0);
         }
         report
     }
@@ -260,10 +260,10 @@ impl<S: Space> SolveContext<'_, S> {
         problem: &mut Problem<S>,
         report: &mut Report,
         steps: u32,
-        habit: &mut AutoState,
+        auto_state: &mut AutoState,
     ) -> Attempt {
         let tried = self.attempt(problem, report, Method::Interior, steps, false);
-        habit.learn(tried == Attempt::Ended);
+        auto_state.learn(tried == Attempt::Ended);
         tried
     }
 

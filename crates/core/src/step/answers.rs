@@ -1,8 +1,8 @@
 //! Contact states of a step: the relative velocities before it, and the solver's results in the form in
 //! which the laws commit them.
 
+use super::Simulation;
 use super::motion::StepStart;
-use super::simulation::Simulation;
 use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::{ContactStep, Interface, MomentStep, Velocities};
@@ -30,11 +30,11 @@ impl<S: Space> Default for Solved<S> {
 impl<S: Space> Simulation<S> {
     /// Returns the velocity of a contact's candidate relative to its antagonist, at the current velocities.
     fn relative_velocity(&self, contact: &Contact<S>) -> S::Vector {
-        if !self.systems.is_empty() {
+        if !self.state.systems.is_empty() {
             return self.relative_velocity_of_sides(contact);
         }
         let [i, j] = contact.bodies.map(|b| b as usize);
-        let bodies = &self.bodies;
+        let bodies = &self.state.bodies;
         bodies.velocity[i] + S::spin_velocity(&bodies.spin[i], &contact.arms[0])
             - bodies.velocity[j]
             - S::spin_velocity(&bodies.spin[j], &contact.arms[1])
@@ -43,13 +43,13 @@ impl<S: Space> Simulation<S> {
     /// Computes the relative velocities and spins at the start of the step.
     pub(super) fn relative_velocities(&mut self) {
         let mut before = std::mem::take(&mut self.workspace.solved.before);
-        let contacts = &self.network.contacts;
+        let contacts = &self.state.network.contacts;
         before.relative.clear();
         let relative = contacts.iter().map(|c| self.relative_velocity(c));
         before.relative.extend(relative);
         before.turning.clear();
         if self.laws.iter().any(Interface::rotates) {
-            let spins = &self.bodies.spin;
+            let spins = &self.state.bodies.spin;
             let relative =
                 |c: &Contact<S>| spins[c.bodies[0] as usize] - spins[c.bodies[1] as usize];
             before.turning.extend(contacts.iter().map(relative));
@@ -61,9 +61,9 @@ impl<S: Space> Simulation<S> {
     pub(super) fn sites(&mut self) {
         let mut sites = std::mem::take(&mut self.workspace.solved.sites);
         sites.clear();
-        let theta = self.scheme.theta;
+        let theta = self.options.scheme.theta;
         let before = &self.workspace.solved.before.relative;
-        let contacts = self.network.contacts.iter().zip(before).enumerate();
+        let contacts = self.state.network.contacts.iter().zip(before).enumerate();
         sites.extend(contacts.map(|(k, (contact, before))| {
             let (form, solution) = (&self.workspace.forms[k], self.workspace.problem.solution(k));
             let average = *before * (1.0 - theta) + self.relative_velocity(contact) * theta;
@@ -78,7 +78,7 @@ impl<S: Space> Simulation<S> {
             // correction work.
             let lifts = form.shift_n < 0.0
                 && n.dot(before) >= form.shift_n
-                && form.shift_n == self.shift_of_gap(contact, self.scheme.h);
+                && form.shift_n == self.shift_of_gap(contact, self.options.scheme.h);
             let lift = if lifts {
                 -theta * form.shift_n * solution.unilateral_n.max(0.0)
             } else {
@@ -103,13 +103,13 @@ impl<S: Space> Simulation<S> {
     pub(super) fn turns(&mut self, start: &StepStart<S>) {
         let mut turns = std::mem::take(&mut self.workspace.solved.turns);
         turns.clear();
-        let theta = self.scheme.theta;
+        let theta = self.options.scheme.theta;
         let average = |b: u32| {
             let b = b as usize;
-            start.spin(b) * (1.0 - theta) + self.bodies.spin[b] * theta
+            start.spin(b) * (1.0 - theta) + self.state.bodies.spin[b] * theta
         };
         let turn = |(form, moment): (&MomentForm<S>, solve::MomentSolution<S>)| {
-            let contact = &self.network.contacts[moment.contact as usize];
+            let contact = &self.state.network.contacts[moment.contact as usize];
             let [i, j] = contact.bodies;
             let spin = average(i) - average(j);
             let (twist, bend) = S::split_spin(&contact.normal, &spin);

@@ -29,43 +29,43 @@ pub struct ContactRow<S: Space> {
 impl<S: Space> Simulation<S> {
     /// Number of bodies, grains first, then first bodies: the length of every column.
     pub fn body_count(&self) -> usize {
-        self.bodies.len()
+        self.state.bodies.len()
     }
 
     /// The place of a first body in the columns, by its name.
     pub fn body_named(&self, name: &str) -> Option<usize> {
-        let mut driven = self.bodies.driven.iter();
+        let mut driven = self.state.bodies.driven.iter();
         driven.find(|d| d.name == name).map(|d| d.body as usize)
     }
 
     /// Centres of mass (m).
     pub fn positions(&self) -> &[S::Vector] {
-        &self.bodies.position
+        &self.state.bodies.position
     }
 
     /// Velocities of the centres of mass (m/s).
     pub fn velocities(&self) -> &[S::Vector] {
-        &self.bodies.velocity
+        &self.state.bodies.velocity
     }
 
     /// Angular velocities (rad/s).
     pub fn spins(&self) -> &[S::Spin] {
-        &self.bodies.spin
+        &self.state.bodies.spin
     }
 
     /// The contacts of the last step, open ones within the alert distance too; empty before the first step.
     pub fn contacts(&self) -> impl ExactSizeIterator<Item = ContactRow<S>> + '_ {
-        let contacts = self.network.contacts.iter();
+        let contacts = self.state.network.contacts.iter();
         contacts.map(|contact| self.row(contact))
     }
 
     fn row(&self, contact: &Contact<S>) -> ContactRow<S> {
-        let force = contact.impulse * (1.0 / self.scheme.h);
+        let force = contact.impulse * (1.0 / self.options.scheme.h);
         let candidate = contact.bodies[0] as usize;
         ContactRow {
             bodies: contact.bodies,
             interface: contact.law,
-            point: self.bodies.position[candidate] + contact.arms[0],
+            point: self.state.bodies.position[candidate] + contact.arms[0],
             normal: contact.normal,
             gap: contact.gap,
             force,
@@ -77,14 +77,19 @@ impl<S: Space> Simulation<S> {
     /// Mean force (N; 2D N/m) and moment about its centre (N m; 2D N) of the last step by its contacts on a first body;
     /// none for a name that no first body has.
     pub fn contact_force_on(&self, name: &str) -> Option<(S::Vector, S::Spin)> {
-        let place = self.bodies.driven.iter().position(|d| d.name == name)?;
-        let (impulse, moment) = self.received.get(place)?;
-        let rate = 1.0 / self.scheme.h;
+        let place = self
+            .state
+            .bodies
+            .driven
+            .iter()
+            .position(|d| d.name == name)?;
+        let (impulse, moment) = self.state.received.get(place)?;
+        let rate = 1.0 / self.options.scheme.h;
         Some((*impulse * rate, *moment * rate))
     }
 
     /// The energy ledger (J; 2D J/m).
     pub fn energies(&self) -> &Energy {
-        &self.energy
+        &self.state.energy
     }
 }

@@ -14,12 +14,12 @@ impl<S: Space> Simulation<S> {
     /// Names the first quantity that is not finite, and its body.
     pub(super) fn finite(&self) -> Result<(), StepError> {
         let overflow = |quantity: String, value: f64| StepError::Overflow {
-            step: self.steps,
-            time: self.time,
+            step: self.state.steps,
+            time: self.state.time,
             quantity,
             value,
         };
-        let bodies = &self.bodies;
+        let bodies = &self.state.bodies;
         // Velocities were checked after the solve. The sum is zero unless a component is infinite or NaN.
         let zero = |sum: f64, x: &S::Vector| sum + (*x * 0.0).dot(x);
         if bodies.position.iter().fold(0.0, zero) != 0.0
@@ -30,7 +30,7 @@ impl<S: Space> Simulation<S> {
             let quantity = format!("the position of {}", bodies.name(b as u32));
             return Err(overflow(quantity, value.unwrap_or(f64::NAN)));
         }
-        let e = &self.energy;
+        let e = &self.state.energy;
         if !e.kinetic.is_finite()
             && let Some(b) = (0..bodies.len()).find(|b| !bodies.energy_of(*b).is_finite())
         {
@@ -60,14 +60,15 @@ impl<S: Space> Simulation<S> {
     /// Records bodies whose displacement in a step is below the floating-point spacing of their position, so
     /// that they do not move although they should.
     pub(super) fn watch_rounding(&mut self) {
-        if self.bodies.lost.is_empty() {
+        if self.state.bodies.lost.is_empty() {
             return;
         }
-        let least = LOST * self.network.alert;
-        let stuck = (0..self.bodies.lost.len()).find(|b| self.bodies.lost[*b].norm() > least);
+        let least = LOST * self.state.network.alert;
+        let stuck =
+            (0..self.state.bodies.lost.len()).find(|b| self.state.bodies.lost[*b].norm() > least);
         if let Some(body) = stuck {
-            let step_size = &mut self.network.step_size;
-            step_size.lose_motion(self.time, &self.bodies, body as u32);
+            let step_size = &mut self.state.network.step_size;
+            step_size.lose_motion(self.state.time, &self.state.bodies, body as u32);
         }
     }
 }

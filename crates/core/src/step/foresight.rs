@@ -19,9 +19,9 @@ impl<S: Space> Simulation<S> {
     /// of an imposed motion. `before` holds the velocities and spins of the driven bodies before their
     /// jumps.
     pub(super) fn watch_first_move(&mut self, before: &[(S::Vector, S::Spin)]) {
-        let length = (1.0 - self.scheme.theta) * self.scheme.h;
-        let (network, bodies) = (&mut self.network, &self.bodies);
-        if self.steps == 0 {
+        let length = (1.0 - self.options.scheme.theta) * self.options.scheme.h;
+        let (network, bodies) = (&mut self.state.network, &self.state.bodies);
+        if self.state.steps == 0 {
             let velocities = bodies.velocity.iter().copied();
             let velocities = velocities.zip(bodies.spin.iter().copied());
             if detect::is_calm(network, &self.shapes, bodies, velocities, length) {
@@ -31,38 +31,38 @@ impl<S: Space> Simulation<S> {
             return;
         }
         detect::report_first_move(
-            &mut self.network,
+            &mut self.state.network,
             &self.shapes,
-            &self.bodies,
+            &self.state.bodies,
             &self.table,
-            self.time,
+            self.state.time,
             length,
         );
     }
 
     /// Reports penetrations and passages in the move before detection if a process has applied an impulse.
     pub(super) fn watch_push(&mut self) {
-        let length = (1.0 - self.scheme.theta) * self.scheme.h;
-        let (network, bodies) = (&mut self.network, &self.bodies);
+        let length = (1.0 - self.options.scheme.theta) * self.options.scheme.h;
+        let (network, bodies) = (&mut self.state.network, &self.state.bodies);
         let velocities = bodies.velocity.iter().copied();
         let velocities = velocities.zip(bodies.spin.iter().copied());
         if self.workspace.pushed
             && !detect::is_calm(network, &self.shapes, bodies, velocities, length)
         {
             let (shapes, table) = (&self.shapes, &self.table);
-            detect::report_first_move(network, shapes, bodies, table, self.time, length);
+            detect::report_first_move(network, shapes, bodies, table, self.state.time, length);
         }
     }
 
     /// Returns whether the jumps of imposed velocities give a body a large displacement within a time (s).
     fn velocities_jump(&self, before: &[(S::Vector, S::Spin)], time: f64) -> bool {
-        let bodies = &self.bodies;
+        let bodies = &self.state.bodies;
         let mut driven = bodies.driven.iter().zip(before);
         driven.any(|(driven, (v, w))| {
             let b = driven.body as usize;
             let jump = (bodies.velocity[b] - *v).norm();
             let turn = (bodies.spin[b] - *w).norm();
-            let lever = self.network.extents.lever(b);
+            let lever = self.state.network.extents.lever(b);
             let surfaces = self.shapes.surfaces.iter();
             // The extent of the surface is unknown.
             let sweeps = turn > TURNS * bodies.spin[b].norm().max(w.norm())
@@ -70,18 +70,18 @@ impl<S: Space> Simulation<S> {
                     !s.shape
                         .keeps_place(&S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]))
                 });
-            time * (jump + turn * lever) > self.network.fast || sweeps
+            time * (jump + turn * lever) > self.state.network.fast || sweeps
         })
     }
 
     /// Reports impacts with restitution that were only kept from closing, because other impacts of the step
     /// preceded them.
     fn report_held_back(&mut self) {
-        for k in &self.passes.held_back {
+        for k in &self.workspace.evaluator.held_back {
             if self.workspace.solved.sites[*k].solution.impulse != S::Vector::zero() {
-                let pair = self.network.contacts[*k].bodies;
-                let step_size = &mut self.network.step_size;
-                step_size.hold_back(self.time, &self.bodies, pair);
+                let pair = self.state.network.contacts[*k].bodies;
+                let step_size = &mut self.state.network.step_size;
+                step_size.hold_back(self.state.time, &self.state.bodies, pair);
             }
         }
     }
@@ -90,10 +90,10 @@ impl<S: Space> Simulation<S> {
     pub(super) fn foresee(&mut self, free: &[(S::Vector, S::Spin)]) {
         let motion = Motion {
             velocities: free,
-            time: self.time,
-            h: self.scheme.h,
+            time: self.state.time,
+            h: self.options.scheme.h,
         };
-        let (network, bodies) = (&mut self.network, &self.bodies);
+        let (network, bodies) = (&mut self.state.network, &self.state.bodies);
         let all = free.iter().copied();
         if detect::is_calm(network, &self.shapes, bodies, all, motion.h) {
             return;
@@ -126,23 +126,28 @@ impl<S: Space> Simulation<S> {
         for solves in 1.. {
             self.relative_velocities();
             self.geometry_of_forms(info.h);
-            for (form, contact) in self.workspace.forms.iter_mut().zip(&self.network.contacts) {
+            for (form, contact) in self
+                .workspace
+                .forms
+                .iter_mut()
+                .zip(&self.state.network.contacts)
+            {
                 // From the solve before.
                 if let Ok(at) = last.binary_search_by_key(&contact.key, |c| c.0) {
                     form.impulse = last[at].1;
                 }
             }
             self.couple(start, free, info, report)?;
-            let velocities = self.bodies.velocity.iter().copied();
-            let velocities = velocities.zip(self.bodies.spin.iter().copied());
-            let (network, bodies) = (&mut self.network, &self.bodies);
+            let velocities = self.state.bodies.velocity.iter().copied();
+            let velocities = velocities.zip(self.state.bodies.spin.iter().copied());
+            let (network, bodies) = (&mut self.state.network, &self.state.bodies);
             if detect::is_calm(network, &self.shapes, bodies, velocities.clone(), info.h) {
                 return Ok(());
             }
             let velocities: Vec<_> = velocities.collect();
             let motion = Motion {
                 velocities: &velocities,
-                time: self.time,
+                time: self.state.time,
                 h: info.h,
             };
             if solves == MAX_SOLVES {
@@ -156,10 +161,9 @@ impl<S: Space> Simulation<S> {
             let solved = network.contacts.iter().zip(&self.workspace.solved.sites);
             last = solved.map(|(c, s)| (c.key, s.solution.impulse)).collect();
             network.take_in(found);
-            start.restore(&mut self.bodies);
+            start.restore(&mut self.state.bodies);
             self.restart_systems();
-            let remembered = self.passes.remember(&self.laws, &mut self.network, info);
-            remembered.map_err(|e| self.law_error(e))?;
+            self.remember(info)?;
         }
         Ok(())
     }

@@ -12,12 +12,16 @@ impl<S: Space> Simulation<S> {
     /// Gives driven bodies their imposed velocities at time zero, for code that inspects the scene before
     /// the first step. The drives of the first phase are included.
     pub fn set_in_motion(&mut self) {
-        if self.steps > 0 {
+        if self.state.steps > 0 {
             return;
         }
-        let (time, h, theta) = (self.time, self.scheme.h, self.scheme.theta);
-        let first = self.control.phases.first().map(|p| &p.changes);
-        let bodies = &mut self.bodies;
+        let (time, h, theta) = (
+            self.state.time,
+            self.options.scheme.h,
+            self.options.scheme.theta,
+        );
+        let first = self.phases.first().map(|p| &p.changes);
+        let bodies = &mut self.state.bodies;
         for (place, driven) in bodies.driven.iter().enumerate() {
             if first.is_some_and(|c| c.open.contains(&place)) {
                 continue;
@@ -39,47 +43,40 @@ impl<S: Space> Simulation<S> {
                 }
             }
         }
-        let kinetic = self.bodies.kinetic_energy() + self.systems.energies().0;
-        (self.energy.kinetic, self.energy.initial_kinetic) = (kinetic, kinetic);
-        self.started = self.motion_of_driven();
+        let kinetic = self.state.bodies.kinetic_energy() + self.state.systems.energies().0;
+        (self.state.energy.kinetic, self.state.energy.initial_kinetic) = (kinetic, kinetic);
+        self.state.started = self.state.bodies.motion_of_driven();
     }
 
     /// Applies the schedule to the step and starts its imposed motion.
     pub(super) fn begin_motion(&mut self) {
         let before = self.energies_of_driven();
         self.apply_schedule();
-        let (h, theta) = (self.scheme.h, self.scheme.theta);
-        self.bodies.set_off(self.time, h, theta);
+        let (h, theta) = (self.options.scheme.h, self.options.scheme.theta);
+        self.state.bodies.set_off(self.state.time, h, theta);
         let after = self.energies_of_driven();
         let work: f64 = after.iter().zip(&before).map(|(a, b)| a - b).sum();
-        self.energy.see(work);
-        if self.steps == 0 {
-            self.energy.initial_kinetic += work;
+        self.state.energy.see(work);
+        if self.state.steps == 0 {
+            self.state.energy.initial_kinetic += work;
         } else {
-            self.energy.external_work += work;
+            self.state.energy.external_work += work;
         }
     }
 
     /// Ends the step: advances the time and puts imposed degrees of freedom on their paths.
     pub(super) fn end_motion(&mut self) {
-        let (from, h) = (self.time, self.scheme.h);
+        let (from, h) = (self.state.time, self.options.scheme.h);
         // Kahan summation: the time after n steps equals n h to rounding, so that functions of time do not
         // drift.
-        let part = h - self.time_excess;
-        self.time = from + part;
-        self.time_excess = (self.time - from) - part;
-        self.bodies.arrive(from, self.time, h);
-    }
-
-    /// Returns the velocities and spins of the driven bodies, in their order.
-    pub(super) fn motion_of_driven(&self) -> Vec<(S::Vector, S::Spin)> {
-        let bodies = &self.bodies;
-        let of = |b: usize| (bodies.velocity[b], bodies.spin[b]);
-        bodies.driven.iter().map(|d| of(d.body as usize)).collect()
+        let part = h - self.state.time_excess;
+        self.state.time = from + part;
+        self.state.time_excess = (self.state.time - from) - part;
+        self.state.bodies.arrive(from, self.state.time, h);
     }
 
     fn energies_of_driven(&self) -> Vec<f64> {
-        let bodies = &self.bodies;
+        let bodies = &self.state.bodies;
         let of = |b: u32| bodies.energy_of(b as usize);
         bodies.driven.iter().map(|d| of(d.body)).collect()
     }

@@ -29,7 +29,7 @@ impl<S: Space> Simulation<S> {
     /// Why a process cannot go on. The processes after it have not acted then, and do not act on this state any more: the
     /// simulation has ended.
     pub fn between_steps(&mut self) -> Result<(), StepError> {
-        if std::mem::replace(&mut self.settled, true) {
+        if std::mem::replace(&mut self.state.settled, true) {
             return Ok(());
         }
         self.act(|process, simulation| process.between_steps(simulation))
@@ -46,22 +46,22 @@ impl<S: Space> Simulation<S> {
 
     /// Whether the last phase has come to its end, or a process has reached what it was to reach.
     pub fn finished(&self) -> bool {
-        self.control.finished() || self.processes.iter().any(|p| p.finished())
+        self.phases_finished() || self.processes.iter().any(|p| p.finished())
     }
 
     /// Gives a body an impulse (N s; N s/m in 2D) at its centre and an angular impulse (N m s; N s in 2D), and books the work in
     /// the energy ledger. Degrees of freedom whose motion is imposed take none, nor does a body that stands for a contactor of a
     /// dynamical system.
     pub fn apply_impulse(&mut self, body: usize, impulse: &S::Vector, angular: &S::Spin) {
-        let bodies = &mut self.bodies;
+        let bodies = &mut self.state.bodies;
         let before = bodies.energy_of(body);
         bodies.velocity[body] += impulse.scaled_by(&bodies.inverse_mass[body]);
         let spin = bodies.inverse_tensor(body).apply(angular);
         bodies.spin[body] += spin;
         let work = bodies.energy_of(body) - before;
         self.workspace.pushed = true;
-        self.energy.see(work);
-        self.energy.external_work += work;
+        self.state.energy.see(work);
+        self.state.energy.external_work += work;
     }
 
     /// What the processes carry from step to step, in their order.
@@ -107,8 +107,8 @@ impl<S: Space> Simulation<S> {
         match failed {
             None => Ok(()),
             Some((process, source)) => Err(StepError::Process {
-                step: self.steps,
-                time: self.time,
+                step: self.state.steps,
+                time: self.state.time,
                 process,
                 source,
             }),

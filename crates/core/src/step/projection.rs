@@ -42,23 +42,27 @@ const MAX_SWEEPS: u32 = 5000;
 impl<S: Space> Simulation<S> {
     /// Removes penetrations if one exceeds the bound, repeats detection, and books the work.
     pub(super) fn project(&mut self) -> Option<Projected> {
-        if self.projection <= 0.0 {
+        if self.options.projection <= 0.0 {
             return None;
         }
         let before = self.deepest_overlap();
-        if before <= self.projection {
+        if before <= self.options.projection {
             return None;
         }
-        pose(&mut self.workspace.problem, &self.bodies, &self.network);
+        pose(
+            &mut self.workspace.problem,
+            &self.state.bodies,
+            &self.state.network,
+        );
         let options = Options {
             tolerance: TOLERANCE,
             norm: Norm::Velocity,
             max_iterations: MAX_SWEEPS,
-            parallel: self.solver.parallel,
+            parallel: self.options.solver.parallel,
             ..Options::default()
         };
         let solved = nlgs::solve(&mut self.workspace.problem, &options);
-        let moves: Vec<Move<S>> = (0..self.bodies.len())
+        let moves: Vec<Move<S>> = (0..self.state.bodies.len())
             .map(|b| self.workspace.problem.velocity(b))
             .collect();
         if !moves.iter().all(|(x, w)| x.is_finite() && w.is_finite()) {
@@ -66,26 +70,26 @@ impl<S: Space> Simulation<S> {
         }
         let against_loads = self.book_moves(&moves);
         for (b, (shift, turn)) in moves.iter().enumerate() {
-            displace(&mut self.bodies, b, shift, turn);
+            displace(&mut self.state.bodies, b, shift, turn);
         }
-        let driven = &self.bodies.driven;
+        let driven = &self.state.bodies.driven;
         if driven
             .iter()
             .any(|d| moves[d.body as usize].1 != S::Spin::zero())
         {
             // A rotating surface moves more than its frame does.
-            self.network.forget_neighbours();
+            self.state.network.forget_neighbours();
         }
         // No time passes: bond openings follow the normals and are not rotated by spins again.
         detect(
-            &mut self.network,
+            &mut self.state.network,
             &self.shapes,
-            &self.bodies,
+            &self.state.bodies,
             &self.table,
-            self.time,
+            self.state.time,
             0.0,
         );
-        self.lifted += against_loads;
+        self.state.lifted += against_loads;
         Some(Projected {
             before,
             after: self.deepest_overlap(),
@@ -97,7 +101,7 @@ impl<S: Space> Simulation<S> {
     /// Returns the deepest penetration that a displacement can remove, as a fraction of the smaller body's
     /// length (a grain's radius; walls do not count).
     pub fn deepest_overlap(&self) -> f64 {
-        let bodies = &self.bodies;
+        let bodies = &self.state.bodies;
         let grain = bodies.grain_flags();
         let depth = |c: &Contact<S>| {
             if c.gap >= 0.0 {
@@ -105,7 +109,7 @@ impl<S: Space> Simulation<S> {
             }
             let [i, j] = c.bodies.map(|b| b as usize);
             let along = |b: usize| c.normal.scaled_by(&bodies.inverse_mass[b]).dot(&c.normal);
-            let held = self.network.bond(c).is_some_and(|b| b.intact());
+            let held = self.state.network.bond(c).is_some_and(|b| b.intact());
             if held || along(i) + along(j) <= 0.0 {
                 return 0.0;
             }
@@ -116,26 +120,33 @@ impl<S: Space> Simulation<S> {
             };
             -c.gap / least
         };
-        self.network.contacts.iter().map(depth).fold(0.0, f64::max)
+        self.state
+            .network
+            .contacts
+            .iter()
+            .map(depth)
+            .fold(0.0, f64::max)
     }
 
     /// Books the work of displacements against gravity and imposed forces; returns the latter (J).
     fn book_moves(&mut self, moves: &[Move<S>]) -> f64 {
-        let bodies = &self.bodies;
-        let (h, theta) = (self.scheme.h, self.scheme.theta);
+        let bodies = &self.state.bodies;
+        let (h, theta) = (self.options.scheme.h, self.options.scheme.theta);
         let weights = moves.iter().zip(&bodies.mass);
         let potential: f64 = weights
-            .map(|((shift, _), mass)| -mass * self.gravity.dot(shift))
+            .map(|((shift, _), mass)| -mass * self.state.gravity.dot(shift))
             .sum();
         let mut external = 0.0;
         for driven in &bodies.driven {
             let (shift, turn) = &moves[driven.body as usize];
             for (k, dof) in driven.dofs.iter().enumerate() {
-                let force = dof.over(self.time, h).force(self.time + theta * h);
+                let force = dof
+                    .over(self.state.time, h)
+                    .force(self.state.time + theta * h);
                 external += force * if k < S::D { shift[k] } else { turn[k - S::D] };
             }
         }
-        self.energy.lift(potential, external);
+        self.state.energy.lift(potential, external);
         -external
     }
 }

@@ -7,10 +7,10 @@ impl<S: Space> Simulation<S> {
     /// Removes a grain for good: it is at rest, has no contacts, and its bonds break. Its kinetic energy
     /// becomes an entry of the energy ledger.
     pub fn remove_body(&mut self, body: usize) {
-        let energy = self.bodies.energy_of(body);
-        self.energy.carried += energy;
-        self.energy.kinetic -= energy;
-        self.bodies.remove_body(body);
-        self.network.forget_neighbours();
+        let energy = self.state.bodies.energy_of(body);
+        self.state.energy.carried += energy;
+        self.state.energy.kinetic -= energy;
+        self.state.bodies.remove_body(body);
+        self.state.network.forget_neighbours();
     }
 }

@@ -15,7 +15,7 @@ impl<S: Steps> Simulation<S> {
         mut after: impl FnMut(&Self, &StepReport) -> ControlFlow<B>,
     ) -> Result<ControlFlow<B>, StepError> {
         // An end that a whole number of steps reaches up to rounding takes no step more.
-        while self.time < end - 1e-6 * self.scheme.h {
+        while self.state.time < end - 1e-6 * self.options.scheme.h {
             let report = self.step()?;
             if let ControlFlow::Break(reason) = after(self, &report) {
                 return Ok(ControlFlow::Break(reason));

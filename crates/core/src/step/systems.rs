@@ -17,8 +17,8 @@ impl<S: Space> Simulation<S> {
     pub fn add_system(&mut self, system: Box<dyn DynamicalSystem<S>>) -> usize {
         let (kinetic, stored) = (system.kinetic_energy(), system.stored_energy());
         let contactors = system.contactors();
-        let index = self.systems.add(system, &mut self.bodies);
-        for (contactor, body) in contactors.iter().zip(self.systems.bodies(index)) {
+        let index = self.state.systems.add(system, &mut self.state.bodies);
+        for (contactor, body) in contactors.iter().zip(self.state.systems.bodies(index)) {
             if contactor.ball {
                 self.shapes.balls.push(Ball {
                     body: *body,
@@ -28,71 +28,71 @@ impl<S: Space> Simulation<S> {
                 });
             }
         }
-        self.network.fast = detect::fast_motion(&self.shapes, self.network.alert);
-        self.network.forget_neighbours();
-        self.energy.kinetic += kinetic;
-        self.energy.initial_kinetic += kinetic;
-        self.energy.elastic += stored;
-        self.energy.external_work += stored;
-        self.energy.see(kinetic);
-        self.energy.see(stored);
+        self.state.network.fast = detect::fast_motion(&self.shapes, self.state.network.alert);
+        self.state.network.forget_neighbours();
+        self.state.energy.kinetic += kinetic;
+        self.state.energy.initial_kinetic += kinetic;
+        self.state.energy.elastic += stored;
+        self.state.energy.external_work += stored;
+        self.state.energy.see(kinetic);
+        self.state.energy.see(stored);
         index
     }
 
     /// The step at hand, as systems are told of it.
     fn system_step(&self) -> SystemStep<S> {
         SystemStep {
-            time: self.time,
-            h: self.scheme.h,
-            theta: self.scheme.theta,
-            gravity: self.gravity,
+            time: self.state.time,
+            h: self.options.scheme.h,
+            theta: self.options.scheme.theta,
+            gravity: self.state.gravity,
         }
     }
 
     /// Takes all systems through the first part of a step (s).
     pub(super) fn begin_systems(&mut self, time: f64) {
-        if self.systems.is_empty() {
+        if self.state.systems.is_empty() {
             return;
         }
         let step = self.system_step();
-        self.systems.begin_step(&step);
-        self.systems.advance(time);
-        self.systems.carry(&mut self.bodies);
+        self.state.systems.begin_step(&step);
+        self.state.systems.advance(time);
+        self.state.systems.carry(&mut self.state.bodies);
     }
 
     /// The velocities of systems without contacts; those of their bodies into `free`.
     pub(super) fn free_systems(&mut self, free: &mut [(S::Vector, S::Spin)]) {
-        if !self.systems.is_empty() {
+        if !self.state.systems.is_empty() {
             let step = self.system_step();
-            self.systems.free_velocities(&step, free);
+            self.state.systems.free_velocities(&step, free);
         }
     }
 
     /// Has all systems at the velocities that they began the step with, their bodies too.
     pub(super) fn restart_systems(&mut self) {
-        if !self.systems.is_empty() {
-            self.systems.restart();
-            self.systems.carry(&mut self.bodies);
+        if !self.state.systems.is_empty() {
+            self.state.systems.restart();
+            self.state.systems.carry(&mut self.state.bodies);
         }
     }
 
     /// Takes all systems through the last part of a step (s) and adds their work; gives their kinetic and stored energy.
     pub(super) fn end_systems(&mut self, time: f64, work: &mut BodyWork) -> (f64, f64) {
-        if self.systems.is_empty() {
+        if self.state.systems.is_empty() {
             return (0.0, 0.0);
         }
-        self.systems.advance(time);
-        let own = self.systems.work(&self.system_step());
+        self.state.systems.advance(time);
+        let own = self.state.systems.work(&self.system_step());
         work.potential += own.potential;
         work.external += own.external;
         work.damping += own.damping;
         work.scheme += own.scheme;
-        self.systems.energies()
+        self.state.systems.energies()
     }
 
     /// The sides of a contact; none where both are rigid.
     fn sides(&self, form: &ContactForm<S>) -> Option<[Side<S>; 2]> {
-        let carriers = form.bodies.map(|b| self.bodies.carrier(b as usize));
+        let carriers = form.bodies.map(|b| self.state.bodies.carrier(b as usize));
         if carriers == [None; 2] {
             return None;
         }
@@ -101,7 +101,7 @@ impl<S: Space> Simulation<S> {
             match carriers[k] {
                 Some(carrier) => Side::Nodes {
                     system: carrier.system,
-                    nodes: self.systems.contact_nodes(carrier, &arm),
+                    nodes: self.state.systems.contact_nodes(carrier, &arm),
                 },
                 None => Side::Rigid { body, arm },
             }
@@ -116,7 +116,7 @@ impl<S: Space> Simulation<S> {
             .iter()
             .map(|form| self.sides(form))
             .collect();
-        let mut touched: Vec<Vec<u32>> = vec![Vec::new(); self.systems.len()];
+        let mut touched: Vec<Vec<u32>> = vec![Vec::new(); self.state.systems.len()];
         for side in sides.iter().flatten().flatten() {
             if let Side::Nodes { system, nodes } = side {
                 touched[*system as usize].extend(nodes.terms().map(|(node, _)| node));
@@ -125,9 +125,9 @@ impl<S: Space> Simulation<S> {
         for (system, mut nodes) in touched.into_iter().enumerate() {
             nodes.sort_unstable();
             nodes.dedup();
-            let of = |node: &u32| self.systems.free_velocity_of(system, *node);
+            let of = |node: &u32| self.state.systems.free_velocity_of(system, *node);
             let free = nodes.iter().map(of).collect();
-            let compliance = self.systems.compliance(system, &nodes);
+            let compliance = self.state.systems.compliance(system, &nodes);
             let nodal = NodalSystem::new(nodes, free, compliance);
             self.workspace.problem.push_system(nodal);
         }
@@ -147,30 +147,32 @@ impl<S: Space> Simulation<S> {
     /// # Errors
     /// A velocity that is not finite.
     pub(super) fn adopt_system_velocities(&mut self) -> Result<(), StepError> {
-        if self.systems.is_empty() {
+        if self.state.systems.is_empty() {
             return Ok(());
         }
-        for system in 0..self.systems.len() {
+        for system in 0..self.state.systems.len() {
             let impulses = self.workspace.problem.node_impulses(system);
-            self.systems.apply(system, impulses);
+            self.state.systems.apply(system, impulses);
         }
-        if let Some(name) = self.systems.not_finite() {
+        if let Some(name) = self.state.systems.not_finite() {
             return Err(StepError::SystemNotFinite {
-                step: self.steps + 1,
-                time: self.time,
+                step: self.state.steps + 1,
+                time: self.state.time,
                 system: name.to_owned(),
             });
         }
-        self.systems.carry(&mut self.bodies);
+        self.state.systems.carry(&mut self.state.bodies);
         Ok(())
     }
 
     /// Velocity of a side of a contact at the contact, at the velocities at hand (m/s).
     fn velocity_of_side(&self, contact: &Contact<S>, side: usize) -> S::Vector {
         let (b, arm) = (contact.bodies[side] as usize, &contact.arms[side]);
-        match self.bodies.carrier(b) {
-            Some(carrier) => self.systems.contact_velocity(carrier, arm),
-            None => self.bodies.velocity[b] + S::spin_velocity(&self.bodies.spin[b], arm),
+        match self.state.bodies.carrier(b) {
+            Some(carrier) => self.state.systems.contact_velocity(carrier, arm),
+            None => {
+                self.state.bodies.velocity[b] + S::spin_velocity(&self.state.bodies.spin[b], arm)
+            }
         }
     }
 

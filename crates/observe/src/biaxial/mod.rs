@@ -73,8 +73,8 @@ impl Biaxial {
         let axial = axis_of(s, &spec.axial.0)?;
         let axes = [axial, 1 - axial.min(1)];
         let wall = |name: &str, axis: usize| {
-            let place = s.bodies.driven.iter().position(|d| d.name == name)?;
-            let body = s.bodies.driven[place].body;
+            let place = s.state.bodies.driven.iter().position(|d| d.name == name)?;
+            let body = s.state.bodies.driven[place].body;
             let face = s.shapes.surfaces.iter().find(|f| f.body == body)?;
             Some(Wall {
                 place,
@@ -89,7 +89,7 @@ impl Biaxial {
         let pieces = s.shapes.pieces.iter().map(|p| (p.body, p.size));
         let grains = balls
             .chain(pieces)
-            .filter(|(body, _)| !s.bodies.driven.iter().any(|d| d.body == *body));
+            .filter(|(body, _)| !s.state.bodies.driven.iter().any(|d| d.body == *body));
         let mut test = Self {
             axes,
             walls: [pair(&spec.axial, axes[0])?, pair(&spec.lateral, axes[1])?],
@@ -105,14 +105,14 @@ impl Biaxial {
     fn lengths<S: Space>(&self, s: &Simulation<S>) -> [f64; 2] {
         [0, 1].map(|k| {
             let [low, high] =
-                self.walls[k].map(|w| s.bodies.position[w.body][self.axes[k]] + w.offset);
+                self.walls[k].map(|w| s.state.bodies.position[w.body][self.axes[k]] + w.offset);
             high - low
         })
     }
 
     /// Whether the test has started.
     fn begun<S: Space>(&self, s: &Simulation<S>) -> bool {
-        s.time > self.start + 0.5 * s.scheme.h
+        s.state.time > self.start + 0.5 * s.options.scheme.h
     }
 
     /// Processes the last step.
@@ -129,7 +129,7 @@ impl Biaxial {
 
     /// Mean mass of a grain (kg; kg/m in 2D), including inertia scaling.
     pub fn grain_mass<S: Space>(&self, s: &Simulation<S>) -> f64 {
-        let masses = || s.bodies.grains().map(|b| s.bodies.mass[b]);
+        let masses = || s.state.bodies.grains().map(|b| s.state.bodies.mass[b]);
         masses().sum::<f64>() / masses().count().max(1) as f64
     }
 
@@ -139,8 +139,8 @@ impl Biaxial {
         let volume = lengths[0] * lengths[1];
         // Grains push the low wall down the axis and the high wall up, with equal forces at rest.
         let walls = [0, 1].map(|k| {
-            let [low, high] = self.walls[k].map(|w| s.received[w.place].0[self.axes[k]]);
-            0.5 * (high - low) / (s.scheme.h * lengths[1 - k])
+            let [low, high] = self.walls[k].map(|w| s.state.received[w.place].0[self.axes[k]]);
+            0.5 * (high - low) / (s.options.scheme.h * lengths[1 - k])
         });
         let (pressure_contacts, sin_phi) = plane_invariants(&love_weber(s, volume));
         let sum = walls[0] + walls[1];
@@ -249,7 +249,7 @@ impl State {
 
 /// Axis normal to the face of a wall.
 fn axis_of<S: Space>(s: &Simulation<S>, name: &str) -> Option<usize> {
-    let body = s.bodies.driven.iter().find(|d| d.name == name)?.body;
+    let body = s.state.bodies.driven.iter().find(|d| d.name == name)?.body;
     let face = s.shapes.surfaces.iter().find(|f| f.body == body)?;
     let outline = face.shape.outline();
     let (a, b) = (outline.first()?.first()?, outline.first()?.last()?);

@@ -30,7 +30,7 @@ pub(crate) struct Drive {
 /// The axes along which bodies are driven, the ones of the friction test apart.
 pub(crate) fn drives<S: Space>(s: &Simulation<S>, test: Option<(&str, usize)>) -> Vec<Drive> {
     let mut out = Vec::new();
-    for driven in &s.bodies.driven {
+    for driven in &s.state.bodies.driven {
         for (axis, dof) in driven.dofs.iter().take(S::D).enumerate() {
             if driven_along(dof) && test != Some((driven.name.as_str(), axis)) {
                 out.push(Drive {

@@ -13,7 +13,7 @@ use fretwork_core::wear::{Form, shape};
 /// A file cannot be written.
 pub(crate) fn charts<S: Space>(title: &str, s: &Simulation<S>) -> Vec<Output> {
     let mut out = Vec::new();
-    for scar in s.scars.iter().filter(|c| c.deepest() > 0.0) {
+    for scar in s.state.scars.iter().filter(|c| c.deepest() > 0.0) {
         let rows = scar.along();
         let o = shape::outline(&rows);
         let mut depth = Chart::new(

@@ -96,14 +96,14 @@ impl<S: Space> Observer<S> for Band<S> {
             return vec![f64::NAN, f64::NAN, 0.0];
         };
         let up = S::D - 1;
-        let grain = s.bodies.grain_flags();
+        let grain = s.state.bodies.grain_flags();
         let balls = s.shapes.balls.iter().zip(strain.shear(s));
         let sheared = balls
             .filter(|(b, shear)| grain[b.body as usize] && *shear >= self.above)
             .map(|(b, _)| {
                 s.shapes
                     .periodic
-                    .wrapped(fretwork_core::contact::detect::centre(b, &s.bodies))
+                    .wrapped(fretwork_core::contact::detect::centre(b, &s.state.bodies))
             })
             .filter(|x| (0..S::D).all(|k| (self.low[k]..self.high[k]).contains(&x[k])));
         let points: Vec<(f64, f64)> = sheared.map(|x| (x[0], x[up])).collect();

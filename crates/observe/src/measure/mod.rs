@@ -115,7 +115,7 @@ impl<S: Space> Grain<'_, S> {
         };
         let mut up = S::Vector::zero();
         up[S::D - 1] = 1.0;
-        let up = S::unrotate(&s.bodies.rotation[self.body], &up);
+        let up = S::unrotate(&s.state.bodies.rotation[self.body], &up);
         let corners = piece.core.outline(0.0).concat();
         let heights = corners.iter().map(|c| c.dot(&up));
         heights.fold(f64::NEG_INFINITY, f64::max) + piece.rounding
@@ -124,9 +124,9 @@ impl<S: Space> Grain<'_, S> {
 
 /// The grains; shapes of driven bodies are excluded.
 fn grains<S: Space>(s: &Simulation<S>) -> Vec<Grain<'_, S>> {
-    let flags = s.bodies.grain_flags();
+    let flags = s.state.bodies.grain_flags();
     let balls = s.shapes.balls.iter().map(|b| Grain {
-        at: fretwork_core::contact::detect::centre(b, &s.bodies),
+        at: fretwork_core::contact::detect::centre(b, &s.state.bodies),
         body: b.body as usize,
         radius: b.radius,
         mass: 0.0,
@@ -141,13 +141,13 @@ fn grains<S: Space>(s: &Simulation<S>) -> Vec<Grain<'_, S>> {
     });
     let all = balls.chain(pieces).filter(|g| flags[g.body]);
     let mut all: Vec<Grain<'_, S>> = all.collect();
-    let mut volumes = vec![0.0; s.bodies.len()];
+    let mut volumes = vec![0.0; s.state.bodies.len()];
     for g in &all {
         volumes[g.body] += S::ball_volume(g.radius);
     }
     for g in &mut all {
         let share = S::ball_volume(g.radius) / volumes[g.body];
-        g.mass = s.bodies.mass[g.body] * share;
+        g.mass = s.state.bodies.mass[g.body] * share;
         g.at = s.shapes.periodic.wrapped(g.at);
     }
     all

@@ -116,7 +116,7 @@ impl<S: Space> Observer<S> for Profile<S> {
     }
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        if s.time < self.start {
+        if s.state.time < self.start {
             return Vec::new();
         }
         self.samples += 1;
@@ -128,12 +128,12 @@ impl<S: Space> Observer<S> for Profile<S> {
             }
             let (low, high) = (self.low[self.axis], self.high[self.axis]);
             let place = ((x[self.axis] - low) / (high - low) * bins) as usize;
-            let velocity = self.turned(&s.bodies.velocity[g.body]);
+            let velocity = self.turned(&s.state.bodies.velocity[g.body]);
             let Some(slice) = self.slices.get_mut(place) else {
                 continue;
             };
             let mass = g.mass;
-            let spin = &s.bodies.spin[g.body];
+            let spin = &s.state.bodies.spin[g.body];
             slice.mass += mass;
             slice.volume += S::ball_volume(g.radius);
             slice.momentum += velocity * mass;

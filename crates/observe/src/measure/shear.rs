@@ -67,7 +67,7 @@ impl<S: Space> Observer<S> for Shear {
             .iter()
             .filter(|g| g.at[up] + g.radius > self.low && g.at[up] - g.radius < self.high)
             .map(|g| {
-                let velocity = s.bodies.velocity[g.body][0];
+                let velocity = s.state.bodies.velocity[g.body][0];
                 (g.at[up], velocity, g.radius, g.mass)
             })
             .collect();
@@ -81,7 +81,7 @@ impl<S: Space> Observer<S> for Shear {
             .map(|g| below(S::D, g.2, self.high - g.0) - below(S::D, g.2, self.low - g.0))
             .sum();
         let (mut normal, mut shear) = (0.0, 0.0);
-        for contact in &s.network.contacts {
+        for contact in &s.state.network.contacts {
             let (a, b) = crate::placement::ends(s, contact);
             if !inside(0.5 * (a[up] + b[up])) {
                 continue;
@@ -91,7 +91,7 @@ impl<S: Space> Observer<S> for Shear {
             normal += contact.impulse[up] * branch;
             shear += contact.impulse[0] * branch;
         }
-        let per = 1.0 / (s.scheme.h * volume);
+        let per = 1.0 / (s.options.scheme.h * volume);
         let (p, tau) = (normal * per, shear * per);
         let inertial = if p > 0.0 {
             let pace = if S::D == 2 {

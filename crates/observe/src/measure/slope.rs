@@ -31,8 +31,8 @@ impl<S: Space> Observer<S> for Slope {
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
         // Grains in free flight are not part of the surface.
-        let mut touched = vec![false; s.bodies.len()];
-        for contact in &s.network.contacts {
+        let mut touched = vec![false; s.state.bodies.len()];
+        for contact in &s.state.network.contacts {
             if contact.impulse != S::Vector::zero() {
                 contact
                     .bodies

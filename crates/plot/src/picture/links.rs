@@ -45,6 +45,7 @@ fn links_in<S: Space>(
 ) -> Vec<Link> {
     let period = s.shapes.periodic.period[0];
     let loaded: Vec<f64> = s
+        .state
         .network
         .contacts
         .iter()
@@ -53,7 +54,7 @@ fn links_in<S: Space>(
         .collect();
     let mean = loaded.iter().sum::<f64>() / loaded.len().max(1) as f64;
     let mut out = Vec::new();
-    for contact in &s.network.contacts {
+    for contact in &s.state.network.contacts {
         let state = state(contact);
         let force = contact.impulse.norm();
         // A candidate pair without force is not drawn.

@@ -14,12 +14,12 @@ const WITHIN: f64 = 0.98;
 /// Colours of the balls and then of the convex parts, and their scale; `None` if nothing moves. In 2D bonds
 /// are drawn one by one, and the scale is theirs.
 pub(super) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<Scale>) {
-    let values = match (s.network.bonds_made() > 0, S::D) {
+    let values = match (s.state.network.bonds_made() > 0, S::D) {
         (true, 2) => return (Vec::new(), Some(damage_scale(true))),
         (true, _) => damage(s),
         (false, _) => {
-            let speed = |b: usize| s.bodies.velocity[b].norm();
-            (0..s.bodies.len()).map(speed).collect()
+            let speed = |b: usize| s.state.bodies.velocity[b].norm();
+            (0..s.state.bodies.len()).map(speed).collect()
         }
     };
     let balls = s.shapes.balls.iter().map(|b| b.body);
@@ -28,9 +28,9 @@ pub(super) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<Scale>) {
         .collect();
     let grain: Vec<bool> = of
         .iter()
-        .map(|b| !is_first(s, *b) && !s.bodies.removed[*b as usize])
+        .map(|b| !is_first(s, *b) && !s.state.bodies.removed[*b as usize])
         .collect();
-    let scale = if s.network.bonds_made() > 0 {
+    let scale = if s.state.network.bonds_made() > 0 {
         damage_scale(false)
     } else {
         let shown = of.iter().zip(&grain).filter(|(_, grain)| **grain);
@@ -77,20 +77,23 @@ fn damage_scale(bonds: bool) -> Scale {
 
 /// Mean damage of the bonds of each body, broken ones counting 1; NaN if it never had a bond.
 fn damage<S: Space>(s: &Simulation<S>) -> Vec<f64> {
-    let mut sums = vec![(0.0, 0.0); s.bodies.len()];
+    let mut sums = vec![(0.0, 0.0); s.state.bodies.len()];
     let mut add = |body: u32, damage: f64| {
         let (sum, count) = &mut sums[body as usize];
         (*sum, *count) = (*sum + damage, *count + 1.0);
     };
     let field = s.fields.contacts.get("damage");
-    for contact in &s.network.contacts {
-        let intact = matches!(s.network.bond_state(contact), BondState::Intact { .. });
+    for contact in &s.state.network.contacts {
+        let intact = matches!(
+            s.state.network.bond_state(contact),
+            BondState::Intact { .. }
+        );
         if let Some(field) = field.filter(|_| intact) {
             let damage = field.get(s, contact);
             contact.bodies.iter().for_each(|b| add(*b, damage));
         }
     }
-    for &(candidate, antagonist) in &s.network.broken_pairs {
+    for &(candidate, antagonist) in &s.state.network.broken_pairs {
         for key in [candidate, antagonist] {
             if let Some(body) = carrier(s, key) {
                 add(body, 1.0);

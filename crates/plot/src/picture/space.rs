@@ -27,7 +27,7 @@ fn view() -> View {
 
 /// Scene of a picture. `paints` are those of the balls, then of the convex parts.
 pub(super) fn scene<S: Space>(s: &Simulation<S>, paints: &[Paint]) -> Scene {
-    let shown = |body: u32| !s.bodies.removed[body as usize];
+    let shown = |body: u32| !s.state.bodies.removed[body as usize];
     let mut spheres = Vec::with_capacity(s.shapes.balls.len());
     for (k, (ball, (centre, radius))) in s.shapes.balls.iter().zip(balls(s)).enumerate() {
         if shown(ball.body) {
@@ -64,7 +64,7 @@ pub(super) fn scene<S: Space>(s: &Simulation<S>, paints: &[Paint]) -> Scene {
 fn walls<S: Space>(s: &Simulation<S>) -> Vec<Faces> {
     let surfaces = s.shapes.surfaces.iter();
     let surfaces: Vec<&Carried<S>> = surfaces
-        .filter(|f| !s.bodies.removed[f.body as usize])
+        .filter(|f| !s.state.bodies.removed[f.body as usize])
         .collect();
     let (low, high) = room(s, &surfaces);
     let reach = length(&sub(&high, &low)).max(f64::MIN_POSITIVE);
@@ -75,7 +75,7 @@ fn walls<S: Space>(s: &Simulation<S>) -> Vec<Faces> {
             placed(s, surface, surface.shape.outline())
         } else {
             let b = surface.body as usize;
-            let from = sub(&s.bodies.position[b].padded(), &low);
+            let from = sub(&s.state.bodies.position[b].padded(), &low);
             let all = 2.0 * (reach + length(&from));
             let mut sides = cuboid(&low, &high);
             for (other, plane) in planes.iter().enumerate() {
@@ -109,7 +109,9 @@ fn placed<S: Space>(
 ) -> Vec<Vec<Point>> {
     let b = surface.body as usize;
     let world = |p: &S::Vector| {
-        (s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &(surface.offset + *p))).padded()
+        (s.state.bodies.position[b]
+            + S::rotate(&s.state.bodies.rotation[b], &(surface.offset + *p)))
+        .padded()
     };
     faces
         .iter()
@@ -120,8 +122,8 @@ fn placed<S: Space>(
 /// The open side of a plane; `None` for other surfaces.
 fn solid_side<S: Space>(s: &Simulation<S>, surface: &Carried<S>) -> Option<Side> {
     let b = surface.body as usize;
-    let normal = S::rotate(&s.bodies.rotation[b], &surface.shape.flat()?).padded();
-    let at = s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &surface.offset);
+    let normal = S::rotate(&s.state.bodies.rotation[b], &surface.shape.flat()?).padded();
+    let at = s.state.bodies.position[b] + S::rotate(&s.state.bodies.rotation[b], &surface.offset);
     Some(Side {
         normal: normal.map(|x| -x),
         offset: -dot(&normal, &at.padded()),

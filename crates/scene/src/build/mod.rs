@@ -322,19 +322,19 @@ impl<S: Dimensional> Builder<'_, S> {
                 .source
                 .locate(ValidationError::new("solver.method", reason)));
         }
-        simulation.gravity = gravity;
+        simulation.state.gravity = gravity;
         for scar in self.scars {
             simulation.follow_wear(scar);
         }
         super::phases::install(case, &mut simulation).map_err(|f| source.locate(f))?;
-        simulation.correction = case.solver.correction;
-        simulation.projection = case.solver.projection;
-        simulation.coupling = case.coupling;
-        simulation.scheme = Scheme {
+        simulation.options.correction = case.solver.correction;
+        simulation.options.projection = case.solver.projection;
+        simulation.options.coupling = case.coupling;
+        simulation.options.scheme = Scheme {
             h: case.time.step,
             theta: case.time.theta,
         };
-        simulation.solver = solve::Options {
+        simulation.options.solver = solve::Options {
             tolerance: case.solver.tolerance,
             norm: case.solver.norm,
             max_iterations: case.solver.max_iterations,

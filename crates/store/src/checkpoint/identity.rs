@@ -47,7 +47,7 @@ impl Identity {
             }
         }
         let mut hash = Hashed(Sha256::new());
-        hash.0.update(encode(&s.save())?);
+        hash.0.update(encode(&s.state)?);
         // Writing to the hash never fails.
         let _ = write!(hash, "{:?}", s.shapes);
         Ok(Self {

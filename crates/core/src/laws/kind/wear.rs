@@ -45,13 +45,13 @@ fn commit<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
         .iter()
         .filter(|_| network.cycle_multiplier > 1.0);
     let broke: HashSet<Key> = breaks.map(|b| b.key).collect();
-    for (k, at) in slot.passes.members.iter().enumerate() {
+    for (k, at) in slot.evaluator.members.iter().enumerate() {
         let times = if broke.contains(&network.contacts[*at].key) {
             1.0
         } else {
             network.cycle_multiplier
         };
-        let volume = times * slot.passes.columns.out.volume[k];
+        let volume = times * slot.evaluator.columns.out.volume[k];
         if let Some(surface) = network.contacts[*at].key.surface() {
             slot.totals.worn_first += volume;
             if volume > 0.0 {

@@ -12,9 +12,10 @@ pub use phases::{Begun, Changes, Phase, Until};
 use super::Simulation;
 use crate::bodies::pressure::Servo;
 use crate::geometry::space::{Space, VectorLike};
-use crate::laws::Kind;
+use crate::laws::{Interface, Kind};
 use phases::Clock;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// The schedule of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -28,9 +29,10 @@ pub struct Control<S: Space> {
     pub servos: Vec<Servo>,
     /// Bodies to remove: index among the driven bodies, and time (s).
     pub gates: Vec<(usize, f64)>,
-    /// Phases in the order in which they run, from the case.
-    #[serde(skip)]
-    pub phases: Vec<Phase<S>>,
+    /// Tolerance of the solver that a phase has set, in place of that of the options.
+    pub tolerance: Option<f64>,
+    /// Parameters of contact laws that phases have set, by interface and parameter.
+    contact_parameters: BTreeMap<(usize, usize), f64>,
     clock: Clock,
 }
 
@@ -41,7 +43,8 @@ impl<S: Space> Default for Control<S> {
             gravity_drive: None,
             servos: Vec::new(),
             gates: Vec::new(),
-            phases: Vec::new(),
+            tolerance: None,
+            contact_parameters: BTreeMap::new(),
             clock: Clock::default(),
         }
     }
@@ -53,27 +56,44 @@ impl<S: Space> Control<S> {
         self.clock.begun.len()
     }
 
-    /// Returns whether the current phase is repeated later.
-    pub fn recurs(&self) -> bool {
-        let now = self.phase().checked_sub(1).and_then(|k| self.phases.get(k));
-        now.is_some_and(|p| p.recurs)
-    }
-
     /// Returns the phases begun so far, in order.
     pub fn begun(&self) -> &[Begun] {
         &self.clock.begun
     }
 
-    /// Returns whether the last phase has ended.
-    pub fn finished(&self) -> bool {
-        self.phase() > 0 && self.phase() == self.phases.len() && self.clock.turns()
+    /// Whether it is at one of these phases, and sets no other parameters than these laws have.
+    pub(super) fn fits(&self, phases: &[Phase<S>], laws: &[Interface]) -> bool {
+        let parameters = |law: &Interface| law.contact().parameters.len();
+        let mut set = self.contact_parameters.keys();
+        self.phase() <= phases.len()
+            && set.all(|(law, at)| laws.get(*law).is_some_and(|law| *at < parameters(law)))
+    }
+
+    /// Gives contact laws the parameters that phases have set so far.
+    pub(super) fn set_parameters(&self, laws: &mut [Interface]) {
+        for ((law, at), value) in &self.contact_parameters {
+            set_parameter(laws, *law, *at, *value);
+        }
     }
 }
 
 impl<S: Space> Simulation<S> {
+    /// Returns whether the current phase is repeated later.
+    pub fn phase_recurs(&self) -> bool {
+        let now = self.state.control.phase().checked_sub(1);
+        now.and_then(|k| self.phases.get(k))
+            .is_some_and(|p| p.recurs)
+    }
+
+    /// Returns whether the last phase has ended.
+    pub fn phases_finished(&self) -> bool {
+        let phase = self.state.control.phase();
+        phase > 0 && phase == self.phases.len() && self.state.control.clock.turns()
+    }
+
     /// Applies the schedule to the step that begins.
     pub(super) fn apply_schedule(&mut self) {
-        if self.control.clock.turns() {
+        if self.state.control.clock.turns() {
             self.begin_phase();
         }
         self.loads();
@@ -81,97 +101,112 @@ impl<S: Space> Simulation<S> {
 
     /// Ends the current phase if its end condition holds after a step.
     pub(super) fn end_phase(&mut self) {
-        let Some(phase) = self.control.phase().checked_sub(1) else {
+        let Some(phase) = self.state.control.phase().checked_sub(1) else {
             return;
         };
-        let Some(until) = self.control.phases[phase].until.clone() else {
+        let Some(until) = self.phases[phase].until.clone() else {
             return;
         };
         let now = phases::Moment {
-            time: self.time,
-            step: self.steps,
-            h: self.scheme.h,
+            time: self.state.time,
+            step: self.state.steps,
+            h: self.options.scheme.h,
         };
-        let mut clock = std::mem::take(&mut self.control.clock);
+        let mut clock = std::mem::take(&mut self.state.control.clock);
         if let Some(why) = clock.ends(&until, &now, || self.motion_of_free()) {
             clock.close(&now, why);
         }
-        self.control.clock = clock;
+        self.state.control.clock = clock;
     }
 
     fn begin_phase(&mut self) {
-        let Some(phase) = self.control.phases.get(self.control.phase()).cloned() else {
+        let Some(phase) = self.phases.get(self.state.control.phase()).cloned() else {
             return;
         };
-        self.control.clock.open(&phase.name, self.time, self.steps);
-        let (changes, time) = (phase.changes, self.time);
+        self.state
+            .control
+            .clock
+            .open(&phase.name, self.state.time, self.state.steps);
+        let (changes, time) = (phase.changes, self.state.time);
         for (place, dof, drive) in changes.drives {
-            let servos = Servo::of(&self.bodies, &self.shapes, place, dof, &drive);
-            self.control.servos.retain(|s| !s.serves(place, dof));
+            let servos = Servo::of(&self.state.bodies, &self.shapes, place, dof, &drive);
+            self.state.control.servos.retain(|s| !s.serves(place, dof));
             // The servos were validated when the scene was built.
-            self.control.servos.extend(servos.unwrap_or_default());
-            let middle = time + 0.5 * self.scheme.h;
-            self.bodies
+            self.state.control.servos.extend(servos.unwrap_or_default());
+            let middle = time + 0.5 * self.options.scheme.h;
+            self.state
+                .bodies
                 .set_drive(place, dof, drive.delayed(time), middle);
         }
         if let Some(gravity) = changes.gravity {
-            (self.control.gravity, self.control.gravity_drive) = (gravity, None);
-            self.gravity = gravity;
+            (self.state.control.gravity, self.state.control.gravity_drive) = (gravity, None);
+            self.state.gravity = gravity;
         }
         if let Some(drive) = changes.gravity_drive {
-            self.control.gravity_drive = Some(drive.delayed(time));
+            self.state.control.gravity_drive = Some(drive.delayed(time));
         }
-        for (law, parameter, value) in changes.contact {
-            if let Some(parameters) = self.laws[law].parameters_mut(Kind::CONTACT) {
-                parameters[parameter] = value;
-            }
+        for (law, at, value) in changes.contact {
+            set_parameter(&mut self.laws, law, at, value);
+            self.state
+                .control
+                .contact_parameters
+                .insert((law, at), value);
         }
         for place in changes.open {
-            self.bodies.remove(place);
+            self.state.bodies.remove(place);
         }
-        if let Some(tolerance) = changes.tolerance {
-            self.solver.tolerance = tolerance;
-        }
+        self.state.control.tolerance = changes.tolerance.or(self.state.control.tolerance);
         // The sets of fixed and present bodies may have changed.
-        self.network.forget_neighbours();
+        self.state.network.forget_neighbours();
     }
 
     fn loads(&mut self) {
-        let (time, h, theta) = (self.time, self.scheme.h, self.scheme.theta);
-        let (due, later) = std::mem::take(&mut self.control.gates)
+        let (time, h, theta) = (
+            self.state.time,
+            self.options.scheme.h,
+            self.options.scheme.theta,
+        );
+        let (due, later) = std::mem::take(&mut self.state.control.gates)
             .into_iter()
             .partition(|gate: &(usize, f64)| time + 0.5 * h > gate.1);
-        self.control.gates = later;
+        self.state.control.gates = later;
         let due: Vec<(usize, f64)> = due;
         for (place, _) in &due {
-            self.bodies.remove(*place);
-            self.network.forget_neighbours();
+            self.state.bodies.remove(*place);
+            self.state.network.forget_neighbours();
         }
-        if let Some(drive) = &self.control.gravity_drive {
-            self.gravity = drive.at::<S>(&self.control.gravity, time + theta * h);
+        if let Some(drive) = &self.state.control.gravity_drive {
+            self.state.gravity = drive.at::<S>(&self.state.control.gravity, time + theta * h);
         }
         self.measure_areas();
-        self.bodies.engage_stages(time + 0.5 * h);
+        self.state.bodies.engage_stages(time + 0.5 * h);
     }
 
     /// Measures the loaded areas of all servo pressures.
     pub fn measure_areas(&mut self) {
-        for servo in &self.control.servos {
-            servo.measure(&mut self.bodies);
+        for servo in &self.state.control.servos {
+            servo.measure(&mut self.state.bodies);
         }
     }
 
     /// What a condition of rest looks at: the grains, first bodies of which nothing is imposed, and dynamical systems.
     fn motion_of_free(&self) -> phases::Motion {
-        let bodies = &self.bodies;
+        let bodies = &self.state.bodies;
         let free = |b: &usize| (0..S::D).all(|k| bodies.inverse_mass[*b][k] > 0.0);
         let moving = || (0..bodies.len()).filter(free);
         // Work of gravity on a grain over its own diameter.
         let weight = |b: usize| bodies.mass[b] * 2.0 * bodies.length[b];
-        let systems = self.systems.energies().0;
+        let systems = self.state.systems.energies().0;
         phases::Motion {
             kinetic: moving().map(|b| bodies.energy_of(b)).sum::<f64>() + systems,
-            scale: moving().map(weight).sum::<f64>() * self.gravity.norm(),
+            scale: moving().map(weight).sum::<f64>() * self.state.gravity.norm(),
         }
+    }
+}
+
+/// Sets a parameter of the contact law of an interface.
+fn set_parameter(laws: &mut [Interface], law: usize, at: usize, value: f64) {
+    if let Some(parameters) = laws[law].parameters_mut(Kind::CONTACT) {
+        parameters[at] = value;
     }
 }

@@ -7,12 +7,12 @@ use crate::step::Simulation;
 
 /// Force of the last step on the candidate (N; N/m in 2D).
 fn force<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> S::Vector {
-    contact.impulse * (1.0 / s.scheme.h)
+    contact.impulse * (1.0 / s.options.scheme.h)
 }
 
 /// 0 contact, 1 intact bond, 2 broken bond.
 fn state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> f64 {
-    match s.network.bond_state(contact) {
+    match s.state.network.bond_state(contact) {
         BondState::None => 0.0,
         BondState::Intact { .. } => 1.0,
         BondState::Broken => 2.0,
@@ -54,7 +54,7 @@ pub(super) fn standard<S: Space>() -> Vec<Field<S, Contact<S>>> {
             "damage",
             "",
             "damage D; 1 where there is no bond",
-            |s: &Simulation<S>, c: &Contact<S>| match s.network.bond_state(c) {
+            |s: &Simulation<S>, c: &Contact<S>| match s.state.network.bond_state(c) {
                 BondState::Intact { damage } => damage,
                 _ => 1.0,
             },
@@ -65,7 +65,7 @@ pub(super) fn standard<S: Space>() -> Vec<Field<S, Contact<S>>> {
     fields.extend(frame());
     let bond = |name, doc, get: fn(&crate::contact::Bond<S>) -> f64| {
         Field::number(name, "m", doc, move |s: &Simulation<S>, c: &Contact<S>| {
-            s.network.bond(c).map_or(0.0, get)
+            s.state.network.bond(c).map_or(0.0, get)
         })
     };
     fields.extend([
@@ -87,7 +87,7 @@ pub(super) fn standard<S: Space>() -> Vec<Field<S, Contact<S>>> {
     ]);
     let body = |name, doc, side: usize| {
         Field::whole(name, doc, move |s: &Simulation<S>, c: &Contact<S>| {
-            s.bodies.id[c.bodies[side] as usize] as i64
+            s.state.bodies.id[c.bodies[side] as usize] as i64
         })
     };
     fields.extend([
@@ -171,7 +171,7 @@ fn frame<S: Space>() -> Vec<Field<S, Contact<S>>> {
 /// each of these bodies, in the same order, and the feature of the name. For programs that match contacts of several files; of
 /// the present shapes and bodies.
 pub fn id_fields<S: Space>(s: &Simulation<S>) -> Vec<Field<S, Contact<S>>> {
-    let names = std::sync::Arc::new(ContactNames::of(&s.shapes, &s.bodies));
+    let names = std::sync::Arc::new(ContactNames::of(&s.shapes, &s.state.bodies));
     let side = |name, doc, side: usize, number: bool| {
         let names = names.clone();
         Field::whole(name, doc, move |_: &Simulation<S>, c: &Contact<S>| {

@@ -29,14 +29,14 @@ impl<S: Space> GrainPart<S> {
             material: ball.material,
             radius: ball.radius,
             corners: 0,
-            centre: centre(ball, &s.bodies),
+            centre: centre(ball, &s.state.bodies),
         });
         let pieces = s.shapes.pieces.iter().map(|piece| Self {
             body: piece.body,
             material: piece.material,
             radius: piece.size,
             corners: piece.core.boundary().corners.len() as u32,
-            centre: piece_centre(piece, &s.bodies),
+            centre: piece_centre(piece, &s.state.bodies),
         });
         balls.chain(pieces)
     }
@@ -53,7 +53,9 @@ pub(super) fn standard<S: Space>() -> Vec<Field<S, GrainPart<S>>> {
             name,
             "m/s",
             "velocity",
-            move |s: &Simulation<S>, g: &GrainPart<S>| s.bodies.velocity[g.index()].padded()[axis],
+            move |s: &Simulation<S>, g: &GrainPart<S>| {
+                s.state.bodies.velocity[g.index()].padded()[axis]
+            },
         )
     };
     let spin = |name, axis: usize| {
@@ -61,7 +63,9 @@ pub(super) fn standard<S: Space>() -> Vec<Field<S, GrainPart<S>>> {
             name,
             "rad/s",
             "angular velocity",
-            move |s: &Simulation<S>, g: &GrainPart<S>| s.bodies.spin[g.index()].padded()[axis],
+            move |s: &Simulation<S>, g: &GrainPart<S>| {
+                s.state.bodies.spin[g.index()].padded()[axis]
+            },
         )
     };
     let mut fields = vec![
@@ -69,7 +73,7 @@ pub(super) fn standard<S: Space>() -> Vec<Field<S, GrainPart<S>>> {
             "id",
             "",
             "identity of the body",
-            |s: &Simulation<S>, g: &GrainPart<S>| s.bodies.id[g.index()] as f64,
+            |s: &Simulation<S>, g: &GrainPart<S>| s.state.bodies.id[g.index()] as f64,
         ),
         Field::number(
             "radius",
@@ -88,7 +92,7 @@ pub(super) fn standard<S: Space>() -> Vec<Field<S, GrainPart<S>>> {
             "",
             "1 for parts of a first body",
             |s: &Simulation<S>, g: &GrainPart<S>| {
-                let first = s.bodies.driven.iter().any(|d| d.body == g.body);
+                let first = s.state.bodies.driven.iter().any(|d| d.body == g.body);
                 f64::from(u8::from(first))
             },
         ),
@@ -100,7 +104,7 @@ pub(super) fn standard<S: Space>() -> Vec<Field<S, GrainPart<S>>> {
             "rad/s",
             "angular velocity, its norm in 3D",
             |s: &Simulation<S>, g: &GrainPart<S>| {
-                let spin = &s.bodies.spin[g.index()];
+                let spin = &s.state.bodies.spin[g.index()];
                 if S::D == 2 { spin[0] } else { spin.norm() }
             },
         ),
@@ -133,7 +137,7 @@ pub fn orientation<S: Space>() -> Vec<Field<S, GrainPart<S>>> {
             unit,
             doc,
             move |s: &Simulation<S>, g: &GrainPart<S>| {
-                S::rotation_numbers(&s.bodies.rotation[g.index()])[k]
+                S::rotation_numbers(&s.state.bodies.rotation[g.index()])[k]
             },
         )
     };
@@ -152,6 +156,8 @@ pub fn removed<S: Space>() -> Field<S, GrainPart<S>> {
         "gone",
         "",
         "1 for grains that were taken out",
-        |s: &Simulation<S>, g: &GrainPart<S>| f64::from(u8::from(s.bodies.removed[g.index()])),
+        |s: &Simulation<S>, g: &GrainPart<S>| {
+            f64::from(u8::from(s.state.bodies.removed[g.index()]))
+        },
     )
 }

@@ -10,7 +10,7 @@
 //! use fretwork_core::step::Simulation;
 //!
 //! fn watch_age(simulation: &mut Simulation<Dim2>) {
-//!     let age = |s: &Simulation<Dim2>, contact: &Contact<Dim2>| s.time - contact.formed_at;
+//!     let age = |s: &Simulation<Dim2>, contact: &Contact<Dim2>| s.state.time - contact.formed_at;
 //!     let age = Field::number("age", "s", "time since the contact formed", age);
 //!     simulation.fields.contacts.add(age);
 //! }

@@ -53,11 +53,11 @@ pub(super) struct Clusters {
 
 /// Finds the clusters of the free grains.
 pub(super) fn clusters<S: Space>(s: &Simulation<S>, grain: &[bool]) -> Clusters {
-    let n = &s.network;
+    let n = &s.state.network;
     let tied = n.contacts.iter().filter(|c| {
         c.memory().is_some() && n.bond(c).is_some_and(fretwork_core::contact::Bond::intact)
     });
-    count(&s.bodies.mass, grain, tied.map(|c| c.bodies))
+    count(&s.state.bodies.mass, grain, tied.map(|c| c.bodies))
 }
 
 fn count(mass: &[f64], grain: &[bool], ties: impl Iterator<Item = [u32; 2]>) -> Clusters {

@@ -26,7 +26,7 @@ pub(super) fn share<S: Space>(
             gap.share(depth - r, depth + r, cut, take);
         }
         Some(piece) => {
-            let core = piece.core.turned(&s.bodies.rotation[grain.body]);
+            let core = piece.core.turned(&s.state.bodies.rotation[grain.body]);
             let corners = core.outline(piece.rounding).concat();
             let along = 1 - gap.across;
             let place = |c: &S::Vector| [c[along], depth + gap.side * c[gap.across]];

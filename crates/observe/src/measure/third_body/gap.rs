@@ -96,9 +96,9 @@ impl Faces {
         across: usize,
         bins: usize,
     ) -> Option<Self> {
-        let place = |name: &str| s.bodies.driven.iter().position(|d| d.name == name);
+        let place = |name: &str| s.state.bodies.driven.iter().position(|d| d.name == name);
         let places = [place(names[0])?, place(names[1])?];
-        let middle = places.map(|p| face(s, s.bodies.driven[p].body, across, 0.0));
+        let middle = places.map(|p| face(s, s.state.bodies.driven[p].body, across, 0.0));
         let side = if middle[1] < middle[0] { -1.0 } else { 1.0 };
         Some(Self {
             places,
@@ -115,7 +115,7 @@ impl Faces {
 
     /// Index of one of the two bodies.
     pub fn body<S: Space>(&self, s: &Simulation<S>, k: usize) -> usize {
-        s.bodies.driven[self.places[k]].body as usize
+        s.state.bodies.driven[self.places[k]].body as usize
     }
 
     /// Updates the faces from the surfaces of the bodies, or from the grains if these bound the layer.
@@ -123,8 +123,8 @@ impl Faces {
         let gap = &mut self.gap;
         let across = gap.across;
         for (k, towards) in [(0, gap.side), (1, -gap.side)] {
-            let body = s.bodies.driven[self.places[k]].body;
-            let here = s.bodies.position[body as usize][across];
+            let body = s.state.bodies.driven[self.places[k]].body;
+            let here = s.state.bodies.position[body as usize][across];
             self.offsets[k] = face(s, body, across, towards) - here;
         }
         self.grains = (extent == Extent::Grains).then(|| ends(all, across));
@@ -133,7 +133,8 @@ impl Faces {
 
     /// The layer at the current positions, with the faces of the last update.
     pub fn gap<S: Space>(&self, s: &Simulation<S>) -> Gap {
-        let at = |k: usize| s.bodies.position[self.body(s, k)][self.gap.across] + self.offsets[k];
+        let at =
+            |k: usize| s.state.bodies.position[self.body(s, k)][self.gap.across] + self.offsets[k];
         let ends = match self.grains {
             Some([low, high]) if self.gap.side > 0.0 => [low, high],
             Some([low, high]) => [high, low],
@@ -151,14 +152,14 @@ impl Faces {
     pub fn sliding<S: Space>(&self, s: &Simulation<S>) -> (S::Vector, S::Vector) {
         self.sliding_at::<S>(|k| {
             let b = self.body(s, k);
-            (s.bodies.velocity[b], s.bodies.spin[b])
+            (s.state.bodies.velocity[b], s.state.bodies.spin[b])
         })
     }
 
     /// As [`Self::sliding`], over the last step at v_theta.
     pub fn sliding_over_step<S: Space>(&self, s: &Simulation<S>) -> S::Vector {
-        let theta = s.scheme.theta;
-        let (_, before) = self.sliding_at::<S>(|k| s.started[self.places[k]]);
+        let theta = s.options.scheme.theta;
+        let (_, before) = self.sliding_at::<S>(|k| s.state.started[self.places[k]]);
         before * (1.0 - theta) + self.sliding(s).1 * theta
     }
 
@@ -187,7 +188,8 @@ fn face<S: Space>(s: &Simulation<S>, body: u32, across: usize, towards: f64) -> 
     for carried in s.shapes.surfaces.iter().filter(|c| c.body == body) {
         let b = body as usize;
         let world = |p: &S::Vector| {
-            s.bodies.position[b] + S::rotate(&s.bodies.rotation[b], &(carried.offset + *p))
+            s.state.bodies.position[b]
+                + S::rotate(&s.state.bodies.rotation[b], &(carried.offset + *p))
         };
         let mut parts = Vec::new();
         for chain in carried.shape.outline() {
@@ -211,7 +213,7 @@ fn face<S: Space>(s: &Simulation<S>, body: u32, across: usize, towards: f64) -> 
         }
     }
     for ball in s.shapes.balls.iter().filter(|b| b.body == body) {
-        let centre = fretwork_core::contact::detect::centre(ball, &s.bodies)[across];
+        let centre = fretwork_core::contact::detect::centre(ball, &s.state.bodies)[across];
         let (area, cap) = if S::D == 2 {
             (2.0 * ball.radius, PI / 4.0)
         } else {
@@ -221,7 +223,7 @@ fn face<S: Space>(s: &Simulation<S>, body: u32, across: usize, towards: f64) -> 
     }
     for piece in s.shapes.pieces.iter().filter(|p| p.body == body) {
         let centre = crate::placement::piece_centre(s, piece)[across];
-        let core = piece.core.turned(&s.bodies.rotation[body as usize]);
+        let core = piece.core.turned(&s.state.bodies.rotation[body as usize]);
         let corners = core.outline(piece.rounding).concat();
         let reach = corners.iter().map(|c| towards * c[across]);
         let reach = reach.fold(0.0, f64::max);
@@ -230,7 +232,7 @@ fn face<S: Space>(s: &Simulation<S>, body: u32, across: usize, towards: f64) -> 
     if weight > 0.0 {
         sum / weight
     } else {
-        s.bodies.position[body as usize][across]
+        s.state.bodies.position[body as usize][across]
     }
 }
 

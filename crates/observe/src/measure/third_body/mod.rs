@@ -162,7 +162,7 @@ impl<S: Space> ThirdBody<S> {
 
     /// Whether the next step ends after the start: it is the first that counts, as in a friction test.
     fn due(&self, s: &Simulation<S>) -> bool {
-        s.time + s.scheme.h > self.spec.start
+        s.state.time + s.options.scheme.h > self.spec.start
     }
 
     /// The flow at the end (over the last complete cycle of the friction test, or the second half of the
@@ -231,12 +231,12 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
         if let Some(faces) = &mut self.faces {
             faces.look(s, self.spec.extent, &grains(s));
         }
-        self.spent = Dissipation::new(self.spec.bins, s.bodies.grain_flags());
+        self.spent = Dissipation::new(self.spec.bins, s.state.bodies.grain_flags());
         if self.faces.is_some() && self.due(s) {
             self.spent.begin(s);
         }
-        self.lost = vec![0.0; s.bodies.len()];
-        self.seen = self.seen.max(s.time);
+        self.lost = vec![0.0; s.state.bodies.len()];
+        self.seen = self.seen.max(s.state.time);
     }
 
     fn needs_dissipation(&self) -> bool {
@@ -244,7 +244,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
     }
 
     fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
-        for body in s.network.bond_breaks.iter().flat_map(|b| b.bodies) {
+        for body in s.state.network.bond_breaks.iter().flat_map(|b| b.bodies) {
             self.lost[body as usize] += 1.0;
         }
         let Some(faces) = &self.faces else { return };
@@ -252,7 +252,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
             self.spent.follow(s, faces, &faces.gap(s), self.spec.along);
         } else if self.due(s) {
             self.spent.begin(s);
-            self.seen = s.time;
+            self.seen = s.state.time;
         }
     }
 
@@ -271,7 +271,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
         faces.look(s, self.spec.extent, &all);
         let mut now = LayerSnapshot::new(s, faces, &all, self.spec.along, &self.lost);
         self.row = self.row(&now);
-        if self.spent.counts() && s.time > self.seen {
+        if self.spent.counts() && s.state.time > self.seen {
             // Resistance to a reciprocating sliding keeps its sign.
             let sign = now.sliding.signum();
             now.cells.iter_mut().for_each(|c| c.moment[2] *= sign);
@@ -279,13 +279,13 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
                 cell.energy = energy;
             }
             self.history.add(Block {
-                time: [self.seen, s.time],
+                time: [self.seen, s.state.time],
                 samples: 1,
                 thickness: now.gap.thickness,
                 cluster: now.clusters.mean,
                 cells: now.cells,
             });
-            self.seen = s.time;
+            self.seen = s.state.time;
         }
         self.clusters = now.clusters;
         self.row.clone()

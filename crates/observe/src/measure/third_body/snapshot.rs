@@ -61,7 +61,7 @@ impl LayerSnapshot {
     ) -> Self {
         let gap = faces.gap(s);
         let (floor, slide) = faces.sliding(s);
-        let flags = s.bodies.grain_flags();
+        let flags = s.state.bodies.grain_flags();
         let mut cells = vec![Cell::default(); gap.bins + 2];
         cells[1..=gap.bins]
             .iter_mut()
@@ -81,7 +81,7 @@ impl LayerSnapshot {
         for Share { grain, cell, share } in &shares {
             let (grain, cell) = (&all[*grain as usize], *cell as usize);
             let (b, mass) = (grain.body, share * grain.mass);
-            let velocity = s.bodies.velocity[b] - floor;
+            let velocity = s.state.bodies.velocity[b] - floor;
             let depth = gap.depth(&grain.at) / gap.thickness;
             let mean = &mut means[cell];
             *mean = (
@@ -90,7 +90,7 @@ impl LayerSnapshot {
                 mean.2 + velocity * mass,
             );
             let (v, slide) = (velocity[along], slide[along]);
-            let spin = &s.bodies.spin[b];
+            let spin = &s.state.bodies.spin[b];
             let c = &mut cells[cell];
             c.volume += share * S::ball_volume(grain.radius);
             c.mass += mass;
@@ -145,7 +145,7 @@ fn temperature<S: Space>(
             continue;
         }
         let depth = gap.depth(&grain.at) / gap.thickness;
-        let v = s.bodies.velocity[grain.body] - *floor - mean_at(&points, depth);
+        let v = s.state.bodies.velocity[grain.body] - *floor - mean_at(&points, depth);
         cells[cell].heat += share * grain.mass * v.dot(&v) / S::D as f64;
     }
 }
@@ -169,8 +169,8 @@ fn mean_at<V: VectorLike>(points: &[(f64, V)], place: f64) -> V {
 
 /// Number of intact bonds of each body.
 fn held<S: Space>(s: &Simulation<S>) -> Vec<f64> {
-    let mut held = vec![0.0; s.bodies.len()];
-    let n = &s.network;
+    let mut held = vec![0.0; s.state.bodies.len()];
+    let n = &s.state.network;
     for contact in n.contacts.iter().filter(|c| c.memory().is_some()) {
         if n.bond(contact)
             .is_some_and(fretwork_core::contact::Bond::intact)
@@ -186,7 +186,7 @@ fn stress<S: Space>(s: &Simulation<S>, gap: &Gap, along: usize, cells: &mut [Cel
     let across = gap.across;
     let lateral = (0..S::D).find(|k| *k != across && *k != along);
     each_moment(s, |body, force, branch| {
-        let from = gap.depth(&s.bodies.position[body]);
+        let from = gap.depth(&s.state.bodies.position[body]);
         let to = from + gap.side * branch[across];
         let moment = [
             force[across] * branch[across],
@@ -206,7 +206,7 @@ fn stress<S: Space>(s: &Simulation<S>, gap: &Gap, along: usize, cells: &mut [Cel
 
 /// Links of the force chains, as sorted pairs of bodies.
 pub(super) fn links<S: Space>(s: &Simulation<S>) -> Vec<[u32; 2]> {
-    let (loads, pairs) = loads(s, &s.bodies.grain_flags());
+    let (loads, pairs) = loads(s, &s.state.bodies.grain_flags());
     let found = chains(&loads, S::D == 2, &pairs);
     // Pairs are sorted.
     let ends = found.links.iter().map(|k| pairs[*k].ends);
@@ -246,14 +246,14 @@ fn chain_numbers<S: Space>(
 
 /// Stresses of the grains, and the pairs of grains that press on each other.
 fn loads<S: Space>(s: &Simulation<S>, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec<Pair>) {
-    let mut volume = vec![0.0; s.bodies.len()];
+    let mut volume = vec![0.0; s.state.bodies.len()];
     for ball in &s.shapes.balls {
         volume[ball.body as usize] += S::ball_volume(ball.radius);
     }
     for piece in &s.shapes.pieces {
         volume[piece.body as usize] += S::ball_volume(piece.size);
     }
-    let mut loads = vec![Matrix3::zeros(); s.bodies.len()];
+    let mut loads = vec![Matrix3::zeros(); s.state.bodies.len()];
     each_moment(s, |body, force, branch| {
         let (f, l) = (
             Vector3::from(force.padded()),
@@ -263,7 +263,7 @@ fn loads<S: Space>(s: &Simulation<S>, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec
         loads[body] += (moment + moment.transpose()) * (0.5 / volume[body]);
     });
     let mut pressed: Vec<([u32; 2], f64)> = Vec::new();
-    for contact in &s.network.contacts {
+    for contact in &s.state.network.contacts {
         let force = contact.normal.dot(&contact.impulse);
         let [a, b] = contact.bodies;
         if force > 0.0 && grain[a as usize] && grain[b as usize] {
@@ -278,7 +278,7 @@ fn loads<S: Space>(s: &Simulation<S>, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec
             last.force += force;
             continue;
         }
-        let [a, b] = ends.map(|b| s.bodies.position[b]);
+        let [a, b] = ends.map(|b| s.state.bodies.position[b]);
         let branch = Vector3::from(s.shapes.periodic.shortest(b - a).padded());
         pairs.push(Pair {
             ends,

@@ -121,13 +121,13 @@ impl<S: Space> Dissipation<S> {
     /// Processes the last step.
     pub fn follow(&mut self, s: &Simulation<S>, faces: &Faces, gap: &Gap, along: usize) {
         let ends = [0, 1].map(|k| faces.body(s, k) as u32);
-        let n = &s.network;
+        let n = &s.state.network;
         let spent = n.spent.iter().flatten();
         for (contact, spent) in n.contacts.iter().zip(spent) {
             if *spent == ContactDissipation::default() {
                 continue;
             }
-            let at = s.bodies.position[contact.bodies[0] as usize] + contact.arms[0];
+            let at = s.state.bodies.position[contact.bodies[0] as usize] + contact.arms[0];
             let energies = [
                 spent.friction,
                 spent.impact + spent.adhesion,
@@ -142,7 +142,7 @@ impl<S: Space> Dissipation<S> {
             self.add(torn.bodies, ends, bin, [0.0, 0.0, torn.torn, 0.0, 0.0]);
         }
         let sliding = faces.sliding_over_step(s)[along];
-        if let Some((impulse, _)) = s.received.get(faces.places[1]) {
+        if let Some((impulse, _)) = s.state.received.get(faces.places[1]) {
             self.work -= impulse[along] * sliding;
             self.load += gap.side * impulse[gap.across] * sliding.abs();
         }

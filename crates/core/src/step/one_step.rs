@@ -1,0 +1,186 @@
+//! One time step, in the order of the picture in [`super`].
+
+use super::answers::Solved;
+use super::motion::{self, StepStart};
+use super::{Scheme, Simulation, StepError, StepReport};
+use crate::contact::detect::detect;
+use crate::geometry::space::{Space, VectorLike};
+use crate::laws::Totals;
+use crate::laws::columns::StepInfo;
+use std::time::Instant;
+
+/// Velocity and spin of each body.
+type Motions<S> = Vec<(<S as Space>::Vector, <S as Space>::Spin)>;
+
+impl<S: Space> Simulation<S> {
+    /// See [`Simulation::step`].
+    pub(super) fn one_step(&mut self) -> Result<StepReport, StepError> {
+        self.between_steps()?;
+        self.check_worn_through()?;
+        let mut report = StepReport::default();
+        let info = self.step_info();
+        self.begin_step()?;
+        let (start, free) = self.detect_contacts(&info, &mut report)?;
+        self.solve(&start, &free, &info, &mut report)?;
+        self.commit_laws(&info, &mut report)?;
+        self.book(&start, &report.totals);
+        self.move_to_end();
+        self.end_step(&mut report)?;
+        Ok(report)
+    }
+
+    /// The step at hand, as laws are told of it.
+    fn step_info(&self) -> StepInfo {
+        let Scheme { h, theta } = self.options.scheme;
+        StepInfo {
+            dimension: S::D as u32,
+            time: self.state.time,
+            h,
+            theta,
+        }
+    }
+
+    /// Applies the schedule, starts imposed motion, and has processes apply their forces.
+    fn begin_step(&mut self) -> Result<(), StepError> {
+        self.begin_records();
+        let driven = self.state.bodies.motion_of_driven();
+        self.begin_motion();
+        self.watch_first_move(&driven);
+        self.workspace.pushed = false;
+        self.act(|process, simulation| process.before_detection(simulation))?;
+        self.watch_push();
+        Ok(())
+    }
+
+    /// Begins the records that the network keeps of a single step.
+    fn begin_records(&mut self) {
+        let network = &mut self.state.network;
+        network.bond_breaks.clear();
+        network.bonds_formed.clear();
+        if self.options.record_dissipation {
+            network.spent.get_or_insert_default();
+        }
+        if !self.state.scars.is_empty() {
+            network.losses.get_or_insert_default();
+        }
+    }
+
+    /// Moves the bodies to q_m and finds the contacts there; gives the motion at the start of the step and the velocities
+    /// without contacts at its end.
+    fn detect_contacts(
+        &mut self,
+        info: &StepInfo,
+        report: &mut StepReport,
+    ) -> Result<(StepStart<S>, Motions<S>), StepError> {
+        let StepInfo { time, h, theta, .. } = *info;
+        let mut start = StepStart::new(&self.state.bodies);
+        let clock = Instant::now();
+        motion::advance(&mut self.state.bodies, (1.0 - theta) * h);
+        self.begin_systems((1.0 - theta) * h);
+        let (network, bodies) = (&mut self.state.network, &self.state.bodies);
+        detect(network, &self.shapes, bodies, &self.table, time, h);
+        report.projected = self.project();
+        start.coasted(&self.state.bodies);
+        self.state.started = start.of_driven(&self.state.bodies);
+        let (bodies, gravity) = (&self.state.bodies, &self.state.gravity);
+        let mut free = motion::free_velocities(bodies, gravity, time, h, theta);
+        self.free_systems(&mut free);
+        self.foresee(&free);
+        self.remember(info)?;
+        report.timing.detect = clock.elapsed();
+        Ok((start, free))
+    }
+
+    /// Gives new contacts their memory and forms the bonds that are due.
+    pub(super) fn remember(&mut self, info: &StepInfo) -> Result<(), StepError> {
+        let remembered = self.workspace.evaluator.remember(
+            &self.laws,
+            &mut self.state.law_history,
+            &mut self.state.network,
+            info,
+        );
+        remembered.map_err(|e| self.law_error(e))
+    }
+
+    /// Has laws update damage, bonds and wear with the impulses of the step.
+    fn commit_laws(&mut self, info: &StepInfo, report: &mut StepReport) -> Result<(), StepError> {
+        let clock = Instant::now();
+        let Solved { sites, turns, .. } = &self.workspace.solved;
+        let committed = self.workspace.evaluator.commit(
+            &self.laws,
+            &mut self.state.law_history,
+            &mut self.state.network,
+            sites,
+            turns,
+            info,
+        );
+        report.totals = committed.map_err(|e| self.law_error(e))?;
+        self.act(|process, simulation| process.after_solve(simulation))?;
+        self.state.network.locate_breaks(&self.state.bodies);
+        report.timing.laws += clock.elapsed();
+        Ok(())
+    }
+
+    /// Moves the bodies from q_m to the end of the step.
+    fn move_to_end(&mut self) {
+        let Scheme { h, theta } = self.options.scheme;
+        motion::advance(&mut self.state.bodies, theta * h);
+        self.state.systems.carry(&mut self.state.bodies);
+        self.end_motion();
+    }
+
+    /// Counts the step, checks its result, and has phases and processes follow it.
+    fn end_step(&mut self, report: &mut StepReport) -> Result<(), StepError> {
+        let sites = self.workspace.solved.sites.iter();
+        report.active = sites
+            .filter(|s| s.solution.impulse != S::Vector::zero())
+            .count();
+        self.state.steps += 1;
+        self.finite()?;
+        self.watch_rounding();
+        self.end_phase();
+        self.act(|process, simulation| process.after_move(simulation, report))?;
+        self.state.settled = false;
+        Ok(())
+    }
+
+    /// Ends the step of dynamical systems and books the step in the energy ledger.
+    fn book(&mut self, start: &StepStart<S>, totals: &Totals) {
+        let mut received =
+            vec![(S::Vector::zero(), S::Spin::zero()); self.state.bodies.driven.len()];
+        let mut place = vec![usize::MAX; self.state.bodies.len()];
+        for (d, driven) in self.state.bodies.driven.iter().enumerate() {
+            place[driven.body as usize] = d;
+        }
+        for contact in &self.state.network.contacts {
+            for (side, sign) in [(0, 1.0), (1, -1.0)] {
+                let d = place[contact.bodies[side] as usize];
+                if d != usize::MAX {
+                    let impulse = contact.impulse * sign;
+                    received[d].0 += impulse;
+                    received[d].1 +=
+                        S::moment(&contact.arms[side], &impulse) + contact.moment * sign;
+                }
+            }
+        }
+        let Scheme { h, theta } = self.options.scheme;
+        let mut work = start.work(
+            &self.state.bodies,
+            &received,
+            &self.state.gravity,
+            self.state.time,
+            h,
+            theta,
+        );
+        let (moving, stored) = self.end_systems(theta * h, &mut work);
+        let (mut kinetic, mut elastic) = (
+            self.state.bodies.kinetic_energy(),
+            self.state.network.elastic_energy(),
+        );
+        if !self.state.systems.is_empty() {
+            (kinetic, elastic) = (kinetic + moving, elastic + stored);
+        }
+        self.state.energy.book(totals, &work, kinetic, elastic);
+        self.state.received = received;
+    }
+}

@@ -1,0 +1,223 @@
+//! The contact problem of a step: set up from bodies, contacts and laws, solved, and its velocities taken over.
+
+use super::answers::Solved;
+use super::coupling::{Coupling, Progress};
+use super::motion::StepStart;
+use super::{Simulation, StepError, StepReport};
+use crate::contact::Contact;
+use crate::geometry::space::{Space, VectorLike};
+use crate::laws::LawError;
+use crate::laws::columns::StepInfo;
+use crate::solve::local::solver::Method;
+use crate::solve::{self, ContactForm, MomentForm};
+use std::time::Instant;
+
+impl<S: Space> Simulation<S> {
+    /// Prepares and solves the step: once with explicit coupling, otherwise until the damage used in the
+    /// impulses is the one that the resulting openings give.
+    pub(super) fn couple(
+        &mut self,
+        start: &StepStart<S>,
+        free: &[(S::Vector, S::Spin)],
+        info: &StepInfo,
+        report: &mut StepReport,
+    ) -> Result<(), StepError> {
+        let mut coupling = Progress::new(&self.options.coupling);
+        let options = self.solver_in_force();
+        loop {
+            let clock = Instant::now();
+            let prepared = self.workspace.evaluator.prepare(
+                &self.laws,
+                &mut self.state.law_history,
+                &self.state.network,
+                &self.workspace.solved.before,
+                info,
+                &mut self.workspace.forms,
+                &mut self.workspace.moments,
+            );
+            prepared.map_err(|e| self.law_error(e))?;
+            report.timing.laws += clock.elapsed();
+
+            let clock = Instant::now();
+            self.pose(free);
+            self.served()?;
+            let solved = solve::solve(
+                &mut self.workspace.problem,
+                &self.workspace.forms,
+                &self.workspace.moments,
+                &options,
+                &mut self.state.auto_state,
+            );
+            report.solver.add(&solved);
+            self.adopt_velocities()?;
+            self.adopt_system_velocities()?;
+            report.timing.solve += clock.elapsed();
+
+            self.sites();
+            self.turns(start);
+            let Coupling::Implicit { .. } = self.options.coupling else {
+                return Ok(());
+            };
+            let clock = Instant::now();
+            let Solved { sites, turns, .. } = &self.workspace.solved;
+            let change = self.workspace.evaluator.trial(
+                &self.laws,
+                &mut self.state.law_history,
+                &mut self.state.network,
+                sites,
+                turns,
+                info,
+            );
+            let change = change.map_err(|e| self.law_error(e))?;
+            report.timing.laws += clock.elapsed();
+            if coupling.ends(change) {
+                report.coupling = coupling.report();
+                return Ok(());
+            }
+            self.workspace.evaluator.adopt(&mut self.state.network);
+            for (form, site) in self
+                .workspace
+                .forms
+                .iter_mut()
+                .zip(&self.workspace.solved.sites)
+            {
+                form.impulse = site.solution.impulse;
+            }
+        }
+    }
+
+    /// Checks that the method supports the current forms; some requirements of laws appear only during a
+    /// step.
+    fn served(&self) -> Result<(), StepError> {
+        let turns = |m: &MomentForm<S>| self.state.network.contacts[m.contact as usize].bodies;
+        let moments = self.workspace.moments.iter();
+        let carrier = moments
+            .flat_map(turns)
+            .find_map(|b| self.state.bodies.carrier(b as usize));
+        if let Some(carrier) = carrier {
+            let system = self.state.systems.get(carrier.system as usize);
+            return Err(StepError::SystemRotation {
+                step: self.state.steps + 1,
+                system: system.map_or_else(String::new, |s| s.name().to_owned()),
+            });
+        }
+        let (method, operator) = (
+            self.options.solver.method,
+            self.workspace.problem.operator(),
+        );
+        let by_law = matches!(method, Method::Newton | Method::Interior);
+        if !by_law && method.operator() <= operator {
+            return Ok(());
+        }
+        let rotation = self
+            .workspace
+            .moments
+            .iter()
+            .any(|m| m.rolling > 0.0 || m.spinning > 0.0);
+        let features = solve::Features {
+            rotation,
+            cohesion: self.workspace.forms.iter().any(|f| f.cohesion > 0.0),
+            operator,
+        };
+        match solve::refusal(method, &features) {
+            None => Ok(()),
+            Some(reason) => Err(StepError::Method {
+                step: self.state.steps + 1,
+                method: method.name(),
+                reason,
+            }),
+        }
+    }
+
+    /// The problem of the last step solved, in the form of the field's collection; none where a bond,
+    /// cohesion, friction against rotation or a dynamical system was at work, which that form does not hold.
+    pub fn local_problem(&self) -> Option<solve::local::LocalProblem> {
+        solve::choose::coulomb(
+            &self.workspace.problem,
+            &self.workspace.forms,
+            &self.workspace.moments,
+        )
+    }
+
+    pub(super) fn law_error(&self, source: LawError) -> StepError {
+        StepError::Law {
+            step: self.state.steps + 1,
+            time: self.state.time,
+            source,
+        }
+    }
+
+    /// Computes the geometric part of the forms.
+    pub(super) fn geometry_of_forms(&mut self, h: f64) {
+        let mut forms = std::mem::take(&mut self.workspace.forms);
+        forms.clear();
+        let contacts = self.state.network.contacts.iter();
+        forms.extend(contacts.map(|contact| ContactForm {
+            bodies: contact.bodies,
+            normal: contact.normal,
+            arms: contact.arms,
+            central: contact.central,
+            shift_n: self.shift_of_gap(contact, h),
+            shift_t: S::Tangent::zero(),
+            friction: 0.0,
+            tension: 0.0,
+            cohesion: 0.0,
+            elastic: None,
+            impulse: contact.impulse,
+        }));
+        self.workspace.forms = forms;
+    }
+
+    /// Returns the velocity at which a step may close a gap; for a penetration, the (negative) velocity at
+    /// which the correction removes its share (m/s).
+    pub(super) fn shift_of_gap(&self, contact: &Contact<S>, h: f64) -> f64 {
+        let gap = self.state.network.open_gap(contact);
+        if gap > 0.0 {
+            gap / h
+        } else {
+            self.options.correction * gap / h
+        }
+    }
+
+    /// Sets up the solver's problem from bodies and contacts.
+    fn pose(&mut self, free: &[(S::Vector, S::Spin)]) {
+        let (bodies, problem) = (&self.state.bodies, &mut self.workspace.problem);
+        problem.clear();
+        for (b, (v, w)) in free.iter().enumerate() {
+            problem.push_body(
+                *v,
+                *w,
+                bodies.inverse_mass[b],
+                bodies.inverse_tensor(b),
+                bodies.length[b],
+            );
+        }
+        if self.state.systems.is_empty() {
+            for form in &self.workspace.forms {
+                problem.push(form);
+            }
+        } else {
+            self.pose_with_systems();
+        }
+        for form in &self.workspace.moments {
+            let contact = &self.workspace.forms[form.contact as usize];
+            self.workspace.problem.push_moment(form, contact);
+        }
+    }
+
+    fn adopt_velocities(&mut self) -> Result<(), StepError> {
+        for b in 0..self.state.bodies.len() {
+            let (v, w) = self.workspace.problem.velocity(b);
+            if !(v.is_finite() && w.is_finite()) {
+                return Err(StepError::NotFinite {
+                    step: self.state.steps + 1,
+                    time: self.state.time,
+                    body: self.state.bodies.id[b],
+                });
+            }
+            self.state.bodies.velocity[b] = v;
+            self.state.bodies.spin[b] = w;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,35 @@
+//! What a step reports.
+
+use super::coupling::CouplingReport;
+use super::projection::Projected;
+use crate::laws::Totals;
+use crate::solve;
+use std::time::Duration;
+
+/// Wall-clock time of the parts of a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timing {
+    /// Detection, including the projection of penetrations.
+    pub detect: Duration,
+    /// Laws: prepare and commit.
+    pub laws: Duration,
+    /// The solver.
+    pub solve: Duration,
+}
+
+/// Report of one step.
+#[derive(Clone, Debug, Default)]
+pub struct StepReport {
+    /// The solver's report.
+    pub solver: solve::Report,
+    /// Report of the coupling of damage and opening.
+    pub coupling: CouplingReport,
+    /// Sums over contacts.
+    pub totals: Totals,
+    /// Number of contacts that carry an impulse.
+    pub active: usize,
+    /// Result of the projection of penetrations, if there was one.
+    pub projected: Option<Projected>,
+    /// Wall-clock time.
+    pub timing: Timing,
+}

@@ -1,0 +1,36 @@
+//! What a step makes for itself and throws away.
+
+use super::answers::Solved;
+use crate::geometry::space::Space;
+use crate::laws::pass::LawEvaluator;
+use crate::solve::{ContactForm, MomentForm, Problem};
+
+/// What a step makes for itself and throws away; its memory is kept from step to step, nothing else.
+#[derive(Debug)]
+pub(super) struct Workspace<S: Space> {
+    /// Calls the laws.
+    pub evaluator: LawEvaluator,
+    /// The contact problem.
+    pub problem: Problem<S>,
+    /// Its contacts in the standard form, in the network's order.
+    pub forms: Vec<ContactForm<S>>,
+    /// Those that resist rotation.
+    pub moments: Vec<MomentForm<S>>,
+    /// What contacts did in the step.
+    pub solved: Solved<S>,
+    /// Whether a process has given a body an impulse in the step, see [`super::Simulation::apply_impulse`].
+    pub pushed: bool,
+}
+
+impl<S: Space> Default for Workspace<S> {
+    fn default() -> Self {
+        Self {
+            evaluator: LawEvaluator::default(),
+            problem: Problem::default(),
+            forms: Vec::new(),
+            moments: Vec::new(),
+            solved: Solved::default(),
+            pushed: false,
+        }
+    }
+}
