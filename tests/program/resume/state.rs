@@ -143,3 +143,48 @@ fn what_auto_learned_goes_on_with_the_same_bits() {
     });
     assert!(all(&whole) == all(&threads), "two threads give other bits");
 }
+
+/// Phases that set friction and the tolerance of the solver for a block on a plane, pulled by a slanting gravity: the state tells what
+/// is in force, and gives it to a scene that was built again; it is no state of a scene without the phases.
+#[test]
+fn what_phases_have_set_goes_on() {
+    let phases = r#"phases=[
+        (name: "smooth", until: Steps(20), friction: {"grain": 0.1}, tolerance: 1e-9),
+        (name: "tight", until: Steps(20), tolerance: 1e-10),
+        (name: "rough", friction: {"grain": 0.4}),
+    ]"#;
+    let sets = [phases, "gravity=[5.0, -9.81]"];
+    check("verification/slide_to_stop", &sets, 30, 20);
+    let scene = |sets: &[&str]| match built("verification/slide_to_stop", sets) {
+        Scene::Dim2(built) => built.simulation,
+        Scene::Dim3(_) => panic!("a plane case"),
+    };
+    let (mut whole, mut resumed) = (scene(&sets), scene(&sets));
+    let mu = |s: &Simulation<_>| s.laws[0].contact().parameters.clone();
+    let (given, first) = (resumed.options, mu(&resumed));
+    steps(&mut whole, 30);
+    let bytes = all(&whole);
+    assert!(resumed.restore(decode(&bytes).unwrap()));
+    assert_eq!(resumed.solver_in_force().tolerance, 1e-10);
+    assert_eq!(resumed.options, given, "no step changes the options");
+    assert_eq!(mu(&resumed), mu(&whole));
+    assert!(mu(&resumed) != first && mu(&resumed)[0] == 0.1);
+    assert!(!scene(&[r#"phases=[(name: "only")]"#]).restore(decode(&bytes).unwrap()));
+}
+
+/// The motion of the walls in the last step is a part of the state: what is read between a resumption and the next step is what
+/// was read before.
+#[test]
+fn readings_of_the_last_step_are_the_same_after_a_resumption() {
+    let scene = || match built("wheel_rail_fretting", &[]) {
+        Scene::Dim2(built) => built.simulation,
+        Scene::Dim3(_) => panic!("a plane case"),
+    };
+    let (mut whole, mut resumed) = (scene(), scene());
+    steps(&mut whole, 40);
+    assert!(resumed.restore(whole.state.clone()));
+    let moves = whole.state.started.iter().any(|(v, _)| v.norm() > 0.0);
+    assert!(moves, "no wall moves");
+    assert_eq!(whole.state.started, resumed.state.started);
+    assert_eq!(whole.state.received, resumed.state.received);
+}

@@ -2,7 +2,7 @@
 //! step is solved again.
 
 use super::motion::StepStart;
-use super::{Simulation, StepError, StepReport};
+use super::{Scheme, Simulation, StepError, StepReport};
 use crate::contact::Key;
 use crate::contact::detect::{self, Motion};
 use crate::geometry::space::{Space, VectorLike};
@@ -19,7 +19,8 @@ impl<S: Space> Simulation<S> {
     /// of an imposed motion. `before` holds the velocities and spins of the driven bodies before their
     /// jumps.
     pub(super) fn watch_first_move(&mut self, before: &[(S::Vector, S::Spin)]) {
-        let length = (1.0 - self.options.scheme.theta) * self.options.scheme.h;
+        let Scheme { h, theta } = self.options.scheme;
+        let length = (1.0 - theta) * h;
         let (network, bodies) = (&mut self.state.network, &self.state.bodies);
         if self.state.steps == 0 {
             let velocities = bodies.velocity.iter().copied();
@@ -42,7 +43,8 @@ impl<S: Space> Simulation<S> {
 
     /// Reports penetrations and passages in the move before detection if a process has applied an impulse.
     pub(super) fn watch_push(&mut self) {
-        let length = (1.0 - self.options.scheme.theta) * self.options.scheme.h;
+        let Scheme { h, theta } = self.options.scheme;
+        let length = (1.0 - theta) * h;
         let (network, bodies) = (&mut self.state.network, &self.state.bodies);
         let velocities = bodies.velocity.iter().copied();
         let velocities = velocities.zip(bodies.spin.iter().copied());

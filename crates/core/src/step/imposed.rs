@@ -4,7 +4,7 @@
 //! supplies the impulse and does the work m (v_s^2 - v_e^2)/2. At time zero there is no previous drive: a
 //! body that starts moving is taken to have moved before, and its energy is initial kinetic energy.
 
-use super::Simulation;
+use super::{Scheme, Simulation};
 use crate::bodies::Dof;
 use crate::geometry::space::Space;
 
@@ -15,11 +15,8 @@ impl<S: Space> Simulation<S> {
         if self.state.steps > 0 {
             return;
         }
-        let (time, h, theta) = (
-            self.state.time,
-            self.options.scheme.h,
-            self.options.scheme.theta,
-        );
+        let time = self.state.time;
+        let Scheme { h, theta } = self.options.scheme;
         let first = self.phases.first().map(|p| &p.changes);
         let bodies = &mut self.state.bodies;
         for (place, driven) in bodies.driven.iter().enumerate() {
@@ -52,7 +49,7 @@ impl<S: Space> Simulation<S> {
     pub(super) fn begin_motion(&mut self) {
         let before = self.energies_of_driven();
         self.apply_schedule();
-        let (h, theta) = (self.options.scheme.h, self.options.scheme.theta);
+        let Scheme { h, theta } = self.options.scheme;
         self.state.bodies.set_off(self.state.time, h, theta);
         let after = self.energies_of_driven();
         let work: f64 = after.iter().zip(&before).map(|(a, b)| a - b).sum();

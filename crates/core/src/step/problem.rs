@@ -40,7 +40,7 @@ impl<S: Space> Simulation<S> {
 
             let clock = Instant::now();
             self.pose(free);
-            self.served()?;
+            self.check_method()?;
             let solved = solve::solve(
                 &mut self.workspace.problem,
                 &self.workspace.forms,
@@ -88,7 +88,7 @@ impl<S: Space> Simulation<S> {
 
     /// Checks that the method supports the current forms; some requirements of laws appear only during a
     /// step.
-    fn served(&self) -> Result<(), StepError> {
+    fn check_method(&self) -> Result<(), StepError> {
         let turns = |m: &MomentForm<S>| self.state.network.contacts[m.contact as usize].bodies;
         let moments = self.workspace.moments.iter();
         let carrier = moments

@@ -10,7 +10,7 @@
 //! energy is kept. Work against gravity and imposed forces is booked in the ledger as work of the
 //! correction.
 
-use super::Simulation;
+use super::{Scheme, Simulation};
 use crate::bodies::Bodies;
 use crate::contact::detect::detect;
 use crate::contact::{Contact, Network};
@@ -131,7 +131,7 @@ impl<S: Space> Simulation<S> {
     /// Books the work of displacements against gravity and imposed forces; returns the latter (J).
     fn book_moves(&mut self, moves: &[Move<S>]) -> f64 {
         let bodies = &self.state.bodies;
-        let (h, theta) = (self.options.scheme.h, self.options.scheme.theta);
+        let Scheme { h, theta } = self.options.scheme;
         let weights = moves.iter().zip(&bodies.mass);
         let potential: f64 = weights
             .map(|((shift, _), mass)| -mass * self.state.gravity.dot(shift))

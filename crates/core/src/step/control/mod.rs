@@ -9,7 +9,7 @@ mod phases;
 pub use gravity::GravityDrive;
 pub use phases::{Begun, Changes, Phase, Until};
 
-use super::Simulation;
+use super::{Scheme, Simulation};
 use crate::bodies::pressure::Servo;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::{Interface, Kind};
@@ -161,11 +161,8 @@ impl<S: Space> Simulation<S> {
     }
 
     fn loads(&mut self) {
-        let (time, h, theta) = (
-            self.state.time,
-            self.options.scheme.h,
-            self.options.scheme.theta,
-        );
+        let time = self.state.time;
+        let Scheme { h, theta } = self.options.scheme;
         let (due, later) = std::mem::take(&mut self.state.control.gates)
             .into_iter()
             .partition(|gate: &(usize, f64)| time + 0.5 * h > gate.1);
