@@ -49,7 +49,7 @@ fn main() {
         return;
     }
     println!(
-        "| scene | feature | contacts | a contact: step | detection | laws | a sweep | row | memory of bonds and history |"
+        "| scene | feature | contacts | step, per contact | detection | laws | a sweep | row | memory of bonds and history |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
     let wants = |name: &str| wanted.as_ref().is_none_or(|w| name.contains(w.as_str()));
@@ -171,14 +171,14 @@ fn pieces() {
             }
         }
     }
-    println!("| polyhedra | pairs | points a pair | a pair |");
+    println!("| polyhedra | pairs | points per pair | time per pair |");
     println!("|---|---|---|---|");
     for (name, pairs) in [
-        ("cubes face on face", vec![on_top]),
-        ("cubes edge on edge", vec![crossed]),
+        ("cubes face to face", vec![on_top]),
+        ("cubes edge to edge", vec![crossed]),
         ("Voronoi neighbours", neighbours),
         (
-            "Voronoi cells near each other, without a face in common",
+            "Voronoi cells near each other, without a common face",
             apart,
         ),
     ] {
