@@ -74,8 +74,7 @@ fn one_step(out: &mut String, singles: &[Single]) {
         }
     }
     *out += "\nA gradient method needs two products with W per iteration and evaluates the error each time; a sweep costs about one\nproduct, and the error is evaluated every ten sweeps.\n\n";
-    *out +=
-        "Statements of the lecture compared with this run, in iterations to 1e-4:\n\n| the lecture |";
+    *out += "Statements of the lecture compared with this run, in iterations to 1e-4:\n\n| the lecture |";
     for s in singles {
         let _ = write!(out, " μ = {} |", s.mu);
     }
