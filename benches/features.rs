@@ -1,8 +1,8 @@
-//! What each feature costs where it is on, and that it costs nothing where it is off.
+//! Cost of each feature that is on; a feature that is off costs nothing.
 //!
 //! `cargo bench --bench features` steps the boxes of 5,000 disks and spheres at rest with one feature after another
-//! and prints the table of `docs/dev/features.md`. Variants take turns, and the least of several rounds counts, so that
-//! what else the machine does counts as little as it can. `pieces` times the narrow phase of polyhedra, by pairs.
+//! and prints the table of `docs/dev/features.md`. Variants alternate, and the minimum of several rounds is used, to
+//! reduce the influence of other load on the machine. `pieces` times the narrow phase of polyhedra, by pairs.
 
 #[path = "../tests/support/features.rs"]
 mod features;
@@ -35,7 +35,7 @@ const UNCOUPLED: Feature = (
 const STEPS: u32 = 10;
 const ROUNDS: usize = 5;
 
-/// A scene under test and the least times (s) of a step: whole, in the detection, the laws, the solver by sweep.
+/// A scene under test and the minimum times (s) of a step: total, detection, laws, solver per sweep.
 struct Trial<S: Space> {
     name: &'static str,
     simulation: Simulation<S>,
@@ -133,7 +133,7 @@ fn round<S: Steps>(t: &mut Trial<S>) {
     }
 }
 
-/// Two polyhedra, and where the first one's centre stands from the second's (m).
+/// Two polyhedra, and the position of the centre of the first relative to that of the second (m).
 type Pair = (Polyhedron, Polyhedron, Vector3<f64>);
 
 /// What the narrow phase takes a pair: in contact as faces, as edges, and within the neighbour list only.
