@@ -1,4 +1,4 @@
-//! The price of the plugin border: the same law compiled in and loaded, and its share of a fretting step.
+//! Cost of the plugin interface: the same law compiled in and loaded, and its share of a fretting step.
 //!
 //! `cargo bench --bench border`. Compiled in, the damage law of Monerie, Acary and Cangemi runs in a loop over
 //! the columns; loaded, the same loop runs behind the C interface in its library. One thread.

@@ -1,8 +1,8 @@
-//! What each feature costs where it is on, and that it costs nothing where it is off.
+//! Cost of each feature that is on; a feature that is off costs nothing.
 //!
 //! `cargo bench --bench features` steps the boxes of 5,000 disks and spheres at rest with one feature after another
-//! and prints the table of `docs/dev/features.md`. Variants take turns, and the least of several rounds counts, so that
-//! what else the machine does counts as little as it can. `pieces` times the narrow phase of polyhedra, by pairs.
+//! and prints the table of `docs/dev/features.md`. Variants alternate, and the minimum of several rounds is used, to
+//! reduce the influence of other load on the machine. `pieces` times the narrow phase of polyhedra, by pairs.
 
 #[path = "../tests/support/features.rs"]
 mod features;
@@ -35,7 +35,7 @@ const UNCOUPLED: Feature = (
 const STEPS: u32 = 10;
 const ROUNDS: usize = 5;
 
-/// A scene under test and the least times (s) of a step: whole, in the detection, the laws, the solver by sweep.
+/// A scene under test and the minimum times (s) of a step: total, detection, laws, solver per sweep.
 struct Trial<S: Space> {
     name: &'static str,
     simulation: Simulation<S>,
@@ -49,7 +49,7 @@ fn main() {
         return;
     }
     println!(
-        "| scene | feature | contacts | a contact: step | detection | laws | a sweep | row | memory of bonds and history |"
+        "| scene | feature | contacts | step, per contact | detection | laws | a sweep | row | memory of bonds and history |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
     let wants = |name: &str| wanted.as_ref().is_none_or(|w| name.contains(w.as_str()));
@@ -134,7 +134,7 @@ fn round<S: Steps>(t: &mut Trial<S>) {
     }
 }
 
-/// Two polyhedra, and where the first one's centre stands from the second's (m).
+/// Two polyhedra, and the position of the centre of the first relative to that of the second (m).
 type Pair = (Polyhedron, Polyhedron, Vector3<f64>);
 
 /// What the narrow phase takes a pair: in contact as faces, as edges, and within the neighbour list only.
@@ -172,14 +172,14 @@ fn pieces() {
             }
         }
     }
-    println!("| polyhedra | pairs | points a pair | a pair |");
+    println!("| polyhedra | pairs | points per pair | time per pair |");
     println!("|---|---|---|---|");
     for (name, pairs) in [
-        ("cubes face on face", vec![on_top]),
-        ("cubes edge on edge", vec![crossed]),
+        ("cubes face to face", vec![on_top]),
+        ("cubes edge to edge", vec![crossed]),
         ("Voronoi neighbours", neighbours),
         (
-            "Voronoi cells near each other, without a face in common",
+            "Voronoi cells near each other, without a common face",
             apart,
         ),
     ] {

@@ -1,9 +1,9 @@
-//! Whole steps of the three peer scenes, and the sweep per contact and iteration, against LMGC90.
+//! Time of steps of three scenes, and of the sweep per contact and iteration, compared with LMGC90.
 //!
 //! `cargo bench --bench peer_scenes` prints, for each scene, the cold first step, solved until it
-//! converges; then, after `SETTLE` further steps (the peer's own first step is not converged, so its
-//! packing is not at rest in its solver's terms), the mean of `STEPS` warm steps, where their time goes,
-//! and the ratios to the peer's figures in `cases/benchmarks/README.md`. One thread.
+//! converges; then, after `SETTLE` further steps (the first step of LMGC90 is not converged, so its
+//! packing is not at rest by the error measure used here), the mean of `STEPS` warm steps, their time by part,
+//! and the ratios to the times of LMGC90 in `cases/benchmarks/README.md`. One thread.
 
 use fretwork::laws::SearchPath;
 use fretwork::scene::{Scene, load};
@@ -11,14 +11,14 @@ use fretwork::step::{Simulation, Steps};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Case, peer's warm step (ms), peer's best sweep (ns per contact and iteration).
+/// Case, LMGC90's warm step (ms), LMGC90's best sweep (ns per contact and iteration).
 const SCENES: [(&str, f64, f64); 3] = [
     ("disks_box_5000", 132.0, 43.0),
     ("spheres_box_5000", 364.0, 155.0),
     ("cohesive_disks_3000", 138.0, 71.0),
 ];
 
-/// Steps between the cold one and those that are timed.
+/// Steps between the cold step and the timed ones.
 const SETTLE: u32 = 30;
 
 fn main() {
@@ -41,7 +41,7 @@ fn main() {
         "x peer",
         "x sweep"
     );
-    // A word of the command line chooses the scenes whose name holds it.
+    // Words of the command line select the scenes whose names contain them.
     let wanted = std::env::args().skip(1).find(|a| !a.starts_with('-'));
     for (name, peer_ms, peer_ns) in SCENES {
         if wanted.as_ref().is_some_and(|w| !name.contains(w.as_str())) {

@@ -1,11 +1,11 @@
 //! One contact update of the Gauss-Seidel sweep against the bound of the machine it runs on.
 //!
 //! `cargo bench --bench sweep` builds packings of disks and spheres at rest in a box (lattices with
-//! jitter of which a share of the contacts is open, bodies numbered along space as in a run) and
+//! jitter in which a fraction of the contacts is open, bodies numbered by position as in a run) and
 //! prints the bytes and flops of one update, the bandwidth and the arithmetic rate measured in the same
-//! run over the same footprint, the bound they give and the ratio of the sweep to it. The sweep on two
-//! threads must give the bits of the sweep on one. Best of many runs: what else the machine does counts as
-//! little as it can. A word of the command line chooses the problems whose name holds it.
+//! run over the same footprint, the resulting bound and the ratio of the sweep to it. The sweep on two
+//! threads must give the bits of the sweep on one. Best of many runs, to reduce the influence of
+//! other load. Words of the command line select the problems whose names contain them.
 
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::nlgs::{prepare, sweeps};
@@ -114,7 +114,7 @@ fn bench<S: Space>(name: &str, make: &dyn Fn() -> Problem<S>, cost: &Cost, machi
         .num_threads(2)
         .build()
         .unwrap_or_else(|e| panic!("{e}"));
-    // Every line comes from afar and goes back once a sweep; between, it is found in L1.
+    // Every line is loaded and written back once per sweep; in between it is in L1.
     let far = 2.0 * cost.row + 2.0 * 64.0 * bodies / n;
     let footprint = cost.row * n + 64.0 * bodies;
     let mut stream = vec![1.0f64; (footprint / 8.0) as usize];

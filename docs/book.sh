@@ -10,7 +10,7 @@ if [ -z "$mdbook" ]; then
     fi
 fi
 "$mdbook" build docs --dest-dir "$PWD/target/book"
-# Pages link to cases as ../cases: they stand beside the book.
+# Pages link to cases as ../cases: they are next to the book.
 mkdir -p target/cases
 cp -r cases/. target/cases
 echo "open target/book/index.html"

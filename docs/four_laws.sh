@@ -1,5 +1,5 @@
 #!/bin/sh
-# Four cohesive-damage pairs on the fretting case; prints the table of four_laws.md. Takes some four minutes.
+# Four cohesive-damage pairs on the fretting case; prints the table of four_laws.md. Takes about four minutes.
 # docs/four_laws.sh [FOLDER]
 set -e
 out=${1:-results/four_laws}
@@ -12,7 +12,7 @@ run mac mac mac
 run elastic-bond mohr-coulomb-brittle brittle
 run elastic-bond linear-softening linear
 run elastic-bond exponential-softening exponential
-# The same bits until the bonds are made, at 0.049 s of the case.
+# Bit-identical until the bonds form, at 0.049 s of the case.
 for pair in mac brittle linear exponential; do
     awk -F, 'NR > 1 && $2 < 0.0489' "$out/$pair/statistics.csv" | cut -d, -f1-10 | cksum
 done

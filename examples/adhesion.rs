@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example adhesion` rolls `cases/wheel_rail_rolling.ron` at several creepages, two at
 //! a time, without third body and with five samples of it, prints the tables of `docs/rolling.md` and draws
-//! `docs/figures/adhesion.png` beside the closed form of the bare contact. Creepages (in per cent) may be
+//! `docs/figures/adhesion.png` with the closed form of the bare contact. Creepages (in per cent) may be
 //! given: `-- 0 1 2`; then no figure is drawn.
 
 use fretwork::geometry::space::Dim2;

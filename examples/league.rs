@@ -237,11 +237,11 @@ struct Counts<'a> {
 
 fn page(rows: &str, ours: &Times, peer: &Times, counts: &Counts<'_>, limit: f64) -> String {
     let mut out = String::from(
-        "# The league table\n\nMade by `cargo run --release --example league -- FOLDER BASELINE.csv`; see [solvers](solvers.md) for what it means.\n\n",
+        "# The league table\n\nMade by `cargo run --release --example league -- FOLDER BASELINE.csv`; see [solvers](solvers.md) for the methods.\n\n",
     );
     let _ = writeln!(
         out,
-        "At most {limit} s a solve. Solved by `auto` of {} problems: {}.",
+        "At most {limit} s per solve. Solved by `auto` of {} problems: {}.",
         counts.problems,
         TOLERANCES
             .map(|t| format!("{} at {t}", counts.solved.get(t).unwrap_or(&0)))
@@ -260,7 +260,7 @@ fn page(rows: &str, ours: &Times, peer: &Times, counts: &Counts<'_>, limit: f64)
     );
     let _ = writeln!(
         out,
-        "Solutions that claimed a tolerance and do not have it when read back: {}.\n",
+        "Solutions reported as converged whose error is above the tolerance when read back: {}.\n",
         counts.false_success
     );
     for tolerance in ["1e-4", "1e-8"] {
@@ -292,10 +292,10 @@ fn page(rows: &str, ours: &Times, peer: &Times, counts: &Counts<'_>, limit: f64)
         }
         let _ = writeln!(
             out,
-            "At {tolerance}, of {of} problems of 20 contacts or more: `auto` is faster than the best of the peer's solvers on {faster}; at worst it takes {worst:.2} times as long.\n"
+            "At {tolerance}, of {of} problems of 20 contacts or more: `auto` is faster than the best reference solver on {faster}; at worst it takes {worst:.2} times as long.\n"
         );
     }
-    out += "| problem | contacts | tolerance | solved | error | scale-free error | chosen | time (s) | peer's best (s) | ratio |\n|---|---|---|---|---|---|---|---|---|---|\n";
+    out += "| problem | contacts | tolerance | solved | error | scale-free error | chosen | time (s) | best reference (s) | ratio |\n|---|---|---|---|---|---|---|---|---|---|\n";
     out + rows
 }
 

@@ -58,7 +58,7 @@ struct Held {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!(
-        "| scene | feature | contacts a grain | a grain | a contact | in a step: a grain | a contact | `check`: a grain | a contact |"
+        "| scene | feature | contacts per grain | per grain | per contact | in a step: per grain | per contact | `check`: per grain | per contact |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
     let all = [&FEATURES[..], &MORE].concat();

@@ -98,7 +98,7 @@ fn main() -> Result<(), Failure> {
 
 fn table(most: usize) -> Result<(), Failure> {
     println!(
-        "| grains | contacts | step | a contact | sweeps | detection | laws | solver | list made anew | in steps | memory | a grain |"
+        "| grains | contacts | step | per contact | sweeps | detection | laws | solver | neighbour list rebuild | in steps | memory | per grain |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
     let mut charts = Vec::new();

@@ -299,18 +299,18 @@ fn page(rows: &Path, budget: f64, short: f64) -> Result<String, Any> {
     let mut out = format!(
         "# Every method in a run
 
-Made by `cargo run --release --example solver_table`; which method is which: [solvers](solvers.md).
+Made by `cargo run --release --example solver_table`; for the methods see [solvers](solvers.md).
 
 ## The fretting case
 
-`{FRETTING}` with a step of 1e-4 s, one thread. The first {SETTLE} of 2,000 steps (compaction, making the bonds, the first slip) are
-the same in every run, by `auto` at 1e-4; then the method and the tolerance of the row take over, and the time counts. A run was given a
-wall time, by default {budget:.0} s, tested between steps; where it took longer, the row says how much of it was done, and
-from 1 % on its total is extrapolated. The first steps of the slip are the hardest. A step may take 2,000 iterations (20 of `newton` and `interior`, which
-factorise; 20,000 of `auto`, `nlgs` and `anderson` at 1e-4): what has not reached the tolerance by then is
-counted and goes on. The machine was shared: times vary by a factor of two.
+`{FRETTING}` with a step of 1e-4 s, one thread. The first {SETTLE} of 2,000 steps (compaction, formation of the bonds, the first slip) are
+the same in every run, by `auto` at 1e-4; then the method and the tolerance of the row are used, and time is measured. A run has a limit of
+wall time, by default {budget:.0} s, tested between steps; if it was exceeded, the row gives the completed fraction, and
+from 1 % on the total time is extrapolated. The first steps of the slip are the hardest. A step may take 2,000 iterations (20 of `newton` and `interior`, which
+factorise; 20,000 of `auto`, `nlgs` and `anderson` at 1e-4): steps that have not reached the tolerance by then are
+counted, and the run continues. The machine was shared: times vary by a factor of two.
 
-| tolerance | method | time of the run (s) | ms a step | iterations a step | not converged | friction by cycle |
+| tolerance | method | time of the run (s) | ms per step | iterations per step | not converged | friction by cycle |
 |---|---|---|---|---|---|---|
 "
     );
@@ -362,12 +362,12 @@ counted and goes on. The machine was shared: times vary by a factor of two.
         }
     }
     out += "
-In the first steps of the slip no method reaches 1e-6 or 1e-8, in fifty times as many sweeps either:
-[why](solvers.md#the-first-slip-of-the-fretting-case). `nlgs-symmetric`, the gradients, `newton` and `interior` hold a
-bond and the contact it lies in as two unknowns, where the sweeps over bodies solve both at once:
-[what that costs](solvers.md#bonds-as-unknowns-of-their-own).
+In the first steps of the slip no method reaches 1e-6 or 1e-8, not even with fifty times as many sweeps:
+[why](solvers.md#the-first-slip-of-the-fretting-case). `nlgs-symmetric`, the gradients, `newton` and `interior` treat a
+bond and its contact as two blocks of unknowns, while the sweeps over bodies solve both at once:
+[cost of this](solvers.md#bonds-as-unknowns-of-their-own).
 ";
-    out += "\nThe case is chaotic: another order of the same sums leads to other rearrangements. What that is worth, by `auto` at 1e-4 with other samples:\n\n| seed | friction by cycle | time (s) |\n|---|---|---|\n";
+    out += "\nThe case is chaotic: another order of the same sums leads to other rearrangements. The resulting scatter, by `auto` at 1e-4 with other samples:\n\n| seed | friction by cycle | time (s) |\n|---|---|---|\n";
     for seed in SEEDS {
         if let Some(row) = read(rows, &format!("seed {seed}")) {
             let _ = writeln!(out, "| {seed} | {} | {} |", row[7], row[0]);
@@ -378,8 +378,8 @@ bond and the contact it lies in as two unknowns, where the sweeps over bodies so
         "
 ## Every shipped case
 
-To its end or for {short:.0} s, at the case's own tolerance: the share of the steps that converged, and in brackets how
-much of the run was done, where not all. 20,000 iterations a step, 200 of `newton` and `interior`.
+Each case is run to its end or for {short:.0} s, at its own tolerance. The table gives the percentage of steps that converged and, in brackets, the completed percentage
+of the run if it is not complete. At most 20,000 iterations per step, 200 of `newton` and `interior`.
 
 | case |"
     );

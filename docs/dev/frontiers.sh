@@ -1,7 +1,7 @@
 #!/bin/sh
-# Accuracy against cost of shipped cases; the tables of frontiers.md. Takes an hour or more: name cases to run only these.
-# Each study is kept in OUT (results/frontiers) and goes on where it stopped.
-# BUDGET: time a study may take, by the clock (60m).
+# Accuracy against cost of shipped cases; the tables of frontiers.md. Takes an hour or more; with names of cases only these are run.
+# Each study is stored in OUT (results/frontiers) and continues where it stopped.
+# BUDGET: limit of the wall time of a study (60m).
 # docs/dev/frontiers.sh [CASE...]
 set -e
 out=${OUT:-results/frontiers}

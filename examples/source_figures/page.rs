@@ -7,13 +7,13 @@ use crate::{Run, Samples, Single};
 use fretwork::solve::local::solver::Method;
 use std::fmt::Write as _;
 
-const HEAD: &str = "# The source's figures, from our own runs
+const HEAD: &str = "# The figures of Renouf's lecture, computed with Fretwork
 
 M. Renouf's lecture on the non-smooth dynamics of divided media (2007; the method is that of Renouf and Alart, Comput.
-Methods Appl. Mech. Eng. 194, 2005) shows how conjugate projected gradients compare with Gauss-Seidel. Here are the same
-figures from the cases and solvers of this program; [solvers](solvers.md) says what the methods are. The lecture gives
-neither sizes, tolerances nor numbers, so what can be compared is what it says in words. This page, its numbers
-and its verdicts are written by
+Methods Appl. Mech. Eng. 194, 2005) compares conjugate projected gradients with Gauss-Seidel. This page has the same
+figures from the cases and solvers of this program; [solvers](solvers.md) describes the methods. The lecture gives
+no sizes, tolerances or numbers, so that only its qualitative statements can be compared. This page, its numbers
+and its conclusions are written by
 
 ```
 cargo run --release --example source_figures
@@ -29,8 +29,8 @@ pub fn page(singles: &[Single], quasi: &[Run], dynamic: &[Run], samples: &Sample
     let mut out = HEAD.to_owned();
     one_step(&mut out, singles);
     out += "## Along a whole process\n\n";
-    out += "The lecture shows the iterations of CPG along a quasi-static and a dynamic process, beside those of NLGS. Every\nstep starts from the impulses of the step before, all methods have the same tolerance.\n\n";
-    out += "A sweep of NLGS works on the velocities of the bodies in place. An iteration of a gradient takes two products with W\nand a measure of the error, behind the interface that all methods for matrices share. So fewer iterations mean less\ntime only where they are fewer by more than the ratio of the times of an iteration.\n\n";
+    out += "The lecture shows the iterations of CPG along a quasi-static and a dynamic process, together with those of NLGS. Every\nstep starts from the impulses of the previous step; all methods have the same tolerance.\n\n";
+    out += "A sweep of NLGS updates the velocities of the bodies in place. An iteration of a gradient method needs two products with W\nand an evaluation of the error, through the interface shared by all matrix methods. It therefore takes less time in total\nonly where its iterations are fewer by more than the ratio of the times of an iteration.\n\n";
     process(
         &mut out,
         "Quasi-static: [biaxial compression](../cases/biaxial.ron), 500 grains",
@@ -42,7 +42,7 @@ pub fn page(singles: &[Single], quasi: &[Run], dynamic: &[Run], samples: &Sample
         &mut out,
         "Dynamic: [collapse of a column](../cases/collapse.ron), 400 grains",
         "solver_dynamic",
-        "the grains fall, rest as a column, and collapse from 0.5 s on; below, kinetic energy and what is left",
+        "the grains fall, rest as a column, and collapse from 0.5 s on; below, kinetic energy and final surface",
         dynamic,
     );
     agreement(&mut out, samples);
@@ -53,7 +53,7 @@ fn one_step(out: &mut String, singles: &[Single]) {
     *out += "## One step of a packing\n\n";
     *out += "The contact problem of one step in the middle of the compression of [the biaxial case](../cases/biaxial.ron) with 500\ngrains, one sample for each friction coefficient, solved from zero. The error is the one that runs use\n(`Balance`, [design](design.md)).\n\n";
     *out += "![error against iterations](figures/solver_one_step.png)\n\n";
-    *out += "Iterations to an error, of 10,000 at most; those of NLGS and Anderson are counted at every tenth.\n\n";
+    *out += "Iterations to reach an error, at most 10,000; for NLGS and Anderson the error is evaluated at every tenth.\n\n";
     *out += "| μ | contacts | method | to 1e-2 | to 1e-4 | to 1e-6 | time of an iteration (µs) | over NLGS |\n|---|---|---|---|---|---|---|---|\n";
     let count = |n: Option<u32>| n.map_or("-".to_owned(), |n| n.to_string());
     for s in singles {
@@ -73,9 +73,8 @@ fn one_step(out: &mut String, singles: &[Single]) {
             );
         }
     }
-    *out += "\nA gradient takes two products with W an iteration and measures the error each time; a sweep costs about one\nproduct and the error is measured after ten.\n\n";
-    *out +=
-        "What the lecture says, held against this run in iterations to 1e-4:\n\n| the lecture |";
+    *out += "\nA gradient method needs two products with W per iteration and evaluates the error each time; a sweep costs about one\nproduct, and the error is evaluated every ten sweeps.\n\n";
+    *out += "Statements of the lecture compared with this run, in iterations to 1e-4:\n\n| the lecture |";
     for s in singles {
         let _ = write!(out, " μ = {} |", s.mu);
     }
@@ -116,9 +115,9 @@ fn verdict(fared: &[Fared], fast: Method, slow: Method) -> String {
     match (to(fast), to(slow)) {
         (Some(a), Some(b)) if a < b => format!("agrees, {:.1} times", f64::from(b) / f64::from(a)),
         (Some(a), Some(b)) => format!("differs, {:.1} times slower", f64::from(a) / f64::from(b)),
-        (Some(_), None) => "agrees, the other does not get there".to_owned(),
-        (None, Some(_)) => "differs, does not get there".to_owned(),
-        (None, None) => "neither gets there".to_owned(),
+        (Some(_), None) => "agrees, the other does not converge".to_owned(),
+        (None, Some(_)) => "differs, does not converge".to_owned(),
+        (None, None) => "neither converges".to_owned(),
     }
 }
 
@@ -130,7 +129,7 @@ fn process(out: &mut String, title: &str, figure: &str, caption: &str, runs: &[R
         out,
         "{steps} steps at a tolerance of {tolerance:e}: {caption}. Curves are means over {WINDOW} steps.\n"
     );
-    *out += "| method | iterations a step | most | solver's time (s) | time of an iteration (µs) | steps that missed the tolerance |\n|---|---|---|---|---|---|\n";
+    *out += "| method | iterations per step | maximum | solver time (s) | time of an iteration (µs) | steps that missed the tolerance |\n|---|---|---|---|---|---|\n";
     for Run { label, trace } in runs {
         let most = trace.steps.iter().map(|s| s.iterations).max();
         let all = trace.iterations() * trace.steps.len() as f64;
@@ -181,13 +180,13 @@ fn agreement(out: &mut String, samples: &Samples) {
     *out += "## Macroscopic agreement on the biaxial test\n\n";
     let _ = writeln!(
         out,
-        "Rigid packings are hyperstatic: many force networks carry the same load, and small differences of them grow, so that\ntwo runs part at the scale of grains. The lecture therefore compares pressure, coordination and compacity, and so does\nthis figure, with the deviator besides, over {} samples (seeds) by each method, confined and compressed by it alone.\n",
+        "Rigid packings are hyperstatic: many force networks carry the same load, and small differences grow, so that\ntwo runs diverge at the scale of grains. The lecture therefore compares pressure, coordination number and solid fraction (compacity), as does\nthis figure, which adds the deviator, over {} samples (seeds) for each method, confined and compressed by it alone.\n",
         samples.nlgs.len()
     );
     *out += "![pressure, coordination, compacity and deviator against axial strain](figures/solver_biaxial.png)\n\n";
     let _ = writeln!(
         out,
-        "Means over the last third of the compression (axial strain to {:.2}), and their standard deviation between samples.\nCPG agrees where the difference is within what chance gives in 95 of 100 cases: {STUDENT} standard errors (Student's t, {} samples\neach).\n",
+        "Means over the last third of the compression (axial strain to {:.2}), and their standard deviation between samples.\nCPG agrees if the difference is within the 95 % interval of random differences: {STUDENT} standard errors (Student's t, {} samples\neach).\n",
         samples
             .nlgs
             .iter()
@@ -195,7 +194,7 @@ fn agreement(out: &mut String, samples: &Samples) {
             .fold(0.0, |most, s| s.test.axial_strain.max(most)),
         samples.nlgs.len()
     );
-    *out += "| | NLGS | CPG | difference | in standard errors | scatter of NLGS | scatter of CPG | agree |\n|---|---|---|---|---|---|---|---|\n";
+    *out += "| | NLGS | CPG | difference | in standard errors | scatter of NLGS | scatter of CPG | agreement |\n|---|---|---|---|---|---|---|---|\n";
     for (name, unit, value) in QUANTITIES {
         let [(a, sa), (b, sb)] = [&samples.nlgs, &samples.cpg]
             .map(|t| moments(&t.iter().map(|t| last_third(t, value)).collect::<Vec<_>>()));
@@ -222,5 +221,5 @@ fn agreement(out: &mut String, samples: &Samples) {
             },
         );
     }
-    *out += "\nCoordination is that of the grains that carry force; compacity is in two dimensions. So few samples tell large differences only:\n`yes` says that none was seen, not that there is none.\n";
+    *out += "\nThe coordination number is that of grains that carry force; the solid fraction is that in two dimensions. So few samples detect large differences only:\n`yes` means that none was detected, not that there is none.\n";
 }

@@ -9,15 +9,14 @@ use fretwork::step::Simulation;
 
 pub const STIFFNESS: Group = Group {
     name: "bond stiffness",
-    criterion: "a ball hangs on it: the ledger closes to 1e-9, the elongation is below 2 m g/K (theta = 1/2), at last m g/K to 1e-6 \
-                (theta = 1)",
+    criterion: "a ball hangs on a bond: the ledger closes to 1e-9, the elongation is below 2 m g/K (theta = 1/2), and m g/K to 1e-6 at the end (theta = 1)",
     runs: &[(2, stiffness::<Dim2>), (3, stiffness::<Dim3>)],
     quick: true,
 };
 
 pub const TORN: Group = Group {
     name: "all bonds break",
-    criterion: "all break in one step; the ledger closes to 1e-9; what is left moves on",
+    criterion: "all break in one step; the ledger closes to 1e-9; the separated bodies keep moving",
     runs: &[(2, torn::<Dim2>), (3, torn::<Dim3>)],
     quick: true,
 };

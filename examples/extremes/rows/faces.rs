@@ -6,14 +6,14 @@ use fretwork::scene::build::Dimensional;
 
 pub const WALL: Group = Group {
     name: "hyperstatic wall",
-    criterion: "the floor bears the weight to 1e-6, no block moves faster than 1e-6 m/s or turns",
+    criterion: "the force on the floor is the weight to 1e-6, no block moves faster than 1e-6 m/s or rotates",
     runs: &[(2, wall::<Dim2>), (3, wall::<Dim3>)],
     quick: true,
 };
 
 pub const FACES: Group = Group {
     name: "aligned faces",
-    criterion: "the floor bears the weight to 1e-6, overlap below 1e-9 of the block, no block turns",
+    criterion: "the force on the floor is the weight to 1e-6, the overlap is below 1e-9 of the block size, no block rotates",
     runs: &[(2, faces::<Dim2>), (3, faces::<Dim3>)],
     quick: true,
 };

@@ -10,14 +10,14 @@ use fretwork::step::Simulation;
 
 pub const COINCIDENT: Group = Group {
     name: "coincident centres",
-    criterion: "refused at the start; where motion would bring them there within a step they meet before: no kinetic energy gained, no overlap",
+    criterion: "refused at the start; if they would coincide by motion within a step, they collide before: no increase of kinetic energy, no overlap",
     runs: &[(2, coincident::<Dim2>), (3, coincident::<Dim3>)],
     quick: true,
 };
 
 pub const LENGTH: Group = Group {
     name: "length",
-    criterion: "a heap of balls scaled in length by L, a power of 4, and in time by its root: the same sweeps in each step, the same places over L to the last bit",
+    criterion: "a heap of balls scaled in length by L, a power of 4, and in time by sqrt(L): the same number of sweeps in each step, the same positions over L to the last bit",
     runs: &[(2, lengths::<Dim2>), (3, lengths::<Dim3>)],
     quick: true,
 };

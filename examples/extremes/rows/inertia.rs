@@ -10,8 +10,7 @@ use fretwork::scene::build::Dimensional;
 
 /// A tolerance bounds the square of the fraction of the work that is not transmitted: docs/design.md. If a
 /// fraction of the weight is missing in each step, the small ball moves by that fraction of g h^2 per step.
-const BEARS: &str = "the floor bears (m1 + m2) g and the joint m2 g to the root of the tolerance (1e-10 where none stands); overlap \
-                     below 1e-6 of the radius and what that share of g moves in the steps";
+const BEARS: &str = "the force on the floor is (m1 + m2) g and that at the contact m2 g, to the square root of the tolerance (1e-10 if none is given); the overlap is below 1e-6 of the radius plus the displacement by that fraction of g";
 
 pub const MASS: Group = Group {
     name: "mass ratio",
@@ -29,7 +28,7 @@ pub const SIZE: Group = Group {
 
 pub const COLUMN: Group = Group {
     name: "column",
-    criterion: "the floor bears n m g to 1e-6 and the root of n roundings of the height over g h^2 (gaps are differences of places)",
+    criterion: "the force on the floor is n m g to 1e-6 plus sqrt(n) times the round-off of the height over g h^2 (gaps are differences of positions)",
     runs: &[(2, disks), (3, spheres)],
     quick: true,
 };

@@ -7,14 +7,14 @@ use fretwork::step::Simulation;
 
 pub const WEIGHTLESS: Group = Group {
     name: "no gravity",
-    criterion: "balls at rest that touch stay at rest to the last bit; a ball that moves keeps its velocity to the last bit",
+    criterion: "touching balls at rest stay at rest to the last bit; a moving ball keeps its velocity to the last bit",
     runs: &[(2, weightless::<Dim2>), (3, weightless::<Dim3>)],
     quick: true,
 };
 
 pub const FEW: Group = Group {
     name: "few bodies",
-    criterion: "steps, all finite; a free ball falls by g t^2/2 to 1e-12; a contact bears m g to 1e-9",
+    criterion: "all numbers are finite; a free ball falls by g t^2/2 to 1e-12; a contact force is m g to 1e-9",
     runs: &[(2, few::<Dim2>), (3, few::<Dim3>)],
     quick: true,
 };

@@ -8,14 +8,14 @@ use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
 pub const SPEED: Group = Group {
     name: "speed",
-    criterion: "a ball thrown at a post stays in front of it, and energy is not created",
+    criterion: "a ball thrown at a post stays in front of it, and the energy does not increase",
     runs: &[(2, speeds::<Dim2>), (3, speeds::<Dim3>)],
     quick: true,
 };
 
 pub const CORNERS: Group = Group {
     name: "corners at speed",
-    criterion: "a box thrown at a profile or a height field stays in front of it, and energy is not created",
+    criterion: "a box thrown at a profile or a height field stays in front of it, and the energy does not increase",
     runs: &[(2, corners::<Dim2>), (3, corners::<Dim3>)],
     quick: true,
 };

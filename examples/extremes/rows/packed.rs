@@ -11,28 +11,28 @@ use std::f64::consts::PI;
 
 pub const FRICTION: Group = Group {
     name: "friction",
-    criterion: "a block on 30 degrees has v = max(0, sin - mu cos) g t down the slope and nothing across, to 1e-9 of g t",
+    criterion: "a block on a slope of 30 degrees has v = max(0, sin - mu cos) g t down the slope and no transverse velocity, to 1e-9 of g t",
     runs: &[(2, friction::<Dim2>), (3, friction::<Dim3>)],
     quick: true,
 };
 
 pub const WEDGE: Group = Group {
     name: "wedge",
-    criterion: "without friction each side bears m g/(2 sin a) to 1e-6; with it the sides together m g",
+    criterion: "without friction the force on each side is m g/(2 sin a) to 1e-6; with friction the vertical forces of both sides sum to m g",
     runs: &[(2, wedge::<Dim2>), (3, wedge::<Dim3>)],
     quick: true,
 };
 
 pub const ROD: Group = Group {
     name: "Painleve's rod",
-    criterion: "kinetic and potential energy never above that of the start, the ledger closes to 1e-9",
+    criterion: "kinetic plus potential energy never exceeds its initial value, the ledger closes to 1e-9",
     runs: &[(2, rod)],
     quick: true,
 };
 
 pub const TOLERANCE: Group = Group {
     name: "tolerance 0",
-    criterion: "ends, with max_iterations or an error below rounding, and the floor bears the weight to 1e-12",
+    criterion: "the solver stops at max_iterations or at an error below round-off, and the force on the floor is the weight to 1e-12",
     runs: &[(2, tolerance::<Dim2>), (3, tolerance::<Dim3>)],
     quick: true,
 };

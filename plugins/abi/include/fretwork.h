@@ -7,28 +7,28 @@
  *    points to must live as long as the program;
  *  - calls are batches over n contacts, columns of n doubles; a column that a call does not use is null;
  *  - calls are pure: no globals, any thread, any order, same input same bits;
- *  - a call returns FW_OK, or another status with a sentence in message->text and, if one contact is at
- *    fault, its index in message->contact. Any status but FW_OK ends the run (exit code 1) with the
- *    sentence; so does an output that is not finite. FW_BAD_PARAMETER from validate refuses the case (2).
+ *  - a call returns FW_OK, or another status with a message in message->text and, if one contact caused
+ *    it, its index in message->contact. Any status but FW_OK ends the run (exit code 1) with the
+ *    message; so does an output that is not finite. FW_BAD_PARAMETER from validate refuses the case (2).
  *
  * When calls are made, for every interface law of a scene:
  *  - once, when the case is read: validate;
- *  - when a contact of a law with internal variables is first seen: initialise, if there is one (the
- *    schema's initial values stand in state and state_next);
- *  - at the start of every step, once detection has given gaps and normals: prepare of the contact law,
+ *  - when a contact of a law with internal variables is first detected: initialise, if there is one (state
+ *    and state_next then have the schema's initial values);
+ *  - at the start of every step, after detection of gaps and normals: prepare of the contact law,
  *    then of the cohesion law; with implicit coupling again after every solve of the step;
  *  - after the step is solved: energy, then prepare of the cohesion at the new openings with D = 0, which
  *    gives energy_intact, intact_* and intact_moment_*; commit of the cohesion; commit of the damage law;
  *    commit of the contact law if it has internal variables; commit of the wear law. With implicit
- *    coupling energy, prepare and the two commits run as trials too, whose results the host drops: a law
- *    must not notice.
- * A cohesion law with FW_FLAG_OPENING is called for bonds that hold; without it, for every contact.
+ *    coupling energy, prepare and the two commits are also called for trials, whose results the host
+ *    discards: a law must not depend on this.
+ * A cohesion law with FW_FLAG_OPENING is called for intact bonds; without it, for every contact.
  *
- * Compatibility: a host and a plugin of one major work together whatever their minors. Within a major every
- * struct begins with its size and grows at its end only, no field changes its meaning, and fw_field is
- * frozen. Each side reads what the other's size says is there: a plugin looks at batch->size before it
- * touches a column that 1.0 did not have; a host takes functions missing at the end of the table as null.
- * A change that breaks this raises the major, and the loader then refuses.
+ * Compatibility: a host and a plugin of one major version work together for any minor versions. Within a
+ * major version every struct begins with its size and grows at its end only, no field changes its meaning,
+ * and fw_field is frozen. Each side reads only the fields covered by the other's size: a plugin checks
+ * batch->size before it uses a column that 1.0 did not have; a host treats functions missing at the end of
+ * the table as null. A change that breaks this increments the major version, which the loader then refuses.
  *
  * SI units everywhere. A test of the crate fretwork-abi compares this file with the Rust structs.
  */
@@ -49,15 +49,15 @@ extern "C" {
 #define FW_KIND_CONTACT 1
 /* Kind of plugin: traction against opening. */
 #define FW_KIND_COHESION 2
-/* Kind of plugin: how the damage D grows, when a bond breaks. */
+/* Kind of plugin: growth of the damage D, and break of a bond. */
 #define FW_KIND_DAMAGE 3
-/* Kind of plugin: what is removed, from slip, force and energy. */
+/* Kind of plugin: removed volume from slip, force and energy. */
 #define FW_KIND_WEAR 4
-/* Status: done. */
+/* Status: success. */
 #define FW_OK 0
-/* Status: the call failed, the message says why; the run stops with exit code 1. */
+/* Status: the call failed, the message gives the reason; the run stops with exit code 1. */
 #define FW_ERROR 1
-/* Status of validate: a parameter is out of what the law accepts; exit code 2. */
+/* Status of validate: a parameter is out of the range that the law accepts; exit code 2. */
 #define FW_BAD_PARAMETER 2
 /* Status: the law could not follow so large a step; the message proposes a smaller one. */
 #define FW_REDUCE_STEP 3
@@ -67,17 +67,17 @@ extern "C" {
 #define FW_FLAG_2D_ONLY (UINT64_C(1) << 0)
 /* Flag: the law is written for three-dimensional scenes only. */
 #define FW_FLAG_3D_ONLY (UINT64_C(1) << 1)
-/* Flag (cohesion): the normal stiffness pulls only; compression is the contact's. Below zero opening the
- * law goes on along its line (a negative traction), which places the zero for the host; the host drops
- * the push. Such a bond fills the gap over which it was made. One without the flag pushes too, and yields
- * until the gap closes. */
+/* Flag (cohesion): the normal stiffness acts in tension only; the contact carries compression. Below zero
+ * opening the law continues linearly (a negative traction), from which the host finds the zero; the host
+ * drops the compression. Such a bond fills the gap at which it formed. One without the flag also acts in
+ * compression until the gap closes. */
 #define FW_FLAG_TENSION_ONLY (UINT64_C(1) << 2)
-/* Flag (cohesion): the law has an opening and a stored energy, so a damage law can follow it. */
+/* Flag (cohesion): the law has an opening and a stored energy, so it can be combined with a damage law. */
 #define FW_FLAG_OPENING (UINT64_C(1) << 3)
 /* Flag (contact): prepare depends on the parameters only, so the host may call it once for one
- * contact and use the answer for all. */
+ * contact and use the result for all. */
 #define FW_FLAG_CONSTANT (UINT64_C(1) << 4)
-/* Flag (cohesion): the law resists bending and twist, so the host keeps the rotation of its bonds. */
+/* Flag (cohesion): the law resists bending and torsion, so the host stores the rotation of its bonds. */
 #define FW_FLAG_MOMENT (UINT64_C(1) << 5)
 /* Flag (cohesion): commit writes out_damage, so the law breaks without a damage law. */
 #define FW_FLAG_BREAKS (UINT64_C(1) << 6)
@@ -95,12 +95,12 @@ typedef struct fw_field {
     uint64_t flags; /* For a variable: 1 to write it to the results. Otherwise 0. */
 } fw_field;
 
-/* The host's buffer for a sentence. */
+/* The host's buffer for an error message. */
 typedef struct fw_message {
     size_t size; /* Size of this struct in bytes, set by the host. */
     char *text; /* Where the plugin writes NUL-terminated UTF-8. */
     size_t capacity; /* Bytes at text, the NUL included. */
-    int64_t contact; /* Index in the batch of the contact at fault, or -1; set by the plugin. */
+    int64_t contact; /* Index in the batch of the contact that caused the error, or -1; set by the plugin. */
 } fw_message;
 
 /* One batch of contacts that share an interface law. Columns have n values and belong to the host.
@@ -140,7 +140,7 @@ typedef struct fw_batch {
     const double *intact_t2; /* Tangential traction of the undamaged bond along t2 (Pa) (damage). */
     const double *slip; /* Slip distance over this step, h |u_t| (m) (wear). */
     const double *friction_work; /* Energy dissipated by friction over this step (J) (wear). */
-    const double *pressed; /* Time for which the contact has carried a compressive impulse without a break (s). */
+    const double *pressed; /* Time for which the contact has carried a compressive impulse without interruption (s). */
     const double *rotation_n; /* Rotation of the bond about n, twist (rad); null without FW_FLAG_MOMENT and in 2D. */
     const double *rotation_t1; /* Rotation about t1, bending (rad). In 2D that about the axis out of the plane. */
     const double *rotation_t2; /* Rotation about t2, bending (rad). In 2D null. */
@@ -154,7 +154,7 @@ typedef struct fw_batch {
     double *out_shear_cohesion; /* Contact, cohesion: shear cohesion c_t over the area (Pa). */
     double *out_rolling; /* Contact: rolling friction length (m). */
     double *out_spinning; /* Contact: spinning friction length (m). */
-    double *out_traction_n; /* Cohesion: traction at the current opening and damage, positive pulls together (Pa). */
+    double *out_traction_n; /* Cohesion: traction at the current opening and damage, positive if attractive (Pa). */
     double *out_traction_t1; /* Cohesion: tangential traction along t1 (Pa). */
     double *out_traction_t2; /* Cohesion: tangential traction along t2 (Pa). */
     double *out_stiffness_n; /* Cohesion: normal stiffness, tangent or secant, not negative (Pa/m). */
@@ -171,24 +171,24 @@ typedef struct fw_batch {
     double *out_stiffness_bend; /* Bending stiffness over the area (N m/m^2 per rad). */
 } fw_batch;
 
-/* Checks parameters beyond their ranges (relations between them). May be null. */
+/* Checks parameters in addition to their ranges (relations between them). May be null. */
 typedef int32_t (*fw_validate)(const double *parameters, fw_message *message);
-/* A call over a batch. May be null where the kind does not need it. */
+/* A call over a batch. May be null if the kind does not need it. */
 typedef int32_t (*fw_call)(const fw_batch *batch, fw_message *message);
 
-/* The fracture energy (J/m^2) that a bond under this law dissipates when it is pulled once, slowly, at a
- * fixed angle from the normal (rad; 0 is mode I, pi/2 mode II); not a number where it declares none. */
+/* The fracture energy (J/m^2) that a bond under this law dissipates under slow monotonic loading at a
+ * fixed angle from the normal (rad; 0 is mode I, pi/2 mode II); NaN if it declares none. */
 typedef double (*fw_fracture)(const double *parameters, double angle);
 
-/* What a plugin is: returned by its entry function, static for the life of the program. */
+/* The table of a plugin: returned by its entry function, static for the life of the program. */
 typedef struct fw_plugin {
-    size_t size; /* Size of this struct in bytes, as the plugin was built. */
+    size_t size; /* Size of this struct in bytes when the plugin was built. */
     uint32_t abi_major; /* Major version the plugin was built for. */
     uint32_t abi_minor; /* Minor version the plugin was built for. */
     int32_t kind; /* One of the KIND_*. */
     uint32_t reserved; /* Zero. */
     uint64_t flags; /* Union of FLAG_*. */
-    const char *name; /* Name by which a case asks for the law, NUL-terminated. */
+    const char *name; /* Name of the law in cases, NUL-terminated. */
     const char *version; /* The law's own version, NUL-terminated. */
     const char *doc; /* One line for the user, NUL-terminated. */
     const char *reference; /* Paper or DOI, NUL-terminated. */
@@ -196,14 +196,14 @@ typedef struct fw_plugin {
     const fw_field *parameters; /* Their schema. */
     size_t n_variables; /* Number of internal variables. */
     const fw_field *variables; /* Their schema. */
-    double degradation; /* Cohesion: m of psi = (1 - D)^m psi_0, 0 where damage does not enter. */
+    double degradation; /* Cohesion: m of psi = (1 - D)^m psi_0, 0 if damage does not enter. */
     fw_validate validate; /* Checks the parameters. May be null. */
     fw_call initialise; /* Fills state_next of new contacts. Null: the schema's initial values. */
     fw_call prepare; /* Contact and cohesion: fills the local form at the start of the step. */
-    fw_call solve_local; /* Solves a contact of its own. Null in version 1.0; kept for laws that do not fit the local form. */
+    fw_call solve_local; /* Solves a contact itself. Null in version 1.0; reserved for laws that do not fit the local form. */
     fw_call commit; /* At the end of the step: new internal variables; damage: out_damage; wear: out_volume. */
     fw_call energy; /* Cohesion: out_energy at the given opening and damage. */
-    fw_fracture fracture_energy; /* Cohesion and damage: the fracture energy that the law declares; certify compares. May be null. */
+    fw_fracture fracture_energy; /* Cohesion and damage: the fracture energy that the law declares, checked by certify. May be null. */
 } fw_plugin;
 
 /* The one exported symbol. */

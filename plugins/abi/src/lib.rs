@@ -1,22 +1,22 @@
 //! The C binary interface between Fretwork and its law plugins, version 1.
 //!
-//! The C header `include/fretwork.h` says the same thing for C and Fortran authors; a test compares
+//! The C header `include/fretwork.h` declares the same for C and Fortran authors; a test compares
 //! the two, offset by offset. Rust authors use the safe wrapper crate `fretwork-law` instead.
 //!
 //! Rules of the interface:
 //! * the host owns all memory; nothing is allocated on one side and freed on the other;
 //! * every struct begins with its size and only grows at the end, so that a newer minor version loads
-//!   in an older host of the same major and the other way round;
-//! * calls are batches over `n` contacts, state is held in columns (struct of arrays);
+//!   in an older host of the same major version and vice versa;
+//! * calls are batches over `n` contacts, state is stored in columns (struct of arrays);
 //! * calls are pure: no globals, any thread, any order, same input same bits;
-//! * a call answers with a status code and, when it fails, a message in the host's buffer.
+//! * a call returns a status code and, when it fails, a message in the host's buffer.
 #![no_std]
 
 use core::ffi::c_char;
 
 /// Major version: a host refuses a plugin of another major.
 pub const ABI_MAJOR: u32 = 1;
-/// Minor version: grows when structs grow at their end.
+/// Minor version: incremented when structs grow at their end.
 pub const ABI_MINOR: u32 = 0;
 /// Name of the one exported function, of type [`FwEntry`].
 pub const ENTRY_SYMBOL: &str = "fretwork_plugin";
@@ -25,16 +25,16 @@ pub const ENTRY_SYMBOL: &str = "fretwork_plugin";
 pub const KIND_CONTACT: i32 = 1;
 /// Kind of plugin: traction against opening.
 pub const KIND_COHESION: i32 = 2;
-/// Kind of plugin: how the damage D grows, when a bond breaks.
+/// Kind of plugin: growth of the damage D, and break of a bond.
 pub const KIND_DAMAGE: i32 = 3;
-/// Kind of plugin: what is removed, from slip, force and energy.
+/// Kind of plugin: removed volume from slip, force and energy.
 pub const KIND_WEAR: i32 = 4;
 
-/// Status: done.
+/// Status: success.
 pub const STATUS_OK: i32 = 0;
-/// Status: the call failed, the message says why; the run stops with exit code 1.
+/// Status: the call failed, the message gives the reason; the run stops with exit code 1.
 pub const STATUS_ERROR: i32 = 1;
-/// Status of `validate`: a parameter is out of what the law accepts; exit code 2.
+/// Status of `validate`: a parameter is out of the range that the law accepts; exit code 2.
 pub const STATUS_BAD_PARAMETER: i32 = 2;
 /// Status: the law could not follow so large a step; the message proposes a smaller one.
 pub const STATUS_REDUCE_STEP: i32 = 3;
@@ -45,20 +45,20 @@ pub const STATUS_PANIC: i32 = 4;
 pub const FLAG_2D_ONLY: u64 = 1;
 /// Flag: the law is written for three-dimensional scenes only.
 pub const FLAG_3D_ONLY: u64 = 1 << 1;
-/// Flag (cohesion): the normal stiffness pulls only; compression is the contact's. Below zero opening the law
-/// goes on along its line (a negative traction), which places the zero for the host; the host drops the push.
-/// Such a bond fills the gap over which it was made. One without the flag pushes too, and yields until the gap closes.
+/// Flag (cohesion): the normal stiffness acts in tension only; the contact carries compression. Below zero opening the
+/// law continues linearly (a negative traction), from which the host finds the zero; the host drops the compression.
+/// Such a bond fills the gap at which it formed. One without the flag also acts in compression until the gap closes.
 pub const FLAG_TENSION_ONLY: u64 = 1 << 2;
-/// Flag (cohesion): the law has an opening and a stored energy, so a damage law can follow it.
+/// Flag (cohesion): the law has an opening and a stored energy, so it can be combined with a damage law.
 pub const FLAG_OPENING: u64 = 1 << 3;
-/// Flag (cohesion): the law resists bending and twist, so the host keeps the rotation of its bonds.
+/// Flag (cohesion): the law resists bending and torsion, so the host stores the rotation of its bonds.
 pub const FLAG_MOMENT: u64 = 1 << 5;
 /// Flag (cohesion): `commit` writes `out_damage`, so the law breaks without a damage law.
 pub const FLAG_BREAKS: u64 = 1 << 6;
 /// Flag (cohesion): bonds may form in contact during a run, again after they broke.
 pub const FLAG_FORMS: u64 = 1 << 7;
 /// Flag (contact): `prepare` depends on the parameters only, so the host may call it once for one
-/// contact and use the answer for all.
+/// contact and use the result for all.
 pub const FLAG_CONSTANT: u64 = 1 << 4;
 
 /// Describes one parameter or one internal variable. Frozen within a major version.
@@ -81,7 +81,7 @@ pub struct FwField {
     pub flags: u64,
 }
 
-/// The host's buffer for a sentence.
+/// The host's buffer for an error message.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FwMessage {
@@ -91,7 +91,7 @@ pub struct FwMessage {
     pub text: *mut c_char,
     /// Bytes at `text`, the NUL included.
     pub capacity: usize,
-    /// Index in the batch of the contact at fault, or -1; set by the plugin.
+    /// Index in the batch of the contact that caused the error, or -1; set by the plugin.
     pub contact: i64,
 }
 
@@ -165,7 +165,7 @@ pub struct FwBatch {
     pub slip: *const f64,
     /// Energy dissipated by friction over this step (J) (wear).
     pub friction_work: *const f64,
-    /// Time for which the contact has carried a compressive impulse without a break (s).
+    /// Time for which the contact has carried a compressive impulse without interruption (s).
     pub pressed: *const f64,
     /// Rotation of the bond about n, twist (rad); null without [`FLAG_MOMENT`]. In two dimensions null.
     pub rotation_n: *const f64,
@@ -193,7 +193,7 @@ pub struct FwBatch {
     pub out_rolling: *mut f64,
     /// Contact: spinning friction length (m).
     pub out_spinning: *mut f64,
-    /// Cohesion: traction at the current opening and damage, positive pulls together (Pa).
+    /// Cohesion: traction at the current opening and damage, positive if attractive (Pa).
     pub out_traction_n: *mut f64,
     /// Cohesion: tangential traction along t1 (Pa).
     pub out_traction_t1: *mut f64,
@@ -225,22 +225,22 @@ pub struct FwBatch {
     pub out_stiffness_bend: *mut f64,
 }
 
-/// Checks parameters beyond their ranges (relations between them). May be null.
+/// Checks parameters in addition to their ranges (relations between them). May be null.
 pub type FwValidate =
     Option<unsafe extern "C" fn(parameters: *const f64, message: *mut FwMessage) -> i32>;
-/// A call over a batch. May be null where the kind does not need it.
+/// A call over a batch. May be null if the kind does not need it.
 pub type FwCall =
     Option<unsafe extern "C" fn(batch: *const FwBatch, message: *mut FwMessage) -> i32>;
 
-/// The fracture energy (J/m^2) that a bond under this law dissipates when it is pulled once, slowly, at a
-/// fixed angle from the normal (rad; 0 is mode I, pi/2 mode II); not a number where the law declares none.
+/// The fracture energy (J/m^2) that a bond under this law dissipates under slow monotonic loading at a
+/// fixed angle from the normal (rad; 0 is mode I, pi/2 mode II); NaN if the law declares none.
 pub type FwFracture = Option<unsafe extern "C" fn(parameters: *const f64, angle: f64) -> f64>;
 
-/// What a plugin is: returned by its entry function, static for the life of the program.
+/// The table of a plugin: returned by its entry function, static for the life of the program.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FwPlugin {
-    /// Size of this struct in bytes, as the plugin was built.
+    /// Size of this struct in bytes when the plugin was built.
     pub size: usize,
     /// Major version the plugin was built for.
     pub abi_major: u32,
@@ -252,7 +252,7 @@ pub struct FwPlugin {
     pub reserved: u32,
     /// Union of `FLAG_*`.
     pub flags: u64,
-    /// Name by which a case asks for the law, NUL-terminated.
+    /// Name of the law in cases, NUL-terminated.
     pub name: *const c_char,
     /// The law's own version, NUL-terminated.
     pub version: *const c_char,
@@ -268,7 +268,7 @@ pub struct FwPlugin {
     pub n_variables: usize,
     /// Their schema.
     pub variables: *const FwField,
-    /// Cohesion: m of psi = (1 - D)^m psi_0, 0 where damage does not enter.
+    /// Cohesion: m of psi = (1 - D)^m psi_0, 0 if damage does not enter.
     pub degradation: f64,
     /// Checks the parameters. May be null.
     pub validate: FwValidate,
@@ -276,7 +276,7 @@ pub struct FwPlugin {
     pub initialise: FwCall,
     /// Contact and cohesion: fills the local form at the start of the step.
     pub prepare: FwCall,
-    /// Solves a contact of its own. Null in version 1.0; kept for laws that do not fit the local form.
+    /// Solves a contact itself. Null in version 1.0; reserved for laws that do not fit the local form.
     pub solve_local: FwCall,
     /// At the end of the step: new internal variables; damage: `out_damage`; wear: `out_volume`.
     pub commit: FwCall,

@@ -1,5 +1,5 @@
-//! The C header and the Rust crate say the same: sizes and offsets of every field, every constant.
-//! A C program prints them as the system's compiler sees them.
+//! The C header and the Rust crate agree: sizes and offsets of every field, every constant.
+//! A C program prints them as compiled by the system's compiler.
 use fretwork_abi::*;
 use std::{mem::offset_of, mem::size_of, process::Command};
 

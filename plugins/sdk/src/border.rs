@@ -1,4 +1,4 @@
-//! The border: from the host's columns to one contact and back. All `unsafe` of a law is here.
+//! The interface layer: from the host's columns to one contact and back. All `unsafe` code of a law is here.
 
 use crate::traits::{CohesionLaw, ContactLaw, DamageLaw, Intact, Law, Site, WearLaw};
 use core::cell::Cell;
@@ -9,10 +9,10 @@ use fretwork_abi::{
 };
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Internal variables a law may have.
+/// Maximum number of internal variables of a law.
 pub const MOST_VARIABLES: usize = 16;
 
-/// Writes a sentence and the contact at fault into the host's buffer.
+/// Writes an error message and the index of the contact that caused it into the host's buffer.
 fn tell(message: *mut FwMessage, contact: i64, text: &str) {
     if message.is_null() {
         return;
@@ -33,7 +33,7 @@ fn tell(message: *mut FwMessage, contact: i64, text: &str) {
     }
 }
 
-/// Runs `body`, which keeps the index of the contact at hand in the cell; a panic ends here.
+/// Runs `body`, which stores the index of the current contact in the cell; panics are caught here.
 fn guarded(message: *mut FwMessage, body: impl FnOnce(&Cell<i64>) -> i32) -> i32 {
     let contact = Cell::new(-1);
     catch_unwind(AssertUnwindSafe(|| body(&contact))).unwrap_or_else(|cause| {
@@ -47,11 +47,11 @@ fn guarded(message: *mut FwMessage, body: impl FnOnce(&Cell<i64>) -> i32) -> i32
     })
 }
 
-/// The host's batch as far as its size goes. What an older host does not have is zero, so that a
-/// column beyond its end is a null one; what a newer host has more is not looked at.
+/// Copies the host's batch up to its size. Fields that an older host does not have are zero, so that a
+/// column beyond its end is null; additional fields of a newer host are ignored.
 ///
 /// # Safety
-/// `raw` is null or valid for the bytes its first field says.
+/// `raw` is null or valid for the number of bytes in its first field.
 unsafe fn known(raw: *const FwBatch) -> Option<FwBatch> {
     if raw.is_null() {
         return None;
@@ -61,7 +61,7 @@ unsafe fn known(raw: *const FwBatch) -> Option<FwBatch> {
     if size < offset_of!(FwBatch, gap) {
         return None;
     }
-    // Half a pointer at the end would be worse than none.
+    // A truncated pointer at the end must not be used.
     let size = size.min(size_of::<FwBatch>()) & !(align_of::<FwBatch>() - 1);
     let mut batch = MaybeUninit::<FwBatch>::zeroed();
     // SAFETY: both sides have `size` bytes; zeros are valid numbers and null pointers.
@@ -129,7 +129,7 @@ unsafe fn site(b: &FwBatch, k: usize) -> Site {
 /// The parameters as a slice.
 ///
 /// # Safety
-/// `values` is null or has one value a parameter of the schema.
+/// `values` is null or has one value per parameter of the schema.
 unsafe fn parameters<'a, L: Law>(values: *const f64) -> Option<&'a [f64]> {
     match L::FIELDS.len() {
         0 => Some(&[]),
@@ -139,7 +139,7 @@ unsafe fn parameters<'a, L: Law>(values: *const f64) -> Option<&'a [f64]> {
     }
 }
 
-/// Says which value of a contact is not finite, and where.
+/// Describes which value of a contact is not finite, and where.
 #[cold]
 fn not_finite(message: *mut FwMessage, b: &FwBatch, k: usize, what: &str) -> i32 {
     // SAFETY: only called with a contact of the batch.
@@ -152,8 +152,8 @@ fn not_finite(message: *mut FwMessage, b: &FwBatch, k: usize, what: &str) -> i32
     STATUS_ERROR
 }
 
-/// Runs `each` over the contacts of a batch, with the law and the internal variables. It answers with
-/// the name of an output that is not finite. New internal variables are kept in a `COMMIT` only.
+/// Runs `each` over the contacts of a batch, with the law and the internal variables. It returns
+/// the name of an output that is not finite. New internal variables are stored in a `COMMIT` only.
 fn over<L: Law, const COMMIT: bool>(
     raw: *const FwBatch,
     message: *mut FwMessage,
@@ -177,7 +177,7 @@ fn over<L: Law, const COMMIT: bool>(
         for k in 0..batch.n {
             contact.set(k as i64);
             for (v, value) in state.iter_mut().enumerate().take(variables) {
-                // SAFETY: one column a variable of the schema, or null.
+                // SAFETY: one column per variable of the schema, or null.
                 *value = unsafe {
                     match batch.state.is_null() {
                         true => 0.0,
@@ -218,7 +218,7 @@ fn over<L: Law, const COMMIT: bool>(
     })
 }
 
-/// Writes outputs of contact `k`; gives the name of the first that is not finite.
+/// Writes outputs of contact `k`; returns the name of the first that is not finite.
 macro_rules! give {
     ($batch:ident, $k:ident, $($field:ident = $value:expr),* $(,)?) => {{
         let values: [f64; _] = [$($value),*];
@@ -242,10 +242,10 @@ macro_rules! give {
 /// `validate` of any law.
 ///
 /// # Safety
-/// As the ABI says: `values` has one value a parameter, `message` is valid or null.
+/// As required by the ABI: `values` has one value per parameter, `message` is valid or null.
 pub unsafe extern "C" fn validate<L: Law>(values: *const f64, message: *mut FwMessage) -> i32 {
     guarded(message, |_| {
-        // SAFETY: one value a parameter of the schema.
+        // SAFETY: one value per parameter of the schema.
         let Some(values) = (unsafe { parameters::<L>(values) }) else {
             tell(message, -1, "no parameters were given");
             return STATUS_ERROR;
@@ -260,13 +260,13 @@ pub unsafe extern "C" fn validate<L: Law>(values: *const f64, message: *mut FwMe
     })
 }
 
-/// `fracture_energy` of any law; not a number where none is declared, or the law panics.
+/// `fracture_energy` of any law; NaN if none is declared, or the law panics.
 ///
 /// # Safety
-/// As the ABI says: `values` has one value a parameter.
+/// As required by the ABI: `values` has one value per parameter.
 pub unsafe extern "C" fn fracture_energy<L: Law>(values: *const f64, angle: f64) -> f64 {
     let asked = catch_unwind(AssertUnwindSafe(|| {
-        // SAFETY: one value a parameter of the schema.
+        // SAFETY: one value per parameter of the schema.
         let values = unsafe { parameters::<L>(values) }?;
         L::read(values).fracture_energy(angle)
     }));
@@ -276,7 +276,7 @@ pub unsafe extern "C" fn fracture_energy<L: Law>(values: *const f64, angle: f64)
 /// `prepare` of a contact law.
 ///
 /// # Safety
-/// As the ABI says: a valid batch and message.
+/// As required by the ABI: a valid batch and message.
 pub unsafe extern "C" fn contact_prepare<L: ContactLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
@@ -300,7 +300,7 @@ pub unsafe extern "C" fn contact_prepare<L: ContactLaw>(
 /// `commit` of a contact law.
 ///
 /// # Safety
-/// As the ABI says: a valid batch and message.
+/// As required by the ABI: a valid batch and message.
 pub unsafe extern "C" fn contact_commit<L: ContactLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
@@ -314,7 +314,7 @@ pub unsafe extern "C" fn contact_commit<L: ContactLaw>(
 /// `prepare` of a cohesion law.
 ///
 /// # Safety
-/// As the ABI says: a valid batch and message.
+/// As required by the ABI: a valid batch and message.
 pub unsafe extern "C" fn cohesion_prepare<L: CohesionLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
@@ -345,7 +345,7 @@ pub unsafe extern "C" fn cohesion_prepare<L: CohesionLaw>(
 /// `energy` of a cohesion law.
 ///
 /// # Safety
-/// As the ABI says: a valid batch and message.
+/// As required by the ABI: a valid batch and message.
 pub unsafe extern "C" fn cohesion_energy<L: CohesionLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
@@ -358,7 +358,7 @@ pub unsafe extern "C" fn cohesion_energy<L: CohesionLaw>(
 /// `commit` of a cohesion law.
 ///
 /// # Safety
-/// As the ABI says: a valid batch and message.
+/// As required by the ABI: a valid batch and message.
 pub unsafe extern "C" fn cohesion_commit<L: CohesionLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
@@ -371,7 +371,7 @@ pub unsafe extern "C" fn cohesion_commit<L: CohesionLaw>(
 /// `commit` of a damage law.
 ///
 /// # Safety
-/// As the ABI says: a valid batch and message.
+/// As required by the ABI: a valid batch and message.
 pub unsafe extern "C" fn damage_commit<L: DamageLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
@@ -397,7 +397,7 @@ pub unsafe extern "C" fn damage_commit<L: DamageLaw>(
 /// `commit` of a wear law.
 ///
 /// # Safety
-/// As the ABI says: a valid batch and message.
+/// As required by the ABI: a valid batch and message.
 pub unsafe extern "C" fn wear_commit<L: WearLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,

@@ -2,7 +2,7 @@
 //!
 //! A law is a struct of parameters (see [`parameters!`]) and one of the traits [`ContactLaw`],
 //! [`CohesionLaw`], [`DamageLaw`], [`WearLaw`], written for a single contact. The macro [`export!`]
-//! makes the plugin of it: batches, columns, panics and messages are looked after here.
+//! exports it as a plugin: batches, columns, panics and messages are handled here.
 //!
 //! ```
 //! use fretwork_law::{ContactLaw, Friction, Law, Site, parameters};

@@ -2,7 +2,7 @@
 
 use fretwork_abi::FwPlugin;
 
-/// A table that may stand in a static.
+/// A table that can be stored in a static.
 pub struct Table(pub FwPlugin);
 
 // SAFETY: the table is never written; its pointers are to static text and functions.
@@ -32,7 +32,7 @@ pub const fn variables<const N: usize>(list: &[crate::Variable]) -> [fretwork_ab
     out
 }
 
-/// Copies text with a NUL at its end, at compile time.
+/// Copies text with a terminating NUL, at compile time.
 pub const fn terminated<const N: usize>(text: &str) -> [u8; N] {
     let mut out = [0; N];
     let bytes = text.as_bytes();
@@ -92,7 +92,7 @@ macro_rules! export {
         const _: () = {
     $crate::plugin_table!($kind $law);
 
-            /// The plugin's entry.
+            /// The plugin's entry function.
             #[unsafe(no_mangle)]
             pub extern "C" fn fretwork_plugin() -> *const $crate::abi::FwPlugin {
                 &TABLE.0
@@ -101,7 +101,7 @@ macro_rules! export {
     };
 }
 
-/// The table of a law, a static named `TABLE`, without the exported entry: for programs that link laws in.
+/// The table of a law, a static named `TABLE`, without the exported entry function: for programs with built-in laws.
 #[macro_export]
 macro_rules! plugin_table {
     (contact $law:ty) => {
@@ -160,7 +160,7 @@ macro_rules! plugin_table {
     };
 }
 
-/// A schema that may stand in a static.
+/// A schema that can be stored in a static.
 pub struct Fields<const N: usize>(pub [fretwork_abi::FwField; N]);
 
 // SAFETY: never written; its pointers are to static text.

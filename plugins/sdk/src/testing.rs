@@ -1,14 +1,14 @@
-//! Checks that laws of one kind share, for the tests of a law.
+//! Checks common to laws of one kind, for the tests of a law.
 //!
-//! They panic with the values that broke the promise. `fretwork law certify` asks for more, from outside.
+//! They panic with the values that violate a requirement. `fretwork law certify` tests more, from outside.
 
 use crate::{CohesionLaw, DamageLaw, Intact, Site};
 use std::fmt::Debug;
 
-/// Any finite bond, the least, the usual and the most of every parameter: D in \[D_i, 1\], variables finite.
+/// For any finite bond and the minimum, default and maximum of every parameter: D in \[D_i, 1\], variables finite.
 ///
 /// # Panics
-/// Where the law leaves that range.
+/// If the law leaves that range.
 pub fn damage_stays_in_range<L: DamageLaw + Debug>() {
     let sizes = [0.0, 1e-300, 1e-12, 1e-3, 1.0, 1e5, 1e6, 1e30, 1e300];
     let damages = [0.0, 0.4, 1.0 - 1e-16, 1.0];
@@ -39,10 +39,10 @@ pub fn damage_stays_in_range<L: DamageLaw + Debug>() {
     }
 }
 
-/// Damage does not fall on a random walk of the opening by 0.2 um a step, for a bond of 1e12 Pa/m.
+/// Damage does not decrease on a random walk of the opening by 0.2 um per step, for a bond of 1e12 Pa/m.
 ///
 /// # Panics
-/// Where it falls, leaves \[0, 1\], or the path does no damage.
+/// If it decreases, leaves \[0, 1\], or the path causes no damage.
 pub fn damage_never_falls<L: DamageLaw>(law: &L) {
     let (mut seed, mut u) = (1u64, 0.0f64);
     for m in [0.5, 1.0, 2.0] {
@@ -72,7 +72,7 @@ pub fn damage_never_falls<L: DamageLaw>(law: &L) {
     }
 }
 
-/// What a bond does when it is pulled open.
+/// Response of a bond to monotonic opening.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pull {
     /// Area under the traction (J/m^2).
@@ -107,7 +107,7 @@ pub fn pull<L: DamageLaw>(law: &L, k: f64, m: f64, reach: f64, steps: u32) -> Pu
     })
 }
 
-/// As [`pull`], for a cohesion that breaks by itself, along a direction of length one (n, t1, t2).
+/// As [`pull`], for a cohesion that breaks by itself, along a unit vector (n, t1, t2).
 pub fn pull_breaking<L: CohesionLaw>(law: &L, direction: [f64; 3], reach: f64, steps: u32) -> Pull {
     open(reach, steps, |u, d| {
         let site = Site {
@@ -121,7 +121,7 @@ pub fn pull_breaking<L: CohesionLaw>(law: &L, direction: [f64; 3], reach: f64, s
     })
 }
 
-/// `at` gives damage and traction from opening and damage before.
+/// `at` returns damage and traction from the opening and the previous damage.
 fn open(reach: f64, steps: u32, mut at: impl FnMut(f64, f64) -> (f64, f64)) -> Pull {
     let du = reach / f64::from(steps);
     let (mut out, mut last) = (Pull::default(), 0.0);
@@ -135,10 +135,10 @@ fn open(reach: f64, steps: u32, mut at: impl FnMut(f64, f64) -> (f64, f64)) -> P
     out
 }
 
-/// Openings that overflow give finite numbers, and a broken bond carries and holds nothing.
+/// Openings that overflow give finite numbers, and a broken bond has zero traction and energy.
 ///
 /// # Panics
-/// Where that is not so.
+/// If this does not hold.
 pub fn bond_stays_finite<L: CohesionLaw>(law: &L) {
     for damage in [0.0, 0.3, 1.0] {
         let site = Site {
@@ -158,7 +158,7 @@ pub fn bond_stays_finite<L: CohesionLaw>(law: &L) {
 /// An attraction over an area that overflows its stress is finite.
 ///
 /// # Panics
-/// Where that is not so, or it does not attract.
+/// If this does not hold, or the force is not attractive.
 pub fn attraction_stays_finite<L: CohesionLaw>(law: &L) {
     let site = Site {
         area: 1e-300,

@@ -1,9 +1,9 @@
-//! What a law's author writes, for one contact.
+//! The traits that the author of a law implements, for one contact.
 
 use core::ffi::CStr;
 use fretwork_abi::FwField;
 
-/// A struct of parameters; made by [`crate::parameters!`].
+/// A struct of parameters; declared by [`crate::parameters!`].
 pub trait Parameters: Sized {
     /// The schema.
     const FIELDS: &'static [FwField];
@@ -13,7 +13,7 @@ pub trait Parameters: Sized {
     fn read(values: &[f64]) -> Self;
 }
 
-/// An internal variable of a law: its texts are C strings, `c"slip"`.
+/// An internal variable of a law; its texts are C strings, `c"slip"`.
 #[derive(Clone, Copy, Debug)]
 pub struct Variable {
     /// Name, `[a-z][a-z0-9_]*`.
@@ -28,9 +28,9 @@ pub struct Variable {
     pub output: bool,
 }
 
-/// What every law says of itself.
+/// Description of a law.
 pub trait Law: Parameters {
-    /// Name by which cases ask for it, of a-z, 0-9 and `-`.
+    /// Name of the law in cases, of a-z, 0-9 and `-`.
     const NAME: &'static str;
     /// One line for the user.
     const DOC: &'static str;
@@ -43,8 +43,8 @@ pub trait Law: Parameters {
     /// Internal variables, at most [`crate::border::MOST_VARIABLES`].
     const VARIABLES: &'static [Variable] = &[];
 
-    /// The fracture energy (J/m^2) that a bond dissipates when it is pulled once, slowly, at this angle from the
-    /// normal (rad; 0 is mode I, pi/2 mode II), where the law declares one: `fretwork law certify` compares.
+    /// The fracture energy (J/m^2) that a bond dissipates under slow monotonic loading at this angle from the
+    /// normal (rad; 0 is mode I, pi/2 mode II), if the law declares one: checked by `fretwork law certify`.
     fn fracture_energy(&self, _angle: f64) -> Option<f64> {
         None
     }
@@ -52,13 +52,13 @@ pub trait Law: Parameters {
     /// Checks relations between parameters; their ranges are checked by the host.
     ///
     /// # Errors
-    /// A sentence for the user.
+    /// A message for the user.
     fn validate(&self) -> Result<(), String> {
         Ok(())
     }
 }
 
-/// What a law knows of a contact. Vectors are (n, t1, t2), SI units.
+/// Input of a law for one contact. Vectors are (n, t1, t2), SI units.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Site {
     /// Gap (m), positive when open.
@@ -69,7 +69,7 @@ pub struct Site {
     pub radius: f64,
     /// Time since the contact formed (s).
     pub age: f64,
-    /// Time for which it has carried a compressive impulse without a break (s).
+    /// Time for which it has carried a compressive impulse without interruption (s).
     pub pressed: f64,
     /// Bond elongation (m).
     pub opening: [f64; 3],
@@ -93,13 +93,13 @@ pub struct Site {
 }
 
 impl Site {
-    /// Length of the tangential opening (m).
+    /// Norm of the tangential opening (m).
     #[inline]
     pub fn tangential_opening(&self) -> f64 {
         self.opening[1].hypot(self.opening[2])
     }
 
-    /// Normal opening where it is positive, else zero (m).
+    /// Normal opening if positive, otherwise zero (m).
     #[inline]
     pub fn normal_opening(&self) -> f64 {
         self.opening[0].max(0.0)
@@ -117,7 +117,7 @@ impl Site {
     }
 }
 
-/// What a contact law gives.
+/// Output of a contact law.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Friction {
     /// Friction coefficient.
@@ -136,10 +136,10 @@ pub struct Friction {
     pub spinning: f64,
 }
 
-/// What a cohesion law gives: traction at the current opening and damage, with its stiffness.
+/// Output of a cohesion law: traction at the current opening and damage, with its stiffness.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Traction {
-    /// Traction (Pa); a positive normal part pulls together.
+    /// Traction (Pa); a positive normal component is attractive.
     pub traction: [f64; 3],
     /// Normal stiffness, tangent or secant (Pa/m).
     pub stiffness_n: f64,
@@ -162,10 +162,10 @@ pub struct Traction {
 }
 
 impl Traction {
-    /// An attraction of the contact by a force (N; N/m in the plane), as a stress over its area.
+    /// An attractive force of the contact (N; N/m in 2D), as a stress over its area.
     pub fn attraction(force: f64, site: &Site) -> Self {
         Self {
-            // A tiny area overflows.
+            // A very small area overflows.
             tension_strength: (force / site.area).min(f64::MAX),
             ..Self::default()
         }
@@ -183,7 +183,7 @@ impl Traction {
     }
 }
 
-/// Keeps what overflows finite; the host stops at numbers that are not.
+/// Replaces overflows by finite numbers, since non-finite numbers stop the run.
 pub fn bounded(x: f64) -> f64 {
     x.clamp(-f64::MAX, f64::MAX)
 }
@@ -202,7 +202,7 @@ pub struct Intact {
 }
 
 impl Intact {
-    /// The pulling part of the traction: (normal where positive, tangential length) (Pa).
+    /// The tensile part of the traction: (normal if positive, norm of the tangential part) (Pa).
     #[inline]
     pub fn pull(&self) -> [f64; 2] {
         [
@@ -211,7 +211,7 @@ impl Intact {
         ]
     }
 
-    /// Length of the pulling traction (Pa): sqrt(<t_n>^2 + |t_t|^2).
+    /// Norm of the tensile traction (Pa): sqrt(<t_n>^2 + |t_t|^2).
     #[inline]
     pub fn traction_length(&self) -> f64 {
         let [n, t] = self.pull();
@@ -226,7 +226,7 @@ impl Intact {
         if t > 0.0 { 2.0 * self.energy / t } else { 0.0 }
     }
 
-    /// Stiffness |t|/opening (Pa/m); zero where nothing pulls.
+    /// Stiffness |t|/opening (Pa/m); zero without tensile traction.
     #[inline]
     pub fn stiffness(&self) -> f64 {
         let t = self.traction_length();
@@ -237,8 +237,8 @@ impl Intact {
         }
     }
 
-    /// The damage at which the bond carries `traction`: (1 - D)^m |t_0| = traction; 0 where it carries less
-    /// undamaged.
+    /// The damage at which the bond carries `traction`: (1 - D)^m |t_0| = traction; 0 if the undamaged bond
+    /// carries less.
     #[inline]
     pub fn damage_for(&self, traction: f64) -> f64 {
         let t = self.traction_length();
@@ -256,7 +256,7 @@ impl Intact {
     /// The driving force Y = -d psi/d D = m (1 - D)^(m - 1) psi_0 (J/m^2).
     #[inline]
     pub fn release_rate(&self, damage: f64) -> f64 {
-        // The common exponents do without the power, which costs more than the rest of a law.
+        // The common exponents avoid the power function, which costs more than the rest of a law.
         match self.degradation {
             1.0 => self.energy,
             2.0 => 2.0 * (1.0 - damage) * self.energy,
@@ -275,14 +275,14 @@ pub trait ContactLaw: Law {
 
 /// Traction against opening.
 pub trait CohesionLaw: Law {
-    /// m of psi = (1 - D)^m psi_0; 0 where damage does not enter.
+    /// m of psi = (1 - D)^m psi_0; 0 if damage does not enter.
     const DEGRADATION: f64;
     /// Traction and stiffness at the site's opening and damage.
     fn traction(&self, site: &Site, state: &[f64]) -> Traction;
     /// Energy stored at the site's opening and damage (J/m^2).
     fn energy(&self, site: &Site, state: &[f64]) -> f64;
     /// New internal variables and, with `FLAG_BREAKS`, D at the end of a step, from the opening at its end.
-    /// The host keeps D from falling. By default both stay.
+    /// The host keeps D from decreasing. By default both are unchanged.
     fn commit(&self, site: &Site, _state: &[f64], _next: &mut [f64]) -> f64 {
         site.damage
     }
@@ -290,11 +290,11 @@ pub trait CohesionLaw: Law {
 
 /// Growth of damage.
 pub trait DamageLaw: Law {
-    /// D at the end of the step, from the opening at its end. The host keeps it from falling.
+    /// D at the end of the step, from the opening at its end. The host keeps it from decreasing.
     fn grow(&self, site: &Site, intact: &Intact, state: &[f64], next: &mut [f64]) -> f64;
 }
 
-/// What is removed.
+/// Wear: removed volume.
 pub trait WearLaw: Law {
     /// Volume removed over the step (m^3), from the slip (m) and the friction work (J) over it.
     fn volume(

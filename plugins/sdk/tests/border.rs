@@ -1,4 +1,4 @@
-//! The border as a host sees it: columns, sizes, messages, panics.
+//! The interface as used by a host: columns, sizes, messages, panics.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,19 +1,19 @@
-//! The shipped laws linked into a program: the sources of the plugin crates compiled once more, with their tables
-//! but without the exported symbol, of which a program can hold one only.
+//! The shipped laws linked into a program: the sources of the plugin crates are compiled again, with their tables
+//! but without the exported symbol, of which a program can have only one.
 //!
-//! A law's source names the crate `fretwork_law`; here that is this crate, whose `export!` keeps the table
-//! where the wrapper's own macro exports an entry. So the sources need no condition, and nothing depends on how a
-//! linker treats symbols that are there twice.
+//! The source of a law imports the crate `fretwork_law`; here that is this crate, whose `export!` stores the table
+//! instead of exporting an entry function. The sources therefore need no conditional compilation, and nothing depends
+//! on how a linker treats duplicate symbols.
 
 extern crate self as fretwork_law;
 
 use sdk::*;
 
-/// What `export!` is here.
+/// The macro that replaces `export!` here.
 mod entry {
     macro_rules! export {
         ($kind:ident $law:ty) => {
-            /// What the plugin's entry returns.
+            /// The table that the plugin's entry function returns.
             pub fn plugin() -> &'static sdk::abi::FwPlugin {
                 sdk::plugin_table!($kind $law);
                 &TABLE.0

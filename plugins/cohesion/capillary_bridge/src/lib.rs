@@ -1,4 +1,4 @@
-//! A liquid bridge between two grains: forms in contact, fades with the gap, breaks at a distance.
+//! A liquid bridge between two grains: forms in contact, decreases with the gap, breaks at a distance.
 #![forbid(unsafe_code)]
 use fretwork_law::{CohesionLaw, Law, Site, Traction, Variable, export, parameters};
 

@@ -26,7 +26,7 @@ impl CohesionLaw for ConstantAttraction {
         }
         let all = self.stress + self.force / site.area;
         Traction {
-            // A tiny area overflows.
+            // A very small area overflows.
             tension_strength: all.min(f64::MAX),
             ..Traction::default()
         }

@@ -3,7 +3,7 @@
 use fretwork_law::{CohesionLaw, Law, Site, Traction, export, parameters};
 
 parameters! {
-    /// F = 2 pi w R in contact, falling as (1 + gap/z_0)^-2 when it opens; R is the reduced radius. Spheres.
+    /// Spheres: F = 2 pi w R in contact, decreasing as (1 + gap/z_0)^-2 with the gap; R is the reduced radius.
     pub struct Dmt {
         w: "J/m^2" = 0.1, 0.0, 1e30, "work of adhesion";
         z_0: "m" = 4e-10, 1e-12, 1.0, "range of the attraction";
@@ -43,7 +43,7 @@ export!(cohesion Dmt);
 mod tests {
     use super::*;
 
-    /// Pull-off 2 pi w R, and the work to part the spheres, 2 pi w R z_0.
+    /// Pull-off 2 pi w R, and the work of separation of the spheres, 2 pi w R z_0.
     #[test]
     fn pull_off_and_work_are_closed_forms() {
         let law = Dmt {

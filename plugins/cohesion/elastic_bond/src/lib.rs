@@ -3,8 +3,8 @@
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, export, parameters};
 
 parameters! {
-    /// Pulls in tension and resists sliding both ways; compression is the contact's. There the traction
-    /// goes on along the same line, which gives the host its zero; only the pulling part acts.
+    /// Acts in tension and in shear; the contact carries compression. There the traction continues
+    /// linearly, from which the host finds its zero; only the tensile part acts.
     pub struct ElasticBond {
         k_n: "Pa/m" = 1e14, 0.0, 1e30, "normal stiffness";
         k_t: "Pa/m" = 1e14, 0.0, 1e30, "tangential stiffness";

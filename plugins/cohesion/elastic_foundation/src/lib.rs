@@ -1,11 +1,11 @@
-//! An elastic foundation: springs that carry tension, compression, shear and bending.
+//! An elastic foundation: springs in tension, compression, shear and bending.
 #![forbid(unsafe_code)]
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, bounded, export, parameters};
 
 parameters! {
-    /// Traction (1 - D) k x in tension and in compression, moment (1 - D) k_r theta over the area. Compression
-    /// is the spring's until the gap closes, so a bond that was made with a gap g yields by g before the contact is
-    /// rigid: grains that stand at a gap over a first body are its compliant skin, the bristles of a brush.
+    /// Traction (1 - D) k x in tension and in compression, moment (1 - D) k_r theta over the area. The spring
+    /// carries compression until the gap closes, so a bond formed at a gap g is compressed by g before the contact is
+    /// rigid: grains at a gap over a first body are its compliant surface layer, like the bristles of a brush.
     pub struct ElasticFoundation {
         k_n: "Pa/m" = 1e13, 0.0, 1e30, "normal stiffness, both ways";
         k_t: "Pa/m" = 1e13, 0.0, 1e30, "tangential stiffness";
@@ -28,7 +28,7 @@ impl CohesionLaw for ElasticFoundation {
 
     fn traction(&self, site: &Site, _state: &[f64]) -> Traction {
         let g = 1.0 - site.damage;
-        // It bends; about the normal it turns freely.
+        // It resists bending; rotation about the normal is free.
         let [_, b1, b2] = site.rotation;
         let bend = g * self.k_r;
         Traction {

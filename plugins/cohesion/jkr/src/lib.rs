@@ -1,13 +1,13 @@
-//! Johnson, Kendall and Roberts: soft spheres that neck before they part. Compression is rigid here.
+//! Johnson, Kendall and Roberts: soft spheres that form a neck before they separate. Rigid in compression here.
 #![forbid(unsafe_code)]
 use fretwork_law::{CohesionLaw, Law, Site, Traction, Variable, export, parameters};
 use std::f64::consts::PI;
 
 parameters! {
     /// Once the spheres touch, the attraction follows the neck. With the pull-off P_c = 3 pi w R/2 and the
-    /// contact radius x = a/a_0, a_0^3 = 9 pi w R^2/(2 E): F = 4 P_c (x^(3/2) - x^3) pulls at the approach
+    /// contact radius x = a/a_0, a_0^3 = 9 pi w R^2/(2 E): F = 4 P_c (x^(3/2) - x^3) attracts at the approach
     /// d = (a_0^2/R)(x^2 - (2/3) x^(1/2)). At d = 0 it is 8/9 of the pull-off; under imposed displacement the
-    /// neck tears at 5/9 of it, d = -(3/4)(pi^2 w^2 R/E^2)^(1/3). R is the reduced radius.
+    /// neck breaks at 5/9 of it, d = -(3/4)(pi^2 w^2 R/E^2)^(1/3). R is the reduced radius.
     pub struct Jkr {
         w: "J/m^2" = 0.1, 0.0, 1e30, "work of adhesion";
         modulus: "Pa" = 1e11, 1.0, 1e30, "reduced modulus E*";
@@ -22,7 +22,7 @@ const VARIABLES: &[Variable] = &[Variable {
     output: true,
 }];
 
-/// x at the tear, where the approach turns: d(x^2 - (2/3) x^(1/2))/dx = 0.
+/// x at which the neck breaks, the turning point of the approach: d(x^2 - (2/3) x^(1/2))/dx = 0.
 fn tear() -> f64 {
     (1.0f64 / 6.0).powf(2.0 / 3.0)
 }
@@ -38,24 +38,24 @@ impl Law for Jkr {
 }
 
 impl Jkr {
-    /// a_0^2/R, the length of approaches (m).
+    /// a_0^2/R, the length scale of the approach (m).
     fn length(&self, r: f64) -> f64 {
         // (a_0/R)^3 first: R^2 alone over- and underflows. Not zero, as gaps are divided by it.
         let a = (4.5 * PI * self.w / self.modulus / r).cbrt();
         (a * a * r).clamp(f64::MIN_POSITIVE, f64::MAX)
     }
 
-    /// Gap at which the neck tears (m).
+    /// Gap at which the neck breaks (m).
     fn reach(&self, r: f64) -> f64 {
         let x = tear();
         self.length(r) * (2.0 / 3.0 * x.sqrt() - x * x)
     }
 
-    /// Attraction at a gap (N), positive pulls: between contact (d = 0) and the tear.
+    /// Attractive force at a gap (N), between contact (d = 0) and the break of the neck.
     fn force(&self, gap: f64, r: f64) -> f64 {
         let pull_off = 1.5 * PI * self.w * r;
         let gap = gap.max(0.0) / self.length(r);
-        // x^2 - (2/3) sqrt(x) = -gap: from the tear to d = 0 the left side rises with x.
+        // x^2 - (2/3) sqrt(x) = -gap: from the break to d = 0 the left side increases with x.
         let (mut low, mut high) = (tear(), (2.0f64 / 3.0).powf(2.0 / 3.0));
         for _ in 0..60 {
             let x = 0.5 * (low + high);
@@ -121,7 +121,7 @@ mod tests {
         assert!((law.force(0.0, r) / pull_off - 8.0 / 9.0).abs() < 1e-9);
         let reach = law.reach(r);
         assert!((law.force(reach, r) / pull_off - 5.0 / 9.0).abs() < 1e-5);
-        // The tear is at (3/4) (pi^2 w^2 R/E^2)^(1/3).
+        // The neck breaks at (3/4) (pi^2 w^2 R/E^2)^(1/3).
         let known = 0.75 * (PI * PI * w * w * r / (e * e)).cbrt();
         assert!((reach / known - 1.0).abs() < 1e-6, "{reach} {known}");
     }

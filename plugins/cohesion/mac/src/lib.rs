@@ -3,8 +3,8 @@
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, export, parameters};
 
 parameters! {
-    /// Stiffness degrades with the square of the intensity of adhesion. In compression the traction goes
-    /// on along the same line, which gives the host its zero; only the pulling part acts.
+    /// Stiffness degrades with the square of the intensity of adhesion. In compression the traction continues
+    /// linearly, from which the host finds its zero; only the tensile part acts.
     pub struct Mac {
         c_n: "Pa/m" = 1e12, 0.0, 1e30, "normal stiffness C_N of the intact bond";
         c_t: "Pa/m" = 1e12, 0.0, 1e30, "tangential stiffness C_T of the intact bond";
@@ -54,7 +54,7 @@ mod tests {
         }
     }
 
-    /// Drives one bond with the b = 0 damage of the model, beta = w/(C u^2), and gives the traction.
+    /// Drives one bond with the b = 0 damage of the model, beta = w/(C u^2), and returns the traction.
     fn envelope(law: &Mac, w: f64, u: f64) -> f64 {
         let beta = (w / (law.c_n * u * u)).min(1.0);
         law.traction(&at([u, 0.0, 0.0], 1.0 - beta), &[]).traction[0]
@@ -106,7 +106,7 @@ mod tests {
                 (law.energy(&at(up, 0.3), &[]) - law.energy(&at(down, 0.3), &[])) / (2.0 * e);
             assert!((slope / t[k] - 1.0).abs() < 1e-4, "{k}");
         }
-        // Compression stores nothing.
+        // No energy is stored in compression.
         assert_eq!(law.energy(&at([-1e-6, 0.0, 0.0], 0.0), &[]), 0.0);
     }
 }

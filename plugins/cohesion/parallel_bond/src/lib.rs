@@ -1,13 +1,13 @@
-//! Potyondy and Cundall's parallel bond: a short beam of cement that stretches, shears, bends and twists.
+//! Potyondy and Cundall's parallel bond: a short beam of cement in tension, shear, bending and torsion.
 #![forbid(unsafe_code)]
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, bounded, export, parameters};
 use std::f64::consts::PI;
 
 parameters! {
-    /// Stresses k_n u_n and k_t u_t over the area A, moments k_n I theta in bending and k_t J theta in twist.
-    /// In 3D A = pi R^2, I = pi R^4/4, J = 2 I; in 2D A = 2 R, I = 2 R^3/3 per depth. It breaks at once where the
-    /// edge is torn: F_n/A + |M_b| R/I > sigma_c, or sheared: |F_t|/A + |M_t| R/J > tau_c. Compression is the
-    /// contact's; R comes from the contact's area.
+    /// Stresses k_n u_n and k_t u_t over the area A, moments k_n I theta in bending and k_t J theta in torsion.
+    /// In 3D A = pi R^2, I = pi R^4/4, J = 2 I; in 2D A = 2 R, I = 2 R^3/3 per depth. It breaks at once if the
+    /// edge fails in tension: F_n/A + |M_b| R/I > sigma_c, or in shear: |F_t|/A + |M_t| R/J > tau_c. The contact carries
+    /// compression; R follows from the contact's area.
     pub struct ParallelBond {
         k_n: "Pa/m" = 1e14, 1.0, 1e30, "normal stiffness over the area";
         k_t: "Pa/m" = 1e14, 1.0, 1e30, "shear stiffness over the area";
@@ -29,7 +29,7 @@ impl Law for ParallelBond {
         | abi::FLAG_FORMS;
 
     fn fracture_energy(&self, angle: f64) -> Option<f64> {
-        // What it holds where it snaps.
+        // Stored energy at the break.
         let (c, s) = (angle.cos().max(0.0), angle.sin().abs());
         let u = (self.sigma_c / (self.k_n * c)).min(self.tau_c / (self.k_t * s));
         Some(0.5 * (self.k_n * c * c + self.k_t * s * s) * u * u)
@@ -100,7 +100,7 @@ export!(cohesion ParallelBond);
 mod tests {
     use super::*;
 
-    /// Beam theory: M = k_n I theta, edge stress M R/I, in space and in the plane.
+    /// Beam theory: M = k_n I theta, edge stress M R/I, in 3D and in 2D.
     #[test]
     fn bending_is_the_beams() {
         let law = ParallelBond::default();

@@ -1,11 +1,11 @@
-//! Tvergaard and Hutchinson's trapezoid: elastic, plateau, linear fall. It breaks by itself.
+//! Tvergaard and Hutchinson's trapezoid: elastic, plateau, linear softening. It breaks by itself.
 #![forbid(unsafe_code)]
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, bounded, export, parameters};
 
 parameters! {
-    /// On the opening u = sqrt(<u_n>^2 + |u_t|^2): K u to u_i = strength/K, the strength to u_p, then a line to
+    /// For the opening u = sqrt(<u_n>^2 + |u_t|^2): K u to u_i = strength/K, the strength to u_p, then linear to
     /// u_u; energy = strength (u_u + u_p - u_i)/2. `u_p` = u_i + plateau (u_longest - u_i), where the longest
-    /// plateau that the energy allows ends at u_i/2 + energy/strength. Unloading goes to the origin.
+    /// plateau that the energy allows ends at u_i/2 + energy/strength. Unloading is to the origin.
     pub struct TvergaardHutchinson {
         k: "Pa/m" = 1e13, 1.0, 1e30, "stiffness, the same in both directions";
         strength: "Pa" = 1e6, 1e-30, 1e30, "traction of the plateau";
@@ -34,7 +34,7 @@ impl Law for TvergaardHutchinson {
                     .into(),
             );
         }
-        // 1 - D is strength/(k u) on the plateau: below about 1e-12 it would be rounded away beside 1.
+        // 1 - D is strength/(k u) on the plateau: below about 1e-12 it would be lost by round-off relative to 1.
         if self.strength * self.strength < 1e-12 * self.k * self.energy {
             return Err(
                 "k is so high that 1 - D cannot be told from 0: lower k, or raise the strength"
@@ -109,7 +109,7 @@ mod tests {
                 (pull.area / law.energy - 1.0).abs() < 1e-4,
                 "{plateau}: {pull:?}"
             );
-            // A step may fall beside the corner.
+            // A step may not hit the corner exactly.
             assert!((pull.peak / law.strength - 1.0).abs() < 1e-3);
             assert_eq!(pull.damage, 1.0);
         }

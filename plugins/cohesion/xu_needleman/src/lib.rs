@@ -1,12 +1,12 @@
-//! Xu and Needleman's exponential cohesion, with a history: it unloads to the origin and stays broken.
+//! Xu and Needleman's exponential cohesion, with history: it unloads to the origin and stays broken.
 #![forbid(unsafe_code)]
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, bounded, export, parameters};
 
 parameters! {
     /// t_n = (1 - D)(phi/delta_n^2) u_n and t_t = (1 - D)(2 phi/delta_t^2) u_t with phi = e strength delta_n and
-    /// 1 - D = exp(-u_n/delta_n - |u_t|^2/delta_t^2), which never rises: on a first loading this is the law of
+    /// 1 - D = exp(-u_n/delta_n - |u_t|^2/delta_t^2), which never increases: on first loading this is the law of
     /// the paper in mode I, and in mode II (with q = 1, r = 0); in mixed mode the paper's factor (1 + u_n/delta_n)
-    /// of t_t is left out, so that one D serves both. Below `left` the bond is broken.
+    /// of t_t is omitted, so that one D applies to both. Below `left` the bond is broken.
     pub struct XuNeedleman {
         strength: "Pa" = 1e6, 1e-30, 1e30, "normal strength, reached at delta_n";
         delta_n: "m" = 1e-6, 1e-30, 1e30, "normal opening at the strength";
@@ -25,8 +25,8 @@ impl Law for XuNeedleman {
         abi::FLAG_OPENING | abi::FLAG_TENSION_ONLY | abi::FLAG_BREAKS | abi::FLAG_FORMS;
 
     fn fracture_energy(&self, angle: f64) -> Option<f64> {
-        // Of the single modes; what mixed openings take depends on the two lengths. The tail beyond `left` is cut:
-        // of phi it is (1 + x) exp(-x) at x = -ln left in mode I, exp(-x) in mode II.
+        // For pure modes; in mixed mode the energy depends on the two lengths. The tail beyond `left` is cut off:
+        // it is phi (1 + x) exp(-x) at x = -ln left in mode I, phi exp(-x) in mode II.
         let tail = if angle.sin().abs() < 1e-9 {
             (1.0 - self.left.ln()) * self.left
         } else if angle.cos().abs() < 1e-9 {

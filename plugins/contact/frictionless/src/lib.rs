@@ -3,7 +3,7 @@
 use fretwork_law::{ContactLaw, Friction, Law, Site, abi, export, parameters};
 
 parameters! {
-    /// Signorini's condition alone.
+    /// Signorini's condition only.
     pub struct Frictionless {
         restitution_n: "" = 0.0, 0.0, 1.0, "normal restitution (Newton)";
     }

@@ -1,7 +1,7 @@
-//! Mohr-Coulomb: |t_t| <= c + mu p, with p >= -tension: a plastic strength that lasts, not a bond.
+//! Mohr-Coulomb: |t_t| <= c + mu p, with p >= -tension: a permanent plastic strength, not a bond.
 //!
-//! The host's cone is |t_t| <= mu (p + c_n) + c_t with c_n the tension strength. So that a contact without
-//! pressure holds c and no more, c_t = c - mu tension.
+//! The host's cone is |t_t| <= mu (p + c_n) + c_t with c_n the tension strength. So that the shear
+//! strength at zero pressure is c, c_t = c - mu tension.
 #![forbid(unsafe_code)]
 use fretwork_law::{ContactLaw, Friction, Law, Site, abi, export, parameters};
 
@@ -50,7 +50,7 @@ export!(contact MohrCoulomb);
 mod tests {
     use super::*;
 
-    /// The host's cone is Mohr-Coulomb's line: c at p = 0, c + mu p under pressure, and less in tension.
+    /// The host's cone is the Mohr-Coulomb line: c at p = 0, c + mu p under pressure, and less in tension.
     #[test]
     fn is_the_line_of_mohr_and_coulomb() {
         let law = MohrCoulomb {

@@ -3,8 +3,8 @@
 use fretwork_law::{ContactLaw, Friction, Law, Site, export, parameters};
 
 parameters! {
-    /// u_n+ = -e_n u_n- where the bodies approach faster than v_min. Below it there is no impact but
-    /// contact, e = 0: weight alone brings g h a step, and a restitution would let it rattle for ever.
+    /// u_n+ = -e_n u_n- if the bodies approach faster than v_min. Below it the contact is persistent,
+    /// e = 0: weight alone adds g h per step, and restitution would make the contact rattle without end.
     pub struct NewtonRestitution {
         e_n: "" = 0.8, 0.0, 1.0, "normal restitution";
         e_t: "" = 0.0, 0.0, 1.0, "tangential restitution, in impacts only";
@@ -22,8 +22,8 @@ impl Law for NewtonRestitution {
 
 impl ContactLaw for NewtonRestitution {
     fn friction(&self, site: &Site, _state: &[f64]) -> Friction {
-        // A tangential restitution of resting contacts would turn their sliding round at every step, so
-        // the approach decides on both.
+        // A tangential restitution of resting contacts would reverse their sliding at every step, so
+        // the approach velocity decides on both.
         let impact = -site.velocity[0] > self.v_min;
         let only = |e| if impact { e } else { 0.0 };
         Friction {
@@ -64,7 +64,7 @@ mod tests {
         assert_eq!(at(&LAW, [3.0, 1.0, 0.0]), [0.0, 0.0, 0.3]);
     }
 
-    /// A ball bounces e^(2 n) h_0 high, and rests as soon as it comes slower than v_min.
+    /// A ball bounces e^(2 n) h_0 high, and rests as soon as it arrives slower than v_min.
     #[test]
     fn bounces_end() {
         let (mut v, mut bounces) = (-1.0f64, 0);

@@ -1,4 +1,4 @@
-//! Friction of wheel on rail, falling with the slip velocity: mu = mu_0 ((1 - A) exp(-B w) + A).
+//! Friction of wheel on rail, decreasing with the slip velocity: mu = mu_0 ((1 - A) exp(-B w) + A).
 #![forbid(unsafe_code)]
 use fretwork_law::{ContactLaw, Friction, Law, Site, export, parameters};
 
@@ -19,7 +19,7 @@ impl Law for RailFallingFriction {
 
 impl ContactLaw for RailFallingFriction {
     fn friction(&self, site: &Site, _state: &[f64]) -> Friction {
-        // An infinite w with B = 0 would be no number.
+        // An infinite w with B = 0 would give NaN.
         let slip = site.velocity[1].hypot(site.velocity[2]).min(f64::MAX);
         Friction {
             mu: self.mu_0 * ((1.0 - self.a) * (-self.b * slip).exp() + self.a),
@@ -51,7 +51,7 @@ mod tests {
         };
         assert_eq!(at(&law, [-7.0, 0.0, 0.0]), 0.5);
         assert_eq!(at(&law, [0.0, 1e6, 0.0]), 0.2);
-        // Half of the fall at w = ln 2/B.
+        // Half of the decrease at w = ln 2/B.
         let w = core::f64::consts::LN_2 / 2.0;
         assert!((at(&law, [0.0, -0.6 * w, 0.8 * w]) - 0.35).abs() < 1e-15);
         // -B (1 - A) mu_0 is the slope at rest.

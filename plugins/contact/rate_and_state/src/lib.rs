@@ -1,13 +1,13 @@
 //! Rate-and-state friction: mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c).
 //!
-//! The state is kept as psi = ln(V_0 theta/D_c): it starts at zero, the steady state at V_0, whatever the
+//! The state is stored as psi = ln(V_0 theta/D_c): it starts at zero, the steady state at V_0, whatever the
 //! parameters, and neither theta's range nor its logarithm can overflow. With x = V theta/D_c,
-//! * aging law, d theta/dt = 1 - x: theta goes to D_c/V as exp(-V t/D_c);
-//! * slip law, d theta/dt = -x ln x: psi goes to ln(V_0/V) as exp(-V t/D_c).
+//! * aging law, d theta/dt = 1 - x: theta tends to D_c/V as exp(-V t/D_c);
+//! * slip law, d theta/dt = -x ln x: psi tends to ln(V_0/V) as exp(-V t/D_c).
 //!
-//! Both are followed exactly over a step at its velocity u_th. A contact that carries nothing neither slides
-//! nor ages: its state waits. The direct effect a is taken from u^-: a floor v_min far below the sliding
-//! velocities makes friction jump by a ln(V/v_min) where a stuck contact starts to slide.
+//! Both are integrated exactly over a step at its velocity u_th. The state of a contact without load does not
+//! change. The direct effect a is computed from u^-: a lower bound v_min far below the sliding
+//! velocities makes friction jump by a ln(V/v_min) when a sticking contact starts to slide.
 #![forbid(unsafe_code)]
 use fretwork_law::{ContactLaw, Friction, Law, Site, Variable, export, parameters};
 
@@ -25,7 +25,7 @@ parameters! {
 }
 
 impl RateAndState {
-    /// The velocity that the law sees (m/s): positive and finite.
+    /// The velocity that enters the law (m/s): positive and finite.
     fn velocity(&self, site: &Site) -> f64 {
         let slip = site.velocity[1].hypot(site.velocity[2]);
         slip.clamp(self.v_min, f64::MAX)
@@ -43,7 +43,7 @@ impl RateAndState {
         if self.slip_law > 0.5 {
             return steady + (psi - steady) * (-z).exp();
         }
-        // exp psi' = exp(psi - z) + exp(steady) (1 - exp(-z)), summed without leaving the logarithms.
+        // exp psi' = exp(psi - z) + exp(steady) (1 - exp(-z)), summed in logarithms.
         let (old, new) = (psi - z, steady + (-(-z).exp_m1()).ln());
         let (large, small) = (old.max(new), old.min(new));
         large + (small - large).exp().ln_1p()
@@ -114,7 +114,7 @@ mod tests {
         })
     }
 
-    /// Ten times the velocity: + a ln 10 at once, (a - b) ln 10 in the end.
+    /// Ten times the velocity: + a ln 10 at once, (a - b) ln 10 at the end.
     #[test]
     fn a_velocity_step_is_the_textbook_one() {
         for law in both() {
@@ -143,7 +143,7 @@ mod tests {
         }
     }
 
-    /// One step against the differential equation of theta itself, by the classical Runge-Kutta scheme.
+    /// One step compared with the differential equation of theta, integrated by the classical Runge-Kutta scheme.
     #[test]
     fn a_step_solves_the_equation() {
         for law in both() {
@@ -175,12 +175,12 @@ mod tests {
         }
     }
 
-    /// At rest theta ages by the time held, and only under load; the slip law's does not.
+    /// At rest theta grows by the hold time, under load only; that of the slip law does not.
     #[test]
     fn rest_ages() {
         let [aging, slip] = both();
         let rest = |law| after(law, 0.0, 20.0, 0.0);
-        // theta 10 s + 20 s, less what the floor's 2e-3 D_c of slip takes.
+        // theta 10 s + 20 s, less the effect of the 2e-3 D_c of slip at v_min.
         assert!((rest(&aging) - 3f64.ln()).abs() < 3e-3);
         assert!(rest(&slip) < 0.02);
         let mut next = [0.7];

@@ -3,7 +3,7 @@
 use fretwork_law::{ContactLaw, Friction, Law, Site, export, parameters};
 
 parameters! {
-    /// Each length is a constant and a share of the reduced radius r1 r2/(r1 + r2), which is half the radius
+    /// Each length is a constant plus a fraction of the reduced radius r1 r2/(r1 + r2), which is half the radius
     /// between equal bodies and the radius itself against a flat one.
     pub struct RollingFriction {
         mu: "" = 0.3, 0.0, 1e6, "friction coefficient";

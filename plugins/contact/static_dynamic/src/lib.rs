@@ -1,14 +1,14 @@
 //! Static and dynamic friction: mu_s while the contact sticks, mu_d while it slides.
 //!
-//! Sticking is told by the velocity (no internal variable): at most v_s sticks, as a solver leaves a stuck
-//! contact a small velocity. Above it the coefficient falls along a ramp of width v_r, for a jump would let a
-//! contact near v_s change its coefficient at every step. Choose v_r above h (mu_s - mu_d) p_n/(h m), the
-//! change of velocity that the whole fall makes in one step.
+//! Sticking is determined from the velocity (no internal variable): a contact sticks up to v_s, since a solver leaves
+//! a small velocity. Above it the coefficient decreases along a ramp of width v_r, since with a jump a
+//! contact near v_s would change its coefficient at every step. Choose v_r above h (mu_s - mu_d) p_n/(h m), the
+//! change of velocity that the full decrease causes in one step.
 #![forbid(unsafe_code)]
 use fretwork_law::{ContactLaw, Friction, Law, Site, export, parameters};
 
 parameters! {
-    /// mu_s for V <= v_s, mu_d for V >= v_s + v_r, a straight line between.
+    /// mu_s for V <= v_s, mu_d for V >= v_s + v_r, linear in between.
     pub struct StaticDynamic {
         mu_s: "" = 0.4, 0.0, 1e6, "static friction coefficient";
         mu_d: "" = 0.3, 0.0, 1e6, "dynamic friction coefficient, at most mu_s";
@@ -71,8 +71,8 @@ mod tests {
         assert!((at(&law, [0.0, 1e3, 0.0]) - 0.3).abs() < 1e-15);
     }
 
-    /// A block under a pull between both coefficients stays when it sticks and slides on when it slides;
-    /// one that is braked comes to rest without its friction ever falling back.
+    /// A block pulled with a force between both coefficients stays at rest if it sticks and keeps sliding if it slides;
+    /// one that decelerates comes to rest without its friction ever decreasing again.
     #[test]
     fn does_not_chatter() {
         let law = StaticDynamic::default();
@@ -90,7 +90,7 @@ mod tests {
         };
         assert_eq!(run(0.0, 0.35), (0.0, 0));
         assert_eq!(run(0.1, 0.25), (0.0, 0));
-        // Sliding it gains (0.35 - 0.3) g in a second.
+        // While sliding it gains (0.35 - 0.3) g in a second.
         let (v, falls) = run(0.01, 0.35);
         assert!((v - (0.01 + 0.05 * 9.81)).abs() < 1e-9 && falls == 0, "{v}");
     }

@@ -1,9 +1,9 @@
-//! Friction that falls with the sliding velocity: mu = mu_d + (mu_s - mu_d) exp(-V/V_s).
+//! Friction that decreases with the sliding velocity: mu = mu_d + (mu_s - mu_d) exp(-V/V_s).
 #![forbid(unsafe_code)]
 use fretwork_law::{ContactLaw, Friction, Law, Site, export, parameters};
 
 parameters! {
-    /// Smooth from mu_s at rest to mu_d at high velocity.
+    /// Smooth decrease from mu_s at rest to mu_d at high velocity.
     pub struct VelocityWeakening {
         mu_s: "" = 0.4, 0.0, 1e6, "friction coefficient at rest";
         mu_d: "" = 0.3, 0.0, 1e6, "friction coefficient at high velocity, at most mu_s";
@@ -57,7 +57,7 @@ mod tests {
         };
         let step = 0.5 * core::f64::consts::LN_2;
         for (k, mu) in [0.6, 0.4, 0.3, 0.25, 0.225].into_iter().enumerate() {
-            // The direction of sliding does not matter, the normal velocity neither.
+            // Neither the direction of sliding nor the normal velocity matters.
             let v = step * k as f64;
             let (a, b) = (at(&law, [3.0, 0.6 * v, -0.8 * v]), at(&law, [0.0, -v, 0.0]));
             assert!((a - mu).abs() < 1e-14 && (b - mu).abs() < 1e-14);

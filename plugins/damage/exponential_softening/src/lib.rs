@@ -5,7 +5,7 @@ use fretwork_law::{DamageLaw, Intact, Law, Site, export, parameters};
 parameters! {
     /// traction = strength exp(-(u - u_0)/l) beyond u_0 = strength/K, with l from
     /// energy = strength u_0/2 + strength l. Below `left` times the strength the bond is broken; the tail
-    /// that is cut off held left (energy - strength u_0/2).
+    /// that is cut off has the energy left (energy - strength u_0/2).
     pub struct ExponentialSoftening {
         strength: "Pa" = 3e5, 1e-30, 1e30, "traction at which damage begins";
         energy: "J/m^2" = 0.5, 1e-30, 1e30, "fracture energy, the area under the curve";
@@ -20,7 +20,7 @@ impl Law for ExponentialSoftening {
     const REFERENCE: &'static str = "M. Ortiz, A. Pandolfi, Int. J. Numer. Methods Eng. 44 (1999) 1267-1282 (history by secant unloading); exponential softening as in J. Oliver et al., Eng. Fract. Mech. 69 (2002) 113-136";
 
     fn fracture_energy(&self, _angle: f64) -> Option<f64> {
-        // Cut earlier than this the tail is missing by more than a certificate lets pass.
+        // If cut earlier, the missing tail exceeds the tolerance of certification.
         (self.left <= 5e-3).then_some(self.energy)
     }
 }
@@ -33,7 +33,7 @@ impl DamageLaw for ExponentialSoftening {
         }
         let first = self.strength / k;
         let l = self.energy / self.strength - 0.5 * first;
-        // A bond that holds more than the fracture energy at its strength snaps.
+        // A bond that stores more than the fracture energy at its strength breaks.
         let share = if l > 0.0 {
             (-(u - first) / l).exp()
         } else {
@@ -68,7 +68,7 @@ mod tests {
         }
     }
 
-    /// Over the K of real interfaces: at K = 1e10 half of the energy is stored before the onset.
+    /// Over the range of K of real interfaces: at K = 1e10 half of the energy is stored before the onset.
     #[test]
     fn the_area_holds_from_soft_to_stiff() {
         let law = ExponentialSoftening {

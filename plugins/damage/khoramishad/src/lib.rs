@@ -1,10 +1,10 @@
-//! Fatigue by cycles counted in time, from the largest strain of a cycle: Khoramishad and co-workers.
+//! Fatigue with cycles counted by time, from the largest strain of a cycle: Khoramishad and co-workers.
 #![forbid(unsafe_code)]
 use fretwork_law::{DamageLaw, Intact, Law, Site, export, parameters};
 
 parameters! {
     /// dD/dN = alpha (e - threshold)^beta with e = opening/reference the strain of the maximum load, which
-    /// the scene holds (a cycle jump: the load's maximum is applied steadily and N = frequency t).
+    /// the scene applies (a cycle jump: the maximum of the load is applied steadily and N = frequency t).
     pub struct Khoramishad {
         alpha: "" = 1.5, 0.0, 1e30, "damage a cycle at unit strain above the threshold";
         beta: "" = 2.0, 1e-3, 100.0, "exponent";
@@ -27,7 +27,7 @@ impl DamageLaw for Khoramishad {
         if strain <= self.threshold {
             return site.damage;
         }
-        // An overflow times no cycles must stay nothing, not become "not a number" and so a break.
+        // An overflow times zero cycles must give zero, not NaN, which would be a break.
         let finite = |x: f64| x.min(f64::MAX);
         let cycles = finite(self.frequency * site.h.max(0.0));
         let power = finite((strain - self.threshold).powf(self.beta));

@@ -1,11 +1,11 @@
-//! Linear softening from a strength to nothing, with a given fracture energy.
+//! Linear softening from a strength to zero, with a given fracture energy.
 #![forbid(unsafe_code)]
 use fretwork_law::{DamageLaw, Intact, Law, Site, export, parameters};
 
 parameters! {
-    /// The traction along the opening u falls from `strength` at u_0 = strength/K to zero at
-    /// u_f = 2 energy/strength. Where the bond is so soft that u_f <= u_0 it snaps at the strength, and
-    /// dissipates the strength^2/(2K) that it holds then.
+    /// The traction decreases with the opening u from `strength` at u_0 = strength/K to zero at
+    /// u_f = 2 energy/strength. If the bond is so compliant that u_f <= u_0 it breaks at the strength, and
+    /// dissipates the stored energy strength^2/(2K).
     pub struct LinearSoftening {
         strength: "Pa" = 3e5, 1e-30, 1e30, "traction at which damage begins";
         energy: "J/m^2" = 0.5, 1e-30, 1e30, "fracture energy, the area under the curve";
@@ -72,7 +72,7 @@ mod tests {
         assert_eq!(pull.damage, 1.0);
     }
 
-    /// Over the K of real interfaces: at K = 1e10 u_0 = 10 um is half of u_f.
+    /// Over the range of K of real interfaces: at K = 1e10 u_0 = 10 um is half of u_f.
     #[test]
     fn the_area_holds_from_soft_to_stiff() {
         let law = LinearSoftening {

@@ -3,10 +3,10 @@
 use fretwork_law::{DamageLaw, Intact, Law, Site, export, parameters};
 
 parameters! {
-    /// With b = 0 and a cohesion of exponent m = 2 a bond that opens for ever dissipates exactly w. Its
-    /// intensity of adhesion fades like 1/u^2 and never reaches 0 by itself: below `beta_broken` the bond
-    /// counts as broken (0 turns this off). The energy still stored, at that moment at most
-    /// beta_broken w/2, must be booked as fracture energy by the host, and the bond has then dissipated
+    /// With b = 0 and a cohesion of exponent m = 2 a bond that opens without limit dissipates exactly w. Its
+    /// intensity of adhesion decreases as 1/u^2 and never reaches 0 by itself: below `beta_broken` the bond
+    /// counts as broken (0 disables this). The energy stored at that moment, at most
+    /// beta_broken w/2, must be added to the fracture energy by the host, and the bond has then dissipated
     /// w (1 - beta_broken/2).
     pub struct Mac {
         w: "J/m^2" = 0.1, 0.0, 1e30, "Dupre's energy: fracture energy of the bond";
@@ -21,7 +21,7 @@ impl Law for Mac {
     const REFERENCE: &'static str = "Y. Monerie, V. Acary, Formulation dynamique d'un modele de zone cohesive tridimensionnel, Rev. Eur. Elements Finis 10 (2001); M. Raous, L. Cangemi, M. Cocou, Comput. Methods Appl. Mech. Engrg 177 (1999) 383-399";
 
     fn fracture_energy(&self, _angle: f64) -> Option<f64> {
-        // Viscosity adds to it with the speed; the cut at beta_broken takes off a share that depends on m.
+        // Viscosity increases it with the speed; the cut at beta_broken reduces it by a fraction that depends on m.
         (self.b == 0.0 && self.beta_broken <= 5e-3).then_some(self.w)
     }
 }
@@ -38,14 +38,14 @@ impl Mac {
             return 1.0 - beta;
         }
         if m <= 1.0 {
-            // Y does not fall as D grows: without viscosity the bond snaps.
+            // Y does not decrease as D grows: without viscosity the bond breaks at once.
             return if self.b > 0.0 {
                 d + h * (intact.release_rate(d) - self.w) / self.b
             } else {
                 1.0
             };
         }
-        // Y(D) - w - b (D - D_i)/h falls from above zero at D_i to below zero at 1.
+        // Y(D) - w - b (D - D_i)/h decreases from above zero at D_i to below zero at 1.
         let (mut low, mut high) = (d, 1.0);
         while high - low > f64::EPSILON {
             let mid = 0.5 * (low + high);
@@ -61,7 +61,7 @@ impl Mac {
 
 impl DamageLaw for Mac {
     fn grow(&self, site: &Site, intact: &Intact, _state: &[f64], _next: &mut [f64]) -> f64 {
-        // `max` and `min` rather than `clamp`: a damage that is not a number is the host's to hear of.
+        // `max` and `min` rather than `clamp`, so that a NaN damage reaches the host, which reports it.
         let d = self.damage(site.damage, site.h, intact);
         let d = d.max(site.damage).min(1.0);
         if 1.0 - d < self.beta_broken { 1.0 } else { d }
@@ -74,7 +74,7 @@ export!(damage Mac);
 mod tests {
     use super::*;
 
-    /// Pulls a MAC bond (C = 1e12 Pa/m) at a speed to an opening; gives (peak, area to the end).
+    /// Opens a MAC bond (C = 1e12 Pa/m) at a speed to an opening; returns (peak, area to the end).
     fn pull(law: &Mac, speed: f64, h: f64, reach: f64) -> (f64, f64) {
         let (c, mut d, mut peak, mut area, mut last, mut u) = (1e12, 0.0, 0.0f64, 0.0, 0.0, 0.0);
         while u < reach {
@@ -226,7 +226,7 @@ mod tests {
         assert!((step(&law, 0.2, 1.0) - 0.4).abs() < 1e-12);
     }
 
-    /// The cut at `beta_broken` costs beta_broken w/2 and no more.
+    /// The cut at `beta_broken` reduces the energy by no more than beta_broken w/2.
     #[test]
     fn the_cut_is_where_the_doc_says() {
         let law = Mac::default();

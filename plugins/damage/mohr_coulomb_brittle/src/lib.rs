@@ -1,9 +1,9 @@
-//! Brittle failure on a Mohr-Coulomb threshold with a tension cut-off.
+//! Brittle failure at a Mohr-Coulomb envelope with a tension cut-off.
 #![forbid(unsafe_code)]
 use fretwork_law::{DamageLaw, Intact, Law, Site, export, parameters};
 
 parameters! {
-    /// D goes to 1 at once when the traction the undamaged bond would carry leaves the strength envelope:
+    /// D becomes 1 at once when the traction of the undamaged bond leaves the strength envelope:
     /// t_n > tensile_strength, or |t_t| > cohesion + friction p, with p the pressure of this step.
     pub struct MohrCoulombBrittle {
         tensile_strength: "Pa" = 1e8, 0.0, 1e30, "normal traction at which the bond breaks";

@@ -3,8 +3,8 @@
 use fretwork_law::{DamageLaw, Intact, Law, Site, Variable, export, parameters};
 
 parameters! {
-    /// While the opening grows below its envelope the stiffness K+ = (1 - D)^m K falls by
-    /// dK+ = -K+ du/length; unloading goes to the origin. The envelope softens linearly from `strength` with
+    /// While the opening grows below its envelope the stiffness K+ = (1 - D)^m K decreases by
+    /// dK+ = -K+ du/length; unloading is to the origin. The envelope softens linearly from `strength` with
     /// fracture energy `energy`. (In the paper the reloading stiffness is incremental; here it is the secant
     /// one, since a bond's stored energy must follow from D.)
     pub struct Nguyen {
@@ -35,7 +35,7 @@ impl Law for Nguyen {
 impl DamageLaw for Nguyen {
     fn grow(&self, site: &Site, intact: &Intact, state: &[f64], next: &mut [f64]) -> f64 {
         let (u, k, d) = (intact.opening(), intact.stiffness(), site.damage);
-        // The host does not look whether variables are finite.
+        // The host does not check whether variables are finite.
         next[0] = u.min(f64::MAX);
         if k <= 0.0 || d >= 1.0 {
             return d;

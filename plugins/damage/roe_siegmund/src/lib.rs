@@ -5,8 +5,8 @@ use fretwork_law::{DamageLaw, Intact, Law, Site, Variable, export, parameters};
 parameters! {
     /// dD = (|du|/length) (T/T_max - endurance)+ once the accumulated opening has passed `start`, with T the
     /// traction that the bond carries and T_max = strength (1 - D). D is never below that of the monotonic
-    /// envelope, linear softening from `strength` with fracture energy `energy`; a bond that holds more than
-    /// the energy at its strength snaps. A pull damages by its cycles too and so takes less than the energy.
+    /// envelope, linear softening from `strength` with fracture energy `energy`; a bond that stores more than
+    /// the energy at its strength breaks. Monotonic loading also accumulates cyclic damage and so needs less energy.
     pub struct RoeSiegmund {
         strength: "Pa" = 1e6, 1e-30, 1e30, "strength of the new bond";
         energy: "J/m^2" = 5.0, 1e-30, 1e30, "fracture energy of the envelope";
@@ -59,7 +59,7 @@ impl RoeSiegmund {
 impl DamageLaw for RoeSiegmund {
     fn grow(&self, site: &Site, intact: &Intact, state: &[f64], next: &mut [f64]) -> f64 {
         let d = site.damage;
-        // The host does not look whether variables are finite.
+        // The host does not check whether variables are finite.
         let u = intact.opening().min(f64::MAX);
         let [last, travel] = [state[0], state[1]];
         let du = (u - last).abs();
@@ -155,7 +155,7 @@ mod tests {
         testing::damage_never_falls(&RoeSiegmund::default());
     }
 
-    /// Without cycles the area under a pull is the envelope's energy.
+    /// Without cyclic damage the area under monotonic loading is the envelope's energy.
     #[test]
     fn the_envelope_holds_its_energy() {
         let law = RoeSiegmund {

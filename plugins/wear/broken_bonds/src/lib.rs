@@ -1,6 +1,6 @@
-//! Detachment by broken bonds: a bond that breaks sets its share of matter free, once.
+//! Wear by broken bonds: a bond that breaks releases a volume, once.
 //!
-//! Nothing is said of slip or force: what detaches follows from the cohesion and its damage.
+//! Slip and force do not enter: detachment follows from the cohesion and its damage.
 #![forbid(unsafe_code)]
 use fretwork_law::{Law, Site, Variable, WearLaw, export, parameters};
 
@@ -11,7 +11,7 @@ parameters! {
     }
 }
 
-/// Never bonded; bonded; broken and booked.
+/// Never bonded; bonded; broken and counted.
 const NEVER: f64 = 0.0;
 const BONDED: f64 = 1.0;
 const BOOKED: f64 = 2.0;
@@ -37,8 +37,8 @@ impl WearLaw for BrokenBonds {
             next[0] = BONDED;
             return 0.0;
         }
-        // D is 1 without a bond too. One that breaks in its first step is never seen with less, but it has
-        // an opening, which contacts that never bonded have not.
+        // D is 1 without a bond too. A bond that breaks in its first step never has a smaller D here, but it has
+        // an opening, unlike contacts that were never bonded.
         let opened = site.opening != [0.0; 3];
         if state[0] == BONDED || (state[0] == NEVER && opened) {
             next[0] = BOOKED;
@@ -56,7 +56,7 @@ mod tests {
 
     const LAW: BrokenBonds = BrokenBonds { thickness: 0.5 };
 
-    /// Drives one contact of 3 m^2 through damages and openings, and gives the volume of each step.
+    /// Drives one contact of 3 m^2 through damages and openings, and returns the volume of each step.
     fn history(steps: &[(f64, f64)]) -> Vec<f64> {
         let mut state = [BrokenBonds::VARIABLES[0].initial];
         steps

@@ -3,10 +3,10 @@
 //! Mass lost per metre rolled and area of contact, against x = T gamma/A, the energy per metre and area:
 //! 5.3 x (mild, x < 10.4 N/mm^2), 55 (severe), in ug/(m mm^2). Sources differ beyond 77.2 N/mm^2 (catastrophic):
 //! 55 + 61.9 (x - 77.2), which is continuous and the default; 61.9 x - 4778.7, which begins at zero; 61.9 x.
-//! They have the slope in common, so `catastrophic_start` chooses: 0.055, 0, or 4.7787 kg/m^3.
+//! They have the same slope, so `catastrophic_start` selects one: 0.055, 0, or 4.7787 kg/m^3.
 //!
-//! A contact rolls `speed` h in a step, so T gamma is its friction work over that distance. The map is one of
-//! wheel on rail: `area` is meant to be the patch between the first bodies.
+//! A contact rolls `speed` h in a step, so T gamma is its friction work over that distance. The map is for
+//! wheel on rail: `area` should be that of the patch between the first bodies.
 #![forbid(unsafe_code)]
 use fretwork_law::{Law, Site, WearLaw, export, parameters};
 
@@ -39,7 +39,7 @@ impl Law for TGamma {
 
 impl WearLaw for TGamma {
     fn volume(&self, site: &Site, _slip: f64, work: f64, _state: &[f64], _next: &mut [f64]) -> f64 {
-        // All is multiplied by A times the distance, which may be zero: x = work/swept.
+        // All terms are multiplied by A times the distance, which may be zero: x = work/swept.
         let distance = (self.speed * site.h.max(0.0)).min(f64::MAX);
         let swept = (site.area.max(0.0) * distance).min(f64::MAX);
         let work = work.max(0.0);
@@ -79,7 +79,7 @@ mod tests {
         assert!((got / expected - 1.0).abs() < 1e-12, "{got} {expected}");
     }
 
-    /// 100 mm^2 and 2e-3 m make 0.2 ug of each ug/(m mm^2).
+    /// With 100 mm^2 and 2e-3 m, 1 ug/(m mm^2) is 0.2 ug.
     #[test]
     fn regimes_by_hand() {
         let law = TGamma::default();
