@@ -1,11 +1,12 @@
 //! Commit: the laws' update at the end of a solved step.
 
 use super::columns::{Columns, StepInfo};
+use super::evaluator::LawEvaluator;
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::kind::Domain;
 use super::library::{Call, LawError};
-use super::pass::{ContactStep, LawEvaluator, MomentStep, Totals};
+use super::step_result::{ContactStep, MomentStep, Totals};
 use crate::contact::{ContactDissipation, Network};
 use crate::geometry::space::{Space, VectorLike};
 

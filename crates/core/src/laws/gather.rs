@@ -1,8 +1,9 @@
 //! Fills the columns of a batch from the network.
 
 use super::columns::{Columns, StepInfo, Triple};
+use super::evaluator::LawEvaluator;
 use super::interface::Interface;
-use super::pass::{ContactStep, LawEvaluator};
+use super::step_result::ContactStep;
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 
