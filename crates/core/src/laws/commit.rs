@@ -7,7 +7,7 @@ use super::interface::{Interface, Loaded};
 use super::kind::Domain;
 use super::library::{Call, LawError};
 use super::step_result::{ContactStep, MomentStep, Totals};
-use crate::contact::{ContactDissipation, Network};
+use crate::contact::{Contact, ContactDissipation, Network};
 use crate::geometry::space::{Space, VectorLike};
 
 impl LawEvaluator {
@@ -33,55 +33,13 @@ impl LawEvaluator {
         if let Some(losses) = &mut network.losses {
             losses.clear();
         }
-        for (k, (contact, site)) in network.contacts.iter_mut().zip(sites).enumerate() {
-            contact.impulse = site.solution.impulse;
-            contact.moment = S::Spin::zero();
-            let n = &contact.normal;
-            contact.pressed = if n.dot(&contact.impulse) > 0.0 && !contact.beyond {
-                contact.pressed + info.h
-            } else {
-                0.0
-            };
-            let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
-            let friction = -site.solution.unilateral_t.dot(&ut);
-            totals.friction += friction;
-            contact.slides = site.slides;
-            contact.friction_work += friction;
-            let work = -site.solution.unilateral_n * un + site.corrected;
-            totals.correction -= site.corrected;
-            let adheres = site.adheres && site.solution.unilateral_n < 0.0;
-            if adheres {
-                totals.adhesion += work;
-            } else {
-                totals.impact += work;
-            }
-            if let Some(spent) = &mut network.spent {
-                let (adhesion, impact) = if adheres { (work, 0.0) } else { (0.0, work) };
-                spent[k] = ContactDissipation {
-                    friction,
-                    impact,
-                    adhesion,
-                    correction: -site.corrected,
-                    ..ContactDissipation::default()
-                };
-            }
-        }
-        for turn in turns {
-            let contact = &mut network.contacts[turn.moment.contact as usize];
-            contact.moment = turn.moment.moment;
-            let friction = -turn.moment.friction.dot(&turn.spin);
-            totals.friction += friction;
-            contact.friction_work += friction;
-            if let Some(spent) = &mut network.spent {
-                spent[turn.moment.contact as usize].friction += friction;
-            }
-        }
+        commit_contacts(network, sites, info, &mut totals);
+        commit_moments(network, turns, &mut totals);
         for (index, law) in laws.iter().enumerate() {
-            let bonded = |n: &Network<S>, c: &crate::contact::Contact<S>| {
-                n.bond(c).is_some_and(|b| b.intact())
-            };
             if law.opens() {
-                self.select(network, |c| c.law as usize == index && bonded(network, c));
+                self.select(network, |c| {
+                    c.law as usize == index && network.bond(c).is_some_and(|b| b.intact())
+                });
                 if !self.members.is_empty() {
                     self.commit_bonds(
                         index,
@@ -132,6 +90,74 @@ impl LawEvaluator {
             for (column, next) in columns.iter_mut().zip(&self.columns.state_next) {
                 column[slot] = next[k];
             }
+        }
+    }
+}
+
+/// Stores the impulses of the contacts, and books what they dissipated.
+fn commit_contacts<S: Space>(
+    network: &mut Network<S>,
+    sites: &[ContactStep<S>],
+    info: &StepInfo,
+    totals: &mut Totals,
+) {
+    for (k, (contact, site)) in network.contacts.iter_mut().zip(sites).enumerate() {
+        let dissipated = commit_contact(contact, site, info.h);
+        totals.friction += dissipated.friction;
+        totals.correction += dissipated.correction;
+        totals.adhesion += dissipated.adhesion;
+        totals.impact += dissipated.impact;
+        if let Some(spent) = &mut network.spent {
+            spent[k] = dissipated;
+        }
+    }
+}
+
+/// Stores the impulse of a contact; returns what it dissipated.
+#[inline]
+fn commit_contact<S: Space>(
+    contact: &mut Contact<S>,
+    site: &ContactStep<S>,
+    h: f64,
+) -> ContactDissipation {
+    contact.impulse = site.solution.impulse;
+    contact.moment = S::Spin::zero();
+    let n = &contact.normal;
+    contact.pressed = if n.dot(&contact.impulse) > 0.0 && !contact.beyond {
+        contact.pressed + h
+    } else {
+        0.0
+    };
+    let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
+    let friction = -site.solution.unilateral_t.dot(&ut);
+    contact.slides = site.slides;
+    contact.friction_work += friction;
+    let work = -site.solution.unilateral_n * un + site.corrected;
+    let adheres = site.adheres && site.solution.unilateral_n < 0.0;
+    let (adhesion, impact) = if adheres { (work, 0.0) } else { (0.0, work) };
+    ContactDissipation {
+        friction,
+        impact,
+        adhesion,
+        correction: -site.corrected,
+        ..ContactDissipation::default()
+    }
+}
+
+/// Stores the moments of the contacts that resist rotation, and books their friction.
+fn commit_moments<S: Space>(
+    network: &mut Network<S>,
+    turns: &[MomentStep<S>],
+    totals: &mut Totals,
+) {
+    for turn in turns {
+        let contact = &mut network.contacts[turn.moment.contact as usize];
+        contact.moment = turn.moment.moment;
+        let friction = -turn.moment.friction.dot(&turn.spin);
+        totals.friction += friction;
+        contact.friction_work += friction;
+        if let Some(spent) = &mut network.spent {
+            spent[turn.moment.contact as usize].friction += friction;
         }
     }
 }
