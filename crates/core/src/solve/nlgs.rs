@@ -2,12 +2,13 @@
 
 use super::accelerate::Acceleration;
 use super::chosen::SolvePath;
-use super::colour::{Order, Schedule};
+use super::colour::Order;
 use super::error::Norm;
 use super::form::{Place, Problem};
 use super::local::solver::Method;
 use super::measure::{free_velocity, measure, scale};
 use super::row::{Lines, Load, Row, SolverBody, Update, Visit, visit};
+use super::schedule::Schedule;
 use crate::geometry::space::Space;
 
 /// Solver options.
