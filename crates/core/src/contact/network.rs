@@ -92,9 +92,55 @@ pub struct Contact<S: Space> {
     pub friction_work: f64,
 }
 
+/// Where two bodies touch.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactGeometry<S: Space> {
+    /// Gap (m), positive when open.
+    pub gap: f64,
+    /// Unit normal, from the antagonist to the candidate.
+    pub normal: S::Vector,
+    /// Vectors from each body's centre to the contact point (m).
+    pub arms: [S::Vector; 2],
+    /// Reduced radius (m).
+    pub radius: f64,
+}
+
 impl<S: Space> Contact<S> {
     /// Marks a frictional contact without memory.
     pub const NO_MEMORY: u32 = u32::MAX;
+
+    /// Returns a contact of two faces that forms at a time (s): not central, without memory or impulse.
+    #[inline]
+    pub fn new(
+        key: Key,
+        bodies: [u32; 2],
+        law: u16,
+        geometry: ContactGeometry<S>,
+        formed_at: f64,
+    ) -> Self {
+        Self {
+            key,
+            bodies,
+            law,
+            central: false,
+            vertex_contact: false,
+            broken: false,
+            slot: Self::NO_MEMORY,
+            gap: geometry.gap,
+            normal: geometry.normal,
+            arms: geometry.arms,
+            radius: geometry.radius,
+            impulse: S::Vector::zero(),
+            moment: S::Spin::zero(),
+            formed_at,
+            pressed: 0.0,
+            closing: false,
+            later: false,
+            beyond: false,
+            slides: false,
+            friction_work: 0.0,
+        }
+    }
 
     /// Returns the slot of its memory, if any.
     pub fn memory(&self) -> Option<usize> {

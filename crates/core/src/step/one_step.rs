@@ -85,7 +85,7 @@ impl<S: Space> Simulation<S> {
         let (bodies, gravity) = (&self.state.bodies, &self.state.gravity);
         let mut free = motion::free_velocities(bodies, gravity, time, h, theta);
         self.free_systems(&mut free);
-        self.foresee(&free);
+        self.add_predicted_contacts(&free);
         self.remember(info)?;
         report.timing.detect = clock.elapsed();
         Ok((start, free))

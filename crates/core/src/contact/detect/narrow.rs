@@ -2,7 +2,7 @@
 
 use super::{LawTable, drop_contact, frame, held};
 use crate::bodies::Bodies;
-use crate::contact::network::{Contact, Key, Network};
+use crate::contact::network::{Contact, ContactGeometry, Key, Network};
 use crate::geometry::convex::{ContactPoint, ConvexCollider, Core};
 use crate::geometry::shape::{Ball, ClosestPoint, Shapes};
 use crate::geometry::space::{Space, VectorLike};
@@ -117,30 +117,23 @@ impl<'a, S: Space> Narrow<'a, S> {
             ]
         };
         let found = Contact {
-            key: Key {
-                candidate: a,
-                antagonist: b,
-                feature: 0,
-            },
-            bodies: [p.body, q.body],
-            law,
             central,
-            vertex_contact: false,
-            broken: false,
-            slot: Contact::<S>::NO_MEMORY,
-            gap: length - sum,
-            normal,
-            arms,
-            radius: p.radius * q.radius / sum,
-            impulse: S::Vector::zero(),
-            moment: S::Spin::zero(),
-            formed_at: self.time,
-            pressed: 0.0,
-            closing: false,
-            later: false,
-            beyond: false,
-            slides: false,
-            friction_work: 0.0,
+            ..Contact::new(
+                Key {
+                    candidate: a,
+                    antagonist: b,
+                    feature: 0,
+                },
+                [p.body, q.body],
+                law,
+                ContactGeometry {
+                    gap: length - sum,
+                    normal,
+                    arms,
+                    radius: p.radius * q.radius / sum,
+                },
+                self.time,
+            )
         };
         self.admit(network, found, old);
     }
@@ -194,30 +187,23 @@ impl<'a, S: Space> Narrow<'a, S> {
             let centred = ball.offset == S::Vector::zero() && self.bodies.length[i] == ball.radius;
             let arm = self.centres[a as usize] - normal * ball.radius - self.bodies.position[i];
             let found = Contact {
-                key: Key {
-                    candidate: a,
-                    antagonist: b,
-                    feature: u64::from(touch.feature),
-                },
-                bodies: [ball.body, surface.body],
-                law,
                 central: still && centred && self.isotropic(i),
-                vertex_contact: false,
-                broken: false,
-                slot: Contact::<S>::NO_MEMORY,
-                gap,
-                normal,
-                arms: [arm, closest_point - self.bodies.position[j]],
-                radius: ball.radius,
-                impulse: S::Vector::zero(),
-                moment: S::Spin::zero(),
-                formed_at: self.time,
-                pressed: 0.0,
-                closing: false,
-                later: false,
-                beyond: false,
-                slides: false,
-                friction_work: 0.0,
+                ..Contact::new(
+                    Key {
+                        candidate: a,
+                        antagonist: b,
+                        feature: u64::from(touch.feature),
+                    },
+                    [ball.body, surface.body],
+                    law,
+                    ContactGeometry {
+                        gap,
+                        normal,
+                        arms: [arm, closest_point - self.bodies.position[j]],
+                        radius: ball.radius,
+                    },
+                    self.time,
+                )
             };
             self.admit(network, found, matched);
         }

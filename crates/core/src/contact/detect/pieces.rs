@@ -2,7 +2,7 @@
 
 use super::narrow::Narrow;
 use super::{SLACK, drop_contact, frame, held};
-use crate::contact::network::{Contact, Key, Network};
+use crate::contact::network::{Contact, ContactGeometry, Key, Network};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, Core};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -140,30 +140,23 @@ impl<S: Space> Narrow<'_, S> {
         let taken: Vec<usize> = met.iter().filter_map(|m| m.1).collect();
         for (m, before) in met {
             let found = Contact {
-                key: Key {
-                    candidate: pair.name.0,
-                    antagonist: pair.name.1,
-                    feature: m.feature,
-                },
-                bodies: pair.bodies,
-                law: pair.law,
-                central: false,
                 vertex_contact: !m.facing,
-                broken: false,
-                slot: Contact::<S>::NO_MEMORY,
-                gap: m.gap,
-                normal: m.normal,
-                arms: [m.on_candidate + origins[0], m.on_antagonist + origins[1]],
-                radius: if m.share > 0.0 { m.share } else { pair.radius },
-                impulse: S::Vector::zero(),
-                moment: S::Spin::zero(),
-                formed_at: self.time,
-                pressed: 0.0,
-                closing: false,
-                later: false,
-                beyond: false,
-                slides: false,
-                friction_work: 0.0,
+                ..Contact::new(
+                    Key {
+                        candidate: pair.name.0,
+                        antagonist: pair.name.1,
+                        feature: m.feature,
+                    },
+                    pair.bodies,
+                    pair.law,
+                    ContactGeometry {
+                        gap: m.gap,
+                        normal: m.normal,
+                        arms: [m.on_candidate + origins[0], m.on_antagonist + origins[1]],
+                        radius: if m.share > 0.0 { m.share } else { pair.radius },
+                    },
+                    self.time,
+                )
             };
             self.admit(network, found, before);
         }
@@ -233,30 +226,23 @@ mod tests {
     fn contact(x: f64, feature: u64) -> Contact<Dim2> {
         let arm = Vector2::new(x, 0.0);
         Contact {
-            key: Key {
-                candidate: Key::PIECE,
-                antagonist: Key::PIECE | 1,
-                feature,
-            },
-            bodies: [0, 1],
-            law: 0,
-            central: false,
-            vertex_contact: false,
-            broken: false,
             slot: 0,
-            gap: 0.0,
-            normal: Vector2::new(0.0, 1.0),
-            arms: [arm, arm],
-            radius: 1.0,
-            impulse: Vector2::zeros(),
-            moment: nalgebra::Vector1::zeros(),
-            formed_at: 0.0,
-            pressed: 0.0,
-            closing: false,
-            later: false,
-            beyond: false,
-            slides: false,
-            friction_work: 0.0,
+            ..Contact::new(
+                Key {
+                    candidate: Key::PIECE,
+                    antagonist: Key::PIECE | 1,
+                    feature,
+                },
+                [0, 1],
+                0,
+                ContactGeometry {
+                    gap: 0.0,
+                    normal: Vector2::new(0.0, 1.0),
+                    arms: [arm, arm],
+                    radius: 1.0,
+                },
+                0.0,
+            )
         }
     }
 

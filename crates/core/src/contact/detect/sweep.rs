@@ -7,7 +7,7 @@
 
 use super::extents::Extents;
 use crate::bodies::Bodies;
-use crate::contact::network::{Contact, Key};
+use crate::contact::network::{Contact, ContactGeometry, Key};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, ConvexCollider, Core};
 use crate::geometry::shape::{Ball, Carried, ClosestPoint, Shapes};
 use crate::geometry::space::{Space, VectorLike};
@@ -407,30 +407,25 @@ impl<'a, S: Space> Sweep<'a, S> {
             // Approach of the two until they meet.
             let way = (-s * self.h * m.normal.dot(&velocity)).max(0.0);
             out.push(Contact {
-                key: Key {
-                    candidate: pair.names.0,
-                    antagonist: pair.names.1,
-                    feature: m.feature,
-                },
-                bodies: [i, j],
-                law,
-                central: false,
                 vertex_contact: !m.facing,
-                broken: false,
-                slot: Contact::<S>::NO_MEMORY,
-                gap: m.gap + way,
-                normal: m.normal,
-                arms: [m.on_candidate, m.on_antagonist],
-                radius: if m.share > 0.0 { m.share } else { radius },
-                impulse: S::Vector::zero(),
-                moment: S::Spin::zero(),
-                formed_at: self.time,
-                pressed: 0.0,
-                slides: false,
-                friction_work: 0.0,
                 closing: true,
-                later: false,
                 beyond: true,
+                ..Contact::new(
+                    Key {
+                        candidate: pair.names.0,
+                        antagonist: pair.names.1,
+                        feature: m.feature,
+                    },
+                    [i, j],
+                    law,
+                    ContactGeometry {
+                        gap: m.gap + way,
+                        normal: m.normal,
+                        arms: [m.on_candidate, m.on_antagonist],
+                        radius: if m.share > 0.0 { m.share } else { radius },
+                    },
+                    self.time,
+                )
             });
         }
     }

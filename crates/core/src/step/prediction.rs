@@ -89,7 +89,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Adds the contacts that the free velocities (without contact impulses) would close in the step.
-    pub(super) fn foresee(&mut self, free: &[(S::Vector, S::Spin)]) {
+    pub(super) fn add_predicted_contacts(&mut self, free: &[(S::Vector, S::Spin)]) {
         let motion = Motion {
             velocities: free,
             time: self.state.time,
@@ -100,7 +100,7 @@ impl<S: Space> Simulation<S> {
         if detect::is_calm(network, &self.shapes, bodies, all, motion.h) {
             return;
         }
-        detect::foresee(network, &self.shapes, bodies, &self.table, &motion);
+        detect::add_predicted(network, &self.shapes, bodies, &self.table, &motion);
     }
 
     /// Solves the step, and repeats while the resulting velocities close contacts that were not part of the
@@ -156,13 +156,13 @@ impl<S: Space> Simulation<S> {
                 detect::report_passing(network, &self.shapes, bodies, &self.table, &motion);
                 return Ok(());
             }
-            let found = detect::overlooked(network, &self.shapes, bodies, &self.table, &motion);
+            let found = detect::find_missed(network, &self.shapes, bodies, &self.table, &motion);
             if found.is_empty() {
                 return Ok(());
             }
             let solved = network.contacts.iter().zip(&self.workspace.solved.sites);
             last = solved.map(|(c, s)| (c.key, s.solution.impulse)).collect();
-            network.take_in(found);
+            network.merge_contacts(found);
             start.restore(&mut self.state.bodies);
             self.restart_systems();
             self.remember(info)?;
