@@ -10,12 +10,14 @@ pub mod polygon_pair;
 pub mod polygon_surface;
 pub mod polyhedron;
 mod polyhedron_clip;
+mod polyhedron_hull;
 pub mod polyhedron_mass;
 mod polyhedron_outline;
 mod polyhedron_pair;
 mod polyhedron_surface;
 #[cfg(test)]
 mod polyhedron_tests;
+mod topology;
 
 pub use boundary::Boundary;
 

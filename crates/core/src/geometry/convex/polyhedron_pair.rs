@@ -33,78 +33,53 @@ pub fn meet(
 ) {
     let reach = gauge.reach + roundings[0] + roundings[1];
     let alike = ALIKE * gauge.slack + ROUNDING * apart.norm();
-    let (from_a, face_a) = separation(a, b, &-apart, reach);
-    if from_a > reach {
-        return;
-    }
-    let (from_b, face_b) = separation(b, a, apart, reach);
-    if from_b > reach {
-        return;
-    }
-    // Of two equally good faces the candidate's is used, independent of rounding.
-    let a_leads = from_a + alike >= from_b;
-    let best = from_a.max(from_b);
     let pair = Pair {
         a,
         b,
         apart: *apart,
         roundings,
     };
-    let points = if best.is_finite() {
-        let (face, own) = if a_leads { (face_a, a) } else { (face_b, b) };
-        let (other, way) = if a_leads { (b, -apart) } else { (a, *apart) };
-        let lead = Lead {
-            own,
-            other,
-            face,
-            apart: way,
-            of_candidate: a_leads,
-        };
-        polyhedron_clip::clip(&lead, gauge.slack)
-    } else {
-        Vec::new()
+    let Some(reference) = pair.reference_face(reach, alike, gauge.slack) else {
+        return;
     };
     let first = out.len();
-    let over = |p: &polyhedron_clip::Point| p.height <= best + alike;
-    // A bond over a face keeps it while it bends, even if edges become nearer.
-    let bonded = gauge.held && points.len() > 2;
-    if bonded || best >= -gauge.slack && points.iter().any(over) {
-        pair.face(&points, a_leads, gauge, out);
-        out[first..].sort_by_key(|m| m.feature);
-        return;
-    }
-    let rods = a.normals().is_empty() && b.normals().is_empty();
-    let crossed = if best > 0.0 || rods {
-        None
-    } else {
-        crossing(a, b, apart)
-    };
-    if best > 0.0 || rods || crossed.as_ref().is_some_and(|c| c.depth > 0.0) {
-        let near = nearest(a, b, apart);
-        let distance = near.way.norm();
-        // Beside the face by at most the slack.
-        let beside = best > 0.0
-            && distance * distance - best * best <= gauge.slack * gauge.slack
-            && !points.is_empty();
-        let over_face = beside || gauge.held && best > 0.0 && !points.is_empty();
-        if !over_face {
-            if distance <= reach {
+    match pair.closest(&reference, alike, gauge) {
+        Closest::Face => {
+            pair.face(&reference.points, reference.of_candidate, gauge, out);
+            out[first..].sort_by_key(|m| m.feature);
+        }
+        Closest::Edges(near) => {
+            if near.way.norm() <= reach {
                 pair.edges(&near, gauge, out);
             }
-            return;
         }
-    } else if let Some(crossed) = crossed.filter(|c| c.depth > best + alike || points.is_empty()) {
-        pair.push(
+        Closest::Crossing(crossed) => pair.push(
             &crossed.points,
             &crossed.normal,
             crossed.depth,
             crossed.feature,
             out,
-        );
-        return;
+        ),
     }
-    pair.face(&points, a_leads, gauge, out);
-    out[first..].sort_by_key(|m| m.feature);
+}
+
+/// The face with the greatest separation, and the opposite face clipped to its sides.
+struct ReferenceFace {
+    /// Separation along its normal (m); minus infinity between two segments.
+    separation: f64,
+    /// Whether it is a face of the candidate.
+    of_candidate: bool,
+    points: Vec<polyhedron_clip::Point>,
+}
+
+/// The features of two polyhedra that are closest, or penetrate least.
+enum Closest {
+    /// The reference face, and the face opposite to it.
+    Face,
+    /// Two edges or corners.
+    Edges(Nearest),
+    /// Two edges that penetrate each other.
+    Crossing(Crossing),
 }
 
 /// The two polyhedra and their positions.
@@ -116,6 +91,84 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
+    /// Finds the reference face; `None` if the polyhedra are farther apart than `reach` (m). Of two faces that are
+    /// equally good within `alike` (m) the candidate's is used, independent of rounding.
+    fn reference_face(&self, reach: f64, alike: f64, slack: f64) -> Option<ReferenceFace> {
+        let (a, b, apart) = (self.a, self.b, self.apart);
+        let (from_a, face_a) = separation(a, b, &-apart, reach);
+        if from_a > reach {
+            return None;
+        }
+        let (from_b, face_b) = separation(b, a, &apart, reach);
+        if from_b > reach {
+            return None;
+        }
+        let of_candidate = from_a + alike >= from_b;
+        let separation = from_a.max(from_b);
+        let points = if separation.is_finite() {
+            let (face, own) = if of_candidate {
+                (face_a, a)
+            } else {
+                (face_b, b)
+            };
+            let (other, apart) = if of_candidate {
+                (b, -apart)
+            } else {
+                (a, apart)
+            };
+            let lead = Lead {
+                own,
+                other,
+                face,
+                apart,
+                of_candidate,
+            };
+            polyhedron_clip::clip(&lead, slack)
+        } else {
+            Vec::new()
+        };
+        Some(ReferenceFace {
+            separation,
+            of_candidate,
+            points,
+        })
+    }
+
+    /// Chooses between the reference face and two edges.
+    fn closest(&self, reference: &ReferenceFace, alike: f64, gauge: &ContactTolerances) -> Closest {
+        let (best, points) = (reference.separation, &reference.points);
+        let over = |p: &polyhedron_clip::Point| p.height <= best + alike;
+        // A bond over a face keeps it while it bends, even if edges become nearer.
+        let bonded = gauge.held && points.len() > 2;
+        if bonded || best >= -gauge.slack && points.iter().any(over) {
+            return Closest::Face;
+        }
+        let segments = self.a.normals().is_empty() && self.b.normals().is_empty();
+        let crossed = if best > 0.0 || segments {
+            None
+        } else {
+            crossing(self.a, self.b, &self.apart)
+        };
+        if best > 0.0 || segments || crossed.as_ref().is_some_and(|c| c.depth > 0.0) {
+            let near = nearest(self.a, self.b, &self.apart);
+            let distance = near.way.norm();
+            // Beside the face by at most the slack.
+            let beside = best > 0.0
+                && distance * distance - best * best <= gauge.slack * gauge.slack
+                && !points.is_empty();
+            let over_face = beside || gauge.held && best > 0.0 && !points.is_empty();
+            return if over_face {
+                Closest::Face
+            } else {
+                Closest::Edges(near)
+            };
+        }
+        match crossed.filter(|c| c.depth > best + alike || points.is_empty()) {
+            Some(crossed) => Closest::Crossing(crossed),
+            None => Closest::Face,
+        }
+    }
+
     fn thickness(&self) -> f64 {
         self.roundings[0] + self.roundings[1]
     }
