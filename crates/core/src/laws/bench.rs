@@ -5,11 +5,12 @@ pub mod scale;
 
 use super::bonds::Held;
 use super::columns::StepInfo;
+use super::error::LawError;
 use super::evaluator::{Care, LawEvaluator};
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::kind::Kind;
-use super::library::{Call, LawError};
+use super::library::Call;
 use serde::Serialize;
 
 /// State of a contact on the bench.

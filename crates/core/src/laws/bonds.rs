@@ -1,10 +1,11 @@
 //! Commit of bonds: updates openings, damage and energies, and breaks bonds.
 
 use super::columns::StepInfo;
+use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::history::LawHistory;
 use super::interface::Interface;
-use super::library::{Call, LawError};
+use super::library::Call;
 use super::step_result::{ContactStep, MomentStep, Totals};
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};

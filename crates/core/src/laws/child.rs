@@ -2,7 +2,8 @@
 //!
 //! Only the command-line program does so, after [`enable`]; other users of the library are not affected.
 
-use super::library::{LawError, Plugin};
+use super::error::LawError;
+use super::library::Plugin;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};

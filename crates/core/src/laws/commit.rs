@@ -1,11 +1,12 @@
 //! Commit: the laws' update at the end of a solved step.
 
 use super::columns::{Columns, StepInfo};
+use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::kind::Domain;
-use super::library::{Call, LawError};
+use super::library::Call;
 use super::step_result::{ContactStep, MomentStep, Totals};
 use crate::contact::{Contact, ContactDissipation, Network};
 use crate::geometry::space::{Space, VectorLike};

@@ -4,9 +4,9 @@
 //! returns at run time: a constant law is called once, any other is tried on a bench with trial contacts.
 
 use super::bench::{Bench, Motion, State};
+use super::error::LawError;
 use super::interface::{BondRule, Interface, Loaded};
 use super::kind::Kind;
-use super::library::LawError;
 
 /// Whether a law requires a feature, from never to always.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

@@ -2,10 +2,11 @@
 
 use super::bonds::Held;
 use super::columns::{Columns, StepInfo, not_finite};
+use super::error::LawError;
 use super::guarded::{self, Guarded};
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
-use super::library::{Call, LawError, Plugin};
+use super::library::{Call, Plugin};
 use super::range::settle;
 use crate::contact::{Contact, Network};
 use crate::geometry::space::Space;

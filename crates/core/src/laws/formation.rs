@@ -1,10 +1,11 @@
 //! Formation of bonds, and memory for the internal variables of new contacts.
 
 use super::columns::StepInfo;
+use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::history::LawHistory;
 use super::interface::Interface;
-use super::library::{Call, LawError};
+use super::library::Call;
 use crate::contact::Network;
 use crate::geometry::space::{Space, VectorLike};
 

@@ -1,11 +1,12 @@
 //! Prepare: the laws write friction, cohesion and the linearised bond of every contact into its standard local form.
 
 use super::columns::{Outputs, StepInfo};
+use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::gather::contact_area;
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
-use super::library::{Call, LawError};
+use super::library::Call;
 use super::step_result::Velocities;
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};

@@ -13,8 +13,9 @@ pub mod wear;
 
 use super::columns::Outputs;
 use super::commit::SlotCommit;
+use super::error::LawError;
 use super::interface::Interface;
-use super::library::{Call, LawError};
+use super::library::Call;
 use super::range::Range;
 use crate::geometry::space::{Dim2, Dim3, Space};
 use std::any::Any;

@@ -6,7 +6,8 @@ use crate::contact::network::Key;
 use crate::geometry::space::Space;
 use crate::laws::columns::Outputs;
 use crate::laws::commit::SlotCommit;
-use crate::laws::library::{Call, LawError};
+use crate::laws::error::LawError;
+use crate::laws::library::Call;
 use crate::laws::range::Range::NotNegative;
 use std::collections::HashSet;
 
