@@ -50,7 +50,7 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     /// Returns the tangential part of a vector at a contact of unit normal `n`.
     fn tangential(n: &Self::Vector, v: &Self::Vector) -> Self::Tangent;
     /// Returns the vector of a tangential part.
-    fn lift(n: &Self::Vector, t: &Self::Tangent) -> Self::Vector;
+    fn tangent_vector(n: &Self::Vector, t: &Self::Tangent) -> Self::Vector;
     /// Returns omega x n as a tangential part.
     fn roll(spin: &Self::Spin, n: &Self::Vector) -> Self::Tangent;
     /// Returns n x p_t as a spin.
@@ -162,7 +162,7 @@ impl Space for Dim2 {
         Vector1::new(n[0] * v[1] - n[1] * v[0])
     }
     #[inline(always)]
-    fn lift(n: &Self::Vector, t: &Self::Tangent) -> Self::Vector {
+    fn tangent_vector(n: &Self::Vector, t: &Self::Tangent) -> Self::Vector {
         Vector2::new(-n[1] * t[0], n[0] * t[0])
     }
     #[inline(always)]
@@ -292,7 +292,7 @@ impl Space for Dim3 {
         v - n * n.dot(v)
     }
     #[inline(always)]
-    fn lift(_n: &Self::Vector, t: &Self::Tangent) -> Self::Vector {
+    fn tangent_vector(_n: &Self::Vector, t: &Self::Tangent) -> Self::Vector {
         *t
     }
     #[inline(always)]

@@ -162,7 +162,7 @@ impl Bench {
             theta: 0.5,
         };
         self.contact(states, motions, &info, &mut answers)?;
-        let held = self.grow(states, motions, &info)?;
+        let held = self.update_damage(states, motions, &info)?;
         for (k, answer) in answers.iter_mut().enumerate() {
             answer.damage = held.damage.get(k).copied().unwrap_or(states[k].damage);
         }
@@ -246,7 +246,7 @@ impl Bench {
         Ok(())
     }
 
-    fn grow(
+    fn update_damage(
         &mut self,
         states: &mut [State],
         motions: &[Motion],
@@ -256,7 +256,7 @@ impl Bench {
         if self.law.opens() {
             self.fill(states, motions, info, true);
             self.evaluator
-                .grow(&self.law, &mut self.history, info, &mut held)?;
+                .update_damage(&self.law, &mut self.history, info, &mut held)?;
             self.said.clone_from(&self.evaluator.columns.out.damage);
             self.keep(states);
         }

@@ -30,7 +30,7 @@ impl Held {
     pub fn stored(&self, law: &Interface, k: usize) -> f64 {
         let m = law.cohesion().map_or(0.0, |c| c.plugin.degradation);
         let share = if law.damages() {
-            left(self.damage[k], m)
+            degradation_factor(self.damage[k], m)
         } else {
             1.0
         };
@@ -47,15 +47,23 @@ impl LawEvaluator {
         law: &Interface,
         history: &mut LawHistory,
         network: &mut Network<S>,
-        sites: &[ContactStep<S>],
-        turns: &[MomentStep<S>],
+        contact_steps: &[ContactStep<S>],
+        moment_steps: &[MomentStep<S>],
         info: &StepInfo,
         totals: &mut Totals,
     ) -> Result<(), LawError> {
         let mut held = std::mem::take(&mut self.held);
-        self.open(index, law, network, sites, turns, info, &mut held);
-        self.gather_after(law, network, sites, info);
-        self.grow(law, history, info, &mut held)
+        self.update_openings(
+            index,
+            law,
+            network,
+            contact_steps,
+            moment_steps,
+            info,
+            &mut held,
+        );
+        self.gather_after(law, network, contact_steps, info);
+        self.update_damage(law, history, info, &mut held)
             .map_err(|e| self.at(law, network, e))?;
         for (at, damage) in self.members.iter().zip(&mut held.damage) {
             let bond = network.bond(&network.contacts[*at]);
@@ -65,24 +73,24 @@ impl LawEvaluator {
                 *damage = (before + network.cycle_multiplier * (*damage - before)).min(1.0);
             }
         }
-        self.keep_state(index, network);
-        self.settle(index, law, network, &held, totals);
+        self.store_variables(index, network);
+        self.store_damage(index, law, network, &held, totals);
         self.held = held;
         Ok(())
     }
 
     /// Returns the largest increase from the damage used in the step's impulses to the damage that the
-    /// resulting openings give; [`LawEvaluator::adopt`] takes the latter for the next solve.
+    /// resulting openings give; [`LawEvaluator::adopt_trial_damage`] takes the latter for the next solve.
     ///
     /// # Errors
     /// The law's error, with the contact.
-    pub fn trial<S: Space>(
+    pub fn trial_damage<S: Space>(
         &mut self,
         laws: &[Interface],
         history: &mut LawHistory,
         network: &mut Network<S>,
-        sites: &[ContactStep<S>],
-        turns: &[MomentStep<S>],
+        contact_steps: &[ContactStep<S>],
+        moment_steps: &[MomentStep<S>],
         info: &StepInfo,
     ) -> Result<f64, LawError> {
         let mut worst = 0.0f64;
@@ -96,9 +104,17 @@ impl LawEvaluator {
             }
             let before = network.memory[index].clone_openings();
             let mut held = std::mem::take(&mut self.held);
-            self.open(index, law, network, sites, turns, info, &mut held);
-            self.gather_after(law, network, sites, info);
-            self.grow(law, history, info, &mut held)
+            self.update_openings(
+                index,
+                law,
+                network,
+                contact_steps,
+                moment_steps,
+                info,
+                &mut held,
+            );
+            self.gather_after(law, network, contact_steps, info);
+            self.update_damage(law, history, info, &mut held)
                 .map_err(|e| self.at(law, network, e))?;
             network.memory[index].restore_openings(before);
             for (k, at) in self.members.iter().enumerate() {
@@ -119,7 +135,7 @@ impl LawEvaluator {
     }
 
     /// Uses the damage of the last trial in the impulses of the next solve.
-    pub fn adopt<S: Space>(&mut self, network: &mut Network<S>) {
+    pub fn adopt_trial_damage<S: Space>(&mut self, network: &mut Network<S>) {
         for (index, slot, damage) in self.trials.drain(..) {
             network.memory[index].bonds[slot].used = damage;
         }
@@ -127,7 +143,7 @@ impl LawEvaluator {
 
     /// Computes damage at the current openings as the maximum of the cohesion law's and the damage law's
     /// value.
-    pub(super) fn grow(
+    pub(super) fn update_damage(
         &mut self,
         law: &Interface,
         history: &mut LawHistory,
@@ -168,13 +184,13 @@ impl LawEvaluator {
 
     /// Updates the openings. Work of the bond's impulse that is not stored is damping.
     #[allow(clippy::too_many_arguments)]
-    fn open<S: Space>(
+    fn update_openings<S: Space>(
         &self,
         index: usize,
         law: &Interface,
         network: &mut Network<S>,
-        sites: &[ContactStep<S>],
-        turns: &[MomentStep<S>],
+        contact_steps: &[ContactStep<S>],
+        moment_steps: &[MomentStep<S>],
         info: &StepInfo,
         held: &mut Held,
     ) {
@@ -187,7 +203,7 @@ impl LawEvaluator {
         } = network;
         let memory = &mut memory[index];
         for at in &self.members {
-            let (contact, site) = (&contacts[*at], &sites[*at]);
+            let (contact, contact_step) = (&contacts[*at], &contact_steps[*at]);
             let Some(slot) = contact.memory() else {
                 works.push(0.0);
                 lost.push(0.0);
@@ -196,14 +212,17 @@ impl LawEvaluator {
             };
             let bond = &mut memory.bonds[slot];
             let n = &contact.normal;
-            let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
+            let (un, ut) = (
+                n.dot(&contact_step.average),
+                S::tangential(n, &contact_step.average),
+            );
             let before = bond.opening_n;
             bond.opening_n += info.h * un;
             // A tension-only bond is not linear across zero opening; its energy there depends on the step.
             turned.push(law.tension_only() && (before > 0.0) != (bond.opening_n > 0.0));
-            lost.push(site.lost);
+            lost.push(contact_step.lost);
             bond.opening_t += ut * info.h;
-            let s = &site.solution;
+            let s = &contact_step.solution;
             let (en, et) = (
                 n.dot(&s.impulse) - s.unilateral_n,
                 S::tangential(n, &s.impulse) - s.unilateral_t,
@@ -217,27 +236,30 @@ impl LawEvaluator {
         if !memory.rotates {
             return;
         }
-        // `turns` and `members` both follow the order of the contacts, members by interface.
+        // `moment_steps` and `members` both follow the order of the contacts, members by interface.
         let mut place = vec![usize::MAX; contacts.len()];
-        for (k, turn) in turns.iter().enumerate() {
-            place[turn.moment.contact as usize] = k;
+        for (k, moment_step) in moment_steps.iter().enumerate() {
+            place[moment_step.moment.contact as usize] = k;
         }
         for (at, (work, lost)) in self.members.iter().zip(works.iter_mut().zip(lost)) {
-            let (Some(turn), Some(slot)) = (turns.get(place[*at]), contacts[*at].memory()) else {
+            let (Some(moment_step), Some(slot)) =
+                (moment_steps.get(place[*at]), contacts[*at].memory())
+            else {
                 continue;
             };
-            memory.rotations[slot] += turn.spin * info.h;
-            let turned = (turn.moment.moment - turn.moment.friction).dot(&turn.spin);
+            memory.rotations[slot] += moment_step.spin * info.h;
+            let turned =
+                (moment_step.moment.moment - moment_step.moment.friction).dot(&moment_step.spin);
             let life = &mut memory.bonds[slot].life;
             life.work[2] -= turned;
-            life.friction -= turn.moment.friction.dot(&turn.spin);
+            life.friction -= moment_step.moment.friction.dot(&moment_step.spin);
             *work += turned;
-            *lost += turn.lost;
+            *lost += moment_step.lost;
         }
     }
 
     /// Stores damage and energy; breaks fully damaged bonds.
-    fn settle<S: Space>(
+    fn store_damage<S: Space>(
         &self,
         index: usize,
         law: &Interface,
@@ -247,7 +269,13 @@ impl LawEvaluator {
     ) {
         let m = law.cohesion().map_or(0.0, |c| c.plugin.degradation);
         let damages = law.damages();
-        let share = |damage: f64| if damages { left(damage, m) } else { 1.0 };
+        let share = |damage: f64| {
+            if damages {
+                degradation_factor(damage, m)
+            } else {
+                1.0
+            }
+        };
         for (k, at) in self.members.iter().enumerate() {
             let contact = &mut network.contacts[*at];
             let Some(slot) = contact.memory() else {
@@ -312,7 +340,7 @@ fn raise(damage: &mut [f64], new: &[f64]) {
 }
 
 /// (1 - D)^m.
-fn left(damage: f64, m: f64) -> f64 {
+fn degradation_factor(damage: f64, m: f64) -> f64 {
     let intact = 1.0 - damage;
     if m == 1.0 {
         intact

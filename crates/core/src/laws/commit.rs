@@ -12,7 +12,7 @@ use crate::contact::{Contact, ContactDissipation, Network};
 use crate::geometry::space::{Space, VectorLike};
 
 impl LawEvaluator {
-    /// Completes the step. `sites` holds the results of the contacts in the network's order, `turns` the
+    /// Completes the step. `contact_steps` holds the results of the contacts in the network's order, `moment_steps` the
     /// moments of those that resist rotation.
     ///
     /// # Errors
@@ -22,8 +22,8 @@ impl LawEvaluator {
         laws: &[Interface],
         history: &mut LawHistory,
         network: &mut Network<S>,
-        sites: &[ContactStep<S>],
-        turns: &[MomentStep<S>],
+        contact_steps: &[ContactStep<S>],
+        moment_steps: &[MomentStep<S>],
         info: &StepInfo,
     ) -> Result<Totals, LawError> {
         let mut totals = Totals::default();
@@ -34,8 +34,8 @@ impl LawEvaluator {
         if let Some(losses) = &mut network.losses {
             losses.clear();
         }
-        commit_contacts(network, sites, info, &mut totals);
-        commit_moments(network, turns, &mut totals);
+        commit_contacts(network, contact_steps, info, &mut totals);
+        commit_moments(network, moment_steps, &mut totals);
         for (index, law) in laws.iter().enumerate() {
             if law.opens() {
                 self.select(network, |c| {
@@ -47,8 +47,8 @@ impl LawEvaluator {
                         law,
                         history,
                         network,
-                        sites,
-                        turns,
+                        contact_steps,
+                        moment_steps,
                         info,
                         &mut totals,
                     )?;
@@ -68,7 +68,7 @@ impl LawEvaluator {
                     interface: law,
                     law: loaded,
                     network,
-                    sites,
+                    contact_steps,
                     info,
                     totals: &mut totals,
                     evaluator: self,
@@ -82,7 +82,7 @@ impl LawEvaluator {
     }
 
     /// Stores the new internal variables of the members.
-    pub(super) fn keep_state<S: Space>(&self, index: usize, network: &mut Network<S>) {
+    pub(super) fn store_variables<S: Space>(&self, index: usize, network: &mut Network<S>) {
         for (k, at) in self.members.iter().enumerate() {
             let Some(slot) = network.contacts[*at].memory() else {
                 continue;
@@ -98,12 +98,12 @@ impl LawEvaluator {
 /// Stores the impulses of the contacts, and books what they dissipated.
 fn commit_contacts<S: Space>(
     network: &mut Network<S>,
-    sites: &[ContactStep<S>],
+    contact_steps: &[ContactStep<S>],
     info: &StepInfo,
     totals: &mut Totals,
 ) {
-    for (k, (contact, site)) in network.contacts.iter_mut().zip(sites).enumerate() {
-        let dissipated = commit_contact(contact, site, info.h);
+    for (k, (contact, contact_step)) in network.contacts.iter_mut().zip(contact_steps).enumerate() {
+        let dissipated = commit_contact(contact, contact_step, info.h);
         totals.friction += dissipated.friction;
         totals.correction += dissipated.correction;
         totals.adhesion += dissipated.adhesion;
@@ -118,10 +118,10 @@ fn commit_contacts<S: Space>(
 #[inline]
 fn commit_contact<S: Space>(
     contact: &mut Contact<S>,
-    site: &ContactStep<S>,
+    contact_step: &ContactStep<S>,
     h: f64,
 ) -> ContactDissipation {
-    contact.impulse = site.solution.impulse;
+    contact.impulse = contact_step.solution.impulse;
     contact.moment = S::Spin::zero();
     let n = &contact.normal;
     contact.pressed = if n.dot(&contact.impulse) > 0.0 && !contact.beyond {
@@ -129,18 +129,21 @@ fn commit_contact<S: Space>(
     } else {
         0.0
     };
-    let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
-    let friction = -site.solution.unilateral_t.dot(&ut);
-    contact.slides = site.slides;
+    let (un, ut) = (
+        n.dot(&contact_step.average),
+        S::tangential(n, &contact_step.average),
+    );
+    let friction = -contact_step.solution.unilateral_t.dot(&ut);
+    contact.slides = contact_step.slides;
     contact.friction_work += friction;
-    let work = -site.solution.unilateral_n * un + site.corrected;
-    let adheres = site.adheres && site.solution.unilateral_n < 0.0;
+    let work = -contact_step.solution.unilateral_n * un + contact_step.corrected;
+    let adheres = contact_step.adheres && contact_step.solution.unilateral_n < 0.0;
     let (adhesion, impact) = if adheres { (work, 0.0) } else { (0.0, work) };
     ContactDissipation {
         friction,
         impact,
         adhesion,
-        correction: -site.corrected,
+        correction: -contact_step.corrected,
         ..ContactDissipation::default()
     }
 }
@@ -148,17 +151,17 @@ fn commit_contact<S: Space>(
 /// Stores the moments of the contacts that resist rotation, and books their friction.
 fn commit_moments<S: Space>(
     network: &mut Network<S>,
-    turns: &[MomentStep<S>],
+    moment_steps: &[MomentStep<S>],
     totals: &mut Totals,
 ) {
-    for turn in turns {
-        let contact = &mut network.contacts[turn.moment.contact as usize];
-        contact.moment = turn.moment.moment;
-        let friction = -turn.moment.friction.dot(&turn.spin);
+    for moment_step in moment_steps {
+        let contact = &mut network.contacts[moment_step.moment.contact as usize];
+        contact.moment = moment_step.moment.moment;
+        let friction = -moment_step.moment.friction.dot(&moment_step.spin);
         totals.friction += friction;
         contact.friction_work += friction;
         if let Some(spent) = &mut network.spent {
-            spent[turn.moment.contact as usize].friction += friction;
+            spent[moment_step.moment.contact as usize].friction += friction;
         }
     }
 }
@@ -174,7 +177,7 @@ pub struct SlotCommit<'a, S: Space> {
     /// All contacts.
     pub network: &'a mut Network<S>,
     /// What each contact did, in the order of the network.
-    pub sites: &'a [ContactStep<S>],
+    pub contact_steps: &'a [ContactStep<S>],
     /// Time and scheme.
     pub info: &'a StepInfo,
     /// Energies and volumes of the step.
@@ -198,7 +201,7 @@ impl<S: Space> SlotCommit<'_, S> {
     /// Fills the columns by the end of the step.
     pub fn gather(&mut self) {
         let Self { evaluator, .. } = self;
-        evaluator.gather_after(self.interface, self.network, self.sites, self.info);
+        evaluator.gather_after(self.interface, self.network, self.contact_steps, self.info);
         evaluator.columns.size_outputs();
     }
 
@@ -206,10 +209,10 @@ impl<S: Space> SlotCommit<'_, S> {
     pub fn add_slip(&mut self) {
         let Self { evaluator, .. } = self;
         for at in &evaluator.members {
-            let (contact, site) = (&self.network.contacts[*at], &self.sites[*at]);
-            let ut = S::tangential(&contact.normal, &site.average);
+            let (contact, contact_step) = (&self.network.contacts[*at], &self.contact_steps[*at]);
+            let ut = S::tangential(&contact.normal, &contact_step.average);
             evaluator.columns.slip.push(self.info.h * ut.norm());
-            let work = -site.solution.unilateral_t.dot(&ut);
+            let work = -contact_step.solution.unilateral_t.dot(&ut);
             evaluator.columns.friction_work.push(work);
         }
     }
@@ -251,7 +254,7 @@ impl<S: Space> SlotCommit<'_, S> {
     }
 
     /// Stores the new internal variables.
-    pub fn keep_state(&mut self) {
-        self.evaluator.keep_state(self.index, self.network);
+    pub fn store_variables(&mut self) {
+        self.evaluator.store_variables(self.index, self.network);
     }
 }

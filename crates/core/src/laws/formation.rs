@@ -15,7 +15,7 @@ impl LawEvaluator {
     ///
     /// # Errors
     /// The law's error in `initialise`.
-    pub fn remember<S: Space>(
+    pub fn initialise_contacts<S: Space>(
         &mut self,
         laws: &[Interface],
         history: &mut LawHistory,
@@ -102,7 +102,7 @@ impl LawEvaluator {
             self.run(loaded, history, info, 0.0, Call::Initialise)
                 .map_err(|e| self.at(law, network, e))?;
         }
-        self.keep_state(index, network);
+        self.store_variables(index, network);
         Ok(())
     }
 }

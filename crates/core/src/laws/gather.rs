@@ -38,25 +38,25 @@ impl LawEvaluator {
         &mut self,
         law: &Interface,
         network: &Network<S>,
-        sites: &[ContactStep<S>],
+        contact_steps: &[ContactStep<S>],
         info: &StepInfo,
     ) {
         self.columns.clear();
         for at in &self.members {
-            let (contact, site) = (&network.contacts[*at], &sites[*at]);
+            let (contact, contact_step) = (&network.contacts[*at], &contact_steps[*at]);
             gather_contact(
                 &mut self.columns,
                 law,
                 network,
                 contact,
-                &site.average,
+                &contact_step.average,
                 info,
                 false,
             );
             push_vector::<S>(
                 &mut self.columns.impulse,
                 &contact.normal,
-                &site.solution.impulse,
+                &contact_step.solution.impulse,
             );
         }
         self.gather_state(law, network);

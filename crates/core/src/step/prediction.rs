@@ -80,10 +80,10 @@ impl<S: Space> Simulation<S> {
     /// preceded them.
     fn report_held_back(&mut self) {
         for k in &self.workspace.evaluator.held_back {
-            if self.workspace.solved.sites[*k].solution.impulse != S::Vector::zero() {
+            if self.workspace.solved.contact_steps[*k].solution.impulse != S::Vector::zero() {
                 let pair = self.state.network.contacts[*k].bodies;
                 let step_size = &mut self.state.network.step_size;
-                step_size.hold_back(self.state.time, &self.state.bodies, pair);
+                step_size.record_held_back(self.state.time, &self.state.bodies, pair);
             }
         }
     }
@@ -160,12 +160,15 @@ impl<S: Space> Simulation<S> {
             if found.is_empty() {
                 return Ok(());
             }
-            let solved = network.contacts.iter().zip(&self.workspace.solved.sites);
+            let solved = network
+                .contacts
+                .iter()
+                .zip(&self.workspace.solved.contact_steps);
             last = solved.map(|(c, s)| (c.key, s.solution.impulse)).collect();
             network.merge_contacts(found);
             start.restore(&mut self.state.bodies);
             self.restart_systems();
-            self.remember(info)?;
+            self.initialise_contacts(info)?;
         }
         Ok(())
     }

@@ -146,7 +146,7 @@ impl<S: Space> Simulation<S> {
                 external += force * if k < S::D { shift[k] } else { turn[k - S::D] };
             }
         }
-        self.state.energy.lift(potential, external);
+        self.state.energy.book_projection(potential, external);
         -external
     }
 }

@@ -1,11 +1,11 @@
 //! Contact detection at q_m: a neighbour list with a skin (broad phase), then gaps and normals (narrow
 //! phase).
 
+mod convex_pair;
 mod extents;
 mod narrow;
 mod neighbours;
 mod order;
-mod pieces;
 mod prediction;
 mod sweep;
 
@@ -91,11 +91,11 @@ pub fn detect<S: Space>(
     let mut narrow = Narrow::new(shapes, bodies, &centres, laws, time, h);
     for &(a, b) in &candidates {
         if (a | b) & Key::PIECE != 0 {
-            narrow.pieces(network, a, b);
+            narrow.convex_pair(network, a, b);
         } else if b & Key::SURFACE == 0 {
-            narrow.balls(network, a, b);
+            narrow.ball_pair(network, a, b);
         } else {
-            narrow.surface(network, a, b);
+            narrow.ball_on_surface(network, a, b);
         }
     }
     let left = narrow.left();

@@ -196,7 +196,7 @@ fn widen<S: Space>(
         if let Some(body) = farthest {
             network
                 .step_size
-                .leave_unwatched(motion.time, bodies, body as u32);
+                .record_unwatched(motion.time, bodies, body as u32);
         }
     }
     travels
@@ -375,7 +375,7 @@ impl<'a, S: Space> Prediction<'a, S> {
         }
         let step_size = &mut self.network.step_size;
         if self.stage == Stage::Report {
-            step_size.pass(sweep.time, sweep.bodies, pair.bodies());
+            step_size.record_passing(sweep.time, sweep.bodies, pair.bodies());
             return;
         }
         let [one, other] = pair.materials();
@@ -394,7 +394,7 @@ impl<'a, S: Space> Prediction<'a, S> {
         }
         if self.found.len() == known && self.stage == Stage::After {
             // The pair cannot be followed, or cannot be held at the point of meeting.
-            step_size.pass(sweep.time, sweep.bodies, pair.bodies());
+            step_size.record_passing(sweep.time, sweep.bodies, pair.bodies());
         }
     }
 }

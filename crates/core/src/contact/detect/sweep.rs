@@ -292,7 +292,7 @@ impl<'a, S: Space> Sweep<'a, S> {
             _ => f64::INFINITY,
         };
         let poses = [one, other];
-        self.meetings(pair, &poses, reach, &mut met);
+        self.contact_points(pair, &poses, reach, &mut met);
         let [_, other] = &poses;
         let nearest = met.iter().min_by(|m, n| m.gap.total_cmp(&n.gap));
         let normal = match &pair.shapes[1] {
@@ -304,14 +304,14 @@ impl<'a, S: Space> Sweep<'a, S> {
     }
 
     /// Finds the contact points of a pair in these poses, relative to the centres of the two bodies.
-    fn meetings(
+    fn contact_points(
         &self,
         pair: &Pair<S>,
         [one, other]: &[Pose<S>; 2],
         reach: f64,
         out: &mut Vec<ContactPoint<S::Vector>>,
     ) {
-        let gauge = ContactTolerances {
+        let tolerances = ContactTolerances {
             reach,
             slack: super::SLACK * self.alert,
             held: false,
@@ -338,12 +338,12 @@ impl<'a, S: Space> Sweep<'a, S> {
             }
             (Shape::Ball(a), Shape::ConvexCollider(b, _)) => {
                 let core = turned(b, other);
-                out.push(core.meet_ball(&apart, a.radius, b.rounding));
+                out.push(core.contact_point_with_ball(&apart, a.radius, b.rounding));
             }
             (Shape::ConvexCollider(a, _), Shape::ConvexCollider(b, _)) => {
                 let roundings = [a.rounding, b.rounding];
                 let (a, b) = (turned(a, one), turned(b, other));
-                a.meet(&b, &apart, roundings, &gauge, out);
+                a.contact_points(&b, &apart, roundings, &tolerances, out);
             }
             (Shape::Ball(a), Shape::Surface(b)) => {
                 let place = S::unrotate(&other.rotation, &apart);
@@ -363,7 +363,13 @@ impl<'a, S: Space> Sweep<'a, S> {
             (Shape::ConvexCollider(a, _), Shape::Surface(b)) => {
                 let place = S::unrotate(&other.rotation, &apart);
                 let core = turned(a, one).turned(&S::inverse(&other.rotation));
-                core.meet_surface(b.shape.as_ref(), &place, a.rounding, &gauge, out);
+                core.contact_points_with_surface(
+                    b.shape.as_ref(),
+                    &place,
+                    a.rounding,
+                    &tolerances,
+                    out,
+                );
             }
             // Candidates precede antagonists in the order balls, pieces, surfaces.
             _ => {}
@@ -389,7 +395,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         let poses = [0, 1].map(|k: usize| self.pose(&pair.shapes[k], s));
         let mut met = Vec::new();
         let reach = self.alert.max(EXACT * pair.half_thickness);
-        self.meetings(pair, &poses, reach, &mut met);
+        self.contact_points(pair, &poses, reach, &mut met);
         met.retain(|m| m.gap < reach);
         met.sort_by_key(|m| m.feature);
         met.dedup_by_key(|m| m.feature);

@@ -162,15 +162,15 @@ impl Core<Dim3> for Polyhedron {
         }
     }
 
-    fn meet(
+    fn contact_points(
         &self,
         other: &Self,
         apart: &V,
         roundings: [f64; 2],
-        gauge: &ContactTolerances,
+        tolerances: &ContactTolerances,
         out: &mut Vec<ContactPoint<V>>,
     ) {
-        polyhedron_pair::meet(self, other, apart, roundings, gauge, out);
+        polyhedron_pair::contact_points(self, other, apart, roundings, tolerances, out);
     }
 
     fn feature_from_other_side(feature: u64) -> u64 {
@@ -185,15 +185,15 @@ impl Core<Dim3> for Polyhedron {
         super::half_thickness::<Dim3>(&self.points, &self.normals)
     }
 
-    fn meet_surface(
+    fn contact_points_with_surface(
         &self,
         surface: &dyn Surface<Dim3>,
         at: &V,
         rounding: f64,
-        gauge: &ContactTolerances,
+        tolerances: &ContactTolerances,
         out: &mut Vec<ContactPoint<V>>,
     ) {
-        polyhedron_surface::meet(self, surface, at, rounding, gauge, out);
+        polyhedron_surface::contact_points(self, surface, at, rounding, tolerances, out);
     }
 
     fn outline(&self, rounding: f64) -> Vec<Vec<V>> {

@@ -23,34 +23,34 @@ const ROUNDING: f64 = 1e-13;
 
 /// Finds the contact points of the candidate `a`, whose centre is at `apart`, with `b` at the origin, in the
 /// order of their features; `roundings` are those of both (m).
-pub fn meet(
+pub fn contact_points(
     a: &Polyhedron,
     b: &Polyhedron,
     apart: &V,
     roundings: [f64; 2],
-    gauge: &ContactTolerances,
+    tolerances: &ContactTolerances,
     out: &mut Vec<ContactPoint<V>>,
 ) {
-    let reach = gauge.reach + roundings[0] + roundings[1];
-    let alike = ALIKE * gauge.slack + ROUNDING * apart.norm();
+    let reach = tolerances.reach + roundings[0] + roundings[1];
+    let alike = ALIKE * tolerances.slack + ROUNDING * apart.norm();
     let pair = Pair {
         a,
         b,
         apart: *apart,
         roundings,
     };
-    let Some(reference) = pair.reference_face(reach, alike, gauge.slack) else {
+    let Some(reference) = pair.reference_face(reach, alike, tolerances.slack) else {
         return;
     };
     let first = out.len();
-    match pair.closest(&reference, alike, gauge) {
+    match pair.closest(&reference, alike, tolerances) {
         Closest::Face => {
-            pair.face(&reference.points, reference.of_candidate, gauge, out);
+            pair.face(&reference.points, reference.of_candidate, tolerances, out);
             out[first..].sort_by_key(|m| m.feature);
         }
         Closest::Edges(near) => {
             if near.way.norm() <= reach {
-                pair.edges(&near, gauge, out);
+                pair.edges(&near, tolerances, out);
             }
         }
         Closest::Crossing(crossed) => pair.push(
@@ -135,12 +135,17 @@ impl Pair<'_> {
     }
 
     /// Chooses between the reference face and two edges.
-    fn closest(&self, reference: &ReferenceFace, alike: f64, gauge: &ContactTolerances) -> Closest {
+    fn closest(
+        &self,
+        reference: &ReferenceFace,
+        alike: f64,
+        tolerances: &ContactTolerances,
+    ) -> Closest {
         let (best, points) = (reference.separation, &reference.points);
         let over = |p: &polyhedron_clip::Point| p.height <= best + alike;
         // A bond over a face keeps it while it bends, even if edges become nearer.
-        let bonded = gauge.held && points.len() > 2;
-        if bonded || best >= -gauge.slack && points.iter().any(over) {
+        let bonded = tolerances.held && points.len() > 2;
+        if bonded || best >= -tolerances.slack && points.iter().any(over) {
             return Closest::Face;
         }
         let segments = self.a.normals().is_empty() && self.b.normals().is_empty();
@@ -154,9 +159,9 @@ impl Pair<'_> {
             let distance = near.way.norm();
             // Beside the face by at most the slack.
             let beside = best > 0.0
-                && distance * distance - best * best <= gauge.slack * gauge.slack
+                && distance * distance - best * best <= tolerances.slack * tolerances.slack
                 && !points.is_empty();
-            let over_face = beside || gauge.held && best > 0.0 && !points.is_empty();
+            let over_face = beside || tolerances.held && best > 0.0 && !points.is_empty();
             return if over_face {
                 Closest::Face
             } else {
@@ -198,12 +203,12 @@ impl Pair<'_> {
         &self,
         points: &[polyhedron_clip::Point],
         a_leads: bool,
-        gauge: &ContactTolerances,
+        tolerances: &ContactTolerances,
         out: &mut Vec<ContactPoint<V>>,
     ) {
         for point in points {
             let gap = point.height - self.thickness();
-            if gap > gauge.reach {
+            if gap > tolerances.reach {
                 continue;
             }
             // The point is on the other core; its projection on the reference core is below it.
@@ -227,16 +232,21 @@ impl Pair<'_> {
     }
 
     /// Adds the point of two nearest edges; two points where they are parallel.
-    fn edges(&self, near: &Nearest, gauge: &ContactTolerances, out: &mut Vec<ContactPoint<V>>) {
+    fn edges(
+        &self,
+        near: &Nearest,
+        tolerances: &ContactTolerances,
+        out: &mut Vec<ContactPoint<V>>,
+    ) {
         let distance = near.way.norm();
         let [e, f] = near.edges;
         if let Some(ends) = side_by_side(
             self.a.ends(e).map(|p| p + self.apart),
             self.b.ends(f),
-            gauge.slack + ROUNDING * distance,
+            tolerances.slack + ROUNDING * distance,
         ) {
             let far = |at: &[V; 2]| (at[0] - at[1]).norm();
-            if distance > 0.0 && ends.iter().all(|at| far(at) <= distance + gauge.slack) {
+            if distance > 0.0 && ends.iter().all(|at| far(at) <= distance + tolerances.slack) {
                 for (k, at) in ends.iter().enumerate() {
                     let normal = (at[0] - at[1]) / far(at);
                     self.push(at, &normal, far(at), name::corner(k, true), out);

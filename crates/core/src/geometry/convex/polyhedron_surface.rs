@@ -20,16 +20,16 @@ const SAME: f64 = 1e-9;
 
 /// Finds the contact points of the polyhedron, centred at `at` in the surface's frame, in the order of their
 /// features.
-pub fn meet(
+pub fn contact_points(
     core: &Polyhedron,
     surface: &dyn Surface<Dim3>,
     at: &V,
     rounding: f64,
-    gauge: &ContactTolerances,
+    tolerances: &ContactTolerances,
     out: &mut Vec<ContactPoint<V>>,
 ) {
     let size = core.farthest() + rounding;
-    let extent = V::repeat(size + gauge.reach);
+    let extent = V::repeat(size + tolerances.reach);
     let mut facets = Vec::new();
     surface.facets(&(at - extent), &(at + extent), &mut facets);
     let first = out.len();
@@ -37,7 +37,7 @@ pub fn meet(
         core,
         at,
         rounding,
-        reach: gauge.reach + rounding,
+        reach: tolerances.reach + rounding,
         deep: DEEP * size,
         same: SAME * size,
     };

@@ -195,7 +195,7 @@ pub fn commit_state<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawErr
     }
     slot.gather();
     slot.call()?;
-    slot.keep_state();
+    slot.store_variables();
     Ok(())
 }
 
@@ -208,7 +208,7 @@ pub fn commit_record<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawEr
     slot.gather();
     slot.add_slip();
     slot.call()?;
-    slot.keep_state();
+    slot.store_variables();
     Ok(())
 }
 

@@ -67,7 +67,7 @@ fn commit<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
         }
     }
     if slot.law.variables() > 0 {
-        slot.keep_state();
+        slot.store_variables();
     }
     Ok(())
 }
