@@ -76,7 +76,7 @@ pub struct Contact<S: Space> {
     /// Time of formation of the contact (s).
     pub formed_at: f64,
     /// Uninterrupted time under a compressive impulse (s).
-    pub pressed: f64,
+    pub compression_time: f64,
     /// Whether it closes within this step, too fast for detection at the start of the step: its gap and
     /// normal are those at the time of closing, and its impact belongs to this step.
     pub closing: bool,
@@ -133,7 +133,7 @@ impl<S: Space> Contact<S> {
             impulse: S::Vector::zero(),
             moment: S::Spin::zero(),
             formed_at,
-            pressed: 0.0,
+            compression_time: 0.0,
             closing: false,
             later: false,
             beyond: false,
@@ -175,7 +175,7 @@ pub struct Network<S: Space> {
     /// Energy dissipated at the contacts in the last step, in their order; `None` unless an output requests
     /// it.
     #[serde(skip)]
-    pub spent: Option<Vec<ContactDissipation>>,
+    pub dissipation: Option<Vec<ContactDissipation>>,
     /// Wear of surfaces in the last step; `None` unless requested.
     #[serde(skip)]
     pub losses: Option<Vec<Loss>>,
@@ -236,7 +236,7 @@ impl<S: Space> Network<S> {
             torn_energy: 0.0,
             bond_breaks: Vec::new(),
             bonds_formed: Vec::new(),
-            spent: None,
+            dissipation: None,
             losses: None,
             cycle_multiplier: 1.0,
             worn: BTreeMap::new(),

@@ -94,7 +94,7 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     /// Splits a spin into twist about `n` and the rest, bending. In 2D all is bending.
     fn split_spin(n: &Self::Vector, spin: &Self::Spin) -> (f64, Self::Spin);
     /// Returns the spin of a twist about `n`.
-    fn about(n: &Self::Vector, twist: f64) -> Self::Spin;
+    fn spin_about(n: &Self::Vector, twist: f64) -> Self::Spin;
     /// Returns the components of a spin along n and [`Space::tangents`]; in 2D the second contains the spin.
     fn spin_components(n: &Self::Vector, spin: &Self::Spin) -> [f64; 3];
     /// Returns a spin from its components.
@@ -228,7 +228,7 @@ impl Space for Dim2 {
         (0.0, *spin)
     }
     #[inline(always)]
-    fn about(_n: &Self::Vector, _twist: f64) -> Self::Spin {
+    fn spin_about(_n: &Self::Vector, _twist: f64) -> Self::Spin {
         Vector1::new(0.0)
     }
     fn spin_components(_n: &Self::Vector, spin: &Self::Spin) -> [f64; 3] {
@@ -380,7 +380,7 @@ impl Space for Dim3 {
         (twist, spin - n * twist)
     }
     #[inline(always)]
-    fn about(n: &Self::Vector, twist: f64) -> Self::Spin {
+    fn spin_about(n: &Self::Vector, twist: f64) -> Self::Spin {
         n * twist
     }
     fn spin_components(n: &Self::Vector, spin: &Self::Spin) -> [f64; 3] {

@@ -12,7 +12,7 @@ use crate::geometry::space::{Space, VectorLike};
 
 /// State of the bonds after a step, in the order of the batch members.
 #[derive(Debug, Default)]
-pub(super) struct Held {
+pub(super) struct BondStep {
     /// Work done by the bond's impulse over the step (J).
     work: Vec<f64>,
     /// Part of it dissipated by damping and by the time scheme (J).
@@ -25,7 +25,7 @@ pub(super) struct Held {
     pub damage: Vec<f64>,
 }
 
-impl Held {
+impl BondStep {
     /// Energy per area stored at the new opening and damage (J/m^2).
     pub fn stored(&self, law: &Interface, k: usize) -> f64 {
         let m = law.cohesion().map_or(0.0, |c| c.plugin.degradation);
@@ -52,7 +52,7 @@ impl LawEvaluator {
         info: &StepInfo,
         totals: &mut Totals,
     ) -> Result<(), LawError> {
-        let mut held = std::mem::take(&mut self.held);
+        let mut bond_step = std::mem::take(&mut self.bond_step);
         self.update_openings(
             index,
             law,
@@ -60,22 +60,22 @@ impl LawEvaluator {
             contact_steps,
             moment_steps,
             info,
-            &mut held,
+            &mut bond_step,
         );
         self.gather_after(law, network, contact_steps, info);
-        self.update_damage(law, history, info, &mut held)
-            .map_err(|e| self.at(law, network, e))?;
-        for (at, damage) in self.members.iter().zip(&mut held.damage) {
+        self.update_damage(law, history, info, &mut bond_step)
+            .map_err(|e| self.locate(law, network, e))?;
+        for (at, damage) in self.members.iter().zip(&mut bond_step.damage) {
             let bond = network.bond(&network.contacts[*at]);
-            let (before, used) = bond.map_or((0.0, 0.0), |b| (b.damage, b.used));
+            let (before, used) = bond.map_or((0.0, 0.0), |b| (b.damage, b.step_damage));
             *damage = damage.max(used);
             if network.cycle_multiplier != 1.0 {
                 *damage = (before + network.cycle_multiplier * (*damage - before)).min(1.0);
             }
         }
         self.store_variables(index, network);
-        self.store_damage(index, law, network, &held, totals);
-        self.held = held;
+        self.store_damage(index, law, network, &bond_step, totals);
+        self.bond_step = bond_step;
         Ok(())
     }
 
@@ -103,7 +103,7 @@ impl LawEvaluator {
                 continue;
             }
             let before = network.memory[index].clone_openings();
-            let mut held = std::mem::take(&mut self.held);
+            let mut bond_step = std::mem::take(&mut self.bond_step);
             self.update_openings(
                 index,
                 law,
@@ -111,11 +111,11 @@ impl LawEvaluator {
                 contact_steps,
                 moment_steps,
                 info,
-                &mut held,
+                &mut bond_step,
             );
             self.gather_after(law, network, contact_steps, info);
-            self.update_damage(law, history, info, &mut held)
-                .map_err(|e| self.at(law, network, e))?;
+            self.update_damage(law, history, info, &mut bond_step)
+                .map_err(|e| self.locate(law, network, e))?;
             network.memory[index].restore_openings(before);
             for (k, at) in self.members.iter().enumerate() {
                 let Some(slot) = network.contacts[*at].memory() else {
@@ -124,12 +124,12 @@ impl LawEvaluator {
                 let bond = &network.memory[index].bonds[slot];
                 // Damage does not decrease within a step either, so that the iteration is monotonic and
                 // ends.
-                let change = (held.damage[k] - bond.used).max(0.0);
+                let change = (bond_step.damage[k] - bond.step_damage).max(0.0);
                 worst = worst.max(change);
-                let next = bond.used + change;
+                let next = bond.step_damage + change;
                 self.trials.push((index, slot, next));
             }
-            self.held = held;
+            self.bond_step = bond_step;
         }
         Ok(worst)
     }
@@ -137,7 +137,7 @@ impl LawEvaluator {
     /// Uses the damage of the last trial in the impulses of the next solve.
     pub fn adopt_trial_damage<S: Space>(&mut self, network: &mut Network<S>) {
         for (index, slot, damage) in self.trials.drain(..) {
-            network.memory[index].bonds[slot].used = damage;
+            network.memory[index].bonds[slot].step_damage = damage;
         }
     }
 
@@ -148,36 +148,36 @@ impl LawEvaluator {
         law: &Interface,
         history: &mut LawHistory,
         info: &StepInfo,
-        held: &mut Held,
+        bond_step: &mut BondStep,
     ) -> Result<(), LawError> {
         let Some(cohesion) = law.cohesion() else {
             return Ok(());
         };
         self.columns.size_outputs();
-        held.damage.clone_from(&self.columns.damage);
+        bond_step.damage.clone_from(&self.columns.damage);
         let m = cohesion.plugin.degradation;
         // The stored energy of the damaged bond is psi = (1 - D)^m psi_0, with psi_0 of the undamaged one.
         if law.damages() {
             self.columns.damage.fill(0.0);
         }
         self.run(cohesion, history, info, 0.0, Call::Energy)?;
-        held.intact.clone_from(&self.columns.out.energy);
+        bond_step.intact.clone_from(&self.columns.out.energy);
         if law.damage().is_some() {
             self.run(cohesion, history, info, 0.0, Call::Prepare)?;
         }
-        self.columns.damage.clone_from(&held.damage);
+        self.columns.damage.clone_from(&bond_step.damage);
         if cohesion.plugin.commits() {
-            self.columns.out.damage.clone_from(&held.damage);
+            self.columns.out.damage.clone_from(&bond_step.damage);
             self.run(cohesion, history, info, 0.0, Call::Commit)?;
             if law.damages() {
-                raise(&mut held.damage, &self.columns.out.damage);
+                raise(&mut bond_step.damage, &self.columns.out.damage);
             }
         }
         if let Some(damage) = law.damage() {
             // The damage law sees what the undamaged bond would carry and store.
             self.columns.expose_intact();
             self.run(damage, history, info, m, Call::Commit)?;
-            raise(&mut held.damage, &self.columns.out.damage);
+            raise(&mut bond_step.damage, &self.columns.out.damage);
         }
         Ok(())
     }
@@ -192,9 +192,13 @@ impl LawEvaluator {
         contact_steps: &[ContactStep<S>],
         moment_steps: &[MomentStep<S>],
         info: &StepInfo,
-        held: &mut Held,
+        bond_step: &mut BondStep,
     ) {
-        let (works, lost, turned) = (&mut held.work, &mut held.lost, &mut held.turned);
+        let (works, lost, turned) = (
+            &mut bond_step.work,
+            &mut bond_step.lost,
+            &mut bond_step.turned,
+        );
         works.clear();
         lost.clear();
         turned.clear();
@@ -264,7 +268,7 @@ impl LawEvaluator {
         index: usize,
         law: &Interface,
         network: &mut Network<S>,
-        held: &Held,
+        bond_step: &BondStep,
         totals: &mut Totals,
     ) {
         let m = law.cohesion().map_or(0.0, |c| c.plugin.degradation);
@@ -283,43 +287,43 @@ impl LawEvaluator {
             };
             let memory = &mut network.memory[index];
             let bond = &mut memory.bonds[slot];
-            let intact = held.intact[k] * bond.area;
-            // The impulses were computed with D = `used`: the stored energy at that damage, at start and end
+            let intact = bond_step.intact[k] * bond.area;
+            // The impulses were computed with D = `step_damage`: the stored energy at that damage, at start and end
             // of the step.
-            let (start, end) = if bond.used == bond.damage {
+            let (start, end) = if bond.step_damage == bond.damage {
                 (bond.energy, intact * share(bond.damage))
             } else {
-                let ratio = share(bond.used) / share(bond.damage);
-                (bond.energy * ratio, intact * share(bond.used))
+                let ratio = share(bond.step_damage) / share(bond.damage);
+                (bond.energy * ratio, intact * share(bond.step_damage))
             };
             // Where the energy is defined by the law, any imbalance appears in the residual.
-            let viscous = if held.turned[k] {
-                -held.work[k] - (end - start)
+            let viscous = if bond_step.turned[k] {
+                -bond_step.work[k] - (end - start)
             } else {
-                held.lost[k]
+                bond_step.lost[k]
             };
-            let kept = if held.damage[k] >= 1.0 {
+            let kept = if bond_step.damage[k] >= 1.0 {
                 0.0
             } else {
-                intact * share(held.damage[k])
+                intact * share(bond_step.damage[k])
             };
             let fracture = (bond.energy - start) + (end - kept);
             totals.viscous += viscous;
             totals.fracture += fracture;
             bond.life.viscous += viscous;
             bond.life.fracture += fracture;
-            if let Some(spent) = &mut network.spent {
-                spent[*at].viscous += viscous;
-                spent[*at].fracture += fracture;
+            if let Some(dissipation) = &mut network.dissipation {
+                dissipation[*at].viscous += viscous;
+                dissipation[*at].fracture += fracture;
             }
             bond.energy = kept;
-            bond.damage = held.damage[k];
-            bond.used = bond.damage;
+            bond.damage = bond_step.damage[k];
+            bond.step_damage = bond.damage;
             if bond.damage >= 1.0 {
                 totals.broken += 1;
                 memory.broken += 1;
                 contact.broken = true;
-                contact.pressed = 0.0;
+                contact.compression_time = 0.0;
                 network.broken_pairs.insert(contact.key.pair());
                 let contact = contact.clone();
                 network.record_break(&contact);

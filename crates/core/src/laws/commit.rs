@@ -27,9 +27,9 @@ impl LawEvaluator {
         info: &StepInfo,
     ) -> Result<Totals, LawError> {
         let mut totals = Totals::default();
-        if let Some(spent) = &mut network.spent {
-            spent.clear();
-            spent.resize(network.contacts.len(), ContactDissipation::default());
+        if let Some(dissipation) = &mut network.dissipation {
+            dissipation.clear();
+            dissipation.resize(network.contacts.len(), ContactDissipation::default());
         }
         if let Some(losses) = &mut network.losses {
             losses.clear();
@@ -108,8 +108,8 @@ fn commit_contacts<S: Space>(
         totals.correction += dissipated.correction;
         totals.adhesion += dissipated.adhesion;
         totals.impact += dissipated.impact;
-        if let Some(spent) = &mut network.spent {
-            spent[k] = dissipated;
+        if let Some(dissipation) = &mut network.dissipation {
+            dissipation[k] = dissipated;
         }
     }
 }
@@ -124,8 +124,8 @@ fn commit_contact<S: Space>(
     contact.impulse = contact_step.solution.impulse;
     contact.moment = S::Spin::zero();
     let n = &contact.normal;
-    contact.pressed = if n.dot(&contact.impulse) > 0.0 && !contact.beyond {
-        contact.pressed + h
+    contact.compression_time = if n.dot(&contact.impulse) > 0.0 && !contact.beyond {
+        contact.compression_time + h
     } else {
         0.0
     };
@@ -160,8 +160,8 @@ fn commit_moments<S: Space>(
         let friction = -moment_step.moment.friction.dot(&moment_step.spin);
         totals.friction += friction;
         contact.friction_work += friction;
-        if let Some(spent) = &mut network.spent {
-            spent[moment_step.moment.contact as usize].friction += friction;
+        if let Some(dissipation) = &mut network.dissipation {
+            dissipation[moment_step.moment.contact as usize].friction += friction;
         }
     }
 }
@@ -250,7 +250,7 @@ impl<S: Space> SlotCommit<'_, S> {
         let called = self
             .evaluator
             .run(self.law, self.history, self.info, 0.0, Call::Commit);
-        called.map_err(|e| self.evaluator.at(self.interface, self.network, e))
+        called.map_err(|e| self.evaluator.locate(self.interface, self.network, e))
     }
 
     /// Stores the new internal variables.

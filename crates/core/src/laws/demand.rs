@@ -99,7 +99,7 @@ fn trials(bench: &Bench, radius: f64) -> (Vec<State>, Vec<Motion>) {
                 for damage in [0.0, 1.0] {
                     states.push(State {
                         time: age,
-                        pressed: if pressure > 0.0 { age } else { 0.0 },
+                        compression_time: if pressure > 0.0 { age } else { 0.0 },
                         damage,
                         ..bench.fresh()
                     });

@@ -1,6 +1,6 @@
 //! Evaluation of the laws in a step: batches of contacts, calls of the plugins, and checks of what they return.
 
-use super::bonds::Held;
+use super::bonds::BondStep;
 use super::columns::{Columns, StepInfo, not_finite};
 use super::error::LawError;
 use super::guarded::{self, Guarded};
@@ -16,19 +16,19 @@ use crate::geometry::space::Space;
 pub struct LawEvaluator {
     pub(super) columns: Columns,
     pub(super) members: Vec<usize>,
-    pub(super) held: Held,
+    pub(super) bond_step: BondStep,
     /// Interface, slot and damage of the bonds in the last trial of an implicit coupling.
     pub(super) trials: Vec<(usize, usize, f64)>,
     /// Contacts of the last solve that close within the step and were kept from closing although their law
     /// has restitution.
     pub(crate) held_back: Vec<usize>,
     /// Which checks are made on law calls.
-    pub(super) care: Care,
+    pub(super) checks: CallChecks,
 }
 
 /// Checks made on the outputs of law calls.
 #[derive(Debug, Default)]
-pub(super) enum Care {
+pub(super) enum CallChecks {
     /// Errors for values that are not finite or out of range, and for writes just beyond a column.
     #[default]
     Run,
@@ -72,10 +72,10 @@ impl LawEvaluator {
         call: Call,
     ) -> Result<(), LawError> {
         let plugin = &loaded.plugin;
-        let (columns, care) = (&mut self.columns, &mut self.care);
+        let (columns, checks) = (&mut self.columns, &mut self.checks);
         let mut wrong = None;
-        let called = columns.with_batch(loaded, info, degradation, |batch| match care {
-            Care::Guarded(guarded) => {
+        let called = columns.with_batch(loaded, info, degradation, |batch| match checks {
+            CallChecks::Guarded(guarded) => {
                 let (parameters, variables) = (loaded.parameters.len(), loaded.variables());
                 // SAFETY: as below, and copies of the columns are as long as they.
                 let (called, what) =
@@ -83,7 +83,7 @@ impl LawEvaluator {
                 wrong = what;
                 called
             }
-            Care::Repeated => {
+            CallChecks::Repeated => {
                 // SAFETY: as below.
                 let (called, what) =
                     unsafe { guarded::repeat(batch, loaded.variables(), |b| plugin.call(call, b)) };
@@ -133,7 +133,7 @@ impl LawEvaluator {
                 contact: Some(contact),
             });
         }
-        if matches!(self.care, Care::Lenient | Care::Repeated) {
+        if matches!(self.checks, CallChecks::Lenient | CallChecks::Repeated) {
             return Ok(());
         }
         match settle(&mut outputs, plugin.kind, &mut history.largest) {
@@ -151,7 +151,7 @@ impl LawEvaluator {
     }
 
     /// Adds the interface and the contact, one of the members, to an error of a law.
-    pub(super) fn at<S: Space>(
+    pub(super) fn locate<S: Space>(
         &self,
         law: &Interface,
         network: &Network<S>,

@@ -43,9 +43,9 @@ impl LawEvaluator {
                 let area = law.area.area(S::D, contact.radius);
                 let held = |slot: usize| memory.bonds[slot].intact();
                 let intact = contact.memory().is_some_and(held);
-                let healed = law
-                    .healing
-                    .is_some_and(|time| contact.pressed > 0.0 && reached(contact.pressed, time));
+                let healed = law.healing.is_some_and(|time| {
+                    contact.compression_time > 0.0 && reached(contact.compression_time, time)
+                });
                 let bonds =
                     !intact && !contact.vertex_contact && !contact.beyond && (due || healed);
                 // The rest position of a new bond: a tension-only bond starts without tension over its gap;
@@ -100,7 +100,7 @@ impl LawEvaluator {
         self.columns.size_outputs();
         for loaded in law.loaded() {
             self.run(loaded, history, info, 0.0, Call::Initialise)
-                .map_err(|e| self.at(law, network, e))?;
+                .map_err(|e| self.locate(law, network, e))?;
         }
         self.store_variables(index, network);
         Ok(())

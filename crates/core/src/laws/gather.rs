@@ -117,12 +117,12 @@ fn gather_contact<S: Space>(
     columns.area.push(contact_area(law, network, contact));
     columns.radius.push(contact.radius);
     columns.age.push(info.time - contact.formed_at);
-    columns.pressed.push(contact.pressed);
+    columns.pressed.push(contact.compression_time);
     push_vector::<S>(&mut columns.velocity, &contact.normal, velocity);
     let (opening, damage) = match network.bond(contact) {
         Some(bond) => {
             let [t1, t2] = S::components(&contact.normal, &bond.opening_t);
-            let damage = if start { bond.used } else { bond.damage };
+            let damage = if start { bond.step_damage } else { bond.damage };
             ([bond.opening_n, t1, t2], damage)
         }
         None => ([0.0; 3], 1.0),

@@ -112,7 +112,7 @@ impl Plugin {
                 sha256,
             });
         }
-        child::survives(path, &sha256).map_err(&refuse)?;
+        child::check_loads(path, &sha256).map_err(&refuse)?;
         // The trial may have taken seconds, in which the file can change.
         if digest()? != sha256 {
             return Err(refuse(child::CHANGED.to_owned()));

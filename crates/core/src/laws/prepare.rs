@@ -130,7 +130,7 @@ impl LawEvaluator {
         }
         self.columns.size_outputs();
         self.run(law.contact(), history, info, 0.0, Call::Prepare)
-            .map_err(|e| self.at(law, network, e))?;
+            .map_err(|e| self.locate(law, network, e))?;
         for (k, at) in self.members.iter().enumerate() {
             let friction = Friction::of(&self.columns.out, if constant { 0 } else { k });
             let area = contact_area(law, network, &network.contacts[*at]);
@@ -182,7 +182,7 @@ impl LawEvaluator {
         }
         self.columns.size_outputs();
         self.run(cohesion, history, info, 0.0, Call::Prepare)
-            .map_err(|e| self.at(law, network, e))?;
+            .map_err(|e| self.locate(law, network, e))?;
         for (k, at) in self.members.iter().enumerate() {
             let before = &step.before.relative[*at];
             self.apply_cohesion(law, k, before, info, &mut step.forms[*at]);
@@ -249,8 +249,8 @@ impl LawEvaluator {
         let (w_twist, w_bend) = S::split_spin(n, before);
         let memory = h * theta * (1.0 - theta);
         let moment = S::spin_from(n, [out.moment[0][k], out.moment[1][k], out.moment[2][k]]);
-        form.a =
-            (moment + S::about(n, w_twist * (twist * memory)) + w_bend * (bend * memory)) * impulse;
+        form.a = (moment + S::spin_about(n, w_twist * (twist * memory)) + w_bend * (bend * memory))
+            * impulse;
         form.b_twist = impulse * h * theta * theta * twist;
         form.b_bend = impulse * h * theta * theta * bend;
         form.loss_twist = impulse * h * (theta - 0.5) * twist;

@@ -172,7 +172,7 @@ impl SearchPath {
                 libraries.push((path, pin));
             }
         }
-        child::try_out(&libraries);
+        child::try_loading(&libraries);
     }
 
     /// Returns whether a law belongs to the program itself, so that whoever can change it can change the

@@ -96,7 +96,7 @@ pub fn solve<S: Space>(
         Method::Nlgs => context.sweep(problem, false, options.max_iterations),
         Method::Anderson => context.sweep(problem, true, options.max_iterations),
         Method::Auto => context.auto(problem, auto_state),
-        method => context.by(problem, method),
+        method => context.solve_by(problem, method),
     }
 }
 
@@ -157,7 +157,7 @@ impl<S: Space> SolveContext<'_, S> {
 
     /// Solves by one method. If the error recomputed over bodies is slightly above the tolerance, the method
     /// continues.
-    fn by(&self, problem: &mut Problem<S>, method: Method) -> Report {
+    fn solve_by(&self, problem: &mut Problem<S>, method: Method) -> Report {
         const ATTEMPTS: u32 = 4;
         let mut report = nlgs::arrange(problem, self.options);
         let mut tolerance = self.options.tolerance;

@@ -58,7 +58,7 @@ impl<S: Space> Simulation<S> {
         network.bond_breaks.clear();
         network.bonds_formed.clear();
         if self.options.record_dissipation {
-            network.spent.get_or_insert_default();
+            network.dissipation.get_or_insert_default();
         }
         if !self.state.scars.is_empty() {
             network.losses.get_or_insert_default();

@@ -89,7 +89,7 @@ impl<S: Space> Simulation<S> {
             self.state.time,
             0.0,
         );
-        self.state.lifted += against_loads;
+        self.state.projection_work += against_loads;
         Some(Projected {
             before,
             after: self.deepest_overlap(),

@@ -246,7 +246,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                 found.moment = old.moment;
                 found.formed_at = old.formed_at;
                 found.friction_work = old.friction_work;
-                found.pressed = old.pressed;
+                found.compression_time = old.compression_time;
                 found.slot = old.slot;
                 found.broken = old.broken;
                 let from = old.normal;

@@ -319,23 +319,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         let apart = one.centre - other.centre - pair.image;
         let turned = |p: &ConvexCollider<S>, pose: &Pose<S>| p.core.turned(&pose.rotation);
         match (&pair.shapes[0], &pair.shapes[1]) {
-            (Shape::Ball(a), Shape::Ball(b)) => {
-                let distance = apart.norm();
-                let normal = if distance > 0.0 {
-                    apart * (1.0 / distance)
-                } else {
-                    S::Vector::from_slice(&[1.0])
-                };
-                out.push(ContactPoint {
-                    on_candidate: apart - normal * a.radius,
-                    on_antagonist: normal * b.radius,
-                    normal,
-                    gap: distance - a.radius - b.radius,
-                    feature: 0,
-                    share: 0.0,
-                    facing: true,
-                });
-            }
+            (Shape::Ball(a), Shape::Ball(b)) => out.push(point_of_balls::<S>(a, b, apart)),
             (Shape::Ball(a), Shape::ConvexCollider(b, _)) => {
                 let core = turned(b, other);
                 out.push(core.contact_point_with_ball(&apart, a.radius, b.rounding));
@@ -434,6 +418,26 @@ impl<'a, S: Space> Sweep<'a, S> {
                 )
             });
         }
+    }
+}
+
+/// Returns the contact point of two balls, the first at `apart` from the second, relative to the centre of the
+/// second.
+fn point_of_balls<S: Space>(a: &Ball<S>, b: &Ball<S>, apart: S::Vector) -> ContactPoint<S::Vector> {
+    let distance = apart.norm();
+    let normal = if distance > 0.0 {
+        apart * (1.0 / distance)
+    } else {
+        S::Vector::from_slice(&[1.0])
+    };
+    ContactPoint {
+        on_candidate: apart - normal * a.radius,
+        on_antagonist: normal * b.radius,
+        normal,
+        gap: distance - a.radius - b.radius,
+        feature: 0,
+        share: 0.0,
+        facing: true,
     }
 }
 

@@ -49,7 +49,7 @@ pub fn contact_points(
             out[first..].sort_by_key(|m| m.feature);
         }
         Closest::Edges(near) => {
-            if near.way.norm() <= reach {
+            if near.difference.norm() <= reach {
                 pair.edges(&near, tolerances, out);
             }
         }
@@ -156,7 +156,7 @@ impl Pair<'_> {
         };
         if best > 0.0 || segments || crossed.as_ref().is_some_and(|c| c.depth > 0.0) {
             let near = nearest(self.a, self.b, &self.apart);
-            let distance = near.way.norm();
+            let distance = near.difference.norm();
             // Beside the face by at most the slack.
             let beside = best > 0.0
                 && distance * distance - best * best <= tolerances.slack * tolerances.slack
@@ -238,7 +238,7 @@ impl Pair<'_> {
         tolerances: &ContactTolerances,
         out: &mut Vec<ContactPoint<V>>,
     ) {
-        let distance = near.way.norm();
+        let distance = near.difference.norm();
         let [e, f] = near.edges;
         if let Some(ends) = side_by_side(
             self.a.ends(e).map(|p| p + self.apart),
@@ -256,14 +256,14 @@ impl Pair<'_> {
         }
         let along = |ends: [V; 2]| ends[1] - ends[0];
         let (u, v) = (along(self.a.ends(e)), along(self.b.ends(f)));
-        let normal = across_both(&u, &v, &near.way, ROUNDING * self.apart.norm());
+        let normal = edge_normal(&u, &v, &near.difference, ROUNDING * self.apart.norm());
         self.push(&near.points, &normal, distance, name::crossing(e, f), out);
     }
 }
 
 /// Returns the direction between two edges. Where it equals the edges' product up to rounding (m), the
 /// product is used: between edges almost in contact, the difference vector alone has no accurate direction.
-fn across_both(u: &V, v: &V, way: &V, rounding: f64) -> V {
+fn edge_normal(u: &V, v: &V, way: &V, rounding: f64) -> V {
     let distance = way.norm();
     let product = u.cross(v).try_normalize(1e-9 * u.norm() * v.norm());
     if let Some(n) = product
@@ -324,7 +324,7 @@ fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
         for f in 0..b.topology().edges.len() {
             let [q0, q1] = b.ends(f);
             let along_b = q1 - q0;
-            if !(turns(a, e, &along_b) && turns(b, f, &along_a)) {
+            if !(may_cross_normals(a, e, &along_b) && may_cross_normals(b, f, &along_a)) {
                 continue;
             }
             let product = along_a.cross(&along_b);
@@ -338,11 +338,11 @@ fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
                 if best.as_ref().is_some_and(|b| b.depth >= depth) {
                     continue;
                 }
-                if holds(a, e, &-axis) && holds(b, f, &axis) {
+                if is_between_normals(a, e, &-axis) && is_between_normals(b, f, &axis) {
                     best = Some(Crossing {
                         depth,
                         normal: axis,
-                        points: lines(&[p0, p1], &[q0, q1]),
+                        points: nearest_on_lines(&[p0, p1], &[q0, q1]),
                         feature: name::crossing(e, f),
                     });
                 }
@@ -354,7 +354,7 @@ fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
 
 /// Returns whether a plane perpendicular to a direction can contain a normal between those of an edge's
 /// faces, so that the arc between these crosses it. Results within rounding are verified later.
-fn turns(of: &Polyhedron, edge: usize, direction: &V) -> bool {
+fn may_cross_normals(of: &Polyhedron, edge: usize, direction: &V) -> bool {
     let Some(faces) = of.topology().edges[edge].faces else {
         return true;
     };
@@ -363,7 +363,7 @@ fn turns(of: &Polyhedron, edge: usize, direction: &V) -> bool {
 }
 
 /// Returns whether a direction perpendicular to an edge is between the normals of its faces.
-pub fn holds(of: &Polyhedron, edge: usize, axis: &V) -> bool {
+pub fn is_between_normals(of: &Polyhedron, edge: usize, axis: &V) -> bool {
     let Some(faces) = of.topology().edges[edge].faces else {
         return true;
     };
@@ -376,7 +376,7 @@ pub fn holds(of: &Polyhedron, edge: usize, axis: &V) -> bool {
 }
 
 /// Returns the nearest points of two lines that are not parallel.
-fn lines([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
+fn nearest_on_lines([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
     let (u, v, w) = (p1 - p0, q1 - q0, p0 - q0);
     let (a, b, c) = (u.norm_squared(), u.dot(&v), v.norm_squared());
     let (d, e) = (u.dot(&w), v.dot(&w));
@@ -393,7 +393,7 @@ struct Nearest {
     /// On `a` and on `b` (m).
     points: [V; 2],
     /// From `b` to `a` (m).
-    way: V,
+    difference: V,
 }
 
 /// Finds the nearest points, skipping edges whose bounding balls are farther apart than the best distance so
@@ -402,7 +402,7 @@ fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
     let mut best = Nearest {
         edges: [0, 0],
         points: [V::zeros(); 2],
-        way: V::repeat(f64::INFINITY),
+        difference: V::repeat(f64::INFINITY),
     };
     let mut least = f64::INFINITY;
     let ball = |[p, q]: [V; 2]| ((p + q) * 0.5, 0.5 * (p - q).norm());
@@ -418,16 +418,16 @@ fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
             if (middle - other).norm_squared() > limit * limit {
                 continue;
             }
-            let points = segments(&one, &b.ends(f));
-            let way = points[0] - points[1];
-            let squared = way.norm_squared();
+            let points = nearest_on_segments(&one, &b.ends(f));
+            let difference = points[0] - points[1];
+            let squared = difference.norm_squared();
             if squared < least {
                 least = squared;
                 room = half + least.sqrt();
                 best = Nearest {
                     edges: [e, f],
                     points,
-                    way,
+                    difference,
                 };
             }
         }
@@ -436,7 +436,7 @@ fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
 }
 
 /// Returns the nearest points of two segments. Ericson, Real-Time Collision Detection (2005), section 5.1.9.
-fn segments([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
+fn nearest_on_segments([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
     let (u, v, r) = (p1 - p0, q1 - q0, p0 - q0);
     let (a, e, f) = (u.norm_squared(), v.norm_squared(), v.dot(&r));
     let (b, c) = (u.dot(&v), u.dot(&r));

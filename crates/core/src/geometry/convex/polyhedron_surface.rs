@@ -6,7 +6,7 @@
 //! Planes and the insides of drums are touched by corners only.
 
 use super::polyhedron::Polyhedron;
-use super::polyhedron_pair::holds;
+use super::polyhedron_pair::is_between_normals;
 use super::{ContactPoint, ContactTolerances, DEEP};
 use crate::geometry::facets::{self, Facet, Ridge};
 use crate::geometry::shape::{ClosestPoint, Surface};
@@ -156,7 +156,7 @@ impl Near<'_> {
                     if gap < self.reach
                         && gap > -self.deep
                         && ridge.holds(&normal)
-                        && holds(self.core, e, &-normal)
+                        && is_between_normals(self.core, e, &-normal)
                     {
                         out.push(ContactPoint {
                             on_candidate: a + v * t - normal * self.rounding,

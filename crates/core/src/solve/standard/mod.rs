@@ -200,7 +200,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             }
             let (twist, bend) = S::split_spin(&contact.normal, &form.a);
             if form.b_twist == 0.0 {
-                self.constant_moments[k] -= S::about(&contact.normal, twist);
+                self.constant_moments[k] -= S::spin_about(&contact.normal, twist);
             }
             if form.b_bend == 0.0 {
                 self.constant_moments[k] -= bend;
