@@ -197,7 +197,7 @@ fn pieces() {
             for _ in 0..repeats {
                 for (a, b, way) in &pairs {
                     out.clear();
-                    a.meet(b, black_box(way), [0.0; 2], &gauge, &mut out);
+                    a.contact_points(b, black_box(way), [0.0; 2], &gauge, &mut out);
                     points += out.len();
                 }
             }

@@ -107,7 +107,7 @@ fn bench<S: Space>(name: &str, make: &dyn Fn() -> Problem<S>, cost: &Cost, machi
     let mut one = make();
     let mut two = make();
     let n = one.contacts() as f64;
-    let bodies = one.lines.len() as f64;
+    let bodies = one.solver_bodies.len() as f64;
     prepare(&mut one);
     prepare(&mut two);
     let pool = rayon::ThreadPoolBuilder::new()
@@ -162,10 +162,13 @@ fn bench<S: Space>(name: &str, make: &dyn Fn() -> Problem<S>, cost: &Cost, machi
 }
 
 fn same<S: Space>(one: &Problem<S>, two: &Problem<S>) -> bool {
-    one.lines.iter().zip(&two.lines).all(|(a, b)| {
-        (0..S::D).all(|k| a.v[k].to_bits() == b.v[k].to_bits())
-            && (0..S::Spin::N).all(|k| a.s[k].to_bits() == b.s[k].to_bits())
-    })
+    one.solver_bodies
+        .iter()
+        .zip(&two.solver_bodies)
+        .all(|(a, b)| {
+            (0..S::D).all(|k| a.v[k].to_bits() == b.v[k].to_bits())
+                && (0..S::Spin::N).all(|k| a.s[k].to_bits() == b.s[k].to_bits())
+        })
 }
 
 /// Bytes in a nanosecond, read and written.

@@ -115,7 +115,7 @@ fn by<S: Space>(stiff: f64, blocks: bool, method: Method, tolerance: f64) -> Vec
     let name = method.name();
     assert!(report.converged, "{name} at {stiff}: {:e}", report.error);
     let mut out = Vec::new();
-    for body in 0..problem.lines.len() {
+    for body in 0..problem.solver_bodies.len() {
         let (v, w) = problem.velocity(body);
         out.extend((0..S::D).map(|k| v[k]));
         out.extend((0..S::Spin::N).map(|k| RADIUS * w[k]));

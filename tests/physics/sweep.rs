@@ -58,9 +58,9 @@ fn contact<S: Space>(bodies: [u32; 2], normal: S::Vector) -> ContactForm<S> {
 
 fn bits<S: Space>(p: &Problem<S>) -> Vec<u64> {
     let mut out = Vec::new();
-    for line in &p.lines {
-        out.extend(line.v.padded().map(f64::to_bits));
-        out.extend(line.s.padded().map(f64::to_bits));
+    for body in &p.solver_bodies {
+        out.extend(body.v.padded().map(f64::to_bits));
+        out.extend(body.s.padded().map(f64::to_bits));
     }
     for k in 0..p.contacts() {
         out.extend(p.solution(k).impulse.padded().map(f64::to_bits));

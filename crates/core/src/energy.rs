@@ -92,7 +92,7 @@ impl Energy {
 
     /// Records a displacement of bodies at constant velocity: the change of potential energy and the work of
     /// imposed forces along it (J). The next recorded step closes the balance.
-    pub fn lift(&mut self, potential: f64, external: f64) {
+    pub fn book_projection(&mut self, potential: f64, external: f64) {
         self.potential += potential;
         self.external_work += external;
         self.correction -= potential - external;

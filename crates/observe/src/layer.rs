@@ -77,7 +77,7 @@ impl<S: Space> Layer<S> {
         let kept = e.kinetic - kinetic + e.potential + e.elastic + e.carried;
         Balance {
             // Work of the projection against loads does not pass through a contact.
-            taken: e.dissipated() + e.scheme + kept + s.state.lifted - self.apart,
+            taken: e.dissipated() + e.scheme + kept + s.state.projection_work - self.apart,
             other: self.other,
         }
     }

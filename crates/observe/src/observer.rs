@@ -47,7 +47,7 @@ pub trait Observer<S: Space>: Debug + Send {
     /// begins.
     fn begin(&mut self, _: &Simulation<S>) {}
 
-    /// Whether the simulation is to keep what each contact dissipates in a step (`network.spent`).
+    /// Whether the simulation is to keep what each contact dissipates in a step (`network.dissipation`).
     fn needs_dissipation(&self) -> bool {
         false
     }

@@ -65,7 +65,7 @@ fn beams(table: &mut Table) {
         let slot = contact.memory().unwrap();
         let bond = &s.state.network.memory[0].bonds[slot];
         let turn = s.state.network.memory[0].rotations[slot];
-        let shear = S::lift(&contact.normal, &bond.opening_t);
+        let shear = S::tangent_vector(&contact.normal, &bond.opening_t);
         use fretwork::geometry::space::VectorLike;
         [weight, bond.area, shear.norm(), turn.norm()]
     }

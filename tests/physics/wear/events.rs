@@ -15,11 +15,11 @@ fn told<S: Dimensional>(case: &str, sets: &[&str], steps: usize) -> u64 {
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<S>(&SearchPath::new(&[]));
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
-    s.state.network.spent = Some(Vec::new());
+    s.state.network.dissipation = Some(Vec::new());
     let (mut fracture, mut breaks, mut most) = (0.0, 0, 0.0f64);
     for _ in 0..steps {
         let totals = s.step().unwrap_or_else(|e| panic!("{e}")).totals;
-        let spent = s.state.network.spent.as_ref().unwrap();
+        let spent = s.state.network.dissipation.as_ref().unwrap();
         assert_eq!(spent.len(), s.state.network.contacts.len());
         let sum = |of: fn(&ContactDissipation) -> f64| spent.iter().map(of).sum::<f64>();
         let torn: f64 = s

@@ -17,7 +17,7 @@ fn scene<S: Dimensional>(name: &str, sets: &[&str]) -> Simulation<S> {
     let loaded = load(&case(name), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<S>(&SearchPath::new(&[]));
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
-    s.state.network.spent = Some(Vec::new());
+    s.state.network.dissipation = Some(Vec::new());
     s
 }
 
@@ -59,7 +59,7 @@ fn worn<S: Dimensional>(
         let from = s.state.bodies.position[slider];
         booked += s.step().unwrap_or_else(|e| panic!("{e}")).totals.worn_first;
         let way = s.state.bodies.position[slider] - from;
-        let spent = s.state.network.spent.as_ref().unwrap();
+        let spent = s.state.network.dissipation.as_ref().unwrap();
         for (c, spent) in s.state.network.contacts.iter().zip(spent) {
             let rubbed = Rubbed {
                 force: c.impulse.dot(&c.normal) / s.options.scheme.h,

@@ -63,7 +63,7 @@ impl Dof {
     }
 
     /// Returns whether it imposes a path.
-    fn travels(&self) -> bool {
+    fn imposes_path(&self) -> bool {
         matches!(self, Self::Velocity(_) | Self::Displacement(_))
     }
 }
@@ -78,7 +78,7 @@ struct Path {
     /// Time up to which the displacement is summed (s).
     since: f64,
     /// Displacement up to that time (m or rad), and its rounding compensation.
-    way: [f64; 2],
+    displacement: [f64; 2],
 }
 
 impl Path {
@@ -87,30 +87,30 @@ impl Path {
             stage,
             origin,
             since,
-            way: [0.0; 2],
+            displacement: [0.0; 2],
         }
     }
 
     /// Returns the displacement at a time (m or rad); times must not decrease from call to call.
-    fn way(&mut self, drive: &Dof, t: f64) -> f64 {
+    fn displacement(&mut self, drive: &Dof, t: f64) -> f64 {
         match drive {
             Dof::Displacement(f) => f.change(self.since, t),
             Dof::Velocity(f) => {
                 if let Some(point) = f.last_point(self.since, t) {
-                    self.sum_up(f, point);
+                    self.accumulate(f, point);
                 }
-                let rest = self.way[1] + f.integral(self.since, t);
-                self.way[0] + rest
+                let rest = self.displacement[1] + f.integral(self.since, t);
+                self.displacement[0] + rest
             }
             _ => 0.0,
         }
     }
 
     /// Adds the displacement up to a point of a table, with compensated summation.
-    fn sum_up(&mut self, f: &TimeFunction, point: f64) {
-        let part = f.integral(self.since, point) + self.way[1];
-        let sum = self.way[0] + part;
-        self.way = [sum, part - (sum - self.way[0])];
+    fn accumulate(&mut self, f: &TimeFunction, point: f64) {
+        let part = f.integral(self.since, point) + self.displacement[1];
+        let sum = self.displacement[0] + part;
+        self.displacement = [sum, part - (sum - self.displacement[0])];
         self.since = point;
     }
 }
@@ -121,14 +121,14 @@ impl Path {
 pub struct Paths<S: Space> {
     along: Vec<Option<Path>>,
     /// Orientation relative to which the imposed rotation is measured.
-    upright: S::Rotation,
+    reference_orientation: S::Rotation,
 }
 
 impl<S: Space> Paths<S> {
     pub(super) fn new(dofs: usize) -> Self {
         Self {
             along: vec![None; dofs],
-            upright: S::identity(),
+            reference_orientation: S::identity(),
         }
     }
 
@@ -146,7 +146,7 @@ impl<S: Space> Paths<S> {
 impl<S: Space> Bodies<S> {
     /// Starts the paths of the drives that take effect with the step from `time` on, at the current
     /// positions, and sets the initial velocities of all imposed degrees of freedom.
-    pub fn set_off(&mut self, time: f64, h: f64, theta: f64) {
+    pub fn begin_imposed_motion(&mut self, time: f64, h: f64, theta: f64) {
         for place in 0..self.driven.len() {
             self.begin_paths(place, time, h);
             let driven = &self.driven[place];
@@ -170,7 +170,7 @@ impl<S: Space> Bodies<S> {
         let mut turns_anew = false;
         for (k, dof) in driven.dofs.iter().enumerate() {
             let stage = dof.stage_at(time + 0.5 * h);
-            if !dof.over(time, h).travels() {
+            if !dof.over(time, h).imposes_path() {
                 turns_anew |= k >= S::D && paths.along[k].take().is_some();
                 paths.along[k] = None;
                 continue;
@@ -182,7 +182,7 @@ impl<S: Space> Bodies<S> {
             }
         }
         if turns_anew {
-            paths.upright = self.rotation[b];
+            paths.reference_orientation = self.rotation[b];
             for path in paths.along[S::D..].iter_mut().flatten() {
                 *path = Path::new(path.stage, 0.0, time);
             }
@@ -193,7 +193,7 @@ impl<S: Space> Bodies<S> {
     ///
     /// A rotation about one axis follows its path; where rotations about several axes are imposed, which do
     /// not commute, the orientation is that of the integrated velocities.
-    pub fn arrive(&mut self, from: f64, to: f64, h: f64) {
+    pub fn end_imposed_motion(&mut self, from: f64, to: f64, h: f64) {
         for (driven, paths) in self.driven.iter().zip(&mut self.paths) {
             let b = driven.body as usize;
             let turning = paths.along[S::D..].iter().flatten().count();
@@ -201,13 +201,13 @@ impl<S: Space> Bodies<S> {
                 let Some(path) = &mut paths.along[k] else {
                     continue;
                 };
-                let way = path.way(dof.over(from, h), to);
+                let displacement = path.displacement(dof.over(from, h), to);
                 if k < S::D {
-                    self.position[b][k] = path.origin + way;
+                    self.position[b][k] = path.origin + displacement;
                 } else if turning == 1 {
                     let mut angle = S::Spin::zero();
-                    angle[k - S::D] = way;
-                    self.rotation[b] = S::turned(&paths.upright, &angle);
+                    angle[k - S::D] = displacement;
+                    self.rotation[b] = S::turned(&paths.reference_orientation, &angle);
                 }
             }
         }

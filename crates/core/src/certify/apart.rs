@@ -1,7 +1,7 @@
 //! Certification of a law in a child process, so that a law that crashes, ends the program or hangs only
 //! fails a line of its certificate.
 
-use super::{Certificate, Event, Line, border, certify, certify_telling};
+use super::{Certificate, Event, Line, border, certify, certify_with_events};
 use crate::laws::child::{self, End};
 use crate::laws::{BuiltInLaws, Kind, LawError, Loaded, Plugin, SearchPath};
 use serde::{Deserialize, Serialize};
@@ -76,9 +76,9 @@ pub fn certify_apart(
     let named = Named::of(plugin, parameters);
     let partner = cohesion.map(|c| Named::of(&c.plugin, &c.parameters));
     let question = serde_json::to_value((named, partner)).map_err(|e| refuse(e.to_string()))?;
-    let told = child::ask(CERTIFY_APART, &question).map_err(refuse)?;
+    let told = child::run_request(CERTIFY_APART, &question).map_err(refuse)?;
     let (mut lines, mut begun) = (Vec::new(), String::new());
-    for mut piece in told.pieces {
+    for mut piece in told.messages {
         if let Some(reason) = piece["refused"].as_str() {
             return Err(refuse(reason.to_owned()));
         }
@@ -107,17 +107,17 @@ pub fn certify_apart(
 /// # Errors
 /// The request cannot be read.
 pub fn certify_asked(built_in: &BuiltInLaws) -> Result<(), String> {
-    let question = child::asked()?;
+    let question = child::read_request()?;
     let (named, partner): (Named, Option<Named>) =
         serde_json::from_value(question).map_err(|e| e.to_string())?;
     let mut tell = |event: Event<'_>| match event {
-        Event::Begins(name) => child::tell(&json!({ "begins": name })),
-        Event::Line(line) => child::tell(&json!({ "line": line })),
+        Event::Begins(name) => child::send_message(&json!({ "begins": name })),
+        Event::Line(line) => child::send_message(&json!({ "line": line })),
     };
     let made = named.open(built_in).and_then(|law| {
         let partner = partner.map(|p| p.open(built_in)).transpose()?;
         let path = SearchPath::new(&[]).with_built_in(built_in.clone());
-        certify_telling(
+        certify_with_events(
             &law.plugin,
             &law.parameters,
             partner.as_ref(),
@@ -127,8 +127,8 @@ pub fn certify_asked(built_in: &BuiltInLaws) -> Result<(), String> {
         )
     });
     if let Err(e) = made {
-        child::tell(&json!({ "refused": e.to_string() }));
+        child::send_message(&json!({ "refused": e.to_string() }));
     }
-    child::tell_done();
+    child::send_done();
     Ok(())
 }

@@ -152,7 +152,7 @@ pub fn certify(
     cohesion: Option<&Loaded>,
     path: &SearchPath,
 ) -> Result<Certificate, LawError> {
-    certify_telling(
+    certify_with_events(
         plugin,
         parameters,
         cohesion,
@@ -174,10 +174,10 @@ pub fn certify_parameters(
     path: &SearchPath,
 ) -> Result<Certificate, LawError> {
     let checks = &border::OF_PARAMETERS;
-    certify_telling(plugin, parameters, cohesion, path, checks, &mut |_| {})
+    certify_with_events(plugin, parameters, cohesion, path, checks, &mut |_| {})
 }
 
-fn certify_telling(
+fn certify_with_events(
     plugin: &Plugin,
     parameters: &[f64],
     cohesion: Option<&Loaded>,

@@ -18,7 +18,7 @@ pub struct Bond<S: Space> {
     /// Damage D in \[0, 1\]; 1 is broken.
     pub damage: f64,
     /// Damage used in the step's impulse: D at its start, or the coupling's trial value.
-    pub used: f64,
+    pub step_damage: f64,
     /// Area (m^2).
     pub area: f64,
     /// Stored energy (J).
@@ -37,7 +37,7 @@ impl<S: Space> Bond<S> {
             opening_t: S::Tangent::zero(),
             gap: 0.0,
             damage: 1.0,
-            used: 1.0,
+            step_damage: 1.0,
             area,
             energy: 0.0,
             life: Life::default(),
@@ -137,7 +137,7 @@ impl<S: Space> Memory<S> {
         self.bonds[slot] = Bond {
             gap,
             damage: 0.0,
-            used: 0.0,
+            step_damage: 0.0,
             ..Bond::none(area)
         };
         if self.rotates {

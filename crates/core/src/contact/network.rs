@@ -76,7 +76,7 @@ pub struct Contact<S: Space> {
     /// Time of formation of the contact (s).
     pub formed_at: f64,
     /// Uninterrupted time under a compressive impulse (s).
-    pub pressed: f64,
+    pub compression_time: f64,
     /// Whether it closes within this step, too fast for detection at the start of the step: its gap and
     /// normal are those at the time of closing, and its impact belongs to this step.
     pub closing: bool,
@@ -92,9 +92,55 @@ pub struct Contact<S: Space> {
     pub friction_work: f64,
 }
 
+/// Where two bodies touch.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactGeometry<S: Space> {
+    /// Gap (m), positive when open.
+    pub gap: f64,
+    /// Unit normal, from the antagonist to the candidate.
+    pub normal: S::Vector,
+    /// Vectors from each body's centre to the contact point (m).
+    pub arms: [S::Vector; 2],
+    /// Reduced radius (m).
+    pub radius: f64,
+}
+
 impl<S: Space> Contact<S> {
     /// Marks a frictional contact without memory.
     pub const NO_MEMORY: u32 = u32::MAX;
+
+    /// Returns a contact of two faces that forms at a time (s): not central, without memory or impulse.
+    #[inline]
+    pub fn new(
+        key: Key,
+        bodies: [u32; 2],
+        law: u16,
+        geometry: ContactGeometry<S>,
+        formed_at: f64,
+    ) -> Self {
+        Self {
+            key,
+            bodies,
+            law,
+            central: false,
+            vertex_contact: false,
+            broken: false,
+            slot: Self::NO_MEMORY,
+            gap: geometry.gap,
+            normal: geometry.normal,
+            arms: geometry.arms,
+            radius: geometry.radius,
+            impulse: S::Vector::zero(),
+            moment: S::Spin::zero(),
+            formed_at,
+            compression_time: 0.0,
+            closing: false,
+            later: false,
+            beyond: false,
+            slides: false,
+            friction_work: 0.0,
+        }
+    }
 
     /// Returns the slot of its memory, if any.
     pub fn memory(&self) -> Option<usize> {
@@ -129,7 +175,7 @@ pub struct Network<S: Space> {
     /// Energy dissipated at the contacts in the last step, in their order; `None` unless an output requests
     /// it.
     #[serde(skip)]
-    pub spent: Option<Vec<ContactDissipation>>,
+    pub dissipation: Option<Vec<ContactDissipation>>,
     /// Wear of surfaces in the last step; `None` unless requested.
     #[serde(skip)]
     pub losses: Option<Vec<Loss>>,
@@ -190,7 +236,7 @@ impl<S: Space> Network<S> {
             torn_energy: 0.0,
             bond_breaks: Vec::new(),
             bonds_formed: Vec::new(),
-            spent: None,
+            dissipation: None,
             losses: None,
             cycle_multiplier: 1.0,
             worn: BTreeMap::new(),

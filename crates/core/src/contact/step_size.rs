@@ -76,7 +76,7 @@ impl StepSizeDiagnostics {
     /// Records a contact that is found for the first time, of a pair that already penetrates by `known` (m)
     /// elsewhere: a body that rests slightly too deep in a surface meets the next facet at the same depth,
     /// which is not due to its speed.
-    pub(super) fn meet<S: Space>(
+    pub(super) fn record_late<S: Space>(
         &mut self,
         contact: &Contact<S>,
         known: f64,
@@ -93,21 +93,31 @@ impl StepSizeDiagnostics {
     }
 
     /// Records two bodies that the step could not keep apart.
-    pub(super) fn pass<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, pair: [u32; 2]) {
+    pub(super) fn record_passing<S: Space>(
+        &mut self,
+        time: f64,
+        bodies: &Bodies<S>,
+        pair: [u32; 2],
+    ) {
         self.passed += 1;
         self.first_passed
             .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
     }
 
     /// Records two bodies whose impact follows another one of the same step.
-    pub(crate) fn hold_back<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, pair: [u32; 2]) {
+    pub(crate) fn record_held_back<S: Space>(
+        &mut self,
+        time: f64,
+        bodies: &Bodies<S>,
+        pair: [u32; 2],
+    ) {
         self.held_back += 1;
         self.first_held_back
             .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
     }
 
     /// Records a body that moves farther in a step than the range in which contacts are searched.
-    pub(super) fn leave_unwatched<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, body: u32) {
+    pub(super) fn record_unwatched<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, body: u32) {
         // A step may be examined several times.
         if self.last_unwatched == Some(time) {
             return;
@@ -119,7 +129,12 @@ impl StepSizeDiagnostics {
     }
 
     /// Records a body whose displacement in a step is below the floating-point spacing of its position.
-    pub(crate) fn lose_motion<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, body: u32) {
+    pub(crate) fn record_lost_motion<S: Space>(
+        &mut self,
+        time: f64,
+        bodies: &Bodies<S>,
+        body: u32,
+    ) {
         self.motion_lost
             .get_or_insert_with(|| Occurrence::new(time, bodies, &[body]));
     }

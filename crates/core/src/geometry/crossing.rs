@@ -31,7 +31,7 @@ pub fn first(points: &[V]) -> Option<(usize, usize, V)> {
             let at = if j == k + 1 {
                 folds(w[0], w[1], points[j + 1])
             } else {
-                meet([w[0], w[1]], [points[j], points[j + 1]])
+                intersection([w[0], w[1]], [points[j], points[j + 1]])
             };
             if let Some(at) = at {
                 found = Some((k, j, at));
@@ -52,7 +52,7 @@ fn folds(a: V, b: V, c: V) -> Option<V> {
 }
 
 /// Returns the intersection of two segments.
-fn meet([a, b]: [V; 2], [c, d]: [V; 2]) -> Option<V> {
+fn intersection([a, b]: [V; 2], [c, d]: [V; 2]) -> Option<V> {
     let (u, v, w) = (b - a, d - c, c - a);
     let cross = u.perp(&v);
     if cross == 0.0 {

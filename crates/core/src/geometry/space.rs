@@ -50,7 +50,7 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     /// Returns the tangential part of a vector at a contact of unit normal `n`.
     fn tangential(n: &Self::Vector, v: &Self::Vector) -> Self::Tangent;
     /// Returns the vector of a tangential part.
-    fn lift(n: &Self::Vector, t: &Self::Tangent) -> Self::Vector;
+    fn tangent_vector(n: &Self::Vector, t: &Self::Tangent) -> Self::Vector;
     /// Returns omega x n as a tangential part.
     fn roll(spin: &Self::Spin, n: &Self::Vector) -> Self::Tangent;
     /// Returns n x p_t as a spin.
@@ -94,7 +94,7 @@ pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
     /// Splits a spin into twist about `n` and the rest, bending. In 2D all is bending.
     fn split_spin(n: &Self::Vector, spin: &Self::Spin) -> (f64, Self::Spin);
     /// Returns the spin of a twist about `n`.
-    fn about(n: &Self::Vector, twist: f64) -> Self::Spin;
+    fn spin_about(n: &Self::Vector, twist: f64) -> Self::Spin;
     /// Returns the components of a spin along n and [`Space::tangents`]; in 2D the second contains the spin.
     fn spin_components(n: &Self::Vector, spin: &Self::Spin) -> [f64; 3];
     /// Returns a spin from its components.
@@ -162,7 +162,7 @@ impl Space for Dim2 {
         Vector1::new(n[0] * v[1] - n[1] * v[0])
     }
     #[inline(always)]
-    fn lift(n: &Self::Vector, t: &Self::Tangent) -> Self::Vector {
+    fn tangent_vector(n: &Self::Vector, t: &Self::Tangent) -> Self::Vector {
         Vector2::new(-n[1] * t[0], n[0] * t[0])
     }
     #[inline(always)]
@@ -228,7 +228,7 @@ impl Space for Dim2 {
         (0.0, *spin)
     }
     #[inline(always)]
-    fn about(_n: &Self::Vector, _twist: f64) -> Self::Spin {
+    fn spin_about(_n: &Self::Vector, _twist: f64) -> Self::Spin {
         Vector1::new(0.0)
     }
     fn spin_components(_n: &Self::Vector, spin: &Self::Spin) -> [f64; 3] {
@@ -292,7 +292,7 @@ impl Space for Dim3 {
         v - n * n.dot(v)
     }
     #[inline(always)]
-    fn lift(_n: &Self::Vector, t: &Self::Tangent) -> Self::Vector {
+    fn tangent_vector(_n: &Self::Vector, t: &Self::Tangent) -> Self::Vector {
         *t
     }
     #[inline(always)]
@@ -380,7 +380,7 @@ impl Space for Dim3 {
         (twist, spin - n * twist)
     }
     #[inline(always)]
-    fn about(n: &Self::Vector, twist: f64) -> Self::Spin {
+    fn spin_about(n: &Self::Vector, twist: f64) -> Self::Spin {
         n * twist
     }
     fn spin_components(n: &Self::Vector, spin: &Self::Spin) -> [f64; 3] {

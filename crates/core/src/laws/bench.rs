@@ -3,13 +3,14 @@
 
 pub mod scale;
 
-use super::bonds::Held;
+use super::bonds::BondStep;
 use super::columns::StepInfo;
+use super::error::LawError;
+use super::evaluator::{CallChecks, LawEvaluator};
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::kind::Kind;
-use super::library::{Call, LawError};
-use super::pass::{Care, LawEvaluator};
+use super::library::Call;
 use serde::Serialize;
 
 /// State of a contact on the bench.
@@ -24,7 +25,7 @@ pub struct State {
     /// Damage.
     pub damage: f64,
     /// Time under compression (s).
-    pub pressed: f64,
+    pub compression_time: f64,
     /// Internal variables of the laws, slot after slot.
     pub variables: Vec<f64>,
 }
@@ -97,21 +98,21 @@ impl Bench {
     /// Accepts outputs outside their physical range, such as negative friction, for callers that check them.
     #[must_use]
     pub fn lenient(mut self) -> Self {
-        self.evaluator.care = Care::Lenient;
+        self.evaluator.checks = CallChecks::Lenient;
         self
     }
 
     /// Makes every law call twice in guarded memory, so that every invalid write is detected; slow.
     #[must_use]
     pub fn guarded(mut self) -> Self {
-        self.evaluator.care = Care::Guarded(Box::default());
+        self.evaluator.checks = CallChecks::Guarded(Box::default());
         self
     }
 
     /// Repeats every law call and compares the outputs, to detect data races between threads.
     #[must_use]
     pub fn repeating(mut self) -> Self {
-        self.evaluator.care = Care::Repeated;
+        self.evaluator.checks = CallChecks::Repeated;
         self
     }
 
@@ -138,7 +139,7 @@ impl Bench {
             opening: [0.0; 3],
             rotation: [0.0; 3],
             damage: if self.law.opens() { 0.0 } else { 1.0 },
-            pressed: 0.0,
+            compression_time: 0.0,
             variables: self.law.initial(),
         }
     }
@@ -161,7 +162,7 @@ impl Bench {
             theta: 0.5,
         };
         self.contact(states, motions, &info, &mut answers)?;
-        let held = self.grow(states, motions, &info)?;
+        let held = self.update_damage(states, motions, &info)?;
         for (k, answer) in answers.iter_mut().enumerate() {
             answer.damage = held.damage.get(k).copied().unwrap_or(states[k].damage);
         }
@@ -173,8 +174,8 @@ impl Bench {
             state.opening = motion.opening;
             state.rotation = motion.rotation;
             state.damage = answer.damage;
-            state.pressed = if motion.pressure > 0.0 {
-                state.pressed + h
+            state.compression_time = if motion.pressure > 0.0 {
+                state.compression_time + h
             } else {
                 0.0
             };
@@ -193,7 +194,7 @@ impl Bench {
             c.area.push(self.area);
             c.radius.push(self.radius);
             c.age.push(state.time);
-            c.pressed.push(state.pressed);
+            c.pressed.push(state.compression_time);
             c.damage.push(state.damage);
             c.impulse[0].push(info.h * self.area * motion.pressure);
             c.impulse[1].push(0.0);
@@ -245,17 +246,17 @@ impl Bench {
         Ok(())
     }
 
-    fn grow(
+    fn update_damage(
         &mut self,
         states: &mut [State],
         motions: &[Motion],
         info: &StepInfo,
-    ) -> Result<Held, LawError> {
-        let mut held = Held::default();
+    ) -> Result<BondStep, LawError> {
+        let mut held = BondStep::default();
         if self.law.opens() {
             self.fill(states, motions, info, true);
             self.evaluator
-                .grow(&self.law, &mut self.history, info, &mut held)?;
+                .update_damage(&self.law, &mut self.history, info, &mut held)?;
             self.said.clone_from(&self.evaluator.columns.out.damage);
             self.keep(states);
         }
@@ -267,7 +268,7 @@ impl Bench {
         states: &[State],
         motions: &[Motion],
         info: &StepInfo,
-        held: &Held,
+        held: &BondStep,
         answers: &mut [Answer],
     ) -> Result<(), LawError> {
         let Some(cohesion) = self.law.cohesion().cloned() else {

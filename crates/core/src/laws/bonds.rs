@@ -1,16 +1,18 @@
 //! Commit of bonds: updates openings, damage and energies, and breaks bonds.
 
 use super::columns::StepInfo;
+use super::error::LawError;
+use super::evaluator::LawEvaluator;
 use super::history::LawHistory;
 use super::interface::Interface;
-use super::library::{Call, LawError};
-use super::pass::{ContactStep, LawEvaluator, MomentStep, Totals};
+use super::library::Call;
+use super::step_result::{ContactStep, MomentStep, Totals};
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 
 /// State of the bonds after a step, in the order of the batch members.
 #[derive(Debug, Default)]
-pub(super) struct Held {
+pub(super) struct BondStep {
     /// Work done by the bond's impulse over the step (J).
     work: Vec<f64>,
     /// Part of it dissipated by damping and by the time scheme (J).
@@ -23,12 +25,12 @@ pub(super) struct Held {
     pub damage: Vec<f64>,
 }
 
-impl Held {
+impl BondStep {
     /// Energy per area stored at the new opening and damage (J/m^2).
     pub fn stored(&self, law: &Interface, k: usize) -> f64 {
         let m = law.cohesion().map_or(0.0, |c| c.plugin.degradation);
         let share = if law.damages() {
-            left(self.damage[k], m)
+            degradation_factor(self.damage[k], m)
         } else {
             1.0
         };
@@ -45,42 +47,50 @@ impl LawEvaluator {
         law: &Interface,
         history: &mut LawHistory,
         network: &mut Network<S>,
-        sites: &[ContactStep<S>],
-        turns: &[MomentStep<S>],
+        contact_steps: &[ContactStep<S>],
+        moment_steps: &[MomentStep<S>],
         info: &StepInfo,
         totals: &mut Totals,
     ) -> Result<(), LawError> {
-        let mut held = std::mem::take(&mut self.held);
-        self.open(index, law, network, sites, turns, info, &mut held);
-        self.gather_after(law, network, sites, info);
-        self.grow(law, history, info, &mut held)
-            .map_err(|e| self.at(law, network, e))?;
-        for (at, damage) in self.members.iter().zip(&mut held.damage) {
+        let mut bond_step = std::mem::take(&mut self.bond_step);
+        self.update_openings(
+            index,
+            law,
+            network,
+            contact_steps,
+            moment_steps,
+            info,
+            &mut bond_step,
+        );
+        self.gather_after(law, network, contact_steps, info);
+        self.update_damage(law, history, info, &mut bond_step)
+            .map_err(|e| self.locate(law, network, e))?;
+        for (at, damage) in self.members.iter().zip(&mut bond_step.damage) {
             let bond = network.bond(&network.contacts[*at]);
-            let (before, used) = bond.map_or((0.0, 0.0), |b| (b.damage, b.used));
+            let (before, used) = bond.map_or((0.0, 0.0), |b| (b.damage, b.step_damage));
             *damage = damage.max(used);
             if network.cycle_multiplier != 1.0 {
                 *damage = (before + network.cycle_multiplier * (*damage - before)).min(1.0);
             }
         }
-        self.keep_state(index, network);
-        self.settle(index, law, network, &held, totals);
-        self.held = held;
+        self.store_variables(index, network);
+        self.store_damage(index, law, network, &bond_step, totals);
+        self.bond_step = bond_step;
         Ok(())
     }
 
     /// Returns the largest increase from the damage used in the step's impulses to the damage that the
-    /// resulting openings give; [`LawEvaluator::adopt`] takes the latter for the next solve.
+    /// resulting openings give; [`LawEvaluator::adopt_trial_damage`] takes the latter for the next solve.
     ///
     /// # Errors
     /// The law's error, with the contact.
-    pub fn trial<S: Space>(
+    pub fn trial_damage<S: Space>(
         &mut self,
         laws: &[Interface],
         history: &mut LawHistory,
         network: &mut Network<S>,
-        sites: &[ContactStep<S>],
-        turns: &[MomentStep<S>],
+        contact_steps: &[ContactStep<S>],
+        moment_steps: &[MomentStep<S>],
         info: &StepInfo,
     ) -> Result<f64, LawError> {
         let mut worst = 0.0f64;
@@ -93,11 +103,19 @@ impl LawEvaluator {
                 continue;
             }
             let before = network.memory[index].clone_openings();
-            let mut held = std::mem::take(&mut self.held);
-            self.open(index, law, network, sites, turns, info, &mut held);
-            self.gather_after(law, network, sites, info);
-            self.grow(law, history, info, &mut held)
-                .map_err(|e| self.at(law, network, e))?;
+            let mut bond_step = std::mem::take(&mut self.bond_step);
+            self.update_openings(
+                index,
+                law,
+                network,
+                contact_steps,
+                moment_steps,
+                info,
+                &mut bond_step,
+            );
+            self.gather_after(law, network, contact_steps, info);
+            self.update_damage(law, history, info, &mut bond_step)
+                .map_err(|e| self.locate(law, network, e))?;
             network.memory[index].restore_openings(before);
             for (k, at) in self.members.iter().enumerate() {
                 let Some(slot) = network.contacts[*at].memory() else {
@@ -106,77 +124,81 @@ impl LawEvaluator {
                 let bond = &network.memory[index].bonds[slot];
                 // Damage does not decrease within a step either, so that the iteration is monotonic and
                 // ends.
-                let change = (held.damage[k] - bond.used).max(0.0);
+                let change = (bond_step.damage[k] - bond.step_damage).max(0.0);
                 worst = worst.max(change);
-                let next = bond.used + change;
+                let next = bond.step_damage + change;
                 self.trials.push((index, slot, next));
             }
-            self.held = held;
+            self.bond_step = bond_step;
         }
         Ok(worst)
     }
 
     /// Uses the damage of the last trial in the impulses of the next solve.
-    pub fn adopt<S: Space>(&mut self, network: &mut Network<S>) {
+    pub fn adopt_trial_damage<S: Space>(&mut self, network: &mut Network<S>) {
         for (index, slot, damage) in self.trials.drain(..) {
-            network.memory[index].bonds[slot].used = damage;
+            network.memory[index].bonds[slot].step_damage = damage;
         }
     }
 
     /// Computes damage at the current openings as the maximum of the cohesion law's and the damage law's
     /// value.
-    pub(super) fn grow(
+    pub(super) fn update_damage(
         &mut self,
         law: &Interface,
         history: &mut LawHistory,
         info: &StepInfo,
-        held: &mut Held,
+        bond_step: &mut BondStep,
     ) -> Result<(), LawError> {
         let Some(cohesion) = law.cohesion() else {
             return Ok(());
         };
         self.columns.size_outputs();
-        held.damage.clone_from(&self.columns.damage);
+        bond_step.damage.clone_from(&self.columns.damage);
         let m = cohesion.plugin.degradation;
         // The stored energy of the damaged bond is psi = (1 - D)^m psi_0, with psi_0 of the undamaged one.
         if law.damages() {
             self.columns.damage.fill(0.0);
         }
         self.run(cohesion, history, info, 0.0, Call::Energy)?;
-        held.intact.clone_from(&self.columns.out.energy);
+        bond_step.intact.clone_from(&self.columns.out.energy);
         if law.damage().is_some() {
             self.run(cohesion, history, info, 0.0, Call::Prepare)?;
         }
-        self.columns.damage.clone_from(&held.damage);
+        self.columns.damage.clone_from(&bond_step.damage);
         if cohesion.plugin.commits() {
-            self.columns.out.damage.clone_from(&held.damage);
+            self.columns.out.damage.clone_from(&bond_step.damage);
             self.run(cohesion, history, info, 0.0, Call::Commit)?;
             if law.damages() {
-                raise(&mut held.damage, &self.columns.out.damage);
+                raise(&mut bond_step.damage, &self.columns.out.damage);
             }
         }
         if let Some(damage) = law.damage() {
             // The damage law sees what the undamaged bond would carry and store.
             self.columns.expose_intact();
             self.run(damage, history, info, m, Call::Commit)?;
-            raise(&mut held.damage, &self.columns.out.damage);
+            raise(&mut bond_step.damage, &self.columns.out.damage);
         }
         Ok(())
     }
 
     /// Updates the openings. Work of the bond's impulse that is not stored is damping.
     #[allow(clippy::too_many_arguments)]
-    fn open<S: Space>(
+    fn update_openings<S: Space>(
         &self,
         index: usize,
         law: &Interface,
         network: &mut Network<S>,
-        sites: &[ContactStep<S>],
-        turns: &[MomentStep<S>],
+        contact_steps: &[ContactStep<S>],
+        moment_steps: &[MomentStep<S>],
         info: &StepInfo,
-        held: &mut Held,
+        bond_step: &mut BondStep,
     ) {
-        let (works, lost, turned) = (&mut held.work, &mut held.lost, &mut held.turned);
+        let (works, lost, turned) = (
+            &mut bond_step.work,
+            &mut bond_step.lost,
+            &mut bond_step.turned,
+        );
         works.clear();
         lost.clear();
         turned.clear();
@@ -185,7 +207,7 @@ impl LawEvaluator {
         } = network;
         let memory = &mut memory[index];
         for at in &self.members {
-            let (contact, site) = (&contacts[*at], &sites[*at]);
+            let (contact, contact_step) = (&contacts[*at], &contact_steps[*at]);
             let Some(slot) = contact.memory() else {
                 works.push(0.0);
                 lost.push(0.0);
@@ -194,14 +216,17 @@ impl LawEvaluator {
             };
             let bond = &mut memory.bonds[slot];
             let n = &contact.normal;
-            let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
+            let (un, ut) = (
+                n.dot(&contact_step.average),
+                S::tangential(n, &contact_step.average),
+            );
             let before = bond.opening_n;
             bond.opening_n += info.h * un;
             // A tension-only bond is not linear across zero opening; its energy there depends on the step.
             turned.push(law.tension_only() && (before > 0.0) != (bond.opening_n > 0.0));
-            lost.push(site.lost);
+            lost.push(contact_step.lost);
             bond.opening_t += ut * info.h;
-            let s = &site.solution;
+            let s = &contact_step.solution;
             let (en, et) = (
                 n.dot(&s.impulse) - s.unilateral_n,
                 S::tangential(n, &s.impulse) - s.unilateral_t,
@@ -215,37 +240,46 @@ impl LawEvaluator {
         if !memory.rotates {
             return;
         }
-        // `turns` and `members` both follow the order of the contacts, members by interface.
+        // `moment_steps` and `members` both follow the order of the contacts, members by interface.
         let mut place = vec![usize::MAX; contacts.len()];
-        for (k, turn) in turns.iter().enumerate() {
-            place[turn.moment.contact as usize] = k;
+        for (k, moment_step) in moment_steps.iter().enumerate() {
+            place[moment_step.moment.contact as usize] = k;
         }
         for (at, (work, lost)) in self.members.iter().zip(works.iter_mut().zip(lost)) {
-            let (Some(turn), Some(slot)) = (turns.get(place[*at]), contacts[*at].memory()) else {
+            let (Some(moment_step), Some(slot)) =
+                (moment_steps.get(place[*at]), contacts[*at].memory())
+            else {
                 continue;
             };
-            memory.rotations[slot] += turn.spin * info.h;
-            let turned = (turn.moment.moment - turn.moment.friction).dot(&turn.spin);
+            memory.rotations[slot] += moment_step.spin * info.h;
+            let turned =
+                (moment_step.moment.moment - moment_step.moment.friction).dot(&moment_step.spin);
             let life = &mut memory.bonds[slot].life;
             life.work[2] -= turned;
-            life.friction -= turn.moment.friction.dot(&turn.spin);
+            life.friction -= moment_step.moment.friction.dot(&moment_step.spin);
             *work += turned;
-            *lost += turn.lost;
+            *lost += moment_step.lost;
         }
     }
 
     /// Stores damage and energy; breaks fully damaged bonds.
-    fn settle<S: Space>(
+    fn store_damage<S: Space>(
         &self,
         index: usize,
         law: &Interface,
         network: &mut Network<S>,
-        held: &Held,
+        bond_step: &BondStep,
         totals: &mut Totals,
     ) {
         let m = law.cohesion().map_or(0.0, |c| c.plugin.degradation);
         let damages = law.damages();
-        let share = |damage: f64| if damages { left(damage, m) } else { 1.0 };
+        let share = |damage: f64| {
+            if damages {
+                degradation_factor(damage, m)
+            } else {
+                1.0
+            }
+        };
         for (k, at) in self.members.iter().enumerate() {
             let contact = &mut network.contacts[*at];
             let Some(slot) = contact.memory() else {
@@ -253,43 +287,43 @@ impl LawEvaluator {
             };
             let memory = &mut network.memory[index];
             let bond = &mut memory.bonds[slot];
-            let intact = held.intact[k] * bond.area;
-            // The impulses were computed with D = `used`: the stored energy at that damage, at start and end
+            let intact = bond_step.intact[k] * bond.area;
+            // The impulses were computed with D = `step_damage`: the stored energy at that damage, at start and end
             // of the step.
-            let (start, end) = if bond.used == bond.damage {
+            let (start, end) = if bond.step_damage == bond.damage {
                 (bond.energy, intact * share(bond.damage))
             } else {
-                let ratio = share(bond.used) / share(bond.damage);
-                (bond.energy * ratio, intact * share(bond.used))
+                let ratio = share(bond.step_damage) / share(bond.damage);
+                (bond.energy * ratio, intact * share(bond.step_damage))
             };
             // Where the energy is defined by the law, any imbalance appears in the residual.
-            let viscous = if held.turned[k] {
-                -held.work[k] - (end - start)
+            let viscous = if bond_step.turned[k] {
+                -bond_step.work[k] - (end - start)
             } else {
-                held.lost[k]
+                bond_step.lost[k]
             };
-            let kept = if held.damage[k] >= 1.0 {
+            let kept = if bond_step.damage[k] >= 1.0 {
                 0.0
             } else {
-                intact * share(held.damage[k])
+                intact * share(bond_step.damage[k])
             };
             let fracture = (bond.energy - start) + (end - kept);
             totals.viscous += viscous;
             totals.fracture += fracture;
             bond.life.viscous += viscous;
             bond.life.fracture += fracture;
-            if let Some(spent) = &mut network.spent {
-                spent[*at].viscous += viscous;
-                spent[*at].fracture += fracture;
+            if let Some(dissipation) = &mut network.dissipation {
+                dissipation[*at].viscous += viscous;
+                dissipation[*at].fracture += fracture;
             }
             bond.energy = kept;
-            bond.damage = held.damage[k];
-            bond.used = bond.damage;
+            bond.damage = bond_step.damage[k];
+            bond.step_damage = bond.damage;
             if bond.damage >= 1.0 {
                 totals.broken += 1;
                 memory.broken += 1;
                 contact.broken = true;
-                contact.pressed = 0.0;
+                contact.compression_time = 0.0;
                 network.broken_pairs.insert(contact.key.pair());
                 let contact = contact.clone();
                 network.record_break(&contact);
@@ -310,7 +344,7 @@ fn raise(damage: &mut [f64], new: &[f64]) {
 }
 
 /// (1 - D)^m.
-fn left(damage: f64, m: f64) -> f64 {
+fn degradation_factor(damage: f64, m: f64) -> f64 {
     let intact = 1.0 - damage;
     if m == 1.0 {
         intact

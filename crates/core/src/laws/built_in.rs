@@ -1,8 +1,9 @@
 //! Laws linked into the program, for installations without the plugin libraries. The program passes their
 //! tables to the core, which refers to no law by name.
 
+use super::error::LawError;
 use super::kind::Kind;
-use super::library::{LawError, Plugin};
+use super::library::Plugin;
 use fretwork_abi::FwPlugin;
 use sha2::{Digest, Sha256};
 use std::ffi::CStr;

@@ -1,6 +1,7 @@
 //! Calls of plugin functions across the C ABI.
 
-use super::library::{Call, LawError, Plugin};
+use super::error::LawError;
+use super::library::{Call, Plugin};
 use super::watch;
 use fretwork_abi as abi;
 use std::ffi::c_char;

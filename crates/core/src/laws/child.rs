@@ -2,7 +2,8 @@
 //!
 //! Only the command-line program does so, after [`enable`]; other users of the library are not affected.
 
-use super::library::{LawError, Plugin};
+use super::error::LawError;
+use super::library::Plugin;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -50,9 +51,9 @@ pub enum End {
 
 /// Output of a child process.
 #[derive(Debug)]
-pub struct Told {
+pub struct ChildOutput {
     /// Its messages in order.
-    pub pieces: Vec<Value>,
+    pub messages: Vec<Value>,
     /// How it ended.
     pub end: End,
 }
@@ -80,24 +81,24 @@ fn new_token() -> u64 {
 }
 
 /// In the child process: sends one message.
-pub fn tell(piece: &Value) {
+pub fn send_message(message: &Value) {
     let mark = mark(TOKEN.get().copied().unwrap_or_default());
     let mut out = std::io::stdout().lock();
     // A law may have printed an incomplete line.
-    let _ = writeln!(out, "\n{mark}{piece}");
+    let _ = writeln!(out, "\n{mark}{message}");
     let _ = out.flush();
 }
 
 /// In the child process: reports that the request is complete.
-pub fn tell_done() {
-    tell(&json!("done"));
+pub fn send_done() {
+    send_message(&json!("done"));
 }
 
 /// In the child process: reads the request.
 ///
 /// # Errors
 /// It cannot be read.
-pub fn asked() -> Result<Value, String> {
+pub fn read_request() -> Result<Value, String> {
     let mut text = String::new();
     let read = std::io::stdin().read_to_string(&mut text);
     read.map_err(|e| e.to_string())?;
@@ -110,7 +111,7 @@ pub fn asked() -> Result<Value, String> {
 ///
 /// # Errors
 /// The program cannot be started.
-pub fn ask(word: &str, question: &Value) -> Result<Told, String> {
+pub fn run_request(word: &str, question: &Value) -> Result<ChildOutput, String> {
     let helper = HELPER.get().ok_or("there is no program to call")?;
     let limit = helper.limit.map_or(0.0, |l| l.as_secs_f64());
     let cannot = |e: std::io::Error| format!("cannot start {}: {e}", helper.program.display());
@@ -124,22 +125,22 @@ pub fn ask(word: &str, question: &Value) -> Result<Told, String> {
     let token = new_token();
     let (send, heard) = mpsc::channel();
     if let Some(out) = child.stdout.take() {
-        std::thread::spawn(move || listen(out, token, &send));
+        std::thread::spawn(move || read_messages(out, token, &send));
     }
     let said = child
         .stderr
         .take()
-        .map(|err| std::thread::spawn(move || last_words(err)));
+        .map(|err| std::thread::spawn(move || read_error_output(err)));
     if let Some(mut to) = child.stdin.take() {
         // A process that has already ended does not read its request; the way it ended is reported below.
         let question = json!({ "token": token, "question": question });
         let _ = to.write_all(question.to_string().as_bytes());
     }
-    let mut pieces = Vec::new();
+    let mut messages = Vec::new();
     let hung = loop {
         // The child enforces its own time limit; this longer one covers a child that cannot. Starting may be
         // slow on a busy machine.
-        let slack = Duration::from_secs(if pieces.is_empty() { 30 } else { 5 });
+        let slack = Duration::from_secs(if messages.is_empty() { 30 } else { 5 });
         let next = match helper.limit {
             Some(limit) => heard
                 .recv_timeout(limit + slack)
@@ -147,7 +148,7 @@ pub fn ask(word: &str, question: &Value) -> Result<Told, String> {
             None => heard.recv().map_err(|_| false),
         };
         match next {
-            Ok(piece) => pieces.push(piece),
+            Ok(piece) => messages.push(piece),
             Err(timed_out) => break timed_out,
         }
     };
@@ -157,14 +158,14 @@ pub fn ask(word: &str, question: &Value) -> Result<Told, String> {
         true => String::new(),
         false => said.and_then(|s| s.join().ok()).unwrap_or_default(),
     };
-    let done = pieces.pop_if(|p| *p == json!("done")).is_some();
+    let done = messages.pop_if(|p| *p == json!("done")).is_some();
     let end = match status {
         Ok(status) if done && status.success() => End::Done,
         _ if hung => End::Early("it did not answer and was stopped".to_owned()),
-        Ok(status) => End::Early(in_words(status, &said)),
+        Ok(status) => End::Early(describe_exit(status, &said)),
         Err(e) => End::Early(e.to_string()),
     };
-    Ok(Told { pieces, end })
+    Ok(ChildOutput { messages, end })
 }
 
 fn end(child: &mut Child, hung: bool) -> std::io::Result<ExitStatus> {
@@ -174,7 +175,7 @@ fn end(child: &mut Child, hung: bool) -> std::io::Result<ExitStatus> {
     child.wait()
 }
 
-fn listen(out: impl Read, token: u64, send: &mpsc::Sender<Value>) {
+fn read_messages(out: impl Read, token: u64, send: &mpsc::Sender<Value>) {
     let mark = mark(token);
     for line in BufReader::new(out).split(b'\n').map_while(Result::ok) {
         let line = String::from_utf8_lossy(&line);
@@ -190,7 +191,7 @@ fn listen(out: impl Read, token: u64, send: &mpsc::Sender<Value>) {
 }
 
 /// Returns the end of a process's standard error.
-fn last_words(mut err: impl Read) -> String {
+fn read_error_output(mut err: impl Read) -> String {
     const MAX_BYTES: usize = 4096;
     let (mut all, mut buffer) = (Vec::new(), [0; 1024]);
     while let Ok(n) = err.read(&mut buffer) {
@@ -205,7 +206,7 @@ fn last_words(mut err: impl Read) -> String {
 }
 
 /// Describes why a process ended early.
-fn in_words(status: ExitStatus, said: &str) -> String {
+fn describe_exit(status: ExitStatus, said: &str) -> String {
     // The program's own message names the law and the call.
     let sentence = said.lines().rev().find_map(|l| l.strip_prefix("error: "));
     if let Some(sentence) = sentence {
@@ -236,19 +237,19 @@ struct Library {
 /// path is part of the key, since the same bytes in another folder may load other dependencies.
 static FOUND: Mutex<Option<HashMap<Library, Option<String>>>> = Mutex::new(None);
 
-fn known(library: &Library) -> Option<Option<String>> {
+fn cached_result(library: &Library) -> Option<Option<String>> {
     let found = FOUND.lock().unwrap_or_else(|e| e.into_inner());
     found.as_ref()?.get(library).cloned()
 }
 
-fn remember(library: &Library, reason: Option<String>) {
+fn cache_result(library: &Library, reason: Option<String>) {
     let mut found = FOUND.lock().unwrap_or_else(|e| e.into_inner());
     let all = found.get_or_insert_default();
     all.insert(library.clone(), reason);
 }
 
 /// Checks in a child process that a library can be opened without hanging or ending the process.
-pub(super) fn survives(path: &Path, sha256: &str) -> Result<(), String> {
+pub(super) fn check_loads(path: &Path, sha256: &str) -> Result<(), String> {
     if !enabled() {
         return Ok(());
     }
@@ -256,10 +257,10 @@ pub(super) fn survives(path: &Path, sha256: &str) -> Result<(), String> {
         path: path.to_owned(),
         sha256: sha256.to_owned(),
     };
-    if known(&library).is_none() {
-        ask_after(std::slice::from_ref(&library));
+    if cached_result(&library).is_none() {
+        try_in_order(std::slice::from_ref(&library));
     }
-    match known(&library) {
+    match cached_result(&library) {
         Some(None) => Ok(()),
         Some(Some(reason)) => Err(reason),
         None => Err(UNANSWERED.to_owned()),
@@ -267,7 +268,7 @@ pub(super) fn survives(path: &Path, sha256: &str) -> Result<(), String> {
 }
 
 /// Tries several libraries in one child process; a library whose SHA-256 differs from its pin is not opened.
-pub(super) fn try_out(libraries: &[(PathBuf, Option<&str>)]) {
+pub(super) fn try_loading(libraries: &[(PathBuf, Option<&str>)]) {
     if !enabled() {
         return;
     }
@@ -281,12 +282,12 @@ pub(super) fn try_out(libraries: &[(PathBuf, Option<&str>)]) {
             sha256: super::built_in::hex(&Sha256::digest(&bytes)),
         };
         let pinned = pin.is_none_or(|p| p.eq_ignore_ascii_case(&library.sha256));
-        if pinned && known(&library).is_none() && !wanted.contains(&library) {
+        if pinned && cached_result(&library).is_none() && !wanted.contains(&library) {
             wanted.push(library);
         }
     }
     while !wanted.is_empty() {
-        let done = ask_after(&wanted);
+        let done = try_in_order(&wanted);
         wanted.drain(..done);
     }
 }
@@ -295,22 +296,22 @@ const UNANSWERED: &str = "it was tried in a separate process, which ended withou
 
 /// Tries libraries in a child process and stores the results; returns the number of libraries with a result,
 /// at least one.
-fn ask_after(libraries: &[Library]) -> usize {
+fn try_in_order(libraries: &[Library]) -> usize {
     let question = serde_json::to_value(libraries).map_err(|e| e.to_string());
-    let told = match question.and_then(|q| ask(TRY_LIBRARIES, &q)) {
+    let told = match question.and_then(|q| run_request(TRY_LIBRARIES, &q)) {
         Ok(told) => told,
         Err(reason) => {
             let text = format!(
                 "it must first be tried in a separate process, which could not be started ({reason})"
             );
-            remember(&libraries[0], Some(text));
+            cache_result(&libraries[0], Some(text));
             return 1;
         }
     };
-    for (library, piece) in libraries.iter().zip(&told.pieces) {
-        remember(library, piece.as_str().map(str::to_owned));
+    for (library, piece) in libraries.iter().zip(&told.messages) {
+        cache_result(library, piece.as_str().map(str::to_owned));
     }
-    let answered = told.pieces.len().min(libraries.len());
+    let answered = told.messages.len().min(libraries.len());
     let Some(library) = libraries.get(answered) else {
         return answered;
     };
@@ -321,7 +322,7 @@ fn ask_after(libraries: &[Library]) -> usize {
         // A library without an answer was not opened.
         End::Done => UNANSWERED.to_owned(),
     };
-    remember(library, Some(why));
+    cache_result(library, Some(why));
     answered + 1
 }
 
@@ -331,16 +332,17 @@ fn ask_after(libraries: &[Library]) -> usize {
 /// # Errors
 /// The request cannot be read.
 pub fn try_libraries() -> Result<(), String> {
-    let libraries: Vec<Library> = serde_json::from_value(asked()?).map_err(|e| e.to_string())?;
+    let libraries: Vec<Library> =
+        serde_json::from_value(read_request()?).map_err(|e| e.to_string())?;
     for library in libraries {
-        tell(
+        send_message(
             &match Plugin::open_pinned(&library.path, Some(&library.sha256)) {
                 Err(LawError::Pinned { .. }) => json!(CHANGED),
                 _ => Value::Null,
             },
         );
     }
-    tell_done();
+    send_done();
     Ok(())
 }
 

@@ -67,23 +67,23 @@ pub struct Columns {
 }
 
 /// Number of guard values behind each output column, which reveal an overrun.
-const FENCE: usize = 8;
+const GUARD_VALUES: usize = 8;
 /// Guard value: a NaN with a payload that no law computes.
 const CANARY: u64 = 0x7ff4_f37e_0b5e_55ed;
 
 /// Appends guard values to a column.
 fn guard(column: &mut Vec<f64>) {
-    column.reserve(FENCE);
-    for place in &mut column.spare_capacity_mut()[..FENCE] {
+    column.reserve(GUARD_VALUES);
+    for place in &mut column.spare_capacity_mut()[..GUARD_VALUES] {
         place.write(f64::from_bits(CANARY));
     }
 }
 
 /// Returns whether the guard values of a column were overwritten, and removes them.
 fn overrun(column: &mut Vec<f64>) -> bool {
-    let posts = column.spare_capacity_mut()[..FENCE].iter();
+    let guards = column.spare_capacity_mut()[..GUARD_VALUES].iter();
     // SAFETY: `guard` wrote them, and the column has not been reallocated since.
-    posts
+    guards
         .into_iter()
         .any(|p| unsafe { p.assume_init_read() }.to_bits() != CANARY)
 }
@@ -150,6 +150,48 @@ fn first_not_finite(column: &[f64]) -> Option<usize> {
         return None;
     }
     column.iter().position(|x| !x.is_finite())
+}
+
+/// Turns columns into the pointers of a batch: null for columns that are not in use.
+struct Pointers {
+    /// Number of contacts.
+    n: usize,
+    /// Whether space has three dimensions.
+    spatial: bool,
+}
+
+impl Pointers {
+    fn input(&self, column: &[f64]) -> *const f64 {
+        if column.len() == self.n {
+            column.as_ptr()
+        } else {
+            null()
+        }
+    }
+
+    fn output(&self, column: &mut [f64]) -> *mut f64 {
+        if column.len() == self.n {
+            column.as_mut_ptr()
+        } else {
+            null_mut()
+        }
+    }
+
+    fn input_3d(&self, column: &[f64]) -> *const f64 {
+        if self.spatial {
+            self.input(column)
+        } else {
+            null()
+        }
+    }
+
+    fn output_3d(&self, column: &mut [f64]) -> *mut f64 {
+        if self.spatial {
+            self.output(column)
+        } else {
+            null_mut()
+        }
+    }
 }
 
 impl Columns {
@@ -227,58 +269,18 @@ impl Columns {
         degradation: f64,
         call: impl FnOnce(&FwBatch) -> R,
     ) -> R {
-        let n = self.n;
         let (first, count) = (loaded.first_variable, loaded.variables());
         let states = self.state_next.iter_mut().skip(first).take(count);
         self.out.all().chain(states).for_each(guard);
-        let column = |v: &Vec<f64>| if v.len() == n { v.as_ptr() } else { null() };
-        let mut output = |v: &mut Vec<f64>| {
-            if v.len() == n {
-                v.as_mut_ptr()
-            } else {
-                null_mut()
-            }
+        let pointers = Pointers {
+            n: self.n,
+            spatial: info.dimension == 3,
         };
-        let state: Vec<*const f64> = self
-            .state
-            .iter()
-            .skip(first)
-            .take(count)
-            .map(column)
-            .collect();
-        let next: Vec<*mut f64> = self
-            .state_next
-            .iter_mut()
-            .skip(first)
-            .take(count)
-            .map(&mut output)
-            .collect();
-        let out = &mut self.out;
-        let third = |v: &Vec<f64>| {
-            if info.dimension == 3 {
-                column(v)
-            } else {
-                null()
-            }
-        };
-        let [twist, bend_1, bend_2] = &mut out.moment;
-        let spatial = |v: &mut Vec<f64>| {
-            if info.dimension == 3 {
-                output(v)
-            } else {
-                null_mut()
-            }
-        };
-        let traction_t2 = spatial(&mut out.traction[2]);
-        let (moment_n, moment_t2) = (spatial(twist), spatial(bend_2));
-        let batch = FwBatch {
-            size: size_of::<FwBatch>(),
-            n,
-            dimension: info.dimension,
-            reserved: 0,
-            time: info.time,
-            h: info.h,
-            theta: info.theta,
+        let state = self.state.iter().skip(first).take(count);
+        let state: Vec<*const f64> = state.map(|v| pointers.input(v)).collect();
+        let next = self.state_next.iter_mut().skip(first).take(count);
+        let next: Vec<*mut f64> = next.map(|v| pointers.output(v)).collect();
+        let answer = call(&FwBatch {
             degradation,
             parameters: loaded.parameters.as_ptr(),
             state: if state.is_empty() {
@@ -291,60 +293,78 @@ impl Columns {
             } else {
                 next.as_ptr()
             },
-            gap: column(&self.gap),
-            area: column(&self.area),
-            radius: column(&self.radius),
-            age: column(&self.age),
-            opening_n: column(&self.opening[0]),
-            opening_t1: column(&self.opening[1]),
-            opening_t2: third(&self.opening[2]),
-            velocity_n: column(&self.velocity[0]),
-            velocity_t1: column(&self.velocity[1]),
-            velocity_t2: third(&self.velocity[2]),
-            impulse_n: column(&self.impulse[0]),
-            impulse_t1: column(&self.impulse[1]),
-            impulse_t2: third(&self.impulse[2]),
-            damage: column(&self.damage),
-            energy_intact: column(&self.energy_intact),
-            intact_n: column(&self.intact[0]),
-            intact_t1: column(&self.intact[1]),
-            intact_t2: third(&self.intact[2]),
-            slip: column(&self.slip),
-            friction_work: column(&self.friction_work),
-            pressed: column(&self.pressed),
-            rotation_n: third(&self.rotation[0]),
-            rotation_t1: column(&self.rotation[1]),
-            rotation_t2: third(&self.rotation[2]),
-            intact_moment_n: third(&self.intact_moment[0]),
-            intact_moment_t1: column(&self.intact_moment[1]),
-            intact_moment_t2: third(&self.intact_moment[2]),
-            out_friction: output(&mut out.friction),
-            out_restitution_n: output(&mut out.restitution_n),
-            out_restitution_t: output(&mut out.restitution_t),
-            out_tension_strength: output(&mut out.tension_strength),
-            out_shear_cohesion: output(&mut out.shear_cohesion),
-            out_rolling: output(&mut out.rolling),
-            out_spinning: output(&mut out.spinning),
-            out_traction_n: output(&mut out.traction[0]),
-            out_traction_t1: output(&mut out.traction[1]),
-            out_traction_t2: traction_t2,
-            out_stiffness_n: output(&mut out.stiffness_n),
-            out_stiffness_t: output(&mut out.stiffness_t),
-            out_damping_n: output(&mut out.damping_n),
-            out_damping_t: output(&mut out.damping_t),
-            out_energy: output(&mut out.energy),
-            out_damage: output(&mut out.damage),
-            out_volume: output(&mut out.volume),
-            out_moment_n: moment_n,
-            out_moment_t1: output(bend_1),
-            out_moment_t2: moment_t2,
-            out_stiffness_twist: output(&mut out.stiffness_twist),
-            out_stiffness_bend: output(&mut out.stiffness_bend),
-        };
-        let answer = call(&batch);
+            ..self.batch(&pointers, info)
+        });
         let states = self.state_next.iter_mut().skip(first).take(count);
         let written = self.out.all().chain(states);
         self.overrun = written.fold(false, |broken, column| broken | overrun(column));
         answer
+    }
+
+    /// Returns the batch of these columns, without a law's parameters and internal variables.
+    fn batch(&mut self, pointers: &Pointers, info: &StepInfo) -> FwBatch {
+        let out = &mut self.out;
+        FwBatch {
+            size: size_of::<FwBatch>(),
+            n: pointers.n,
+            dimension: info.dimension,
+            reserved: 0,
+            time: info.time,
+            h: info.h,
+            theta: info.theta,
+            degradation: 0.0,
+            parameters: null(),
+            state: null(),
+            state_next: null(),
+            gap: pointers.input(&self.gap),
+            area: pointers.input(&self.area),
+            radius: pointers.input(&self.radius),
+            age: pointers.input(&self.age),
+            opening_n: pointers.input(&self.opening[0]),
+            opening_t1: pointers.input(&self.opening[1]),
+            opening_t2: pointers.input_3d(&self.opening[2]),
+            velocity_n: pointers.input(&self.velocity[0]),
+            velocity_t1: pointers.input(&self.velocity[1]),
+            velocity_t2: pointers.input_3d(&self.velocity[2]),
+            impulse_n: pointers.input(&self.impulse[0]),
+            impulse_t1: pointers.input(&self.impulse[1]),
+            impulse_t2: pointers.input_3d(&self.impulse[2]),
+            damage: pointers.input(&self.damage),
+            energy_intact: pointers.input(&self.energy_intact),
+            intact_n: pointers.input(&self.intact[0]),
+            intact_t1: pointers.input(&self.intact[1]),
+            intact_t2: pointers.input_3d(&self.intact[2]),
+            slip: pointers.input(&self.slip),
+            friction_work: pointers.input(&self.friction_work),
+            pressed: pointers.input(&self.pressed),
+            rotation_n: pointers.input_3d(&self.rotation[0]),
+            rotation_t1: pointers.input(&self.rotation[1]),
+            rotation_t2: pointers.input_3d(&self.rotation[2]),
+            intact_moment_n: pointers.input_3d(&self.intact_moment[0]),
+            intact_moment_t1: pointers.input(&self.intact_moment[1]),
+            intact_moment_t2: pointers.input_3d(&self.intact_moment[2]),
+            out_friction: pointers.output(&mut out.friction),
+            out_restitution_n: pointers.output(&mut out.restitution_n),
+            out_restitution_t: pointers.output(&mut out.restitution_t),
+            out_tension_strength: pointers.output(&mut out.tension_strength),
+            out_shear_cohesion: pointers.output(&mut out.shear_cohesion),
+            out_rolling: pointers.output(&mut out.rolling),
+            out_spinning: pointers.output(&mut out.spinning),
+            out_traction_n: pointers.output(&mut out.traction[0]),
+            out_traction_t1: pointers.output(&mut out.traction[1]),
+            out_traction_t2: pointers.output_3d(&mut out.traction[2]),
+            out_stiffness_n: pointers.output(&mut out.stiffness_n),
+            out_stiffness_t: pointers.output(&mut out.stiffness_t),
+            out_damping_n: pointers.output(&mut out.damping_n),
+            out_damping_t: pointers.output(&mut out.damping_t),
+            out_energy: pointers.output(&mut out.energy),
+            out_damage: pointers.output(&mut out.damage),
+            out_volume: pointers.output(&mut out.volume),
+            out_moment_n: pointers.output_3d(&mut out.moment[0]),
+            out_moment_t1: pointers.output(&mut out.moment[1]),
+            out_moment_t2: pointers.output_3d(&mut out.moment[2]),
+            out_stiffness_twist: pointers.output(&mut out.stiffness_twist),
+            out_stiffness_bend: pointers.output(&mut out.stiffness_bend),
+        }
     }
 }

@@ -1,16 +1,18 @@
 //! Commit: the laws' update at the end of a solved step.
 
 use super::columns::{Columns, StepInfo};
+use super::error::LawError;
+use super::evaluator::LawEvaluator;
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::kind::Domain;
-use super::library::{Call, LawError};
-use super::pass::{ContactStep, LawEvaluator, MomentStep, Totals};
-use crate::contact::{ContactDissipation, Network};
+use super::library::Call;
+use super::step_result::{ContactStep, MomentStep, Totals};
+use crate::contact::{Contact, ContactDissipation, Network};
 use crate::geometry::space::{Space, VectorLike};
 
 impl LawEvaluator {
-    /// Completes the step. `sites` holds the results of the contacts in the network's order, `turns` the
+    /// Completes the step. `contact_steps` holds the results of the contacts in the network's order, `moment_steps` the
     /// moments of those that resist rotation.
     ///
     /// # Errors
@@ -20,75 +22,33 @@ impl LawEvaluator {
         laws: &[Interface],
         history: &mut LawHistory,
         network: &mut Network<S>,
-        sites: &[ContactStep<S>],
-        turns: &[MomentStep<S>],
+        contact_steps: &[ContactStep<S>],
+        moment_steps: &[MomentStep<S>],
         info: &StepInfo,
     ) -> Result<Totals, LawError> {
         let mut totals = Totals::default();
-        if let Some(spent) = &mut network.spent {
-            spent.clear();
-            spent.resize(network.contacts.len(), ContactDissipation::default());
+        if let Some(dissipation) = &mut network.dissipation {
+            dissipation.clear();
+            dissipation.resize(network.contacts.len(), ContactDissipation::default());
         }
         if let Some(losses) = &mut network.losses {
             losses.clear();
         }
-        for (k, (contact, site)) in network.contacts.iter_mut().zip(sites).enumerate() {
-            contact.impulse = site.solution.impulse;
-            contact.moment = S::Spin::zero();
-            let n = &contact.normal;
-            contact.pressed = if n.dot(&contact.impulse) > 0.0 && !contact.beyond {
-                contact.pressed + info.h
-            } else {
-                0.0
-            };
-            let (un, ut) = (n.dot(&site.average), S::tangential(n, &site.average));
-            let friction = -site.solution.unilateral_t.dot(&ut);
-            totals.friction += friction;
-            contact.slides = site.slides;
-            contact.friction_work += friction;
-            let work = -site.solution.unilateral_n * un + site.corrected;
-            totals.correction -= site.corrected;
-            let adheres = site.adheres && site.solution.unilateral_n < 0.0;
-            if adheres {
-                totals.adhesion += work;
-            } else {
-                totals.impact += work;
-            }
-            if let Some(spent) = &mut network.spent {
-                let (adhesion, impact) = if adheres { (work, 0.0) } else { (0.0, work) };
-                spent[k] = ContactDissipation {
-                    friction,
-                    impact,
-                    adhesion,
-                    correction: -site.corrected,
-                    ..ContactDissipation::default()
-                };
-            }
-        }
-        for turn in turns {
-            let contact = &mut network.contacts[turn.moment.contact as usize];
-            contact.moment = turn.moment.moment;
-            let friction = -turn.moment.friction.dot(&turn.spin);
-            totals.friction += friction;
-            contact.friction_work += friction;
-            if let Some(spent) = &mut network.spent {
-                spent[turn.moment.contact as usize].friction += friction;
-            }
-        }
+        commit_contacts(network, contact_steps, info, &mut totals);
+        commit_moments(network, moment_steps, &mut totals);
         for (index, law) in laws.iter().enumerate() {
-            let bonded = |n: &Network<S>, c: &crate::contact::Contact<S>| {
-                n.bond(c).is_some_and(|b| b.intact())
-            };
             if law.opens() {
-                self.select(network, |c| c.law as usize == index && bonded(network, c));
+                self.select(network, |c| {
+                    c.law as usize == index && network.bond(c).is_some_and(|b| b.intact())
+                });
                 if !self.members.is_empty() {
                     self.commit_bonds(
                         index,
                         law,
                         history,
                         network,
-                        sites,
-                        turns,
+                        contact_steps,
+                        moment_steps,
                         info,
                         &mut totals,
                     )?;
@@ -108,7 +68,7 @@ impl LawEvaluator {
                     interface: law,
                     law: loaded,
                     network,
-                    sites,
+                    contact_steps,
                     info,
                     totals: &mut totals,
                     evaluator: self,
@@ -122,7 +82,7 @@ impl LawEvaluator {
     }
 
     /// Stores the new internal variables of the members.
-    pub(super) fn keep_state<S: Space>(&self, index: usize, network: &mut Network<S>) {
+    pub(super) fn store_variables<S: Space>(&self, index: usize, network: &mut Network<S>) {
         for (k, at) in self.members.iter().enumerate() {
             let Some(slot) = network.contacts[*at].memory() else {
                 continue;
@@ -131,6 +91,77 @@ impl LawEvaluator {
             for (column, next) in columns.iter_mut().zip(&self.columns.state_next) {
                 column[slot] = next[k];
             }
+        }
+    }
+}
+
+/// Stores the impulses of the contacts, and books what they dissipated.
+fn commit_contacts<S: Space>(
+    network: &mut Network<S>,
+    contact_steps: &[ContactStep<S>],
+    info: &StepInfo,
+    totals: &mut Totals,
+) {
+    for (k, (contact, contact_step)) in network.contacts.iter_mut().zip(contact_steps).enumerate() {
+        let dissipated = commit_contact(contact, contact_step, info.h);
+        totals.friction += dissipated.friction;
+        totals.correction += dissipated.correction;
+        totals.adhesion += dissipated.adhesion;
+        totals.impact += dissipated.impact;
+        if let Some(dissipation) = &mut network.dissipation {
+            dissipation[k] = dissipated;
+        }
+    }
+}
+
+/// Stores the impulse of a contact; returns what it dissipated.
+#[inline]
+fn commit_contact<S: Space>(
+    contact: &mut Contact<S>,
+    contact_step: &ContactStep<S>,
+    h: f64,
+) -> ContactDissipation {
+    contact.impulse = contact_step.solution.impulse;
+    contact.moment = S::Spin::zero();
+    let n = &contact.normal;
+    contact.compression_time = if n.dot(&contact.impulse) > 0.0 && !contact.beyond {
+        contact.compression_time + h
+    } else {
+        0.0
+    };
+    let (un, ut) = (
+        n.dot(&contact_step.average),
+        S::tangential(n, &contact_step.average),
+    );
+    let friction = -contact_step.solution.unilateral_t.dot(&ut);
+    contact.slides = contact_step.slides;
+    contact.friction_work += friction;
+    let work = -contact_step.solution.unilateral_n * un + contact_step.corrected;
+    let adheres = contact_step.adheres && contact_step.solution.unilateral_n < 0.0;
+    let (adhesion, impact) = if adheres { (work, 0.0) } else { (0.0, work) };
+    ContactDissipation {
+        friction,
+        impact,
+        adhesion,
+        correction: -contact_step.corrected,
+        ..ContactDissipation::default()
+    }
+}
+
+/// Stores the moments of the contacts that resist rotation, and books their friction.
+fn commit_moments<S: Space>(
+    network: &mut Network<S>,
+    moment_steps: &[MomentStep<S>],
+    totals: &mut Totals,
+) {
+    for moment_step in moment_steps {
+        let contact = &mut network.contacts[moment_step.moment.contact as usize];
+        contact.moment = moment_step.moment.moment;
+        let friction = -moment_step.moment.friction.dot(&moment_step.spin);
+        totals.friction += friction;
+        contact.friction_work += friction;
+        if let Some(dissipation) = &mut network.dissipation {
+            dissipation[moment_step.moment.contact as usize].friction += friction;
         }
     }
 }
@@ -146,7 +177,7 @@ pub struct SlotCommit<'a, S: Space> {
     /// All contacts.
     pub network: &'a mut Network<S>,
     /// What each contact did, in the order of the network.
-    pub sites: &'a [ContactStep<S>],
+    pub contact_steps: &'a [ContactStep<S>],
     /// Time and scheme.
     pub info: &'a StepInfo,
     /// Energies and volumes of the step.
@@ -170,7 +201,7 @@ impl<S: Space> SlotCommit<'_, S> {
     /// Fills the columns by the end of the step.
     pub fn gather(&mut self) {
         let Self { evaluator, .. } = self;
-        evaluator.gather_after(self.interface, self.network, self.sites, self.info);
+        evaluator.gather_after(self.interface, self.network, self.contact_steps, self.info);
         evaluator.columns.size_outputs();
     }
 
@@ -178,10 +209,10 @@ impl<S: Space> SlotCommit<'_, S> {
     pub fn add_slip(&mut self) {
         let Self { evaluator, .. } = self;
         for at in &evaluator.members {
-            let (contact, site) = (&self.network.contacts[*at], &self.sites[*at]);
-            let ut = S::tangential(&contact.normal, &site.average);
+            let (contact, contact_step) = (&self.network.contacts[*at], &self.contact_steps[*at]);
+            let ut = S::tangential(&contact.normal, &contact_step.average);
             evaluator.columns.slip.push(self.info.h * ut.norm());
-            let work = -site.solution.unilateral_t.dot(&ut);
+            let work = -contact_step.solution.unilateral_t.dot(&ut);
             evaluator.columns.friction_work.push(work);
         }
     }
@@ -219,11 +250,11 @@ impl<S: Space> SlotCommit<'_, S> {
         let called = self
             .evaluator
             .run(self.law, self.history, self.info, 0.0, Call::Commit);
-        called.map_err(|e| self.evaluator.at(self.interface, self.network, e))
+        called.map_err(|e| self.evaluator.locate(self.interface, self.network, e))
     }
 
     /// Stores the new internal variables.
-    pub fn keep_state(&mut self) {
-        self.evaluator.keep_state(self.index, self.network);
+    pub fn store_variables(&mut self) {
+        self.evaluator.store_variables(self.index, self.network);
     }
 }

@@ -4,9 +4,9 @@
 //! returns at run time: a constant law is called once, any other is tried on a bench with trial contacts.
 
 use super::bench::{Bench, Motion, State};
+use super::error::LawError;
 use super::interface::{BondRule, Interface, Loaded};
 use super::kind::Kind;
-use super::library::LawError;
 
 /// Whether a law requires a feature, from never to always.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -62,7 +62,7 @@ impl Interface {
         let acting = acting.retain(tried)?;
         let constant = acting.constant_contact();
         let simple = constant && acting.cohesion().is_none();
-        let (mut rubs, mut turns, mut grips) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut rubs, mut moment_steps, mut grips) = (Vec::new(), Vec::new(), Vec::new());
         for radius in radii {
             let mut bench = Bench::new(acting.clone(), dimension, *radius);
             let (mut states, motions) = trials(&bench, *radius);
@@ -70,13 +70,13 @@ impl Interface {
             for (answer, motion) in answers.iter().zip(&motions) {
                 let touches = motion.gap <= 0.0;
                 rubs.push((touches, answer.mu > 0.0));
-                turns.push((touches, answer.rolling.iter().any(|x| *x > 0.0)));
+                moment_steps.push((touches, answer.rolling.iter().any(|x| *x > 0.0)));
                 grips.push((touches, answer.strength[1] > 0.0));
             }
         }
         Ok(LawRequirements {
             friction: Requirement::of(&rubs, constant),
-            rotation: Requirement::of(&turns, constant),
+            rotation: Requirement::of(&moment_steps, constant),
             cohesion: Requirement::of(&grips, simple).max(if bonds {
                 Requirement::Unseen
             } else {
@@ -99,7 +99,7 @@ fn trials(bench: &Bench, radius: f64) -> (Vec<State>, Vec<Motion>) {
                 for damage in [0.0, 1.0] {
                     states.push(State {
                         time: age,
-                        pressed: if pressure > 0.0 { age } else { 0.0 },
+                        compression_time: if pressure > 0.0 { age } else { 0.0 },
                         damage,
                         ..bench.fresh()
                     });

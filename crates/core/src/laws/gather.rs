@@ -1,8 +1,9 @@
 //! Fills the columns of a batch from the network.
 
 use super::columns::{Columns, StepInfo, Triple};
+use super::evaluator::LawEvaluator;
 use super::interface::Interface;
-use super::pass::{ContactStep, LawEvaluator};
+use super::step_result::ContactStep;
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -37,25 +38,25 @@ impl LawEvaluator {
         &mut self,
         law: &Interface,
         network: &Network<S>,
-        sites: &[ContactStep<S>],
+        contact_steps: &[ContactStep<S>],
         info: &StepInfo,
     ) {
         self.columns.clear();
         for at in &self.members {
-            let (contact, site) = (&network.contacts[*at], &sites[*at]);
+            let (contact, contact_step) = (&network.contacts[*at], &contact_steps[*at]);
             gather_contact(
                 &mut self.columns,
                 law,
                 network,
                 contact,
-                &site.average,
+                &contact_step.average,
                 info,
                 false,
             );
             push_vector::<S>(
                 &mut self.columns.impulse,
                 &contact.normal,
-                &site.solution.impulse,
+                &contact_step.solution.impulse,
             );
         }
         self.gather_state(law, network);
@@ -116,12 +117,12 @@ fn gather_contact<S: Space>(
     columns.area.push(contact_area(law, network, contact));
     columns.radius.push(contact.radius);
     columns.age.push(info.time - contact.formed_at);
-    columns.pressed.push(contact.pressed);
+    columns.pressed.push(contact.compression_time);
     push_vector::<S>(&mut columns.velocity, &contact.normal, velocity);
     let (opening, damage) = match network.bond(contact) {
         Some(bond) => {
             let [t1, t2] = S::components(&contact.normal, &bond.opening_t);
-            let damage = if start { bond.used } else { bond.damage };
+            let damage = if start { bond.step_damage } else { bond.damage };
             ([bond.opening_n, t1, t2], damage)
         }
         None => ([0.0; 3], 1.0),

@@ -1,7 +1,8 @@
 //! An interface law: a list of slots, at most one law of each kind, with parameters.
 
+use super::error::LawError;
 use super::kind::{Domain, Kind};
-use super::library::{LawError, Plugin};
+use super::library::Plugin;
 use fretwork_abi::{
     FLAG_BREAKS, FLAG_CONSTANT, FLAG_FORMS, FLAG_MOMENT, FLAG_OPENING, FLAG_TENSION_ONLY,
 };

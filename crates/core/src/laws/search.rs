@@ -1,8 +1,9 @@
 //! Search for plugins by kind and name on a search path. A case cannot name a file.
 
 use super::built_in::BuiltInLaws;
+use super::error::LawError;
 use super::kind::Kind;
-use super::library::{LawError, Plugin};
+use super::library::Plugin;
 use super::{child, trust};
 use std::path::{Path, PathBuf};
 
@@ -171,7 +172,7 @@ impl SearchPath {
                 libraries.push((path, pin));
             }
         }
-        child::try_out(&libraries);
+        child::try_loading(&libraries);
     }
 
     /// Returns whether a law belongs to the program itself, so that whoever can change it can change the

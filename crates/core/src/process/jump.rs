@@ -1,6 +1,7 @@
 //! Cycle jumps in a run: how many cycles each computed cycle represents, and the error control of each jump.
 
 use super::cycle::{CycleClock, RubbedBody};
+pub use super::jump_summary::{Jump, JumpSummary, Point};
 use super::{Process, ProcessError};
 use crate::code::{CodeError, decode, encode};
 use crate::contact::Bond;
@@ -43,59 +44,6 @@ impl Default for JumpSpec {
             cycles: None,
         }
     }
-}
-
-/// A checked jump.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Jump {
-    /// Cycles before it, including those jumped over.
-    pub after: u32,
-    /// Number of cycles that its computed cycle represents.
-    pub cycles: u32,
-    /// Its error: the maximum over volumes and damage, relative to what it added, and over misplaced volume,
-    /// relative to the scar at the end of the run. See [`crate::wear::jump`].
-    pub error: f64,
-    /// Relative difference between the work of the cycles after it and that of the cycle before it.
-    pub work_change: f64,
-}
-
-/// State at the end of a computed cycle.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Point {
-    /// Cycles, including those jumped over.
-    pub cycles: u32,
-    /// Number of cycles that the last one represents.
-    pub cycle_multiplier: u32,
-    /// Volume worn off first bodies (m^3; m^3/m in 2D).
-    pub wear_volume: f64,
-    /// Mean damage of the bonds.
-    pub mean_damage: f64,
-}
-
-/// Summary of the jumps of a run.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct JumpSummary {
-    /// Number of completed computed cycles, including those that represent many.
-    pub computed_cycles: u32,
-    /// Number of cycles that they represent.
-    pub represented_cycles: u32,
-    /// Requested number of cycles.
-    pub asked_cycles: Option<u32>,
-    /// Target error of a jump.
-    pub tolerance: f64,
-    /// Estimated total error of all jumps plus the misplaced volume at the end, relative to the total wear
-    /// or growth of damage, whichever is worse; `None` where there is no reference value.
-    pub error_estimate: Option<f64>,
-    /// Number of cycles of a jump that the run ended before it was checked.
-    pub unchecked_cycles: u32,
-    /// Internal variables of laws that advance with the computed cycles only, without jumping.
-    pub not_jumped: Vec<String>,
-    /// Total volume worn off first bodies over all cycles (m^3; m^3/m in 2D).
-    pub wear_volume: f64,
-    /// Checked jumps.
-    pub jumps: Vec<Jump>,
-    /// States after the computed cycles.
-    pub points: Vec<Point>,
 }
 
 /// Fraction of the remaining run that a jump may take.

@@ -12,6 +12,7 @@
 pub mod circuit;
 pub mod cycle;
 pub mod jump;
+mod jump_summary;
 pub mod recession;
 
 pub use crate::step::process::{Process, ProcessError};

@@ -19,6 +19,22 @@ use super::standard::{self, Standard};
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
+/// Cost of Gauss-Seidel before Newton in factorisations, at a loose and at a tight tolerance.
+const LOOSE: f64 = 40.0;
+const TIGHT: f64 = 20.0;
+/// Factor on the iterations for a hyperstatic set, where Newton takes more steps and fails in one case of
+/// three.
+const HYPERSTATIC: u32 = 10;
+/// Maximum number of unknowns to factorise.
+const MAX_FACTORISED: usize = 60_000;
+/// Number of Newton steps of the first attempt.
+const NEWTON: u32 = 40;
+/// Below this hyperstaticity Newton fails not for lack of rank but because of slow propagation, as in a
+/// column, and the interior point is tried. Above it, that failed in 7 attempts of 8.
+const DETERMINED: f64 = 0.95;
+/// Maximum number of interior-point steps.
+const INTERIOR: u32 = 120;
+
 /// What `auto` learned from previous steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AutoState {
@@ -49,6 +65,12 @@ impl AutoState {
         due
     }
 
+    /// Changes the patience by whether a method that factorises has solved the last problem.
+    fn adapt(&mut self, ended: bool) {
+        self.patience *= if ended { 0.5 } else { 2.0 };
+        self.patience = self.patience.clamp(1.0, 64.0);
+    }
+
     /// Records the result of an interior-point attempt.
     fn learn(&mut self, ended: bool) {
         self.interior_first = ended;
@@ -65,16 +87,16 @@ pub fn solve<S: Space>(
     options: &Options,
     auto_state: &mut AutoState,
 ) -> Report {
-    let pieces = SolveContext {
+    let context = SolveContext {
         forms,
         moments,
         options,
     };
     match options.method {
-        Method::Nlgs => pieces.sweep(problem, false, options.max_iterations),
-        Method::Anderson => pieces.sweep(problem, true, options.max_iterations),
-        Method::Auto => pieces.auto(problem, auto_state),
-        method => pieces.by(problem, method),
+        Method::Nlgs => context.sweep(problem, false, options.max_iterations),
+        Method::Anderson => context.sweep(problem, true, options.max_iterations),
+        Method::Auto => context.auto(problem, auto_state),
+        method => context.solve_by(problem, method),
     }
 }
 
@@ -82,6 +104,15 @@ struct SolveContext<'a, S: Space> {
     forms: &'a [ContactForm<S>],
     moments: &'a [MomentForm<S>],
     options: &'a Options,
+}
+
+/// How methods that factorise and Gauss-Seidel alternate.
+struct Alternation {
+    /// Iterations of Gauss-Seidel before the first attempt.
+    sweeps: u32,
+    hyperstaticity: f64,
+    /// Whether the interior point is to be tried.
+    interior: bool,
 }
 
 impl<S: Space> SolveContext<'_, S> {
@@ -126,7 +157,7 @@ impl<S: Space> SolveContext<'_, S> {
 
     /// Solves by one method. If the error recomputed over bodies is slightly above the tolerance, the method
     /// continues.
-    fn by(&self, problem: &mut Problem<S>, method: Method) -> Report {
+    fn solve_by(&self, problem: &mut Problem<S>, method: Method) -> Report {
         const ATTEMPTS: u32 = 4;
         let mut report = nlgs::arrange(problem, self.options);
         let mut tolerance = self.options.tolerance;
@@ -148,49 +179,22 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
+    /// Solves by Gauss-Seidel, and by the methods that factorise where it takes longer than they cost.
     fn auto(&self, problem: &mut Problem<S>, auto_state: &mut AutoState) -> Report {
-        /// Cost of Gauss-Seidel before Newton in factorisations, at a loose and at a tight tolerance.
-        const LOOSE: f64 = 40.0;
-        const TIGHT: f64 = 20.0;
-        /// Factor on the iterations for a hyperstatic set, where Newton takes more steps and fails in one
-        /// case of three.
-        const HYPERSTATIC: u32 = 10;
-        /// Maximum number of unknowns to factorise.
-        const LARGEST: usize = 60_000;
-        /// Maximum number of Newton steps.
-        const NEWTON: u32 = 40;
-        /// Below this hyperstaticity Newton fails not for lack of rank but because of slow propagation, as
-        /// in a column, and the interior point is tried. Above it, that failed in 7 attempts of 8.
-        const DETERMINED: f64 = 0.95;
-        /// Maximum number of interior-point steps.
-        const INTERIOR: u32 = 120;
         let options = self.options;
-        let unknowns = problem.contacts() * S::D;
-        // Estimate: a contact between balls shares a body with about eight others.
-        let entries = (9 * S::D * unknowns) as f64;
-        let per = sweeps_per_factorisation(entries, problem.contacts() as f64);
-        let worth = if options.tolerance >= 1e-5 {
-            LOOSE
-        } else {
-            TIGHT
-        };
-        let rolls = self
-            .moments
-            .iter()
-            .any(|m| m.rolling > 0.0 || m.spinning > 0.0);
-        let sweeps = worth * per * auto_state.patience;
-        let sweeps = sweeps.clamp(200.0, f64::from(u32::MAX / 2)) as u32;
-        let mut features = Features {
-            rotation: rolls,
+        let sweeps = self.sweeps_before_newton(problem, auto_state);
+        let rolls = |m: &MomentForm<S>| m.rolling > 0.0 || m.spinning > 0.0;
+        let features = Features {
+            rotation: self.moments.iter().any(rolls),
             cohesion: false,
             operator: problem.operator(),
         };
-        let without = if refusal(Method::Newton, &features).is_some() {
+        let without_newton = if refusal(Method::Newton, &features).is_some() {
             Some(SolvePath::Unserved)
         } else {
-            (unknowns > LARGEST).then_some(SolvePath::Large)
+            (problem.contacts() * S::D > MAX_FACTORISED).then_some(SolvePath::Large)
         };
-        if let Some(chosen) = without {
+        if let Some(chosen) = without_newton {
             let mut report = self.sweep(problem, true, options.max_iterations);
             if report.iterations > sweeps {
                 report.chosen = chosen;
@@ -209,17 +213,61 @@ impl<S: Space> SolveContext<'_, S> {
             report.add(&self.sweep(problem, true, more));
             report.chosen = SolvePath::Longer { hyperstaticity };
         }
-        let after = report.iterations;
-        features.cohesion = self.forms.iter().any(|f| f.cohesion > 0.0);
-        let mut interior = hyperstaticity < DETERMINED
+        let features = Features {
+            cohesion: self.forms.iter().any(|f| f.cohesion > 0.0),
+            ..features
+        };
+        let interior = hyperstaticity < DETERMINED
             && refusal(Method::Interior, &features).is_none()
             && auto_state.interior_is_due();
+        self.alternate(
+            problem,
+            &mut report,
+            auto_state,
+            Alternation {
+                sweeps,
+                hyperstaticity,
+                interior,
+            },
+        );
+        report
+    }
+
+    /// Returns the number of iterations of Gauss-Seidel before Newton, whose cost is that of some factorisations.
+    fn sweeps_before_newton(&self, problem: &Problem<S>, auto_state: &AutoState) -> u32 {
+        // Estimate: a contact between balls shares a body with about eight others.
+        let entries = (9 * S::D * (problem.contacts() * S::D)) as f64;
+        let per = sweeps_per_factorisation(entries, problem.contacts() as f64);
+        let worth = if self.options.tolerance >= 1e-5 {
+            LOOSE
+        } else {
+            TIGHT
+        };
+        let sweeps = worth * per * auto_state.patience;
+        sweeps.clamp(200.0, f64::from(u32::MAX / 2)) as u32
+    }
+
+    /// Alternates attempts of Newton, of the interior point once if it is due, and longer runs of Gauss-Seidel, until
+    /// one of them converges.
+    fn alternate(
+        &self,
+        problem: &mut Problem<S>,
+        report: &mut Report,
+        auto_state: &mut AutoState,
+        Alternation {
+            sweeps,
+            hyperstaticity,
+            mut interior,
+        }: Alternation,
+    ) {
+        let options = self.options;
+        let after = report.iterations;
         let (mut newton, mut inside) = (Attempt::No, Attempt::No);
         let mut round = 0;
         while !report.converged && report.iterations < options.max_iterations {
             let first = round == 0 && interior && auto_state.interior_first;
             if first {
-                inside = self.interior(problem, &mut report, INTERIOR, auto_state);
+                inside = self.interior(problem, report, auto_state);
                 interior = false;
             }
             let steps = NEWTON << round.min(16);
@@ -227,10 +275,10 @@ impl<S: Space> SolveContext<'_, S> {
             // the initial impulses.
             let anew = round % 2 == 1;
             if !report.converged {
-                newton = self.attempt(problem, &mut report, Method::Newton, steps, anew);
+                newton = self.attempt(problem, report, Method::Newton, steps, anew);
             }
             if !report.converged && interior {
-                inside = self.interior(problem, &mut report, INTERIOR, auto_state);
+                inside = self.interior(problem, report, auto_state);
                 interior = false;
             }
             report.chosen = SolvePath::Factorised {
@@ -247,11 +295,8 @@ impl<S: Space> SolveContext<'_, S> {
             round += 1;
         }
         if let SolvePath::Factorised { .. } = report.chosen {
-            let ended = newton == Attempt::Ended || inside == Attempt::Ended;
-            auto_state.patience *= if ended { 0.5 } else { 2.0 };
-            auto_state.patience = auto_state.patience.clamp(1.0, 64.0);
+            auto_state.adapt(newton == Attempt::Ended || inside == Attempt::Ended);
         }
-        report
     }
 
     /// Tries the interior point, which does not depend on the current impulses.
@@ -259,10 +304,9 @@ impl<S: Space> SolveContext<'_, S> {
         &self,
         problem: &mut Problem<S>,
         report: &mut Report,
-        steps: u32,
         auto_state: &mut AutoState,
     ) -> Attempt {
-        let tried = self.attempt(problem, report, Method::Interior, steps, false);
+        let tried = self.attempt(problem, report, Method::Interior, INTERIOR, false);
         auto_state.learn(tried == Attempt::Ended);
         tried
     }

@@ -8,7 +8,7 @@
 //! turn. In both cases blocks of one colour can be solved in any order by any number of threads, with
 //! bitwise identical results.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use super::schedule::Schedule;
 
 /// Maximum number of colours, of blocks and within a part.
 const COLOURS: usize = 32;
@@ -23,149 +23,6 @@ const BLOCKS: usize = 128;
 /// A body in more blocks than this would prevent their parallel solution; its contacts are solved
 /// separately.
 const HUB: u32 = 16;
-
-/// Groups, blocks of groups, and colours of blocks; each list holds the start indices and the final end.
-#[derive(Clone, Debug)]
-pub struct Schedule {
-    groups: Vec<u32>,
-    blocks: Vec<u32>,
-    colours: Vec<u32>,
-}
-
-impl Default for Schedule {
-    fn default() -> Self {
-        Self {
-            groups: vec![0],
-            blocks: vec![0],
-            colours: vec![0],
-        }
-    }
-}
-
-impl Schedule {
-    /// Iterates over the ranges of blocks of each colour, in the order of the iteration.
-    pub fn colours(&self) -> impl Iterator<Item = std::ops::Range<usize>> {
-        ranges(&self.colours)
-    }
-
-    /// Returns the range of contacts of a block, in the new order.
-    pub fn block(&self, k: usize) -> std::ops::Range<usize> {
-        let [from, to] = [k, k + 1].map(|k| self.groups[self.blocks[k] as usize] as usize);
-        from..to
-    }
-
-    /// Returns the starts of the groups of a block, and the end of the last.
-    pub fn groups(&self, k: usize) -> &[u32] {
-        &self.groups[self.blocks[k] as usize..=self.blocks[k + 1] as usize]
-    }
-
-    /// Runs every block once, colour by colour, on the current thread pool if `parallel`.
-    ///
-    /// Threads take blocks from a shared counter, in the order of the iteration, and wait only for the
-    /// blocks of earlier colours that were taken; nobody waits for a thread that has not started.
-    pub fn run(&self, parallel: bool, block: impl Fn(usize) + Sync) {
-        let blocks = self.blocks.len() - 1;
-        let threads = rayon::current_num_threads().min(blocks);
-        if !parallel || threads < 2 || self.colours.len() > blocks {
-            (0..blocks).for_each(block);
-            return;
-        }
-        let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let work = || {
-            let mut colour = 0;
-            loop {
-                let ticket = next.fetch_add(1, Ordering::Relaxed);
-                if ticket >= blocks {
-                    return;
-                }
-                while self.colours[colour + 1] as usize <= ticket {
-                    colour += 1;
-                }
-                await_count(&done, self.colours[colour] as usize);
-                let _done = Done(&done);
-                block(ticket);
-            }
-        };
-        rayon::scope(|scope| {
-            for _ in 1..threads {
-                scope.spawn(|_| work());
-            }
-            work();
-        });
-    }
-
-    /// Turns groups into coloured blocks; small groups share a block.
-    fn cut(self) -> Self {
-        let mut out = Self::default();
-        for group in ranges(&self.groups) {
-            if group.len() <= PART {
-                out.end_group(group.end);
-                let open = *out.blocks.last().unwrap_or(&0) as usize;
-                if group.end - out.groups[open] as usize >= PART {
-                    out.end_block();
-                    out.end_colour();
-                }
-                continue;
-            }
-            out.end_block();
-            out.end_colour();
-            for from in group.clone().step_by(PART) {
-                out.end_group(group.end.min(from + PART));
-                out.end_block();
-            }
-            out.end_colour();
-        }
-        out.end_block();
-        out.end_colour();
-        out
-    }
-
-    fn end_group(&mut self, at: usize) {
-        if self.groups.last() != Some(&(at as u32)) {
-            self.groups.push(at as u32);
-        }
-    }
-
-    fn end_block(&mut self) {
-        let at = (self.groups.len() - 1) as u32;
-        if self.blocks.last() != Some(&at) {
-            self.blocks.push(at);
-        }
-    }
-
-    fn end_colour(&mut self) {
-        let at = (self.blocks.len() - 1) as u32;
-        if self.colours.last() != Some(&at) {
-            self.colours.push(at);
-        }
-    }
-}
-
-/// Waits until `count` blocks are complete.
-fn await_count(done: &AtomicUsize, count: usize) {
-    let mut turns = 0u32;
-    while done.load(Ordering::Acquire) < count {
-        turns += 1;
-        if turns < 4096 {
-            std::hint::spin_loop();
-        } else {
-            std::thread::yield_now();
-        }
-    }
-}
-
-/// Counts a block as complete on drop, even after a panic, since other threads wait for it.
-struct Done<'a>(&'a AtomicUsize);
-
-impl Drop for Done<'_> {
-    fn drop(&mut self) {
-        self.0.fetch_add(1, Ordering::Release);
-    }
-}
-
-fn ranges(starts: &[u32]) -> impl Iterator<Item = std::ops::Range<usize>> {
-    starts.windows(2).map(|w| w[0] as usize..w[1] as usize)
-}
 
 /// Colouring state of a body: the last visitor, and the colours in use.
 #[derive(Clone, Copy, Default)]
@@ -224,152 +81,209 @@ impl Order {
 /// Sorts contacts for the iteration. Returns the permutation (`order[k]` is the old index of the k-th) and
 /// the schedule of the new order.
 fn order(bodies: &[[u32; 2]], movable: &[bool]) -> (Vec<u32>, Schedule) {
-    let count = movable.len();
     let span = PART * (bodies.len().div_ceil(PART * BLOCKS)).clamp(1, PARTS);
-    let mut order = Vec::with_capacity(bodies.len());
-    let mut schedule = Schedule::default();
-    let mut seen = vec![Seen::default(); count];
-    let moved = |pair: &[u32; 2]| pair.map(|b| movable[b as usize].then_some(b as usize));
+    let mut sorting = Sorting {
+        bodies,
+        movable,
+        seen: vec![Seen::default(); movable.len()],
+        order: Vec::with_capacity(bodies.len()),
+        schedule: Schedule::default(),
+    };
     if bodies.len() <= SMALL {
-        group(
-            0..bodies.len(),
-            1,
-            bodies,
-            &moved,
-            &mut seen,
-            &mut order,
-            &mut schedule,
-        );
-        return (order, schedule.cut());
+        sorting.group(0..bodies.len(), 1);
+        return (sorting.order, sorting.schedule.cut(PART));
     }
-    // Find bodies shared by too many blocks.
-    for (block, pairs) in bodies.chunks(span).enumerate() {
-        for body in pairs.iter().flat_map(moved).flatten() {
-            let seen = &mut seen[body];
-            if seen.by != block as u32 + 1 {
-                seen.by = block as u32 + 1;
-                seen.taken += 1;
-            }
-        }
-    }
-    let hub: Vec<bool> = seen.iter().map(|s| s.taken > HUB).collect();
-    let of_hub = |pair: &[u32; 2]| moved(pair).iter().flatten().any(|b| hub[*b]);
-    let hubs = hub.iter().any(|h| *h);
-    // Colour the blocks.
-    seen.fill(Seen::default());
-    let mut blocks: Vec<(u32, u32)> = Vec::new();
-    for (block, pairs) in bodies.chunks(span).enumerate() {
-        let own = || pairs.iter().filter(|p| !hubs || !of_hub(p));
-        let mut taken = 0;
-        for body in own().flat_map(moved).flatten() {
-            taken |= seen[body].taken;
-        }
-        // A block without a free colour gets a new one of its own.
-        let colour = (!taken).trailing_zeros();
-        for body in own().flat_map(moved).flatten() {
-            seen[body].taken |= 1u32.checked_shl(colour).unwrap_or(0);
-        }
-        let alone = if colour < COLOURS as u32 {
-            colour
-        } else {
-            colour + block as u32
-        };
-        blocks.push((alone, block as u32));
-    }
-    blocks.sort_unstable();
-    // Form the groups.
-    seen.fill(Seen::default());
-    let mut mark = 0;
-    for same in blocks.chunk_by(|a, b| a.0 == b.0) {
-        for (_, block) in same {
-            let first = *block as usize * span;
-            let end = bodies.len().min(first + span);
-            for from in (first..end).step_by(PART) {
-                mark += 1;
-                let part = from..end.min(from + PART);
-                let part = part.filter(|k| !hubs || !of_hub(&bodies[*k]));
-                group(
-                    part,
-                    mark,
-                    bodies,
-                    &moved,
-                    &mut seen,
-                    &mut order,
-                    &mut schedule,
-                );
-            }
-            schedule.end_block();
-        }
-        schedule.end_colour();
-    }
-    if hubs {
-        for (k, pair) in bodies.iter().enumerate() {
-            if of_hub(pair) {
-                order.push(k as u32);
-                schedule.end_group(order.len());
-            }
-        }
-        schedule.end_block();
-        schedule.end_colour();
-    }
-    (order, schedule)
+    let hubs = Hubs::find(&mut sorting, span);
+    let blocks = sorting.colour_blocks(span, &hubs);
+    sorting.group_blocks(&blocks, span, &hubs);
+    sorting.append_hubs(&hubs);
+    (sorting.order, sorting.schedule)
 }
 
-/// Appends the contacts of a part, grouped by colour.
-fn group(
-    part: impl Iterator<Item = usize>,
-    mark: u32,
-    bodies: &[[u32; 2]],
-    moved: &impl Fn(&[u32; 2]) -> [Option<usize>; 2],
-    seen: &mut [Seen],
-    order: &mut Vec<u32>,
-    schedule: &mut Schedule,
-) {
-    let mut sizes = [0u32; COLOURS + 1];
-    let mut coloured = Vec::with_capacity(part.size_hint().1.unwrap_or(0));
-    for k in part {
-        let pair = moved(&bodies[k]);
-        let mut taken = 0;
-        for body in pair.into_iter().flatten() {
-            let seen = &mut seen[body];
-            if seen.by != mark {
-                *seen = Seen { by: mark, taken: 0 };
+/// The sorting of contacts: the order so far and its schedule.
+struct Sorting<'a> {
+    bodies: &'a [[u32; 2]],
+    movable: &'a [bool],
+    seen: Vec<Seen>,
+    order: Vec<u32>,
+    schedule: Schedule,
+}
+
+/// Bodies that are shared by too many blocks.
+struct Hubs {
+    is_hub: Vec<bool>,
+    any: bool,
+}
+
+impl Hubs {
+    fn find(sorting: &mut Sorting, span: usize) -> Self {
+        let Sorting {
+            bodies,
+            movable,
+            seen,
+            ..
+        } = sorting;
+        for (block, pairs) in bodies.chunks(span).enumerate() {
+            for body in pairs.iter().flat_map(|p| moved(p, movable)).flatten() {
+                let seen = &mut seen[body];
+                if seen.by != block as u32 + 1 {
+                    seen.by = block as u32 + 1;
+                    seen.taken += 1;
+                }
             }
-            taken |= seen.taken;
         }
-        let colour = (!taken).trailing_zeros();
-        for body in pair.into_iter().flatten() {
-            seen[body].taken |= 1u32.checked_shl(colour).unwrap_or(0);
+        let is_hub: Vec<bool> = seen.iter().map(|s| s.taken > HUB).collect();
+        Self {
+            any: is_hub.iter().any(|h| *h),
+            is_hub,
         }
-        sizes[colour as usize] += 1;
-        coloured.push((k as u32, colour as u8));
     }
-    let first = order.len();
-    let mut next = [0u32; COLOURS + 1];
-    let mut at = first;
-    for (colour, size) in sizes.iter().enumerate() {
-        next[colour] = at as u32;
-        if colour < COLOURS {
-            at += *size as usize;
-            schedule.end_group(at);
-        } else {
-            // Contacts without a colour may share a body and form groups of one.
-            for _ in 0..*size {
-                at += 1;
+
+    /// Returns whether a contact moves one of them.
+    #[inline]
+    fn touch(&self, pair: &[u32; 2], movable: &[bool]) -> bool {
+        self.any
+            && moved(pair, movable)
+                .iter()
+                .flatten()
+                .any(|b| self.is_hub[*b])
+    }
+}
+
+/// Returns the movable bodies of a contact.
+#[inline]
+fn moved(pair: &[u32; 2], movable: &[bool]) -> [Option<usize>; 2] {
+    pair.map(|b| movable[b as usize].then_some(b as usize))
+}
+
+impl Sorting<'_> {
+    /// Colours the blocks, without the contacts of hubs; returns colour and index of each, sorted.
+    fn colour_blocks(&mut self, span: usize, hubs: &Hubs) -> Vec<(u32, u32)> {
+        let Self {
+            bodies,
+            movable,
+            seen,
+            ..
+        } = self;
+        seen.fill(Seen::default());
+        let mut blocks: Vec<(u32, u32)> = Vec::new();
+        for (block, pairs) in bodies.chunks(span).enumerate() {
+            let own = || {
+                let own = pairs.iter().filter(|p| !hubs.touch(p, movable));
+                own.flat_map(|p| moved(p, movable)).flatten()
+            };
+            let mut taken = 0;
+            for body in own() {
+                taken |= seen[body].taken;
+            }
+            // A block without a free colour gets a new one of its own.
+            let colour = (!taken).trailing_zeros();
+            for body in own() {
+                seen[body].taken |= 1u32.checked_shl(colour).unwrap_or(0);
+            }
+            let alone = if colour < COLOURS as u32 {
+                colour
+            } else {
+                colour + block as u32
+            };
+            blocks.push((alone, block as u32));
+        }
+        blocks.sort_unstable();
+        blocks
+    }
+
+    /// Forms the groups of the blocks, colour by colour and part by part.
+    fn group_blocks(&mut self, blocks: &[(u32, u32)], span: usize, hubs: &Hubs) {
+        let (bodies, movable) = (self.bodies, self.movable);
+        self.seen.fill(Seen::default());
+        let mut mark = 0;
+        for same in blocks.chunk_by(|a, b| a.0 == b.0) {
+            for (_, block) in same {
+                let first = *block as usize * span;
+                let end = bodies.len().min(first + span);
+                for from in (first..end).step_by(PART) {
+                    mark += 1;
+                    let part = from..end.min(from + PART);
+                    let part = part.filter(|k| !hubs.touch(&bodies[*k], movable));
+                    self.group(part, mark);
+                }
+                self.schedule.end_block();
+            }
+            self.schedule.end_colour();
+        }
+    }
+
+    /// Appends the contacts of hubs, in a block of their own, each a group.
+    fn append_hubs(&mut self, hubs: &Hubs) {
+        if !hubs.any {
+            return;
+        }
+        for (k, pair) in self.bodies.iter().enumerate() {
+            if hubs.touch(pair, self.movable) {
+                self.order.push(k as u32);
+                self.schedule.end_group(self.order.len());
+            }
+        }
+        self.schedule.end_block();
+        self.schedule.end_colour();
+    }
+
+    /// Appends the contacts of a part, grouped by colour.
+    fn group(&mut self, part: impl Iterator<Item = usize>, mark: u32) {
+        let Self {
+            bodies,
+            movable,
+            seen,
+            order,
+            schedule,
+        } = self;
+        let mut sizes = [0u32; COLOURS + 1];
+        let mut coloured = Vec::with_capacity(part.size_hint().1.unwrap_or(0));
+        for k in part {
+            let pair = moved(&bodies[k], movable);
+            let mut taken = 0;
+            for body in pair.into_iter().flatten() {
+                let seen = &mut seen[body];
+                if seen.by != mark {
+                    *seen = Seen { by: mark, taken: 0 };
+                }
+                taken |= seen.taken;
+            }
+            let colour = (!taken).trailing_zeros();
+            for body in pair.into_iter().flatten() {
+                seen[body].taken |= 1u32.checked_shl(colour).unwrap_or(0);
+            }
+            sizes[colour as usize] += 1;
+            coloured.push((k as u32, colour as u8));
+        }
+        let first = order.len();
+        let mut next = [0u32; COLOURS + 1];
+        let mut at = first;
+        for (colour, size) in sizes.iter().enumerate() {
+            next[colour] = at as u32;
+            if colour < COLOURS {
+                at += *size as usize;
                 schedule.end_group(at);
+            } else {
+                // Contacts without a colour may share a body and form groups of one.
+                for _ in 0..*size {
+                    at += 1;
+                    schedule.end_group(at);
+                }
             }
         }
-    }
-    order.resize(at, 0);
-    for (k, colour) in &coloured {
-        let slot = &mut next[usize::from(*colour)];
-        order[*slot as usize] = *k;
-        *slot += 1;
+        order.resize(at, 0);
+        for (k, colour) in &coloured {
+            let slot = &mut next[usize::from(*colour)];
+            order[*slot as usize] = *k;
+            *slot += 1;
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::schedule::ranges;
     use super::*;
 
     fn check(bodies: &[[u32; 2]], fixed: u32, count: usize) -> Schedule {

@@ -207,7 +207,7 @@ pub(super) enum Place {
 #[derive(Debug)]
 pub struct Problem<S: Space> {
     /// Velocities, updated in place, one record per body.
-    pub lines: Vec<SolverBody<S>>,
+    pub solver_bodies: Vec<SolverBody<S>>,
     /// Free velocities of the bodies.
     pub free: Vec<(S::Vector, S::Spin)>,
     pub(super) lengths: Vec<f64>,
@@ -235,7 +235,7 @@ pub struct Problem<S: Space> {
 impl<S: Space> Default for Problem<S> {
     fn default() -> Self {
         Self {
-            lines: Vec::new(),
+            solver_bodies: Vec::new(),
             free: Vec::new(),
             lengths: Vec::new(),
             masses: Vec::new(),
@@ -279,7 +279,7 @@ impl<S: Space> Problem<S> {
 
     /// Clears the problem, keeping its buffers.
     pub fn clear(&mut self) {
-        self.lines.clear();
+        self.solver_bodies.clear();
         self.free.clear();
         self.lengths.clear();
         self.masses.clear();
@@ -307,7 +307,7 @@ impl<S: Space> Problem<S> {
             mass: inverse_mass,
             inertia: inverse_inertia,
         };
-        self.lines.push(SolverBody {
+        self.solver_bodies.push(SolverBody {
             v,
             s: w * length,
             im: isotropic,
@@ -326,7 +326,7 @@ impl<S: Space> Problem<S> {
             && contact.shift_t == S::Tangent::zero();
         if contact.central {
             let (i, j) = (contact.bodies[0] as usize, contact.bodies[1] as usize);
-            let (a, b) = (&self.lines[i], &self.lines[j]);
+            let (a, b) = (&self.solver_bodies[i], &self.solver_bodies[j]);
             let w_n = a.im + b.im;
             let w_t = w_n + a.is + b.is;
             if plain {
@@ -360,7 +360,7 @@ impl<S: Space> Problem<S> {
     /// Iterates over the moments, in the order pushed.
     pub fn moments(&self) -> impl Iterator<Item = MomentSolution<S>> {
         self.moments.iter().map(|row| {
-            let [i, j] = row.bodies.map(|b| &self.lines[b as usize]);
+            let [i, j] = row.bodies.map(|b| &self.solver_bodies[b as usize]);
             row.solution(i, j)
         })
     }
@@ -396,18 +396,20 @@ impl<S: Space> Problem<S> {
             Place::Plain(r) => self.solved(&self.plain[r as usize]),
             Place::Full(r) => self.solved(&self.full[r as usize]),
             Place::General(r) => self.solved(&self.general[r as usize]),
-            Place::System(r) => self.of_systems[r as usize].solution(&self.lines, &self.systems),
+            Place::System(r) => {
+                self.of_systems[r as usize].solution(&self.solver_bodies, &self.systems)
+            }
         }
     }
 
     fn solved(&self, row: &impl Row<S>) -> ContactSolution<S> {
-        let [i, j] = row.bodies().map(|b| &self.lines[b as usize]);
+        let [i, j] = row.bodies().map(|b| &self.solver_bodies[b as usize]);
         row.solution(i, j)
     }
 
     /// Returns velocity and angular velocity of a body after the solve.
     pub fn velocity(&self, body: usize) -> (S::Vector, S::Spin) {
-        let line = &self.lines[body];
-        (line.v, line.s * (1.0 / self.lengths[body]))
+        let record = &self.solver_bodies[body];
+        (record.v, record.s * (1.0 / self.lengths[body]))
     }
 }

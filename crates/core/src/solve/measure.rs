@@ -2,7 +2,7 @@
 
 use super::error::{Scale, Sums};
 use super::form::Problem;
-use super::row::{Free, Lines, Measure, Row, visit};
+use super::row::{Free, Measure, Row, SolverBodies, visit};
 use crate::geometry::space::Space;
 use rayon::prelude::*;
 
@@ -11,19 +11,28 @@ const CHUNK: usize = 512;
 
 /// Sums over the contacts; the worst contact is searched among the rows in the order of the iteration.
 pub(super) fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sums {
-    let lines = Lines::new(&mut problem.lines);
+    let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
     let mut sums = Sums::default();
     let (a, b) = (problem.plain.len(), problem.full.len());
-    measure_rows(&mut problem.plain, &lines, 0, parallel, &mut sums);
-    measure_rows(&mut problem.full, &lines, a, parallel, &mut sums);
-    measure_rows(&mut problem.general, &lines, a + b, parallel, &mut sums);
+    measure_rows(&mut problem.plain, &solver_bodies, 0, parallel, &mut sums);
+    measure_rows(&mut problem.full, &solver_bodies, a, parallel, &mut sums);
+    measure_rows(
+        &mut problem.general,
+        &solver_bodies,
+        a + b,
+        parallel,
+        &mut sums,
+    );
     let first = a + b + problem.general.len();
     for (k, row) in problem.of_systems.iter().enumerate() {
-        sums.add(&row.residual(&problem.lines, &problem.systems), first + k);
+        sums.add(
+            &row.residual(&problem.solver_bodies, &problem.systems),
+            first + k,
+        );
     }
-    let lines = Lines::new(&mut problem.lines);
+    let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
     for row in &problem.moments {
-        let (i, j) = lines.read(row.bodies);
+        let (i, j) = solver_bodies.read(row.bodies);
         sums.add_moment(&row.residual(problem.normal(row.place), &i, &j));
     }
     sums
@@ -31,14 +40,14 @@ pub(super) fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sum
 
 fn measure_rows<S: Space, R: Row<S>>(
     rows: &mut [R],
-    lines: &Lines<S>,
+    solver_bodies: &SolverBodies<S>,
     offset: usize,
     parallel: bool,
     sums: &mut Sums,
 ) {
     let chunk = |(c, rows): (usize, &mut [R])| {
         let mut part = Measure::default();
-        visit(rows, &[0, rows.len() as u32], lines, &mut part);
+        visit(rows, &[0, rows.len() as u32], solver_bodies, &mut part);
         part.sums(offset + c * CHUNK)
     };
     if parallel {
@@ -55,12 +64,12 @@ fn measure_rows<S: Space, R: Row<S>>(
 pub(super) fn scale<S: Space>(problem: &Problem<S>, free: Scale) -> Scale {
     let mut work = 0.0;
     let bodies = problem
-        .lines
+        .solver_bodies
         .iter()
         .zip(&problem.free)
         .zip(problem.masses.iter().zip(&problem.lengths));
-    for ((line, (v, w)), (mobility, length)) in bodies {
-        work += mobility.energy(&(line.v - *v), &(line.s * (1.0 / length) - *w));
+    for ((body, (v, w)), (mobility, length)) in bodies {
+        work += mobility.energy(&(body.v - *v), &(body.s * (1.0 / length) - *w));
     }
     if !problem.systems.is_empty() {
         work += problem.work_on_systems();
@@ -71,11 +80,11 @@ pub(super) fn scale<S: Space>(problem: &Problem<S>, free: Scale) -> Scale {
 /// Computes the reference values that depend on the free velocities; leaves these in the body records.
 pub(super) fn free_velocity<S: Space>(problem: &mut Problem<S>) -> Scale {
     problem.set_free();
-    let lines = Lines::new(&mut problem.lines);
+    let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
     let mut free = [Free::default(), Free::default(), Free::default()];
-    squared(&mut problem.plain, &lines, &mut free[0]);
-    squared(&mut problem.full, &lines, &mut free[1]);
-    squared(&mut problem.general, &lines, &mut free[2]);
+    squared(&mut problem.plain, &solver_bodies, &mut free[0]);
+    squared(&mut problem.full, &solver_bodies, &mut free[1]);
+    squared(&mut problem.general, &solver_bodies, &mut free[2]);
     let mut out = Scale::default();
     for part in free.map(|f| f.scale()) {
         out.free += part.free;
@@ -83,7 +92,7 @@ pub(super) fn free_velocity<S: Space>(problem: &mut Problem<S>) -> Scale {
         out.noise += part.noise;
     }
     for row in &problem.of_systems {
-        let part = row.scale(&problem.lines, &problem.systems);
+        let part = row.scale(&problem.solver_bodies, &problem.systems);
         out.free += part.free;
         out.energy += part.energy;
         out.noise += part.noise;
@@ -91,17 +100,21 @@ pub(super) fn free_velocity<S: Space>(problem: &mut Problem<S>) -> Scale {
     out
 }
 
-fn squared<S: Space, R: Row<S>>(rows: &mut [R], lines: &Lines<S>, free: &mut Free) {
-    visit(rows, &[0, rows.len() as u32], lines, free);
+fn squared<S: Space, R: Row<S>>(rows: &mut [R], solver_bodies: &SolverBodies<S>, free: &mut Free) {
+    visit(rows, &[0, rows.len() as u32], solver_bodies, free);
 }
 
 impl<S: Space> Problem<S> {
     /// Sets every body to its free velocity.
     pub(super) fn set_free(&mut self) {
-        let bodies = self.lines.iter_mut().zip(&self.free).zip(&self.lengths);
-        for ((line, free), length) in bodies {
-            line.v = free.0;
-            line.s = free.1 * *length;
+        let bodies = self
+            .solver_bodies
+            .iter_mut()
+            .zip(&self.free)
+            .zip(&self.lengths);
+        for ((body, free), length) in bodies {
+            body.v = free.0;
+            body.s = free.1 * *length;
         }
         self.free_systems();
     }

@@ -20,6 +20,7 @@ pub mod nlgs;
 pub mod nodal;
 pub mod requirements;
 pub mod row;
+pub mod schedule;
 pub mod side;
 pub mod standard;
 

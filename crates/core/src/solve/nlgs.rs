@@ -2,12 +2,13 @@
 
 use super::accelerate::Acceleration;
 use super::chosen::SolvePath;
-use super::colour::{Order, Schedule};
+use super::colour::Order;
 use super::error::Norm;
 use super::form::{Place, Problem};
 use super::local::solver::Method;
 use super::measure::{free_velocity, measure, scale};
-use super::row::{Lines, Load, Row, SolverBody, Update, Visit, visit};
+use super::row::{Load, Row, SolverBodies, SolverBody, Update, Visit, visit};
+use super::schedule::Schedule;
 use crate::geometry::space::Space;
 
 /// Solver options.
@@ -224,13 +225,13 @@ impl Caution {
 fn take<S: Space, R: Row<S>>(
     row: &mut R,
     impulse: &Option<S::Vector>,
-    lines: &mut [SolverBody<S>],
+    solver_bodies: &mut [SolverBody<S>],
 ) {
     match impulse {
         Some(impulse) => row.set(impulse),
         None => {
             let [i, j] = row.bodies().map(|b| b as usize);
-            let (mut a, mut b) = (lines[i], lines[j]);
+            let (mut a, mut b) = (solver_bodies[i], solver_bodies[j]);
             row.update(&mut a, &mut b, 1.0);
         }
     }
@@ -267,14 +268,24 @@ impl<S: Space> Problem<S> {
     pub(super) fn adopt(&mut self, impulses: &[Option<S::Vector>], moments: &[Option<S::Spin>]) {
         for (k, impulse) in impulses.iter().enumerate() {
             match self.places[k] {
-                Place::Plain(r) => take(&mut self.plain[r as usize], impulse, &mut self.lines),
-                Place::Full(r) => take(&mut self.full[r as usize], impulse, &mut self.lines),
-                Place::General(r) => take(&mut self.general[r as usize], impulse, &mut self.lines),
+                Place::Plain(r) => take(
+                    &mut self.plain[r as usize],
+                    impulse,
+                    &mut self.solver_bodies,
+                ),
+                Place::Full(r) => {
+                    take(&mut self.full[r as usize], impulse, &mut self.solver_bodies)
+                }
+                Place::General(r) => take(
+                    &mut self.general[r as usize],
+                    impulse,
+                    &mut self.solver_bodies,
+                ),
                 Place::System(r) => {
                     let row = &mut self.of_systems[r as usize];
                     match impulse {
                         Some(impulse) => row.contact_mut().set(impulse),
-                        None => row.update(&mut self.lines, &mut self.systems, 1.0),
+                        None => row.update(&mut self.solver_bodies, &mut self.systems, 1.0),
                     }
                 }
             }
@@ -286,7 +297,7 @@ impl<S: Space> Problem<S> {
                 Some(moment) => row.set(moment),
                 None => {
                     let [i, j] = row.bodies.map(|b| b as usize);
-                    let (mut a, mut b) = (self.lines[i], self.lines[j]);
+                    let (mut a, mut b) = (self.solver_bodies[i], self.solver_bodies[j]);
                     row.update(pn, &mut a, &mut b, 1.0);
                 }
             }
@@ -298,18 +309,30 @@ impl<S: Space> Problem<S> {
     pub(super) fn reload(&mut self, parallel: bool) {
         self.set_free();
         let [plain, full] = &self.orders;
-        let lines = Lines::new(&mut self.lines);
-        pass(&mut self.plain, plain.schedule(), &lines, parallel, || Load);
-        pass(&mut self.full, full.schedule(), &lines, parallel, || Load);
+        let solver_bodies = SolverBodies::new(&mut self.solver_bodies);
+        pass(
+            &mut self.plain,
+            plain.schedule(),
+            &solver_bodies,
+            parallel,
+            || Load,
+        );
+        pass(
+            &mut self.full,
+            full.schedule(),
+            &solver_bodies,
+            parallel,
+            || Load,
+        );
         for row in &self.general {
-            lines.alone(row.bodies(), |a, b| row.load(a, b));
+            solver_bodies.alone(row.bodies(), |a, b| row.load(a, b));
         }
         for row in &self.of_systems {
-            row.load(&mut self.lines, &mut self.systems);
+            row.load(&mut self.solver_bodies, &mut self.systems);
         }
-        let lines = Lines::new(&mut self.lines);
+        let solver_bodies = SolverBodies::new(&mut self.solver_bodies);
         for row in &self.moments {
-            lines.alone(row.bodies, |a, b| row.load(a, b));
+            solver_bodies.alone(row.bodies, |a, b| row.load(a, b));
         }
     }
 
@@ -336,12 +359,15 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
         full,
         places,
         orders,
-        lines,
+        solver_bodies,
         spare_plain,
         spare_full,
         ..
     } = problem;
-    let movable: Vec<bool> = lines.iter().map(|l| l.im > 0.0 || l.is > 0.0).collect();
+    let movable: Vec<bool> = solver_bodies
+        .iter()
+        .map(|l| l.im > 0.0 || l.is > 0.0)
+        .collect();
     let [of_plain, of_full] = orders;
     let moved_plain = permute(plain, spare_plain, &movable, of_plain);
     let moved_full = permute(full, spare_full, &movable, of_full);
@@ -373,29 +399,35 @@ fn permute<'a, S: Space, R: Row<S>>(
 }
 
 fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
-    let lines = Lines::new(&mut problem.lines);
+    let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
     let [plain, full] = &problem.orders;
     let update = || Update(relaxation);
     pass(
         &mut problem.plain,
         plain.schedule(),
-        &lines,
+        &solver_bodies,
         parallel,
         update,
     );
-    pass(&mut problem.full, full.schedule(), &lines, parallel, update);
+    pass(
+        &mut problem.full,
+        full.schedule(),
+        &solver_bodies,
+        parallel,
+        update,
+    );
     // First bodies have many contacts in common; these are visited in order.
     for row in &mut problem.general {
-        lines.alone(row.bodies(), |a, b| row.update(a, b, relaxation));
+        solver_bodies.alone(row.bodies(), |a, b| row.update(a, b, relaxation));
     }
     for row in &mut problem.of_systems {
-        row.update(&mut problem.lines, &mut problem.systems, relaxation);
+        row.update(&mut problem.solver_bodies, &mut problem.systems, relaxation);
     }
     for k in 0..problem.moments.len() {
         let pn = problem.normal(problem.moments[k].place);
-        let lines = Lines::new(&mut problem.lines);
+        let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
         let row = &mut problem.moments[k];
-        lines.alone(row.bodies, |a, b| row.update(pn, a, b, relaxation));
+        solver_bodies.alone(row.bodies, |a, b| row.update(pn, a, b, relaxation));
     }
 }
 
@@ -403,7 +435,7 @@ fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
 fn pass<S: Space, R: Row<S>, V: Visit>(
     rows: &mut [R],
     schedule: &Schedule,
-    lines: &Lines<S>,
+    solver_bodies: &SolverBodies<S>,
     parallel: bool,
     what: impl Fn() -> V + Sync,
 ) {
@@ -411,7 +443,7 @@ fn pass<S: Space, R: Row<S>, V: Visit>(
     schedule.run(parallel, |block| {
         // SAFETY: blocks are disjoint, and each is run once.
         let part = unsafe { rows.slice(schedule.block(block)) };
-        visit(part, schedule.groups(block), lines, &mut what());
+        visit(part, schedule.groups(block), solver_bodies, &mut what());
     });
 }
 

@@ -13,16 +13,16 @@ use crate::solve::{self, MomentForm};
 #[derive(Debug)]
 pub(super) struct Solved<S: Space> {
     pub before: Velocities<S>,
-    pub sites: Vec<ContactStep<S>>,
-    pub turns: Vec<MomentStep<S>>,
+    pub contact_steps: Vec<ContactStep<S>>,
+    pub moment_steps: Vec<MomentStep<S>>,
 }
 
 impl<S: Space> Default for Solved<S> {
     fn default() -> Self {
         Self {
             before: Velocities::default(),
-            sites: Vec::new(),
-            turns: Vec::new(),
+            contact_steps: Vec::new(),
+            moment_steps: Vec::new(),
         }
     }
 }
@@ -58,13 +58,13 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Collects the results of all contacts.
-    pub(super) fn sites(&mut self) {
-        let mut sites = std::mem::take(&mut self.workspace.solved.sites);
-        sites.clear();
+    pub(super) fn collect_contact_steps(&mut self) {
+        let mut contact_steps = std::mem::take(&mut self.workspace.solved.contact_steps);
+        contact_steps.clear();
         let theta = self.options.scheme.theta;
         let before = &self.workspace.solved.before.relative;
         let contacts = self.state.network.contacts.iter().zip(before).enumerate();
-        sites.extend(contacts.map(|(k, (contact, before))| {
+        contact_steps.extend(contacts.map(|(k, (contact, before))| {
             let (form, solution) = (&self.workspace.forms[k], self.workspace.problem.solution(k));
             let average = *before * (1.0 - theta) + self.relative_velocity(contact) * theta;
             let n = &contact.normal;
@@ -96,13 +96,13 @@ impl<S: Space> Simulation<S> {
                 solution,
             }
         }));
-        self.workspace.solved.sites = sites;
+        self.workspace.solved.contact_steps = contact_steps;
     }
 
     /// Collects the results of the contacts that resist rotation.
-    pub(super) fn turns(&mut self, start: &StepStart<S>) {
-        let mut turns = std::mem::take(&mut self.workspace.solved.turns);
-        turns.clear();
+    pub(super) fn collect_moment_steps(&mut self, start: &StepStart<S>) {
+        let mut moment_steps = std::mem::take(&mut self.workspace.solved.moment_steps);
+        moment_steps.clear();
         let theta = self.options.scheme.theta;
         let average = |b: u32| {
             let b = b as usize;
@@ -124,7 +124,7 @@ impl<S: Space> Simulation<S> {
             .moments
             .iter()
             .zip(self.workspace.problem.moments());
-        turns.extend(solved.map(turn));
-        self.workspace.solved.turns = turns;
+        moment_steps.extend(solved.map(turn));
+        self.workspace.solved.moment_steps = moment_steps;
     }
 }

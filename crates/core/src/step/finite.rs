@@ -68,7 +68,7 @@ impl<S: Space> Simulation<S> {
             (0..self.state.bodies.lost.len()).find(|b| self.state.bodies.lost[*b].norm() > least);
         if let Some(body) = stuck {
             let step_size = &mut self.state.network.step_size;
-            step_size.lose_motion(self.state.time, &self.state.bodies, body as u32);
+            step_size.record_lost_motion(self.state.time, &self.state.bodies, body as u32);
         }
     }
 }

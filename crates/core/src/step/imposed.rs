@@ -50,7 +50,9 @@ impl<S: Space> Simulation<S> {
         let before = self.energies_of_driven();
         self.apply_schedule();
         let Scheme { h, theta } = self.options.scheme;
-        self.state.bodies.set_off(self.state.time, h, theta);
+        self.state
+            .bodies
+            .begin_imposed_motion(self.state.time, h, theta);
         let after = self.energies_of_driven();
         let work: f64 = after.iter().zip(&before).map(|(a, b)| a - b).sum();
         self.state.energy.see(work);
@@ -69,7 +71,9 @@ impl<S: Space> Simulation<S> {
         let part = h - self.state.time_excess;
         self.state.time = from + part;
         self.state.time_excess = (self.state.time - from) - part;
-        self.state.bodies.arrive(from, self.state.time, h);
+        self.state
+            .bodies
+            .end_imposed_motion(from, self.state.time, h);
     }
 
     fn energies_of_driven(&self) -> Vec<f64> {

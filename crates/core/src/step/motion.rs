@@ -93,7 +93,7 @@ impl<S: Space> StepStart<S> {
     }
 
     /// Takes the spins that bodies reach by free rotation over the first half move.
-    pub fn coasted(&mut self, bodies: &Bodies<S>) {
+    pub fn take_rotated_spins(&mut self, bodies: &Bodies<S>) {
         for b in 0..bodies.tensors.len() {
             if bodies.tensor(b).is_some() {
                 self.spin[b] = bodies.spin[b];

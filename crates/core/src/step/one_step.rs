@@ -58,7 +58,7 @@ impl<S: Space> Simulation<S> {
         network.bond_breaks.clear();
         network.bonds_formed.clear();
         if self.options.record_dissipation {
-            network.spent.get_or_insert_default();
+            network.dissipation.get_or_insert_default();
         }
         if !self.state.scars.is_empty() {
             network.losses.get_or_insert_default();
@@ -80,20 +80,20 @@ impl<S: Space> Simulation<S> {
         let (network, bodies) = (&mut self.state.network, &self.state.bodies);
         detect(network, &self.shapes, bodies, &self.table, time, h);
         report.projected = self.project();
-        start.coasted(&self.state.bodies);
+        start.take_rotated_spins(&self.state.bodies);
         self.state.started = start.of_driven(&self.state.bodies);
         let (bodies, gravity) = (&self.state.bodies, &self.state.gravity);
         let mut free = motion::free_velocities(bodies, gravity, time, h, theta);
         self.free_systems(&mut free);
-        self.foresee(&free);
-        self.remember(info)?;
+        self.add_predicted_contacts(&free);
+        self.initialise_contacts(info)?;
         report.timing.detect = clock.elapsed();
         Ok((start, free))
     }
 
     /// Gives new contacts their memory and forms the bonds that are due.
-    pub(super) fn remember(&mut self, info: &StepInfo) -> Result<(), StepError> {
-        let remembered = self.workspace.evaluator.remember(
+    pub(super) fn initialise_contacts(&mut self, info: &StepInfo) -> Result<(), StepError> {
+        let remembered = self.workspace.evaluator.initialise_contacts(
             &self.laws,
             &mut self.state.law_history,
             &mut self.state.network,
@@ -105,13 +105,17 @@ impl<S: Space> Simulation<S> {
     /// Has laws update damage, bonds and wear with the impulses of the step.
     fn commit_laws(&mut self, info: &StepInfo, report: &mut StepReport) -> Result<(), StepError> {
         let clock = Instant::now();
-        let Solved { sites, turns, .. } = &self.workspace.solved;
+        let Solved {
+            contact_steps,
+            moment_steps,
+            ..
+        } = &self.workspace.solved;
         let committed = self.workspace.evaluator.commit(
             &self.laws,
             &mut self.state.law_history,
             &mut self.state.network,
-            sites,
-            turns,
+            contact_steps,
+            moment_steps,
             info,
         );
         report.totals = committed.map_err(|e| self.law_error(e))?;
@@ -131,8 +135,8 @@ impl<S: Space> Simulation<S> {
 
     /// Counts the step, checks its result, and has phases and processes follow it.
     fn end_step(&mut self, report: &mut StepReport) -> Result<(), StepError> {
-        let sites = self.workspace.solved.sites.iter();
-        report.active = sites
+        let contact_steps = self.workspace.solved.contact_steps.iter();
+        report.active = contact_steps
             .filter(|s| s.solution.impulse != S::Vector::zero())
             .count();
         self.state.steps += 1;

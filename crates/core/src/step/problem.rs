@@ -53,19 +53,23 @@ impl<S: Space> Simulation<S> {
             self.adopt_system_velocities()?;
             report.timing.solve += clock.elapsed();
 
-            self.sites();
-            self.turns(start);
+            self.collect_contact_steps();
+            self.collect_moment_steps(start);
             let Coupling::Implicit { .. } = self.options.coupling else {
                 return Ok(());
             };
             let clock = Instant::now();
-            let Solved { sites, turns, .. } = &self.workspace.solved;
-            let change = self.workspace.evaluator.trial(
+            let Solved {
+                contact_steps,
+                moment_steps,
+                ..
+            } = &self.workspace.solved;
+            let change = self.workspace.evaluator.trial_damage(
                 &self.laws,
                 &mut self.state.law_history,
                 &mut self.state.network,
-                sites,
-                turns,
+                contact_steps,
+                moment_steps,
                 info,
             );
             let change = change.map_err(|e| self.law_error(e))?;
@@ -74,14 +78,16 @@ impl<S: Space> Simulation<S> {
                 report.coupling = coupling.report();
                 return Ok(());
             }
-            self.workspace.evaluator.adopt(&mut self.state.network);
-            for (form, site) in self
+            self.workspace
+                .evaluator
+                .adopt_trial_damage(&mut self.state.network);
+            for (form, contact_step) in self
                 .workspace
                 .forms
                 .iter_mut()
-                .zip(&self.workspace.solved.sites)
+                .zip(&self.workspace.solved.contact_steps)
             {
-                form.impulse = site.solution.impulse;
+                form.impulse = contact_step.solution.impulse;
             }
         }
     }
@@ -89,10 +95,11 @@ impl<S: Space> Simulation<S> {
     /// Checks that the method supports the current forms; some requirements of laws appear only during a
     /// step.
     fn check_method(&self) -> Result<(), StepError> {
-        let turns = |m: &MomentForm<S>| self.state.network.contacts[m.contact as usize].bodies;
+        let moment_steps =
+            |m: &MomentForm<S>| self.state.network.contacts[m.contact as usize].bodies;
         let moments = self.workspace.moments.iter();
         let carrier = moments
-            .flat_map(turns)
+            .flat_map(moment_steps)
             .find_map(|b| self.state.bodies.carrier(b as usize));
         if let Some(carrier) = carrier {
             let system = self.state.systems.get(carrier.system as usize);

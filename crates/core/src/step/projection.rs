@@ -89,7 +89,7 @@ impl<S: Space> Simulation<S> {
             self.state.time,
             0.0,
         );
-        self.state.lifted += against_loads;
+        self.state.projection_work += against_loads;
         Some(Projected {
             before,
             after: self.deepest_overlap(),
@@ -146,7 +146,7 @@ impl<S: Space> Simulation<S> {
                 external += force * if k < S::D { shift[k] } else { turn[k - S::D] };
             }
         }
-        self.state.energy.lift(potential, external);
+        self.state.energy.book_projection(potential, external);
         -external
     }
 }

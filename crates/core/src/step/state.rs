@@ -63,7 +63,7 @@ pub struct State<S: Space> {
     /// The energy ledger.
     pub energy: Energy,
     /// Work of projections on driven bodies against imposed forces (J).
-    pub lifted: f64,
+    pub projection_work: f64,
     /// Scars of the surfaces that wear.
     pub scars: Vec<Scar<S>>,
     /// The first surface that was worn through, if any.
@@ -93,7 +93,7 @@ impl<S: Space> State<S> {
                 initial_kinetic: kinetic,
                 ..Energy::default()
             },
-            lifted: 0.0,
+            projection_work: 0.0,
             scars: Vec::new(),
             worn_through: None,
             auto_state: AutoState::default(),

@@ -2,7 +2,7 @@
 
 use super::answers::Solved;
 use crate::geometry::space::Space;
-use crate::laws::pass::LawEvaluator;
+use crate::laws::evaluator::LawEvaluator;
 use crate::solve::{ContactForm, MomentForm, Problem};
 
 /// What a step makes for itself and throws away; its memory is kept from step to step, nothing else.

@@ -1,23 +1,26 @@
 //! Contact detection at q_m: a neighbour list with a skin (broad phase), then gaps and normals (narrow
 //! phase).
 
+mod convex_pair;
 mod extents;
-mod foresee;
 mod narrow;
+mod neighbours;
 mod order;
-mod pieces;
+mod prediction;
 mod sweep;
 
 pub use extents::{Extents, fast_motion};
-pub use foresee::{Motion, foresee, is_calm, overlooked, report_first_move, report_passing};
+pub use prediction::{
+    Motion, add_predicted, find_missed, is_calm, report_first_move, report_passing,
+};
 
 use super::network::{Contact, Key, Network};
 use crate::bodies::Bodies;
 use crate::geometry::convex::ConvexCollider;
-use crate::geometry::grid;
 use crate::geometry::shape::{Ball, Shapes};
 use crate::geometry::space::{Space, VectorLike};
 use narrow::Narrow;
+use neighbours::NeighbourSearch;
 
 /// Corners whose distance along a face is less than this fraction of the alert distance count as on the
 /// face.
@@ -88,11 +91,11 @@ pub fn detect<S: Space>(
     let mut narrow = Narrow::new(shapes, bodies, &centres, laws, time, h);
     for &(a, b) in &candidates {
         if (a | b) & Key::PIECE != 0 {
-            narrow.pieces(network, a, b);
+            narrow.convex_pair(network, a, b);
         } else if b & Key::SURFACE == 0 {
-            narrow.balls(network, a, b);
+            narrow.ball_pair(network, a, b);
         } else {
-            narrow.surface(network, a, b);
+            narrow.ball_on_surface(network, a, b);
         }
     }
     let left = narrow.left();
@@ -124,9 +127,6 @@ fn watched<'a, S: Space>(
     centres.iter().copied().chain(frames)
 }
 
-/// The neighbour list is built for this multiple of the spin of rotating surfaces.
-const TURNING: f64 = 1.5;
-
 fn must_rebuild<S: Space>(
     network: &Network<S>,
     shapes: &Shapes<S>,
@@ -153,6 +153,7 @@ fn must_rebuild<S: Space>(
         })
 }
 
+/// Builds the neighbour list: the pairs that may touch before one of them leaves its skin.
 fn rebuild<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -162,69 +163,13 @@ fn rebuild<S: Space>(
     velocities: &[(S::Vector, S::Spin)],
     h: f64,
 ) {
-    let mut radii: Vec<f64> = shapes.balls.iter().map(|b| b.radius).collect();
-    radii.extend(shapes.pieces.iter().map(|p| p.bound));
-    // Around fast bodies the list extends as far as these move.
-    let wide = |body: u32| network.widened.get(body as usize).copied().unwrap_or(0.0);
-    if !network.widened.is_empty() {
-        let of = shapes.balls.iter().map(|b| b.body);
-        let of = of.chain(shapes.pieces.iter().map(|p| p.body));
-        radii.iter_mut().zip(of).for_each(|(r, b)| *r += wide(b));
-    }
-    let reach = network.alert + network.skin;
-    let balls = shapes.balls.len();
-    // Body, material and key of the ball or piece at an index in the list of centres.
-    let owner = |at: u32| match shapes.balls.get(at as usize) {
-        Some(ball) => (ball.body, ball.material, at),
-        None => {
-            let k = at - balls as u32;
-            let piece = &shapes.pieces[k as usize];
-            (piece.body, piece.material, k | Key::PIECE)
-        }
-    };
-    let still = bodies.still();
-    let gone = |i: u32| bodies.removed[i as usize];
-    let never = |i: u32, j: u32| {
-        let (a, b) = (i as usize, j as usize);
-        i == j || gone(i) || gone(j) || (still[a] && still[b]) || bodies.belong_together(a, b)
-    };
-    let touch = |i: u32, j: u32| !never(i, j);
-    let mut pairs = grid::pairs(centres, &radii, reach, &shapes.periodic, |a, b| {
-        let (a, b) = (owner(a), owner(b));
-        touch(a.0, b.0) && laws.get(a.1, b.1).is_some()
-    });
-    if !shapes.pieces.is_empty() {
-        pairs = pairs.iter().map(|p| (owner(p.0).2, owner(p.1).2)).collect();
-    }
-    let mut turning = Vec::with_capacity(shapes.surfaces.len());
-    for (s, surface) in shapes.surfaces.iter().enumerate() {
-        let (origin, rotation) = frame(surface.body, &surface.offset, bodies);
-        let pivot = bodies.position[surface.body as usize];
-        let spin = velocities[surface.body as usize].1;
-        let sweeps = !surface
-            .shape
-            .keeps_place(&S::unrotate_spin(&rotation, &spin));
-        let spin = if sweeps { TURNING * spin.norm() } else { 0.0 };
-        turning.push(spin);
-        let extra = wide(surface.body);
-        for (at, radius) in radii.iter().enumerate() {
-            let (body, material, name) = owner(at as u32);
-            let known = laws.get(material, surface.material).is_some();
-            if known && touch(body, surface.body) {
-                let local = S::unrotate(&rotation, &(centres[at] - origin));
-                let mut reach = radius + reach + extra;
-                if sweeps {
-                    reach += spin * h * ((centres[at] - pivot).norm() + radius);
-                }
-                if surface.shape.near(&local, reach) {
-                    pairs.push((name, s as u32 | Key::SURFACE));
-                }
-            }
-        }
-    }
+    let search = NeighbourSearch::new(network, shapes, bodies, laws, centres);
+    let mut pairs = search.pairs_of_balls();
+    let turning = search.add_pairs_with_surfaces(&mut pairs, &network.widened, velocities, h);
     // A bond may be longer than the search distance.
     let held = |c: &&Contact<S>| {
-        network.bond(c).is_some_and(|b| b.intact()) && !c.bodies.iter().any(|b| gone(*b))
+        network.bond(c).is_some_and(|b| b.intact())
+            && !c.bodies.iter().any(|b| bodies.removed[*b as usize])
     };
     pairs.extend(network.contacts.iter().filter(held).map(|c| c.key.pair()));
     pairs.sort_unstable();

@@ -2,7 +2,7 @@
 
 use super::{LawTable, drop_contact, frame, held};
 use crate::bodies::Bodies;
-use crate::contact::network::{Contact, Key, Network};
+use crate::contact::network::{Contact, ContactGeometry, Key, Network};
 use crate::geometry::convex::{ContactPoint, ConvexCollider, Core};
 use crate::geometry::shape::{Ball, ClosestPoint, Shapes};
 use crate::geometry::space::{Space, VectorLike};
@@ -21,7 +21,7 @@ pub(super) struct Narrow<'a, S: Space> {
     /// Index of the next old contact.
     at: usize,
     touches: Vec<ClosestPoint<S::Vector>>,
-    pub(super) meetings: Vec<ContactPoint<S::Vector>>,
+    pub(super) contact_points: Vec<ContactPoint<S::Vector>>,
 }
 
 impl<'a, S: Space> Narrow<'a, S> {
@@ -44,7 +44,7 @@ impl<'a, S: Space> Narrow<'a, S> {
             h,
             at: 0,
             touches: Vec::new(),
-            meetings: Vec::new(),
+            contact_points: Vec::new(),
         }
     }
 
@@ -54,7 +54,7 @@ impl<'a, S: Space> Narrow<'a, S> {
     }
 
     /// Returns the old contacts of a pair; drops those of skipped pairs.
-    pub(super) fn old_of(
+    pub(super) fn old_contacts_of(
         &mut self,
         network: &mut Network<S>,
         pair: (u32, u32),
@@ -70,7 +70,7 @@ impl<'a, S: Space> Narrow<'a, S> {
         first..self.at
     }
 
-    pub(super) fn balls(&mut self, network: &mut Network<S>, a: u32, b: u32) {
+    pub(super) fn ball_pair(&mut self, network: &mut Network<S>, a: u32, b: u32) {
         let (p, q) = (
             &self.shapes.balls[a as usize],
             &self.shapes.balls[b as usize],
@@ -79,7 +79,7 @@ impl<'a, S: Space> Narrow<'a, S> {
             .shapes
             .periodic
             .shortest(self.centres[a as usize] - self.centres[b as usize]);
-        let old = self.old_of(network, (a, b)).next();
+        let old = self.old_contacts_of(network, (a, b)).next();
         let sum = p.radius + q.radius;
         let squared = d.dot(&d);
         let limit = sum + network.alert;
@@ -117,32 +117,25 @@ impl<'a, S: Space> Narrow<'a, S> {
             ]
         };
         let found = Contact {
-            key: Key {
-                candidate: a,
-                antagonist: b,
-                feature: 0,
-            },
-            bodies: [p.body, q.body],
-            law,
             central,
-            vertex_contact: false,
-            broken: false,
-            slot: Contact::<S>::NO_MEMORY,
-            gap: length - sum,
-            normal,
-            arms,
-            radius: p.radius * q.radius / sum,
-            impulse: S::Vector::zero(),
-            moment: S::Spin::zero(),
-            formed_at: self.time,
-            pressed: 0.0,
-            closing: false,
-            later: false,
-            beyond: false,
-            slides: false,
-            friction_work: 0.0,
+            ..Contact::new(
+                Key {
+                    candidate: a,
+                    antagonist: b,
+                    feature: 0,
+                },
+                [p.body, q.body],
+                law,
+                ContactGeometry {
+                    gap: length - sum,
+                    normal,
+                    arms,
+                    radius: p.radius * q.radius / sum,
+                },
+                self.time,
+            )
         };
-        self.admit(network, found, old);
+        self.add_contact(network, found, old);
     }
 
     /// Returns whether a body's response to impulses is isotropic.
@@ -151,10 +144,10 @@ impl<'a, S: Space> Narrow<'a, S> {
         self.bodies.tensor(b).is_none() && (1..S::D).all(|k| mass[k] == mass[0])
     }
 
-    pub(super) fn surface(&mut self, network: &mut Network<S>, a: u32, b: u32) {
+    pub(super) fn ball_on_surface(&mut self, network: &mut Network<S>, a: u32, b: u32) {
         let ball = &self.shapes.balls[a as usize];
         let surface = &self.shapes.surfaces[(b & !Key::SURFACE) as usize];
-        let old = self.old_of(network, (a, b));
+        let old = self.old_contacts_of(network, (a, b));
         let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
         let local = S::unrotate(&rotation, &(self.centres[a as usize] - origin));
         let margin = self.reach(network, old.clone());
@@ -194,32 +187,25 @@ impl<'a, S: Space> Narrow<'a, S> {
             let centred = ball.offset == S::Vector::zero() && self.bodies.length[i] == ball.radius;
             let arm = self.centres[a as usize] - normal * ball.radius - self.bodies.position[i];
             let found = Contact {
-                key: Key {
-                    candidate: a,
-                    antagonist: b,
-                    feature: u64::from(touch.feature),
-                },
-                bodies: [ball.body, surface.body],
-                law,
                 central: still && centred && self.isotropic(i),
-                vertex_contact: false,
-                broken: false,
-                slot: Contact::<S>::NO_MEMORY,
-                gap,
-                normal,
-                arms: [arm, closest_point - self.bodies.position[j]],
-                radius: ball.radius,
-                impulse: S::Vector::zero(),
-                moment: S::Spin::zero(),
-                formed_at: self.time,
-                pressed: 0.0,
-                closing: false,
-                later: false,
-                beyond: false,
-                slides: false,
-                friction_work: 0.0,
+                ..Contact::new(
+                    Key {
+                        candidate: a,
+                        antagonist: b,
+                        feature: u64::from(touch.feature),
+                    },
+                    [ball.body, surface.body],
+                    law,
+                    ContactGeometry {
+                        gap,
+                        normal,
+                        arms: [arm, closest_point - self.bodies.position[j]],
+                        radius: ball.radius,
+                    },
+                    self.time,
+                )
             };
-            self.admit(network, found, matched);
+            self.add_contact(network, found, matched);
         }
         for k in old.clone() {
             if !taken[k - old.start] {
@@ -247,7 +233,7 @@ impl<'a, S: Space> Narrow<'a, S> {
     }
 
     /// Adds a contact, with the memory of an old one of the same key.
-    pub(super) fn admit(
+    pub(super) fn add_contact(
         &self,
         network: &mut Network<S>,
         mut found: Contact<S>,
@@ -260,7 +246,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                 found.moment = old.moment;
                 found.formed_at = old.formed_at;
                 found.friction_work = old.friction_work;
-                found.pressed = old.pressed;
+                found.compression_time = old.compression_time;
                 found.slot = old.slot;
                 found.broken = old.broken;
                 let from = old.normal;
@@ -286,7 +272,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                     let known = same.map(|c| -c.gap).fold(0.0, f64::max);
                     network
                         .step_size
-                        .meet(&found, known, self.time, self.bodies);
+                        .record_late(&found, known, self.time, self.bodies);
                 }
             }
         }

@@ -7,7 +7,7 @@
 
 use super::extents::Extents;
 use crate::bodies::Bodies;
-use crate::contact::network::{Contact, Key};
+use crate::contact::network::{Contact, ContactGeometry, Key};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, ConvexCollider, Core};
 use crate::geometry::shape::{Ball, Carried, ClosestPoint, Shapes};
 use crate::geometry::space::{Space, VectorLike};
@@ -292,7 +292,7 @@ impl<'a, S: Space> Sweep<'a, S> {
             _ => f64::INFINITY,
         };
         let poses = [one, other];
-        self.meetings(pair, &poses, reach, &mut met);
+        self.contact_points(pair, &poses, reach, &mut met);
         let [_, other] = &poses;
         let nearest = met.iter().min_by(|m, n| m.gap.total_cmp(&n.gap));
         let normal = match &pair.shapes[1] {
@@ -304,14 +304,14 @@ impl<'a, S: Space> Sweep<'a, S> {
     }
 
     /// Finds the contact points of a pair in these poses, relative to the centres of the two bodies.
-    fn meetings(
+    fn contact_points(
         &self,
         pair: &Pair<S>,
         [one, other]: &[Pose<S>; 2],
         reach: f64,
         out: &mut Vec<ContactPoint<S::Vector>>,
     ) {
-        let gauge = ContactTolerances {
+        let tolerances = ContactTolerances {
             reach,
             slack: super::SLACK * self.alert,
             held: false,
@@ -319,31 +319,15 @@ impl<'a, S: Space> Sweep<'a, S> {
         let apart = one.centre - other.centre - pair.image;
         let turned = |p: &ConvexCollider<S>, pose: &Pose<S>| p.core.turned(&pose.rotation);
         match (&pair.shapes[0], &pair.shapes[1]) {
-            (Shape::Ball(a), Shape::Ball(b)) => {
-                let distance = apart.norm();
-                let normal = if distance > 0.0 {
-                    apart * (1.0 / distance)
-                } else {
-                    S::Vector::from_slice(&[1.0])
-                };
-                out.push(ContactPoint {
-                    on_candidate: apart - normal * a.radius,
-                    on_antagonist: normal * b.radius,
-                    normal,
-                    gap: distance - a.radius - b.radius,
-                    feature: 0,
-                    share: 0.0,
-                    facing: true,
-                });
-            }
+            (Shape::Ball(a), Shape::Ball(b)) => out.push(point_of_balls::<S>(a, b, apart)),
             (Shape::Ball(a), Shape::ConvexCollider(b, _)) => {
                 let core = turned(b, other);
-                out.push(core.meet_ball(&apart, a.radius, b.rounding));
+                out.push(core.contact_point_with_ball(&apart, a.radius, b.rounding));
             }
             (Shape::ConvexCollider(a, _), Shape::ConvexCollider(b, _)) => {
                 let roundings = [a.rounding, b.rounding];
                 let (a, b) = (turned(a, one), turned(b, other));
-                a.meet(&b, &apart, roundings, &gauge, out);
+                a.contact_points(&b, &apart, roundings, &tolerances, out);
             }
             (Shape::Ball(a), Shape::Surface(b)) => {
                 let place = S::unrotate(&other.rotation, &apart);
@@ -363,7 +347,13 @@ impl<'a, S: Space> Sweep<'a, S> {
             (Shape::ConvexCollider(a, _), Shape::Surface(b)) => {
                 let place = S::unrotate(&other.rotation, &apart);
                 let core = turned(a, one).turned(&S::inverse(&other.rotation));
-                core.meet_surface(b.shape.as_ref(), &place, a.rounding, &gauge, out);
+                core.contact_points_with_surface(
+                    b.shape.as_ref(),
+                    &place,
+                    a.rounding,
+                    &tolerances,
+                    out,
+                );
             }
             // Candidates precede antagonists in the order balls, pieces, surfaces.
             _ => {}
@@ -389,7 +379,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         let poses = [0, 1].map(|k: usize| self.pose(&pair.shapes[k], s));
         let mut met = Vec::new();
         let reach = self.alert.max(EXACT * pair.half_thickness);
-        self.meetings(pair, &poses, reach, &mut met);
+        self.contact_points(pair, &poses, reach, &mut met);
         met.retain(|m| m.gap < reach);
         met.sort_by_key(|m| m.feature);
         met.dedup_by_key(|m| m.feature);
@@ -407,32 +397,47 @@ impl<'a, S: Space> Sweep<'a, S> {
             // Approach of the two until they meet.
             let way = (-s * self.h * m.normal.dot(&velocity)).max(0.0);
             out.push(Contact {
-                key: Key {
-                    candidate: pair.names.0,
-                    antagonist: pair.names.1,
-                    feature: m.feature,
-                },
-                bodies: [i, j],
-                law,
-                central: false,
                 vertex_contact: !m.facing,
-                broken: false,
-                slot: Contact::<S>::NO_MEMORY,
-                gap: m.gap + way,
-                normal: m.normal,
-                arms: [m.on_candidate, m.on_antagonist],
-                radius: if m.share > 0.0 { m.share } else { radius },
-                impulse: S::Vector::zero(),
-                moment: S::Spin::zero(),
-                formed_at: self.time,
-                pressed: 0.0,
-                slides: false,
-                friction_work: 0.0,
                 closing: true,
-                later: false,
                 beyond: true,
+                ..Contact::new(
+                    Key {
+                        candidate: pair.names.0,
+                        antagonist: pair.names.1,
+                        feature: m.feature,
+                    },
+                    [i, j],
+                    law,
+                    ContactGeometry {
+                        gap: m.gap + way,
+                        normal: m.normal,
+                        arms: [m.on_candidate, m.on_antagonist],
+                        radius: if m.share > 0.0 { m.share } else { radius },
+                    },
+                    self.time,
+                )
             });
         }
+    }
+}
+
+/// Returns the contact point of two balls, the first at `apart` from the second, relative to the centre of the
+/// second.
+fn point_of_balls<S: Space>(a: &Ball<S>, b: &Ball<S>, apart: S::Vector) -> ContactPoint<S::Vector> {
+    let distance = apart.norm();
+    let normal = if distance > 0.0 {
+        apart * (1.0 / distance)
+    } else {
+        S::Vector::from_slice(&[1.0])
+    };
+    ContactPoint {
+        on_candidate: apart - normal * a.radius,
+        on_antagonist: normal * b.radius,
+        normal,
+        gap: distance - a.radius - b.radius,
+        feature: 0,
+        share: 0.0,
+        facing: true,
     }
 }
 

@@ -10,12 +10,14 @@ pub mod polygon_pair;
 pub mod polygon_surface;
 pub mod polyhedron;
 mod polyhedron_clip;
+mod polyhedron_hull;
 pub mod polyhedron_mass;
 mod polyhedron_outline;
 mod polyhedron_pair;
 mod polyhedron_surface;
 #[cfg(test)]
 mod polyhedron_tests;
+mod topology;
 
 pub use boundary::Boundary;
 
@@ -133,18 +135,23 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
 
     /// Finds contact points with another core, in the order of their features. `self` is the candidate, with
     /// its centre at `apart`; `roundings` are those of candidate and antagonist (m).
-    fn meet(
+    fn contact_points(
         &self,
         other: &Self,
         apart: &S::Vector,
         roundings: [f64; 2],
-        gauge: &ContactTolerances,
+        tolerances: &ContactTolerances,
         out: &mut Vec<ContactPoint<S::Vector>>,
     );
 
     /// Returns the contact point with a ball whose centre is at `apart`; the ball is the candidate, and the
     /// gap refers to the rounded core.
-    fn meet_ball(&self, apart: &S::Vector, radius: f64, rounding: f64) -> ContactPoint<S::Vector> {
+    fn contact_point_with_ball(
+        &self,
+        apart: &S::Vector,
+        radius: f64,
+        rounding: f64,
+    ) -> ContactPoint<S::Vector> {
         let (distance, normal) = self.outward(apart);
         ContactPoint {
             on_candidate: *apart - normal * radius,
@@ -168,12 +175,12 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
 
     /// Finds contact points with a surface of a first body, in the order of their features. The core is in
     /// the surface's frame, with its centre at `at`.
-    fn meet_surface(
+    fn contact_points_with_surface(
         &self,
         surface: &dyn Surface<S>,
         at: &S::Vector,
         rounding: f64,
-        gauge: &ContactTolerances,
+        tolerances: &ContactTolerances,
         out: &mut Vec<ContactPoint<S::Vector>>,
     );
 

@@ -219,15 +219,15 @@ impl Core<Dim2> for Polygon {
         }
     }
 
-    fn meet(
+    fn contact_points(
         &self,
         other: &Self,
         apart: &Vector2<f64>,
         roundings: [f64; 2],
-        gauge: &ContactTolerances,
+        tolerances: &ContactTolerances,
         out: &mut Vec<ContactPoint<Vector2<f64>>>,
     ) {
-        polygon_pair::meet(self, other, apart, roundings, gauge, out);
+        polygon_pair::contact_points(self, other, apart, roundings, tolerances, out);
     }
 
     fn feature_from_other_side(feature: u64) -> u64 {
@@ -243,15 +243,15 @@ impl Core<Dim2> for Polygon {
         super::half_thickness::<Dim2>(&self.points, &self.normals)
     }
 
-    fn meet_surface(
+    fn contact_points_with_surface(
         &self,
         surface: &dyn Surface<Dim2>,
         at: &Vector2<f64>,
         rounding: f64,
-        gauge: &ContactTolerances,
+        tolerances: &ContactTolerances,
         out: &mut Vec<ContactPoint<Vector2<f64>>>,
     ) {
-        polygon_surface::meet(self, surface, at, rounding, gauge, out);
+        polygon_surface::contact_points(self, surface, at, rounding, tolerances, out);
     }
 
     fn outline(&self, rounding: f64) -> Vec<Vec<Vector2<f64>>> {
@@ -316,12 +316,12 @@ mod tests {
     #[test]
     fn a_ball_meets_sides_and_corners() {
         let square = polygon(&[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]).unwrap();
-        let m = square.meet_ball(&Vector2::new(0.3, 1.7), 0.5, 0.1);
+        let m = square.contact_point_with_ball(&Vector2::new(0.3, 1.7), 0.5, 0.1);
         assert!((m.gap - 0.1).abs() < 1e-15 && m.normal == Vector2::new(0.0, 1.0));
         assert!((m.on_antagonist - Vector2::new(0.3, 1.1)).norm() < 1e-15);
-        let m = square.meet_ball(&Vector2::new(4.0, 5.0), 0.5, 0.0);
+        let m = square.contact_point_with_ball(&Vector2::new(4.0, 5.0), 0.5, 0.0);
         assert!((m.gap - 4.5).abs() < 1e-15 && (m.normal - Vector2::new(0.6, 0.8)).norm() < 1e-15);
-        let m = square.meet_ball(&Vector2::new(0.9, 0.2), 0.5, 0.0);
+        let m = square.contact_point_with_ball(&Vector2::new(0.9, 0.2), 0.5, 0.0);
         assert!((m.gap + 0.6).abs() < 1e-15 && m.normal == Vector2::new(1.0, 0.0));
     }
 }

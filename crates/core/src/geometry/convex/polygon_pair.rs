@@ -14,29 +14,29 @@ type V = Vector2<f64>;
 
 /// Finds the contact points of the candidate `a`, whose centre is at `apart`, with `b` at the origin, in the
 /// order of their features; `roundings` are those of both (m).
-pub fn meet(
+pub fn contact_points(
     a: &Polygon,
     b: &Polygon,
     apart: &V,
     roundings: [f64; 2],
-    gauge: &ContactTolerances,
+    tolerances: &ContactTolerances,
     out: &mut Vec<ContactPoint<V>>,
 ) {
-    let reach = gauge.reach + roundings[0] + roundings[1];
+    let reach = tolerances.reach + roundings[0] + roundings[1];
     let (from_a, side_a) = separation(a, b, &-apart);
     let (from_b, side_b) = separation(b, a, apart);
     if from_a.max(from_b) > reach {
         return;
     }
     // Of two equally good sides the candidate's is used, independent of rounding.
-    let a_leads = from_a + gauge.slack * 1e-3 >= from_b;
+    let a_leads = from_a + tolerances.slack * 1e-3 >= from_b;
     let best = if a_leads { from_a } else { from_b };
     if best > 0.0 {
         let corners = nearest_corners(a, b, apart);
         let (i, j, d) = corners;
-        let (distance, slack) = (d.norm(), gauge.slack);
+        let (distance, slack) = (d.norm(), tolerances.slack);
         let corner = distance * distance - best * best > slack * slack;
-        if corner && !gauge.held && distance < nearest_side(a, b, apart) {
+        if corner && !tolerances.held && distance < nearest_side(a, b, apart) {
             if distance <= reach {
                 let normal = d / distance;
                 let (pa, pb) = (a.points()[i] + apart, b.points()[j]);
@@ -65,12 +65,12 @@ pub fn meet(
         (roundings[1], roundings[0])
     };
     let normal = lead.normals()[side];
-    let ends = clip(lead, other, side, &(at_other - at_lead), gauge.slack);
+    let ends = clip(lead, other, side, &(at_other - at_lead), tolerances.slack);
     let along = ends.len() == 2 && other.faces(&normal);
     let facing = along || lead.points().len() == 2 || other.points().len() == 2;
     for point in ends {
         let gap = point.height - lead_rounding - other_rounding;
-        if gap > gauge.reach {
+        if gap > tolerances.reach {
             continue;
         }
         let on_other = at_lead + point.at - normal * other_rounding;
@@ -252,7 +252,7 @@ mod tests {
 
     fn met(a: &Polygon, b: &Polygon, apart: V, roundings: [f64; 2]) -> Vec<ContactPoint<V>> {
         let mut out = Vec::new();
-        meet(a, b, &apart, roundings, &EXACT, &mut out);
+        contact_points(a, b, &apart, roundings, &EXACT, &mut out);
         out
     }
 
@@ -370,7 +370,7 @@ mod tests {
             assert!((p.gap - 0.05).abs() < 1e-14 && (p.share - 1.0).abs() < 1e-14);
         }
         // Of equal width: no corner is outside the other side by more than the slack.
-        let gauge = ContactTolerances {
+        let tolerances = ContactTolerances {
             reach: 0.1,
             slack: 1e-6,
             held: false,
@@ -379,7 +379,7 @@ mod tests {
             for gap in [-1e-9, 0.0, 1e-13, 1e-9, 0.05] {
                 let mut out = Vec::new();
                 let apart = V::new(shift, 2.0 + gap);
-                meet(&top, &top, &apart, [0.0; 2], &gauge, &mut out);
+                contact_points(&top, &top, &apart, [0.0; 2], &tolerances, &mut out);
                 assert_eq!(out.len(), 2, "{shift:e} {gap:e}");
                 assert!(out.iter().all(|m| (m.normal.y - 1.0).abs() < 1e-15));
                 assert!(out.iter().all(|m| (m.gap - gap).abs() < 1e-15));
@@ -388,7 +388,7 @@ mod tests {
         // Next to each other's corners: one point, along the line between the corners.
         let mut out = Vec::new();
         let apart = V::new(2.03, 2.04);
-        meet(&top, &top, &apart, [0.0; 2], &gauge, &mut out);
+        contact_points(&top, &top, &apart, [0.0; 2], &tolerances, &mut out);
         assert_eq!(out.len(), 1);
         assert!((out[0].gap - 0.05).abs() < 1e-14);
         assert!((out[0].normal - V::new(0.6, 0.8)).norm() < 1e-12);
@@ -408,13 +408,13 @@ mod tests {
         let right = top.points()[1];
         let apart = V::new(1.0 + 5e-4, 1.0 + 0.02) - right;
         for held in [false, true] {
-            let gauge = ContactTolerances {
+            let tolerances = ContactTolerances {
                 reach: 0.5,
                 slack: 1e-6,
                 held,
             };
             let mut out = Vec::new();
-            meet(&top, &low, &apart, [0.0; 2], &gauge, &mut out);
+            contact_points(&top, &low, &apart, [0.0; 2], &tolerances, &mut out);
             assert_eq!(out.len(), 1 + usize::from(held), "{out:?}");
             let share: f64 = out.iter().map(|m| m.share).sum();
             assert!(!held || (share - 2.0).abs() < 0.01, "{share}");

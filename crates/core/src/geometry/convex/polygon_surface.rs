@@ -17,16 +17,16 @@ const SEAM: f64 = 1e-9;
 
 /// Finds the contact points of the polygon, centred at `at` in the surface's frame, in the order of their
 /// features.
-pub fn meet(
+pub fn contact_points(
     polygon: &Polygon,
     surface: &dyn Surface<Dim2>,
     at: &V,
     rounding: f64,
-    gauge: &ContactTolerances,
+    tolerances: &ContactTolerances,
     out: &mut Vec<ContactPoint<V>>,
 ) {
     let first = out.len();
-    let reach = gauge.reach + rounding;
+    let reach = tolerances.reach + rounding;
     let deep = reach.max(DEEP * (polygon.farthest() + rounding));
     let n = polygon.points().len();
     let mut touches: Vec<ClosestPoint<V>> = Vec::new();
@@ -126,7 +126,7 @@ mod tests {
 
     fn met(surface: &dyn Surface<Dim2>, polygon: &Polygon, at: V, r: f64) -> Vec<ContactPoint<V>> {
         let mut out = Vec::new();
-        meet(polygon, surface, &at, r, &GAUGE, &mut out);
+        contact_points(polygon, surface, &at, r, &GAUGE, &mut out);
         out
     }
 

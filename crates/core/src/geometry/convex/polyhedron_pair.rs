@@ -23,88 +23,63 @@ const ROUNDING: f64 = 1e-13;
 
 /// Finds the contact points of the candidate `a`, whose centre is at `apart`, with `b` at the origin, in the
 /// order of their features; `roundings` are those of both (m).
-pub fn meet(
+pub fn contact_points(
     a: &Polyhedron,
     b: &Polyhedron,
     apart: &V,
     roundings: [f64; 2],
-    gauge: &ContactTolerances,
+    tolerances: &ContactTolerances,
     out: &mut Vec<ContactPoint<V>>,
 ) {
-    let reach = gauge.reach + roundings[0] + roundings[1];
-    let alike = ALIKE * gauge.slack + ROUNDING * apart.norm();
-    let (from_a, face_a) = separation(a, b, &-apart, reach);
-    if from_a > reach {
-        return;
-    }
-    let (from_b, face_b) = separation(b, a, apart, reach);
-    if from_b > reach {
-        return;
-    }
-    // Of two equally good faces the candidate's is used, independent of rounding.
-    let a_leads = from_a + alike >= from_b;
-    let best = from_a.max(from_b);
+    let reach = tolerances.reach + roundings[0] + roundings[1];
+    let alike = ALIKE * tolerances.slack + ROUNDING * apart.norm();
     let pair = Pair {
         a,
         b,
         apart: *apart,
         roundings,
     };
-    let points = if best.is_finite() {
-        let (face, own) = if a_leads { (face_a, a) } else { (face_b, b) };
-        let (other, way) = if a_leads { (b, -apart) } else { (a, *apart) };
-        let lead = Lead {
-            own,
-            other,
-            face,
-            apart: way,
-            of_candidate: a_leads,
-        };
-        polyhedron_clip::clip(&lead, gauge.slack)
-    } else {
-        Vec::new()
+    let Some(reference) = pair.reference_face(reach, alike, tolerances.slack) else {
+        return;
     };
     let first = out.len();
-    let over = |p: &polyhedron_clip::Point| p.height <= best + alike;
-    // A bond over a face keeps it while it bends, even if edges become nearer.
-    let bonded = gauge.held && points.len() > 2;
-    if bonded || best >= -gauge.slack && points.iter().any(over) {
-        pair.face(&points, a_leads, gauge, out);
-        out[first..].sort_by_key(|m| m.feature);
-        return;
-    }
-    let rods = a.normals().is_empty() && b.normals().is_empty();
-    let crossed = if best > 0.0 || rods {
-        None
-    } else {
-        crossing(a, b, apart)
-    };
-    if best > 0.0 || rods || crossed.as_ref().is_some_and(|c| c.depth > 0.0) {
-        let near = nearest(a, b, apart);
-        let distance = near.way.norm();
-        // Beside the face by at most the slack.
-        let beside = best > 0.0
-            && distance * distance - best * best <= gauge.slack * gauge.slack
-            && !points.is_empty();
-        let over_face = beside || gauge.held && best > 0.0 && !points.is_empty();
-        if !over_face {
-            if distance <= reach {
-                pair.edges(&near, gauge, out);
-            }
-            return;
+    match pair.closest(&reference, alike, tolerances) {
+        Closest::Face => {
+            pair.face(&reference.points, reference.of_candidate, tolerances, out);
+            out[first..].sort_by_key(|m| m.feature);
         }
-    } else if let Some(crossed) = crossed.filter(|c| c.depth > best + alike || points.is_empty()) {
-        pair.push(
+        Closest::Edges(near) => {
+            if near.difference.norm() <= reach {
+                pair.edges(&near, tolerances, out);
+            }
+        }
+        Closest::Crossing(crossed) => pair.push(
             &crossed.points,
             &crossed.normal,
             crossed.depth,
             crossed.feature,
             out,
-        );
-        return;
+        ),
     }
-    pair.face(&points, a_leads, gauge, out);
-    out[first..].sort_by_key(|m| m.feature);
+}
+
+/// The face with the greatest separation, and the opposite face clipped to its sides.
+struct ReferenceFace {
+    /// Separation along its normal (m); minus infinity between two segments.
+    separation: f64,
+    /// Whether it is a face of the candidate.
+    of_candidate: bool,
+    points: Vec<polyhedron_clip::Point>,
+}
+
+/// The features of two polyhedra that are closest, or penetrate least.
+enum Closest {
+    /// The reference face, and the face opposite to it.
+    Face,
+    /// Two edges or corners.
+    Edges(Nearest),
+    /// Two edges that penetrate each other.
+    Crossing(Crossing),
 }
 
 /// The two polyhedra and their positions.
@@ -116,6 +91,89 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
+    /// Finds the reference face; `None` if the polyhedra are farther apart than `reach` (m). Of two faces that are
+    /// equally good within `alike` (m) the candidate's is used, independent of rounding.
+    fn reference_face(&self, reach: f64, alike: f64, slack: f64) -> Option<ReferenceFace> {
+        let (a, b, apart) = (self.a, self.b, self.apart);
+        let (from_a, face_a) = separation(a, b, &-apart, reach);
+        if from_a > reach {
+            return None;
+        }
+        let (from_b, face_b) = separation(b, a, &apart, reach);
+        if from_b > reach {
+            return None;
+        }
+        let of_candidate = from_a + alike >= from_b;
+        let separation = from_a.max(from_b);
+        let points = if separation.is_finite() {
+            let (face, own) = if of_candidate {
+                (face_a, a)
+            } else {
+                (face_b, b)
+            };
+            let (other, apart) = if of_candidate {
+                (b, -apart)
+            } else {
+                (a, apart)
+            };
+            let lead = Lead {
+                own,
+                other,
+                face,
+                apart,
+                of_candidate,
+            };
+            polyhedron_clip::clip(&lead, slack)
+        } else {
+            Vec::new()
+        };
+        Some(ReferenceFace {
+            separation,
+            of_candidate,
+            points,
+        })
+    }
+
+    /// Chooses between the reference face and two edges.
+    fn closest(
+        &self,
+        reference: &ReferenceFace,
+        alike: f64,
+        tolerances: &ContactTolerances,
+    ) -> Closest {
+        let (best, points) = (reference.separation, &reference.points);
+        let over = |p: &polyhedron_clip::Point| p.height <= best + alike;
+        // A bond over a face keeps it while it bends, even if edges become nearer.
+        let bonded = tolerances.held && points.len() > 2;
+        if bonded || best >= -tolerances.slack && points.iter().any(over) {
+            return Closest::Face;
+        }
+        let segments = self.a.normals().is_empty() && self.b.normals().is_empty();
+        let crossed = if best > 0.0 || segments {
+            None
+        } else {
+            crossing(self.a, self.b, &self.apart)
+        };
+        if best > 0.0 || segments || crossed.as_ref().is_some_and(|c| c.depth > 0.0) {
+            let near = nearest(self.a, self.b, &self.apart);
+            let distance = near.difference.norm();
+            // Beside the face by at most the slack.
+            let beside = best > 0.0
+                && distance * distance - best * best <= tolerances.slack * tolerances.slack
+                && !points.is_empty();
+            let over_face = beside || tolerances.held && best > 0.0 && !points.is_empty();
+            return if over_face {
+                Closest::Face
+            } else {
+                Closest::Edges(near)
+            };
+        }
+        match crossed.filter(|c| c.depth > best + alike || points.is_empty()) {
+            Some(crossed) => Closest::Crossing(crossed),
+            None => Closest::Face,
+        }
+    }
+
     fn thickness(&self) -> f64 {
         self.roundings[0] + self.roundings[1]
     }
@@ -145,12 +203,12 @@ impl Pair<'_> {
         &self,
         points: &[polyhedron_clip::Point],
         a_leads: bool,
-        gauge: &ContactTolerances,
+        tolerances: &ContactTolerances,
         out: &mut Vec<ContactPoint<V>>,
     ) {
         for point in points {
             let gap = point.height - self.thickness();
-            if gap > gauge.reach {
+            if gap > tolerances.reach {
                 continue;
             }
             // The point is on the other core; its projection on the reference core is below it.
@@ -174,16 +232,21 @@ impl Pair<'_> {
     }
 
     /// Adds the point of two nearest edges; two points where they are parallel.
-    fn edges(&self, near: &Nearest, gauge: &ContactTolerances, out: &mut Vec<ContactPoint<V>>) {
-        let distance = near.way.norm();
+    fn edges(
+        &self,
+        near: &Nearest,
+        tolerances: &ContactTolerances,
+        out: &mut Vec<ContactPoint<V>>,
+    ) {
+        let distance = near.difference.norm();
         let [e, f] = near.edges;
         if let Some(ends) = side_by_side(
             self.a.ends(e).map(|p| p + self.apart),
             self.b.ends(f),
-            gauge.slack + ROUNDING * distance,
+            tolerances.slack + ROUNDING * distance,
         ) {
             let far = |at: &[V; 2]| (at[0] - at[1]).norm();
-            if distance > 0.0 && ends.iter().all(|at| far(at) <= distance + gauge.slack) {
+            if distance > 0.0 && ends.iter().all(|at| far(at) <= distance + tolerances.slack) {
                 for (k, at) in ends.iter().enumerate() {
                     let normal = (at[0] - at[1]) / far(at);
                     self.push(at, &normal, far(at), name::corner(k, true), out);
@@ -193,14 +256,14 @@ impl Pair<'_> {
         }
         let along = |ends: [V; 2]| ends[1] - ends[0];
         let (u, v) = (along(self.a.ends(e)), along(self.b.ends(f)));
-        let normal = across_both(&u, &v, &near.way, ROUNDING * self.apart.norm());
+        let normal = edge_normal(&u, &v, &near.difference, ROUNDING * self.apart.norm());
         self.push(&near.points, &normal, distance, name::crossing(e, f), out);
     }
 }
 
 /// Returns the direction between two edges. Where it equals the edges' product up to rounding (m), the
 /// product is used: between edges almost in contact, the difference vector alone has no accurate direction.
-fn across_both(u: &V, v: &V, way: &V, rounding: f64) -> V {
+fn edge_normal(u: &V, v: &V, way: &V, rounding: f64) -> V {
     let distance = way.norm();
     let product = u.cross(v).try_normalize(1e-9 * u.norm() * v.norm());
     if let Some(n) = product
@@ -261,7 +324,7 @@ fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
         for f in 0..b.topology().edges.len() {
             let [q0, q1] = b.ends(f);
             let along_b = q1 - q0;
-            if !(turns(a, e, &along_b) && turns(b, f, &along_a)) {
+            if !(may_cross_normals(a, e, &along_b) && may_cross_normals(b, f, &along_a)) {
                 continue;
             }
             let product = along_a.cross(&along_b);
@@ -275,11 +338,11 @@ fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
                 if best.as_ref().is_some_and(|b| b.depth >= depth) {
                     continue;
                 }
-                if holds(a, e, &-axis) && holds(b, f, &axis) {
+                if is_between_normals(a, e, &-axis) && is_between_normals(b, f, &axis) {
                     best = Some(Crossing {
                         depth,
                         normal: axis,
-                        points: lines(&[p0, p1], &[q0, q1]),
+                        points: nearest_on_lines(&[p0, p1], &[q0, q1]),
                         feature: name::crossing(e, f),
                     });
                 }
@@ -291,7 +354,7 @@ fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
 
 /// Returns whether a plane perpendicular to a direction can contain a normal between those of an edge's
 /// faces, so that the arc between these crosses it. Results within rounding are verified later.
-fn turns(of: &Polyhedron, edge: usize, direction: &V) -> bool {
+fn may_cross_normals(of: &Polyhedron, edge: usize, direction: &V) -> bool {
     let Some(faces) = of.topology().edges[edge].faces else {
         return true;
     };
@@ -300,7 +363,7 @@ fn turns(of: &Polyhedron, edge: usize, direction: &V) -> bool {
 }
 
 /// Returns whether a direction perpendicular to an edge is between the normals of its faces.
-pub fn holds(of: &Polyhedron, edge: usize, axis: &V) -> bool {
+pub fn is_between_normals(of: &Polyhedron, edge: usize, axis: &V) -> bool {
     let Some(faces) = of.topology().edges[edge].faces else {
         return true;
     };
@@ -313,7 +376,7 @@ pub fn holds(of: &Polyhedron, edge: usize, axis: &V) -> bool {
 }
 
 /// Returns the nearest points of two lines that are not parallel.
-fn lines([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
+fn nearest_on_lines([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
     let (u, v, w) = (p1 - p0, q1 - q0, p0 - q0);
     let (a, b, c) = (u.norm_squared(), u.dot(&v), v.norm_squared());
     let (d, e) = (u.dot(&w), v.dot(&w));
@@ -330,7 +393,7 @@ struct Nearest {
     /// On `a` and on `b` (m).
     points: [V; 2],
     /// From `b` to `a` (m).
-    way: V,
+    difference: V,
 }
 
 /// Finds the nearest points, skipping edges whose bounding balls are farther apart than the best distance so
@@ -339,7 +402,7 @@ fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
     let mut best = Nearest {
         edges: [0, 0],
         points: [V::zeros(); 2],
-        way: V::repeat(f64::INFINITY),
+        difference: V::repeat(f64::INFINITY),
     };
     let mut least = f64::INFINITY;
     let ball = |[p, q]: [V; 2]| ((p + q) * 0.5, 0.5 * (p - q).norm());
@@ -355,16 +418,16 @@ fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
             if (middle - other).norm_squared() > limit * limit {
                 continue;
             }
-            let points = segments(&one, &b.ends(f));
-            let way = points[0] - points[1];
-            let squared = way.norm_squared();
+            let points = nearest_on_segments(&one, &b.ends(f));
+            let difference = points[0] - points[1];
+            let squared = difference.norm_squared();
             if squared < least {
                 least = squared;
                 room = half + least.sqrt();
                 best = Nearest {
                     edges: [e, f],
                     points,
-                    way,
+                    difference,
                 };
             }
         }
@@ -373,7 +436,7 @@ fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
 }
 
 /// Returns the nearest points of two segments. Ericson, Real-Time Collision Detection (2005), section 5.1.9.
-fn segments([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
+fn nearest_on_segments([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
     let (u, v, r) = (p1 - p0, q1 - q0, p0 - q0);
     let (a, e, f) = (u.norm_squared(), v.norm_squared(), v.dot(&r));
     let (b, c) = (u.dot(&v), u.dot(&r));

@@ -6,7 +6,7 @@
 //! Planes and the insides of drums are touched by corners only.
 
 use super::polyhedron::Polyhedron;
-use super::polyhedron_pair::holds;
+use super::polyhedron_pair::is_between_normals;
 use super::{ContactPoint, ContactTolerances, DEEP};
 use crate::geometry::facets::{self, Facet, Ridge};
 use crate::geometry::shape::{ClosestPoint, Surface};
@@ -20,16 +20,16 @@ const SAME: f64 = 1e-9;
 
 /// Finds the contact points of the polyhedron, centred at `at` in the surface's frame, in the order of their
 /// features.
-pub fn meet(
+pub fn contact_points(
     core: &Polyhedron,
     surface: &dyn Surface<Dim3>,
     at: &V,
     rounding: f64,
-    gauge: &ContactTolerances,
+    tolerances: &ContactTolerances,
     out: &mut Vec<ContactPoint<V>>,
 ) {
     let size = core.farthest() + rounding;
-    let extent = V::repeat(size + gauge.reach);
+    let extent = V::repeat(size + tolerances.reach);
     let mut facets = Vec::new();
     surface.facets(&(at - extent), &(at + extent), &mut facets);
     let first = out.len();
@@ -37,7 +37,7 @@ pub fn meet(
         core,
         at,
         rounding,
-        reach: gauge.reach + rounding,
+        reach: tolerances.reach + rounding,
         deep: DEEP * size,
         same: SAME * size,
     };
@@ -156,7 +156,7 @@ impl Near<'_> {
                     if gap < self.reach
                         && gap > -self.deep
                         && ridge.holds(&normal)
-                        && holds(self.core, e, &-normal)
+                        && is_between_normals(self.core, e, &-normal)
                     {
                         out.push(ContactPoint {
                             on_candidate: a + v * t - normal * self.rounding,

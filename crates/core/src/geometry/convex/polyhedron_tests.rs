@@ -31,10 +31,10 @@ fn met(
     b: &Polyhedron,
     apart: V,
     roundings: [f64; 2],
-    gauge: &ContactTolerances,
+    tolerances: &ContactTolerances,
 ) -> Vec<ContactPoint<V>> {
     let mut out = Vec::new();
-    a.meet(b, &apart, roundings, gauge, &mut out);
+    a.contact_points(b, &apart, roundings, tolerances, &mut out);
     out
 }
 
@@ -311,7 +311,7 @@ fn on(
     rounding: f64,
 ) -> Vec<ContactPoint<V>> {
     let mut out = Vec::new();
-    core.meet_surface(surface, &at, rounding, &FINE, &mut out);
+    core.contact_points_with_surface(surface, &at, rounding, &FINE, &mut out);
     out
 }
 

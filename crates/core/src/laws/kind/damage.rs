@@ -2,8 +2,9 @@
 
 use super::{CertificateSpec, CheckSet, Domain, Kind, KindSpec, Output, commit_state, templates};
 use crate::laws::columns::Outputs;
+use crate::laws::error::LawError;
 use crate::laws::interface::Interface;
-use crate::laws::library::{Call, LawError};
+use crate::laws::library::Call;
 use crate::laws::range::Range::Share;
 use fretwork_abi::FLAG_OPENING;
 

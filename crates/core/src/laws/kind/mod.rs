@@ -13,8 +13,9 @@ pub mod wear;
 
 use super::columns::Outputs;
 use super::commit::SlotCommit;
+use super::error::LawError;
 use super::interface::Interface;
-use super::library::{Call, LawError};
+use super::library::Call;
 use super::range::Range;
 use crate::geometry::space::{Dim2, Dim3, Space};
 use std::any::Any;
@@ -194,7 +195,7 @@ pub fn commit_state<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawErr
     }
     slot.gather();
     slot.call()?;
-    slot.keep_state();
+    slot.store_variables();
     Ok(())
 }
 
@@ -207,7 +208,7 @@ pub fn commit_record<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawEr
     slot.gather();
     slot.add_slip();
     slot.call()?;
-    slot.keep_state();
+    slot.store_variables();
     Ok(())
 }
 

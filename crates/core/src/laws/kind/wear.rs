@@ -6,7 +6,8 @@ use crate::contact::network::Key;
 use crate::geometry::space::Space;
 use crate::laws::columns::Outputs;
 use crate::laws::commit::SlotCommit;
-use crate::laws::library::{Call, LawError};
+use crate::laws::error::LawError;
+use crate::laws::library::Call;
 use crate::laws::range::Range::NotNegative;
 use std::collections::HashSet;
 
@@ -66,7 +67,7 @@ fn commit<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
         }
     }
     if slot.law.variables() > 0 {
-        slot.keep_state();
+        slot.store_variables();
     }
     Ok(())
 }

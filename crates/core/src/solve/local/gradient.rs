@@ -206,99 +206,174 @@ fn safe_step<const D: usize>(form: &Form<D>, metric: &[[f64; D]]) -> f64 {
     if lambda > 0.0 { 0.9 / lambda } else { 1.0 }
 }
 
+/// A descent: the direction and the step of the current iteration, and what is kept from the last one.
+struct Descent<'a, const D: usize> {
+    form: &'a Form<'a, D>,
+    kind: Kind,
+    /// Metric of the gradient, as diagonal blocks.
+    metric: Vec<[f64; D]>,
+    /// Admissible sets at the current bounds.
+    sets: Vec<Set>,
+    zero: Vec<[f64; D]>,
+    direction: Vec<[f64; D]>,
+    /// W times the direction.
+    w_direction: Vec<[f64; D]>,
+    /// Projected gradient, in the metric.
+    gradient: Vec<[f64; D]>,
+    /// Projected last direction; then the impulses and velocities before the step.
+    kept: Vec<[f64; D]>,
+    kept_u: Vec<[f64; D]>,
+    /// The new point at the old bounds.
+    fixed: Vec<[f64; D]>,
+    /// Length of a step that does not raise the energy, computed when it is needed first.
+    safe: Option<f64>,
+    /// Whether there is no last direction.
+    restarts: bool,
+}
+
+impl<'a, const D: usize> Descent<'a, D> {
+    fn new(form: &'a Form<'a, D>, kind: Kind) -> Self {
+        let n = form.len();
+        let zero = vec![[0.0; D]; n];
+        Self {
+            form,
+            kind,
+            metric: metric(form, kind),
+            sets: vec![Set::All; n],
+            direction: zero.clone(),
+            w_direction: zero.clone(),
+            gradient: zero.clone(),
+            kept: zero.clone(),
+            kept_u: zero.clone(),
+            fixed: zero.clone(),
+            zero,
+            safe: None,
+            restarts: true,
+        }
+    }
+
+    /// Projects the gradient and the last direction onto the tangent cones at the iterate.
+    fn project_gradient(&mut self, state: &State<D>) {
+        for c in 0..self.sets.len() {
+            let set = Set::of(&self.form.laws[c], &state.p[c], &state.p);
+            self.gradient[c] = std::array::from_fn(|k| -self.metric[c][k] * state.u[c][k]);
+            set.tangent(&state.p[c], &mut self.gradient[c]);
+            self.kept[c] = self.direction[c];
+            set.tangent(&state.p[c], &mut self.kept[c]);
+            self.sets[c] = set;
+        }
+    }
+
+    /// Chooses the direction; returns the slope along it.
+    fn choose_direction(&mut self, state: &State<D>) -> f64 {
+        // `w_direction` and the curvature still belong to the last direction.
+        let curvature = dot(&self.direction, &self.w_direction);
+        let beta = if self.restarts || self.kind == Kind::Plain || curvature <= 0.0 {
+            0.0
+        } else {
+            -dot(&self.gradient, &self.w_direction) / curvature
+        };
+        for c in 0..self.direction.len() {
+            for k in 0..D {
+                self.direction[c][k] = self.gradient[c][k] + beta * self.kept[c][k];
+            }
+        }
+        let along = -dot(&self.direction, &state.u);
+        if beta != 0.0 && along <= 0.0 {
+            // No longer a descent direction: restart with the gradient.
+            self.direction.copy_from_slice(&self.gradient);
+            return -dot(&self.direction, &state.u);
+        }
+        along
+    }
+
+    /// Forgets the last direction.
+    fn restart(&mut self) {
+        self.direction.copy_from_slice(&self.zero);
+        self.restarts = true;
+    }
+
+    /// Moves to the minimum along the direction, projected; returns by how much that raised the energy.
+    fn step(&mut self, state: &mut State<D>, alpha: f64, energy: f64) -> f64 {
+        for (p, d) in state.p.iter_mut().zip(&self.direction) {
+            for k in 0..D {
+                p[k] += alpha * d[k];
+            }
+        }
+        carry(self.form, &self.sets, &mut self.fixed, &mut state.p);
+        self.form.velocity(&state.p, &mut state.u);
+        // The change due to new bounds is not attributed to the step.
+        let moved = dot(&state.u, &state.p) - dot(&state.u, &self.fixed);
+        self.energy(state) - energy - moved
+    }
+
+    /// Replaces the step by one of the safe length along the gradient.
+    fn step_safely(&mut self, state: &mut State<D>) {
+        let (form, metric) = (self.form, &self.metric);
+        let step = *self.safe.get_or_insert_with(|| safe_step(form, metric));
+        for c in 0..state.p.len() {
+            for k in 0..D {
+                state.p[c][k] = self.kept[c][k] - step * metric[c][k] * self.kept_u[c][k];
+            }
+        }
+        project(form, &mut state.p);
+        form.velocity(&state.p, &mut state.u);
+    }
+
+    /// Returns p.W p / 2 + q.p.
+    fn energy(&self, state: &State<D>) -> f64 {
+        0.5 * (dot(&state.p, &state.u) + dot(&state.p, self.form.q))
+    }
+}
+
+/// Returns the metric of the gradient, isotropic in the tangents, so that discs stay discs.
+fn metric<const D: usize>(form: &Form<D>, kind: Kind) -> Vec<[f64; D]> {
+    let of = |c: usize| {
+        let w = form.w.diagonal(c);
+        if largest(w) == 0.0 {
+            // Contacts between immovable bodies keep their impulse.
+            return [0.0; D];
+        }
+        if kind != Kind::Preconditioned {
+            return [1.0; D];
+        }
+        let tangential = (1..D).map(|k| w[k][k]).sum::<f64>() / (D - 1) as f64;
+        std::array::from_fn(|k| {
+            let x = if k == 0 { w[0][0] } else { tangential };
+            if x > 0.0 { 1.0 / x } else { 1.0 }
+        })
+    };
+    (0..form.len()).map(of).collect()
+}
+
 impl<const D: usize> Solver<D> for Gradient {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
-        let n = form.len();
-        // The metric is isotropic in the tangents, so that discs stay discs.
-        let metric: Vec<[f64; D]> = (0..n)
-            .map(|c| {
-                let w = form.w.diagonal(c);
-                if largest(w) == 0.0 {
-                    // Contacts between immovable bodies keep their impulse.
-                    return [0.0; D];
-                }
-                if self.kind != Kind::Preconditioned {
-                    return [1.0; D];
-                }
-                let tangential = (1..D).map(|k| w[k][k]).sum::<f64>() / (D - 1) as f64;
-                std::array::from_fn(|k| {
-                    let x = if k == 0 { w[0][0] } else { tangential };
-                    if x > 0.0 { 1.0 / x } else { 1.0 }
-                })
-            })
-            .collect();
-        let zero = vec![[0.0; D]; n];
-        let (mut d, mut gradient, mut kept, mut wd) =
-            (zero.clone(), zero.clone(), zero.clone(), zero.clone());
-        let mut sets: Vec<Set> = vec![Set::All; n];
-        let (mut wd_u, mut fixed) = (zero.clone(), zero.clone());
-        let mut safe = None;
-        let mut first = true;
+        let mut descent = Descent::new(form, self.kind);
         let mut best = Best::of(state);
         while !budget.ends(state) {
-            for c in 0..n {
-                sets[c] = Set::of(&form.laws[c], &state.p[c], &state.p);
-                gradient[c] = std::array::from_fn(|k| -metric[c][k] * state.u[c][k]);
-                sets[c].tangent(&state.p[c], &mut gradient[c]);
-                kept[c] = d[c];
-                sets[c].tangent(&state.p[c], &mut kept[c]);
-            }
-            // `wd` and the curvature still belong to the last direction.
-            let curvature = dot(&d, &wd);
-            let beta = if first || self.kind == Kind::Plain || curvature <= 0.0 {
-                0.0
-            } else {
-                -dot(&gradient, &wd) / curvature
-            };
-            for c in 0..n {
-                for k in 0..D {
-                    d[c][k] = gradient[c][k] + beta * kept[c][k];
-                }
-            }
-            let mut along = -dot(&d, &state.u);
-            if beta != 0.0 && along <= 0.0 {
-                // No longer a descent direction: restart with the gradient.
-                d.copy_from_slice(&gradient);
-                along = -dot(&d, &state.u);
-            }
-            form.w.velocity(&d, &zero, &mut wd);
-            let curvature = dot(&d, &wd);
+            descent.project_gradient(state);
+            let along = descent.choose_direction(state);
+            form.w
+                .velocity(&descent.direction, &descent.zero, &mut descent.w_direction);
+            let curvature = dot(&descent.direction, &descent.w_direction);
             let curved = curvature > 0.0 && curvature.is_finite();
-            if !curved && !first {
-                d.copy_from_slice(&zero);
-                first = true;
+            if !curved && !descent.restarts {
+                descent.restart();
                 continue;
             }
-            let energy = 0.5 * (dot(&state.p, &state.u) + dot(&state.p, form.q));
-            kept.copy_from_slice(&state.p);
-            wd_u.copy_from_slice(&state.u);
-            let mut raised = f64::INFINITY;
-            if curved {
-                let alpha = along / curvature;
-                for c in 0..n {
-                    for k in 0..D {
-                        state.p[c][k] += alpha * d[c][k];
-                    }
-                }
-                carry(form, &sets, &mut fixed, &mut state.p);
-                form.velocity(&state.p, &mut state.u);
-                // The change due to new bounds is not attributed to the step.
-                let moved = dot(&state.u, &state.p) - dot(&state.u, &fixed);
-                raised = 0.5 * (dot(&state.p, &state.u) + dot(&state.p, form.q)) - energy - moved;
-            }
+            let energy = descent.energy(state);
+            descent.kept.copy_from_slice(&state.p);
+            descent.kept_u.copy_from_slice(&state.u);
+            let raised = if curved {
+                descent.step(state, along / curvature, energy)
+            } else {
+                f64::INFINITY
+            };
             state.iterations += 1;
-            first = false;
+            descent.restarts = false;
             if raised > 1e-12 * energy.abs() || raised.is_nan() {
-                let step = *safe.get_or_insert_with(|| safe_step(form, &metric));
-                for c in 0..n {
-                    for k in 0..D {
-                        state.p[c][k] = kept[c][k] - step * metric[c][k] * wd_u[c][k];
-                    }
-                }
-                project(form, &mut state.p);
-                form.velocity(&state.p, &mut state.u);
-                d.copy_from_slice(&zero);
-                first = true;
+                descent.step_safely(state);
+                descent.restart();
             }
             state.judge(form);
             best.keep(state);

@@ -10,8 +10,9 @@
 //! <= 0.
 
 use super::block::Block;
-use super::form::{Form, Shift, dot, largest};
+use super::form::{Form, Shift, Shifted, dot, largest};
 use super::law::{Law, slip};
+use super::lorentz::{Scaling, divide, longest_step, product};
 use super::state::{Best, Budget, Solver, State};
 
 /// Smoothing of |v_t| relative to the value of v_t on the central path of a sticking contact.
@@ -23,8 +24,8 @@ const STALLED: u32 = 15;
 /// Moves the iterate away from the cone boundaries: one contact may reach its boundary, to rounding, long
 /// before the others, and then the step length vanishes or the scaling breaks down.
 struct Inwards {
-    size_r: f64,
-    size_v: f64,
+    /// Magnitudes of r and of v.
+    magnitudes: [f64; 2],
     /// Remaining number of such moves.
     left: u32,
 }
@@ -34,18 +35,18 @@ impl Inwards {
     fn step<const D: usize>(
         &mut self,
         error: f64,
-        cones: &[usize],
-        r: &mut [[f64; D]],
-        v: &mut [[f64; D]],
+        cones: &Cones,
+        iterate: &mut Iterate<D>,
     ) -> bool {
         if self.left == 0 {
             return false;
         }
         self.left -= 1;
         let shift = (10.0 * error).min(0.1);
-        for c in cones {
-            r[*c][0] += shift * self.size_r;
-            v[*c][0] += shift * self.size_v;
+        let [size_r, size_v] = self.magnitudes;
+        for c in &cones.blocks {
+            iterate.r[*c][0] += shift * size_r;
+            iterate.v[*c][0] += shift * size_v;
         }
         true
     }
@@ -54,131 +55,6 @@ impl Inwards {
 /// The method.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Interior;
-
-/// Returns x0^2 - |x1|^2.
-fn determinant<const D: usize>(x: &[f64; D]) -> f64 {
-    let t = slip(x);
-    (x[0] - t) * (x[0] + t)
-}
-
-/// Returns the Jordan product.
-fn product<const D: usize>(x: &[f64; D], y: &[f64; D]) -> [f64; D] {
-    std::array::from_fn(|k| {
-        if k == 0 {
-            (0..D).map(|i| x[i] * y[i]).sum()
-        } else {
-            x[0] * y[k] + y[0] * x[k]
-        }
-    })
-}
-
-/// Returns z with x o z = y.
-fn divide<const D: usize>(x: &[f64; D], y: &[f64; D]) -> [f64; D] {
-    let d = determinant(x);
-    let cross: f64 = (1..D).map(|k| x[k] * y[k]).sum();
-    let z0 = (x[0] * y[0] - cross) / d;
-    std::array::from_fn(|k| {
-        if k == 0 {
-            z0
-        } else {
-            (y[k] - z0 * x[k]) / x[0]
-        }
-    })
-}
-
-/// Nesterov-Todd scaling: P r = P^-1 v.
-struct Scaling<const D: usize> {
-    eta: f64,
-    w: [f64; D],
-}
-
-impl<const D: usize> Scaling<D> {
-    fn new(r: &[f64; D], v: &[f64; D]) -> Self {
-        let (dr, dv) = (determinant(r).max(1e-300), determinant(v).max(1e-300));
-        let (a, b) = (1.0 / dr.sqrt(), 1.0 / dv.sqrt());
-        let inner: f64 = (0..D).map(|k| r[k] * v[k]).sum::<f64>() * a * b;
-        let gamma = (0.5 * (1.0 + inner)).sqrt();
-        let w: [f64; D] = std::array::from_fn(|k| {
-            let sign = if k == 0 { 1.0 } else { -1.0 };
-            (v[k] * b + sign * r[k] * a) / (2.0 * gamma)
-        });
-        Self {
-            eta: (dv / dr).powf(0.25),
-            w,
-        }
-    }
-
-    fn apply(&self, x: &[f64; D]) -> [f64; D] {
-        let w = &self.w;
-        let cross: f64 = (1..D).map(|k| w[k] * x[k]).sum();
-        let along = x[0] + cross / (1.0 + w[0]);
-        std::array::from_fn(|k| {
-            self.eta
-                * if k == 0 {
-                    w[0] * x[0] + cross
-                } else {
-                    x[k] + along * w[k]
-                }
-        })
-    }
-
-    fn apply_inverse(&self, x: &[f64; D]) -> [f64; D] {
-        let w = &self.w;
-        let cross: f64 = (1..D).map(|k| w[k] * x[k]).sum();
-        let along = -x[0] + cross / (1.0 + w[0]);
-        std::array::from_fn(|k| {
-            (if k == 0 {
-                w[0] * x[0] - cross
-            } else {
-                x[k] + along * w[k]
-            }) / self.eta
-        })
-    }
-
-    /// Returns P^2 = eta^2 (2 w w^T - J).
-    fn square(&self) -> Block<D> {
-        let e = self.eta * self.eta;
-        std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
-                let sign = if i != j {
-                    0.0
-                } else if i == 0 {
-                    1.0
-                } else {
-                    -1.0
-                };
-                e * (2.0 * self.w[i] * self.w[j] - sign)
-            })
-        })
-    }
-}
-
-/// Returns the largest t for which x + t d stays in the cone.
-fn longest<const D: usize>(x: &[f64; D], d: &[f64; D]) -> f64 {
-    let mut a = d[0] * d[0];
-    let mut b = x[0] * d[0];
-    let mut c = x[0] * x[0];
-    for k in 1..D {
-        a -= d[k] * d[k];
-        b -= x[k] * d[k];
-        c -= x[k] * x[k];
-    }
-    // Smallest positive root of a t^2 + 2 b t + c.
-    let mut t = f64::INFINITY;
-    let disc = b * b - a * c;
-    if disc >= 0.0 {
-        let q = -(b + b.signum() * disc.sqrt());
-        for root in [q / a, c / q] {
-            if root > 0.0 && root < t {
-                t = root;
-            }
-        }
-    }
-    if d[0] < 0.0 {
-        t = t.min(-x[0] / d[0]);
-    }
-    t
-}
 
 /// Increments of r and of v.
 type Pair<const D: usize> = (Vec<[f64; D]>, Vec<[f64; D]>);
@@ -273,19 +149,43 @@ impl Interior {
     }
 }
 
-impl<const D: usize> Solver<D> for Interior {
-    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
-        let n = form.len();
-        let parts: Vec<Part> = form.laws.iter().map(Part::new::<D>).collect();
-        let sizes: Vec<usize> = parts.iter().map(|part| part.size).collect();
-        let over: Vec<f64> = parts.iter().map(|part| part.over).collect();
-        // Starts well inside both cones, at the scale of the problem.
-        let cones: Vec<usize> = (0..n).filter(|c| parts[*c].cone > 0).collect();
-        let count = cones.len().max(1) as f64;
-        let measured: Vec<usize> = if cones.is_empty() {
-            (0..n).collect()
+/// The cones of the blocks of a problem.
+struct Cones {
+    parts: Vec<Part>,
+    /// Components of each block with a row in the system.
+    sizes: Vec<usize>,
+    /// Factor from the axis of each cone to the normal.
+    over: Vec<f64>,
+    /// Blocks with a cone.
+    blocks: Vec<usize>,
+}
+
+impl Cones {
+    fn new<const D: usize>(laws: &[Law]) -> Self {
+        let parts: Vec<Part> = laws.iter().map(Part::new::<D>).collect();
+        Self {
+            sizes: parts.iter().map(|part| part.size).collect(),
+            over: parts.iter().map(|part| part.over).collect(),
+            blocks: (0..parts.len()).filter(|c| parts[*c].cone > 0).collect(),
+            parts,
+        }
+    }
+
+    fn count(&self) -> f64 {
+        self.blocks.len().max(1) as f64
+    }
+
+    /// Returns whether a block is a bond.
+    fn any_bond(&self) -> bool {
+        self.blocks.len() < self.parts.len() || self.parts.iter().any(|part| part.over < 0.0)
+    }
+
+    /// Returns the magnitudes of r and of v in a problem; `None` if nothing can move, or values are out of range.
+    fn magnitudes<const D: usize>(&self, form: &Form<D>) -> Option<[f64; 2]> {
+        let measured: Vec<usize> = if self.blocks.is_empty() {
+            (0..form.len()).collect()
         } else {
-            cones.clone()
+            self.blocks.clone()
         };
         let mean = |x: &dyn Fn(usize) -> f64| {
             measured.iter().map(|c| x(*c)).sum::<f64>() / measured.len() as f64
@@ -294,173 +194,258 @@ impl<const D: usize> Solver<D> for Interior {
         let squared = |x: &[f64; D]| x.iter().map(|x| x * x).sum::<f64>();
         let size_v = mean(&|c| squared(&form.q[c])).sqrt().max(1e-300);
         let size_r = size_v / mean_w;
-        if !size_r.is_finite() || size_r <= 0.0 {
-            // Nothing can move, or values are out of range.
+        (size_r.is_finite() && size_r > 0.0).then_some([size_r, size_v])
+    }
+}
+
+/// The iterate: r and v of every block.
+struct Iterate<const D: usize> {
+    r: Vec<[f64; D]>,
+    v: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Iterate<D> {
+    /// Returns an iterate on the axes of all cones.
+    fn on_axes(cones: &Cones, [size_r, size_v]: [f64; 2]) -> Self {
+        let zero = vec![[0.0; D]; cones.parts.len()];
+        let mut iterate = Self {
+            r: zero.clone(),
+            v: zero,
+        };
+        for c in cones.blocks.iter().copied() {
+            iterate.r[c][0] = size_r;
+            iterate.v[c][0] = size_v;
+        }
+        iterate
+    }
+
+    /// Computes the impulses p of r.
+    fn impulses(&self, cones: &Cones, p: &mut [[f64; D]]) {
+        p.copy_from_slice(&self.r);
+        for (p, over) in p.iter_mut().zip(&cones.over) {
+            p[0] *= over;
+        }
+    }
+
+    fn advance(&mut self, t: f64, (dr, dv): &Pair<D>) {
+        for c in 0..self.r.len() {
+            for k in 0..D {
+                self.r[c][k] += t * dr[c][k];
+                self.v[c][k] += t * dv[c][k];
+            }
+        }
+    }
+}
+
+/// The equations v_n - u_n/mu - |v_t| = 0 and v_t - u_t = 0, linearised at an iterate.
+struct Linearised<'a, const D: usize> {
+    cones: &'a Cones,
+    at: &'a Iterate<D>,
+    /// Mean of r.v over the cones.
+    gap: f64,
+    /// Residual of the equations.
+    residual: Vec<[f64; D]>,
+    /// Derivative of the smoothed |v_t|.
+    tau: Vec<[f64; D]>,
+    scalings: Vec<Scaling<D>>,
+    /// A P^2 with A = I - e tau^T.
+    diagonal: Vec<Block<D>>,
+}
+
+impl<'a, const D: usize> Linearised<'a, D> {
+    /// Linearises at an iterate with the velocities `u` of its impulses; `share` is the fraction of the slope of
+    /// |u_t| that is taken.
+    fn new(cones: &'a Cones, at: &'a Iterate<D>, u: &[[f64; D]], share: f64) -> Self {
+        let n = u.len();
+        let mut system = Self {
+            cones,
+            at,
+            gap: dot(&at.r, &at.v) / cones.count(),
+            residual: vec![[0.0; D]; n],
+            tau: vec![[0.0; D]; n],
+            scalings: Vec::with_capacity(n),
+            diagonal: vec![[[0.0; D]; D]; n],
+        };
+        for (c, u) in u.iter().enumerate() {
+            if cones.parts[c].slides() {
+                system.add_sliding(c, u, share);
+            } else {
+                system.add_without_slip(c, u);
+            }
+        }
+        system
+    }
+
+    /// Adds a block without friction.
+    fn add_without_slip(&mut self, c: usize, u: &[f64; D]) {
+        let (r, v, part) = (&self.at.r[c], &self.at.v[c], &self.cones.parts[c]);
+        self.residual[c] = std::array::from_fn(|k| v[k] - u[k]);
+        self.residual[c][0] = v[0] - u[0] * part.over;
+        let scaling = Scaling::new(&part.of(r), v);
+        if part.cone > 0 {
+            self.diagonal[c][0][0] = scaling.square()[0][0];
+        }
+        self.scalings.push(scaling);
+    }
+
+    /// Adds a contact with friction.
+    fn add_sliding(&mut self, c: usize, u: &[f64; D], share: f64) {
+        let (r, v, over) = (&self.at.r[c], &self.at.v[c], self.cones.over[c]);
+        let t = slip(v);
+        let eps = SMOOTH * self.gap / r[0];
+        let smooth = (t * t + eps * eps).sqrt();
+        let (tau, residual) = (&mut self.tau[c], &mut self.residual[c]);
+        for k in 1..D {
+            tau[k] = share * v[k] / smooth;
+            residual[k] = v[k] - u[k];
+        }
+        residual[0] = v[0] - u[0] * over - smooth + eps;
+        let scaling = Scaling::new(r, v);
+        let square = scaling.square();
+        let diagonal = &mut self.diagonal[c];
+        *diagonal = square;
+        for j in 0..D {
+            for k in 1..D {
+                diagonal[0][j] -= tau[k] * square[k][j];
+            }
+        }
+        self.scalings.push(scaling);
+    }
+
+    /// Solves (W + A P^2) dr = A P d + residual, dv = P d - P^2 dr; `None` if the solution is not finite.
+    fn direction(&self, factor: &dyn Shifted<D>, d: &[[f64; D]]) -> Option<Pair<D>> {
+        let (n, parts) = (d.len(), &self.cones.parts);
+        let (scalings, residual, tau) = (&self.scalings, &self.residual, &self.tau);
+        let pd: Vec<[f64; D]> = (0..n)
+            .map(|c| parts[c].of(&scalings[c].apply(&d[c])))
+            .collect();
+        let mut dr: Vec<[f64; D]> = (0..n)
+            .map(|c| {
+                std::array::from_fn(|k| {
+                    let mut x = pd[c][k] + residual[c][k];
+                    if k == 0 {
+                        for j in 1..D {
+                            x -= tau[c][j] * pd[c][j];
+                        }
+                    }
+                    x
+                })
+            })
+            .collect();
+        if !factor.solve(&mut dr) {
+            return None;
+        }
+        let dv = (0..n)
+            .map(|c| {
+                let back = scalings[c].apply(&scalings[c].apply(&parts[c].of(&dr[c])));
+                parts[c].of(&std::array::from_fn(|k| pd[c][k] - back[k]))
+            })
+            .collect();
+        Some((dr, dv))
+    }
+
+    /// Returns the largest steps for which r and v stay in their cones.
+    fn longest_steps(&self, (dr, dv): &Pair<D>) -> (f64, f64) {
+        let Iterate { r, v } = self.at;
+        let ends = |c: &usize| {
+            let part = |x: &[f64; D]| self.cones.parts[*c].of(x);
+            let longest_r = longest_step(&part(&r[*c]), &part(&dr[*c]));
+            (longest_r, longest_step(&v[*c], &dv[*c]))
+        };
+        let unbounded = (f64::INFINITY, f64::INFINITY);
+        let nearer = |(a, b): (f64, f64), (c, d): (f64, f64)| (a.min(c), b.min(d));
+        self.cones.blocks.iter().map(ends).fold(unbounded, nearer)
+    }
+
+    /// Returns the centring parameter that the predictor suggests: the cube of the fraction of r.v that would be
+    /// left at the end of its longest step.
+    fn centring(&self, predictor: &Pair<D>) -> f64 {
+        let (a, b) = self.longest_steps(predictor);
+        let (a, b) = (a.min(1.0), b.min(1.0));
+        let t = a.min(b);
+        let ((dr, dv), Iterate { r, v }) = (predictor, self.at);
+        let ahead: f64 = (0..r.len())
+            .map(|c| {
+                (0..D)
+                    .map(|k| (r[c][k] + t * dr[c][k]) * (v[c][k] + t * dv[c][k]))
+                    .sum::<f64>()
+            })
+            .sum::<f64>()
+            / self.cones.count();
+        (ahead / self.gap).clamp(0.0, 1.0).powi(3).clamp(1e-6, 0.9)
+    }
+
+    /// Returns the right-hand side of the corrector: centring, and the second-order term of the predictor.
+    fn corrected(&self, lambda: &[[f64; D]], predictor: &Pair<D>) -> Vec<[f64; D]> {
+        let sigma = self.centring(predictor);
+        let ((dr, dv), parts) = (predictor, &self.cones.parts);
+        (0..lambda.len())
+            .map(|c| {
+                if parts[c].cone == 0 {
+                    return [0.0; D];
+                }
+                let x = self.scalings[c].apply(&parts[c].of(&dr[c]));
+                let y = self.scalings[c].apply_inverse(&dv[c]);
+                let second = product(&x, &y);
+                let square = product(&lambda[c], &lambda[c]);
+                let right: [f64; D] = std::array::from_fn(|k| {
+                    -square[k] - second[k] + if k == 0 { sigma * self.gap } else { 0.0 }
+                });
+                divide(&lambda[c], &right)
+            })
+            .collect()
+    }
+
+    /// Returns a predictor-corrector step and its length; `None` if a system cannot be solved.
+    fn step(&self, form: &Form<D>, [size_r, size_v]: [f64; 2]) -> Option<(f64, Pair<D>)> {
+        let factor = form.w.shifted(&Shift {
+            s: &self.diagonal,
+            sizes: &self.cones.sizes,
+            normal: &self.cones.over,
+        })?;
+        let lambda: Vec<[f64; D]> = (0..form.len())
+            .map(|c| self.scalings[c].apply(&self.cones.parts[c].of(&self.at.r[c])))
+            .collect();
+        let affine: Vec<[f64; D]> = lambda.iter().map(|l| l.map(|x| -x)).collect();
+        let predictor = self.direction(factor.as_ref(), &affine)?;
+        let corrected = self.corrected(&lambda, &predictor);
+        let increments = self.direction(factor.as_ref(), &corrected)?;
+        let (a, b) = self.longest_steps(&increments);
+        let keep = 1.0 - (0.1 * self.gap / (size_r * size_v)).clamp(1e-4, 0.1);
+        Some(((keep * a).min(keep * b).min(1.0), increments))
+    }
+}
+
+impl<const D: usize> Solver<D> for Interior {
+    fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
+        let cones = Cones::new::<D>(form.laws);
+        let Some(magnitudes) = cones.magnitudes(form) else {
             return;
-        }
-        let mut r = vec![[0.0; D]; n];
-        let mut v = vec![[0.0; D]; n];
-        for c in cones.iter().copied() {
-            r[c][0] = size_r;
-            v[c][0] = size_v;
-        }
+        };
+        let mut iterate = Iterate::on_axes(&cones, magnitudes);
         let mut best = Best::of(state);
         let mut p = state.p.clone();
-        let mut u = vec![[0.0; D]; n];
-        let mut slope = Slope::new(cones.len() < n || parts.iter().any(|part| part.over < 0.0));
+        let mut u = vec![[0.0; D]; form.len()];
+        let mut slope = Slope::new(cones.any_bond());
         let mut stalled = 0;
         let mut inwards = Inwards {
-            size_r,
-            size_v,
+            magnitudes,
             left: 10,
         };
         while !budget.ends(state) {
-            // Residual of v_n - u_n/mu - |v_t| = 0 and v_t - u_t = 0.
-            p.copy_from_slice(&r);
-            for c in 0..n {
-                p[c][0] *= over[c];
-            }
+            iterate.impulses(&cones, &mut p);
             form.velocity(&p, &mut u);
-            let gap: f64 = dot(&r, &v) / count;
-            let mut diagonal = vec![[[0.0; D]; D]; n];
-            let mut tau = vec![[0.0; D]; n];
-            let mut scalings = Vec::with_capacity(n);
-            let mut residual = vec![[0.0; D]; n];
-            for c in 0..n {
-                if !parts[c].slides() {
-                    residual[c] = std::array::from_fn(|k| v[c][k] - u[c][k]);
-                    residual[c][0] = v[c][0] - u[c][0] * over[c];
-                    let s = Scaling::new(&parts[c].of(&r[c]), &v[c]);
-                    if parts[c].cone > 0 {
-                        diagonal[c][0][0] = s.square()[0][0];
-                    }
-                    scalings.push(s);
-                    continue;
-                }
-                let t = slip(&v[c]);
-                let eps = SMOOTH * gap / r[c][0];
-                let smooth = (t * t + eps * eps).sqrt();
-                for k in 1..D {
-                    tau[c][k] = slope.share * v[c][k] / smooth;
-                    residual[c][k] = v[c][k] - u[c][k];
-                }
-                residual[c][0] = v[c][0] - u[c][0] * over[c] - smooth + eps;
-                let s = Scaling::new(&r[c], &v[c]);
-                let square = s.square();
-                // A P^2 with A = I - e tau^T.
-                diagonal[c] = square;
-                for j in 0..D {
-                    for k in 1..D {
-                        diagonal[c][0][j] -= tau[c][k] * square[k][j];
-                    }
-                }
-                scalings.push(s);
-            }
-            let Some(factor) = form.w.shifted(&Shift {
-                s: &diagonal,
-                sizes: &sizes,
-                normal: &over,
-            }) else {
-                if inwards.step(best.error, &cones, &mut r, &mut v) {
+            let step = Linearised::new(&cones, &iterate, &u, slope.share).step(form, magnitudes);
+            let Some((t, increments)) = step else {
+                if inwards.step(best.error, &cones, &mut iterate) {
                     continue;
                 }
                 break;
             };
-            let direction = |d: &[[f64; D]]| -> Option<Pair<D>> {
-                // (W + A P^2) dr = A P d + residual;  dv = P d - P^2 dr.
-                let pd: Vec<[f64; D]> = (0..n)
-                    .map(|c| parts[c].of(&scalings[c].apply(&d[c])))
-                    .collect();
-                let mut dr: Vec<[f64; D]> = (0..n)
-                    .map(|c| {
-                        std::array::from_fn(|k| {
-                            let mut x = pd[c][k] + residual[c][k];
-                            if k == 0 {
-                                for j in 1..D {
-                                    x -= tau[c][j] * pd[c][j];
-                                }
-                            }
-                            x
-                        })
-                    })
-                    .collect();
-                if !factor.solve(&mut dr) {
-                    return None;
-                }
-                let dv = (0..n)
-                    .map(|c| {
-                        let back = scalings[c].apply(&scalings[c].apply(&parts[c].of(&dr[c])));
-                        parts[c].of(&std::array::from_fn(|k| pd[c][k] - back[k]))
-                    })
-                    .collect();
-                Some((dr, dv))
-            };
-            let longest_both = |dr: &[[f64; D]], dv: &[[f64; D]]| {
-                let ends = |c: &usize| {
-                    let part = |x: &[f64; D]| parts[*c].of(x);
-                    let r = longest(&part(&r[*c]), &part(&dr[*c]));
-                    (r, longest(&v[*c], &dv[*c]))
-                };
-                let most = (f64::INFINITY, f64::INFINITY);
-                let nearer = |(a, b): (f64, f64), (c, d): (f64, f64)| (a.min(c), b.min(d));
-                cones.iter().map(ends).fold(most, nearer)
-            };
-            let lambda: Vec<[f64; D]> = (0..n)
-                .map(|c| scalings[c].apply(&parts[c].of(&r[c])))
-                .collect();
-            let affine: Vec<[f64; D]> = lambda.iter().map(|l| l.map(|x| -x)).collect();
-            let Some((dr, dv)) = direction(&affine) else {
-                if inwards.step(best.error, &cones, &mut r, &mut v) {
-                    continue;
-                }
-                break;
-            };
-            let (a, b) = longest_both(&dr, &dv);
-            let (a, b) = (a.min(1.0), b.min(1.0));
-            let t = a.min(b);
-            let ahead: f64 = (0..n)
-                .map(|c| {
-                    (0..D)
-                        .map(|k| (r[c][k] + t * dr[c][k]) * (v[c][k] + t * dv[c][k]))
-                        .sum::<f64>()
-                })
-                .sum::<f64>()
-                / count;
-            let sigma = (ahead / gap).clamp(0.0, 1.0).powi(3).clamp(1e-6, 0.9);
-            let corrected: Vec<[f64; D]> = (0..n)
-                .map(|c| {
-                    if parts[c].cone == 0 {
-                        return [0.0; D];
-                    }
-                    let x = scalings[c].apply(&parts[c].of(&dr[c]));
-                    let y = scalings[c].apply_inverse(&dv[c]);
-                    let second = product(&x, &y);
-                    let square = product(&lambda[c], &lambda[c]);
-                    let right: [f64; D] = std::array::from_fn(|k| {
-                        -square[k] - second[k] + if k == 0 { sigma * gap } else { 0.0 }
-                    });
-                    divide(&lambda[c], &right)
-                })
-                .collect();
-            let Some((dr, dv)) = direction(&corrected) else {
-                if inwards.step(best.error, &cones, &mut r, &mut v) {
-                    continue;
-                }
-                break;
-            };
-            let (a, b) = longest_both(&dr, &dv);
-            let keep = 1.0 - (0.1 * gap / (size_r * size_v)).clamp(1e-4, 0.1);
-            let t = (keep * a).min(keep * b).min(1.0);
-            for c in 0..n {
-                for k in 0..D {
-                    r[c][k] += t * dr[c][k];
-                    v[c][k] += t * dv[c][k];
-                }
-            }
+            iterate.advance(t, &increments);
             state.iterations += 1;
-            for c in 0..n {
-                state.p[c] = r[c];
-                state.p[c][0] *= over[c];
+            iterate.impulses(&cones, &mut state.p);
+            for c in 0..form.len() {
                 if largest(form.w.diagonal(c)) == 0.0 {
                     // Both bodies are immovable: the impulse would grow without bound.
                     state.p[c] = [0.0; D];
@@ -474,11 +459,11 @@ impl<const D: usize> Solver<D> for Interior {
             };
             best.keep(state);
             slope.follow(t);
-            if (t < 1e-10 || stalled > STALLED) && {
+            if t < 1e-10 || stalled > STALLED {
                 stalled = 0;
-                !inwards.step(best.error, &cones, &mut r, &mut v)
-            } {
-                break;
+                if !inwards.step(best.error, &cones, &mut iterate) {
+                    break;
+                }
             }
         }
         best.restore(form, state);

@@ -22,6 +22,7 @@ pub mod interior;
 pub mod judge;
 pub mod law;
 pub mod linear;
+mod lorentz;
 pub mod newton;
 pub mod nlgs;
 pub mod reduce;

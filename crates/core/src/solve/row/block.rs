@@ -102,7 +102,7 @@ impl<S: Space> Terms<S> {
             return (0.0 - self.tension, S::Tangent::zero());
         }
         // In P = s + tension and u + shift it is Coulomb's law.
-        let shift = *n * self.shift_n + S::lift(n, &self.shift_t);
+        let shift = *n * self.shift_n + S::tangent_vector(n, &self.shift_t);
         let f = *f + shift - block.w.apply(&(*n * self.tension));
         let (pn, pt) = block.exact.solve::<S>(n, &f);
         (pn - self.tension, pt)
@@ -116,9 +116,9 @@ impl<S: Space> Terms<S> {
         let (mut sn, mut st) = self.start;
         for _ in 0..ALTERNATIONS {
             let (old_n, old_t) = (sn, st);
-            let u = block.w.apply(&(*n * sn + S::lift(n, &st))) + *f;
+            let u = block.w.apply(&(*n * sn + S::tangent_vector(n, &st))) + *f;
             sn = (sn - (n.dot(&u) + self.shift_n) * block.iwn).max(-self.tension);
-            let u = block.w.apply(&(*n * sn + S::lift(n, &st))) + *f;
+            let u = block.w.apply(&(*n * sn + S::tangent_vector(n, &st))) + *f;
             let ut = S::tangential(n, &u) + self.shift_t;
             let bound = self.mu * (sn + self.tension) + self.cohesion;
             st = (st - ut * block.iwt).limited(bound);
@@ -200,23 +200,23 @@ impl<S: Space> BlockContact<S> {
     pub fn update(&mut self, u: S::Vector, relaxation: f64) -> S::Vector {
         let (n, e) = (self.n, self.elastic);
         let f = u - self.block.apply(&self.p);
-        let at = S::lift(&n, &e.a_t);
+        let at = S::tangent_vector(&n, &e.a_t);
         let with = self
             .pulled
             .m
             .apply(&(f - self.block.apply(&(n * e.a_n + at))));
         let terms = self.terms();
         let (mut sn, mut st) = terms.solve(&mut self.pulled, &with);
-        let mut u = self.pulled.w.apply(&(n * sn + S::lift(&n, &st))) + with;
+        let mut u = self.pulled.w.apply(&(n * sn + S::tangent_vector(&n, &st))) + with;
         if let Some(slack) = &mut self.slack
             && -(e.a_n + e.b_n * n.dot(&u)) > 0.0
         {
             let without = slack.m.apply(&(f - self.block.apply(&at)));
             (sn, st) = terms.solve(slack, &without);
-            u = slack.w.apply(&(n * sn + S::lift(&n, &st))) + without;
+            u = slack.w.apply(&(n * sn + S::tangent_vector(&n, &st))) + without;
         }
         let (en, et) = self.bond(&u);
-        let p = n * (sn + en) + S::lift(&n, &(st + et));
+        let p = n * (sn + en) + S::tangent_vector(&n, &(st + et));
         let p = self.p + (p - self.p) * relaxation;
         let change = p - self.p;
         self.p = p;

@@ -207,7 +207,7 @@ impl<S: Space> Row<S> for FullRow<S> {
         let (un, ut) = relative(&self.n, a, b);
         let (en, et) = self.bond(un, ut);
         ContactSolution {
-            impulse: self.n * self.pn + S::lift(&self.n, &self.pt),
+            impulse: self.n * self.pn + S::tangent_vector(&self.n, &self.pt),
             unilateral_n: self.pn - en,
             unilateral_t: self.pt - et,
         }

@@ -8,18 +8,18 @@ mod full;
 mod general;
 #[cfg(target_arch = "x86_64")]
 mod lanes;
-mod lines;
 mod moment;
 mod plain;
+mod solver_bodies;
 mod system;
 mod visit;
 
 pub(super) use full::FullRow;
 pub(super) use general::GeneralRow;
-pub(super) use lines::Lines;
 pub(super) use moment::MomentRow;
 pub use moment::{MomentForm, MomentSolution};
 pub(super) use plain::PlainRow;
+pub(super) use solver_bodies::SolverBodies;
 pub(super) use system::{SystemRow, Term};
 pub(super) use visit::{Free, Load, Measure, Update, Visit, visit};
 
@@ -122,7 +122,7 @@ fn push<S: Space>(
     a: &mut SolverBody<S>,
     b: &mut SolverBody<S>,
 ) {
-    let impulse = *n * dn + S::lift(n, &dt);
+    let impulse = *n * dn + S::tangent_vector(n, &dt);
     let twist = S::twist(n, &dt);
     a.v += impulse * a.im;
     b.v -= impulse * b.im;

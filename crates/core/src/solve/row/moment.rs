@@ -113,7 +113,7 @@ impl<S: Space> MomentRow<S> {
         let bend = (a_bend - f_bend * self.iw).limited(form.rolling * pn);
         let pull = a_bend + (bend * self.w + f_bend) * form.b_bend;
         let bend = bend - pull * (1.0 / (1.0 + self.w * form.b_bend));
-        let change = (S::about(&self.n, twist) + bend - self.moment) * relaxation;
+        let change = (S::spin_about(&self.n, twist) + bend - self.moment) * relaxation;
         self.push(&change, a, b);
         self.moment += change;
     }
@@ -141,7 +141,7 @@ impl<S: Space> MomentRow<S> {
     fn bond(&self, w: &S::Spin) -> S::Spin {
         let form = &self.form;
         let (twist, bend) = S::split_spin(&self.n, w);
-        -(form.a + S::about(&self.n, twist * form.b_twist) + bend * form.b_bend)
+        -(form.a + S::spin_about(&self.n, twist * form.b_twist) + bend * form.b_bend)
     }
 
     /// Computes the natural map times a lever arm, as a velocity.
@@ -155,8 +155,8 @@ impl<S: Space> MomentRow<S> {
         let rho = self.iw + self.form.b_twist.min(self.form.b_bend);
         let (twist, bend) = S::split_spin(&self.n, &(shifted - w * rho));
         let bound = self.form.spinning * pn;
-        let to =
-            S::about(&self.n, twist.clamp(-bound, bound)) + bend.limited(self.form.rolling * pn);
+        let to = S::spin_about(&self.n, twist.clamp(-bound, bound))
+            + bend.limited(self.form.rolling * pn);
         let r = (shifted - to) * (1.0 / rho);
         let over = self.lever / rho;
         Residual {

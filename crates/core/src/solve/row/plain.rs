@@ -133,7 +133,7 @@ impl<S: Space> Row<S> for PlainRow<S> {
 
     fn solution(&self, _: &SolverBody<S>, _: &SolverBody<S>) -> ContactSolution<S> {
         ContactSolution {
-            impulse: self.n * self.pn + S::lift(&self.n, &self.pt),
+            impulse: self.n * self.pn + S::tangent_vector(&self.n, &self.pt),
             unilateral_n: self.pn,
             unilateral_t: self.pt,
         }

@@ -68,11 +68,11 @@ impl<S: Space> SystemRow<S> {
         signed.filter_map(|(side, sign)| Some((side.as_ref()?, sign)))
     }
 
-    fn relative(&self, lines: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> S::Vector {
+    fn relative(&self, solver_bodies: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> S::Vector {
         let mut u = S::Vector::zero();
         for (side, sign) in self.rigid_sides() {
-            let line = &lines[side.body as usize];
-            u += (line.v + S::spin_velocity(&line.s, &side.arm)) * sign;
+            let body = &solver_bodies[side.body as usize];
+            u += (body.v + S::spin_velocity(&body.s, &side.arm)) * sign;
         }
         for term in &self.terms {
             u += systems[term.system as usize].velocity[term.node as usize] * term.weight;
@@ -80,12 +80,17 @@ impl<S: Space> SystemRow<S> {
         u
     }
 
-    fn push(&self, p: &S::Vector, lines: &mut [SolverBody<S>], systems: &mut [NodalSystem<S>]) {
+    fn push(
+        &self,
+        p: &S::Vector,
+        solver_bodies: &mut [SolverBody<S>],
+        systems: &mut [NodalSystem<S>],
+    ) {
         for (side, sign) in self.rigid_sides() {
-            let line = &mut lines[side.body as usize];
+            let body = &mut solver_bodies[side.body as usize];
             let p = *p * sign;
-            line.v += p.scaled_by(&side.inverse_mass);
-            line.s += side.inverse_spin.apply(&S::moment(&side.arm, &p));
+            body.v += p.scaled_by(&side.inverse_mass);
+            body.s += side.inverse_spin.apply(&S::moment(&side.arm, &p));
         }
         for term in &self.terms {
             systems[term.system as usize].push(term.node, &(*p * term.weight));
@@ -95,18 +100,18 @@ impl<S: Space> SystemRow<S> {
     /// Solves the contact for the velocities at hand, goes `relaxation` times as far, and updates them.
     pub fn update(
         &mut self,
-        lines: &mut [SolverBody<S>],
+        solver_bodies: &mut [SolverBody<S>],
         systems: &mut [NodalSystem<S>],
         relaxation: f64,
     ) {
-        let u = self.relative(lines, systems);
+        let u = self.relative(solver_bodies, systems);
         let change = self.contact.update(u, relaxation);
-        self.push(&change, lines, systems);
+        self.push(&change, solver_bodies, systems);
     }
 
     /// Adds what the stored impulse does to the velocities.
-    pub fn load(&self, lines: &mut [SolverBody<S>], systems: &mut [NodalSystem<S>]) {
-        self.push(self.contact.impulse(), lines, systems);
+    pub fn load(&self, solver_bodies: &mut [SolverBody<S>], systems: &mut [NodalSystem<S>]) {
+        self.push(self.contact.impulse(), solver_bodies, systems);
     }
 
     /// Adds its impulse to those on the nodes of a system.
@@ -127,25 +132,31 @@ impl<S: Space> SystemRow<S> {
         &mut self.contact
     }
 
-    pub fn residual(&self, lines: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> Residual {
-        self.contact.residual(&self.relative(lines, systems))
+    pub fn residual(
+        &self,
+        solver_bodies: &[SolverBody<S>],
+        systems: &[NodalSystem<S>],
+    ) -> Residual {
+        self.contact
+            .residual(&self.relative(solver_bodies, systems))
     }
 
     pub fn solution(
         &self,
-        lines: &[SolverBody<S>],
+        solver_bodies: &[SolverBody<S>],
         systems: &[NodalSystem<S>],
     ) -> ContactSolution<S> {
-        self.contact.solution(&self.relative(lines, systems))
+        self.contact
+            .solution(&self.relative(solver_bodies, systems))
     }
 
     /// What the free velocities, which are those at hand, give to measure against.
-    pub fn scale(&self, lines: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> Scale {
-        let u = self.relative(lines, systems);
+    pub fn scale(&self, solver_bodies: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> Scale {
+        let u = self.relative(solver_bodies, systems);
         let speed = u.dot(&u);
         let rigid = self.rigid_sides().map(|(side, _)| {
-            let line = &lines[side.body as usize];
-            line.v.dot(&line.v) + line.s.dot(&line.s)
+            let body = &solver_bodies[side.body as usize];
+            body.v.dot(&body.v) + body.s.dot(&body.s)
         });
         let nodes = self.terms.iter().map(|term| {
             let v = systems[term.system as usize].velocity[term.node as usize] * term.weight;

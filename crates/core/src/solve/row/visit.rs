@@ -3,24 +3,29 @@
 
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{self, Moving, Records, Tuple, Wide, push, relative};
-use super::{Lines, Row, SolverBody};
+use super::{Row, SolverBodies, SolverBody};
 use crate::geometry::space::{Space, VectorLike, least};
 use crate::solve::error::{Scale, Sums};
 
 /// An operation on rows.
 pub trait Visit {
     /// Whether to process two vector registers of contacts at a time in 3D, to hide latency.
-    const TWO: bool;
+    const TWO_REGISTERS: bool;
 
     /// Processes one row, the `at`-th of those visited.
-    fn one<S: Space, R: Row<S>>(&mut self, row: &mut R, lines: &Lines<S>, at: usize);
+    fn visit_row<S: Space, R: Row<S>>(
+        &mut self,
+        row: &mut R,
+        solver_bodies: &SolverBodies<S>,
+        at: usize,
+    );
 
     /// Processes the rows from the `at`-th on, which share no movable body or are only read.
     ///
     /// # Safety
     /// Rows and records are valid, and nobody else writes them.
     #[cfg(target_arch = "x86_64")]
-    unsafe fn several<W: Wide, const U: usize>(
+    unsafe fn visit_wide<W: Wide, const U: usize>(
         &mut self,
         rows: &Records<W, U>,
         a: &Records<SolverBody<W::Space>, U>,
@@ -34,16 +39,16 @@ pub trait Visit {
 pub fn visit<S: Space, R: Row<S>>(
     rows: &mut [R],
     groups: &[u32],
-    lines: &Lines<S>,
+    solver_bodies: &SolverBodies<S>,
     what: &mut impl Visit,
 ) {
     // Groups of a single contact would leave three of four lanes idle.
     #[cfg(target_arch = "x86_64")]
-    if rows.len() >= 2 * groups.len() && lanes::visit(rows, groups, lines, what) {
+    if rows.len() >= 2 * groups.len() && lanes::visit(rows, groups, solver_bodies, what) {
         return;
     }
     for (at, row) in rows.iter_mut().enumerate() {
-        what.one(row, lines, at);
+        what.visit_row(row, solver_bodies, at);
     }
 }
 
@@ -51,16 +56,21 @@ pub fn visit<S: Space, R: Row<S>>(
 pub struct Update(pub f64);
 
 impl Visit for Update {
-    const TWO: bool = true;
+    const TWO_REGISTERS: bool = true;
 
     #[inline(always)]
-    fn one<S: Space, R: Row<S>>(&mut self, row: &mut R, lines: &Lines<S>, _: usize) {
-        lines.with(row.bodies(), |a, b| row.update(a, b, self.0));
+    fn visit_row<S: Space, R: Row<S>>(
+        &mut self,
+        row: &mut R,
+        solver_bodies: &SolverBodies<S>,
+        _: usize,
+    ) {
+        solver_bodies.with(row.bodies(), |a, b| row.update(a, b, self.0));
     }
 
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
-    unsafe fn several<W: Wide, const U: usize>(
+    unsafe fn visit_wide<W: Wide, const U: usize>(
         &mut self,
         rows: &Records<W, U>,
         a: &Records<SolverBody<W::Space>, U>,
@@ -71,8 +81,8 @@ impl Visit for Update {
         unsafe {
             let (mut i, mut j) = (Moving::load(a), Moving::load(b));
             W::updates(rows, &mut i, &mut j, lanes::Lanes::all(self.0));
-            i.keep(a);
-            j.keep(b);
+            i.store(a);
+            j.store(b);
         }
     }
 }
@@ -81,16 +91,21 @@ impl Visit for Update {
 pub struct Load;
 
 impl Visit for Load {
-    const TWO: bool = true;
+    const TWO_REGISTERS: bool = true;
 
     #[inline(always)]
-    fn one<S: Space, R: Row<S>>(&mut self, row: &mut R, lines: &Lines<S>, _: usize) {
-        lines.with(row.bodies(), |a, b| row.load(a, b));
+    fn visit_row<S: Space, R: Row<S>>(
+        &mut self,
+        row: &mut R,
+        solver_bodies: &SolverBodies<S>,
+        _: usize,
+    ) {
+        solver_bodies.with(row.bodies(), |a, b| row.load(a, b));
     }
 
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
-    unsafe fn several<W: Wide, const U: usize>(
+    unsafe fn visit_wide<W: Wide, const U: usize>(
         &mut self,
         rows: &Records<W, U>,
         a: &Records<SolverBody<W::Space>, U>,
@@ -100,10 +115,10 @@ impl Visit for Load {
         // SAFETY: as asked for.
         unsafe {
             let (mut i, mut j) = (Moving::load(a), Moving::load(b));
-            let row = W::stand(rows);
+            let row = W::load_header(rows);
             push(&row.n, row.pn, row.pt, &mut i, &mut j);
-            i.keep(a);
-            j.keep(b);
+            i.store(a);
+            j.store(b);
         }
     }
 }
@@ -141,11 +156,16 @@ impl Measure {
 }
 
 impl Visit for Measure {
-    const TWO: bool = false;
+    const TWO_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn one<S: Space, R: Row<S>>(&mut self, row: &mut R, lines: &Lines<S>, at: usize) {
-        let (a, b) = lines.read(row.bodies());
+    fn visit_row<S: Space, R: Row<S>>(
+        &mut self,
+        row: &mut R,
+        solver_bodies: &SolverBodies<S>,
+        at: usize,
+    ) {
+        let (a, b) = solver_bodies.read(row.bodies());
         let (r, k) = (row.residual(&a, &b), at % APART);
         self.residual[k] += r.squared;
         self.velocity[k] += r.velocity;
@@ -159,7 +179,7 @@ impl Visit for Measure {
 
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
-    unsafe fn several<W: Wide, const U: usize>(
+    unsafe fn visit_wide<W: Wide, const U: usize>(
         &mut self,
         rows: &Records<W, U>,
         a: &Records<SolverBody<W::Space>, U>,
@@ -211,11 +231,16 @@ impl Free {
 }
 
 impl Visit for Free {
-    const TWO: bool = false;
+    const TWO_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn one<S: Space, R: Row<S>>(&mut self, row: &mut R, lines: &Lines<S>, at: usize) {
-        let (a, b) = lines.read(row.bodies());
+    fn visit_row<S: Space, R: Row<S>>(
+        &mut self,
+        row: &mut R,
+        solver_bodies: &SolverBodies<S>,
+        at: usize,
+    ) {
+        let (a, b) = solver_bodies.read(row.bodies());
         let (speed, k) = (row.speed(&a, &b), at % APART);
         self.free[k] += speed;
         self.energy[k] += row.rho() * speed;
@@ -225,7 +250,7 @@ impl Visit for Free {
 
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
-    unsafe fn several<W: Wide, const U: usize>(
+    unsafe fn visit_wide<W: Wide, const U: usize>(
         &mut self,
         rows: &Records<W, U>,
         a: &Records<SolverBody<W::Space>, U>,
@@ -235,7 +260,7 @@ impl Visit for Free {
         // SAFETY: as asked for.
         unsafe {
             let (a, b) = (Moving::<W::Space, U>::load(a), Moving::load(b));
-            let row = W::stand(rows);
+            let row = W::load_header(rows);
             let (un, ut) = relative(&row.n, &a, &b);
             let speed = un * un + ut.dot(ut);
             speed.add_to(&mut self.free);

@@ -156,7 +156,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
                 self.constant[k] += form.normal * pull;
             }
             if e.b_t == 0.0 {
-                self.constant[k] -= S::lift(&form.normal, &e.a_t);
+                self.constant[k] -= S::tangent_vector(&form.normal, &e.a_t);
             }
             places.bond = Some(self.add(form.bodies, axes, law));
         }
@@ -200,7 +200,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             }
             let (twist, bend) = S::split_spin(&contact.normal, &form.a);
             if form.b_twist == 0.0 {
-                self.constant_moments[k] -= S::about(&contact.normal, twist);
+                self.constant_moments[k] -= S::spin_about(&contact.normal, twist);
             }
             if form.b_bend == 0.0 {
                 self.constant_moments[k] -= bend;
@@ -272,7 +272,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             let mut all: [f64; D] = std::array::from_fn(|d| frame[d].dot(&shifted));
             if let Some(b) = places.bond {
                 let unilateral = form.normal * (total.unilateral_n + form.tension)
-                    + S::lift(&form.normal, &total.unilateral_t);
+                    + S::tangent_vector(&form.normal, &total.unilateral_t);
                 let own: [f64; D] = std::array::from_fn(|d| frame[d].dot(&unilateral));
                 for d in 0..D {
                     if self.w.unknowns[b as usize].axes[d].pushes() {

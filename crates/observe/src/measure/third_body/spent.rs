@@ -122,7 +122,7 @@ impl<S: Space> Dissipation<S> {
     pub fn follow(&mut self, s: &Simulation<S>, faces: &Faces, gap: &Gap, along: usize) {
         let ends = [0, 1].map(|k| faces.body(s, k) as u32);
         let n = &s.state.network;
-        let spent = n.spent.iter().flatten();
+        let spent = n.dissipation.iter().flatten();
         for (contact, spent) in n.contacts.iter().zip(spent) {
             if *spent == ContactDissipation::default() {
                 continue;

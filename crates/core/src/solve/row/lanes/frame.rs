@@ -65,11 +65,11 @@ pub struct Moving<F: Frame, const U: usize> {
 
 impl<F: Frame, const U: usize> Moving<F, U> {
     /// # Safety
-    /// The lines are there.
+    /// The records are valid.
     #[inline(always)]
     pub unsafe fn load(from: &Records<SolverBody<F>, U>) -> Self {
         // SAFETY: as asked for.
-        unsafe { F::lines(from) }
+        unsafe { F::load(from) }
     }
 
     /// Writes back the records of movable bodies.
@@ -77,11 +77,11 @@ impl<F: Frame, const U: usize> Moving<F, U> {
     /// # Safety
     /// The records are valid.
     #[inline(always)]
-    pub unsafe fn keep(&self, to: &Records<SolverBody<F>, U>) {
+    pub unsafe fn store(&self, to: &Records<SolverBody<F>, U>) {
         let zero = Lanes::all(0.0);
         let moves = self.im.above(zero).or(self.is.above(zero)).bits();
         // SAFETY: as asked for.
-        unsafe { F::keep(to, self, moves) }
+        unsafe { F::store(to, self, moves) }
     }
 }
 
@@ -93,13 +93,13 @@ pub trait Frame: Space {
     type T<const U: usize>: Tuple<U>;
 
     /// # Safety
-    /// The lines are there.
-    unsafe fn lines<const U: usize>(from: &Records<SolverBody<Self>, U>) -> Moving<Self, U>;
+    /// The records are valid.
+    unsafe fn load<const U: usize>(from: &Records<SolverBody<Self>, U>) -> Moving<Self, U>;
     /// Writes back the records selected by a mask.
     ///
     /// # Safety
     /// The records are valid.
-    unsafe fn keep<const U: usize>(
+    unsafe fn store<const U: usize>(
         to: &Records<SolverBody<Self>, U>,
         body: &Moving<Self, U>,
         mask: [i32; U],
@@ -148,8 +148,8 @@ impl Frame for Dim2 {
     type T<const U: usize> = Columns<U, 1>;
 
     #[inline(always)]
-    unsafe fn lines<const U: usize>(from: &Records<SolverBody<Self>, U>) -> Moving<Self, U> {
-        // SAFETY: as asked for; the line is v, s, im, is.
+    unsafe fn load<const U: usize>(from: &Records<SolverBody<Self>, U>) -> Moving<Self, U> {
+        // SAFETY: as asked for; the record is v, s, im, is.
         unsafe {
             let [v0, v1, s, im] = load(from, 0);
             Moving {
@@ -162,7 +162,7 @@ impl Frame for Dim2 {
     }
 
     #[inline(always)]
-    unsafe fn keep<const U: usize>(
+    unsafe fn store<const U: usize>(
         to: &Records<SolverBody<Self>, U>,
         body: &Moving<Self, U>,
         mask: [i32; U],
@@ -199,8 +199,8 @@ impl Frame for Dim3 {
     type T<const U: usize> = Columns<U, 3>;
 
     #[inline(always)]
-    unsafe fn lines<const U: usize>(from: &Records<SolverBody<Self>, U>) -> Moving<Self, U> {
-        // SAFETY: as asked for; the line is v, s, im, is.
+    unsafe fn load<const U: usize>(from: &Records<SolverBody<Self>, U>) -> Moving<Self, U> {
+        // SAFETY: as asked for; the record is v, s, im, is.
         unsafe {
             let [v0, v1, v2, s0] = load(from, 0);
             let [s1, s2, im, is] = load(from, 4);
@@ -214,7 +214,7 @@ impl Frame for Dim3 {
     }
 
     #[inline(always)]
-    unsafe fn keep<const U: usize>(
+    unsafe fn store<const U: usize>(
         to: &Records<SolverBody<Self>, U>,
         body: &Moving<Self, U>,
         mask: [i32; U],

@@ -12,7 +12,7 @@ pub use vector::{Lanes, Records};
 pub use wide::Wide;
 
 use super::visit::Visit;
-use super::{FullRow, Lines, PlainRow, Row, SolverBody};
+use super::{FullRow, PlainRow, Row, SolverBodies, SolverBody};
 use crate::geometry::space::{Dim2, Dim3, Space};
 use std::any::TypeId;
 use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
@@ -22,20 +22,20 @@ use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 pub fn visit<S: Space, R: Row<S>>(
     rows: &mut [R],
     groups: &[u32],
-    lines: &Lines<S>,
+    solver_bodies: &SolverBodies<S>,
     what: &mut impl Visit,
 ) -> bool {
     if !is_x86_feature_detected!("avx2") {
         return false;
     }
-    let (count, first, lines) = (rows.len(), rows.as_mut_ptr(), lines.at(0));
+    let (count, first, solver_bodies) = (rows.len(), rows.as_mut_ptr(), solver_bodies.at(0));
     debug_assert!(groups.last().map(|end| (end - groups[0]) as usize) == Some(count));
     macro_rules! of {
         ($($row:ty),*) => {$(
             if TypeId::of::<R>() == TypeId::of::<$row>() {
                 // SAFETY: the machine has AVX2, the type was checked, and body indices satisfy the contract
-                // of `Lines`.
-                unsafe { all(first.cast::<$row>(), groups, count, lines.cast(), what) };
+                // of `SolverBodies`.
+                unsafe { all(first.cast::<$row>(), groups, count, solver_bodies.cast(), what) };
                 return true;
             }
         )*};
@@ -45,33 +45,33 @@ pub fn visit<S: Space, R: Row<S>>(
 }
 
 /// # Safety
-/// There are `count` rows, of bodies of `lines`; their groups are as `visit` says.
+/// There are `count` rows, of bodies of `solver_bodies`; their groups are as `visit` says.
 #[target_feature(enable = "avx2")]
 unsafe fn all<W: Wide, V: Visit>(
     rows: *mut W,
     groups: &[u32],
     count: usize,
-    lines: *mut SolverBody<W::Space>,
+    solver_bodies: *mut SolverBody<W::Space>,
     what: &mut V,
 ) {
     let mut idle = Idle {
         row: W::idle(),
-        line: SolverBody::idle(),
+        body: SolverBody::idle(),
     };
     for group in groups.windows(2) {
         let [mut first, end] = [group[0], group[1]].map(|k| (k - groups[0]) as usize);
         // SAFETY: as above; bodies of contacts taken together differ where they are written.
         unsafe {
-            while V::TWO && W::Space::D == 3 && first + 4 < end {
+            while V::TWO_REGISTERS && W::Space::D == 3 && first + 4 < end {
                 let idle = &mut idle;
-                let one = Four::new(rows, [first, end, count], lines, idle);
-                let two = Four::new(rows, [first + 4, end, count], lines, idle);
-                what.several(&[one.row, two.row], &[one.a, two.a], &[one.b, two.b], first);
+                let one = Four::new(rows, [first, end, count], solver_bodies, idle);
+                let two = Four::new(rows, [first + 4, end, count], solver_bodies, idle);
+                what.visit_wide(&[one.row, two.row], &[one.a, two.a], &[one.b, two.b], first);
                 first += 8;
             }
             while first < end {
-                let one = Four::new(rows, [first, end, count], lines, &mut idle);
-                what.several(&[one.row], &[one.a], &[one.b], first);
+                let one = Four::new(rows, [first, end, count], solver_bodies, &mut idle);
+                what.visit_wide(&[one.row], &[one.a], &[one.b], first);
                 first += 4;
             }
         }
@@ -81,7 +81,7 @@ unsafe fn all<W: Wide, V: Visit>(
 /// Fills the lanes without a contact: their bodies are immovable, and nothing is stored.
 struct Idle<W: Wide> {
     row: W,
-    line: SolverBody<W::Space>,
+    body: SolverBody<W::Space>,
 }
 
 /// Four rows and the records of their bodies.
@@ -98,12 +98,12 @@ impl<W: Wide> Four<W> {
     /// Loads the rows from `first` up to at most `end`, the end of the group.
     ///
     /// # Safety
-    /// There are `count` rows, whose bodies are in `lines`.
+    /// There are `count` rows, whose bodies are in `solver_bodies`.
     #[inline(always)]
     unsafe fn new(
         rows: *mut W,
         [first, end, count]: [usize; 3],
-        lines: *mut SolverBody<W::Space>,
+        solver_bodies: *mut SolverBody<W::Space>,
         idle: &mut Idle<W>,
     ) -> Self {
         // SAFETY: as above.
@@ -111,7 +111,7 @@ impl<W: Wide> Four<W> {
             if first + AHEAD + 4 <= count {
                 for k in 0..4 {
                     for body in (*rows.add(first + AHEAD + k)).bodies() {
-                        _mm_prefetch::<_MM_HINT_T0>(lines.add(body as usize).cast());
+                        _mm_prefetch::<_MM_HINT_T0>(solver_bodies.add(body as usize).cast());
                     }
                 }
             }
@@ -119,21 +119,21 @@ impl<W: Wide> Four<W> {
                 let row = [0, 1, 2, 3].map(|k| rows.add(first + k));
                 return Self {
                     row,
-                    a: row.map(|r| lines.add((*r).bodies()[0] as usize)),
-                    b: row.map(|r| lines.add((*r).bodies()[1] as usize)),
+                    a: row.map(|r| solver_bodies.add((*r).bodies()[0] as usize)),
+                    b: row.map(|r| solver_bodies.add((*r).bodies()[1] as usize)),
                 };
             }
-            let line = &raw mut idle.line;
+            let body = &raw mut idle.body;
             let mut four = Self {
                 row: [&raw mut idle.row; 4],
-                a: [line; 4],
-                b: [line; 4],
+                a: [body; 4],
+                b: [body; 4],
             };
             for k in 0..end.saturating_sub(first) {
                 let row = rows.add(first + k);
                 four.row[k] = row;
-                four.a[k] = lines.add((*row).bodies()[0] as usize);
-                four.b[k] = lines.add((*row).bodies()[1] as usize);
+                four.a[k] = solver_bodies.add((*row).bodies()[0] as usize);
+                four.b[k] = solver_bodies.add((*row).bodies()[1] as usize);
             }
             four
         }

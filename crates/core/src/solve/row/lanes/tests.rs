@@ -1,7 +1,7 @@
 use crate::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use crate::solve::form::{ContactForm, Elastic};
 use crate::solve::row::visit::{Free, Load, Measure, Update, Visit};
-use crate::solve::row::{FullRow, Lines, PlainRow, Row, SolverBody};
+use crate::solve::row::{FullRow, PlainRow, Row, SolverBodies, SolverBody};
 
 /// Returns a pseudo-random number between -1 and 1.
 fn wave(k: usize, of: u32) -> f64 {
@@ -9,32 +9,24 @@ fn wave(k: usize, of: u32) -> f64 {
 }
 
 /// Bodies with velocities and masses; every fourteenth is fixed.
-fn lines<S: Space>(count: u32) -> Vec<SolverBody<S>> {
-    let line = |body: u32| {
-        let fixed = body % 14 == 1;
-        let mut line = SolverBody::<S> {
+fn solver_bodies<S: Space>(count: u32) -> Vec<SolverBody<S>> {
+    let body = |at: u32| {
+        let fixed = at % 14 == 1;
+        let mut body = SolverBody::<S> {
             v: S::Vector::zero(),
             s: S::Spin::zero(),
-            im: if fixed {
-                0.0
-            } else {
-                1.0 + 0.3 * wave(9, body)
-            },
-            is: if fixed {
-                0.0
-            } else {
-                2.0 + 0.5 * wave(10, body)
-            },
+            im: if fixed { 0.0 } else { 1.0 + 0.3 * wave(9, at) },
+            is: if fixed { 0.0 } else { 2.0 + 0.5 * wave(10, at) },
         };
         for k in 0..S::D {
-            line.v[k] = wave(k, body);
+            body.v[k] = wave(k, at);
         }
         for k in 0..S::Spin::N {
-            line.s[k] = wave(k + 4, body);
+            body.s[k] = wave(k + 4, at);
         }
-        line
+        body
     };
-    (0..count).map(line).collect()
+    (0..count).map(body).collect()
 }
 
 /// Contact without friction.
@@ -93,17 +85,17 @@ fn bonded<S: Space>(pair: u32) -> ContactForm<S> {
 
 struct State<R, S: Space> {
     rows: Vec<R>,
-    lines: Vec<SolverBody<S>>,
+    solver_bodies: Vec<SolverBody<S>>,
 }
 
 impl<S: Space, R: Row<S>> State<R, S> {
     fn bits(&self) -> Vec<u64> {
         let mut out = Vec::new();
         self.rows.iter().for_each(|row| row.store(&mut out));
-        for line in &self.lines {
-            out.extend(line.v.padded());
-            out.extend(line.s.padded());
-            out.extend([line.im, line.is]);
+        for body in &self.solver_bodies {
+            out.extend(body.v.padded());
+            out.extend(body.s.padded());
+            out.extend([body.im, body.is]);
         }
         // Both zeros compare equal.
         out.into_iter().map(|x| (x + 0.0).to_bits()).collect()
@@ -111,12 +103,12 @@ impl<S: Space, R: Row<S>> State<R, S> {
 
     /// Visits several contacts at a time where the machine can, and one by one.
     fn visit<V: Visit>(&mut self, groups: Option<&[u32]>, what: &mut V) {
-        let lines = Lines::new(&mut self.lines);
+        let solver_bodies = SolverBodies::new(&mut self.solver_bodies);
         match groups {
-            Some(groups) => assert!(super::visit(&mut self.rows, groups, &lines, what)),
+            Some(groups) => assert!(super::visit(&mut self.rows, groups, &solver_bodies, what)),
             None => {
                 let rows = self.rows.iter_mut().enumerate();
-                rows.for_each(|(at, row)| what.one(row, &lines, at));
+                rows.for_each(|(at, row)| what.visit_row(row, &solver_bodies, at));
             }
         }
     }
@@ -131,18 +123,21 @@ fn same<S: Space, R: Row<S>>(
     }
     // Groups of all remainders, up to the end of the prefetch distance.
     let groups: Vec<u32> = vec![0, 1, 3, 6, 10, 15, 21, 28, 36, 45, 145];
-    let lines = lines::<S>(290);
+    let solver_bodies = solver_bodies::<S>(290);
     let row = |pair: u32| {
-        let [a, b] = [2 * pair, 2 * pair + 1].map(|k| &lines[k as usize]);
+        let [a, b] = [2 * pair, 2 * pair + 1].map(|k| &solver_bodies[k as usize]);
         let w_n = a.im + b.im;
         row(&form(pair), w_n, w_n + a.is + b.is)
     };
     let rows: Vec<R> = (0..145).map(row).collect();
     let mut one = State {
         rows: rows.clone(),
-        lines: lines.clone(),
+        solver_bodies: solver_bodies.clone(),
     };
-    let mut four = State { rows, lines };
+    let mut four = State {
+        rows,
+        solver_bodies,
+    };
     for relaxation in [1.0, 1.45, 1.0] {
         one.visit(None, &mut Update(relaxation));
         four.visit(Some(&groups), &mut Update(relaxation));

@@ -14,7 +14,7 @@ pub struct Residuals<const U: usize> {
 }
 
 /// Data of the rows for the error: normal, impulse, rho of the natural map, friction.
-pub struct Stand<F: Frame, const U: usize> {
+pub struct RowHeader<F: Frame, const U: usize> {
     pub n: F::V<U>,
     pub pn: Lanes<U>,
     pub pt: F::T<U>,
@@ -40,7 +40,7 @@ pub trait Wide: Row<Self::Space> {
     );
     /// # Safety
     /// The rows are there.
-    unsafe fn stand<const U: usize>(rows: &Records<Self, U>) -> Stand<Self::Space, U>;
+    unsafe fn load_header<const U: usize>(rows: &Records<Self, U>) -> RowHeader<Self::Space, U>;
     /// # Safety
     /// The rows are there.
     unsafe fn residuals<const U: usize>(
@@ -95,7 +95,7 @@ impl<const U: usize> Reader<U> {
 /// # Safety
 /// The rows are valid and begin with n, p_n, p_t.
 #[inline(always)]
-unsafe fn keep<R, F: Frame, const U: usize>(
+unsafe fn store_impulses<R, F: Frame, const U: usize>(
     rows: &Records<R, U>,
     n: &F::V<U>,
     pn: Lanes<U>,
@@ -170,7 +170,7 @@ impl<F: Frame> Wide for PlainRow<F> {
                 let impulse = r.n * (pn - r.pn);
                 a.v = a.v + impulse * a.im;
                 b.v = b.v - impulse * b.im;
-                keep::<_, F, U>(rows, &r.n, pn, &r.pt);
+                store_impulses::<_, F, U>(rows, &r.n, pn, &r.pt);
                 return;
             }
             let (un, ut) = relative(&r.n, a, b);
@@ -178,15 +178,15 @@ impl<F: Frame> Wide for PlainRow<F> {
             let pn = pn.max(zero);
             let pt = (r.pt - ut * (r.iwt * relaxation)).limited(r.mu * pn);
             push(&r.n, pn - r.pn, pt - r.pt, a, b);
-            keep::<_, F, U>(rows, &r.n, pn, &pt);
+            store_impulses::<_, F, U>(rows, &r.n, pn, &pt);
         }
     }
 
     #[inline(always)]
-    unsafe fn stand<const U: usize>(rows: &Records<Self, U>) -> Stand<F, U> {
+    unsafe fn load_header<const U: usize>(rows: &Records<Self, U>) -> RowHeader<F, U> {
         // SAFETY: as asked for.
         let r = unsafe { Plain::<F, U>::new(rows) };
-        Stand {
+        RowHeader {
             n: r.n,
             pn: r.pn,
             pt: r.pt,
@@ -343,15 +343,15 @@ impl<F: Frame> Wide for FullRow<F> {
             let (dn, dt) = (sn + en - r.pn, st + et - r.pt);
             let (dn, dt) = (dn * relaxation, dt * relaxation);
             push(&r.n, dn, dt, a, b);
-            keep::<_, F, U>(rows, &r.n, r.pn + dn, &(r.pt + dt));
+            store_impulses::<_, F, U>(rows, &r.n, r.pn + dn, &(r.pt + dt));
         }
     }
 
     #[inline(always)]
-    unsafe fn stand<const U: usize>(rows: &Records<Self, U>) -> Stand<F, U> {
+    unsafe fn load_header<const U: usize>(rows: &Records<Self, U>) -> RowHeader<F, U> {
         // SAFETY: as asked for.
         let (r, bonds) = unsafe { (Full::<F, U>::new(rows), Bonds::<F, U>::new(rows)) };
-        Stand {
+        RowHeader {
             n: r.n,
             pn: r.pn,
             pt: r.pt,

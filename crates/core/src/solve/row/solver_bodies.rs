@@ -4,20 +4,20 @@ use super::SolverBody;
 use crate::geometry::space::Space;
 
 /// Velocities accessed by several threads, each at its own bodies.
-pub(in crate::solve) struct Lines<S: Space> {
+pub(in crate::solve) struct SolverBodies<S: Space> {
     first: *mut SolverBody<S>,
     len: usize,
 }
 
 // SAFETY: contacts solved at the same time share no movable body (see `colour`), and records of immovable
 // bodies are only read; so no record is written while another thread accesses it.
-unsafe impl<S: Space> Sync for Lines<S> {}
+unsafe impl<S: Space> Sync for SolverBodies<S> {}
 
-impl<S: Space> Lines<S> {
-    pub fn new(lines: &mut [SolverBody<S>]) -> Self {
+impl<S: Space> SolverBodies<S> {
+    pub fn new(solver_bodies: &mut [SolverBody<S>]) -> Self {
         Self {
-            first: lines.as_mut_ptr(),
-            len: lines.len(),
+            first: solver_bodies.as_mut_ptr(),
+            len: solver_bodies.len(),
         }
     }
 

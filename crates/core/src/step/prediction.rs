@@ -80,16 +80,16 @@ impl<S: Space> Simulation<S> {
     /// preceded them.
     fn report_held_back(&mut self) {
         for k in &self.workspace.evaluator.held_back {
-            if self.workspace.solved.sites[*k].solution.impulse != S::Vector::zero() {
+            if self.workspace.solved.contact_steps[*k].solution.impulse != S::Vector::zero() {
                 let pair = self.state.network.contacts[*k].bodies;
                 let step_size = &mut self.state.network.step_size;
-                step_size.hold_back(self.state.time, &self.state.bodies, pair);
+                step_size.record_held_back(self.state.time, &self.state.bodies, pair);
             }
         }
     }
 
     /// Adds the contacts that the free velocities (without contact impulses) would close in the step.
-    pub(super) fn foresee(&mut self, free: &[(S::Vector, S::Spin)]) {
+    pub(super) fn add_predicted_contacts(&mut self, free: &[(S::Vector, S::Spin)]) {
         let motion = Motion {
             velocities: free,
             time: self.state.time,
@@ -100,7 +100,7 @@ impl<S: Space> Simulation<S> {
         if detect::is_calm(network, &self.shapes, bodies, all, motion.h) {
             return;
         }
-        detect::foresee(network, &self.shapes, bodies, &self.table, &motion);
+        detect::add_predicted(network, &self.shapes, bodies, &self.table, &motion);
     }
 
     /// Solves the step, and repeats while the resulting velocities close contacts that were not part of the
@@ -156,16 +156,19 @@ impl<S: Space> Simulation<S> {
                 detect::report_passing(network, &self.shapes, bodies, &self.table, &motion);
                 return Ok(());
             }
-            let found = detect::overlooked(network, &self.shapes, bodies, &self.table, &motion);
+            let found = detect::find_missed(network, &self.shapes, bodies, &self.table, &motion);
             if found.is_empty() {
                 return Ok(());
             }
-            let solved = network.contacts.iter().zip(&self.workspace.solved.sites);
+            let solved = network
+                .contacts
+                .iter()
+                .zip(&self.workspace.solved.contact_steps);
             last = solved.map(|(c, s)| (c.key, s.solution.impulse)).collect();
-            network.take_in(found);
+            network.merge_contacts(found);
             start.restore(&mut self.state.bodies);
             self.restart_systems();
-            self.remember(info)?;
+            self.initialise_contacts(info)?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use super::narrow::Narrow;
 use super::{SLACK, drop_contact, frame, held};
-use crate::contact::network::{Contact, Key, Network};
+use crate::contact::network::{Contact, ContactGeometry, Key, Network};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, Core};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -16,36 +16,38 @@ struct Pair {
 
 impl<S: Space> Narrow<'_, S> {
     /// Processes a pair with at least one convex piece.
-    pub(super) fn pieces(&mut self, network: &mut Network<S>, a: u32, b: u32) {
-        let old = self.old_of(network, (a, b));
-        let gauge = ContactTolerances {
+    pub(super) fn convex_pair(&mut self, network: &mut Network<S>, a: u32, b: u32) {
+        let old = self.old_contacts_of(network, (a, b));
+        let tolerances = ContactTolerances {
             reach: self.reach(network, old.clone()),
             slack: SLACK * network.alert,
             held: old.clone().any(|k| held(network, Some(k))),
         };
-        let mut meetings = std::mem::take(&mut self.meetings);
-        meetings.clear();
-        if let Some((pair, to_candidate, to_antagonist)) = self.meet(a, b, &gauge, &mut meetings) {
-            self.keep(
+        let mut contact_points = std::mem::take(&mut self.contact_points);
+        contact_points.clear();
+        if let Some((pair, to_candidate, to_antagonist)) =
+            self.contact_points(a, b, &tolerances, &mut contact_points)
+        {
+            self.create_contacts(
                 network,
                 &pair,
-                &meetings,
+                &contact_points,
                 old,
                 [to_candidate, to_antagonist],
             );
         } else {
             old.for_each(|k| drop_contact(network, k));
         }
-        self.meetings = meetings;
+        self.contact_points = contact_points;
     }
 
     /// Finds the contact points of a pair in world axes, and the vectors from the centres of the two bodies
     /// to their origin. `None` if the pair has no law.
-    fn meet(
+    fn contact_points(
         &self,
         a: u32,
         b: u32,
-        gauge: &ContactTolerances,
+        tolerances: &ContactTolerances,
         out: &mut Vec<ContactPoint<S::Vector>>,
     ) -> Option<(Pair, S::Vector, S::Vector)> {
         let balls = self.shapes.balls.len();
@@ -62,7 +64,13 @@ impl<S: Space> Narrow<'_, S> {
             let place = S::unrotate(&rotation, &(self.centres[balls + k] - origin));
             // The core in the surface's axes.
             let core = self.cores[k].turned(&S::inverse(&rotation));
-            core.meet_surface(surface.shape.as_ref(), &place, piece.rounding, gauge, out);
+            core.contact_points_with_surface(
+                surface.shape.as_ref(),
+                &place,
+                piece.rounding,
+                tolerances,
+                out,
+            );
             for m in out.iter_mut() {
                 m.normal = S::rotate(&rotation, &m.normal);
                 m.on_candidate = S::rotate(&rotation, &m.on_candidate);
@@ -83,8 +91,9 @@ impl<S: Space> Narrow<'_, S> {
             let ball = &self.shapes.balls[a as usize];
             own_centre = self.centres[a as usize];
             apart = self.shapes.periodic.shortest(own_centre - centre);
-            let meeting = self.cores[k].meet_ball(&apart, ball.radius, other.rounding);
-            if meeting.gap <= gauge.reach {
+            let meeting =
+                self.cores[k].contact_point_with_ball(&apart, ball.radius, other.rounding);
+            if meeting.gap <= tolerances.reach {
                 out.push(meeting);
             }
             pair = Pair {
@@ -98,7 +107,7 @@ impl<S: Space> Narrow<'_, S> {
             own_centre = self.centres[balls + at(a)];
             apart = self.shapes.periodic.shortest(own_centre - centre);
             let roundings = [piece.rounding, other.rounding];
-            self.cores[at(a)].meet(&self.cores[k], &apart, roundings, gauge, out);
+            self.cores[at(a)].contact_points(&self.cores[k], &apart, roundings, tolerances, out);
             pair = Pair {
                 name: (a, b),
                 bodies: [piece.body, other.body],
@@ -113,16 +122,16 @@ impl<S: Space> Narrow<'_, S> {
     }
 
     /// Creates contacts from the contact points within the alert distance, with the memory of old ones.
-    fn keep(
+    fn create_contacts(
         &mut self,
         network: &mut Network<S>,
         pair: &Pair,
-        meetings: &[ContactPoint<S::Vector>],
+        contact_points: &[ContactPoint<S::Vector>],
         old: std::ops::Range<usize>,
         origins: [S::Vector; 2],
     ) {
-        let matched = matches(&network.old, meetings, old.clone(), &origins[0]);
-        let pairs = meetings.iter().copied().zip(matched);
+        let matched = match_old_contacts(&network.old, contact_points, old.clone(), &origins[0]);
+        let pairs = contact_points.iter().copied().zip(matched);
         let mut met: Vec<_> = pairs
             .filter(|(m, before)| m.gap < network.alert || held(network, *before))
             .collect();
@@ -131,7 +140,9 @@ impl<S: Space> Narrow<'_, S> {
             if held(network, Some(k)) && !met.iter().any(|m| m.1 == Some(k)) {
                 let at = network.old[k].arms[0] - origins[0];
                 let far = |m: &ContactPoint<S::Vector>| (m.on_candidate - at).norm();
-                let nearest = meetings.iter().min_by(|m, n| far(m).total_cmp(&far(n)));
+                let nearest = contact_points
+                    .iter()
+                    .min_by(|m, n| far(m).total_cmp(&far(n)));
                 let feature = network.old[k].key.feature;
                 met.extend(nearest.map(|m| (ContactPoint { feature, ..*m }, Some(k))));
             }
@@ -140,32 +151,25 @@ impl<S: Space> Narrow<'_, S> {
         let taken: Vec<usize> = met.iter().filter_map(|m| m.1).collect();
         for (m, before) in met {
             let found = Contact {
-                key: Key {
-                    candidate: pair.name.0,
-                    antagonist: pair.name.1,
-                    feature: m.feature,
-                },
-                bodies: pair.bodies,
-                law: pair.law,
-                central: false,
                 vertex_contact: !m.facing,
-                broken: false,
-                slot: Contact::<S>::NO_MEMORY,
-                gap: m.gap,
-                normal: m.normal,
-                arms: [m.on_candidate + origins[0], m.on_antagonist + origins[1]],
-                radius: if m.share > 0.0 { m.share } else { pair.radius },
-                impulse: S::Vector::zero(),
-                moment: S::Spin::zero(),
-                formed_at: self.time,
-                pressed: 0.0,
-                closing: false,
-                later: false,
-                beyond: false,
-                slides: false,
-                friction_work: 0.0,
+                ..Contact::new(
+                    Key {
+                        candidate: pair.name.0,
+                        antagonist: pair.name.1,
+                        feature: m.feature,
+                    },
+                    pair.bodies,
+                    pair.law,
+                    ContactGeometry {
+                        gap: m.gap,
+                        normal: m.normal,
+                        arms: [m.on_candidate + origins[0], m.on_antagonist + origins[1]],
+                        radius: if m.share > 0.0 { m.share } else { pair.radius },
+                    },
+                    self.time,
+                )
             };
-            self.admit(network, found, before);
+            self.add_contact(network, found, before);
         }
         for k in old {
             if !taken.contains(&k) {
@@ -178,14 +182,14 @@ impl<S: Space> Narrow<'_, S> {
 /// Returns the old contact that each contact point continues: first that of the same corner, then the
 /// nearest of those whose corner is no longer found, in order of distance. If one of two old contacts is
 /// gone, a new point at the other end of the face must not take over the remaining one.
-fn matches<S: Space>(
+fn match_old_contacts<S: Space>(
     contacts: &[Contact<S>],
-    meetings: &[ContactPoint<S::Vector>],
+    contact_points: &[ContactPoint<S::Vector>],
     old: std::ops::Range<usize>,
     origin: &S::Vector,
 ) -> Vec<Option<usize>> {
-    let mut matched: Vec<Option<usize>> = Vec::with_capacity(meetings.len());
-    for m in meetings {
+    let mut matched: Vec<Option<usize>> = Vec::with_capacity(contact_points.len());
+    for m in contact_points {
         // With a period two points may have the same key.
         let same = |k: &usize| contacts[*k].key.feature == m.feature;
         let found = old
@@ -194,7 +198,7 @@ fn matches<S: Space>(
         matched.push(found);
     }
     let mut ways = Vec::new();
-    for (k, m) in meetings.iter().enumerate() {
+    for (k, m) in contact_points.iter().enumerate() {
         for at in old.clone() {
             if matched[k].is_none() && !matched.contains(&Some(at)) {
                 let way = contacts[at].arms[0] - (m.on_candidate + *origin);
@@ -217,7 +221,7 @@ mod tests {
     use crate::geometry::space::Dim2;
     use nalgebra::Vector2;
 
-    fn meeting(x: f64, feature: u64) -> ContactPoint<Vector2<f64>> {
+    fn contact_point(x: f64, feature: u64) -> ContactPoint<Vector2<f64>> {
         let at = Vector2::new(x, 0.0);
         ContactPoint {
             on_candidate: at,
@@ -233,30 +237,23 @@ mod tests {
     fn contact(x: f64, feature: u64) -> Contact<Dim2> {
         let arm = Vector2::new(x, 0.0);
         Contact {
-            key: Key {
-                candidate: Key::PIECE,
-                antagonist: Key::PIECE | 1,
-                feature,
-            },
-            bodies: [0, 1],
-            law: 0,
-            central: false,
-            vertex_contact: false,
-            broken: false,
             slot: 0,
-            gap: 0.0,
-            normal: Vector2::new(0.0, 1.0),
-            arms: [arm, arm],
-            radius: 1.0,
-            impulse: Vector2::zeros(),
-            moment: nalgebra::Vector1::zeros(),
-            formed_at: 0.0,
-            pressed: 0.0,
-            closing: false,
-            later: false,
-            beyond: false,
-            slides: false,
-            friction_work: 0.0,
+            ..Contact::new(
+                Key {
+                    candidate: Key::PIECE,
+                    antagonist: Key::PIECE | 1,
+                    feature,
+                },
+                [0, 1],
+                0,
+                ContactGeometry {
+                    gap: 0.0,
+                    normal: Vector2::new(0.0, 1.0),
+                    arms: [arm, arm],
+                    radius: 1.0,
+                },
+                0.0,
+            )
         }
     }
 
@@ -265,9 +262,9 @@ mod tests {
     #[test]
     fn a_bond_stays_at_its_end_of_the_face_when_names_change() {
         let of = |old: &[Contact<Dim2>], new: &[ContactPoint<Vector2<f64>>]| {
-            matches(old, new, 0..old.len(), &Vector2::zeros())
+            match_old_contacts(old, new, 0..old.len(), &Vector2::zeros())
         };
-        let new = [meeting(-1.0, 4), meeting(1.0, 6)];
+        let new = [contact_point(-1.0, 4), contact_point(1.0, 6)];
         assert_eq!(of(&[contact(1.0, 3)], &new), [None, Some(0)]);
         assert_eq!(of(&[contact(-1.0, 3)], &new), [Some(0), None]);
         // Equal keys take precedence over distance; the others continue the nearest remaining contact.

@@ -77,45 +77,27 @@ pub fn is_calm<S: Space>(
 
 /// Adds the contacts that the free velocities close in the step and that detection at its start did not
 /// find.
-pub fn foresee<S: Space>(
+pub fn add_predicted<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
     bodies: &Bodies<S>,
     laws: &LawTable,
     motion: &Motion<S>,
 ) {
-    let travels = widen(network, shapes, bodies, laws, motion);
-    let found = look(
-        network,
-        shapes,
-        bodies,
-        laws,
-        motion,
-        &travels,
-        Stage::Before,
-    );
-    network.take_in(found);
+    let found = find_closing(network, shapes, bodies, laws, motion, Stage::Before);
+    network.merge_contacts(found);
 }
 
 /// Returns the contacts that the velocities after a solve would close in the step and that were not part of
-/// it. If there are any, the step must be solved again with them; see [`Network::take_in`].
-pub fn overlooked<S: Space>(
+/// it. If there are any, the step must be solved again with them; see [`Network::merge_contacts`].
+pub fn find_missed<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
     bodies: &Bodies<S>,
     laws: &LawTable,
     motion: &Motion<S>,
 ) -> Vec<Contact<S>> {
-    let travels = widen(network, shapes, bodies, laws, motion);
-    let found = look(
-        network,
-        shapes,
-        bodies,
-        laws,
-        motion,
-        &travels,
-        Stage::After,
-    );
+    let found = find_closing(network, shapes, bodies, laws, motion, Stage::After);
     network.step_size.repeated_solves += u64::from(!found.is_empty());
     found
 }
@@ -128,16 +110,7 @@ pub fn report_passing<S: Space>(
     laws: &LawTable,
     motion: &Motion<S>,
 ) {
-    let travels = widen(network, shapes, bodies, laws, motion);
-    look(
-        network,
-        shapes,
-        bodies,
-        laws,
-        motion,
-        &travels,
-        Stage::Report,
-    );
+    find_closing(network, shapes, bodies, laws, motion, Stage::Report);
 }
 
 /// Reports the pairs that penetrate in a move before detection, at the current velocities, which no previous
@@ -223,7 +196,7 @@ fn widen<S: Space>(
         if let Some(body) = farthest {
             network
                 .step_size
-                .leave_unwatched(motion.time, bodies, body as u32);
+                .record_unwatched(motion.time, bodies, body as u32);
         }
     }
     travels
@@ -284,22 +257,19 @@ fn limit<S: Space>(network: &mut Network<S>, shapes: &Shapes<S>, centres: &[S::V
 }
 
 /// Finds the contacts of the pairs that meet in the step, in the order of the pairs, or reports the pairs.
-fn look<S: Space>(
+fn find_closing<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
     bodies: &Bodies<S>,
     laws: &LawTable,
     motion: &Motion<S>,
-    travels: &[f64],
     stage: Stage,
 ) -> Vec<Contact<S>> {
-    let mut found = Vec::new();
-    let mut meetings = Vec::new();
-    let fast = network.fast;
+    let travels = widen(network, shapes, bodies, laws, motion);
     let farthest = travels.iter().copied().fold(0.0, f64::max);
     let turning = network.turning.iter().any(|w| *w > 0.0);
-    if 2.0 * farthest <= fast && !turning {
-        return found;
+    if 2.0 * farthest <= network.fast && !turning {
+        return Vec::new();
     }
     let extents = std::mem::take(&mut network.extents);
     let candidates = std::mem::take(&mut network.candidates);
@@ -312,65 +282,121 @@ fn look<S: Space>(
         h: motion.h,
         alert: network.alert,
     };
-    let body = |name: u32| {
-        let k = (name & !(Key::PIECE | Key::SURFACE)) as usize;
-        if name & Key::SURFACE != 0 {
-            shapes.surfaces[k].body as usize
-        } else if name & Key::PIECE != 0 {
-            shapes.pieces[k].body as usize
-        } else {
-            shapes.balls[k].body as usize
-        }
+    let fast = network.fast;
+    let mut prediction = Prediction {
+        network,
+        sweep: &sweep,
+        laws,
+        travels: &travels,
+        turning,
+        stage,
+        found: Vec::new(),
+        meetings: Vec::new(),
     };
     for &names in &candidates {
-        let turns = turning && names.1 & Key::SURFACE != 0;
-        // Two balls have a single contact: if they move less than the alert distance, detection has found
-        // it.
-        let balls = (names.0 | names.1) & (Key::PIECE | Key::SURFACE) == 0;
-        let slow = if balls { network.alert } else { fast };
-        if travels[body(names.0)] + travels[body(names.1)] <= slow && !turns {
-            continue;
-        }
-        let pair = sweep.pair(names);
-        if pair.travel <= slow {
-            continue;
-        }
-        let Some(margin) = margin(network, names, &pair, stage) else {
-            continue;
-        };
-        let course = sweep.course(&pair, margin.deepest);
-        if course == Course::Clear {
-            continue;
-        }
-        if stage == Stage::Report {
-            network.step_size.pass(motion.time, bodies, pair.bodies());
-            continue;
-        }
-        let [one, other] = pair.materials();
-        let known = found.len();
-        if let (Course::Meets(s), Some(law)) =
-            (sweep.course(&pair, margin.begins), laws.get(one, other))
-        {
-            sweep.contacts(&pair, s, law, &mut found);
-            meetings.push(PredictedMeeting {
-                names,
-                bodies: pair.bodies(),
-                at: s,
-                travel: pair.travel,
-                contacts: known..found.len(),
-            });
-        }
-        if found.len() == known && stage == Stage::After {
-            // The pair cannot be followed, or cannot be held at the point of meeting.
-            network.step_size.pass(motion.time, bodies, pair.bodies());
+        if let Some(pair) = prediction.fast_pair(names) {
+            prediction.follow(names, &pair);
         }
     }
+    let Prediction {
+        mut found,
+        meetings,
+        ..
+    } = prediction;
     if stage == Stage::Before {
+        let body = |name| body_of(shapes, name);
         mark_later(&mut found, &meetings, &sweep, &candidates, body, fast);
     }
     network.candidates = candidates;
     network.extents = extents;
     found
+}
+
+/// Returns the body of the shape with this key.
+fn body_of<S: Space>(shapes: &Shapes<S>, name: u32) -> usize {
+    let k = (name & !(Key::PIECE | Key::SURFACE)) as usize;
+    let body = if name & Key::SURFACE != 0 {
+        shapes.surfaces[k].body
+    } else if name & Key::PIECE != 0 {
+        shapes.pieces[k].body
+    } else {
+        shapes.balls[k].body
+    };
+    body as usize
+}
+
+/// The search for pairs that meet in the step.
+struct Prediction<'a, S: Space> {
+    network: &'a mut Network<S>,
+    sweep: &'a Sweep<'a, S>,
+    laws: &'a LawTable,
+    /// Displacement of each body in the step (m).
+    travels: &'a [f64],
+    /// Whether a surface moves by rotation.
+    turning: bool,
+    stage: Stage,
+    found: Vec<Contact<S>>,
+    meetings: Vec<PredictedMeeting>,
+}
+
+impl<'a, S: Space> Prediction<'a, S> {
+    /// Returns the pair with these keys if its relative motion in the step is fast.
+    fn fast_pair(&self, names: (u32, u32)) -> Option<Pair<'a, S>> {
+        let turns = self.turning && names.1 & Key::SURFACE != 0;
+        // Two balls have a single contact: if they move less than the alert distance, detection has found
+        // it.
+        let balls = (names.0 | names.1) & (Key::PIECE | Key::SURFACE) == 0;
+        let slow = if balls {
+            self.network.alert
+        } else {
+            self.network.fast
+        };
+        let travel = |name: u32| self.travels[body_of(self.sweep.shapes, name)];
+        if travel(names.0) + travel(names.1) <= slow && !turns {
+            return None;
+        }
+        let pair = self.sweep.pair(names);
+        // Not `pair.travel > slow`: a pair with NaN is followed, and reported.
+        if pair.travel <= slow {
+            None
+        } else {
+            Some(pair)
+        }
+    }
+
+    /// Follows a pair through the step: adds its contacts if it meets, or reports it.
+    fn follow(&mut self, names: (u32, u32), pair: &Pair<S>) {
+        let sweep = self.sweep;
+        let Some(margin) = margin(self.network, names, pair, self.stage) else {
+            return;
+        };
+        if sweep.course(pair, margin.deepest) == Course::Clear {
+            return;
+        }
+        let step_size = &mut self.network.step_size;
+        if self.stage == Stage::Report {
+            step_size.record_passing(sweep.time, sweep.bodies, pair.bodies());
+            return;
+        }
+        let [one, other] = pair.materials();
+        let known = self.found.len();
+        if let (Course::Meets(s), Some(law)) =
+            (sweep.course(pair, margin.begins), self.laws.get(one, other))
+        {
+            sweep.contacts(pair, s, law, &mut self.found);
+            self.meetings.push(PredictedMeeting {
+                names,
+                bodies: pair.bodies(),
+                at: s,
+                travel: pair.travel,
+                contacts: known..self.found.len(),
+            });
+        }
+        if self.found.len() == known && self.stage == Stage::After {
+            // The pair cannot be followed, or cannot be held at the point of meeting.
+            step_size.record_passing(sweep.time, sweep.bodies, pair.bodies());
+        }
+    }
 }
 
 /// Accepted penetration of a pair (m).
@@ -417,7 +443,7 @@ fn margin<S: Space>(
 impl<S: Space> Network<S> {
     /// Merges contacts that close in the step into the network; contacts that already exist get the new
     /// geometry.
-    pub fn take_in(&mut self, found: Vec<Contact<S>>) {
+    pub fn merge_contacts(&mut self, found: Vec<Contact<S>>) {
         let there = self.contacts.len();
         self.step_size.foreseen += found.len() as u64;
         for mut contact in found {

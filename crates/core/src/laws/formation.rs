@@ -1,0 +1,108 @@
+//! Formation of bonds, and memory for the internal variables of new contacts.
+
+use super::columns::StepInfo;
+use super::error::LawError;
+use super::evaluator::LawEvaluator;
+use super::history::LawHistory;
+use super::interface::Interface;
+use super::library::Call;
+use crate::contact::Network;
+use crate::geometry::space::{Space, VectorLike};
+
+impl LawEvaluator {
+    /// Allocates the internal variables of contacts and forms the bonds that are due: by the case's bond
+    /// rule, and by compression time (healing).
+    ///
+    /// # Errors
+    /// The law's error in `initialise`.
+    pub fn initialise_contacts<S: Space>(
+        &mut self,
+        laws: &[Interface],
+        history: &mut LawHistory,
+        network: &mut Network<S>,
+        info: &StepInfo,
+    ) -> Result<(), LawError> {
+        history.bonded.resize(laws.len(), false);
+        for (index, law) in laws.iter().enumerate() {
+            // Times are sums of steps, so that comparing at half a step is safe from rounding.
+            let reached = |now: f64, time: f64| now > time - 0.5 * info.h;
+            let due =
+                !history.bonded[index] && law.bonding_time().is_some_and(|t| reached(info.time, t));
+            history.bonded[index] |= due;
+            let remembers = law.variables_of_contacts() > 0;
+            if !due && !remembers && law.healing.is_none() {
+                continue;
+            }
+            let initial = law.initial();
+            let memory = &mut network.memory[index];
+            self.members.clear();
+            for (k, contact) in network.contacts.iter_mut().enumerate() {
+                if contact.law as usize != index {
+                    continue;
+                }
+                let area = law.area.area(S::D, contact.radius);
+                let held = |slot: usize| memory.bonds[slot].intact();
+                let intact = contact.memory().is_some_and(held);
+                let healed = law.healing.is_some_and(|time| {
+                    contact.compression_time > 0.0 && reached(contact.compression_time, time)
+                });
+                let bonds =
+                    !intact && !contact.vertex_contact && !contact.beyond && (due || healed);
+                // The rest position of a new bond: a tension-only bond starts without tension over its gap;
+                // one that also pushes yields until the gap is closed. Penetration is included in both, so
+                // that a bond is formed without stress.
+                let filled = if law.tension_only() {
+                    contact.gap
+                } else {
+                    contact.gap.min(0.0)
+                };
+                match contact.memory() {
+                    Some(slot) if bonds => {
+                        memory.bond(slot, filled, area);
+                        // A new bond has no history; the variables of the contact itself are kept.
+                        for v in law.variables_of_bonds() {
+                            memory.variables[v][slot] = initial[v];
+                        }
+                    }
+                    None if bonds || remembers => {
+                        contact.slot = memory.allocate(bonds, filled, area, &initial);
+                        self.members.push(k);
+                    }
+                    _ => {}
+                }
+                if bonds {
+                    network.bonds_formed.push((contact.bodies, contact.law));
+                }
+                if bonds && contact.broken {
+                    contact.broken = false;
+                    network.broken_pairs.remove(&contact.key.pair());
+                }
+            }
+            self.initialise(index, law, history, network, info)?;
+        }
+        Ok(())
+    }
+
+    /// Calls the laws that initialise internal variables, for new contacts given as members.
+    fn initialise<S: Space>(
+        &mut self,
+        index: usize,
+        law: &Interface,
+        history: &mut LawHistory,
+        network: &mut Network<S>,
+        info: &StepInfo,
+    ) -> Result<(), LawError> {
+        if self.members.is_empty() || !law.loaded().any(|l| l.plugin.initialises()) {
+            return Ok(());
+        }
+        let still = vec![S::Vector::zero(); network.contacts.len()];
+        self.gather(law, network, &still, info);
+        self.columns.size_outputs();
+        for loaded in law.loaded() {
+            self.run(loaded, history, info, 0.0, Call::Initialise)
+                .map_err(|e| self.locate(law, network, e))?;
+        }
+        self.store_variables(index, network);
+        Ok(())
+    }
+}

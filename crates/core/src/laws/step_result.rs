@@ -1,0 +1,76 @@
+//! What the contacts did in a step, as the solver gives it to the laws, and the sums of their energies.
+
+use crate::geometry::space::Space;
+use crate::solve::MomentSolution;
+use crate::solve::form::ContactSolution;
+
+/// Result of one contact over the step.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactStep<S: Space> {
+    /// Relative velocity u^- (m/s).
+    pub before: S::Vector,
+    /// Theta-averaged relative velocity u_th (m/s).
+    pub average: S::Vector,
+    /// Whether the unilateral part can carry tension (h c_n > 0).
+    pub adheres: bool,
+    /// Work dissipated by the bond's damping and by the time scheme (J).
+    pub lost: f64,
+    /// Work of the position correction (J).
+    pub corrected: f64,
+    /// Whether friction is at its bound (slip).
+    pub slides: bool,
+    /// The solver's solution.
+    pub solution: ContactSolution<S>,
+}
+
+/// Result of a contact that resists rotation over the step.
+#[derive(Clone, Copy, Debug)]
+pub struct MomentStep<S: Space> {
+    /// The solver's solution.
+    pub moment: MomentSolution<S>,
+    /// Theta-averaged relative spin (rad/s).
+    pub spin: S::Spin,
+    /// Work dissipated by the time scheme (J).
+    pub lost: f64,
+}
+
+/// Relative velocities at the start of a step, one per contact.
+#[derive(Clone, Debug)]
+pub struct Velocities<S: Space> {
+    /// u^- (m/s).
+    pub relative: Vec<S::Vector>,
+    /// Relative spins (rad/s); empty unless a bond resists rotation.
+    pub turning: Vec<S::Spin>,
+}
+
+impl<S: Space> Default for Velocities<S> {
+    fn default() -> Self {
+        Self {
+            relative: Vec::new(),
+            turning: Vec::new(),
+        }
+    }
+}
+
+/// Energies and events of one step, summed over contacts (J, m^3).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Totals {
+    /// Dissipated by friction.
+    pub friction: f64,
+    /// Dissipated by impacts.
+    pub impact: f64,
+    /// Dissipated against tensile strength (cohesion without opening).
+    pub adhesion: f64,
+    /// Dissipated by damping of bonds.
+    pub viscous: f64,
+    /// Work of the position correction, negative: it separates penetrating bodies.
+    pub correction: f64,
+    /// Fracture energy released by damage.
+    pub fracture: f64,
+    /// Number of bonds that broke.
+    pub broken: u64,
+    /// Volume worn off first bodies.
+    pub worn_first: f64,
+    /// Volume worn in contacts between grains.
+    pub worn_third: f64,
+}
