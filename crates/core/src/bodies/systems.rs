@@ -183,11 +183,10 @@ impl<S: Space> Systems<S> {
         entry.system.contact_nodes(contactor, arm)
     }
 
-    /// Velocity of the point of a system that a contact acts on, at the velocities at hand (m/s).
-    pub fn contact_velocity(&self, carrier: Carrier, arm: &S::Vector) -> S::Vector {
-        let system = &self.entries[carrier.system as usize].system;
-        let terms = self.contact_nodes(carrier, arm);
-        terms
+    /// Velocity of a point of a system at the velocities at hand (m/s).
+    pub fn velocity_at(&self, system: usize, nodes: &Nodes) -> S::Vector {
+        let system = &self.entries[system].system;
+        nodes
             .terms()
             .fold(S::Vector::zero(), |sum, (node, weight)| {
                 sum + system.node_velocity(node, system.velocity()) * weight

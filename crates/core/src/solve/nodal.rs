@@ -4,17 +4,19 @@ use super::form::{ContactForm, Mobility, Place, Problem};
 use super::row::{SystemRow, Term};
 use super::side::Side;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use std::sync::Arc;
 
 /// The nodes of a system that contacts of the step act on. The solver knows nothing else of it; the system finds the rest
 /// of its velocities from the impulses on these nodes once the problem is solved.
+///
+/// Copies share the blocks: a step that is solved several times hands copies of one to the problem.
 #[derive(Clone, Debug)]
 pub struct NodalSystem<S: Space> {
     /// Ids of the nodes in the system, in increasing order.
     pub nodes: Vec<u32>,
     /// Their velocities without contacts (m/s).
     pub free: Vec<S::Vector>,
-    /// Compliance P_a A^-1 P_b^T between them, row by row (1/kg).
-    pub compliance: Vec<S::Matrix>,
+    compliance: Arc<[S::Matrix]>,
     pub(super) velocity: Vec<S::Vector>,
 }
 
@@ -27,8 +29,13 @@ impl<S: Space> NodalSystem<S> {
             velocity: free.clone(),
             nodes,
             free,
-            compliance,
+            compliance: compliance.into(),
         }
+    }
+
+    /// Compliance P_a A^-1 P_b^T between its nodes, row by row (1/kg).
+    pub fn compliance(&self) -> &[S::Matrix] {
+        &self.compliance
     }
 
     /// The block of two of its nodes, by their places in the list.
@@ -103,21 +110,22 @@ impl<S: Space> Problem<S> {
         true
     }
 
-    /// The nodes of a system and the impulses that contacts have on them (N s).
-    pub fn node_impulses(&self, system: usize) -> impl Iterator<Item = (u32, S::Vector)> {
-        let mut impulses = vec![S::Vector::zero(); self.systems[system].nodes.len()];
+    /// The impulses that contacts have on the nodes of the systems (N s), by system, in the order of its nodes.
+    pub fn node_impulses(&self) -> Vec<Vec<S::Vector>> {
+        let rest = |system: &NodalSystem<S>| vec![S::Vector::zero(); system.nodes.len()];
+        let mut impulses: Vec<Vec<S::Vector>> = self.systems.iter().map(rest).collect();
         for row in &self.of_systems {
-            row.add_impulses(system, &mut impulses);
+            row.add_impulses(&mut impulses);
         }
-        self.systems[system].nodes.iter().copied().zip(impulses)
+        impulses
     }
 
     /// Twice the energy |v - v_free|_A^2 of what contacts change of the systems (J).
     pub(super) fn work_on_systems(&self) -> f64 {
         let mut work = 0.0;
-        for (k, system) in self.systems.iter().enumerate() {
+        for (system, impulses) in self.systems.iter().zip(self.node_impulses()) {
             let velocities = system.velocity.iter().zip(&system.free);
-            for ((_, p), (v, free)) in self.node_impulses(k).zip(velocities) {
+            for (p, (v, free)) in impulses.iter().zip(velocities) {
                 work += p.dot(&(*v - *free));
             }
         }

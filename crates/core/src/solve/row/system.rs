@@ -109,11 +109,11 @@ impl<S: Space> SystemRow<S> {
         self.push(self.contact.impulse(), lines, systems);
     }
 
-    /// Adds its impulse to those on the nodes of a system.
-    pub fn add_impulses(&self, system: usize, impulses: &mut [S::Vector]) {
-        let own = self.terms.iter().filter(|t| t.system as usize == system);
-        for term in own {
-            impulses[term.node as usize] += *self.contact.impulse() * term.weight;
+    /// Adds its impulse to those on the nodes of the systems, by system.
+    pub fn add_impulses(&self, impulses: &mut [Vec<S::Vector>]) {
+        for term in &self.terms {
+            impulses[term.system as usize][term.node as usize] +=
+                *self.contact.impulse() * term.weight;
         }
     }
 
