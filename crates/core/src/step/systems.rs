@@ -110,7 +110,9 @@ impl<S: Space> Simulation<S> {
 
     /// The sides of a contact; none where both are rigid.
     fn sides(&self, contact: &Contact<S>) -> Option<[Side<S>; 2]> {
-        let carriers = contact.bodies.map(|b| self.state.bodies.carrier(b as usize));
+        let carriers = contact
+            .bodies
+            .map(|b| self.state.bodies.carrier(b as usize));
         if carriers == [None; 2] {
             return None;
         }
