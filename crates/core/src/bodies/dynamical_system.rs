@@ -136,10 +136,18 @@ impl Nodes {
 ///
 /// What it computes must depend on nothing but its state: the same state gives the same bits.
 ///
+/// # Methods
+/// Every method of the solver serves systems: sweeps apply the compliance impulse by impulse, gradients to all nodes at
+/// a time, and Newton and the interior point form W, of which the blocks between all contacts of a system are filled. Where these have
+/// more than some ten million entries there are products alone, and methods that need W are refused
+/// ([`crate::solve::refusal`]). Nodes take up forces, no moments: a law that resists rotation is refused
+/// ([`crate::step::StepError::SystemRotation`]), and so is the projection of overlaps.
+///
 /// # Systems that are not linear
 /// With internal forces f(q) in place of K q a step is taken with the tangent: `linearise` forms K = df/dq and A at the state
 /// q + h theta v that the step would reach without forces (it is q_m at theta = 1/2), and the free velocity is
-/// v + A^-1 h (F - C v - f(q + h theta v)). The force is then wrong by O(h^4) a step, so that the rule is of second order at theta = 1/2.
+/// v + A^-1 h (F - C v - f(q + h theta v)). Where no impact makes the velocity jump the force is then wrong by O(h^4), and the rule is
+/// of second order at theta = 1/2.
 /// What the linearised force does along the step and what is stored differ: the difference is part of
 /// [`SystemWork::scheme`], and the ledger closes.
 pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {

@@ -167,7 +167,8 @@ impl<S: Space> SolveContext<'_, S> {
         let options = self.options;
         let unknowns = problem.contacts() * S::D;
         // Estimate: a contact between balls shares a body with about eight others.
-        let entries = (9 * S::D * unknowns) as f64;
+        let coupled = problem.coupled_by_systems();
+        let entries = (9 * S::D * unknowns) as f64 + coupled;
         let per = sweeps_per_factorisation(entries, problem.contacts() as f64);
         let worth = if options.tolerance >= 1e-5 {
             LOOSE
@@ -185,10 +186,15 @@ impl<S: Space> SolveContext<'_, S> {
             cohesion: false,
             operator: problem.operator(),
         };
-        let without = if refusal(Method::Newton, &features).is_some() {
+        let large = unknowns > LARGEST || features.operator < Operator::Matrix;
+        let laws = Features {
+            operator: Operator::Matrix,
+            ..features
+        };
+        let without = if refusal(Method::Newton, &laws).is_some() {
             Some(SolvePath::Unserved)
         } else {
-            (unknowns > LARGEST).then_some(SolvePath::Large)
+            large.then_some(SolvePath::Large)
         };
         if let Some(chosen) = without {
             let mut report = self.sweep(problem, true, options.max_iterations);

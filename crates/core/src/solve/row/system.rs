@@ -68,7 +68,8 @@ impl<S: Space> SystemRow<S> {
         signed.filter_map(|(side, sign)| Some((side.as_ref()?, sign)))
     }
 
-    fn relative(&self, lines: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> S::Vector {
+    /// Its relative velocity (m/s).
+    pub fn relative(&self, lines: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> S::Vector {
         let mut u = S::Vector::zero();
         for (side, sign) in self.rigid_sides() {
             let line = &lines[side.body as usize];
@@ -115,6 +116,21 @@ impl<S: Space> SystemRow<S> {
             impulses[term.system as usize][term.node as usize] +=
                 *self.contact.impulse() * term.weight;
         }
+    }
+
+    /// The nodes that it acts on.
+    pub fn terms(&self) -> &[Term] {
+        &self.terms
+    }
+
+    /// Whether a side is a rigid body, by side.
+    pub fn is_rigid(&self) -> [bool; 2] {
+        std::array::from_fn(|side| self.rigid[side].is_some())
+    }
+
+    /// W_cc in world axes (1/kg).
+    pub fn block(&self) -> &S::Matrix {
+        self.contact.block()
     }
 
     /// The law and the impulse, which need no bodies.
