@@ -8,19 +8,26 @@ use serde::{Deserialize, Serialize};
 /// With theta = 1/2 the balance closes to rounding and to the solver's tolerance:
 /// kinetic + potential + elastic + fracture + friction + impact + adhesion + viscous + correction + scheme
 /// plus carried minus external work equals the initial energy.
+///
+/// Dynamical systems are booked where rigid bodies and bonds are: their motion in `kinetic`, the energy of their deformation in
+/// `elastic`, their weight in `potential`, their damping in `viscous`, forces and motions imposed on them in `external_work`, and in
+/// `scheme` what the time integration takes of them. The impulses of contacts do work on a system through the velocities of its
+/// nodes; this work has no entry of its own, as that on rigid bodies has none: on both sides of a contact together it is the friction,
+/// impact and adhesion of the contact, the change of its bond, and the work of the correction. Energy that a system stores
+/// when it is added counts as external work, its kinetic energy as initial.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
-    /// Kinetic energy now.
+    /// Kinetic energy of bodies and dynamical systems now.
     pub kinetic: f64,
-    /// Potential energy in gravity now, zero at the start.
+    /// Potential energy of bodies and dynamical systems in gravity now, zero at the start.
     pub potential: f64,
     /// Energy stored in bonds and in dynamical systems now.
     pub elastic: f64,
     /// Energy released by damage.
     pub fracture: f64,
-    /// Dissipated by friction.
+    /// Dissipated by friction, at contacts of bodies and of dynamical systems.
     pub friction: f64,
-    /// Dissipated by impacts.
+    /// Dissipated by impacts, of bodies and of nodes of dynamical systems.
     pub impact: f64,
     /// Work done against cohesion without an opening.
     pub adhesion: f64,
@@ -29,15 +36,16 @@ pub struct Energy {
     /// Work of removing penetrations, negative where energy is added; see `solver.correction` and
     /// `solver.projection`.
     pub correction: f64,
-    /// Dissipated by the scheme, (theta - 1/2) |v+ - v|_M^2; zero at theta = 1/2.
+    /// Dissipated by the scheme, (theta - 1/2) |v+ - v|_M^2, and of dynamical systems what
+    /// [`crate::bodies::SystemWork::scheme`] says; zero at theta = 1/2 but for systems that are not linear.
     pub scheme: f64,
     /// Kinetic energy that bodies had when they were removed from the scene.
     pub carried: f64,
-    /// Work of imposed forces and motions.
+    /// Work of imposed forces and motions, and what dynamical systems stored when they were added.
     pub external_work: f64,
     /// Residual of the balance.
     pub residual: f64,
-    /// Kinetic energy at the start.
+    /// Kinetic energy at the start, of bodies and dynamical systems.
     pub initial_kinetic: f64,
     /// Largest scale of the balance so far: the work done or the energy held.
     pub scale: f64,
@@ -123,7 +131,11 @@ impl Energy {
         [
             ("kinetic", "kinetic energy", kinetic),
             ("potential", "potential energy since the start", potential),
-            ("elastic", "energy stored in bonds", elastic),
+            (
+                "elastic",
+                "energy stored in bonds and deformable bodies",
+                elastic,
+            ),
             (
                 "fracture",
                 "energy released by damage since the start",
@@ -136,7 +148,11 @@ impl Energy {
                 "energy spent against cohesion without opening",
                 adhesion,
             ),
-            ("viscous", "energy dissipated by damping of bonds", viscous),
+            (
+                "viscous",
+                "energy dissipated by damping of bonds and deformable bodies",
+                viscous,
+            ),
             (
                 "correction",
                 "energy given by taking overlaps out, negative where it adds energy",

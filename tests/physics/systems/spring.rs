@@ -1,8 +1,10 @@
 //! A body that is not rigid, as a user of the library writes one: two masses on a linear spring with a damper, which touch by a
-//! ball each or by one ball half-way between them.
+//! ball each or by one ball half-way between them. The spring may stiffen as it is stretched.
 
 use fretwork::bodies::{Contactor, DynamicalSystem, Nodes, SystemStep, SystemWork};
 use fretwork::geometry::space::{Space, VectorLike};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What of it touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,15 +17,38 @@ pub enum Touching {
     Middle,
 }
 
-/// The spring pulls along all axes alike, so that the body is linear: force k (d2 - d1) + c (v2 - v1) on the first mass, d the
-/// displacements from rest.
+/// How often its step asked for what is to be done once.
+#[derive(Debug, Default)]
+pub struct Calls {
+    pub linearise: AtomicUsize,
+    pub solve: AtomicUsize,
+    pub contact_nodes: AtomicUsize,
+}
+
+impl Calls {
+    fn count(counter: &AtomicUsize) {
+        counter.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Tangents, solves and contact nodes since the last time.
+    pub fn take(&self) -> [usize; 3] {
+        [&self.linearise, &self.solve, &self.contact_nodes].map(|c| c.swap(0, Ordering::Relaxed))
+    }
+}
+
+/// The spring pulls along all axes alike, with s = d2 - d1 along an axis, d the displacements from rest: the force on the first
+/// mass is k (s + stiffening s^3) + c ds/dt.
 #[derive(Clone, Debug)]
 pub struct Spring<S: Space> {
     pub mass: [f64; 2],
     pub stiffness: f64,
+    /// Zero of a linear spring (1/m^2).
+    pub stiffening: f64,
     pub damping: f64,
     pub radius: f64,
     pub touching: Touching,
+    pub driven: bool,
+    pub calls: Arc<Calls>,
     /// Places of the masses without load (m).
     pub home: [S::Vector; 2],
     /// Displacements, then velocities: of the first mass, then of the second.
@@ -31,8 +56,8 @@ pub struct Spring<S: Space> {
     pub velocity: Vec<f64>,
     /// Both at the start of the step.
     start: [Vec<f64>; 2],
-    /// A^-1 of an axis.
-    inverse: [[f64; 2]; 2],
+    /// A^-1 of each axis.
+    inverse: [[[f64; 2]; 2]; 3],
 }
 
 impl<S: Space> Spring<S> {
@@ -41,14 +66,17 @@ impl<S: Space> Spring<S> {
         Self {
             mass,
             stiffness,
+            stiffening: 0.0,
             damping: 0.0,
             radius,
             touching: Touching::Ends,
+            driven: false,
+            calls: Arc::default(),
             home,
             displacement: vec![0.0; 2 * S::D],
             velocity: vec![0.0; 2 * S::D],
             start: [vec![0.0; 2 * S::D], vec![0.0; 2 * S::D]],
-            inverse: [[0.0; 2]; 2],
+            inverse: [[[0.0; 2]; 2]; 3],
         }
     }
 
@@ -64,6 +92,35 @@ impl<S: Space> Spring<S> {
 
     fn stretch(values: &[f64]) -> S::Vector {
         Self::of(values, 1) - Self::of(values, 0)
+    }
+
+    fn pull(&self, stretch: f64) -> f64 {
+        self.stiffness * (stretch + self.stiffening * stretch.powi(3))
+    }
+
+    fn tangent(&self, stretch: f64) -> f64 {
+        self.stiffness * (1.0 + 3.0 * self.stiffening * stretch * stretch)
+    }
+
+    fn stored(&self, stretch: f64) -> f64 {
+        let squared = stretch * stretch;
+        self.stiffness * (0.5 * squared + 0.25 * self.stiffening * squared * squared)
+    }
+
+    /// The stretch that the step would reach at theta without forces.
+    fn expected(&self, step: &SystemStep<S>) -> S::Vector {
+        let [x, v] = &self.start;
+        Self::stretch(x) + Self::stretch(v) * (step.h * step.theta)
+    }
+
+    fn form(&mut self, step: &SystemStep<S>, stretch: &S::Vector) {
+        let SystemStep { h, theta, .. } = *step;
+        let [m, n] = self.mass;
+        for k in 0..S::D {
+            let b = h * theta * self.damping + (h * theta).powi(2) * self.tangent(stretch[k]);
+            let determinant = m * n + b * (m + n);
+            self.inverse[k] = [[n + b, b], [b, m + b]].map(|row| row.map(|x| x / determinant));
+        }
     }
 }
 
@@ -86,11 +143,17 @@ impl<S: Space> DynamicalSystem<S> for Spring<S> {
 
     fn begin_step(&mut self, step: &SystemStep<S>) {
         self.start = [self.displacement.clone(), self.velocity.clone()];
-        let SystemStep { h, theta, .. } = *step;
-        let b = h * theta * self.damping + (h * theta).powi(2) * self.stiffness;
-        let [m, n] = self.mass;
-        let determinant = m * n + b * (m + n);
-        self.inverse = [[n + b, b], [b, m + b]].map(|row| row.map(|x| x / determinant));
+        if self.stiffening == 0.0 {
+            self.form(step, &S::Vector::zero());
+        }
+    }
+
+    fn linearise(&mut self, step: &SystemStep<S>) {
+        Calls::count(&self.calls.linearise);
+        if self.stiffening != 0.0 {
+            let stretch = self.expected(step);
+            self.form(step, &stretch);
+        }
     }
 
     fn advance(&mut self, time: f64) {
@@ -100,12 +163,13 @@ impl<S: Space> DynamicalSystem<S> for Spring<S> {
     }
 
     fn free_velocity(&self, step: &SystemStep<S>) -> Vec<f64> {
-        let [x, v] = &self.start;
+        let [_, v] = &self.start;
         let rate = Self::stretch(v);
-        let stretch = Self::stretch(x) + rate * (step.h * step.theta);
-        let force = stretch * self.stiffness + rate * self.damping;
+        let stretch = self.expected(step);
+        let mut force = rate * self.damping;
         let mut impulse = vec![0.0; 2 * S::D];
         for k in 0..S::D {
+            force[k] += self.pull(stretch[k]);
             impulse[k] = step.h * (self.mass[0] * step.gravity[k] + force[k]);
             impulse[S::D + k] = step.h * (self.mass[1] * step.gravity[k] - force[k]);
         }
@@ -114,9 +178,10 @@ impl<S: Space> DynamicalSystem<S> for Spring<S> {
     }
 
     fn solve(&self, impulse: &mut [f64]) {
+        Calls::count(&self.calls.solve);
         for k in 0..S::D {
             let p = [impulse[k], impulse[S::D + k]];
-            for (node, row) in self.inverse.iter().enumerate() {
+            for (node, row) in self.inverse[k].iter().enumerate() {
                 impulse[node * S::D + k] = row[0] * p[0] + row[1] * p[1];
             }
         }
@@ -130,9 +195,25 @@ impl<S: Space> DynamicalSystem<S> for Spring<S> {
         let rate = Self::stretch(&average);
         let mut work = SystemWork {
             damping: h * self.damping * rate.dot(&rate),
-            scheme: (theta - 0.5) * h * h * self.stiffness * rate.dot(&rate),
             ..SystemWork::default()
         };
+        if self.stiffening == 0.0 {
+            work.scheme = (theta - 0.5) * h * h * self.stiffness * rate.dot(&rate);
+        } else {
+            let (from, to) = (
+                Self::stretch(&self.start[0]),
+                Self::stretch(&self.displacement),
+            );
+            let (expected, change) = (
+                self.expected(step),
+                Self::stretch(&self.velocity) - Self::stretch(old),
+            );
+            for k in 0..S::D {
+                let tangent = self.tangent(expected[k]);
+                let force = self.pull(expected[k]) + tangent * theta * theta * h * change[k];
+                work.scheme += h * force * rate[k] - (self.stored(to[k]) - self.stored(from[k]));
+            }
+        }
         for (node, mass) in self.mass.iter().enumerate() {
             work.potential -= h * mass * step.gravity.dot(&Self::of(&average, node));
             let change = Self::of(&self.velocity, node) - Self::of(old, node);
@@ -151,7 +232,11 @@ impl<S: Space> DynamicalSystem<S> for Spring<S> {
 
     fn stored_energy(&self) -> f64 {
         let stretch = Self::stretch(&self.displacement);
-        0.5 * self.stiffness * stretch.dot(&stretch)
+        (0..S::D).map(|k| self.stored(stretch[k])).sum()
+    }
+
+    fn mass(&self) -> f64 {
+        self.mass[0] + self.mass[1]
     }
 
     fn node_position(&self, node: u32) -> S::Vector {
@@ -183,6 +268,15 @@ impl<S: Space> DynamicalSystem<S> for Spring<S> {
                 .collect(),
             _ => vec![ball(Nodes::one(0)), ball(Nodes::one(1))],
         }
+    }
+
+    fn contact_nodes(&self, contactor: &Contactor, _: &S::Vector) -> Nodes {
+        Calls::count(&self.calls.contact_nodes);
+        contactor.nodes
+    }
+
+    fn is_driven(&self) -> bool {
+        self.driven
     }
 
     fn touches_itself(&self) -> bool {

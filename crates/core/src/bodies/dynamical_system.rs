@@ -43,7 +43,9 @@ pub struct SystemWork {
     pub external: f64,
     /// Dissipated by damping, h v_theta . C v_theta.
     pub damping: f64,
-    /// Dissipated by the scheme, (theta - 1/2) (|v+ - v|_M^2 + h^2 |v_theta|_K^2); zero at theta = 1/2.
+    /// Dissipated by the scheme, (theta - 1/2) (|v+ - v|_M^2 + h^2 |v_theta|_K^2); zero at theta = 1/2. Where internal forces
+    /// are not linear the second part is the work against the force that the step was taken with, h f . v_theta, less the change
+    /// of the stored energy: negative where the scheme adds energy.
     pub scheme: f64,
 }
 
@@ -120,13 +122,34 @@ impl Nodes {
 
 /// A body with generalised coordinates of its own.
 ///
-/// In each step it is called in this order: [`begin_step`](Self::begin_step) at the state of its start,
-/// [`advance`](Self::advance) by (1 - theta) h, [`free_velocity`](Self::free_velocity) and
-/// [`compliance`](Self::compliance) at q_m, [`set_velocity`](Self::set_velocity) with v+ (several times where a step is solved
-/// again), `advance` by theta h, and [`work`](Self::work) at the end. Velocities have [`freedoms`](Self::freedoms) entries, in the
-/// system's own units.
+/// In each step it is called in this order:
+///
+/// 1. [`begin_step`](Self::begin_step) at the state of its start,
+/// 2. [`advance`](Self::advance) by (1 - theta) h, to q_m, where contacts are found,
+/// 3. [`linearise`](Self::linearise) and [`free_velocity`](Self::free_velocity), once,
+/// 4. [`contact_nodes`](Self::contact_nodes) once for each contact, then [`compliance`](Self::compliance) of the nodes that are
+///    touched; both again only where the step is solved again with more contacts,
+/// 5. [`set_velocity`](Self::set_velocity) with v+; several times where a step is solved again,
+/// 6. `advance` by theta h, and [`work`](Self::work) at the end.
+///
+/// Velocities have [`freedoms`](Self::freedoms) entries, in the system's own units.
 ///
 /// What it computes must depend on nothing but its state: the same state gives the same bits.
+///
+/// # Methods
+/// Every method of the solver serves systems: sweeps apply the compliance impulse by impulse, gradients to all nodes at
+/// a time, and Newton and the interior point form W, of which the blocks between all contacts of a system are filled. Where these have
+/// more than some ten million entries there are products alone, and methods that need W are refused
+/// ([`crate::solve::refusal`]). Nodes take up forces, no moments: a law that resists rotation is refused
+/// ([`crate::step::StepError::SystemRotation`]), and so is the projection of overlaps.
+///
+/// # Systems that are not linear
+/// With internal forces f(q) in place of K q a step is taken with the tangent: `linearise` forms K = df/dq and A at the state
+/// q + h theta v that the step would reach without forces (it is q_m at theta = 1/2), and the free velocity is
+/// v + A^-1 h (F - C v - f(q + h theta v)). Where no impact makes the velocity jump the force is then wrong by O(h^4), and the rule is
+/// of second order at theta = 1/2.
+/// What the linearised force does along the step and what is stored differ: the difference is part of
+/// [`SystemWork::scheme`], and the ledger closes.
 pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// What a user calls it.
     fn name(&self) -> &str;
@@ -140,8 +163,14 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// Takes generalised velocities, as many as [`Self::freedoms`].
     fn set_velocity(&mut self, velocity: &[f64]);
 
-    /// Begins a step at the state at hand, which it remembers as its start; A is formed here where it has changed.
+    /// Begins a step at the state at hand, which it remembers as its start. A linear system forms A here where h or theta have
+    /// changed.
     fn begin_step(&mut self, step: &SystemStep<S>);
+
+    /// Forms A and what [`Self::compliance`] gives for the step, where they depend on the state: a body in large strain
+    /// takes its tangent and factorises, one in a floating frame turns its blocks. Called once a step, at q_m, before all that
+    /// needs A; [`Self::begin_step`] has remembered the start. Here nothing: A is that of a linear system.
+    fn linearise(&mut self, _step: &SystemStep<S>) {}
 
     /// Moves the coordinates by a time (s) at the velocities at hand.
     fn advance(&mut self, time: f64);
@@ -160,6 +189,30 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
 
     /// Energy stored in deformation now (J; J/m in 2D).
     fn stored_energy(&self) -> f64;
+
+    /// Mass that gravity acts on (kg; kg/m in 2D).
+    fn mass(&self) -> f64;
+
+    /// A length of its size, as the radius of a grain is (m): the kinetic energy of a body at rest is small against its mass times
+    /// gravity times twice this length. Here half of the longest edge of the box around its contactors.
+    fn length(&self) -> f64 {
+        let (mut low, mut high) = (S::Vector::zero(), S::Vector::zero());
+        for (k, contactor) in self.contactors().iter().enumerate() {
+            let at = self.contactor_motion(contactor).position;
+            for d in 0..S::D {
+                let [from, to] = [at[d] - contactor.radius, at[d] + contactor.radius];
+                low[d] = if k == 0 { from } else { low[d].min(from) };
+                high[d] = if k == 0 { to } else { high[d].max(to) };
+            }
+        }
+        (0..S::D).fold(0.0, |most: f64, d| most.max(0.5 * (high[d] - low[d])))
+    }
+
+    /// Whether motion of it is imposed. A condition of rest does not look at it then, as it does not at a first body that is
+    /// driven.
+    fn is_driven(&self) -> bool {
+        false
+    }
 
     /// Where a node is (m).
     fn node_position(&self, node: u32) -> S::Vector;

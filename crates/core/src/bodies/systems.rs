@@ -152,9 +152,11 @@ impl<S: Space> Systems<S> {
         }
     }
 
-    /// Finds all velocities without contacts, and those of the contactors' bodies in `free`, which is by body.
+    /// Has all systems linearise, and finds their velocities without contacts, and those of the contactors' bodies in `free`,
+    /// which is by body.
     pub fn free_velocities(&mut self, step: &SystemStep<S>, free: &mut [(S::Vector, S::Spin)]) {
         for entry in &mut self.entries {
+            entry.system.linearise(step);
             entry.free = entry.system.free_velocity(step);
             for (contactor, body) in entry.contactors.iter().zip(&entry.bodies) {
                 let terms = contactor.nodes.terms();
@@ -183,11 +185,10 @@ impl<S: Space> Systems<S> {
         entry.system.contact_nodes(contactor, arm)
     }
 
-    /// Velocity of the point of a system that a contact acts on, at the velocities at hand (m/s).
-    pub fn contact_velocity(&self, carrier: Carrier, arm: &S::Vector) -> S::Vector {
-        let system = &self.entries[carrier.system as usize].system;
-        let terms = self.contact_nodes(carrier, arm);
-        terms
+    /// Velocity of a point of a system at the velocities at hand (m/s).
+    pub fn velocity_at(&self, system: usize, nodes: &Nodes) -> S::Vector {
+        let system = &self.entries[system].system;
+        nodes
             .terms()
             .fold(S::Vector::zero(), |sum, (node, weight)| {
                 sum + system.node_velocity(node, system.velocity()) * weight
@@ -227,6 +228,16 @@ impl<S: Space> Systems<S> {
                 sum.0 + system.kinetic_energy(),
                 sum.1 + system.stored_energy(),
             )
+        })
+    }
+
+    /// Kinetic energy (J) and mass times twice the length (kg m) of the systems of which nothing is imposed (per metre of depth in
+    /// 2D).
+    pub fn motion_of_free(&self) -> (f64, f64) {
+        let free = self.entries.iter().map(|e| &e.system);
+        free.filter(|s| !s.is_driven()).fold((0.0, 0.0), |sum, s| {
+            let scale = s.mass() * 2.0 * s.length();
+            (sum.0 + s.kinetic_energy(), sum.1 + scale)
         })
     }
 

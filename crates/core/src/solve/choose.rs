@@ -189,10 +189,16 @@ impl<S: Space> SolveContext<'_, S> {
             cohesion: false,
             operator: problem.operator(),
         };
-        let without_newton = if refusal(Method::Newton, &features).is_some() {
+        let large =
+            problem.contacts() * S::D > MAX_FACTORISED || features.operator < Operator::Matrix;
+        let of_the_laws = Features {
+            operator: Operator::Matrix,
+            ..features
+        };
+        let without_newton = if refusal(Method::Newton, &of_the_laws).is_some() {
             Some(SolvePath::Unserved)
         } else {
-            (problem.contacts() * S::D > MAX_FACTORISED).then_some(SolvePath::Large)
+            large.then_some(SolvePath::Large)
         };
         if let Some(chosen) = without_newton {
             let mut report = self.sweep(problem, true, options.max_iterations);
@@ -236,7 +242,8 @@ impl<S: Space> SolveContext<'_, S> {
     /// Returns the number of iterations of Gauss-Seidel before Newton, whose cost is that of some factorisations.
     fn sweeps_before_newton(&self, problem: &Problem<S>, auto_state: &AutoState) -> u32 {
         // Estimate: a contact between balls shares a body with about eight others.
-        let entries = (9 * S::D * (problem.contacts() * S::D)) as f64;
+        let unknowns = problem.contacts() * S::D;
+        let entries = (9 * S::D * unknowns) as f64 + problem.coupled_by_systems();
         let per = sweeps_per_factorisation(entries, problem.contacts() as f64);
         let worth = if self.options.tolerance >= 1e-5 {
             LOOSE

@@ -1,7 +1,8 @@
 //! The choices of `auto` in a step, and the hyperstaticity of a contact set.
 
-use super::form::{ContactForm, Problem};
-use crate::geometry::space::{Space, VectorLike};
+use super::form::{ContactForm, Place, Problem};
+use super::nodal::NodalSystem;
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
 /// Result of a method in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -37,7 +38,7 @@ pub enum SolvePath {
         /// Result of the interior point.
         interior: Attempt,
     },
-    /// Sweeps had taken their share, and went on: Newton does not serve friction against rotation, nor dynamical systems.
+    /// Sweeps had taken their share, and went on: Newton does not serve friction against rotation.
     Unserved,
     /// Gauss-Seidel used its allowance and continued, because the set is too large to factorise.
     Large,
@@ -55,20 +56,29 @@ impl SolvePath {
 /// the bodies they act on. Above 1 the set is hyperstatic: the motion does not determine the impulses.
 ///
 /// A frictionless contact has one unknown. Rotations count where a contact can rotate the body, by friction
-/// or by a lever arm. The impulse of a bond follows from its opening and is no unknown. The result is 0
-/// without active contacts.
+/// or by a lever arm. The impulse of a bond follows from its opening and is no unknown. Of a dynamical system the motions of the
+/// nodes count that contacts act on. The result is 0 without active contacts.
 pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) -> f64 {
     /// Flags of a body with a contact, and of one that contacts can rotate.
     const TOUCHED: u8 = 1;
     const TURNED: u8 = 3;
     let mut state = vec![0u8; problem.masses.len()];
+    let still = |system: &NodalSystem<S>| vec![false; system.nodes.len()];
+    let mut nodes: Vec<Vec<bool>> = problem.systems.iter().map(still).collect();
     let mut unknowns = 0;
     for (k, form) in forms.iter().enumerate() {
         let solution = problem.solution(k);
         let carries = solution.unilateral_n != 0.0 || solution.unilateral_t != S::Tangent::zero();
         let moves = |b: &u32| freedoms::<S>(problem, *b as usize, true) > 0;
-        if !carries || !form.bodies.iter().any(moves) {
+        let terms = match problem.places[k] {
+            Place::System(r) => problem.of_systems[r as usize].terms(),
+            _ => &[],
+        };
+        if !carries || !(form.bodies.iter().any(moves) || !terms.is_empty()) {
             continue;
+        }
+        for term in terms {
+            nodes[term.system as usize][term.node as usize] = true;
         }
         let rough = form.friction > 0.0 || form.cohesion > 0.0;
         unknowns += if rough { S::D } else { 1 };
@@ -86,7 +96,18 @@ pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) 
         .filter(|(_, state)| **state != 0)
         .map(|(b, state)| freedoms::<S>(problem, b, *state == TURNED))
         .sum();
-    unknowns as f64 / freedoms.max(1) as f64
+    let of_nodes = problem.systems.iter().zip(&nodes);
+    let of_nodes: usize = of_nodes
+        .map(|(system, touched)| {
+            let touched = (0..touched.len()).filter(|a| touched[*a]);
+            let axes = |a: usize| {
+                let block = system.block(a as u32, a as u32);
+                (0..S::D).filter(|k| block.entry(*k, *k) > 0.0).count()
+            };
+            touched.map(axes).sum::<usize>()
+        })
+        .sum();
+    unknowns as f64 / (freedoms + of_nodes).max(1) as f64
 }
 
 /// Returns the number of degrees of freedom of a movable body, with or without rotation.

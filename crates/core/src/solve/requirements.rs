@@ -49,21 +49,42 @@ impl Method {
 }
 
 impl<S: Space> Problem<S> {
-    /// The most of W that can be had: dynamical systems are swept over alone.
+    /// The most of W that can be had. The contacts of a dynamical system are all coupled: where there are too many of them for a
+    /// matrix, products are left.
     pub fn operator(&self) -> Operator {
-        if self.of_systems.is_empty() {
-            Operator::Matrix
+        if self.coupled_by_systems() > MAX_COUPLED {
+            Operator::Products
         } else {
-            Operator::Sweep
+            Operator::Matrix
         }
     }
+
+    /// Entries of W between contacts of the same system, at most; zero without systems.
+    pub(super) fn coupled_by_systems(&self) -> f64 {
+        let mut contacts = vec![0.0; self.systems.len()];
+        for row in &self.of_systems {
+            let systems = row.terms().iter().map(|t| t.system as usize);
+            let mut last = None;
+            for system in systems {
+                if last != Some(system) {
+                    contacts[system] += S::D as f64;
+                }
+                last = Some(system);
+            }
+        }
+        contacts.iter().map(|m| m * m).sum()
+    }
 }
+
+/// About 100 MB for W, and a factorisation of the order of ten seconds.
+const MAX_COUPLED: f64 = 1.2e7;
 
 /// Why a method cannot solve a problem with these features, if it cannot: what to take instead.
 pub fn refusal(method: Method, features: &Features) -> Option<&'static str> {
     if method.operator() > features.operator {
         return Some(
-            "contacts with dynamical systems are solved contact by contact, without products with W or its matrix; use auto, anderson or nlgs",
+            "the contacts of a dynamical system are all coupled, and there are too many of them to form W as a matrix; use auto, \
+             anderson, nlgs or a gradient",
         );
     }
     match method {

@@ -28,10 +28,10 @@ impl<S: Space> Default for Solved<S> {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Returns the velocity of a contact's candidate relative to its antagonist, at the current velocities.
-    fn relative_velocity(&self, contact: &Contact<S>) -> S::Vector {
-        if !self.state.systems.is_empty() {
-            return self.relative_velocity_of_sides(contact);
+    /// Returns the velocity of the candidate of the `k`-th contact relative to its antagonist, at the current velocities.
+    fn relative_velocity(&self, k: usize, contact: &Contact<S>) -> S::Vector {
+        if let Some(relative) = self.relative_velocity_of_sides(k) {
+            return relative;
         }
         let [i, j] = contact.bodies.map(|b| b as usize);
         let bodies = &self.state.bodies;
@@ -45,14 +45,17 @@ impl<S: Space> Simulation<S> {
         let mut before = std::mem::take(&mut self.workspace.solved.before);
         let contacts = &self.state.network.contacts;
         before.relative.clear();
-        let relative = contacts.iter().map(|c| self.relative_velocity(c));
+        let contacts = contacts.iter().enumerate();
+        let relative = contacts.map(|(k, c)| self.relative_velocity(k, c));
         before.relative.extend(relative);
         before.turning.clear();
         if self.laws.iter().any(Interface::rotates) {
             let spins = &self.state.bodies.spin;
             let relative =
                 |c: &Contact<S>| spins[c.bodies[0] as usize] - spins[c.bodies[1] as usize];
-            before.turning.extend(contacts.iter().map(relative));
+            before
+                .turning
+                .extend(self.state.network.contacts.iter().map(relative));
         }
         self.workspace.solved.before = before;
     }
@@ -66,7 +69,7 @@ impl<S: Space> Simulation<S> {
         let contacts = self.state.network.contacts.iter().zip(before).enumerate();
         contact_steps.extend(contacts.map(|(k, (contact, before))| {
             let (form, solution) = (&self.workspace.forms[k], self.workspace.problem.solution(k));
-            let average = *before * (1.0 - theta) + self.relative_velocity(contact) * theta;
+            let average = *before * (1.0 - theta) + self.relative_velocity(k, contact) * theta;
             let n = &contact.normal;
             let lost = form.elastic.map_or(0.0, |e| {
                 let pulls = n.dot(&solution.impulse) != solution.unilateral_n;

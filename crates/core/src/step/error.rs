@@ -60,6 +60,17 @@ pub enum StepError {
         /// Name of the system.
         system: String,
     },
+    /// Overlaps are to be removed by displacements, which dynamical systems do not take part in.
+    #[error(
+        "step {step}: solver.projection moves grains and first bodies apart, not the system `{system}`; set solver.projection to 0, \
+         and solver.correction above 0 to have overlaps removed"
+    )]
+    SystemProjection {
+        /// Number of the step.
+        step: u64,
+        /// Name of the first system.
+        system: String,
+    },
     /// A velocity is not finite.
     #[error(
         "step {step} at t = {time:.6e} s: the velocity of body {body} is not finite; use a smaller step or softer parameters"

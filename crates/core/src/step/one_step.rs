@@ -79,7 +79,7 @@ impl<S: Space> Simulation<S> {
         self.begin_systems((1.0 - theta) * h);
         let (network, bodies) = (&mut self.state.network, &self.state.bodies);
         detect(network, &self.shapes, bodies, &self.table, time, h);
-        report.projected = self.project();
+        report.projected = self.project()?;
         start.take_rotated_spins(&self.state.bodies);
         self.state.started = start.of_driven(&self.state.bodies);
         let (bodies, gravity) = (&self.state.bodies, &self.state.gravity);

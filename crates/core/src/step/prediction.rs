@@ -125,7 +125,9 @@ impl<S: Space> Simulation<S> {
         report: &mut StepReport,
     ) -> Result<(), StepError> {
         let mut last: Vec<(Key, S::Vector)> = Vec::new();
+        self.forget_system_contacts();
         for solves in 1.. {
+            self.find_system_contacts();
             self.relative_velocities();
             self.geometry_of_forms(info.h);
             for (form, contact) in self

@@ -137,7 +137,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// The problem of the last step solved, in the form of the field's collection; none where a bond,
-    /// cohesion, friction against rotation or a dynamical system was at work, which that form does not hold.
+    /// cohesion or friction against rotation was at work, which that form does not hold.
     pub fn local_problem(&self) -> Option<solve::local::LocalProblem> {
         solve::choose::coulomb(
             &self.workspace.problem,

@@ -9,8 +9,10 @@
 //! Velocities do not change, so that kinetic energy is kept; bond openings do not change, so that elastic
 //! energy is kept. Work against gravity and imposed forces is booked in the ledger as work of the
 //! correction.
+//!
+//! Dynamical systems do not take part: a scene with one is refused.
 
-use super::{Scheme, Simulation};
+use super::{Scheme, Simulation, StepError};
 use crate::bodies::Bodies;
 use crate::contact::detect::detect;
 use crate::contact::{Contact, Network};
@@ -41,10 +43,23 @@ const MAX_SWEEPS: u32 = 5000;
 
 impl<S: Space> Simulation<S> {
     /// Removes penetrations if one exceeds the bound, repeats detection, and books the work.
-    pub(super) fn project(&mut self) -> Option<Projected> {
+    ///
+    /// # Errors
+    /// There are dynamical systems: they would stay where they are, and their overlaps with them.
+    pub(super) fn project(&mut self) -> Result<Option<Projected>, StepError> {
         if self.options.projection <= 0.0 {
-            return None;
+            return Ok(None);
         }
+        match self.state.systems.get(0) {
+            None => Ok(self.project_bodies()),
+            Some(system) => Err(StepError::SystemProjection {
+                step: self.state.steps + 1,
+                system: system.name().to_owned(),
+            }),
+        }
+    }
+
+    fn project_bodies(&mut self) -> Option<Projected> {
         let before = self.deepest_overlap();
         if before <= self.options.projection {
             return None;

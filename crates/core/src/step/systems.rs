@@ -7,7 +7,25 @@ use crate::contact::{Contact, detect};
 use crate::energy::BodyWork;
 use crate::geometry::shape::Ball;
 use crate::geometry::space::{Space, VectorLike};
-use crate::solve::{ContactForm, NodalSystem, Side};
+use crate::solve::{NodalSystem, Side};
+
+/// What the contacts of a step act on where dynamical systems take part, found once for the contacts at hand.
+#[derive(Debug)]
+pub(super) struct SystemContacts<S: Space> {
+    /// The sides of each contact, in the network's order; none where both are rigid, and empty without systems.
+    sides: Vec<Option<[Side<S>; 2]>>,
+    /// Each system with its touched nodes: their velocities without contacts, and their compliance.
+    nodal: Vec<NodalSystem<S>>,
+}
+
+impl<S: Space> Default for SystemContacts<S> {
+    fn default() -> Self {
+        Self {
+            sides: Vec::new(),
+            nodal: Vec::new(),
+        }
+    }
+}
 
 impl<S: Space> Simulation<S> {
     /// Adds a dynamical system to a scene that has not stepped, with a body and a ball for each contactor; gives its index. The
@@ -91,13 +109,15 @@ impl<S: Space> Simulation<S> {
     }
 
     /// The sides of a contact; none where both are rigid.
-    fn sides(&self, form: &ContactForm<S>) -> Option<[Side<S>; 2]> {
-        let carriers = form.bodies.map(|b| self.state.bodies.carrier(b as usize));
+    fn sides(&self, contact: &Contact<S>) -> Option<[Side<S>; 2]> {
+        let carriers = contact
+            .bodies
+            .map(|b| self.state.bodies.carrier(b as usize));
         if carriers == [None; 2] {
             return None;
         }
         Some(std::array::from_fn(|k| {
-            let (body, arm) = (form.bodies[k], form.arms[k]);
+            let (body, arm) = (contact.bodies[k], contact.arms[k]);
             match carriers[k] {
                 Some(carrier) => Side::Nodes {
                     system: carrier.system,
@@ -108,34 +128,56 @@ impl<S: Space> Simulation<S> {
         }))
     }
 
-    /// Hands systems, as far as contacts see them, and all contacts to the solver.
-    pub(super) fn pose_with_systems(&mut self) {
-        let sides: Vec<_> = self
-            .workspace
-            .forms
-            .iter()
-            .map(|form| self.sides(form))
-            .collect();
+    /// Forgets what the step before found of systems, whose compliance is that of its A.
+    pub(super) fn forget_system_contacts(&mut self) {
+        self.workspace.systems.sides.clear();
+        self.workspace.systems.nodal.clear();
+    }
+
+    /// Finds what the contacts at hand act on. Asked again in the same step, for more contacts, it keeps the compliance of
+    /// systems of which no other nodes are touched.
+    pub(super) fn find_system_contacts(&mut self) {
+        if self.state.systems.is_empty() {
+            return;
+        }
+        let contacts = self.state.network.contacts.iter();
+        let sides: Vec<_> = contacts.map(|contact| self.sides(contact)).collect();
         let mut touched: Vec<Vec<u32>> = vec![Vec::new(); self.state.systems.len()];
         for side in sides.iter().flatten().flatten() {
             if let Side::Nodes { system, nodes } = side {
                 touched[*system as usize].extend(nodes.terms().map(|(node, _)| node));
             }
         }
-        for (system, mut nodes) in touched.into_iter().enumerate() {
+        let mut known = std::mem::take(&mut self.workspace.systems.nodal).into_iter();
+        let nodal = touched.into_iter().enumerate().map(|(system, mut nodes)| {
             nodes.sort_unstable();
             nodes.dedup();
+            if let Some(same) = known.next().filter(|known| known.nodes == nodes) {
+                return same;
+            }
             let of = |node: &u32| self.state.systems.free_velocity_of(system, *node);
             let free = nodes.iter().map(of).collect();
             let compliance = self.state.systems.compliance(system, &nodes);
-            let nodal = NodalSystem::new(nodes, free, compliance);
-            self.workspace.problem.push_system(nodal);
+            NodalSystem::new(nodes, free, compliance)
+        });
+        self.workspace.systems = SystemContacts {
+            nodal: nodal.collect(),
+            sides,
+        };
+    }
+
+    /// Hands systems, as far as contacts see them, and all contacts to the solver.
+    pub(super) fn pose_with_systems(&mut self) {
+        let SystemContacts { sides, nodal } = &self.workspace.systems;
+        let problem = &mut self.workspace.problem;
+        for system in nodal {
+            problem.push_system(system.clone());
         }
-        for (form, sides) in self.workspace.forms.iter().zip(&sides) {
+        for (form, sides) in self.workspace.forms.iter().zip(sides) {
             match sides {
-                None => self.workspace.problem.push(form),
+                None => problem.push(form),
                 Some(sides) => {
-                    let known = self.workspace.problem.push_between(form, sides);
+                    let known = problem.push_between(form, sides);
                     debug_assert!(known, "all nodes of the sides were pushed");
                 }
             }
@@ -150,8 +192,10 @@ impl<S: Space> Simulation<S> {
         if self.state.systems.is_empty() {
             return Ok(());
         }
-        for system in 0..self.state.systems.len() {
-            let impulses = self.workspace.problem.node_impulses(system);
+        let impulses = self.workspace.problem.node_impulses();
+        let touched = self.workspace.systems.nodal.iter().zip(impulses);
+        for (system, (nodal, impulses)) in touched.enumerate() {
+            let impulses = nodal.nodes.iter().copied().zip(impulses);
             self.state.systems.apply(system, impulses);
         }
         if let Some(name) = self.state.systems.not_finite() {
@@ -165,19 +209,22 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
-    /// Velocity of a side of a contact at the contact, at the velocities at hand (m/s).
-    fn velocity_of_side(&self, contact: &Contact<S>, side: usize) -> S::Vector {
-        let (b, arm) = (contact.bodies[side] as usize, &contact.arms[side]);
-        match self.state.bodies.carrier(b) {
-            Some(carrier) => self.state.systems.contact_velocity(carrier, arm),
-            None => {
-                self.state.bodies.velocity[b] + S::spin_velocity(&self.state.bodies.spin[b], arm)
+    /// Velocity of a side of a contact, at the velocities at hand (m/s).
+    fn velocity_of_side(&self, side: &Side<S>) -> S::Vector {
+        match side {
+            Side::Nodes { system, nodes } => {
+                self.state.systems.velocity_at(*system as usize, nodes)
+            }
+            Side::Rigid { body, arm } => {
+                let (bodies, b) = (&self.state.bodies, *body as usize);
+                bodies.velocity[b] + S::spin_velocity(&bodies.spin[b], arm)
             }
         }
     }
 
-    /// Velocity of the candidate of a contact relative to its antagonist where systems may take part (m/s).
-    pub(super) fn relative_velocity_of_sides(&self, contact: &Contact<S>) -> S::Vector {
-        self.velocity_of_side(contact, 0) - self.velocity_of_side(contact, 1)
+    /// Velocity of the candidate of the `k`-th contact relative to its antagonist where a system is one of them (m/s).
+    pub(super) fn relative_velocity_of_sides(&self, k: usize) -> Option<S::Vector> {
+        let [a, b] = self.workspace.systems.sides.get(k)?.as_ref()?;
+        Some(self.velocity_of_side(a) - self.velocity_of_side(b))
     }
 }

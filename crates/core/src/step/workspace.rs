@@ -1,6 +1,7 @@
 //! What a step makes for itself and throws away.
 
 use super::answers::Solved;
+use super::systems::SystemContacts;
 use crate::geometry::space::Space;
 use crate::laws::evaluator::LawEvaluator;
 use crate::solve::{ContactForm, MomentForm, Problem};
@@ -16,6 +17,8 @@ pub(super) struct Workspace<S: Space> {
     pub forms: Vec<ContactForm<S>>,
     /// Those that resist rotation.
     pub moments: Vec<MomentForm<S>>,
+    /// What contacts with dynamical systems act on.
+    pub systems: SystemContacts<S>,
     /// What contacts did in the step.
     pub solved: Solved<S>,
     /// Whether a process has given a body an impulse in the step, see [`super::Simulation::apply_impulse`].
@@ -29,6 +32,7 @@ impl<S: Space> Default for Workspace<S> {
             problem: Problem::default(),
             forms: Vec::new(),
             moments: Vec::new(),
+            systems: SystemContacts::default(),
             solved: Solved::default(),
             pushed: false,
         }

@@ -225,6 +225,11 @@ impl<S: Space> BlockContact<S> {
         change
     }
 
+    /// W_cc in world axes, without the bond (1/kg).
+    pub fn block(&self) -> &S::Matrix {
+        &self.block
+    }
+
     /// The impulse, in world axes (N s).
     pub fn impulse(&self) -> &S::Vector {
         &self.p

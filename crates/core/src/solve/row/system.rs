@@ -68,7 +68,12 @@ impl<S: Space> SystemRow<S> {
         signed.filter_map(|(side, sign)| Some((side.as_ref()?, sign)))
     }
 
-    fn relative(&self, solver_bodies: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> S::Vector {
+    /// Its relative velocity (m/s).
+    pub fn relative(
+        &self,
+        solver_bodies: &[SolverBody<S>],
+        systems: &[NodalSystem<S>],
+    ) -> S::Vector {
         let mut u = S::Vector::zero();
         for (side, sign) in self.rigid_sides() {
             let body = &solver_bodies[side.body as usize];
@@ -114,12 +119,27 @@ impl<S: Space> SystemRow<S> {
         self.push(self.contact.impulse(), solver_bodies, systems);
     }
 
-    /// Adds its impulse to those on the nodes of a system.
-    pub fn add_impulses(&self, system: usize, impulses: &mut [S::Vector]) {
-        let own = self.terms.iter().filter(|t| t.system as usize == system);
-        for term in own {
-            impulses[term.node as usize] += *self.contact.impulse() * term.weight;
+    /// Adds its impulse to those on the nodes of the systems, by system.
+    pub fn add_impulses(&self, impulses: &mut [Vec<S::Vector>]) {
+        for term in &self.terms {
+            impulses[term.system as usize][term.node as usize] +=
+                *self.contact.impulse() * term.weight;
         }
+    }
+
+    /// The nodes that it acts on.
+    pub fn terms(&self) -> &[Term] {
+        &self.terms
+    }
+
+    /// Whether a side is a rigid body, by side.
+    pub fn is_rigid(&self) -> [bool; 2] {
+        std::array::from_fn(|side| self.rigid[side].is_some())
+    }
+
+    /// W_cc in world axes (1/kg).
+    pub fn block(&self) -> &S::Matrix {
+        self.contact.block()
     }
 
     /// The law and the impulse, which need no bodies.

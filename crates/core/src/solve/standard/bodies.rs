@@ -1,11 +1,16 @@
-//! W of a step, applied matrix-free from its bodies and assembled only when a method needs the matrix.
+//! W of a step, applied matrix-free from its bodies and dynamical systems, and assembled only when a method needs the matrix.
+//!
+//! A side that is a dynamical system acts on nodes: its body, which stands for a contactor, has no inertia and no velocity
+//! here.
 
 use super::motion::Pattern;
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::Mobility;
 use crate::solve::local::block::{Block, BlockMatrix};
 use crate::solve::local::factored;
 use crate::solve::local::form::{Delassus, Shift, Shifted};
+use crate::solve::nodal::NodalSystem;
+use crate::solve::row::Term;
 use std::cell::{OnceCell, RefCell};
 
 /// Direction of one component of a block.
@@ -45,9 +50,11 @@ impl<S: Space> Axis<S> {
 
 /// A block of unknowns.
 #[derive(Clone, Debug)]
-pub struct Unknown<S: Space, const D: usize> {
+pub struct Unknown<'a, S: Space, const D: usize> {
     /// Bodies on which the components act, with opposite signs.
     pub bodies: [u32; 2],
+    /// Nodes of dynamical systems on which they act, with their signs; empty between rigid bodies.
+    pub nodes: &'a [Term],
     /// One axis per component.
     pub axes: [Axis<S>; D],
 }
@@ -55,27 +62,56 @@ pub struct Unknown<S: Space, const D: usize> {
 /// Impulse and moment of a body, or its velocity and spin.
 pub type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
-/// W of a step, computed from its bodies.
+/// Impulses on all bodies and on the nodes of all systems, or their velocities.
+#[derive(Clone, Debug)]
+pub struct Motions<S: Space> {
+    /// By body.
+    pub bodies: Vec<Motion<S>>,
+    /// By system, in the order of its nodes.
+    pub nodes: Vec<Vec<S::Vector>>,
+}
+
+impl<S: Space> Motions<S> {
+    /// Sets the velocities of as many bodies and nodes to zero.
+    fn rest(&mut self, bodies: usize, systems: &[NodalSystem<S>]) {
+        self.bodies.clear();
+        self.bodies
+            .resize(bodies, (S::Vector::zero(), S::Spin::zero()));
+        self.nodes.resize(systems.len(), Vec::new());
+        for (nodes, system) in self.nodes.iter_mut().zip(systems) {
+            nodes.clear();
+            nodes.resize(system.nodes.len(), S::Vector::zero());
+        }
+    }
+}
+
+/// W of a step, computed from its bodies and systems.
 pub struct Bodies<'a, S: Space, const D: usize> {
     /// Response to impulses, by body.
     pub masses: &'a [Mobility<S>],
+    /// The dynamical systems, as far as contacts see them.
+    pub systems: &'a [NodalSystem<S>],
     /// The blocks.
-    pub unknowns: Vec<Unknown<S, D>>,
+    pub unknowns: Vec<Unknown<'a, S, D>>,
     /// W_cc of every block; to be set once all unknowns are present.
     pub diagonal: Vec<Block<D>>,
-    scratch: RefCell<Vec<Motion<S>>>,
+    scratch: RefCell<Motions<S>>,
     matrix: OnceCell<BlockMatrix<D>>,
     pattern: OnceCell<Pattern>,
 }
 
 impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
-    /// Creates an operator for bodies with these inverse masses and inertias, without unknowns.
-    pub fn new(masses: &'a [Mobility<S>]) -> Self {
+    /// Creates an operator for bodies with these inverse masses and inertias and for systems, without unknowns.
+    pub fn new(masses: &'a [Mobility<S>], systems: &'a [NodalSystem<S>]) -> Self {
         Self {
             masses,
+            systems,
             unknowns: Vec::new(),
             diagonal: Vec::new(),
-            scratch: RefCell::new(Vec::new()),
+            scratch: RefCell::new(Motions {
+                bodies: Vec::new(),
+                nodes: Vec::new(),
+            }),
             matrix: OnceCell::new(),
             pattern: OnceCell::new(),
         }
@@ -91,8 +127,8 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
         self.masses[body as usize].apply(&p, &m)
     }
 
-    /// Applies the impulses of a block to its bodies.
-    pub fn push(&self, c: usize, p: &[f64; D], motions: &mut [Motion<S>]) {
+    /// Adds the velocities that the impulses of a block give to its bodies, and its impulses on nodes to those there.
+    pub fn push(&self, c: usize, p: &[f64; D], motions: &mut Motions<S>) {
         let unknown = &self.unknowns[c];
         for (side, sign) in [(0, 1.0), (1, -1.0)] {
             let mut impulse = S::Vector::zero();
@@ -103,22 +139,41 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
             }
             let body = unknown.bodies[side];
             let (v, w) = self.mobility(body, (impulse, moment));
-            let motion = &mut motions[body as usize];
+            let motion = &mut motions.bodies[body as usize];
             motion.0 += v;
             motion.1 += w;
+        }
+        for term in unknown.nodes {
+            let axes = unknown.axes.iter().zip(p);
+            let impulse = axes.fold(S::Vector::zero(), |sum, (axis, p)| sum + axis.linear * *p);
+            motions.nodes[term.system as usize][term.node as usize] += impulse * term.weight;
+        }
+    }
+
+    /// Replaces impulses on the nodes of all systems by the velocities that they give.
+    pub fn respond(&self, nodes: &mut [Vec<S::Vector>]) {
+        for (system, nodes) in self.systems.iter().zip(nodes) {
+            *nodes = system.response(nodes);
         }
     }
 
     /// Returns the velocities of a block, without its compliance.
-    pub fn relative(&self, c: usize, motions: &[Motion<S>]) -> [f64; D] {
+    pub fn relative(&self, c: usize, motions: &Motions<S>) -> [f64; D] {
         let unknown = &self.unknowns[c];
-        let [a, b] = unknown.bodies.map(|b| &motions[b as usize]);
-        std::array::from_fn(|k| {
+        let [a, b] = unknown.bodies.map(|b| &motions.bodies[b as usize]);
+        let mut u = std::array::from_fn(|k| {
             let axis = &unknown.axes[k];
             axis.linear.dot(&a.0) + axis.angular[0].dot(&a.1)
                 - axis.linear.dot(&b.0)
                 - axis.angular[1].dot(&b.1)
-        })
+        });
+        for term in unknown.nodes {
+            let v = motions.nodes[term.system as usize][term.node as usize] * term.weight;
+            for (u, axis) in u.iter_mut().zip(&unknown.axes) {
+                *u += axis.linear.dot(&v);
+            }
+        }
+        u
     }
 
     /// Computes the block W_cd.
@@ -140,6 +195,17 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
                 }
             }
         }
+        for a in x.nodes {
+            for b in y.nodes.iter().filter(|b| b.system == a.system) {
+                let block = self.systems[a.system as usize].block(a.node, b.node);
+                for (l, axis) in y.axes.iter().enumerate() {
+                    let v = block.apply(&axis.linear) * (a.weight * b.weight);
+                    for (k, own) in x.axes.iter().enumerate() {
+                        out[k][l] += own.linear.dot(&v);
+                    }
+                }
+            }
+        }
         if c == d {
             for (k, axis) in x.axes.iter().enumerate() {
                 out[k][k] += axis.compliance;
@@ -157,6 +223,13 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
                     of_body[body as usize].push(c as u32);
                 }
             }
+            let mut of_system: Vec<Vec<u32>> = vec![Vec::new(); self.systems.len()];
+            for (c, unknown) in self.unknowns.iter().enumerate() {
+                for term in unknown.nodes {
+                    of_system[term.system as usize].push(c as u32);
+                }
+            }
+            of_system.iter_mut().for_each(Vec::dedup);
             let moves = |b: u32| self.masses[b as usize].moves();
             let mut out = BlockMatrix::new(self.diagonal.clone());
             for (c, unknown) in self.unknowns.iter().enumerate() {
@@ -165,8 +238,13 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
                     .iter()
                     .filter(|b| moves(**b))
                     .flat_map(|b| of_body[*b as usize].iter().copied())
-                    .filter(|d| *d as usize != c)
                     .collect();
+                let mut systems: Vec<u32> = unknown.nodes.iter().map(|t| t.system).collect();
+                systems.dedup();
+                for system in systems {
+                    near.extend_from_slice(&of_system[system as usize]);
+                }
+                near.retain(|d| *d as usize != c);
                 near.sort_unstable();
                 near.dedup();
                 for d in near {
@@ -190,11 +268,11 @@ impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
 
     fn velocity(&self, p: &[[f64; D]], q: &[[f64; D]], u: &mut [[f64; D]]) {
         let mut motions = self.scratch.borrow_mut();
-        motions.clear();
-        motions.resize(self.masses.len(), (S::Vector::zero(), S::Spin::zero()));
+        motions.rest(self.masses.len(), self.systems);
         for (c, p) in p.iter().enumerate() {
             self.push(c, p, &mut motions);
         }
+        self.respond(&mut motions.nodes);
         for (c, u) in u.iter_mut().enumerate() {
             *u = self.relative(c, &motions);
             for k in 0..D {
@@ -204,8 +282,8 @@ impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
     }
 
     fn shifted(&self, shift: &Shift<D>) -> Option<Box<dyn Shifted<D> + '_>> {
-        // With more motions than impulses the body form gains nothing and adds rounding errors.
-        if self.pattern().rows() < D * self.len() {
+        // With more motions than impulses the body form gains nothing and adds rounding errors; of systems it knows no masses.
+        if self.systems.is_empty() && self.pattern().rows() < D * self.len() {
             self.factor(shift)
         } else {
             factored::factor(self.assembled(), shift)

@@ -10,15 +10,18 @@ mod bodies;
 mod motion;
 
 use super::error::Norm;
-use super::form::{ContactForm, Problem};
+use super::form::{ContactForm, Place, Problem};
 use super::local::csr::Csr;
+#[cfg(test)]
+use super::local::form::Delassus;
 use super::local::form::Form;
 use super::local::law::Law;
 use super::local::solver::Method;
 use super::local::state::{Budget, State};
-use super::row::MomentForm;
-use crate::geometry::space::{Space, VectorLike};
-use bodies::{Axis, Bodies, Motion, Unknown};
+use super::nodal::NodalSystem;
+use super::row::{MomentForm, SystemRow, Term};
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use bodies::{Axis, Bodies, Motions, Unknown};
 
 /// Impulses of the contacts, and moments; `None` between immovable bodies.
 type Totals<S> = (
@@ -72,7 +75,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         moments: &[MomentForm<S>],
     ) -> Self {
         let mut out = Self {
-            w: Bodies::new(&problem.masses),
+            w: Bodies::new(&problem.masses, &problem.systems),
             laws: Vec::new(),
             q: Vec::new(),
             places: Vec::with_capacity(forms.len()),
@@ -93,21 +96,41 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         out
     }
 
-    fn moves(problem: &Problem<S>, bodies: [u32; 2]) -> bool {
-        bodies.iter().any(|b| problem.masses[*b as usize].moves())
+    /// The row of a contact with a dynamical system.
+    fn system_row(problem: &Problem<S>, k: usize) -> Option<&SystemRow<S>> {
+        match problem.places[k] {
+            Place::System(r) => Some(&problem.of_systems[r as usize]),
+            _ => None,
+        }
     }
 
-    fn add(&mut self, bodies: [u32; 2], axes: [Axis<S>; D], law: Law) -> u32 {
-        self.w.unknowns.push(Unknown { bodies, axes });
+    fn moves(problem: &Problem<S>, bodies: [u32; 2], row: Option<&SystemRow<S>>) -> bool {
+        match row {
+            None => bodies.iter().any(|b| problem.masses[*b as usize].moves()),
+            Some(row) => {
+                let diagonal = (0..S::D).map(|k| row.block().entry(k, k));
+                diagonal.fold(0.0, f64::max) > 0.0
+            }
+        }
+    }
+
+    fn add(&mut self, bodies: [u32; 2], nodes: &'a [Term], axes: [Axis<S>; D], law: Law) -> u32 {
+        self.w.unknowns.push(Unknown {
+            bodies,
+            nodes,
+            axes,
+        });
         self.laws.push(law);
         self.laws.len() as u32 - 1
     }
 
-    fn push_contact(&mut self, problem: &Problem<S>, form: &ContactForm<S>, k: usize) -> Places {
+    fn push_contact(&mut self, problem: &'a Problem<S>, form: &ContactForm<S>, k: usize) -> Places {
         let mut places = Places::default();
-        if !Self::moves(problem, form.bodies) {
+        let row = Self::system_row(problem, k);
+        if !Self::moves(problem, form.bodies, row) {
             return places;
         }
+        let nodes = row.map_or(&[][..], SystemRow::terms);
         let axes: [Axis<S>; D] = frame::<S, D>(&form.normal).map(|linear| Axis {
             linear,
             angular: form.arms.map(|arm| S::moment(&arm, &linear)),
@@ -129,12 +152,13 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
                 form.normal
                     .dot(&form.normal.scaled_by(&problem.masses[*b as usize].mass))
             };
+            let along = |row: &SystemRow<S>| form.normal.dot(&row.block().apply(&form.normal));
             own[0] = Axis {
-                compliance: form.bodies.iter().map(mobility).sum(),
+                compliance: row.map_or_else(|| form.bodies.iter().map(mobility).sum(), along),
                 ..axes[0].bonded(0.0)
             };
         }
-        places.contact = Some(self.add(form.bodies, own, law));
+        places.contact = Some(self.add(form.bodies, nodes, own, law));
         self.constant[k] = form.normal * -form.tension;
         if let Some(e) = &form.elastic {
             let mut axes = axes;
@@ -158,7 +182,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             if e.b_t == 0.0 {
                 self.constant[k] -= S::tangent_vector(&form.normal, &e.a_t);
             }
-            places.bond = Some(self.add(form.bodies, axes, law));
+            places.bond = Some(self.add(form.bodies, nodes, axes, law));
         }
         places
     }
@@ -189,7 +213,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
                 twist: form.spinning,
                 bend: form.rolling,
             };
-            places.contact = Some(self.add(contact.bodies, axes, law));
+            places.contact = Some(self.add(contact.bodies, &[], axes, law));
         }
         if form.b_twist > 0.0 || form.b_bend > 0.0 || form.a != S::Spin::zero() {
             let mut axes = axes;
@@ -205,28 +229,55 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             if form.b_bend == 0.0 {
                 self.constant_moments[k] -= bend;
             }
-            places.bond = Some(self.add(contact.bodies, axes, Law::Free));
+            places.bond = Some(self.add(contact.bodies, &[], axes, Law::Free));
         }
         places
     }
 
+    /// The free velocities of bodies and nodes, the latter with what the constant impulses give.
+    fn free_motions(&self, problem: &Problem<S>, forms: &[ContactForm<S>]) -> Motions<S> {
+        let mut bodies = problem.free.clone();
+        let rest = |system: &NodalSystem<S>| vec![S::Vector::zero(); system.nodes.len()];
+        let mut nodes: Vec<Vec<S::Vector>> = problem.systems.iter().map(rest).collect();
+        for (k, (form, p)) in forms.iter().zip(&self.constant).enumerate() {
+            let Some(row) = Self::system_row(problem, k) else {
+                continue;
+            };
+            for (body, rigid) in form.bodies.into_iter().zip(row.is_rigid()) {
+                if !rigid {
+                    bodies[body as usize] = (S::Vector::zero(), S::Spin::zero());
+                }
+            }
+            for term in row.terms() {
+                nodes[term.system as usize][term.node as usize] += *p * term.weight;
+            }
+        }
+        self.w.respond(&mut nodes);
+        for (nodes, system) in nodes.iter_mut().zip(&problem.systems) {
+            for (v, free) in nodes.iter_mut().zip(&system.free) {
+                *v += *free;
+            }
+        }
+        Motions { bodies, nodes }
+    }
+
     /// Computes q: free velocities including constant impulses, shifts, and a/B of bonds.
     fn free(&mut self, problem: &Problem<S>, forms: &[ContactForm<S>], moments: &[MomentForm<S>]) {
-        let mut motions: Vec<Motion<S>> = problem.free.clone();
+        let mut motions = self.free_motions(problem, forms);
         for (form, p) in forms.iter().zip(&self.constant) {
             for (side, sign) in [(0, 1.0), (1, -1.0)] {
                 let p = *p * sign;
                 let body = form.bodies[side];
                 let (v, w) = self.w.mobility(body, (p, S::moment(&form.arms[side], &p)));
-                motions[body as usize].0 += v;
-                motions[body as usize].1 += w;
+                motions.bodies[body as usize].0 += v;
+                motions.bodies[body as usize].1 += w;
             }
         }
         for (form, m) in moments.iter().zip(&self.constant_moments) {
             let bodies = forms[form.contact as usize].bodies;
             for (body, sign) in [(bodies[0], 1.0), (bodies[1], -1.0)] {
                 let (_, w) = self.w.mobility(body, (S::Vector::zero(), *m * sign));
-                motions[body as usize].1 += w;
+                motions.bodies[body as usize].1 += w;
             }
         }
         self.q = (0..self.laws.len())
@@ -338,6 +389,12 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         (impulses, turned)
     }
 
+    /// W and the free velocities.
+    #[cfg(test)]
+    pub(super) fn operator(&self) -> (&dyn Delassus<D>, &[[f64; D]]) {
+        (&self.w, &self.q)
+    }
+
     /// Returns W, q and mu if every block is a Coulomb contact.
     pub fn coulomb(&self) -> Option<(Csr, Vec<f64>, Vec<f64>)> {
         let mu: Option<Vec<f64>> = self
@@ -361,7 +418,7 @@ fn open<S: Space>(form: &ContactForm<S>) -> bool {
     form.shift_n == f64::INFINITY
 }
 
-fn offset<S: Space, const D: usize>(q: &mut [f64; D], unknown: &Unknown<S, D>, a: &[f64; D]) {
+fn offset<S: Space, const D: usize>(q: &mut [f64; D], unknown: &Unknown<'_, S, D>, a: &[f64; D]) {
     for k in 0..D {
         let axis = &unknown.axes[k];
         if axis.pushes() {

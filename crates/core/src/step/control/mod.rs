@@ -186,17 +186,17 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// What a condition of rest looks at: the grains, first bodies of which nothing is imposed, and dynamical systems.
+    /// What a condition of rest looks at: the grains, first bodies and dynamical systems of which nothing is imposed.
     fn motion_of_free(&self) -> phases::Motion {
         let bodies = &self.state.bodies;
         let free = |b: &usize| (0..S::D).all(|k| bodies.inverse_mass[*b][k] > 0.0);
         let moving = || (0..bodies.len()).filter(free);
         // Work of gravity on a grain over its own diameter.
         let weight = |b: usize| bodies.mass[b] * 2.0 * bodies.length[b];
-        let systems = self.state.systems.energies().0;
+        let (systems, size) = self.state.systems.motion_of_free();
         phases::Motion {
             kinetic: moving().map(|b| bodies.energy_of(b)).sum::<f64>() + systems,
-            scale: moving().map(weight).sum::<f64>() * self.state.gravity.norm(),
+            scale: (moving().map(weight).sum::<f64>() + size) * self.state.gravity.norm(),
         }
     }
 }

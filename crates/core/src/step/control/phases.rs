@@ -15,9 +15,10 @@ pub enum Until {
     After(f64),
     /// After a number of steps.
     Steps(u64),
-    /// When the kinetic energy of the grains has stayed below a bound.
+    /// When the kinetic energy of the grains has stayed below a bound; and that of first bodies and dynamical systems of which
+    /// nothing is imposed.
     AtRest {
-        /// Bound as a fraction of m g d, summed over the grains.
+        /// Bound as a fraction of m g d, summed over them; d is twice [`crate::bodies::DynamicalSystem::length`] of a system.
         #[serde(default)]
         share: Option<f64>,
         /// Bound as an energy (J; J/m in 2D).
@@ -96,7 +97,7 @@ pub(super) struct Moment {
     pub h: f64,
 }
 
-/// Motion of the grains.
+/// Motion of the grains and of other bodies that nothing drives.
 pub(super) struct Motion {
     /// Their kinetic energy (J).
     pub kinetic: f64,
