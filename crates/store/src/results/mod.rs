@@ -110,50 +110,13 @@ impl Results {
     /// The file cannot be written.
     pub fn create(path: &Path, header: &Header) -> Result<Self, ResultsError> {
         let mut store = Store::create(path)?;
-        for (name, text) in [
-            ("program", "fretwork"),
-            ("version", &header.version),
-            ("case", &header.case_name),
-            (
-                "units",
-                "SI; in two dimensions masses, forces and energies are per metre of depth",
-            ),
-        ] {
-            store.text_attribute("/", name, text)?;
-        }
-        store.integer_attribute("/", "seed", &[header.seed as i64])?;
-        store.integer_attribute("/", "dimension", &[header.dimension as i64])?;
-        let doc = "the case as it was run, changes of the command line applied";
-        store.texts("/case", &[&header.case_text], doc)?;
-        store.group("/materials")?;
-        for (name, text) in &header.materials {
-            store.texts(&format!("/materials/{name}"), &[text], "the material file")?;
-        }
-        store.group("/plugins")?;
-        type Get = fn(&PluginStamp) -> &str;
-        let columns: [(&str, &str, Get); 5] = [
-            ("kind", "kind of the law", |p| &p.kind),
-            ("name", "its name", |p| &p.name),
-            ("version", "its version", |p| &p.version),
-            ("sha256", "SHA-256 of its library", |p| &p.sha256),
-            ("path", "where its library was found", |p| &p.path),
-        ];
-        for (name, doc, get) in columns {
-            let texts: Vec<&str> = header.plugins.iter().map(get).collect();
-            if !texts.is_empty() {
-                store.texts(&format!("/plugins/{name}"), &texts, doc)?;
-            }
-        }
+        write_origin(&mut store, header)?;
         header.shapes.write(&mut store, header.dimension)?;
         store.group("/statistics")?;
         let mut statistics = Vec::new();
         for c in &header.statistics {
-            statistics.push(store.growing::<f64>(
-                &format!("/statistics/{}", c.name),
-                1,
-                (c.unit, c.doc),
-                MANY,
-            )?);
+            let path = format!("/statistics/{}", c.name);
+            statistics.push(store.growing::<f64>(&path, 1, (c.unit, c.doc), MANY)?);
         }
         if !header.broken.is_empty() || !header.debris.is_empty() {
             store.group("/events")?;
@@ -165,23 +128,7 @@ impl Results {
             true => None,
             false => Some(store.growing::<f64>("/events/debris/grains", 1, ("", doc), MANY)?),
         };
-        store.group("/views")?;
-        let bodies = if header.dimension == 2 {
-            Cells::Lines
-        } else {
-            Cells::Polygons
-        };
-        let mut views = Vec::new();
-        let all = header.fields.iter().zip(&header.numbers);
-        let kinds = [
-            ("grains", Cells::Vertices),
-            ("contacts", Cells::Lines),
-            ("bodies", bodies),
-        ];
-        for ((name, cells), (fields, numbers)) in kinds.into_iter().zip(all) {
-            let path = format!("/views/{name}");
-            views.push(View::declare(&mut store, &path, cells, (fields, numbers))?);
-        }
+        let views = declare_views(&mut store, header)?;
         store.link("/VTKHDF", "/views/grains")?;
         store.group("/checkpoints")?;
         let doc = "a checkpoint of the run; see docs/checkpoints.md";
@@ -351,4 +298,65 @@ impl Results {
         }
         Ok(())
     }
+}
+
+/// Writes where the results come from: program, case, materials, plugins.
+fn write_origin(store: &mut Store, header: &Header) -> Result<(), ResultsError> {
+    for (name, text) in [
+        ("program", "fretwork"),
+        ("version", &header.version),
+        ("case", &header.case_name),
+        (
+            "units",
+            "SI; in two dimensions masses, forces and energies are per metre of depth",
+        ),
+    ] {
+        store.text_attribute("/", name, text)?;
+    }
+    store.integer_attribute("/", "seed", &[header.seed as i64])?;
+    store.integer_attribute("/", "dimension", &[header.dimension as i64])?;
+    let doc = "the case as it was run, changes of the command line applied";
+    store.texts("/case", &[&header.case_text], doc)?;
+    store.group("/materials")?;
+    for (name, text) in &header.materials {
+        store.texts(&format!("/materials/{name}"), &[text], "the material file")?;
+    }
+    store.group("/plugins")?;
+    type Get = fn(&PluginStamp) -> &str;
+    let columns: [(&str, &str, Get); 5] = [
+        ("kind", "kind of the law", |p| &p.kind),
+        ("name", "its name", |p| &p.name),
+        ("version", "its version", |p| &p.version),
+        ("sha256", "SHA-256 of its library", |p| &p.sha256),
+        ("path", "where its library was found", |p| &p.path),
+    ];
+    for (name, doc, get) in columns {
+        let texts: Vec<&str> = header.plugins.iter().map(get).collect();
+        if !texts.is_empty() {
+            store.texts(&format!("/plugins/{name}"), &texts, doc)?;
+        }
+    }
+    Ok(())
+}
+
+/// Declares the views of grains, contacts and bodies.
+fn declare_views(store: &mut Store, header: &Header) -> Result<Vec<View>, ResultsError> {
+    store.group("/views")?;
+    let bodies = if header.dimension == 2 {
+        Cells::Lines
+    } else {
+        Cells::Polygons
+    };
+    let kinds = [
+        ("grains", Cells::Vertices),
+        ("contacts", Cells::Lines),
+        ("bodies", bodies),
+    ];
+    let columns = header.fields.iter().zip(&header.numbers);
+    let mut views = Vec::new();
+    for ((name, cells), (fields, numbers)) in kinds.into_iter().zip(columns) {
+        let path = format!("/views/{name}");
+        views.push(View::declare(store, &path, cells, (fields, numbers))?);
+    }
+    Ok(views)
 }
