@@ -1,6 +1,6 @@
 //! `fretwork solve`: solves contact problems in FCLIB files.
 
-mod say;
+mod report;
 
 use super::Failure;
 use super::number::positive;
@@ -92,12 +92,12 @@ pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
         match one(path, args) {
             Ok(solved) => {
                 if !solved.outcomes[0].converged {
-                    unsolved.push(say::unsolved(&solved, args));
+                    unsolved.push(report::unsolved(&solved, args));
                 }
                 if args.json {
-                    all.push(say::json(&solved, args));
+                    all.push(report::json(&solved, args));
                 } else {
-                    super::output::answer(&say::text(&solved, args))?;
+                    super::output::answer(&report::text(&solved, args))?;
                 }
             }
             // The remaining files are still solved; this one determines the exit code.

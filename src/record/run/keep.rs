@@ -67,7 +67,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         let replaces = kind == Kind::Begun && results.exists();
         self.results.publish(&results)?;
         if replaces {
-            clear::clear(&self.out)?;
+            clear::clear(&self.out, &self.observers)?;
         }
         let path = self.out.join("statistics.csv");
         self.table.open(&path).map_err(|e| unwritable(&path, &e))
