@@ -1,6 +1,6 @@
 //! Output of `fretwork solve`.
 
-use super::{Choice, SolveArgs, Solved};
+use super::{SolveArgs, Solved, SolverChoice};
 use crate::record::fclib::Problem;
 use crate::solve::local::scale_free;
 use crate::solve::local::solver::Outcome;
@@ -61,7 +61,7 @@ pub fn text(solved: &Solved, args: &SolveArgs) -> String {
             format!("{} to the local form", seconds(solved.reduce_seconds)),
         );
     }
-    if args.solver == Choice::All {
+    if args.solver == SolverChoice::All {
         out += &table(&solved.outcomes);
     }
     if let Some(path) = &args.out {
@@ -171,7 +171,7 @@ pub fn json(solved: &Solved, args: &SolveArgs) -> Value {
     });
     if let (Value::Object(into), Value::Object(more)) = (&mut value, more) {
         into.extend(more);
-        if args.solver == Choice::All {
+        if args.solver == SolverChoice::All {
             let all = solved.outcomes.iter().map(|o| outcome(o, args)).collect();
             into.insert("solvers".to_owned(), Value::Array(all));
         }
