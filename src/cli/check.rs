@@ -35,12 +35,16 @@ pub struct CheckArgs {
 pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     let loaded = load(&args.case.case, &args.case.sets)?;
     match loaded.build(&args.case.plugins.search()?)? {
-        Scene::Dim2(built) => whole(&loaded, *built, args),
-        Scene::Dim3(built) => whole(&loaded, *built, args),
+        Scene::Dim2(built) => describe_and_time(&loaded, *built, args),
+        Scene::Dim3(built) => describe_and_time(&loaded, *built, args),
     }
 }
 
-fn whole<S: Steps>(loaded: &Loaded, built: Built<S>, args: &CheckArgs) -> Result<(), Failure> {
+fn describe_and_time<S: Steps>(
+    loaded: &Loaded,
+    built: Built<S>,
+    args: &CheckArgs,
+) -> Result<(), Failure> {
     answer(describe(loaded, &built).trim_end())?;
     if !args.no_timing {
         let time = &loaded.case.time;
@@ -67,73 +71,22 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
             case.time.step, case.time.theta
         ),
     );
-    let range = |radii: &mut dyn Iterator<Item = f64>| {
-        let start = (0, f64::INFINITY, 0.0f64);
-        radii.fold(start, |(n, l, h), r| (n + 1, l.min(r), h.max(r)))
-    };
-    let (balls, low, high) = range(&mut s.shapes.balls.iter().map(|b| b.radius));
-    if balls > 0 {
-        line(
-            "balls",
-            format!("{balls}, radius {low:.3e} to {high:.3e} m"),
-        );
-    }
-    let (pieces, least, most) = range(&mut s.shapes.pieces.iter().map(|p| p.size));
-    if pieces > 0 {
-        let text =
-            format!("{pieces}, {least:.3e} to {most:.3e} m, radius of the ball of the same volume");
-        line("convex pieces", text);
-    }
-    let high = high.max(most);
-    let names: Vec<&str> = s
-        .state
-        .bodies
-        .driven
-        .iter()
-        .map(|d| d.name.as_str())
-        .collect();
-    line(
-        "first bodies",
-        format!(
-            "{} ({}), {} surfaces",
-            names.len(),
-            names.join(", "),
-            s.shapes.surfaces.len()
-        ),
-    );
-    line(
-        "contacts at start",
-        s.state.network.contacts.len().to_string(),
-    );
+    let largest = bodies(s, &mut line);
+    let solver = &s.options.solver;
     line(
         "solver",
         format!(
             "{} ({}), tolerance {:e}, at most {} iterations, tested every {}",
-            s.options.solver.method.name(),
-            s.options.solver.method.about(),
-            s.options.solver.tolerance,
-            s.options.solver.max_iterations,
-            s.options.solver.test_every
+            solver.method.name(),
+            solver.method.about(),
+            solver.tolerance,
+            solver.max_iterations,
+            solver.test_every
         ),
     );
     methods(s, &mut line);
     line("error", case.solver.norm.formula().into());
-    for law in &s.laws {
-        let laws: Vec<String> = law
-            .loaded()
-            .map(|l| format!("{} {}", l.plugin.kind, l.plugin.name))
-            .collect();
-        line(
-            "interface",
-            format!(
-                "{}: {}; bonds {:?}; {} internal variables",
-                law.name,
-                laws.join(", "),
-                law.bonds,
-                law.variables()
-            ),
-        );
-    }
+    interfaces(s, &mut line);
     for pair in without_interface(case, s) {
         line("no interface", pair);
     }
@@ -157,12 +110,64 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
         line(heading, drive.text);
     }
     let load = Load::of(case, built);
-    groups(loaded, built, high, &mut line);
+    groups(loaded, built, largest, &mut line);
     biaxial_groups(loaded, built, &mut line);
     for (label, text) in bonds::lines(case, built, &load) {
         line(label, text);
     }
     out
+}
+
+/// Grains, first bodies and contacts; returns the largest radius of a grain (m).
+fn bodies<S: Space>(s: &Simulation<S>, line: &mut impl FnMut(&str, String)) -> f64 {
+    let range = |radii: &mut dyn Iterator<Item = f64>| {
+        let start = (0, f64::INFINITY, 0.0f64);
+        radii.fold(start, |(n, l, h), r| (n + 1, l.min(r), h.max(r)))
+    };
+    let (balls, low, high) = range(&mut s.shapes.balls.iter().map(|b| b.radius));
+    if balls > 0 {
+        let text = format!("{balls}, radius {low:.3e} to {high:.3e} m");
+        line("balls", text);
+    }
+    let (pieces, least, most) = range(&mut s.shapes.pieces.iter().map(|p| p.size));
+    if pieces > 0 {
+        let text =
+            format!("{pieces}, {least:.3e} to {most:.3e} m, radius of the ball of the same volume");
+        line("convex pieces", text);
+    }
+    let driven = s.state.bodies.driven.iter();
+    let names: Vec<&str> = driven.map(|d| d.name.as_str()).collect();
+    line(
+        "first bodies",
+        format!(
+            "{} ({}), {} surfaces",
+            names.len(),
+            names.join(", "),
+            s.shapes.surfaces.len()
+        ),
+    );
+    let contacts = s.state.network.contacts.len();
+    line("contacts at start", contacts.to_string());
+    high.max(most)
+}
+
+fn interfaces<S: Space>(s: &Simulation<S>, line: &mut impl FnMut(&str, String)) {
+    for law in &s.laws {
+        let laws: Vec<String> = law
+            .loaded()
+            .map(|l| format!("{} {}", l.plugin.kind, l.plugin.name))
+            .collect();
+        line(
+            "interface",
+            format!(
+                "{}: {}; bonds {:?}; {} internal variables",
+                law.name,
+                laws.join(", "),
+                law.bonds,
+                law.variables()
+            ),
+        );
+    }
 }
 
 /// The solvers that support the case, and why the others do not. A case whose own solver does not support it

@@ -65,8 +65,8 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     }
     interrupt::watch();
     let done = pool.install(|| match scene {
-        Scene::Dim2(built) => go(&loaded, *built, &options, args),
-        Scene::Dim3(built) => go(&loaded, *built, &options, args),
+        Scene::Dim2(built) => run_case(&loaded, *built, &options, args),
+        Scene::Dim3(built) => run_case(&loaded, *built, &options, args),
     })?;
     let Some(summary) = done else {
         return Ok(());
@@ -103,29 +103,29 @@ fn strict(args: &RunArgs, reason: Option<&str>) -> Result<(), Failure> {
 }
 
 /// Runs or resumes a case; `None` if the run is already finished.
-fn go<S: Dimensional>(
+fn run_case<S: Dimensional>(
     loaded: &Loaded,
     built: Built<S>,
     options: &RunOptions,
     args: &RunArgs,
 ) -> Result<Option<Summary>, Failure> {
-    let tell = |text: String| {
+    let inform = |text: String| {
         if !args.json {
-            inform(&text);
+            super::output::inform(&text);
         }
     };
     for pair in without_interface(&loaded.case, &built.simulation) {
-        tell(format!("no interface: {pair}"));
+        inform(format!("no interface: {pair}"));
     }
     let out = options.out.display();
     let mut stop = None;
     if args.resume {
         match record::stopped(loaded, &built, options)? {
-            Found::Nothing => tell(format!(
+            Found::Nothing => inform(format!(
                 "nothing to resume in {out}: starting from the beginning"
             )),
             Found::State(state) => {
-                tell(format!("resuming the run in {out}"));
+                inform(format!("resuming the run in {out}"));
                 stop = Some(state);
             }
             Found::Finished => {
@@ -134,12 +134,12 @@ fn go<S: Dimensional>(
                 if args.json && !text.is_empty() {
                     answer_json(text.trim_end())?;
                 } else {
-                    inform(&format!(
+                    super::output::inform(&format!(
                         "the run in {out} is finished: nothing to do; to run it again omit --resume"
                     ));
                 }
-                let kept: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-                strict(args, kept["reasons"][0].as_str())?;
+                let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+                strict(args, summary["reasons"][0].as_str())?;
                 return Ok(None);
             }
         }

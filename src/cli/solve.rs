@@ -1,6 +1,6 @@
 //! `fretwork solve`: solves contact problems in FCLIB files.
 
-mod say;
+mod report;
 
 use super::Failure;
 use super::number::positive;
@@ -18,8 +18,8 @@ pub struct SolveArgs {
     #[arg(required = true, value_name = "PROBLEM.hdf5")]
     problems: Vec<PathBuf>,
     /// The solver, or `all` for a table of all of them
-    #[arg(long, value_name = "S", default_value = "auto", value_parser = choice, long_help = long_help())]
-    solver: Choice,
+    #[arg(long, value_name = "S", default_value = "auto", value_parser = parse_solver, long_help = long_help())]
+    solver: SolverChoice,
     /// Error to reach: |p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|, |u|)
     #[arg(long, value_name = "T", default_value = "1e-8", value_parser = positive)]
     tolerance: f64,
@@ -44,17 +44,17 @@ pub struct SolveArgs {
 
 /// One solver, or all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Choice {
+enum SolverChoice {
     One(Method),
     All,
 }
 
-fn choice(text: &str) -> Result<Choice, String> {
+fn parse_solver(text: &str) -> Result<SolverChoice, String> {
     if text == "all" {
-        return Ok(Choice::All);
+        return Ok(SolverChoice::All);
     }
     let method = Method::from_str(text).map_err(|e| format!("{e}; `all` compares them"))?;
-    Ok(Choice::One(method))
+    Ok(SolverChoice::One(method))
 }
 
 fn long_help() -> String {
@@ -89,15 +89,15 @@ pub fn solve(args: &SolveArgs) -> Result<(), Failure> {
     }
     let (mut wrong, mut unsolved, mut all) = (Vec::new(), Vec::new(), Vec::new());
     for path in &args.problems {
-        match one(path, args) {
+        match solve_file(path, args) {
             Ok(solved) => {
                 if !solved.outcomes[0].converged {
-                    unsolved.push(say::unsolved(&solved, args));
+                    unsolved.push(report::unsolved(&solved, args));
                 }
                 if args.json {
-                    all.push(say::json(&solved, args));
+                    all.push(report::json(&solved, args));
                 } else {
-                    super::output::answer(&say::text(&solved, args))?;
+                    super::output::answer(&report::text(&solved, args))?;
                 }
             }
             // The remaining files are still solved; this one determines the exit code.
@@ -204,7 +204,7 @@ impl<'a> Form<'a> {
     }
 }
 
-fn one(path: &Path, args: &SolveArgs) -> Result<Solved, Failure> {
+fn solve_file(path: &Path, args: &SolveArgs) -> Result<Solved, Failure> {
     let start = Instant::now();
     let problem = fclib::read(path).map_err(|e| Failure::Usage(e.to_string()))?;
     let read_seconds = start.elapsed().as_secs_f64();
@@ -221,8 +221,8 @@ fn one(path: &Path, args: &SolveArgs) -> Result<Solved, Failure> {
     };
     let run = |method| solver::solve(local, method, &limits);
     let mut outcomes: Vec<Outcome> = match args.solver {
-        Choice::One(method) => vec![run(method)],
-        Choice::All => Method::ALL.iter().copied().map(run).collect(),
+        SolverChoice::One(method) => vec![run(method)],
+        SolverChoice::All => Method::ALL.iter().copied().map(run).collect(),
     };
     // The fastest of those that reached the tolerance, then the most accurate of the others.
     outcomes.sort_by(|a, b| {

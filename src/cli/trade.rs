@@ -6,6 +6,7 @@ use super::number::{not_negative, share};
 use super::output::{answer_json, inform, report};
 use super::{CaseArgs, Failure, again};
 use crate::interrupt;
+use crate::laws::SearchPath;
 use crate::scene::build::{Built, Dimensional};
 use crate::scene::methods::{Demands, Service};
 use crate::scene::source::clean;
@@ -13,8 +14,10 @@ use crate::scene::{Loaded, Scene, load};
 use crate::solve::local::solver::Method;
 use crate::trade::chaos::Perturbation;
 use crate::trade::child::{Launcher, Limits, Status};
-use crate::trade::knobs::{knobs, openings};
+use crate::trade::compare::Comparison;
 use crate::trade::offer::Offer;
+use crate::trade::output::Output;
+use crate::trade::parameters::{StudyParameter, openings, parameters};
 use crate::trade::setting::Setting;
 use crate::trade::study::{Event, Ledger, Study};
 use crate::trade::{TradeError, figure, files, forecast::Forecast, table, verdict::verdicts};
@@ -41,7 +44,7 @@ pub struct TradeArgs {
     /// Parameter to vary: step, tolerance, solver, test_every, coupling, correction, grains; by default all
     /// but grains
     #[arg(long = "knob", value_name = "NAME")]
-    knobs: Vec<String>,
+    parameters: Vec<String>,
     /// Vary any value of the case; the first value is that of the reference
     #[arg(long = "vary", value_name = "KEY.PATH=A,B,C")]
     vary: Vec<String>,
@@ -114,26 +117,10 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     let scene = loaded.build(&search)?;
     let first = Facts::of(&loaded, &scene);
     let outputs = refuse::outputs(args, &first.offer)?;
-    let other_seed = format!("seed={}", loaded.case.seed.wrapping_add(1));
-    let sets = [args.case.sets.as_slice(), &[other_seed]].concat();
-    let other = load(&args.case.case, &sets)?;
-    // The sample is random if some seeds fail to generate it.
-    let random = match other.build(&search) {
-        Ok(scene) => Facts::of(&other, &scene).drawn != first.drawn,
-        Err(_) => true,
-    };
-    let knobs = knobs(&loaded, &first.methods, &args.knobs, &args.vary)?;
-    let varied = |set: &&String| args.vary.iter().any(|v| same_key(set, v));
-    for set in knobs
-        .iter()
-        .flat_map(|k| &k.levels)
-        .flat_map(|l| &l.sets)
-        .filter(varied)
-    {
-        let sets = [args.case.sets.clone(), openings(&loaded), vec![set.clone()]].concat();
-        load(&args.case.case, &sets)?.build(&search)?;
-    }
-    if knobs.is_empty() {
+    let random = seed_matters(args, &loaded, &search, &first)?;
+    let parameters = parameters(&loaded, &first.methods, &args.parameters, &args.vary)?;
+    check_varied_cases(args, &loaded, &search, &parameters)?;
+    if parameters.is_empty() {
         return Err(Failure::Usage(
             "nothing to vary; name a --knob or --vary".into(),
         ));
@@ -155,24 +142,98 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     let _lock = crate::trade::lock::take(&out)?;
     let plugins = args.case.plugins.words();
     let mut launcher = Launcher::new(&loaded, &first.materials, plugins, &out, limits)?;
-    let own = Setting::own(&knobs).sets(&knobs);
+    let own = Setting::own(&parameters).sets(&parameters);
     if let Some(scene) = scene
-        && launcher.kept(&own, loaded.case.seed).is_none()
+        && launcher.stored(&own, loaded.case.seed).is_none()
     {
         refuse::budget(args, &loaded, scene)?;
     }
-    launcher.nudge = (!random).then_some(Perturbation {
+    launcher.perturbation = (!random).then_some(Perturbation {
         first: loaded.case.seed,
         step: loaded.case.time.step,
     });
     let stop = interrupt::watch();
     refuse::after_two_steps(args, &loaded, &launcher, &outputs, stop)?;
-    let count = if random { u64::from(args.seeds) } else { 1 };
-    let mut study = Study {
+    let mut study = new_study(
+        args, &loaded, launcher, parameters, outputs, random, started,
+    );
+    study.test_for_chaos(args.seeds.into(), stop)?;
+    study.prepare(stop)?;
+    if !args.json {
+        let title = clean(&loaded.case.name);
+        inform(&format!("{}: {title}", loaded.path.display()));
+        inform(&table::forecast(&study));
+    }
+    let expected = study.work(&[study.first(), study.one_at_a_time()].concat());
+    let quiet = args.json
+        || !(std::io::stderr().is_terminal() || std::env::var_os("FRETWORK_QUIET").is_none());
+    study.execute(stop, &|event| {
+        if !quiet {
+            report_event(event, started);
+        }
+    })?;
+    let interrupted = stop.load(Ordering::Relaxed);
+    report_study(args, &study, &loaded, &out, expected, interrupted)
+}
+
+/// Whether another seed gives another scene; it does if it gives none.
+fn seed_matters(
+    args: &TradeArgs,
+    loaded: &Loaded,
+    search: &SearchPath,
+    first: &Facts,
+) -> Result<bool, Failure> {
+    let other_seed = format!("seed={}", loaded.case.seed.wrapping_add(1));
+    let sets = [args.case.sets.as_slice(), &[other_seed]].concat();
+    let other = load(&args.case.case, &sets)?;
+    Ok(match other.build(search) {
+        Ok(scene) => Facts::of(&other, &scene).drawn != first.drawn,
+        Err(_) => true,
+    })
+}
+
+/// Builds the case with each value of a `--vary`, so that a wrong one is refused before any run.
+fn check_varied_cases(
+    args: &TradeArgs,
+    loaded: &Loaded,
+    search: &SearchPath,
+    parameters: &[StudyParameter],
+) -> Result<(), Failure> {
+    let varied = |set: &&String| args.vary.iter().any(|v| same_key(set, v));
+    let levels = parameters.iter().flat_map(|k| &k.levels);
+    for set in levels.flat_map(|l| &l.sets).filter(varied) {
+        let sets = [args.case.sets.clone(), openings(loaded), vec![set.clone()]].concat();
+        load(&args.case.case, &sets)?.build(search)?;
+    }
+    Ok(())
+}
+
+/// The study before its first run, with the notes that its options call for.
+fn new_study(
+    args: &TradeArgs,
+    loaded: &Loaded,
+    launcher: Launcher,
+    parameters: Vec<StudyParameter>,
+    outputs: Vec<Output>,
+    random: bool,
+    started: Instant,
+) -> Study {
+    let seeds = if random { u64::from(args.seeds) } else { 1 };
+    let mut notes = Vec::new();
+    if !random && args.seeds == 1 {
+        notes.push("Nothing in the case is drawn from its seed, and one run a setting does not show whether contacts are chaotic: errors have no intervals.".into());
+    } else if random && seeds == 1 {
+        notes.push("One seed gives no scatter: no error has an interval, and no conclusion can be drawn. Give --seeds 3 or more.".into());
+    }
+    notes.push("Precision is not varied: Fretwork computes and stores in f64 only.".into());
+    if args.jobs > 1 {
+        notes.push(format!("{} runs ran in parallel, which disturbs their timing; visits (contacts times iterations) do not depend on it.", args.jobs));
+    }
+    Study {
         launcher: Arc::new(launcher),
-        knobs,
+        parameters,
         outputs,
-        seeds: (0..count)
+        seeds: (0..seeds)
             .map(|k| loaded.case.seed.wrapping_add(k))
             .collect(),
         random,
@@ -188,72 +249,35 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
         reused: 0,
         fresh: 0,
         left_out: BTreeSet::new(),
-        notes: Vec::new(),
+        notes,
         started,
-    };
-    if !random && args.seeds == 1 {
-        study.notes.push("Nothing in the case is drawn from its seed, and one run a setting does not show whether contacts are chaotic: errors have no intervals.".into());
-    } else if random && count == 1 {
-        study.notes.push("One seed gives no scatter: no error has an interval, and no conclusion can be drawn. Give --seeds 3 or more.".into());
     }
-    study
-        .notes
-        .push("Precision is not varied: Fretwork computes and stores in f64 only.".into());
-    if study.jobs > 1 {
-        study.notes.push(format!("{} runs ran in parallel, which disturbs their timing; visits (contacts times iterations) do not depend on it.", study.jobs));
-    }
-    study.look_for_chaos(args.seeds.into(), stop)?;
-    study.prepare(stop)?;
-    if !args.json {
-        inform(&format!(
-            "{}: {}",
-            loaded.path.display(),
-            clean(&loaded.case.name)
-        ));
-        inform(&table::forecast(&study));
-    }
-    let expected = study.work(&[study.first(), study.star()].concat());
-    let quiet = args.json
-        || !(std::io::stderr().is_terminal() || std::env::var_os("FRETWORK_QUIET").is_none());
-    let watch = |event: &Event<'_>| {
-        if quiet {
-            return;
+}
+
+/// Reports a run that begins or has ended.
+fn report_event(event: &Event<'_>, started: Instant) {
+    let elapsed = table::seconds(started.elapsed().as_secs_f64());
+    match event {
+        Event::Begins(name, seed, expected) => report(&format!(
+            "[{elapsed}] {name}, seed {seed}: {} expected",
+            table::seconds(*expected)
+        )),
+        Event::Ended(name, seed, run) => {
+            let how = match &run.status {
+                Status::Done => "done",
+                Status::Failed(_) => "FAILED",
+                Status::Slow(_) => "slower than the reference",
+            };
+            report(&format!(
+                "[{elapsed}] {name}, seed {seed}: {how} in {}",
+                table::seconds(run.seconds)
+            ));
         }
-        match event {
-            Event::Begins(name, seed, expected) => {
-                report(&format!(
-                    "[{}] {name}, seed {seed}: {} expected",
-                    table::seconds(started.elapsed().as_secs_f64()),
-                    table::seconds(*expected)
-                ));
-            }
-            Event::Ended(name, seed, run) => {
-                let how = match &run.status {
-                    Status::Done => "done",
-                    Status::Failed(_) => "FAILED",
-                    Status::Slow(_) => "slower than the reference",
-                };
-                report(&format!(
-                    "[{}] {name}, seed {seed}: {how} in {}",
-                    table::seconds(started.elapsed().as_secs_f64()),
-                    table::seconds(run.seconds)
-                ));
-            }
-        }
-    };
-    study.go(stop, &watch)?;
-    tell(
-        args,
-        &study,
-        &loaded,
-        &out,
-        expected,
-        stop.load(Ordering::Relaxed),
-    )
+    }
 }
 
 /// Writes the files and prints the report.
-fn tell(
+fn report_study(
     args: &TradeArgs,
     study: &Study,
     loaded: &Loaded,
@@ -263,21 +287,10 @@ fn tell(
 ) -> Result<(), Failure> {
     let found = study.compare();
     let verdicts = verdicts(&found, &study.outputs, study.random);
-    let dropped = study.dropped();
-    let complete = study.left_out.is_empty() && dropped.is_empty() && !interrupted;
+    let complete = study.left_out.is_empty() && study.dropped().is_empty() && !interrupted;
     let json = files::json(study, &found, &verdicts, complete);
-    let path = out.join("trade.json");
     let text = serde_json::to_string_pretty(&json).unwrap_or_default();
-    std::fs::write(&path, text.clone() + "\n")
-        .map_err(|e| Failure::Failed(format!("cannot write {}: {e}", path.display())))?;
-    files::csv(study, &found, &out.join("trade.csv"))?;
-    let picture = out.join("trade.png");
-    let drawn =
-        figure::draw(study, &found, &loaded.case.name, &picture).map_err(TradeError::from)?;
-    if !drawn {
-        // A picture of an earlier study would be mistaken for one of this study.
-        let _ = std::fs::remove_file(&picture);
-    }
+    let drawn = write_files(study, &found, &text, &loaded.case.name, out)?;
     let ended = if interrupted {
         Err(Failure::Failed(format!(
             "interrupted: finished runs are kept; to continue from there:\n  {}",
@@ -299,30 +312,7 @@ fn tell(
         table::seconds(expected)
     ));
     if !complete {
-        let names: Vec<String> = study
-            .left_out
-            .iter()
-            .map(|s| s.name(&study.knobs))
-            .collect();
-        let why = if interrupted {
-            "interrupted"
-        } else {
-            "the budget is spent"
-        };
-        let mut what = if names.is_empty() {
-            String::new()
-        } else {
-            format!(" Not run, or not over all seeds: {}.", names.join("; "))
-        };
-        if !dropped.is_empty() {
-            what.push_str(&format!(
-                " Finer than this budget allows the reference: {}; a larger --budget includes them.",
-                dropped.join("; ")
-            ));
-        }
-        inform(&format!(
-            "INCOMPLETE, {why}.{what} The same command continues from here."
-        ));
+        inform(&incomplete(study, interrupted));
     }
     let last = if drawn {
         format!("{}/trade.png", out.display())
@@ -334,6 +324,51 @@ fn tell(
         out.display()
     ));
     ended
+}
+
+/// Writes the files of a study; returns whether there is a picture.
+fn write_files(
+    study: &Study,
+    found: &Comparison,
+    json: &str,
+    title: &str,
+    out: &Path,
+) -> Result<bool, Failure> {
+    let path = out.join("trade.json");
+    std::fs::write(&path, format!("{json}\n"))
+        .map_err(|e| Failure::Failed(format!("cannot write {}: {e}", path.display())))?;
+    files::csv(study, found, &out.join("trade.csv"))?;
+    let picture = out.join("trade.png");
+    let drawn = figure::draw(study, found, title, &picture).map_err(TradeError::from)?;
+    if !drawn {
+        // A picture of an earlier study would be mistaken for one of this study.
+        let _ = std::fs::remove_file(&picture);
+    }
+    Ok(drawn)
+}
+
+/// What a study did not run, and why.
+fn incomplete(study: &Study, interrupted: bool) -> String {
+    let left_out = study.left_out.iter();
+    let names: Vec<String> = left_out.map(|s| s.name(&study.parameters)).collect();
+    let dropped = study.dropped();
+    let why = if interrupted {
+        "interrupted"
+    } else {
+        "the budget is spent"
+    };
+    let mut what = if names.is_empty() {
+        String::new()
+    } else {
+        format!(" Not run, or not over all seeds: {}.", names.join("; "))
+    };
+    if !dropped.is_empty() {
+        what.push_str(&format!(
+            " Finer than this budget allows the reference: {}; a larger --budget includes them.",
+            dropped.join("; ")
+        ));
+    }
+    format!("INCOMPLETE, {why}.{what} The same command continues from here.")
 }
 
 /// Whether a `--set` and a `--vary` have the same key.

@@ -2,6 +2,7 @@
 //! [`fretwork_plot`].
 pub mod run;
 
+pub use fretwork_observe::picture::{Paint, Picture, Shows};
 pub use fretwork_observe::{
     biaxial, choice, code, coordination, first_bodies, fretting, friction, jump, layer, loops,
     measure, observer, output, placement, scars, scatter, solving, statistics, steady, strain,

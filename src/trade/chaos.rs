@@ -14,7 +14,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// Relative increase of the step for the second run; twice this for the third, and so on.
-const NUDGE: f64 = 1e-10;
+const RELATIVE_PERTURBATION: f64 = 1e-10;
 
 /// Smallest noticed difference, as a fraction of the wanted error.
 const NOTICED: f64 = 0.01;
@@ -42,7 +42,7 @@ impl Perturbation {
         }
         let last = sets.iter().rfind(|s| key(s) == "time.step");
         let value = last.and_then(|s| s.split_once('=')?.1.trim().parse().ok());
-        Some(value.unwrap_or(self.step) * (1.0 + NUDGE * times as f64))
+        Some(value.unwrap_or(self.step) * (1.0 + RELATIVE_PERTURBATION * times as f64))
     }
 }
 
@@ -51,17 +51,17 @@ impl Study {
     ///
     /// # Errors
     /// A run cannot be started.
-    pub fn look_for_chaos(&mut self, runs: u64, stop: &AtomicBool) -> Result<(), TradeError> {
+    pub fn test_for_chaos(&mut self, runs: u64, stop: &AtomicBool) -> Result<(), TradeError> {
         let first = self.seeds[0];
         if self.random || runs < 2 {
             return Ok(());
         }
-        let own = Setting::own(&self.knobs);
-        let sets = own.sets(&self.knobs);
+        let own = Setting::own(&self.parameters);
+        let sets = own.sets(&self.parameters);
         let deadline = self.started + self.budget.mul_f64(SHARE);
         let mut places = Vec::new();
         for seed in [first, first.wrapping_add(1)] {
-            let run = match self.launcher.kept(&sets, seed) {
+            let run = match self.launcher.stored(&sets, seed) {
                 Some(run) => run,
                 None => match self.launcher.run(&sets, seed, deadline, None, stop)? {
                     Ended::Finished(run) => {
@@ -84,12 +84,12 @@ impl Study {
         }
         self.fresh = self.done.len();
         let [one, other] = [&places[0], &places[1]];
-        let parted = self.outputs.iter().find_map(|o| parted(o, one, other));
-        match parted {
+        let difference = self.outputs.iter().find_map(|o| difference(o, one, other));
+        match difference {
             None => {
                 self.done.remove(&(own, first.wrapping_add(1)));
                 self.notes.push(format!(
-                    "Nothing in the case is drawn from its seed, and a relative change of the step by {NUDGE:e} changes no output \
+                    "Nothing in the case is drawn from its seed, and a relative change of the step by {RELATIVE_PERTURBATION:e} changes no output \
                      by a hundredth of the error wanted: one run a setting, and errors without intervals."
                 ));
             }
@@ -97,7 +97,7 @@ impl Study {
                 self.random = true;
                 self.seeds = (0..runs).map(|k| first.wrapping_add(k)).collect();
                 self.notes.push(format!(
-                    "Nothing in the case is drawn from its seed, but a relative change of the step by {NUDGE:e} changes {told}: \
+                    "Nothing in the case is drawn from its seed, but a relative change of the step by {RELATIVE_PERTURBATION:e} changes {told}: \
                      contacts are chaotic, and runs with steps longer by multiples of that take the place of seeds."
                 ));
             }
@@ -107,7 +107,7 @@ impl Study {
 }
 
 /// Description of an output's difference between two runs, if it is noticed.
-fn parted(output: &Output, one: &Path, other: &Path) -> Option<String> {
+fn difference(output: &Output, one: &Path, other: &Path) -> Option<String> {
     let [a, b] = [one, other].map(|place| output.read(&summary(place), place));
     let (a, b) = (a?, b?);
     let wanted = match output.wanted {
@@ -119,8 +119,8 @@ fn parted(output: &Output, one: &Path, other: &Path) -> Option<String> {
 
 impl Launcher {
     /// The `time.step` of a perturbed run.
-    pub(super) fn nudged(&self, sets: &[&str], seed: u64) -> Option<String> {
-        let step = self.nudge?.step(sets, seed)?;
+    pub(super) fn perturbed_step(&self, sets: &[&str], seed: u64) -> Option<String> {
+        let step = self.perturbation?.step(sets, seed)?;
         Some(format!("time.step={step:e}"))
     }
 }
@@ -130,16 +130,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_nudged_step_is_that_of_the_setting() {
-        let nudge = Perturbation {
+    fn a_perturbed_step_is_that_of_the_setting() {
+        let perturbation = Perturbation {
             first: 7,
             step: 1e-3,
         };
-        assert_eq!(nudge.step(&[], 7), None);
-        let twice = nudge.step(&["solver.tolerance=1e-3"], 9).unwrap();
+        assert_eq!(perturbation.step(&[], 7), None);
+        let twice = perturbation.step(&["solver.tolerance=1e-3"], 9).unwrap();
         assert!((twice / 1e-3 - 1.0 - 2e-10).abs() < 1e-15);
-        let set = nudge.step(&["time.step=5e-4", "time.step = 2e-4"], 8);
+        let set = perturbation.step(&["time.step=5e-4", "time.step = 2e-4"], 8);
         assert!((set.unwrap() / 2e-4 - 1.0 - 1e-10).abs() < 1e-15);
-        assert_eq!(nudge.step(&["time=(step: 1e-4, end: 1.0)"], 8), None);
+        assert_eq!(perturbation.step(&["time=(step: 1e-4, end: 1.0)"], 8), None);
     }
 }

@@ -3,8 +3,8 @@
 
 use super::TradeError;
 use super::chaos::Perturbation;
-use super::knobs::openings;
 use super::output::column;
+use super::parameters::openings;
 use crate::scene::Loaded;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -25,9 +25,9 @@ pub enum Status {
     Slow(f64),
 }
 
-/// Contents of `run.json` for a run that ended by itself: numbers only, judged again whenever they are read.
+/// Contents of `run.json` for a run that ended by itself: numbers only, assessed whenever they are read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Kept {
+struct StoredRun {
     sets: Vec<String>,
     seed: u64,
     /// Exit code.
@@ -44,10 +44,10 @@ struct Kept {
     visits: f64,
 }
 
-impl Kept {
+impl StoredRun {
     /// Whether a repetition may end differently: the run was rejected (files may have changed), could not
     /// write, or left nothing.
-    fn passing(&self) -> bool {
+    fn temporary(&self) -> bool {
         match self.exit {
             0 => self.steps.is_none(),
             1 => self.said.contains("cannot write") || self.said.contains("No space left"),
@@ -62,7 +62,7 @@ pub struct Finished {
     /// Outcome.
     pub status: Status,
     /// Whether a failure may be temporary: it is not stored, and the next study tries again.
-    pub passing: bool,
+    pub temporary: bool,
     /// The `--set` arguments of the run.
     pub sets: Vec<String>,
     /// Seed of the run.
@@ -109,7 +109,7 @@ pub struct Launcher {
     /// Limits beyond which they are not trusted.
     pub limits: Limits,
     /// Distinction of the runs if the seed changes nothing.
-    pub nudge: Option<Perturbation>,
+    pub perturbation: Option<Perturbation>,
     fingerprint: String,
 }
 
@@ -148,7 +148,7 @@ impl Launcher {
             plugins,
             folder,
             limits,
-            nudge: None,
+            perturbation: None,
             fingerprint: hex(&hash.finalize()),
         })
     }
@@ -170,11 +170,11 @@ impl Launcher {
         self.folder.join(&hex(&hash.finalize())[..16])
     }
 
-    /// Stored result of an earlier run, judged by the current limits.
-    pub fn kept(&self, sets: &[String], seed: u64) -> Option<Finished> {
+    /// Stored result of an earlier run, assessed by the current limits.
+    pub fn stored(&self, sets: &[String], seed: u64) -> Option<Finished> {
         let text = std::fs::read_to_string(self.place(sets, seed).join("run.json")).ok()?;
-        let kept: Kept = serde_json::from_str(&text).ok()?;
-        (!kept.passing()).then(|| self.judged(kept))
+        let run: StoredRun = serde_json::from_str(&text).ok()?;
+        (!run.temporary()).then(|| self.assess(run))
     }
 
     /// Runs to the end, to `deadline`, or for at most `bound`.
@@ -230,21 +230,21 @@ impl Launcher {
             return Ok(Ended::Interrupted);
         }
         let elapsed = started.elapsed().as_secs_f64();
-        let kept = kept(&place, sets, seed, code.and_then(|c| c.code()), elapsed);
+        let left = read_run(&place, sets, seed, code.and_then(|c| c.code()), elapsed);
         let finished = match code.map(|c| c.code()) {
             Some(Some(_)) => {
-                if !kept.passing() {
-                    let text = serde_json::to_string_pretty(&kept).unwrap_or_default();
+                if !left.temporary() {
+                    let text = serde_json::to_string_pretty(&left).unwrap_or_default();
                     let (draft, path) = (place.join("run.json.part"), place.join("run.json"));
                     std::fs::write(&draft, text)
                         .and_then(|()| std::fs::rename(&draft, &path))
                         .map_err(|e| fail(&e))?;
                 }
-                self.judged(kept)
+                self.assess(left)
             }
             ended => {
-                let mut run = self.judged(kept);
-                run.passing = true;
+                let mut run = self.assess(left);
+                run.temporary = true;
                 run.status = match ended {
                     None => Status::Slow(elapsed),
                     _ => Status::Failed("ended by a signal".into()),
@@ -272,8 +272,8 @@ impl Launcher {
         ];
         let seed = format!("seed={number}");
         let all: Vec<&str> = self.sets.iter().chain(sets).map(String::as_str).collect();
-        let nudged = self.nudged(&all, number);
-        let last = [seed.as_str()].into_iter().chain(nudged.as_deref());
+        let perturbed_step = self.perturbed_step(&all, number);
+        let last = [seed.as_str()].into_iter().chain(perturbed_step.as_deref());
         for set in all.into_iter().chain(quiet).chain(last) {
             command.args(["--set", set]);
         }
@@ -281,43 +281,43 @@ impl Launcher {
         command
     }
 
-    fn judged(&self, kept: Kept) -> Finished {
-        let passing = kept.passing();
-        let status = match kept.exit {
-            0 => self.doubt(&kept).map_or(Status::Done, Status::Failed),
+    fn assess(&self, run: StoredRun) -> Finished {
+        let temporary = run.temporary();
+        let status = match run.exit {
+            0 => self.rejection(&run).map_or(Status::Done, Status::Failed),
             code => {
                 let what = if code == 2 { "refused" } else { "failed" };
-                Status::Failed(format!("{what}: {}", kept.said))
+                Status::Failed(format!("{what}: {}", run.said))
             }
         };
         Finished {
             status,
-            passing,
-            sets: kept.sets,
-            seed: kept.seed,
-            seconds: kept.seconds,
-            wall: kept.wall,
-            visits: kept.visits,
+            temporary,
+            sets: run.sets,
+            seed: run.seed,
+            seconds: run.seconds,
+            wall: run.wall,
+            visits: run.visits,
         }
     }
 
     /// Reason why a finished run is not trusted.
-    fn doubt(&self, kept: &Kept) -> Option<String> {
-        let Some(steps) = kept.steps else {
+    fn rejection(&self, run: &StoredRun) -> Option<String> {
+        let Some(steps) = run.steps else {
             return Some("it wrote no summary".into());
         };
         let most = self.limits.unconverged * steps.max(1.0);
-        if kept.unconverged > most {
-            let missed = kept.unconverged;
+        if run.unconverged > most {
+            let missed = run.unconverged;
             return Some(format!("{missed} of {steps} steps did not converge"));
         }
-        if kept.uncoupled > most {
+        if run.uncoupled > most {
             return Some(format!(
                 "{} of {steps} steps did not converge in the damage coupling",
-                kept.uncoupled
+                run.uncoupled
             ));
         }
-        match kept.residual {
+        match run.residual {
             Some(r) if r.abs() <= self.limits.residual => None,
             Some(r) => Some(format!(
                 "its energy residual is {:.1} % of the largest energy",
@@ -334,12 +334,18 @@ fn interrupted(place: &Path) -> bool {
 }
 
 /// Result that a run left in its folder; `exit` is `None` if it did not end by itself.
-fn kept(place: &Path, sets: &[String], seed: u64, exit: Option<i32>, elapsed: f64) -> Kept {
+fn read_run(
+    place: &Path,
+    sets: &[String],
+    seed: u64,
+    exit: Option<i32>,
+    elapsed: f64,
+) -> StoredRun {
     let summary = summary(place);
     let number = |key: &str| summary.pointer(key).and_then(Value::as_f64);
     let said = std::fs::read_to_string(place.join("stderr.txt")).unwrap_or_default();
     let first = said.lines().next().unwrap_or("no reason was given");
-    Kept {
+    StoredRun {
         sets: sets.to_vec(),
         seed,
         exit: exit.unwrap_or(-1),
@@ -380,10 +386,10 @@ fn hex(bytes: &[u8]) -> String {
 mod tests {
     use super::*;
 
-    /// A stored run is judged by the current limits; a failure that may be temporary is not stored.
+    /// A stored run is assessed by the current limits; a failure that may be temporary is not stored.
     #[test]
-    fn a_kept_run_is_judged_by_todays_limits() {
-        let run = |exit, said: &str| Kept {
+    fn a_stored_run_is_assessed_by_todays_limits() {
+        let run = |exit, said: &str| StoredRun {
             sets: Vec::new(),
             seed: 1,
             exit,
@@ -407,20 +413,20 @@ mod tests {
                 unconverged: 0.01,
                 residual: 0.01,
             },
-            nudge: None,
+            perturbation: None,
             fingerprint: String::new(),
         };
         let place = launcher.place(&[], 1);
         std::fs::create_dir_all(&place).unwrap();
         let text = serde_json::to_string(&run(0, "")).unwrap();
         std::fs::write(place.join("run.json"), text).unwrap();
-        let strict = launcher.kept(&[], 1).unwrap().status;
+        let strict = launcher.stored(&[], 1).unwrap().status;
         launcher.limits.unconverged = 0.05;
-        let lenient = launcher.kept(&[], 1).unwrap().status;
+        let lenient = launcher.stored(&[], 1).unwrap().status;
         std::fs::remove_dir_all(&folder).unwrap();
         assert!(matches!(strict, Status::Failed(why) if why.contains("3 of 100 steps")));
         assert_eq!(lenient, Status::Done);
-        assert!(run(1, "cannot write x: full").passing() && run(2, "no such mesh").passing());
-        assert!(!run(1, "a body left the domain").passing() && !run(0, "").passing());
+        assert!(run(1, "cannot write x: full").temporary() && run(2, "no such mesh").temporary());
+        assert!(!run(1, "a body left the domain").temporary() && !run(0, "").temporary());
     }
 }

@@ -14,7 +14,7 @@ impl Study {
     /// Settings that change several parameters, composed of levels that were cheaper alone.
     pub(super) fn combinations(&self) -> Vec<Setting> {
         let found = self.compare();
-        let own = Setting::own(&self.knobs);
+        let own = Setting::own(&self.parameters);
         let Some(base) = found
             .rows
             .iter()
@@ -36,10 +36,10 @@ impl Study {
         };
         type Move = (usize, f64, Vec<f64>);
         let mut moves: Vec<Vec<Move>> = Vec::new();
-        for k in 0..self.knobs.len() {
+        for k in 0..self.parameters.len() {
             let mut here: Vec<Move> = vec![(own.0[k], 1.0, vec![0.0; start.len()])];
             for row in &found.rows {
-                let alone = row.setting.changed(&self.knobs) == [k] && row.failed.is_none();
+                let alone = row.setting.changed(&self.parameters) == [k] && row.failed.is_none();
                 let cheaper = row.seconds < 0.95 * base.seconds;
                 if let (true, Some(errors)) = (alone && cheaper, scaled(row)) {
                     let moved = errors.iter().zip(&start).map(|(e, s)| e.0 - s.0);
@@ -71,7 +71,7 @@ impl Study {
         }
         let mut points: Vec<(Setting, f64, f64)> = all
             .into_iter()
-            .filter(|(s, ..)| s.changed(&self.knobs).len() > 1)
+            .filter(|(s, ..)| s.changed(&self.parameters).len() > 1)
             .map(|(s, cost, moved)| {
                 let worst = moved
                     .iter()

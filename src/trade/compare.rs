@@ -4,8 +4,8 @@
 use super::child::{Finished, Launcher, Status, summary};
 use super::frontier::frontier;
 use super::interval::Mean;
-use super::knobs::{Sense, StudyParameter};
 use super::output::{Output, Wanted};
+use super::parameters::{Sense, StudyParameter};
 use super::setting::Setting;
 use super::study::Ledger;
 use std::collections::BTreeMap;
@@ -72,7 +72,7 @@ pub struct Comparison {
 /// Input of a comparison.
 pub struct Compared<'a> {
     /// Varied parameters.
-    pub knobs: &'a [StudyParameter],
+    pub parameters: &'a [StudyParameter],
     /// Compared outputs.
     pub outputs: &'a [Output],
     /// Whether the seed changes the scene.
@@ -88,7 +88,7 @@ pub struct Compared<'a> {
 impl Compared<'_> {
     /// Compares every setting with the reference.
     pub fn compare(&self) -> Comparison {
-        let reference = Setting::reference(self.knobs);
+        let reference = Setting::reference(self.parameters);
         let mut settings: Vec<&Setting> = self.done.keys().map(|(s, _)| s).collect();
         settings.dedup();
         let values: BTreeMap<(&Setting, usize), BTreeMap<u64, f64>> = settings
@@ -211,32 +211,32 @@ impl Compared<'_> {
             });
         }
         let (mut sum, mut parts, mut known) = (0.0, Vec::new(), true);
-        for (k, knob) in self.knobs.iter().enumerate() {
-            let Some(next) = neighbour(knob) else {
+        for (k, parameter) in self.parameters.iter().enumerate() {
+            let Some(next) = neighbour(parameter) else {
                 continue;
             };
             let found = self.error(o, &of(&reference.with(k, next), o), &base);
-            let label = &knob.levels[next].label;
-            let weight = ratio(knob, next).and_then(weight);
+            let label = &parameter.levels[next].label;
+            let weight = ratio(parameter, next).and_then(weight);
             match (found, weight) {
                 (Some(error), Some(weight)) => {
                     sum += weight * error.at_most();
                     parts.push(format!(
                         "{} {label} differs by {}",
-                        knob.name,
-                        Told(&error, self.outputs[o].wanted)
+                        parameter.name,
+                        ShownError(&error, self.outputs[o].wanted)
                     ));
                 }
                 (_, None) => {
                     known = false;
                     parts.push(format!(
                         "{} {label} is too close to the reference's to compare; give a level {NEAREST} times as coarse or more",
-                        knob.name
+                        parameter.name
                     ));
                 }
                 (None, _) => {
                     known = false;
-                    parts.push(format!("{} {label} did not run", knob.name));
+                    parts.push(format!("{} {label} did not run", parameter.name));
                 }
             }
         }
@@ -299,7 +299,7 @@ impl Compared<'_> {
             })
         });
         Row {
-            name: setting.name(self.knobs),
+            name: setting.name(self.parameters),
             seeds: runs.len(),
             failed,
             seconds: runs.iter().map(|r| r.1.seconds).sum::<f64>() / n,
@@ -317,18 +317,18 @@ const NEAREST: f64 = 1.5;
 
 /// The level next to the reference's, of an ordered parameter: the first that is coarse enough for the
 /// estimate, otherwise the next one.
-pub fn neighbour(knob: &StudyParameter) -> Option<usize> {
-    let ordered = matches!(knob.sense, Sense::Step | Sense::Tolerance);
-    let mut coarser = knob.reference + 1..knob.levels.len();
+pub fn neighbour(parameter: &StudyParameter) -> Option<usize> {
+    let ordered = matches!(parameter.sense, Sense::Step | Sense::Tolerance);
+    let mut coarser = parameter.reference + 1..parameter.levels.len();
     let next = coarser.clone().next().filter(|_| ordered)?;
     coarser
-        .find(|&l| ratio(knob, l).and_then(weight).is_some())
+        .find(|&l| ratio(parameter, l).and_then(weight).is_some())
         .or(Some(next))
 }
 
 /// Ratio of a level to the reference's level.
-fn ratio(knob: &StudyParameter, level: usize) -> Option<f64> {
-    Some(knob.levels.get(level)?.number? / knob.levels.get(knob.reference)?.number?)
+fn ratio(parameter: &StudyParameter, level: usize) -> Option<f64> {
+    Some(parameter.levels.get(level)?.number? / parameter.levels.get(parameter.reference)?.number?)
 }
 
 /// Factor on the difference from a level `ratio` times as coarse that bounds the reference's own error. For
@@ -343,9 +343,9 @@ fn weight(ratio: f64) -> Option<f64> {
 }
 
 /// A formatted error: `-0.8 +- 0.3 %`.
-pub struct Told<'a>(pub &'a Mean, pub Wanted);
+pub struct ShownError<'a>(pub &'a Mean, pub Wanted);
 
-impl std::fmt::Display for Told<'_> {
+impl std::fmt::Display for ShownError<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mean = self.0;
         let half = match (mean.half_width, self.1) {
@@ -375,7 +375,7 @@ pub fn share(x: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::knobs::Level;
+    use super::super::parameters::Level;
     use super::*;
 
     /// For a first-order error e = c h, the reported bound is never below the error.
@@ -399,18 +399,18 @@ mod tests {
             sets: Vec::new(),
             number: Some(x),
         };
-        let mut knob = StudyParameter {
+        let mut parameter = StudyParameter {
             name: "step".into(),
             sense: Sense::Step,
             levels: [1.0, 1.1, 2.0].map(level).into(),
             own: 0,
             reference: 0,
         };
-        assert_eq!(neighbour(&knob), Some(2));
-        knob.levels.pop();
-        assert_eq!(neighbour(&knob), Some(1));
-        assert_eq!(ratio(&knob, 1).and_then(weight), None);
-        knob.sense = Sense::Choice;
-        assert_eq!(neighbour(&knob), None);
+        assert_eq!(neighbour(&parameter), Some(2));
+        parameter.levels.pop();
+        assert_eq!(neighbour(&parameter), Some(1));
+        assert_eq!(ratio(&parameter, 1).and_then(weight), None);
+        parameter.sense = Sense::Choice;
+        assert_eq!(neighbour(&parameter), None);
     }
 }

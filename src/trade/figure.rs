@@ -1,8 +1,8 @@
 //! Figure of error against cost, one panel per output.
 
 use super::compare::{Comparison, OutputError, Row};
-use super::knobs::{Level, Sense, StudyParameter};
 use super::output::{Output, Wanted};
+use super::parameters::{Level, Sense, StudyParameter};
 use super::setting::Setting;
 use super::study::Study;
 use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels, quantity};
@@ -48,104 +48,148 @@ pub fn draw(
     Ok(true)
 }
 
+/// Settings that ran, with their errors of the output of a panel.
+type Points<'a> = Vec<(&'a Row, &'a OutputError)>;
+
+/// What a panel shows: the errors of one output.
+struct Panel<'a> {
+    study: &'a Study,
+    output: &'a Output,
+    reference: Setting,
+    /// All settings with a finite error.
+    good: Points<'a>,
+    /// Those whose error is one from the reference or from the exact value.
+    others: Points<'a>,
+    /// Factor of errors, 100 for those in per cent.
+    factor: f64,
+    /// Errors below it are drawn at it, since the axis is logarithmic.
+    floor: f64,
+}
+
 fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
     let output = &study.outputs[o];
-    let relative = matches!(output.wanted, Wanted::Relative(_));
-    let (Wanted::Relative(w) | Wanted::Absolute(w)) = output.wanted;
-    let factor = if relative { 100.0 } else { 1.0 };
-    let unit = if relative { "%" } else { "" };
+    let (Wanted::Relative(wanted) | Wanted::Absolute(wanted)) = output.wanted;
+    let (factor, unit) = match output.wanted {
+        Wanted::Relative(_) => (100.0, "%"),
+        Wanted::Absolute(_) => (1.0, ""),
+    };
     let name = output.name.replace('_', " ");
     let y = Axis::new(format!("error of {name}"), unit).log();
     let x = Axis::new("processor time of a run", "s").log();
     let mut chart = Chart::new(format!("{title}: {name}"), x, y);
-    let reference = Setting::reference(&study.knobs);
-    let good: Vec<(&Row, &OutputError)> = found
-        .rows
-        .iter()
-        .filter(|r| r.failed.is_none())
-        .filter_map(|r| Some((r, r.errors[o].as_ref()?)))
-        .filter(|(_, e)| e.at_most.is_finite())
-        .collect();
-    let others = || {
-        good.iter()
-            .filter(|(r, _)| r.setting != reference || output.exact.is_some())
-    };
-    let sizes = others()
-        .flat_map(|(_, e)| [e.error.mean.abs(), e.at_most])
-        .chain([w]);
-    let floor = sizes.filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min) / 3.0;
-    let lifted = |s: f64| factor * s.max(floor);
     chart.subtitle = Some(subtitle(study, output, found, o));
-    let costs = || good.iter().map(|(r, _)| r.seconds);
-    let (low, high) = costs().fold((f64::INFINITY, 0.0f64), |(a, b), c| (a.min(c), b.max(c)));
-    if low < high {
-        let line = vec![(low, factor * w), (high, factor * w)];
-        let mut wanted = Series::new("wanted", line).style(Style::Dashed);
-        wanted.colour = Some(RED);
-        chart = chart.with(wanted);
-    }
-    // The frontier joins the error bounds as a staircase that falls with increasing cost: between two
-    // settings the cheaper one is the best available.
-    let mut stairs: Vec<(f64, f64)> = Vec::new();
-    for (r, e) in others().filter(|(_, e)| e.on_frontier) {
-        let next = (r.seconds, lifted(e.at_most));
-        if let Some(&(_, before)) = stairs.last() {
-            stairs.push((next.0, before));
-        }
-        stairs.push(next);
-    }
-    let mut line = Series::new("frontier, error at most", stairs);
-    line.colour = Some(GREY);
-    chart = chart.with(line);
-    let mut groups: Vec<(String, Vec<(&Row, &OutputError)>)> = Vec::new();
-    let each = found.rows.len() <= NAMED;
-    for &(row, e) in others() {
-        let name = if each {
-            named(&study.knobs, &row.setting)
-        } else {
-            group(study, row)
-        };
-        match groups.iter_mut().find(|g| g.0 == name) {
-            Some(g) => g.1.push((row, e)),
-            None => groups.push((name, vec![(row, e)])),
-        }
-    }
-    for (k, (name, rows)) in groups.iter().enumerate() {
-        let colour = Some(COLOURS[k % COLOURS.len()]);
-        let points = rows
-            .iter()
-            .map(|(r, e)| (r.seconds, lifted(e.error.mean.abs())));
-        let bars = rows.iter().map(|(_, e)| {
-            let half = e.error.half_width.unwrap_or(0.0);
-            if half > 0.0 {
-                let low = lifted((e.error.mean.abs() - half).max(0.0));
-                (low, lifted(e.at_most))
-            } else {
-                (f64::NAN, f64::NAN)
-            }
-        });
-        let mut marks = Series::new(name.clone(), points.collect())
-            .style(Style::Markers)
-            .intervals(bars.collect());
-        marks.colour = colour;
-        chart = chart.with(marks);
-    }
-    let mine = good
+    let reference = Setting::reference(&study.parameters);
+    let ran = found.rows.iter().filter(|r| r.failed.is_none());
+    let errors = ran.filter_map(|r| Some((r, r.errors[o].as_ref()?)));
+    let good: Points<'_> = errors.filter(|(_, e)| e.at_most.is_finite()).collect();
+    let compared = |p: &&(&Row, &OutputError)| p.0.setting != reference || output.exact.is_some();
+    let others: Points<'_> = good.iter().filter(compared).copied().collect();
+    let sizes = others
         .iter()
-        .find(|(r, e)| r.setting == reference && output.exact.is_none() && e.bound.is_finite());
-    if let Some((r, e)) = mine {
-        let mut mark = Series::new(
-            format!(
-                "own error of the reference: {}",
-                named(&study.knobs, &r.setting)
-            ),
-            vec![(r.seconds, lifted(e.bound))],
-        )
-        .style(Style::Markers);
-        mark.colour = Some((0, 0, 0));
-        chart = chart.with(mark);
+        .flat_map(|(_, e)| [e.error.mean.abs(), e.at_most])
+        .chain([wanted]);
+    let floor = sizes.filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min) / 3.0;
+    let panel = Panel {
+        study,
+        output,
+        reference,
+        good,
+        others,
+        factor,
+        floor,
+    };
+    let each = found.rows.len() <= NAMED;
+    let series = panel.wanted(wanted).into_iter();
+    let series = series.chain([panel.frontier()]).chain(panel.settings(each));
+    series
+        .chain(panel.own_error())
+        .fold(chart, |chart, series| chart.with(series))
+}
+
+impl Panel<'_> {
+    /// An error on the axis.
+    fn on_axis(&self, error: f64) -> f64 {
+        self.factor * error.max(self.floor)
     }
-    chart
+
+    /// The wanted error, as a line over all costs.
+    fn wanted(&self, wanted: f64) -> Option<Series> {
+        let costs = self.good.iter().map(|(r, _)| r.seconds);
+        let (low, high) = costs.fold((f64::INFINITY, 0.0f64), |(a, b), c| (a.min(c), b.max(c)));
+        (low < high).then(|| {
+            let line = vec![(low, self.factor * wanted), (high, self.factor * wanted)];
+            let mut series = Series::new("wanted", line).style(Style::Dashed);
+            series.colour = Some(RED);
+            series
+        })
+    }
+
+    /// The frontier joins the error bounds as a staircase that falls with increasing cost: between two
+    /// settings the cheaper one is the best available.
+    fn frontier(&self) -> Series {
+        let mut stairs: Vec<(f64, f64)> = Vec::new();
+        for (r, e) in self.others.iter().filter(|(_, e)| e.on_frontier) {
+            let next = (r.seconds, self.on_axis(e.at_most));
+            if let Some(&(_, before)) = stairs.last() {
+                stairs.push((next.0, before));
+            }
+            stairs.push(next);
+        }
+        let mut line = Series::new("frontier, error at most", stairs);
+        line.colour = Some(GREY);
+        line
+    }
+
+    /// Errors with their intervals, a series for each setting or for each group of them.
+    fn settings(&self, each: bool) -> Vec<Series> {
+        let mut groups: Vec<(String, Points<'_>)> = Vec::new();
+        for &(row, e) in &self.others {
+            let name = if each {
+                named(&self.study.parameters, &row.setting)
+            } else {
+                group(self.study, row)
+            };
+            match groups.iter_mut().find(|g| g.0 == name) {
+                Some(g) => g.1.push((row, e)),
+                None => groups.push((name, vec![(row, e)])),
+            }
+        }
+        let series = groups.iter().enumerate().map(|(k, (name, rows))| {
+            let points = rows
+                .iter()
+                .map(|(r, e)| (r.seconds, self.on_axis(e.error.mean.abs())));
+            let bars = rows.iter().map(|(_, e)| {
+                let half = e.error.half_width.unwrap_or(0.0);
+                if half > 0.0 {
+                    let low = self.on_axis((e.error.mean.abs() - half).max(0.0));
+                    (low, self.on_axis(e.at_most))
+                } else {
+                    (f64::NAN, f64::NAN)
+                }
+            });
+            let mut marks = Series::new(name.clone(), points.collect())
+                .style(Style::Markers)
+                .intervals(bars.collect());
+            marks.colour = Some(COLOURS[k % COLOURS.len()]);
+            marks
+        });
+        series.collect()
+    }
+
+    /// The reference's own error, where it is known and there is no exact value.
+    fn own_error(&self) -> Option<Series> {
+        let (r, e) = self.good.iter().find(|(r, e)| {
+            r.setting == self.reference && self.output.exact.is_none() && e.bound.is_finite()
+        })?;
+        let name = format!(
+            "own error of the reference: {}",
+            named(&self.study.parameters, &r.setting)
+        );
+        let point = vec![(r.seconds, self.on_axis(e.bound))];
+        let mut mark = Series::new(name, point).style(Style::Markers);
+        mark.colour = Some((0, 0, 0));
+        Some(mark)
+    }
 }
 
 fn subtitle(study: &Study, output: &Output, found: &Comparison, o: usize) -> String {
@@ -171,27 +215,27 @@ fn shown(x: f64) -> String {
     }
 }
 
-/// A setting by the values of all knobs that vary: what stands in the case may change, a figure says what was run.
-fn named(knobs: &[StudyParameter], setting: &Setting) -> String {
-    let varied = knobs
+/// A setting by the values of all parameters that vary: what stands in the case may change, a figure says what was run.
+fn named(parameters: &[StudyParameter], setting: &Setting) -> String {
+    let varied = parameters
         .iter()
         .zip(&setting.0)
         .filter(|(k, _)| k.levels.len() > 1);
     let parts: Vec<String> = varied
-        .map(|(knob, level)| {
-            let name = knob.name.rsplit('.').next().unwrap_or_default();
+        .map(|(parameter, level)| {
+            let name = parameter.name.rsplit('.').next().unwrap_or_default();
             format!(
                 "{} {}",
                 name.replace('_', " "),
-                value(knob, &knob.levels[*level])
+                value(parameter, &parameter.levels[*level])
             )
         })
         .collect();
     parts.join(", ")
 }
 
-fn value(knob: &StudyParameter, level: &Level) -> String {
-    match (knob.sense, level.number) {
+fn value(parameter: &StudyParameter, level: &Level) -> String {
+    match (parameter.sense, level.number) {
         (Sense::Step, Some(x)) => quantity(x, "s", 2),
         (Sense::Tolerance, Some(x)) => quantity(x, "", 1),
         _ => level.label.clone(),
@@ -200,9 +244,9 @@ fn value(knob: &StudyParameter, level: &Level) -> String {
 
 /// Group of a setting among many: the case's own by its values, others by the parameter they change.
 fn group(study: &Study, row: &Row) -> String {
-    match row.setting.changed(&study.knobs).as_slice() {
-        [] => format!("as in the case: {}", named(&study.knobs, &row.setting)),
-        [k] => format!("other {}", study.knobs[*k].name),
+    match row.setting.changed(&study.parameters).as_slice() {
+        [] => format!("as in the case: {}", named(&study.parameters, &row.setting)),
+        [k] => format!("other {}", study.parameters[*k].name),
         _ => "several changed".into(),
     }
 }
@@ -218,7 +262,7 @@ mod tests {
             sets: Vec::new(),
             number: Some(x),
         };
-        let knob = |name: &str, sense, own| StudyParameter {
+        let parameter = |name: &str, sense, own| StudyParameter {
             name: name.to_owned(),
             sense,
             levels: vec![level(5e-5), level(1e-4)],
@@ -226,11 +270,11 @@ mod tests {
             reference: 0,
         };
         for own in [0, 1] {
-            let knobs = [
-                knob("time.step", Sense::Step, own),
-                knob("solver.tolerance", Sense::Tolerance, own),
+            let parameters = [
+                parameter("time.step", Sense::Step, own),
+                parameter("solver.tolerance", Sense::Tolerance, own),
             ];
-            let name = named(&knobs, &Setting(vec![0, 1]));
+            let name = named(&parameters, &Setting(vec![0, 1]));
             assert_eq!(name, "step 50 µs, tolerance 1×10⁻⁴");
         }
     }

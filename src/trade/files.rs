@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 /// The whole study as JSON.
 pub fn json(study: &Study, found: &Comparison, verdicts: &[Verdict], complete: bool) -> Value {
-    let reference = Setting::reference(&study.knobs);
+    let reference = Setting::reference(&study.parameters);
     let number = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
     let outputs: Vec<Value> = study
         .outputs
@@ -50,7 +50,7 @@ pub fn json(study: &Study, found: &Comparison, verdicts: &[Verdict], complete: b
                 })
                 .collect();
             json!({
-                "setting": r.name, "sets": r.setting.sets(&study.knobs), "reference": r.setting == reference,
+                "setting": r.name, "sets": r.setting.sets(&study.parameters), "reference": r.setting == reference,
                 "seeds": r.seeds, "failed": r.failed, "seconds": r.seconds, "visits": r.visits,
                 "faster": r.faster.map(|f| f.0), "faster_interval": r.faster.and_then(|f| f.1), "outputs": errors,
             })
@@ -62,16 +62,16 @@ pub fn json(study: &Study, found: &Comparison, verdicts: &[Verdict], complete: b
             json!({
                 "wanted": v.wanted, "holds": v.holds, "text": v.text,
                 "setting": v.row.map(|k| found.rows[k].name.clone()),
-                "sets": v.row.map(|k| found.rows[k].setting.sets(&study.knobs)),
+                "sets": v.row.map(|k| found.rows[k].setting.sets(&study.parameters)),
                 "faster": v.row.and_then(|k| found.rows[k].faster).map(|f| f.0),
             })
         })
         .collect();
     json!({
         "case": study.launcher.case, "confidence": CONFIDENCE, "complete": complete, "seeds": study.seeds,
-        "random": study.random, "nudged": study.random && study.launcher.nudge.is_some(), "outputs": outputs, "settings": settings, "cheapest": cheapest,
+        "random": study.random, "nudged": study.random && study.launcher.perturbation.is_some(), "outputs": outputs, "settings": settings, "cheapest": cheapest,
         "forecast": study.forecast, "runs": {"fresh": study.fresh, "reused": study.reused},
-        "left_out": study.left_out.iter().map(|s| s.name(&study.knobs)).chain(study.dropped()).collect::<Vec<_>>(),
+        "left_out": study.left_out.iter().map(|s| s.name(&study.parameters)).chain(study.dropped()).collect::<Vec<_>>(),
         "wall_seconds": study.started.elapsed().as_secs_f64(), "notes": study.notes,
     })
 }
@@ -96,7 +96,7 @@ pub fn csv(study: &Study, found: &Comparison, path: &std::path::Path) -> Result<
     ]
     .map(str::to_owned)
     .into();
-    header.extend(study.knobs.iter().map(|k| k.name.clone()));
+    header.extend(study.parameters.iter().map(|k| k.name.clone()));
     for o in &study.outputs {
         let columns = [
             "",
@@ -110,7 +110,7 @@ pub fn csv(study: &Study, found: &Comparison, path: &std::path::Path) -> Result<
         header.extend(columns.map(|c| format!("{}{c}", o.name)));
     }
     table.write_record(&header).map_err(fail)?;
-    let reference = Setting::reference(&study.knobs);
+    let reference = Setting::reference(&study.parameters);
     let maybe = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:e}"));
     for r in &found.rows {
         let ends = r.faster.and_then(|f| f.1);
@@ -127,7 +127,7 @@ pub fn csv(study: &Study, found: &Comparison, path: &std::path::Path) -> Result<
         ];
         row.extend(
             study
-                .knobs
+                .parameters
                 .iter()
                 .zip(&r.setting.0)
                 .map(|(k, l)| k.levels[*l].label.clone()),

@@ -1,8 +1,8 @@
 //! Cost forecast of a setting from short probes, corrected by finished runs.
 
 use super::child::{Ended, Finished, Launcher, Status};
-use super::knobs::{Sense, StudyParameter};
 use super::output::column;
+use super::parameters::{Sense, StudyParameter};
 use super::setting::Setting;
 use super::{TradeError, study::Ledger};
 use serde::{Deserialize, Serialize};
@@ -29,7 +29,7 @@ impl Forecast {
     /// A run cannot be started.
     pub fn probe(
         launcher: &Launcher,
-        knobs: &[StudyParameter],
+        parameters: &[StudyParameter],
         steps: f64,
         seed: u64,
         each: Duration,
@@ -38,11 +38,11 @@ impl Forecast {
     ) -> Result<Self, TradeError> {
         let mut measured = true;
         let mut seconds = |setting: &Setting| -> Result<f64, TradeError> {
-            let sets = setting.sets(knobs);
-            if let Some(run) = launcher.kept(&sets, seed) {
+            let sets = setting.sets(parameters);
+            if let Some(run) = launcher.stored(&sets, seed) {
                 return Ok(run.wall);
             }
-            let all = steps / shrink(setting, knobs, Sense::Step);
+            let all = steps / shrink(setting, parameters, Sense::Step);
             let table = launcher.place(&sets, seed).join("statistics.csv");
             let mut guess = f64::INFINITY;
             // Rows are written in batches: without one, the probe is repeated once with more time.
@@ -68,11 +68,11 @@ impl Forecast {
             measured = false;
             Ok(guess)
         };
-        let (own, finest) = (Setting::own(knobs), Setting::reference(knobs));
+        let (own, finest) = (Setting::own(parameters), Setting::reference(parameters));
         let base = seconds(&own)?;
-        let fine = shrink(&finest, knobs, Sense::Tolerance);
+        let fine = shrink(&finest, parameters, Sense::Tolerance);
         let power = if fine < 1.0 && own != finest {
-            let ratio = seconds(&finest)? / base * shrink(&finest, knobs, Sense::Step);
+            let ratio = seconds(&finest)? / base * shrink(&finest, parameters, Sense::Step);
             (ratio.ln() / (1.0 / fine).ln()).clamp(0.0, 1.0)
         } else {
             0.0
@@ -86,7 +86,7 @@ impl Forecast {
 
     /// Duration of a run (s): that of its other seeds, or the cost law above, multiplied by its mean error so
     /// far.
-    pub fn seconds(&self, setting: &Setting, knobs: &[StudyParameter], done: &Ledger) -> f64 {
+    pub fn seconds(&self, setting: &Setting, parameters: &[StudyParameter], done: &Ledger) -> f64 {
         let ended = |r: &&Finished| r.status == Status::Done;
         let same: Vec<f64> = done
             .iter()
@@ -97,35 +97,35 @@ impl Forecast {
             return same.iter().sum::<f64>() / same.len() as f64;
         }
         // Correct by the case's own setting if it ran, otherwise by all that ran.
-        let own = Setting::own(knobs);
+        let own = Setting::own(parameters);
         let ratios = |only: bool| -> Vec<f64> {
             done.iter()
                 .filter(|((s, _), r)| ended(r) && (!only || *s == own))
-                .map(|((s, _), r)| (r.wall / self.law(s, knobs)).ln())
+                .map(|((s, _), r)| (r.wall / self.law(s, parameters)).ln())
                 .collect()
         };
         let known = [ratios(true), ratios(false)]
             .into_iter()
             .find(|r| !r.is_empty());
         let off = known.map_or(0.0, |r| r.iter().sum::<f64>() / r.len() as f64);
-        self.law(setting, knobs) * off.exp()
+        self.law(setting, parameters) * off.exp()
     }
 
     /// Duration from the probes alone (s).
-    pub fn law(&self, setting: &Setting, knobs: &[StudyParameter]) -> f64 {
-        let step = shrink(setting, knobs, Sense::Step);
-        let tolerance = shrink(setting, knobs, Sense::Tolerance);
+    pub fn law(&self, setting: &Setting, parameters: &[StudyParameter]) -> f64 {
+        let step = shrink(setting, parameters, Sense::Step);
+        let tolerance = shrink(setting, parameters, Sense::Tolerance);
         self.own.max(1e-3) / step * tolerance.powf(-self.power)
     }
 }
 
 /// Ratio of the case's own step or tolerance to that of the setting; 1 if it is not varied.
-fn shrink(setting: &Setting, knobs: &[StudyParameter], sense: Sense) -> f64 {
+fn shrink(setting: &Setting, parameters: &[StudyParameter], sense: Sense) -> f64 {
     let of = |(k, level): (&StudyParameter, &usize)| {
         let number = |l: usize| k.levels.get(l).and_then(|l| l.number);
         Some(number(*level)? / number(k.own)?)
     };
-    let mut all = knobs
+    let mut all = parameters
         .iter()
         .zip(&setting.0)
         .filter(|(k, _)| k.sense == sense);

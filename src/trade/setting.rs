@@ -1,6 +1,6 @@
 //! A setting: one level for every varied parameter.
 
-use super::knobs::StudyParameter;
+use super::parameters::StudyParameter;
 
 /// Index of the level of every parameter, in the order of the parameters.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -8,35 +8,40 @@ pub struct Setting(pub Vec<usize>);
 
 impl Setting {
     /// The setting of the case itself.
-    pub fn own(knobs: &[StudyParameter]) -> Self {
-        Self(knobs.iter().map(|k| k.own).collect())
+    pub fn own(parameters: &[StudyParameter]) -> Self {
+        Self(parameters.iter().map(|k| k.own).collect())
     }
 
     /// The reference setting.
-    pub fn reference(knobs: &[StudyParameter]) -> Self {
-        Self(knobs.iter().map(|k| k.reference).collect())
+    pub fn reference(parameters: &[StudyParameter]) -> Self {
+        Self(parameters.iter().map(|k| k.reference).collect())
     }
 
     /// This setting with another level of one parameter.
-    pub fn with(&self, knob: usize, level: usize) -> Self {
+    pub fn with(&self, parameter: usize, level: usize) -> Self {
         let mut levels = self.0.clone();
-        levels[knob] = level;
+        levels[parameter] = level;
         Self(levels)
     }
 
     /// The parameters whose level is not the case's own.
-    pub fn changed(&self, knobs: &[StudyParameter]) -> Vec<usize> {
-        (0..knobs.len())
-            .filter(|&k| self.0[k] != knobs[k].own)
+    pub fn changed(&self, parameters: &[StudyParameter]) -> Vec<usize> {
+        (0..parameters.len())
+            .filter(|&k| self.0[k] != parameters[k].own)
             .collect()
     }
 
     /// Name of the setting by its differences from the case: `step 5e-5, tolerance 1e-3`.
-    pub fn name(&self, knobs: &[StudyParameter]) -> String {
+    pub fn name(&self, parameters: &[StudyParameter]) -> String {
         let parts: Vec<String> = self
-            .changed(knobs)
+            .changed(parameters)
             .into_iter()
-            .map(|k| format!("{} {}", knobs[k].name, knobs[k].levels[self.0[k]].label))
+            .map(|k| {
+                format!(
+                    "{} {}",
+                    parameters[k].name, parameters[k].levels[self.0[k]].label
+                )
+            })
             .collect();
         if parts.is_empty() {
             "the case's own".to_owned()
@@ -46,11 +51,11 @@ impl Setting {
     }
 
     /// The `--set` arguments for this setting.
-    pub fn sets(&self, knobs: &[StudyParameter]) -> Vec<String> {
-        let changed = self.changed(knobs);
+    pub fn sets(&self, parameters: &[StudyParameter]) -> Vec<String> {
+        let changed = self.changed(parameters);
         changed
             .iter()
-            .flat_map(|&k| knobs[k].levels[self.0[k]].sets.iter().cloned())
+            .flat_map(|&k| parameters[k].levels[self.0[k]].sets.iter().cloned())
             .collect()
     }
 }

@@ -9,8 +9,8 @@ use super::TradeError;
 use super::child::{Ended, Finished, Launcher, Status};
 use super::compare::{Compared, Comparison, neighbour};
 use super::forecast::Forecast;
-use super::knobs::{Sense, StudyParameter};
 use super::output::Output;
+use super::parameters::{Sense, StudyParameter};
 use super::setting::Setting;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -31,7 +31,7 @@ pub struct Study {
     /// Launcher of the runs.
     pub launcher: Arc<Launcher>,
     /// Varied parameters.
-    pub knobs: Vec<StudyParameter>,
+    pub parameters: Vec<StudyParameter>,
     /// Compared outputs.
     pub outputs: Vec<Output>,
     /// Seeds, at least one.
@@ -64,7 +64,8 @@ pub struct Study {
 #[derive(Debug, Serialize, Deserialize)]
 struct Plan {
     fingerprint: String,
-    knobs: String,
+    #[serde(rename = "knobs")]
+    parameters: String,
     reference: Vec<usize>,
     forecast: Forecast,
 }
@@ -86,7 +87,7 @@ impl Study {
 
     fn plan(&self) -> Plan {
         let levels: Vec<StudyParameter> = self
-            .knobs
+            .parameters
             .iter()
             .map(|k| StudyParameter {
                 reference: 0,
@@ -96,13 +97,13 @@ impl Study {
         Plan {
             fingerprint: self.launcher.fingerprint().to_owned(),
             // A larger budget or more jobs may allow a finer reference.
-            knobs: format!(
+            parameters: format!(
                 "{levels:?} {} {} {}",
                 self.seeds.len(),
                 self.budget.as_secs_f64(),
                 self.jobs
             ),
-            reference: self.knobs.iter().map(|k| k.reference).collect(),
+            reference: self.parameters.iter().map(|k| k.reference).collect(),
             forecast: self.forecast,
         }
     }
@@ -120,11 +121,11 @@ impl Study {
             let fits = plan
                 .reference
                 .iter()
-                .zip(&self.knobs)
+                .zip(&self.parameters)
                 .all(|(r, k)| *r < k.levels.len());
-            if fits && plan.fingerprint == now.fingerprint && plan.knobs == now.knobs {
-                for (knob, reference) in self.knobs.iter_mut().zip(&plan.reference) {
-                    knob.reference = *reference;
+            if fits && plan.fingerprint == now.fingerprint && plan.parameters == now.parameters {
+                for (parameter, reference) in self.parameters.iter_mut().zip(&plan.reference) {
+                    parameter.reference = *reference;
                 }
                 self.forecast = plan.forecast;
                 return Ok(());
@@ -135,7 +136,7 @@ impl Study {
         let first = self.seeds[0];
         self.forecast = Forecast::probe(
             &self.launcher,
-            &self.knobs,
+            &self.parameters,
             self.steps,
             first,
             each,
@@ -146,31 +147,38 @@ impl Study {
         // Coarsen tolerance and step alternately, the tolerance first.
         while self.reference_work() > 0.6 * self.budget.as_secs_f64() {
             let coarser = |k: &StudyParameter| k.reference < k.own;
-            let mut finest: Vec<usize> = (0..self.knobs.len())
-                .filter(|&k| self.ordered(k) && coarser(&self.knobs[k]))
+            let mut finest: Vec<usize> = (0..self.parameters.len())
+                .filter(|&k| self.ordered(k) && coarser(&self.parameters[k]))
                 .collect();
-            finest.sort_by_key(|&k| (self.knobs[k].reference, self.knobs[k].sense == Sense::Step));
+            finest.sort_by_key(|&k| {
+                (
+                    self.parameters[k].reference,
+                    self.parameters[k].sense == Sense::Step,
+                )
+            });
             let Some(&k) = finest.first() else { break };
-            self.knobs[k].reference += 1;
+            self.parameters[k].reference += 1;
         }
-        self.keep_plan(stop)
+        self.write_plan(stop)
     }
 
     /// Levels finer than the reference's that were dropped because of the budget or a failed run.
     pub fn dropped(&self) -> Vec<String> {
         let ran = |k: usize, l: usize| self.done.keys().any(|(s, _)| s.0[k] == l);
         let mut all = Vec::new();
-        for (k, knob) in self.knobs.iter().enumerate() {
+        for (k, parameter) in self.parameters.iter().enumerate() {
             if self.ordered(k) {
-                let finer = (0..knob.reference).filter(|&l| !ran(k, l));
-                all.extend(finer.map(|l| format!("{} {}", knob.name, knob.levels[l].label)));
+                let finer = (0..parameter.reference).filter(|&l| !ran(k, l));
+                all.extend(
+                    finer.map(|l| format!("{} {}", parameter.name, parameter.levels[l].label)),
+                );
             }
         }
         all
     }
 
     /// Stores the plan, unless it rests on a guess or on interrupted probes.
-    fn keep_plan(&self, stop: &AtomicBool) -> Result<(), TradeError> {
+    fn write_plan(&self, stop: &AtomicBool) -> Result<(), TradeError> {
         if !self.forecast.measured || stop.load(Ordering::Relaxed) {
             return Ok(());
         }
@@ -180,7 +188,7 @@ impl Study {
     }
 
     fn ordered(&self, k: usize) -> bool {
-        matches!(self.knobs[k].sense, Sense::Step | Sense::Tolerance)
+        matches!(self.parameters[k].sense, Sense::Step | Sense::Tolerance)
     }
 
     /// Expected duration of the reference, its neighbours and the case's own setting over the seeds (s).
@@ -190,31 +198,40 @@ impl Study {
 
     /// Expected duration of settings over all seeds with parallel jobs (s).
     pub fn work(&self, settings: &[Setting]) -> f64 {
-        let one = |s: &Setting| self.forecast.seconds(s, &self.knobs, &self.done);
+        let one = |s: &Setting| self.forecast.seconds(s, &self.parameters, &self.done);
         settings.iter().map(one).sum::<f64>() * self.seeds.len() as f64 / self.jobs as f64
     }
 
     /// The reference, the case's own setting and the neighbours of the reference.
     pub fn first(&self) -> Vec<Setting> {
-        let reference = Setting::reference(&self.knobs);
-        let mut all = vec![reference.clone(), Setting::own(&self.knobs)];
-        for (k, knob) in self.knobs.iter().enumerate() {
-            all.extend(neighbour(knob).map(|next| reference.with(k, next)));
+        let reference = Setting::reference(&self.parameters);
+        let mut all = vec![reference.clone(), Setting::own(&self.parameters)];
+        for (k, parameter) in self.parameters.iter().enumerate() {
+            all.extend(neighbour(parameter).map(|next| reference.with(k, next)));
         }
         unique(all)
     }
 
     /// Settings that change one parameter of the case's own setting, near levels first; no level finer than
     /// the reference's.
-    pub fn star(&self) -> Vec<Setting> {
-        let own = Setting::own(&self.knobs);
+    pub fn one_at_a_time(&self) -> Vec<Setting> {
+        let own = Setting::own(&self.parameters);
         let mut all = Vec::new();
-        for far in 1..=self.knobs.iter().map(|k| k.levels.len()).max().unwrap_or(0) {
-            for (k, knob) in self.knobs.iter().enumerate() {
-                let levels = [knob.own.checked_add(far), knob.own.checked_sub(far)];
+        for far in 1..=self
+            .parameters
+            .iter()
+            .map(|k| k.levels.len())
+            .max()
+            .unwrap_or(0)
+        {
+            for (k, parameter) in self.parameters.iter().enumerate() {
+                let levels = [
+                    parameter.own.checked_add(far),
+                    parameter.own.checked_sub(far),
+                ];
                 for level in levels.into_iter().flatten() {
-                    let finer = self.ordered(k) && level < knob.reference;
-                    if level < knob.levels.len() && !finer {
+                    let finer = self.ordered(k) && level < parameter.reference;
+                    if level < parameter.levels.len() && !finer {
                         all.push(own.with(k, level));
                     }
                 }
@@ -231,32 +248,34 @@ impl Study {
     ///
     /// # Errors
     /// A run cannot be started, or no reference could be run.
-    pub fn go(
+    pub fn execute(
         &mut self,
         stop: &AtomicBool,
         watch: &(dyn Fn(&Event<'_>) + Sync),
     ) -> Result<(), TradeError> {
         loop {
-            let reference = Setting::reference(&self.knobs);
+            let reference = Setting::reference(&self.parameters);
             // Runs stopped as too slow for a finer reference may be the reference now.
             self.done
                 .retain(|(s, _), r| *s != reference || !matches!(r.status, Status::Slow(_)));
             self.batch(std::slice::from_ref(&reference), stop, watch)?;
             let mut runs = self.done.iter().filter(|((s, _), _)| *s == reference);
             let why = runs.find_map(|(_, r)| match &r.status {
-                Status::Failed(why) => Some((why.clone(), r.passing)),
+                Status::Failed(why) => Some((why.clone(), r.temporary)),
                 _ => None,
             });
-            let Some((why, passing)) = why else { break };
-            let name = reference.name(&self.knobs);
-            if passing {
+            let Some((why, temporary)) = why else { break };
+            let name = reference.name(&self.parameters);
+            if temporary {
                 return Err(TradeError::Reference(format!(
                     "the reference ({name}) has no result: {why}; the same command tries it again"
                 )));
             }
-            let coarser = (0..self.knobs.len())
-                .filter(|&k| self.ordered(k) && self.knobs[k].reference < self.knobs[k].own)
-                .max_by_key(|&k| (self.knobs[k].sense == Sense::Tolerance, k));
+            let coarser = (0..self.parameters.len())
+                .filter(|&k| {
+                    self.ordered(k) && self.parameters[k].reference < self.parameters[k].own
+                })
+                .max_by_key(|&k| (self.parameters[k].sense == Sense::Tolerance, k));
             let Some(k) = coarser else {
                 return Err(TradeError::Reference(format!(
                     "the reference ({name}) failed, so there is nothing to compare with: {why}"
@@ -264,13 +283,13 @@ impl Study {
             };
             self.notes
                 .push(format!("{name} could not be the reference: {why}"));
-            self.knobs[k].reference += 1;
-            self.keep_plan(stop)?;
+            self.parameters[k].reference += 1;
+            self.write_plan(stop)?;
         }
         let first = self.first();
         self.batch(&first, stop, watch)?;
-        let star = self.star();
-        self.batch(&star, stop, watch)?;
+        let one_at_a_time = self.one_at_a_time();
+        self.batch(&one_at_a_time, stop, watch)?;
         if !stop.load(Ordering::Relaxed) {
             let combinations = self.combinations();
             self.batch(&combinations, stop, watch)?;
@@ -285,7 +304,7 @@ impl Study {
 
     fn compared(&self) -> Compared<'_> {
         Compared {
-            knobs: &self.knobs,
+            parameters: &self.parameters,
             outputs: &self.outputs,
             random: self.random,
             seeds: &self.seeds,
@@ -306,15 +325,15 @@ impl Study {
         stop: &AtomicBool,
         watch: &(dyn Fn(&Event<'_>) + Sync),
     ) -> Result<(), TradeError> {
-        let reference = Setting::reference(&self.knobs);
+        let reference = Setting::reference(&self.parameters);
         let mut queue = VecDeque::new();
         for setting in settings {
-            let sets = setting.sets(&self.knobs);
+            let sets = setting.sets(&self.parameters);
             for &seed in &self.seeds {
                 if self.done.contains_key(&(setting.clone(), seed)) {
                     continue;
                 }
-                match self.launcher.kept(&sets, seed) {
+                match self.launcher.stored(&sets, seed) {
                     Some(run) => {
                         self.reused += 1;
                         self.done.insert((setting.clone(), seed), run);
@@ -400,7 +419,9 @@ fn take(shared: &Shared<'_>, reference: &Setting, stop: &AtomicBool) -> Option<J
         if known(&setting).any(|(_, r)| failed(r)) {
             continue;
         }
-        let expected = study.forecast.seconds(&setting, &study.knobs, &study.done);
+        let expected = study
+            .forecast
+            .seconds(&setting, &study.parameters, &study.done);
         let begun = known(&setting).next().is_some();
         let seeds = 1 + queue.iter().filter(|(s, _)| *s == setting).count();
         let rounds = seeds.div_ceil(study.jobs) as f64;
@@ -413,8 +434,8 @@ fn take(shared: &Shared<'_>, reference: &Setting, stop: &AtomicBool) -> Option<J
         let bound = (setting != *reference && slowest > 0.0)
             .then(|| Duration::from_secs_f64(PATIENCE * slowest + 5.0));
         return Some(Job {
-            sets: setting.sets(&study.knobs),
-            name: setting.name(&study.knobs),
+            sets: setting.sets(&study.parameters),
+            name: setting.name(&study.parameters),
             launcher: Arc::clone(&study.launcher),
             setting,
             seed,

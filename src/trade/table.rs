@@ -1,7 +1,7 @@
 //! Report of a study on a terminal.
 
-use super::compare::{Comparison, Row, Told, share};
-use super::output::Wanted;
+use super::compare::{Comparison, OutputError, Row, ShownError, share};
+use super::output::{Output, Wanted};
 use super::setting::Setting;
 use super::study::Study;
 use super::verdict::{Verdict, amount, three};
@@ -20,9 +20,9 @@ pub fn seconds(s: f64) -> String {
 
 /// Announcement before the study runs.
 pub fn forecast(study: &Study) -> String {
-    let (first, star) = (study.first(), study.star());
+    let (first, one_at_a_time) = (study.first(), study.one_at_a_time());
     let seeds = study.seeds.len();
-    let all: Vec<Setting> = first.iter().chain(&star).cloned().collect();
+    let all: Vec<Setting> = first.iter().chain(&one_at_a_time).cloned().collect();
     let count = |n: usize| {
         format!(
             "{n} settings x {seeds} seed{}",
@@ -30,7 +30,7 @@ pub fn forecast(study: &Study) -> String {
         )
     };
     let names: Vec<String> = study
-        .knobs
+        .parameters
         .iter()
         .map(|k| {
             let levels: Vec<&str> = k.levels.iter().map(|l| l.label.as_str()).collect();
@@ -45,22 +45,22 @@ pub fn forecast(study: &Study) -> String {
         .collect();
     format!(
         "varied\n{}\nforecast, from short probes: the case's own setting {} a run, the reference {}; the reference and its neighbours {} ({}), \
-         one knob at a time {} more ({}), combinations as time allows; budget {}",
+         one parameter at a time {} more ({}), combinations as time allows; budget {}",
         names.join("\n"),
         seconds(
             study
                 .forecast
-                .law(&Setting::own(&study.knobs), &study.knobs)
+                .law(&Setting::own(&study.parameters), &study.parameters)
         ),
         seconds(
             study
                 .forecast
-                .law(&Setting::reference(&study.knobs), &study.knobs)
+                .law(&Setting::reference(&study.parameters), &study.parameters)
         ),
         seconds(study.work(&first)),
         count(first.len()),
         seconds(study.work(&all) - study.work(&first)),
-        count(star.len()),
+        count(one_at_a_time.len()),
         seconds(study.budget.as_secs_f64()),
     )
 }
@@ -68,7 +68,26 @@ pub fn forecast(study: &Study) -> String {
 /// The table of the settings and the verdicts.
 pub fn text(study: &Study, found: &Comparison, verdicts: &[Verdict]) -> String {
     let mut out = String::new();
-    let reference = Setting::reference(&study.knobs);
+    push_settings(&mut out, study, found);
+    out.push('\n');
+    push_outputs(&mut out, study, found);
+    out.push('\n');
+    for v in verdicts {
+        let _ = writeln!(out, "{}: {}", v.wanted, v.text);
+        if let Some(row) = v.row {
+            let sets = found.rows[row].setting.sets(&study.parameters);
+            let _ = writeln!(out, "  {}", command(study, &sets));
+        }
+    }
+    for note in &study.notes {
+        let _ = writeln!(out, "{note}");
+    }
+    out
+}
+
+/// One line for each setting: cost, and the errors of the outputs.
+fn push_settings(out: &mut String, study: &Study, found: &Comparison) {
+    let reference = Setting::reference(&study.parameters);
     let label = |row: &Row| {
         let mark = if row.setting == reference {
             " (reference)"
@@ -105,22 +124,7 @@ pub fn text(study: &Study, found: &Comparison, verdicts: &[Verdict]) -> String {
             continue;
         }
         for (e, o) in row.errors.iter().zip(&study.outputs) {
-            let cell = match e {
-                Some(e) if row.setting == reference && o.exact.is_none() => {
-                    let mark = if e.on_frontier { " *" } else { "  " };
-                    let own = if e.bound.is_finite() {
-                        amount(e.bound, o).replace(" %", "")
-                    } else {
-                        "?".into()
-                    };
-                    format!("own <= {own}{mark}")
-                }
-                Some(e) => {
-                    let told = Told(&e.error, o.wanted).to_string().replace(" %", "");
-                    format!("{told}{}", if e.on_frontier { " *" } else { "  " })
-                }
-                None => "no value  ".into(),
-            };
+            let cell = error_cell(e.as_ref(), o, row.setting == reference);
             let _ = write!(out, "  {cell:>24}");
         }
         if row.seeds < study.seeds.len() {
@@ -132,7 +136,30 @@ pub fn text(study: &Study, found: &Comparison, verdicts: &[Verdict]) -> String {
         out,
         "* on the frontier: no other setting is cheaper with a smaller error bound"
     );
-    out.push('\n');
+}
+
+/// The error of an output in a row; of the reference its own error.
+fn error_cell(error: Option<&OutputError>, output: &Output, of_reference: bool) -> String {
+    let Some(e) = error else {
+        return "no value  ".into();
+    };
+    let mark = if e.on_frontier { " *" } else { "  " };
+    if !of_reference || output.exact.is_some() {
+        let error = ShownError(&e.error, output.wanted)
+            .to_string()
+            .replace(" %", "");
+        return format!("{error}{mark}");
+    }
+    let own = if e.bound.is_finite() {
+        amount(e.bound, output).replace(" %", "")
+    } else {
+        "?".into()
+    };
+    format!("own <= {own}{mark}")
+}
+
+/// The value of each output in the reference, and how far it may be off.
+fn push_outputs(out: &mut String, study: &Study, found: &Comparison) {
     for (own, o) in found.own.iter().zip(&study.outputs) {
         let Some(own) = own else {
             let _ = writeln!(out, "{}: no value in the reference", o.name);
@@ -168,32 +195,16 @@ pub fn text(study: &Study, found: &Comparison, verdicts: &[Verdict]) -> String {
             );
         }
     }
-    out.push('\n');
-    for v in verdicts {
-        let _ = writeln!(out, "{}: {}", v.wanted, v.text);
-        if let Some(row) = v.row {
-            let sets = found.rows[row].setting.sets(&study.knobs);
-            let sets: Vec<String> = study
-                .launcher
-                .sets
-                .iter()
-                .chain(&sets)
-                .map(|s| format!(" --set {}", quoted(s)))
-                .collect();
-            let words = study.launcher.plugins.iter();
-            let plugins: String = words.map(|w| format!(" {}", quoted(w))).collect();
-            let _ = writeln!(
-                out,
-                "  fretwork run {}{}{plugins} --threads 1",
-                quoted(&study.launcher.case.display().to_string()),
-                sets.join("")
-            );
-        }
-    }
-    for note in &study.notes {
-        let _ = writeln!(out, "{note}");
-    }
-    out
+}
+
+/// The command that runs a setting.
+fn command(study: &Study, sets: &[String]) -> String {
+    let sets = study.launcher.sets.iter().chain(sets);
+    let sets: String = sets.map(|s| format!(" --set {}", quoted(s))).collect();
+    let words = study.launcher.plugins.iter();
+    let plugins: String = words.map(|w| format!(" {}", quoted(w))).collect();
+    let case = quoted(&study.launcher.case.display().to_string());
+    format!("fretwork run {case}{sets}{plugins} --threads 1")
 }
 
 /// A number with significant digits.

@@ -1,6 +1,6 @@
 //! The cheapest setting for a wanted error, and the confidence in it.
 
-use super::compare::{Comparison, Row, share};
+use super::compare::{Comparison, OutputError, Row, share};
 use super::interval::{Mean, seeds_for};
 use super::output::{Output, Wanted};
 
@@ -43,37 +43,51 @@ pub fn amount(x: f64, output: &Output) -> String {
 }
 
 fn verdict(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) -> Verdict {
-    let names: Vec<String> = set
-        .iter()
-        .map(|&o| {
-            format!(
-                "{} on {}",
-                amount(limit(&outputs[o]), &outputs[o]),
-                outputs[o].name
-            )
-        })
-        .collect();
-    // Zero in all runs: they agree because nothing happened.
-    let idle = set.iter().find(|&&o| {
-        outputs[o].exact.is_none()
-            && !found.rows.is_empty()
-            && found.rows.iter().all(|r| {
-                let still = |v: &Mean| v.mean == 0.0 && v.scatter.is_none_or(|s| s == 0.0);
-                r.failed.is_some() || r.errors[o].as_ref().is_some_and(|e| still(&e.value))
-            })
-    });
-    if let Some(&o) = idle {
-        return Verdict {
-            wanted: names.join(" and "),
-            row: None,
-            holds: false,
-            text: format!(
+    let wanted = |o: &usize| {
+        let output = &outputs[*o];
+        format!("{} on {}", amount(limit(output), output), output.name)
+    };
+    let names: Vec<String> = set.iter().map(wanted).collect();
+    let (row, holds, text) = match idle_output(found, outputs, set) {
+        Some(o) => {
+            let text = format!(
                 "no verdict: {} is zero in all runs, so there is nothing to compare; name another output, or run the case for longer",
                 outputs[o].name
-            ),
-        };
+            );
+            (None, false, text)
+        }
+        None => cheapest(found, outputs, set, random),
+    };
+    Verdict {
+        wanted: names.join(" and "),
+        row,
+        holds,
+        text,
     }
-    let all = |row: &Row, good: &dyn Fn(&super::compare::OutputError, f64) -> bool| {
+}
+
+/// An output that is zero in all runs: they agree because nothing happened.
+fn idle_output(found: &Comparison, outputs: &[Output], set: &[usize]) -> Option<usize> {
+    let zero = |v: &Mean| v.mean == 0.0 && v.scatter.is_none_or(|s| s == 0.0);
+    let mut set = set.iter().copied();
+    set.find(|&o| {
+        outputs[o].exact.is_none()
+            && !found.rows.is_empty()
+            && found
+                .rows
+                .iter()
+                .all(|r| r.failed.is_some() || r.errors[o].as_ref().is_some_and(|e| zero(&e.value)))
+    })
+}
+
+/// The cheapest row within the wanted errors, whether that includes the reference's own error, and the text.
+fn cheapest(
+    found: &Comparison,
+    outputs: &[Output],
+    set: &[usize],
+    random: bool,
+) -> (Option<usize>, bool, String) {
+    let all = |row: &Row, good: &dyn Fn(&OutputError, f64) -> bool| {
         let mut each = set.iter();
         row.failed.is_none()
             && each.all(|&o| {
@@ -96,83 +110,68 @@ fn verdict(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) 
             && Some(&r.setting) != found.reference.map(|k| &found.rows[k].setting)
     });
     let exact = set.iter().all(|&o| outputs[o].exact.is_some());
-    let told = |k: usize| {
-        let row = &found.rows[k];
-        if found.reference == Some(k) && !exact {
-            return format!("only the reference itself ({})", row.name);
+    let describe = |k: usize| match found.reference == Some(k) && !exact {
+        true => format!("only the reference itself ({})", found.rows[k].name),
+        false => describe_row(&found.rows[k], outputs, set, random),
+    };
+    match (proved, near) {
+        (Some(k), _) if exact => {
+            let text = format!("{}, against the exact value", describe(k));
+            (Some(k), true, text)
         }
-        let errors: Vec<String> = set
-            .iter()
-            .filter_map(|&o| {
-                let e = row.errors[o].as_ref()?;
-                let name = if set.len() > 1 {
-                    format!("{}: ", outputs[o].name)
-                } else {
-                    String::new()
-                };
-                Some(if e.error.may_be_zero() && random {
-                    format!(
-                        "{name}error not distinguishable from zero, at most {}",
-                        amount(e.at_most, &outputs[o])
-                    )
-                } else {
-                    format!(
-                        "{name}error {}, at most {}",
-                        amount(e.error.mean, &outputs[o]),
-                        amount(e.at_most, &outputs[o])
-                    )
-                })
-            })
-            .collect();
-        format!("{}: {}; {}", row.name, speed(row), errors.join("; "))
-    };
-    let own: Vec<String> = set
-        .iter()
-        .filter_map(|&o| {
-            let x = found.own[o].as_ref()?;
-            Some(if x.at_most.is_finite() {
-                format!(
-                    "up to {} on {}",
-                    amount(x.at_most, &outputs[o]),
-                    outputs[o].name
-                )
-            } else {
-                format!("by an unknown amount on {} ({})", outputs[o].name, x.why)
-            })
-        })
-        .collect();
-    let (row, holds, text) = match (proved, near) {
-        (Some(k), _) if exact => (
-            Some(k),
-            true,
-            format!("{}, against the exact value", told(k)),
-        ),
-        (Some(k), _) => (
-            Some(k),
-            true,
-            format!(
+        (Some(k), _) => {
+            let text = format!(
                 "{}, {} with the reference's own error",
-                told(k),
+                describe(k),
                 bounds(found, outputs, set, k)
-            ),
-        ),
-        (None, Some(k)) => (
-            Some(k),
-            false,
-            format!(
+            );
+            (Some(k), true, text)
+        }
+        (None, Some(k)) => {
+            let text = format!(
                 "{}. This is the distance from the reference; the REFERENCE IS NOT GOOD ENOUGH to call it the error: it may itself be off {}",
-                told(k),
-                own.join(", ")
-            ),
-        ),
-        (None, None) => (None, false, nothing(found, outputs, set, random)),
-    };
-    Verdict {
-        wanted: names.join(" and "),
-        row,
-        holds,
-        text,
+                describe(k),
+                reference_errors(found, outputs, set)
+            );
+            (Some(k), false, text)
+        }
+        (None, None) => (None, false, no_setting(found, outputs, set, random)),
     }
+}
+
+/// A setting with its cost and its errors.
+fn describe_row(row: &Row, outputs: &[Output], set: &[usize], random: bool) -> String {
+    let errors = set.iter().filter_map(|&o| {
+        let (e, output) = (row.errors[o].as_ref()?, &outputs[o]);
+        let name = if set.len() > 1 {
+            format!("{}: ", output.name)
+        } else {
+            String::new()
+        };
+        let at_most = amount(e.at_most, output);
+        Some(if e.error.may_be_zero() && random {
+            format!("{name}error not distinguishable from zero, at most {at_most}")
+        } else {
+            let error = amount(e.error.mean, output);
+            format!("{name}error {error}, at most {at_most}")
+        })
+    });
+    let errors: Vec<String> = errors.collect();
+    format!("{}: {}; {}", row.name, speed(row), errors.join("; "))
+}
+
+/// How far the reference itself may be off.
+fn reference_errors(found: &Comparison, outputs: &[Output], set: &[usize]) -> String {
+    let errors = set.iter().filter_map(|&o| {
+        let (x, output) = (found.own[o].as_ref()?, &outputs[o]);
+        let name = &output.name;
+        Some(if x.at_most.is_finite() {
+            format!("up to {} on {name}", amount(x.at_most, output))
+        } else {
+            format!("by an unknown amount on {name} ({})", x.why)
+        })
+    });
+    errors.collect::<Vec<String>>().join(", ")
 }
 
 fn bounds(found: &Comparison, outputs: &[Output], set: &[usize], k: usize) -> String {
@@ -221,13 +220,12 @@ pub fn three(x: f64) -> String {
 }
 
 /// Reason why no setting meets the wanted error.
-fn nothing(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) -> String {
+fn no_setting(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) -> String {
     let Some(reference) = found.reference.map(|k| &found.rows[k]) else {
         return "the reference did not run to its end; give more --budget".into();
     };
-    let mut parts = Vec::new();
-    for &o in set {
-        let (output, wanted) = (&outputs[o], limit(&outputs[o]));
+    let parts = set.iter().map(|&o| {
+        let output = &outputs[o];
         let others = || {
             let good = found
                 .rows
@@ -236,59 +234,60 @@ fn nothing(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) 
             good.filter_map(|r| Some((r, r.errors[o].as_ref()?)))
         };
         if reference.errors[o].is_none() {
-            parts.push(format!(
+            return format!(
                 "{} has no value in the reference, or is zero there",
                 output.name
-            ));
-            continue;
+            );
         }
         let Some((row, e)) = others().min_by(|a, b| a.1.at_most.total_cmp(&b.1.at_most)) else {
-            parts.push("no other setting ran to its end".into());
-            continue;
+            return "no other setting ran to its end".into();
         };
         if !e.at_most.is_finite() {
-            parts.push(format!(
+            return format!(
                 "{} differs from seed to seed, and one seed gives no scatter: give --seeds 3 or more",
                 output.name
-            ));
-            continue;
+            );
         }
-        let mut text = format!(
+        let nearest = format!(
             "the nearest on {} is {}, at most {}",
             output.name,
             row.name,
             amount(e.at_most, output)
         );
         // Whether the scatter, not the error, is too large.
-        let scatter = e.error.scatter.unwrap_or(0.0);
-        if random && e.error.half_width.is_some_and(|h| h > wanted) {
-            // More seeds only narrow the interval; the mean and the reference's own error remain.
+        if random && e.error.half_width.is_some_and(|h| h > limit(output)) {
             let own = found.own[o].as_ref().map_or(f64::INFINITY, |x| x.at_most);
-            let own = if own.is_finite() { own } else { 0.0 };
-            let room = wanted - e.error.mean.abs() - own;
-            let needs = if room > 0.0 {
-                seeds_for(scatter, room).map_or(String::new(), |n| {
-                    format!("; about {} seeds would be needed", about(n))
-                })
-            } else if own > 0.0 && wanted > e.error.mean.abs() {
-                "; no number of seeds would suffice: the mean with the reference's own error is already outside"
-                    .into()
-            } else {
-                "; no number of seeds would suffice: the mean is already outside".into()
-            };
-            text.push_str(&format!(
-                ": the scatter among its {} seeds ({} of a difference) hides errors below it{needs}",
-                e.error.count,
-                amount(scatter, output)
-            ));
+            nearest + &hidden_by_scatter(e, output, own)
         } else {
-            text.push_str("; give finer values");
+            nearest + "; give finer values"
         }
-        parts.push(text);
-    }
+    });
     format!(
         "no setting can be shown to be within it; {}",
-        parts.join("; ")
+        parts.collect::<Vec<String>>().join("; ")
+    )
+}
+
+/// That the scatter hides the error, and how many seeds would show it. More seeds only narrow the interval; the mean and the
+/// reference's own error remain.
+fn hidden_by_scatter(e: &OutputError, output: &Output, own: f64) -> String {
+    let (scatter, wanted) = (e.error.scatter.unwrap_or(0.0), limit(output));
+    let own = if own.is_finite() { own } else { 0.0 };
+    let room = wanted - e.error.mean.abs() - own;
+    let needs = if room > 0.0 {
+        seeds_for(scatter, room).map_or(String::new(), |n| {
+            format!("; about {} seeds would be needed", about(n))
+        })
+    } else if own > 0.0 && wanted > e.error.mean.abs() {
+        "; no number of seeds would suffice: the mean with the reference's own error is already outside"
+            .into()
+    } else {
+        "; no number of seeds would suffice: the mean is already outside".into()
+    };
+    format!(
+        ": the scatter among its {} seeds ({} of a difference) hides errors below it{needs}",
+        e.error.count,
+        amount(scatter, output)
     )
 }
 

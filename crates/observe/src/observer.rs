@@ -104,6 +104,12 @@ pub trait Observer<S: Space>: Debug + Send {
         Vec::new()
     }
 
+    /// Names of all pictures that it may have. A run that starts over in a folder first removes those that an older run left
+    /// there, `frames/NAME_STEP.png`.
+    fn picture_names(&self) -> Vec<&'static str> {
+        Vec::new()
+    }
+
     /// What it says in the summary, by name.
     fn outcome(&self, _: &Table) -> Vec<(String, f64)> {
         Vec::new()
@@ -144,6 +150,12 @@ pub trait Observer<S: Space>: Debug + Send {
 
     /// Files and figures that it leaves at the end of a run where the case asks for figures (`output.figures`).
     fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+        Vec::new()
+    }
+
+    /// Names of files that it may leave at the end, which a run that starts over in a folder first removes: so that no file of an
+    /// older run is taken for one of a run that was stopped. What is not named is overwritten at the end.
+    fn file_names(&self) -> Vec<String> {
         Vec::new()
     }
 
@@ -267,6 +279,16 @@ impl<S: Space> Observers<S> {
             }
         }
         all
+    }
+
+    /// See [`Observer::picture_names`].
+    pub fn picture_names(&self) -> Vec<&'static str> {
+        self.list.iter().flat_map(|o| o.picture_names()).collect()
+    }
+
+    /// See [`Observer::file_names`].
+    pub fn file_names(&self) -> Vec<String> {
+        self.list.iter().flat_map(|o| o.file_names()).collect()
     }
 
     /// See [`Observer::summarise`].

@@ -14,16 +14,6 @@ use fretwork_core::step::coupling::Coupling;
 /// # Errors
 /// The first invalid one, with its path.
 pub fn numbers(case: &Case) -> Result<(), ValidationError> {
-    let positive = |path: &str, x: f64| {
-        if x.is_finite() && x > 0.0 {
-            Ok(())
-        } else {
-            Err(ValidationError::new(
-                path,
-                format!("must be positive, got {x}"),
-            ))
-        }
-    };
     if case.dimension != 2 && case.dimension != 3 {
         return Err(ValidationError::new(
             "dimension",
@@ -32,64 +22,109 @@ pub fn numbers(case: &Case) -> Result<(), ValidationError> {
         .expected("2 or 3"));
     }
     let dimension = case.dimension as usize;
-    positive("time.step", case.time.step)?;
-    positive("time.end", case.time.end)?;
-    if !(0.5..=1.0).contains(&case.time.theta) {
+    time(case)?;
+    output_intervals(case)?;
+    positive("inertia_scaling", case.inertia_scaling)?;
+    coupling(case)?;
+    solver(case)?;
+    scaled_weights(case)?;
+    at_least_one("solver.max_iterations", case.solver.max_iterations)?;
+    periods_and_distances(case, dimension)?;
+    if case.materials.is_empty() {
+        return Err(ValidationError::new(
+            "materials",
+            "a case needs at least one material",
+        ));
+    }
+    bodies(case, dimension)?;
+    output_files(case)?;
+    super::biaxial::check(case)?;
+    super::phases::gravity_drive(case.gravity_drive.as_ref(), dimension)?;
+    super::phases::check(case)?;
+    super::measures::check(case)?;
+    friction(case, dimension)?;
+    super::jump::check(case)?;
+    super::circuit::check(case)
+}
+
+fn positive(path: &str, x: f64) -> Result<(), ValidationError> {
+    if x.is_finite() && x > 0.0 {
+        return Ok(());
+    }
+    let message = format!("must be positive, got {x}");
+    Err(ValidationError::new(path, message))
+}
+
+fn at_least_one(path: &str, count: u32) -> Result<(), ValidationError> {
+    match count {
+        0 => Err(ValidationError::new(path, "must be at least 1")),
+        _ => Ok(()),
+    }
+}
+
+/// Step, end and theta.
+fn time(case: &Case) -> Result<(), ValidationError> {
+    let time = &case.time;
+    positive("time.step", time.step)?;
+    positive("time.end", time.end)?;
+    if !(0.5..=1.0).contains(&time.theta) {
         return Err(
-            ValidationError::new("time.theta", format!("got {}", case.time.theta))
+            ValidationError::new("time.theta", format!("got {}", time.theta))
                 .expected("a number between 0.5 and 1"),
         );
     }
-    let square = case.time.step * case.time.step;
-    if !square.is_normal() {
-        let message = format!(
+    let wrong_step = |message: String| Err(ValidationError::new("time.step", message));
+    if !(time.step * time.step).is_normal() {
+        return wrong_step(format!(
             "the square of a step of {:e} s is outside the range of the computation; check its unit",
-            case.time.step
-        );
-        return Err(ValidationError::new("time.step", message));
-    }
-    if case.time.end / case.time.step > 1e12 {
-        return Err(ValidationError::new(
-            "time.step",
-            "the run would take more than 1e12 steps; use a larger step or an earlier end",
+            time.step
         ));
     }
-    if case.time.step > case.time.end {
-        let message = format!(
-            "a step of {} s is longer than the run of {} s",
-            case.time.step, case.time.end
+    if time.end / time.step > 1e12 {
+        return wrong_step(
+            "the run would take more than 1e12 steps; use a larger step or an earlier end".into(),
         );
-        return Err(ValidationError::new("time.step", message));
     }
+    if time.step > time.end {
+        return wrong_step(format!(
+            "a step of {} s is longer than the run of {} s",
+            time.step, time.end
+        ));
+    }
+    Ok(())
+}
+
+/// Steps or seconds between rows of the statistics and between checkpoints.
+fn output_intervals(case: &Case) -> Result<(), ValidationError> {
     if case.output.every == 0 {
         let message = "must be at least 1: steps between two rows of the statistics";
         return Err(ValidationError::new("output.every", message));
     }
-    match case.output.checkpoint {
+    let message = match case.output.checkpoint {
         Checkpoint::Steps(0) => {
-            let message = "must be at least 1: steps between two checkpoints; use Never for none";
-            return Err(ValidationError::new("output.checkpoint", message));
+            "must be at least 1: steps between two checkpoints; use Never for none".into()
         }
         Checkpoint::Seconds(s) if !(s.is_finite() && s >= 0.0) => {
-            let message = format!("seconds between two checkpoints must not be negative, got {s}");
-            return Err(ValidationError::new("output.checkpoint", message));
+            format!("seconds between two checkpoints must not be negative, got {s}")
         }
-        _ => {}
-    }
-    positive("inertia_scaling", case.inertia_scaling)?;
-    if let Coupling::Implicit {
+        _ => return Ok(()),
+    };
+    Err(ValidationError::new("output.checkpoint", message))
+}
+
+fn coupling(case: &Case) -> Result<(), ValidationError> {
+    let Coupling::Implicit {
         tolerance,
         max_iterations,
     } = case.coupling
-    {
-        positive("coupling.tolerance", tolerance)?;
-        if max_iterations == 0 {
-            return Err(ValidationError::new(
-                "coupling.max_iterations",
-                "must be at least 1",
-            ));
-        }
-    }
+    else {
+        return Ok(());
+    };
+    positive("coupling.tolerance", tolerance)?;
+    at_least_one("coupling.max_iterations", max_iterations)
+}
+
+fn solver(case: &Case) -> Result<(), ValidationError> {
     let s = &case.solver;
     if !(s.tolerance.is_finite() && s.tolerance >= 0.0) {
         return Err(ValidationError::new(
@@ -97,44 +132,39 @@ pub fn numbers(case: &Case) -> Result<(), ValidationError> {
             format!("must not be negative, got {}", s.tolerance),
         ));
     }
+    let outside = |field: &str, value: f64, expected: &str| {
+        let path = format!("solver.{field}");
+        Err(ValidationError::new(path, format!("got {value}")).expected(expected))
+    };
     if !(0.0..=1.0).contains(&s.correction) {
-        return Err(
-            ValidationError::new("solver.correction", format!("got {}", s.correction))
-                .expected("a number between 0 and 1"),
-        );
+        return outside("correction", s.correction, "a number between 0 and 1");
     }
     if !(0.0..1.0).contains(&s.projection) {
-        return Err(
-            ValidationError::new("solver.projection", format!("got {}", s.projection)).expected(
-                "0 (never) or the part of a radius beyond which an overlap is taken out, below 1",
-            ),
-        );
+        let expected =
+            "0 (never) or the part of a radius beyond which an overlap is taken out, below 1";
+        return outside("projection", s.projection, expected);
     }
     if !(1.0..2.0).contains(&s.relaxation) {
-        return Err(
-            ValidationError::new("solver.relaxation", format!("got {}", s.relaxation))
-                .expected("a number from 1 (none) to below 2"),
-        );
+        let expected = "a number from 1 (none) to below 2";
+        return outside("relaxation", s.relaxation, expected);
     }
-    if s.test_every == 0 {
-        return Err(ValidationError::new(
-            "solver.test_every",
-            "must be at least 1",
-        ));
-    }
-    let weighs = case.gravity_drive.is_some() || case.gravity.iter().any(|g| *g != 0.0);
-    if case.inertia_scaling != 1.0 && weighs {
+    at_least_one("solver.test_every", s.test_every)
+}
+
+/// Rejects gravity with scaled masses.
+fn scaled_weights(case: &Case) -> Result<(), ValidationError> {
+    let gravity = case.gravity_drive.is_some() || case.gravity.iter().any(|g| *g != 0.0);
+    if case.inertia_scaling != 1.0 && gravity {
         return Err(ValidationError::new(
             "inertia_scaling",
             "scales weights with the masses; switch gravity off, or leave the scaling out",
         ));
     }
-    if s.max_iterations == 0 {
-        return Err(ValidationError::new(
-            "solver.max_iterations",
-            "must be at least 1",
-        ));
-    }
+    Ok(())
+}
+
+/// Periods of the cell, and distances of the detection.
+fn periods_and_distances(case: &Case, dimension: usize) -> Result<(), ValidationError> {
     for (name, period) in [
         ("x", case.periodic.x),
         ("y", case.periodic.y),
@@ -158,12 +188,11 @@ pub fn numbers(case: &Case) -> Result<(), ValidationError> {
             positive(&format!("detection.{name}"), distance)?;
         }
     }
-    if case.materials.is_empty() {
-        return Err(ValidationError::new(
-            "materials",
-            "a case needs at least one material",
-        ));
-    }
+    Ok(())
+}
+
+/// Numbers of the first bodies, and that their names differ.
+fn bodies(case: &Case, dimension: usize) -> Result<(), ValidationError> {
     for (k, body) in case.bodies.iter().enumerate() {
         body_numbers(body, dimension).map_err(|f| f.under(&format!("bodies.{k}")))?;
         if case.bodies[..k].iter().any(|b| b.name == body.name) {
@@ -173,6 +202,11 @@ pub fn numbers(case: &Case) -> Result<(), ValidationError> {
             ));
         }
     }
+    Ok(())
+}
+
+/// Pictures and profiles.
+fn output_files(case: &Case) -> Result<(), ValidationError> {
     if let Some(w) = case.output.window
         && !(w.iter().all(|x| x.is_finite()) && w[0] < w[1] && w[2] < w[3])
     {
@@ -189,13 +223,7 @@ pub fn numbers(case: &Case) -> Result<(), ValidationError> {
         let message = format!("a frame cannot be {} pixels wide", case.output.width);
         return Err(ValidationError::new("output.width", message).expected("200 to 16384 pixels"));
     }
-    super::biaxial::check(case)?;
-    super::phases::gravity_drive(case.gravity_drive.as_ref(), dimension)?;
-    super::phases::check(case)?;
-    super::measures::check(case)?;
-    friction(case, dimension)?;
-    super::jump::check(case)?;
-    super::circuit::check(case)
+    Ok(())
 }
 
 fn body_numbers(body: &BodySpec, dimension: usize) -> Result<(), ValidationError> {

@@ -23,14 +23,14 @@ pub struct CircuitSpec {
     #[serde(default)]
     pub start: f64,
     /// Steps between updates of the account.
-    #[serde(default = "ten")]
+    #[serde(default = "default_interval")]
     pub every: u64,
     /// Where grains are outside the contact.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub zones: Vec<ZoneSpec>,
 }
 
-fn ten() -> u64 {
+fn default_interval() -> u64 {
     10
 }
 

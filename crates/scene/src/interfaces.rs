@@ -7,7 +7,9 @@ use super::units;
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
 use fretwork_core::contact::detect::LawTable;
 use fretwork_core::geometry::space::Space;
-use fretwork_core::laws::{AreaRule, BondRule, Interface, Kind, LawError, Loaded, SearchPath};
+use fretwork_core::laws::{
+    AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath,
+};
 use fretwork_core::step::Simulation;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,7 +30,7 @@ pub struct Laws {
 pub fn build(
     case: &Case,
     source: &Source,
-    shelf: &MaterialLibrary,
+    library: &MaterialLibrary,
     path: &SearchPath,
 ) -> Result<Laws, InputError> {
     let materials: Vec<&String> = case.materials.keys().collect();
@@ -37,8 +39,8 @@ pub fn build(
         table: LawTable::new(materials.len()),
         files: Vec::new(),
     };
-    pins(case).map_err(|f| source.locate(f))?;
-    let wanted = case.interfaces.iter().flat_map(used);
+    check_pins(case).map_err(|f| source.locate(f))?;
+    let wanted = case.interfaces.iter().flat_map(laws_of);
     path.try_out(wanted.map(|(kind, name)| {
         let pin = case.pins.get(&format!("{kind}/{name}"));
         (kind, name, pin.map(String::as_str))
@@ -53,25 +55,7 @@ pub fn build(
             );
             return Err(at(ValidationError::new("name", message)));
         }
-        let mut pair = [0u16; 2];
-        for (side, name) in [&spec.between.0, &spec.between.1].into_iter().enumerate() {
-            let found = materials.iter().position(|m| *m == name).ok_or_else(|| {
-                at(ValidationError::new(
-                    format!("between.{side}"),
-                    format!("the case has no material `{name}`"),
-                )
-                .expected(format!(
-                    "one of {}",
-                    case.materials
-                        .keys()
-                        .cloned()
-                        .collect::<Vec<_>>()
-                        .join(", ")
-                ))
-                .nearest(nearest(name, case.materials.keys().map(String::as_str))))
-            })?;
-            pair[side] = found as u16;
-        }
+        let pair = material_pair(spec, &materials).map_err(at)?;
         if out.table.get(pair[0], pair[1]).is_some() {
             return Err(at(ValidationError::new(
                 "between",
@@ -87,19 +71,39 @@ pub fn build(
         if !(spec.area_factor.is_finite() && spec.area_factor > 0.0) {
             return Err(at(ValidationError::new("area_factor", "must be positive")));
         }
-        let (parameters, file) = read_parameters(spec, shelf, &mut out.files, source, &here, &at)?;
-        let interface = compose(case, spec, &parameters, path).map_err(|wrong| match &file {
-            Some(file) if wrong.in_file => file.locate(wrong.fault),
-            _ => at(wrong.fault),
-        })?;
+        let (parameters, file) =
+            read_parameters(spec, library, &mut out.files, source, &here, &at)?;
+        let interface =
+            build_interface(case, spec, &parameters, path).map_err(|error| match &file {
+                Some(file) if error.in_file => file.locate(error.fault),
+                _ => at(error.fault),
+            })?;
         out.table.set(pair[0], pair[1], k as u16);
         out.interfaces.push(interface);
     }
     Ok(out)
 }
 
+/// Indices of the two materials of an interface.
+fn material_pair(spec: &InterfaceSpec, materials: &[&String]) -> Result<[u16; 2], ValidationError> {
+    let mut pair = [0u16; 2];
+    for (side, name) in [&spec.between.0, &spec.between.1].into_iter().enumerate() {
+        let found = materials.iter().position(|m| *m == name).ok_or_else(|| {
+            let names = || materials.iter().map(|m| m.as_str());
+            ValidationError::new(
+                format!("between.{side}"),
+                format!("the case has no material `{name}`"),
+            )
+            .expected(format!("one of {}", names().collect::<Vec<_>>().join(", ")))
+            .nearest(nearest(name, names()))
+        })?;
+        pair[side] = found as u16;
+    }
+    Ok(pair)
+}
+
 /// Kind and name of the laws of an interface.
-fn used(spec: &InterfaceSpec) -> impl Iterator<Item = (Kind, &str)> {
+fn laws_of(spec: &InterfaceSpec) -> impl Iterator<Item = (Kind, &str)> {
     spec.laws.iter().map(|(kind, name)| (kind, name.as_str()))
 }
 
@@ -120,12 +124,12 @@ pub fn without_interface<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<String
     let mut out = Vec::new();
     for (a, first) in materials.iter().enumerate() {
         for (b, second) in materials.iter().enumerate().skip(a) {
-            let meet = if a == b {
+            let can_touch = if a == b {
                 bodies[a].len() > 1
             } else {
                 !bodies[a].is_empty() && !bodies[b].is_empty()
             };
-            if meet && s.table.get(a as u16, b as u16).is_none() {
+            if can_touch && s.table.get(a as u16, b as u16).is_none() {
                 out.push(format!(
                     "{first} and {second}: they pass through each other"
                 ));
@@ -136,8 +140,8 @@ pub fn without_interface<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<String
 }
 
 /// Rejects pins that are malformed, or of laws that the case does not use.
-fn pins(case: &Case) -> Result<(), ValidationError> {
-    let wanted = case.interfaces.iter().flat_map(used);
+fn check_pins(case: &Case) -> Result<(), ValidationError> {
+    let wanted = case.interfaces.iter().flat_map(laws_of);
     let used: Vec<String> = wanted
         .map(|(kind, name)| format!("{kind}/{name}"))
         .collect();
@@ -160,7 +164,7 @@ fn pins(case: &Case) -> Result<(), ValidationError> {
 
 fn read_parameters(
     spec: &InterfaceSpec,
-    shelf: &MaterialLibrary,
+    library: &MaterialLibrary,
     files: &mut Vec<(String, String)>,
     source: &Source,
     here: &str,
@@ -169,7 +173,7 @@ fn read_parameters(
     let Some(name) = &spec.parameters_from else {
         return Ok((InterfaceParameters::default(), None));
     };
-    let file = shelf.read(name).map_err(|e| match e {
+    let file = library.read(name).map_err(|e| match e {
         Err(error) => source.named_at(&format!("{here}.parameters_from"), error),
         Ok(missing) => at(ValidationError::new(
             "parameters_from",
@@ -187,12 +191,12 @@ fn read_parameters(
 }
 
 /// An error in the case or in its parameter file.
-struct Wrong {
+struct InterfaceError {
     fault: ValidationError,
     in_file: bool,
 }
 
-impl From<ValidationError> for Wrong {
+impl From<ValidationError> for InterfaceError {
     fn from(fault: ValidationError) -> Self {
         Self {
             fault,
@@ -201,12 +205,12 @@ impl From<ValidationError> for Wrong {
     }
 }
 
-fn compose(
+fn build_interface(
     case: &Case,
     spec: &InterfaceSpec,
     file: &InterfaceParameters,
     path: &SearchPath,
-) -> Result<Interface, Wrong> {
+) -> Result<Interface, InterfaceError> {
     if let BondRule::At(time) = spec.bonds
         && !(time.is_finite() && time >= 0.0)
     {
@@ -231,13 +235,13 @@ fn compose(
     }
     let none = BTreeMap::new();
     let mut laws = Vec::new();
-    for (kind, name) in used(spec) {
+    for (kind, name) in laws_of(spec) {
         let of_file = file.slots.get(kind).and_then(|laws| laws.get(name));
         let own = spec.parameters.get(kind).unwrap_or(&none);
-        laws.push(load(case, kind, name, of_file, own, path)?);
+        laws.push(load_law(case, kind, name, of_file, own, path)?);
     }
     // What does not fit is said of the damage law, or of `healing`.
-    let unfit = |e: LawError| Wrong::from(ValidationError::new("damage", e.to_string()));
+    let unfit = |e: LawError| InterfaceError::from(ValidationError::new("damage", e.to_string()));
     let mut interface = Interface::new(spec.name.clone(), laws).map_err(unfit)?;
     interface.area = AreaRule {
         factor: spec.area_factor,
@@ -247,18 +251,56 @@ fn compose(
         .map_err(unfit)
 }
 
-fn load(
+/// Finds a law, resolves its parameters and has it check them.
+fn load_law(
     case: &Case,
     kind: Kind,
     name: &str,
     file: Option<&BTreeMap<String, Sourced>>,
     own: &BTreeMap<String, Given>,
     path: &SearchPath,
-) -> Result<Loaded, Wrong> {
+) -> Result<Loaded, InterfaceError> {
+    let slot = kind.word();
+    let plugin = find_law(case, kind, name, path)?;
+    for (flag, only, dimension) in [(FLAG_2D_ONLY, "two", 2), (FLAG_3D_ONLY, "three", 3)] {
+        if plugin.flags & flag != 0 && case.dimension != dimension {
+            let message = format!(
+                "the {kind} law `{name}` is for {only} dimensions only, the case has {}",
+                case.dimension
+            );
+            return Err(ValidationError::new(slot, message).into());
+        }
+    }
+    let mut values: BTreeMap<&str, f64> = BTreeMap::new();
+    for (parameter, number) in &given_numbers(slot, name, file, own) {
+        let value =
+            parameter_value(&plugin, kind, parameter, number).map_err(|fault| InterfaceError {
+                fault,
+                in_file: !number.in_case,
+            })?;
+        values.insert(parameter, value);
+    }
+    let parameters: Vec<f64> = plugin
+        .parameters
+        .iter()
+        .map(|f| values.get(f.name.as_str()).copied().unwrap_or(f.default))
+        .collect();
+    plugin
+        .validate(&parameters)
+        .map_err(|e| ValidationError::new(slot, e.to_string()))?;
+    Ok(Loaded::new(plugin, parameters))
+}
+
+fn find_law(
+    case: &Case,
+    kind: Kind,
+    name: &str,
+    path: &SearchPath,
+) -> Result<Plugin, ValidationError> {
     let slot = kind.word();
     let key = format!("{kind}/{name}");
     let pin = case.pins.get(&key).map(String::as_str);
-    let plugin = path.find_pinned(kind, name, pin).map_err(|e| match &e {
+    path.find_pinned(kind, name, pin).map_err(|e| match &e {
         LawError::Unknown {
             available,
             nearest,
@@ -272,86 +314,84 @@ fn load(
         .nearest(nearest.as_deref()),
         LawError::Pinned { .. } => ValidationError::new(format!("pins.{key}"), e.to_string()),
         other => ValidationError::new(slot, other.to_string()),
+    })
+}
+
+/// A number that a case or its parameter file gives a parameter of a law.
+struct GivenNumber<'a> {
+    value: f64,
+    unit: &'a str,
+    /// Path in the case or in the file.
+    at: String,
+    /// Whether it is written in the case itself.
+    in_case: bool,
+}
+
+/// Numbers by parameter; those of the case win over those of the file.
+fn given_numbers<'a>(
+    slot: &str,
+    law: &str,
+    file: Option<&'a BTreeMap<String, Sourced>>,
+    own: &'a BTreeMap<String, Given>,
+) -> BTreeMap<&'a str, GivenNumber<'a>> {
+    let of_file = file.into_iter().flatten().map(|(name, number)| {
+        let given = GivenNumber {
+            value: number.value,
+            unit: &number.unit,
+            at: format!("{slot}.{law}.{name}"),
+            in_case: false,
+        };
+        (name.as_str(), given)
+    });
+    let of_case = own.iter().map(|(name, number)| {
+        let given = GivenNumber {
+            value: number.value,
+            unit: number.unit.as_deref().unwrap_or_default(),
+            at: format!("parameters.{slot}.{name}"),
+            in_case: true,
+        };
+        (name.as_str(), given)
+    });
+    of_file.chain(of_case).collect()
+}
+
+/// The value of a parameter in the unit of the law.
+fn parameter_value(
+    plugin: &Plugin,
+    kind: Kind,
+    parameter: &str,
+    given: &GivenNumber<'_>,
+) -> Result<f64, ValidationError> {
+    let (law, at) = (&plugin.name, &given.at);
+    let plain_number = given.in_case && given.unit.is_empty();
+    let at_value = match plain_number {
+        true => at.clone(),
+        false => format!("{at}.value"),
+    };
+    let Some(field) = plugin.parameters.iter().find(|p| p.name == *parameter) else {
+        let names = || plugin.parameters.iter().map(|p| p.name.as_str());
+        return Err(ValidationError::new(
+            at_value,
+            format!("the {kind} law `{law}` has no parameter `{parameter}`"),
+        )
+        .expected(format!("one of {}", names().collect::<Vec<_>>().join(", ")))
+        .nearest(nearest(parameter, names())));
+    };
+    let value = units::convert(given.value, given.unit, &field.unit).map_err(|e| {
+        let mut fault = e.at(format!("{at}.unit"));
+        fault.message = format!("`{parameter}` of the {kind} law `{law}`: {}", fault.message);
+        fault
     })?;
-    for (flag, only, dimension) in [(FLAG_2D_ONLY, "two", 2), (FLAG_3D_ONLY, "three", 3)] {
-        if plugin.flags & flag != 0 && case.dimension != dimension {
-            let message = format!(
-                "the {kind} law `{name}` is for {only} dimensions only, the case has {}",
-                case.dimension
-            );
-            return Err(ValidationError::new(slot, message).into());
-        }
+    if !value.is_finite() || !(field.minimum..=field.maximum).contains(&value) {
+        let range = format!(
+            "a value between {:e} and {:e} {}",
+            field.minimum, field.maximum, field.unit
+        );
+        return Err(ValidationError::new(
+            at_value,
+            format!("`{parameter}` of the {kind} law `{law}` is {value}"),
+        )
+        .expected(range.trim_end()));
     }
-    // Value, unit, path, and whether it is written in the case itself.
-    type Number<'a> = (f64, &'a str, String, bool);
-    let given: BTreeMap<&str, Number<'_>> = file
-        .iter()
-        .flat_map(|m| m.iter())
-        .map(|(n, s)| {
-            let at = format!("{slot}.{name}.{n}");
-            (n.as_str(), (s.value, s.unit.as_str(), at, false))
-        })
-        .chain(own.iter().map(|(n, g)| {
-            let unit = g.unit.as_deref().unwrap_or_default();
-            (
-                n.as_str(),
-                (g.value, unit, format!("parameters.{slot}.{n}"), true),
-            )
-        }))
-        .collect();
-    let mut values: BTreeMap<&str, f64> = BTreeMap::new();
-    let names = || plugin.parameters.iter().map(|p| p.name.as_str());
-    for (parameter, (number, unit, at, in_case)) in &given {
-        let own_number = *in_case && unit.is_empty();
-        let at_value = if own_number {
-            at.clone()
-        } else {
-            format!("{at}.value")
-        };
-        let wrong = |fault: ValidationError| Wrong {
-            fault,
-            in_file: !in_case,
-        };
-        let Some(field) = plugin.parameters.iter().find(|p| p.name == *parameter) else {
-            return Err(wrong(
-                ValidationError::new(
-                    at_value,
-                    format!("the {kind} law `{name}` has no parameter `{parameter}`"),
-                )
-                .expected(format!("one of {}", names().collect::<Vec<_>>().join(", ")))
-                .nearest(nearest(parameter, names())),
-            ));
-        };
-        let value = units::convert(*number, unit, &field.unit).map_err(|e| {
-            let mut fault = e.at(format!("{at}.unit"));
-            fault.message = format!(
-                "`{parameter}` of the {kind} law `{name}`: {}",
-                fault.message
-            );
-            wrong(fault)
-        })?;
-        values.insert(parameter, value);
-        if !value.is_finite() || !(field.minimum..=field.maximum).contains(&value) {
-            let range = format!(
-                "a value between {:e} and {:e} {}",
-                field.minimum, field.maximum, field.unit
-            );
-            return Err(wrong(
-                ValidationError::new(
-                    at_value,
-                    format!("`{parameter}` of the {kind} law `{name}` is {value}"),
-                )
-                .expected(range.trim_end()),
-            ));
-        }
-    }
-    let parameters: Vec<f64> = plugin
-        .parameters
-        .iter()
-        .map(|f| values.get(f.name.as_str()).copied().unwrap_or(f.default))
-        .collect();
-    plugin
-        .validate(&parameters)
-        .map_err(|e| ValidationError::new(slot, e.to_string()))?;
-    Ok(Loaded::new(plugin, parameters))
+    Ok(value)
 }

@@ -98,7 +98,8 @@ fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), ValidationError> {
     for body in &case.bodies {
         let names = BodySpec::names(case.dimension as usize);
         for (k, dof) in body.ordered(case.dimension as usize).iter().enumerate() {
-            if let Some(why) = restless(dof, k < case.dimension as usize, cycle, begins) {
+            if let Some(why) = reason_not_periodic(dof, k < case.dimension as usize, cycle, begins)
+            {
                 let path = format!("bodies.{}.dofs.{}", body.name, names[k]);
                 let message = format!(
                     "a jump skips whole cycles of {cycle:e} s from {begins:e} s on, so all drives must repeat with each cycle, \
@@ -112,7 +113,7 @@ fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), ValidationError> {
 }
 
 /// The reason why a drive does not repeat with every cycle after a time; `None` if it does.
-fn restless(dof: &Dof, translates: bool, cycle: f64, begins: f64) -> Option<String> {
+fn reason_not_periodic(dof: &Dof, translates: bool, cycle: f64, begins: f64) -> Option<String> {
     if let Dof::Stages(_) = dof {
         return Some("its drives follow one another in time".into());
     }

@@ -197,7 +197,7 @@ impl<'de> Deserialize<'de> for InterfaceParameters {
                 Ok(InterfaceParameters { doc, slots })
             }
         }
-        let fields = with_kinds(&["doc"], 1);
+        let fields = with_kinds(&["doc"], 1).map_err(D::Error::custom)?;
         deserializer.deserialize_struct("InterfaceParameters", fields, Fields(fields))
     }
 }

@@ -95,13 +95,13 @@ pub struct ThirdBodySpec {
     /// Axis across the layer.
     pub across: usize,
     /// Number of bins across the thickness.
-    #[serde(default = "twenty")]
+    #[serde(default = "default_bins")]
     pub bins: usize,
     /// Number of time slices with separate profiles.
-    #[serde(default = "four")]
+    #[serde(default = "default_slices")]
     pub slices: usize,
     /// Rows of the statistics between evaluations; the rows between repeat the last values.
-    #[serde(default = "each")]
+    #[serde(default = "every_row")]
     pub every: usize,
     /// Definition of the layer's boundaries.
     #[serde(default)]
@@ -121,15 +121,15 @@ pub enum Extent {
     Grains,
 }
 
-fn each() -> usize {
+fn every_row() -> usize {
     1
 }
 
-fn twenty() -> usize {
+fn default_bins() -> usize {
     20
 }
 
-fn four() -> usize {
+fn default_slices() -> usize {
     4
 }
 
@@ -178,23 +178,23 @@ impl MeasureSpec {
 pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     for (k, spec) in case.measures.iter().enumerate() {
         let twice = case.measures[..k].iter().any(|m| m.name() == spec.name());
-        let said = if twice {
+        let checked = if twice {
             Err(("name", format!("two measures are named `{}`", spec.name())))
         } else {
-            one(case, spec)
+            check_measure(case, spec)
         };
-        said.map_err(|(field, message)| {
+        checked.map_err(|(field, message)| {
             ValidationError::new(format!("measures.{k}.{field}"), message)
         })?;
         if let MeasureSpec::ThirdBody(layer) = spec {
-            known(case, layer).map_err(|f| f.under(&format!("measures.{k}")))?;
+            check_bodies(case, layer).map_err(|f| f.under(&format!("measures.{k}")))?;
         }
     }
     Ok(())
 }
 
 /// Checks that the first bodies of a layer exist.
-fn known(case: &Case, layer: &ThirdBodySpec) -> Result<(), ValidationError> {
+fn check_bodies(case: &Case, layer: &ThirdBodySpec) -> Result<(), ValidationError> {
     let names = || case.bodies.iter().map(|b| b.name.as_str());
     for (k, name) in [&layer.between.0, &layer.between.1].into_iter().enumerate() {
         if !names().any(|n| n == name) {
@@ -268,68 +268,36 @@ const RESERVED: [&str; 55] = [
     "ledger_mass",
 ];
 
-fn one(case: &Case, spec: &MeasureSpec) -> Result<(), (&'static str, String)> {
+/// Field and message of an error in a measure.
+type FieldError = (&'static str, String);
+
+/// Checks the name and the numbers of a measure.
+fn check_measure(case: &Case, spec: &MeasureSpec) -> Result<(), FieldError> {
     let dimension = case.dimension as usize;
-    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    if spec.name().is_empty() || !spec.name().chars().all(plain) {
-        let message = "a name is made of letters, digits, `-` and `_`: it names columns and files";
-        return Err(("name", message.into()));
-    }
-    if RESERVED.contains(&spec.name()) {
-        let message = format!(
-            "`{}` is a column or a figure of every run; take another name",
-            spec.name()
-        );
-        return Err(("name", message));
-    }
+    check_name(spec.name())?;
     if !spec.start().is_finite() {
         return Err(("start", format!("must be finite, got {}", spec.start())));
     }
-    let axis = |axis: usize| {
-        if axis < dimension {
-            Ok(())
-        } else {
-            let message = format!("axis {axis} does not exist; use a number below {dimension}");
-            Err(("axis", message))
-        }
-    };
-    let rises = |field: &'static str, low: f64, high: f64| {
-        if low.is_finite() && high.is_finite() && low < high {
-            Ok(())
-        } else {
-            Err((field, format!("must be above {low}, got {high}")))
-        }
-    };
-    let bounds = |low: &[f64], high: &[f64]| {
-        for (field, corner) in [("low", low), ("high", high)] {
-            if corner.len() != dimension {
-                let message = format!("a corner has {dimension} numbers in this case");
-                return Err((field, message));
-            }
-        }
-        let mut sides = low.iter().zip(high);
-        sides.try_for_each(|(l, h)| rises("high", *l, *h))
-    };
     match spec {
-        MeasureSpec::Mass { axis: a, above, .. } => {
-            axis(*a)?;
+        MeasureSpec::Mass { axis, above, .. } => {
+            check_axis(*axis, dimension)?;
             if above.is_finite() {
                 Ok(())
             } else {
                 Err(("above", format!("must be finite, got {above}")))
             }
         }
-        MeasureSpec::Slope { from, to, .. } => rises("to", *from, *to),
+        MeasureSpec::Slope { from, to, .. } => check_order("to", *from, *to),
         MeasureSpec::Profile {
-            axis: a,
+            axis,
             low,
             high,
             bins,
             turned,
             ..
         } => {
-            axis(*a)?;
-            bounds(low, high)?;
+            check_axis(*axis, dimension)?;
+            check_box(low, high, dimension)?;
             if !(1..=100_000).contains(bins) {
                 return Err(("bins", format!("needs 1 to 100000 slices, got {bins}")));
             }
@@ -342,16 +310,16 @@ fn one(case: &Case, spec: &MeasureSpec) -> Result<(), (&'static str, String)> {
         MeasureSpec::Band {
             low, high, above, ..
         } => {
-            bounds(low, high)?;
+            check_box(low, high, dimension)?;
             if above.is_finite() && *above > 0.0 {
                 Ok(())
             } else {
                 Err(("above", format!("a shear must be positive, got {above}")))
             }
         }
-        MeasureSpec::ThirdBody(layer) => third_body(case, layer),
+        MeasureSpec::ThirdBody(layer) => check_third_body(case, layer),
         MeasureSpec::Shear { low, high, .. } => {
-            rises("high", *low, *high)?;
+            check_order("high", *low, *high)?;
             if case.periodic.x.is_none() || (dimension == 3 && case.periodic.y.is_none()) {
                 let message = "plane shear is measured in a cell that is periodic along x (and y in 3D); add `periodic`";
                 return Err(("name", message.into()));
@@ -361,7 +329,49 @@ fn one(case: &Case, spec: &MeasureSpec) -> Result<(), (&'static str, String)> {
     }
 }
 
-fn third_body(case: &Case, layer: &ThirdBodySpec) -> Result<(), (&'static str, String)> {
+fn check_name(name: &str) -> Result<(), FieldError> {
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if name.is_empty() || !name.chars().all(plain) {
+        let message = "a name is made of letters, digits, `-` and `_`: it names columns and files";
+        return Err(("name", message.into()));
+    }
+    if RESERVED.contains(&name) {
+        let message = format!("`{name}` is a column or a figure of every run; take another name");
+        return Err(("name", message));
+    }
+    Ok(())
+}
+
+fn check_axis(axis: usize, dimension: usize) -> Result<(), FieldError> {
+    if axis < dimension {
+        return Ok(());
+    }
+    let message = format!("axis {axis} does not exist; use a number below {dimension}");
+    Err(("axis", message))
+}
+
+/// Checks that an upper end is above the lower one.
+fn check_order(field: &'static str, low: f64, high: f64) -> Result<(), FieldError> {
+    if low.is_finite() && high.is_finite() && low < high {
+        Ok(())
+    } else {
+        Err((field, format!("must be above {low}, got {high}")))
+    }
+}
+
+/// Checks the corners of a box.
+fn check_box(low: &[f64], high: &[f64], dimension: usize) -> Result<(), FieldError> {
+    for (field, corner) in [("low", low), ("high", high)] {
+        if corner.len() != dimension {
+            let message = format!("a corner has {dimension} numbers in this case");
+            return Err((field, message));
+        }
+    }
+    let mut sides = low.iter().zip(high);
+    sides.try_for_each(|(l, h)| check_order("high", *l, *h))
+}
+
+fn check_third_body(case: &Case, layer: &ThirdBodySpec) -> Result<(), FieldError> {
     let dimension = case.dimension as usize;
     for (field, axis) in [("along", layer.along), ("across", layer.across)] {
         if axis >= dimension {

@@ -30,18 +30,56 @@ pub fn header<S: Space>(
     statistics: &[Column],
     grain_columns: &[Column],
 ) -> Header {
-    let dimension = S::D;
     let fields = fields(built.simulation, loaded.case.circuit.is_some());
-    let c = Column::new;
-    let joule = if dimension == 2 { "J/m" } else { "J" };
+    let mut interfaces = loaded.case.interfaces.iter();
+    let bonds = interfaces.any(|i| i.law(Kind::COHESION).is_some());
+    Header {
+        broken: match bonds {
+            true => broken_columns(S::D),
+            false => Vec::new(),
+        },
+        debris: match loaded.case.circuit {
+            Some(_) => debris_columns(S::D),
+            None => Vec::new(),
+        },
+        case_name: loaded.case.name.clone(),
+        case_text: loaded.source.text().to_owned(),
+        materials: built.materials.to_vec(),
+        plugins: summary.plugins.clone(),
+        seed: loaded.case.seed,
+        dimension: S::D,
+        shapes: shapes::of(built.simulation, built.densities),
+        version: summary.version.clone(),
+        statistics: statistics.to_vec(),
+        fields: [
+            columns(&fields.grains, false)
+                .chain(grain_columns.iter().cloned())
+                .collect(),
+            columns(&fields.contacts, false).collect(),
+            vec![Column::new("body", "", "identity of the body")],
+        ],
+        numbers: [
+            columns(&fields.grains, true).collect(),
+            columns(&fields.contacts, true).collect(),
+            Vec::new(),
+        ],
+    }
+}
+
+/// Coordinates of the place of an event.
+fn place_columns() -> [Column; 3] {
+    ["x", "y", "z"].map(|a| Column::new(a, "m", "where it was"))
+}
+
+fn energy_unit(dimension: usize) -> &'static str {
+    if dimension == 2 { "J/m" } else { "J" }
+}
+
+/// Columns of the table of broken bonds.
+fn broken_columns(dimension: usize) -> Vec<Column> {
+    let (c, at) = (Column::new, place_columns());
+    let joule = energy_unit(dimension);
     let area = if dimension == 2 { "m" } else { "m^2" };
-    let kg = if dimension == 2 { "kg/m" } else { "kg" };
-    let at = ["x", "y", "z"].map(|a| c(a, "m", "where it was"));
-    let bonds = loaded
-        .case
-        .interfaces
-        .iter()
-        .any(|i| i.law(Kind::COHESION).is_some());
     let broken = [
         c("id", "", "number of the break, from 1"),
         c("time", "s", "end of the step in which it broke"),
@@ -49,7 +87,7 @@ pub fn header<S: Space>(
         c("body_2", "", "identity of the antagonist"),
         c("interface", "", "index of the interface"),
     ];
-    let broken = broken.into_iter().chain(at.clone()).chain([
+    let columns = broken.into_iter().chain(at).chain([
         c(
             "mode_mix",
             "",
@@ -72,13 +110,21 @@ pub fn header<S: Space>(
             "0 damage, 1 its bodies moved out of range or one was removed",
         ),
     ]);
+    columns.collect()
+}
+
+/// Columns of the table of debris.
+fn debris_columns(dimension: usize) -> Vec<Column> {
+    let (c, at) = (Column::new, place_columns());
+    let joule = energy_unit(dimension);
+    let kg = if dimension == 2 { "kg/m" } else { "kg" };
     let debris = [
         c("id", "", "number of the piece, from 1"),
         c("time", "s", "time at which the account found it loose"),
         c("size", "", "grains in it"),
         c("mass", kg, "its mass"),
     ];
-    let debris = debris.into_iter().chain(at).chain([
+    let columns = debris.into_iter().chain(at).chain([
         c("first_body", "", "identity of the first body that lost it"),
         c(
             "mode_mix",
@@ -88,34 +134,7 @@ pub fn header<S: Space>(
         c("energy", joule, "energy released by damage of these bonds"),
         c("bonds", "", "number of these bonds"),
     ]);
-    Header {
-        broken: if bonds { broken.collect() } else { Vec::new() },
-        debris: match loaded.case.circuit {
-            Some(_) => debris.collect(),
-            None => Vec::new(),
-        },
-        case_name: loaded.case.name.clone(),
-        case_text: loaded.source.text().to_owned(),
-        materials: built.materials.to_vec(),
-        plugins: summary.plugins.clone(),
-        seed: loaded.case.seed,
-        dimension,
-        shapes: shapes::of(built.simulation, built.densities),
-        version: summary.version.clone(),
-        statistics: statistics.to_vec(),
-        fields: [
-            columns(&fields.grains, false)
-                .chain(grain_columns.iter().cloned())
-                .collect(),
-            columns(&fields.contacts, false).collect(),
-            vec![c("body", "", "identity of the body")],
-        ],
-        numbers: [
-            columns(&fields.grains, true).collect(),
-            columns(&fields.contacts, true).collect(),
-            Vec::new(),
-        ],
-    }
+    columns.collect()
 }
 
 /// The fields of a simulation's views: those it registers, orientations where there are grains that are no lone balls, and

@@ -69,103 +69,132 @@ const CRATES: [(&str, &str); 7] = [
 ];
 
 pub fn new(args: &NewArgs) -> Result<(), Failure> {
-    let usage = |what: String| Err(Failure::Usage(what));
     let Some((kind, templates)) =
         Kind::from_word(&args.kind).and_then(|kind| Some((kind, kind.spec().templates?)))
     else {
-        return usage(format!("--kind {}: expected {}", args.kind, Kind::words()));
+        let message = format!("--kind {}: expected {}", args.kind, Kind::words());
+        return Err(Failure::Usage(message));
     };
-    // Cases write a dash where a name has an underscore.
-    let name = args.name.replace('_', "-");
-    let plain = name_is_valid(&name) && name.starts_with(|c: char| c.is_ascii_lowercase());
-    if !plain || name.len() > 60 {
-        return usage(format!(
-            "`{}` is not a valid name for a law; use a-z, 0-9 and -, a letter first, at most 60",
-            args.name
-        ));
-    }
-    if built_in().names().any(|law| law == (kind, name.as_str())) {
-        return usage(format!(
-            "`{name}` is a shipped {kind} law, which is found before any other; choose another name"
-        ));
-    }
+    let name = law_name(args, kind)?;
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from(&name));
     if folder.exists() {
-        return usage(format!(
+        return Err(Failure::Usage(format!(
             "{} exists already; choose another --out",
             folder.display()
-        ));
+        )));
     }
-    let snake = name.replace('-', "_");
-    let fill = |text: &str| {
-        text.replace("@NAME@", &name)
-            .replace("@TYPE@", &camel(&name))
-            .replace("@KINDUP@", &kind.word().to_uppercase())
-            .replace("@KIND@", kind.word())
-            .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
-    };
     let template = match args.lang {
         Language::Rust => templates.rust,
         Language::C => templates.c,
         Language::Fortran => templates.fortran,
     };
-    let source = fill(template);
-    let library = file_name(kind, &name);
-    let here = folder.display();
-    let (build, made) = match args.lang {
-        Language::C => {
-            write(&folder, "fretwork.h", HEADER)?;
-            write(&folder, &format!("{snake}.c"), &source)?;
-            let build = format!(
-                "cc -O2 -std=c11 -Wall -shared -fPIC -o {here}/{library} {here}/{snake}.c -lm"
-            );
-            (build, folder.clone())
-        }
-        Language::Fortran => {
-            write(&folder, "fretwork.f90", MODULE)?;
-            write(&folder, "fretwork.h", HEADER)?;
-            write(&folder, &format!("{snake}.f90"), &source)?;
-            let build = format!(
-                "gfortran -O2 -std=f2018 -Wall -shared -fPIC -J {here} -o {here}/{library} {here}/fretwork.f90 {here}/{snake}.f90"
-            );
-            (build, folder.clone())
-        }
-        Language::Rust => {
-            for (file, text) in CRATES {
-                write(&folder, file, &fill(text))?;
-            }
-            let package = |name: &str, rest: &str| {
-                format!(
-                    "[package]\nname = \"{name}\"\nversion = \"{}\"\nedition = \"2024\"\nlicense = \"MIT OR Apache-2.0\"\n\n{rest}",
-                    env!("CARGO_PKG_VERSION")
-                )
-            };
-            let uses_abi = "[dependencies]\nfretwork-abi = { path = \"../fretwork-abi\" }\n";
-            write(
-                &folder,
-                "fretwork-law/Cargo.toml",
-                &package("fretwork-law", uses_abi),
-            )?;
-            let own = "[workspace]\n\n[lib]\ncrate-type = [\"cdylib\", \"rlib\"]\n\n[dependencies]\nfretwork-law = { path = \"fretwork-law\" }\n";
-            write(
-                &folder,
-                "Cargo.toml",
-                &package(&format!("fretwork-{kind}-{name}"), own),
-            )?;
-            write(&folder, "src/lib.rs", &source)?;
-            let build = format!("cargo build --release --manifest-path {here}/Cargo.toml");
-            (build, folder.join("target/release"))
-        }
-    };
+    let new_law = NewLaw { kind, name, folder };
+    let (build, made) = new_law.write(args.lang, template)?;
+    let NewLaw { name, folder, .. } = &new_law;
     inform(&format!(
-        "{here} holds the {kind} law `{name}`; fill in the two functions marked (1) and (2)\n\
+        "{} holds the {kind} law `{name}`; fill in the two functions marked (1) and (2)\n\
          build    {build}\n\
          certify  fretwork law certify {}\n\
          run      fretwork run CASE --plugin-path {} --set interfaces.INTERFACE.{kind}={name}",
-        made.join(&library).display(),
+        folder.display(),
+        made.join(new_law.library()).display(),
         made.display(),
     ));
     Ok(())
+}
+
+/// The name of the law as cases write it; refused if it is not valid or taken.
+fn law_name(args: &NewArgs, kind: Kind) -> Result<String, Failure> {
+    // Cases write a dash where a name has an underscore.
+    let name = args.name.replace('_', "-");
+    let plain = name_is_valid(&name) && name.starts_with(|c: char| c.is_ascii_lowercase());
+    if !plain || name.len() > 60 {
+        return Err(Failure::Usage(format!(
+            "`{}` is not a valid name for a law; use a-z, 0-9 and -, a letter first, at most 60",
+            args.name
+        )));
+    }
+    if built_in().names().any(|law| law == (kind, name.as_str())) {
+        return Err(Failure::Usage(format!(
+            "`{name}` is a shipped {kind} law, which is found before any other; choose another name"
+        )));
+    }
+    Ok(name)
+}
+
+/// A law to be made, and its folder.
+struct NewLaw {
+    kind: Kind,
+    name: String,
+    folder: PathBuf,
+}
+
+impl NewLaw {
+    /// File name of the built library.
+    fn library(&self) -> String {
+        file_name(self.kind, &self.name)
+    }
+
+    /// Fills the place-holders of a template.
+    fn fill(&self, text: &str) -> String {
+        text.replace("@NAME@", &self.name)
+            .replace("@TYPE@", &camel(&self.name))
+            .replace("@KINDUP@", &self.kind.word().to_uppercase())
+            .replace("@KIND@", self.kind.word())
+            .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
+    }
+
+    /// Writes its files; returns the command that builds it, and the folder in which the library is then.
+    fn write(&self, language: Language, template: &str) -> Result<(String, PathBuf), Failure> {
+        let (folder, here) = (&self.folder, self.folder.display());
+        let (source, library) = (self.fill(template), self.library());
+        let snake = self.name.replace('-', "_");
+        match language {
+            Language::C => {
+                write(folder, "fretwork.h", HEADER)?;
+                write(folder, &format!("{snake}.c"), &source)?;
+                let build = format!(
+                    "cc -O2 -std=c11 -Wall -shared -fPIC -o {here}/{library} {here}/{snake}.c -lm"
+                );
+                Ok((build, folder.clone()))
+            }
+            Language::Fortran => {
+                write(folder, "fretwork.f90", MODULE)?;
+                write(folder, "fretwork.h", HEADER)?;
+                write(folder, &format!("{snake}.f90"), &source)?;
+                let build = format!(
+                    "gfortran -O2 -std=f2018 -Wall -shared -fPIC -J {here} -o {here}/{library} {here}/fretwork.f90 {here}/{snake}.f90"
+                );
+                Ok((build, folder.clone()))
+            }
+            Language::Rust => {
+                self.write_crates(&source)?;
+                let build = format!("cargo build --release --manifest-path {here}/Cargo.toml");
+                Ok((build, folder.join("target/release")))
+            }
+        }
+    }
+
+    /// Writes the law as a crate, beside those of the SDK and the ABI.
+    fn write_crates(&self, source: &str) -> Result<(), Failure> {
+        let folder = &self.folder;
+        for (file, text) in CRATES {
+            write(folder, file, &self.fill(text))?;
+        }
+        let package = |name: &str, rest: &str| {
+            format!(
+                "[package]\nname = \"{name}\"\nversion = \"{}\"\nedition = \"2024\"\nlicense = \"MIT OR Apache-2.0\"\n\n{rest}",
+                env!("CARGO_PKG_VERSION")
+            )
+        };
+        let uses_abi = "[dependencies]\nfretwork-abi = { path = \"../fretwork-abi\" }\n";
+        let sdk = package("fretwork-law", uses_abi);
+        write(folder, "fretwork-law/Cargo.toml", &sdk)?;
+        let own = "[workspace]\n\n[lib]\ncrate-type = [\"cdylib\", \"rlib\"]\n\n[dependencies]\nfretwork-law = { path = \"fretwork-law\" }\n";
+        let law = package(&format!("fretwork-{}-{}", self.kind, self.name), own);
+        write(folder, "Cargo.toml", &law)?;
+        write(folder, "src/lib.rs", source)
+    }
 }
 
 fn camel(name: &str) -> String {

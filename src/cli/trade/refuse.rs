@@ -108,7 +108,7 @@ pub fn after_two_steps(
 ) -> Result<(), Failure> {
     let short = vec![format!("time.end={:e}", 2.0 * loaded.case.time.step)];
     let seed = loaded.case.seed;
-    let begun = launcher.kept(&short, seed).is_some();
+    let begun = launcher.stored(&short, seed).is_some();
     let soon = Instant::now() + Duration::from_secs(60).min(args.budget);
     if begun
         || matches!(

@@ -2,6 +2,8 @@
 
 use super::frame::PICTURES;
 use super::{RunError, unwritable};
+use crate::geometry::space::Space;
+use fretwork_observe::Observers;
 use std::path::Path;
 
 /// Names of the figures at the end of a run. Figures of measures and scars are named by a case, and are kept.
@@ -16,10 +18,13 @@ const FIGURES: [&str; 8] = [
     "biaxial.png",
 ];
 
-/// Removes pictures, problems and figures of an older run from its folder.
-pub(super) fn clear(folder: &Path) -> Result<(), RunError> {
+/// Removes pictures, problems and figures of an older run from its folder, and the pictures and files that the observers of the
+/// new run name as theirs.
+pub(super) fn clear<S: Space>(folder: &Path, observers: &Observers<S>) -> Result<(), RunError> {
+    let (mut pictures, files) = (observers.picture_names(), observers.file_names());
+    pictures.extend(PICTURES);
     let picture = |name: &str| {
-        PICTURES
+        pictures
             .iter()
             .any(|p| numbered(name, &format!("{p}_"), ".png"))
     };
@@ -27,7 +32,9 @@ pub(super) fn clear(folder: &Path) -> Result<(), RunError> {
     remove(&folder.join("fclib"), &|name| {
         numbered(name, "step-", ".hdf5")
     })?;
-    remove(folder, &|name| FIGURES.contains(&name))
+    remove(folder, &|name| {
+        FIGURES.contains(&name) || files.iter().any(|f| f == name)
+    })
 }
 
 /// Whether a name has a step number of at least eight digits between two given texts.

@@ -84,7 +84,7 @@ impl<S: Steps> Recorder<'_, S> {
             results: std::mem::take(&mut self.results),
             observers: std::mem::take(&mut self.observers),
             summary: std::mem::take(&mut self.summary),
-            spent: self.spent,
+            spent: self.elapsed_before_resume,
         };
         let place = Arc::clone(&self.emergency.outputs);
         let place = || place.lock().unwrap_or_else(|e| e.into_inner());

@@ -14,18 +14,19 @@ use std::time::Duration;
 impl<S: Dimensional> Recorder<'_, S> {
     /// Writes the final output of a run, however it ended.
     pub(super) fn finish(&mut self) -> Result<(), RunError> {
-        let recalled = self.recall();
-        let wall = self.spent.0 + self.clock.elapsed();
+        let statistics_read = self.read_statistics();
+        let wall = self.elapsed_before_resume.0 + self.clock.elapsed();
         let mut summary = std::mem::take(&mut self.summary);
         summary.wall_seconds = wall.as_secs_f64();
-        summary.cpu_seconds = (self.spent.1 + self.processor.elapsed()).as_secs_f64();
+        summary.cpu_seconds =
+            (self.elapsed_before_resume.1 + self.processor.elapsed()).as_secs_f64();
         self.observers.summarise(&self.end(wall), &mut summary);
         let solver = &mut summary.solver;
         (solver.fclib_written, solver.fclib_skipped) = self.problems;
         summary.complete();
         self.summary = summary;
         let notice = self.warn();
-        let files = noted(notice, || self.files(wall)).and(recalled);
+        let files = noted(notice, || self.files(wall)).and(statistics_read);
         if let (Err(e), None) = (&files, &self.summary.stopped) {
             self.summary.stopped = Some(e.to_string());
             self.warn();
@@ -46,7 +47,7 @@ impl<S: Dimensional> Recorder<'_, S> {
     }
 
     /// Reads the rows of the statistics back: where something is made of them.
-    fn recall(&mut self) -> Result<(), RunError> {
+    fn read_statistics(&mut self) -> Result<(), RunError> {
         if !self.loaded.case.output.figures && !self.observers.read_statistics() {
             return Ok(());
         }
@@ -66,8 +67,8 @@ impl<S: Dimensional> Recorder<'_, S> {
     /// Closes the results file, and marks it complete if the run reached its end.
     fn end_results(&mut self) -> Result<(), RunError> {
         if self.summary.stopped.is_none() {
-            let (number, bytes) = self.keeper.frame(Kind::Ended, Vec::new());
-            self.results.keep(number, &bytes);
+            let (number, bytes) = self.checkpoint_writer.frame(Kind::Ended, Vec::new());
+            self.results.set_final_checkpoint(number, &bytes);
         }
         Ok(self.results.finish(&self.out)?)
     }

@@ -12,7 +12,7 @@ pub(super) const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "c
 
 impl<S: Dimensional> Recorder<'_, S> {
     /// Draws the pictures of a step.
-    pub(super) fn frame(&mut self, step: u64) -> Result<(), RunError> {
+    pub(super) fn draw_pictures(&mut self, step: u64) -> Result<(), RunError> {
         if self.loaded.case.output.frames == 0 {
             return Ok(());
         }

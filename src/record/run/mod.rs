@@ -1,12 +1,12 @@
 //! Runs a scene to its end and records it.
 
+mod checkpoints;
 mod clear;
 mod dump;
 mod emergency;
 mod end;
 mod error;
 mod frame;
-mod keep;
 mod notice;
 mod stamps;
 
@@ -210,9 +210,9 @@ struct Recorder<'a, S: Space> {
     /// was started.
     total: u64,
     spread: u64,
-    keeper: CheckpointWriter,
+    checkpoint_writer: CheckpointWriter,
     /// Wall and processor time of the run before it was resumed; and the start of this part.
-    spent: (Duration, Duration),
+    elapsed_before_resume: (Duration, Duration),
     /// Where the watch over plugins finds the files during a step.
     emergency: EmergencySave<S>,
     clock: Instant,
@@ -229,7 +229,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let case = &loaded.case;
         let number = run.stop.as_ref().map_or(0, |s| s.number + 1);
         let identity = Identity::of(loaded, &built)?;
-        let keeper = CheckpointWriter::new(case.output.checkpoint, &identity, number)?;
+        let checkpoint_writer = CheckpointWriter::new(case.output.checkpoint, &identity, number)?;
         let simulation = &mut built.simulation;
         simulation.options.solver.parallel = options.threads > 1;
         processes::install(case, simulation);
@@ -243,7 +243,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             plugins: stamps(&simulation.laws),
             threads: options.threads,
             seed: case.seed,
-            identity: keeper.name(),
+            identity: checkpoint_writer.name(),
             unresolved_drives: sampling::unresolved(case),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             ..Summary::default()
@@ -266,8 +266,8 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             resumed_at: 0,
             total,
             spread: total,
-            keeper,
-            spent: (Duration::ZERO, Duration::ZERO),
+            checkpoint_writer,
+            elapsed_before_resume: (Duration::ZERO, Duration::ZERO),
             emergency: EmergencySave::new(options.out.clone()),
             clock: Instant::now(),
             processor: ProcessTime::now(),
@@ -277,7 +277,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         };
         recorder.observers.begin(&mut recorder.simulation);
         let begun = match run.stop {
-            Some(stop) => recorder.take_up(stop),
+            Some(stop) => recorder.restore(stop),
             None => recorder.publish(Kind::Begun, Vec::new()),
         };
         match begun {
@@ -293,8 +293,8 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
     /// Steps to the end or until a stop is requested; returns the reason of the stop.
     fn run_steps(&mut self, progress: &mut OnProgress<'_>) -> Result<Option<String>, RunError> {
         if self.simulation.state.steps == 0 {
-            self.views()?;
-            self.frame(0)?;
+            self.record_state()?;
+            self.draw_pictures(0)?;
         }
         for step in self.simulation.state.steps + 1..=self.total {
             let phase = self.simulation.state.control.phase();
@@ -318,12 +318,12 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
                 break;
             }
             if let ControlFlow::Break(reason) = wish {
-                self.keep()?;
+                self.write_checkpoint()?;
                 let total = self.total;
                 return Ok(Some(format!("{reason} after step {step} of {total}")));
             }
-            if self.keeper.due(step) {
-                self.keep()?;
+            if self.checkpoint_writer.due(step) {
+                self.write_checkpoint()?;
             }
         }
         Ok(None)
@@ -346,22 +346,22 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             self.results.append_event(&event)?;
         }
         if output.fclib > 0 && step.is_multiple_of(output.fclib) {
-            self.dump(step, report)?;
+            self.write_problem(step, report)?;
         }
         if step.is_multiple_of(output.every) || last {
-            self.row()?;
+            self.record_row()?;
         }
         if due(step, self.spread, output.views) || finished {
-            self.views()?;
+            self.record_state()?;
         }
         if due(step, self.spread, output.frames) || finished || turned {
-            self.frame(step)?;
+            self.draw_pictures(step)?;
         }
         Ok(())
     }
 
     /// Writes a row of the statistics.
-    fn row(&mut self) -> Result<(), RunError> {
+    fn record_row(&mut self) -> Result<(), RunError> {
         let row = self.observers.sample(&self.simulation);
         if row.len() != self.table.columns.len() {
             return Err(RunError::Row {
@@ -375,7 +375,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
     }
 
     /// Writes the state at hand.
-    fn views(&mut self) -> Result<(), RunError> {
+    fn record_state(&mut self) -> Result<(), RunError> {
         let values = self.observers.grain_values(&self.simulation);
         let (results, s) = (&mut self.results, &self.simulation);
         Ok(views::append(results, s, self.loaded, values)?)

@@ -8,6 +8,7 @@ mod folder;
 mod kills;
 mod laws;
 mod library;
+mod observer_files;
 #[cfg(unix)]
 mod signals;
 mod state;

@@ -1,7 +1,7 @@
 //! Grains, and the walls that come with scene files.
 
 use super::{Builder, Dimensional, Origin};
-use crate::case::GrainSpec;
+use crate::case::{GrainSpec, OneGrain};
 use crate::sample;
 use crate::source::{InputError, ValidationError};
 use fretwork_core::bodies::Driven;
@@ -48,25 +48,12 @@ impl<S: Space> Seed<S> {
 
 impl<S: Dimensional> Builder<'_, S> {
     pub(super) fn grains(&mut self) -> Result<(), InputError> {
-        let mut found: Vec<Seed<S>> = Vec::new();
+        let mut balls: Vec<Seed<S>> = Vec::new();
         let mut shaped = Vec::new();
         for (k, spec) in self.case.grains.iter().enumerate() {
-            let here = format!("grains.{k}");
             match spec {
                 GrainSpec::List { material, grains } => {
-                    let of = self.material(&format!("{here}.material"), material)?;
-                    for (g, grain) in grains.iter().enumerate() {
-                        let here = format!("{here}.grains.{g}");
-                        let at = self.vector(&format!("{here}.at"), &grain.at)?;
-                        let radius = self.radius(&format!("{here}.radius"), grain.radius)?;
-                        let velocity = self.vector(&format!("{here}.velocity"), &grain.velocity)?;
-                        let spin = self.spin(&format!("{here}.spin"), &grain.spin)?;
-                        found.push(Seed {
-                            velocity,
-                            spin,
-                            ..Seed::still(at, radius, of, Origin::Grain(k, Some(g)))
-                        });
-                    }
+                    self.listed_grains(k, material, grains, &mut balls)?;
                 }
                 GrainSpec::Lattice {
                     material,
@@ -74,36 +61,7 @@ impl<S: Dimensional> Builder<'_, S> {
                     radius,
                     low,
                     high,
-                } => {
-                    let of = self.material(&format!("{here}.material"), material)?;
-                    for r in [radius.0, radius.1] {
-                        self.radius(&format!("{here}.radius"), r)?;
-                    }
-                    if radius.1 < radius.0 {
-                        return Err(
-                            self.fail(format!("{here}.radius"), "the smallest radius comes first")
-                        );
-                    }
-                    for (name, corner) in [("low", low), ("high", high)] {
-                        self.corner(&format!("{here}.{name}"), corner)?;
-                    }
-                    self.few_enough(&format!("{here}.count"), *count, MAX_MADE)?;
-                    let periodic = self.shapes.periodic.period[0].is_some();
-                    let list =
-                        sample::lattice(S::D, periodic, *count, *radius, low, high, self.case.seed);
-                    if list.len() < *count {
-                        let message =
-                            format!("only {} of {count} grains fit into the box", list.len());
-                        return Err(self.source.locate(
-                            ValidationError::new(format!("{here}.count"), message)
-                                .expected("a larger box, smaller grains or fewer"),
-                        ));
-                    }
-                    found.extend(list.into_iter().map(|(x, r)| {
-                        let at = S::Vector::from_slice(&x);
-                        Seed::still(at, r, of, Origin::Grain(k, None))
-                    }));
-                }
+                } => balls.extend(self.lattice(k, material, *count, *radius, [low, high])?),
                 // Made after the balls, which come first in memory.
                 GrainSpec::Polygons { .. }
                 | GrainSpec::Arch { .. }
@@ -115,41 +73,118 @@ impl<S: Dimensional> Builder<'_, S> {
                     file,
                     material,
                     walls,
-                } => {
-                    let of = self.material(&format!("{here}.material"), material)?;
-                    let scene = self.scene_file(&here, file)?;
-                    found.extend(scene.balls.iter().map(|(x, r)| {
-                        let at = S::Vector::from_slice(x);
-                        Seed::still(at, *r, of, Origin::Grain(k, None))
-                    }));
-                    if let Some(walls) = walls {
-                        let (m, _) = self.material(&format!("{here}.walls"), walls)?;
-                        for (w, wall) in scene.walls.iter().enumerate() {
-                            let shape = HalfSpace {
-                                normal: S::Vector::from_slice(&wall.normal),
-                                shown: 1.0,
-                            };
-                            self.add_wall(
-                                format!("wall_{w}"),
-                                S::Vector::from_slice(&wall.at),
-                                Box::new(shape),
-                                m,
-                            );
-                            self.origins.push(Origin::Grain(k, None));
-                        }
-                    }
-                }
-                GrainSpec::Deposit(spec) => found.extend(self.deposit(k, spec)?),
-                GrainSpec::Csv(spec) => found.extend(self.grains_of_csv(k, spec)?),
+                } => balls.extend(self.grains_of_scene(k, file, material, walls.as_deref())?),
+                GrainSpec::Deposit(spec) => balls.extend(self.deposit(k, spec)?),
+                GrainSpec::Csv(spec) => balls.extend(self.grains_of_csv(k, spec)?),
                 GrainSpec::State(spec) => {
-                    let (balls, others) = self.grains_of_run(k, spec)?;
-                    found.extend(balls);
+                    let (read, others) = self.grains_of_run(k, spec)?;
+                    balls.extend(read);
                     shaped.push(others);
                 }
             }
         }
-        // Sorted so that neighbours in space are neighbours in memory.
-        let width = 4.0 * found.iter().map(|g| g.radius).fold(0.0, f64::max);
+        self.add_balls(balls);
+        self.polygons()?;
+        self.polyhedra()?;
+        self.clusters()?;
+        for others in shaped {
+            self.shaped_grains(others)?;
+        }
+        Ok(())
+    }
+
+    fn listed_grains(
+        &self,
+        k: usize,
+        material: &str,
+        grains: &[OneGrain],
+        out: &mut Vec<Seed<S>>,
+    ) -> Result<(), InputError> {
+        let of = self.material(&format!("grains.{k}.material"), material)?;
+        for (g, grain) in grains.iter().enumerate() {
+            let here = format!("grains.{k}.grains.{g}");
+            let at = self.vector(&format!("{here}.at"), &grain.at)?;
+            let radius = self.radius(&format!("{here}.radius"), grain.radius)?;
+            let velocity = self.vector(&format!("{here}.velocity"), &grain.velocity)?;
+            let spin = self.spin(&format!("{here}.spin"), &grain.spin)?;
+            out.push(Seed {
+                velocity,
+                spin,
+                ..Seed::still(at, radius, of, Origin::Grain(k, Some(g)))
+            });
+        }
+        Ok(())
+    }
+
+    fn lattice(
+        &self,
+        k: usize,
+        material: &str,
+        count: usize,
+        radius: (f64, f64),
+        [low, high]: [&[f64]; 2],
+    ) -> Result<impl Iterator<Item = Seed<S>> + use<S>, InputError> {
+        let here = format!("grains.{k}");
+        let of = self.material(&format!("{here}.material"), material)?;
+        for r in [radius.0, radius.1] {
+            self.radius(&format!("{here}.radius"), r)?;
+        }
+        if radius.1 < radius.0 {
+            return Err(self.fail(format!("{here}.radius"), "the smallest radius comes first"));
+        }
+        for (name, corner) in [("low", low), ("high", high)] {
+            self.corner(&format!("{here}.{name}"), corner)?;
+        }
+        self.few_enough(&format!("{here}.count"), count, MAX_MADE)?;
+        let periodic = self.shapes.periodic.period[0].is_some();
+        let list = sample::lattice(S::D, periodic, count, radius, low, high, self.case.seed);
+        if list.len() < count {
+            let message = format!("only {} of {count} grains fit into the box", list.len());
+            return Err(self.source.locate(
+                ValidationError::new(format!("{here}.count"), message)
+                    .expected("a larger box, smaller grains or fewer"),
+            ));
+        }
+        Ok(list.into_iter().map(move |(x, r)| {
+            let at = S::Vector::from_slice(&x);
+            Seed::still(at, r, of, Origin::Grain(k, None))
+        }))
+    }
+
+    /// The balls of a scene file; adds its walls, if they are wanted.
+    fn grains_of_scene(
+        &mut self,
+        k: usize,
+        file: &str,
+        material: &str,
+        walls: Option<&str>,
+    ) -> Result<Vec<Seed<S>>, InputError> {
+        let here = format!("grains.{k}");
+        let of = self.material(&format!("{here}.material"), material)?;
+        let scene = self.scene_file(&here, file)?;
+        let ball = |(x, r): &(Vec<f64>, f64)| {
+            let at = S::Vector::from_slice(x);
+            Seed::still(at, *r, of, Origin::Grain(k, None))
+        };
+        let balls = scene.balls.iter().map(ball).collect();
+        if let Some(walls) = walls {
+            let (m, _) = self.material(&format!("{here}.walls"), walls)?;
+            for (w, wall) in scene.walls.iter().enumerate() {
+                let shape = HalfSpace {
+                    normal: S::Vector::from_slice(&wall.normal),
+                    shown: 1.0,
+                };
+                let at = S::Vector::from_slice(&wall.at);
+                self.add_wall(format!("wall_{w}"), at, Box::new(shape), m);
+                self.origins.push(Origin::Grain(k, None));
+            }
+        }
+        Ok(balls)
+    }
+
+    /// Adds balls, sorted so that neighbours in space are neighbours in memory.
+    fn add_balls(&mut self, mut balls: Vec<Seed<S>>) {
+        let width = 4.0 * balls.iter().map(|g| g.radius).fold(0.0, f64::max);
         let cell = |x: &S::Vector| -> Vec<i64> {
             (0..S::D)
                 .rev()
@@ -157,9 +192,9 @@ impl<S: Dimensional> Builder<'_, S> {
                 .collect()
         };
         if width > 0.0 {
-            found.sort_by_cached_key(|g| cell(&g.at));
+            balls.sort_by_cached_key(|g| cell(&g.at));
         }
-        for seed in found {
+        for seed in balls {
             let (material, density) = seed.of;
             let body = self.bodies.add_ball(seed.at, seed.radius, density);
             self.origins.push(seed.origin);
@@ -173,13 +208,6 @@ impl<S: Dimensional> Builder<'_, S> {
                 material,
             });
         }
-        self.polygons()?;
-        self.polyhedra()?;
-        self.clusters()?;
-        for others in shaped {
-            self.shaped_grains(others)?;
-        }
-        Ok(())
     }
 
     pub(super) fn spin(&self, path: &str, values: &[f64]) -> Result<S::Spin, InputError> {

@@ -169,49 +169,27 @@ impl Dimensional for Dim3 {
     }
 }
 
+/// Parameters of a random profile, see [`ShapeSpec::RoughProfile`].
+struct Roughness {
+    points: usize,
+    rms: f64,
+    hurst: f64,
+    longest: Option<f64>,
+    shortest: f64,
+}
+
 /// A surface, and its offset in the frame of its body (m).
 pub(super) type Placed<S> = (<S as Space>::Vector, Box<dyn Surface<S>>);
 
 impl<S: Dimensional> Builder<'_, S> {
     pub(super) fn surface(&self, here: &str, shape: &ShapeSpec) -> Result<Placed<S>, InputError> {
-        let period = self.shapes.periodic.period[0];
-        let null = S::Vector::zero();
-        let bad = |message: String| self.fail(here, message);
+        let centred = |surface| (S::Vector::zero(), surface);
         match shape {
-            ShapeSpec::HalfSpace { normal, at } => {
-                let n = self.vector(&format!("{here}.normal"), normal)?;
-                if n.norm() == 0.0 {
-                    return Err(self.fail(format!("{here}.normal"), "a normal must not be null"));
-                }
-                let at = self.vector(&format!("{here}.at"), at)?;
-                let shown = period.map_or(1.0, |p| 0.5 * p);
-                Ok((
-                    at,
-                    Box::new(HalfSpace {
-                        normal: n * (1.0 / n.norm()),
-                        shown,
-                    }),
-                ))
-            }
-            ShapeSpec::Drum { radius, axis } => {
-                let radius = self.radius(&format!("{here}.radius"), *radius)?;
-                if *axis > 2 {
-                    let message = format!("axis {axis} does not exist; use 0, 1 or 2");
-                    return Err(self.fail(format!("{here}.axis"), message));
-                }
-                Ok((null, Box::new(Drum::new(radius, *axis))))
-            }
+            ShapeSpec::HalfSpace { normal, at } => self.half_space(here, normal, at),
+            ShapeSpec::Drum { radius, axis } => self.drum(here, *radius, *axis).map(centred),
             ShapeSpec::Profile { points, file, side } => {
-                let points = match (points.is_empty(), file) {
-                    (true, Some(file)) => profile_file::read(&self.folder.join(file))
-                        .map_err(|e| self.source.named_at(&format!("{here}.file"), e))?,
-                    (false, None) | (true, None) => points.clone(),
-                    (false, Some(_)) => {
-                        let message = "a profile is given by `points` or by a `file`, not by both";
-                        return Err(self.fail(format!("{here}.file"), message));
-                    }
-                };
-                Ok((null, self.chain(here, points, *side)?))
+                let points = self.profile_points(here, points, file.as_deref())?;
+                self.chain(here, points, *side).map(centred)
             }
             ShapeSpec::StandardProfile {
                 name,
@@ -230,7 +208,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 let points = standard::points(*name, &cut)
                     .map_err(|(field, why)| self.fail(format!("{here}.{field}"), why))?;
                 let side = side.unwrap_or(standard::side(*name));
-                Ok((null, self.chain(here, points, side)?))
+                self.chain(here, points, side).map(centred)
             }
             ShapeSpec::RoughProfile {
                 points,
@@ -241,74 +219,30 @@ impl<S: Dimensional> Builder<'_, S> {
                 height,
                 side,
             } => {
-                let Some(period) = period else {
-                    return Err(bad("a rough profile needs a periodic x".into()));
+                let roughness = Roughness {
+                    points: *points,
+                    rms: *rms,
+                    hurst: *hurst,
+                    longest: *longest,
+                    shortest: *shortest,
                 };
-                let valid = *points >= 3
-                    && *rms >= 0.0
-                    && *shortest > 0.0
-                    && longest.is_none_or(|l| l > 0.0)
-                    && rms.is_finite()
-                    && hurst.is_finite();
-                if !valid {
-                    return Err(bad(
-                        "a rough profile needs at least 3 points, rms >= 0, shortest > 0 and longest > 0".into(),
-                    ));
-                }
-                let longest = longest.unwrap_or(period);
-                self.few_terms(here, *points, period, (longest, *shortest))?;
-                // A seed of its own for each body: rail and wheel must not be mirror images.
-                let salt = here
-                    .bytes()
-                    .fold(17u64, |h, b| h.wrapping_mul(31).wrapping_add(u64::from(b)));
-                let z = profile::rough(
-                    *points,
-                    period,
-                    *rms,
-                    *hurst,
-                    longest,
-                    *shortest,
-                    self.case.seed ^ salt,
-                );
-                let x = |k: usize| period * k as f64 / *points as f64;
-                let mut chain: Vec<(f64, f64)> = z
-                    .iter()
-                    .enumerate()
-                    .map(|(k, z)| (x(k), height + z))
-                    .collect();
-                chain.push((period, chain[0].1));
-                Ok((null, S::profile(chain, *side, Some(period)).map_err(bad)?))
+                self.rough_profile(here, &roughness, *height, *side)
+                    .map(centred)
             }
             ShapeSpec::HeightField {
                 points,
                 spacing,
                 heights,
                 rms,
-            } => {
-                let count = points.0.saturating_mul(points.1);
-                if count > 10_000_000 {
-                    return Err(bad("a height field has at most 10,000,000 points".into()));
-                }
-                let heights = match rms {
-                    Some(rms) => profile::noise(count, *rms, self.case.seed ^ 0x5eed),
-                    None => heights.clone(),
-                };
-                let p = self.shapes.periodic.period;
-                let fits = |axis: usize, n: usize, s: f64| {
-                    p[axis].is_some_and(|p| (n as f64 * s / p - 1.0).abs() < 1e-9)
-                };
-                let periodic = [fits(0, points.0, spacing.0), fits(1, points.1, spacing.1)];
-                Ok((
-                    null,
-                    S::height_field(*points, *spacing, heights, periodic).map_err(bad)?,
-                ))
-            }
+            } => self
+                .height_field(here, *points, *spacing, (heights, *rms))
+                .map(centred),
             ShapeSpec::Mesh { file, scale, at } => {
                 let at = self.vector(&format!("{here}.at"), at)?;
                 let (points, triangles) = self.mesh_file(here, file, *scale)?;
                 let mesh = Mesh::new(points, triangles);
                 let mesh = mesh.map_err(|e| self.fail(format!("{here}.file"), e.to_string()))?;
-                Ok((at, S::mesh(mesh).map_err(bad)?))
+                Ok((at, S::mesh(mesh).map_err(|why| self.fail(here, why))?))
             }
             ShapeSpec::Balls(_)
             | ShapeSpec::Cluster { .. }
@@ -316,8 +250,127 @@ impl<S: Dimensional> Builder<'_, S> {
             | ShapeSpec::Polygon { .. }
             | ShapeSpec::Polyhedron { .. }
             | ShapeSpec::Box { .. }
-            | ShapeSpec::Capsule { .. } => Err(bad("this shape is not a surface".into())),
+            | ShapeSpec::Capsule { .. } => Err(self.fail(here, "this shape is not a surface")),
         }
+    }
+
+    fn half_space(&self, here: &str, normal: &[f64], at: &[f64]) -> Result<Placed<S>, InputError> {
+        let n = self.vector(&format!("{here}.normal"), normal)?;
+        if n.norm() == 0.0 {
+            return Err(self.fail(format!("{here}.normal"), "a normal must not be null"));
+        }
+        let at = self.vector(&format!("{here}.at"), at)?;
+        let half_space = HalfSpace {
+            normal: n * (1.0 / n.norm()),
+            shown: self.shapes.periodic.period[0].map_or(1.0, |p| 0.5 * p),
+        };
+        Ok((at, Box::new(half_space)))
+    }
+
+    fn drum(
+        &self,
+        here: &str,
+        radius: f64,
+        axis: usize,
+    ) -> Result<Box<dyn Surface<S>>, InputError> {
+        let radius = self.radius(&format!("{here}.radius"), radius)?;
+        if axis > 2 {
+            let message = format!("axis {axis} does not exist; use 0, 1 or 2");
+            return Err(self.fail(format!("{here}.axis"), message));
+        }
+        Ok(Box::new(Drum::new(radius, axis)))
+    }
+
+    /// Points of a profile, from the case or from a file.
+    fn profile_points(
+        &self,
+        here: &str,
+        points: &[(f64, f64)],
+        file: Option<&str>,
+    ) -> Result<Vec<(f64, f64)>, InputError> {
+        match (points.is_empty(), file) {
+            (true, Some(file)) => profile_file::read(&self.folder.join(file))
+                .map_err(|e| self.source.named_at(&format!("{here}.file"), e)),
+            (_, None) => Ok(points.to_vec()),
+            (false, Some(_)) => {
+                let message = "a profile is given by `points` or by a `file`, not by both";
+                Err(self.fail(format!("{here}.file"), message))
+            }
+        }
+    }
+
+    /// A random profile over one period.
+    fn rough_profile(
+        &self,
+        here: &str,
+        roughness: &Roughness,
+        height: f64,
+        side: Side,
+    ) -> Result<Box<dyn Surface<S>>, InputError> {
+        let bad = |message: String| self.fail(here, message);
+        let Some(period) = self.shapes.periodic.period[0] else {
+            return Err(bad("a rough profile needs a periodic x".into()));
+        };
+        let Roughness {
+            points,
+            rms,
+            hurst,
+            longest,
+            shortest,
+        } = *roughness;
+        let valid = points >= 3
+            && rms >= 0.0
+            && shortest > 0.0
+            && longest.is_none_or(|l| l > 0.0)
+            && rms.is_finite()
+            && hurst.is_finite();
+        if !valid {
+            return Err(bad(
+                "a rough profile needs at least 3 points, rms >= 0, shortest > 0 and longest > 0"
+                    .into(),
+            ));
+        }
+        let longest = longest.unwrap_or(period);
+        self.few_terms(here, points, period, (longest, shortest))?;
+        // A seed of its own for each body: rail and wheel must not be mirror images.
+        let salt = here
+            .bytes()
+            .fold(17u64, |h, b| h.wrapping_mul(31).wrapping_add(u64::from(b)));
+        let seed = self.case.seed ^ salt;
+        let z = profile::rough(points, period, rms, hurst, longest, shortest, seed);
+        let x = |k: usize| period * k as f64 / points as f64;
+        let mut chain: Vec<(f64, f64)> = z
+            .iter()
+            .enumerate()
+            .map(|(k, z)| (x(k), height + z))
+            .collect();
+        chain.push((period, chain[0].1));
+        S::profile(chain, side, Some(period)).map_err(bad)
+    }
+
+    /// A field of given heights, or of random ones of a standard deviation.
+    fn height_field(
+        &self,
+        here: &str,
+        points: (usize, usize),
+        spacing: (f64, f64),
+        (heights, rms): (&[f64], Option<f64>),
+    ) -> Result<Box<dyn Surface<S>>, InputError> {
+        let bad = |message: String| self.fail(here, message);
+        let count = points.0.saturating_mul(points.1);
+        if count > 10_000_000 {
+            return Err(bad("a height field has at most 10,000,000 points".into()));
+        }
+        let heights = match rms {
+            Some(rms) => profile::noise(count, rms, self.case.seed ^ 0x5eed),
+            None => heights.to_vec(),
+        };
+        let p = self.shapes.periodic.period;
+        let fits = |axis: usize, n: usize, s: f64| {
+            p[axis].is_some_and(|p| (n as f64 * s / p - 1.0).abs() < 1e-9)
+        };
+        let periodic = [fits(0, points.0, spacing.0), fits(1, points.1, spacing.1)];
+        S::height_field(points, spacing, heights, periodic).map_err(bad)
     }
 
     /// Rejects a rough profile that would take long to generate.

@@ -4,7 +4,7 @@ use super::slots::{BySlot, Field, FieldName, with_kinds};
 use crate::material::Given;
 use fretwork_core::laws::{BondRule, Kind};
 use serde::de::{Error as _, MapAccess, Visitor};
-use serde::ser::SerializeStruct;
+use serde::ser::{Error as _, SerializeStruct};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -59,7 +59,7 @@ impl InterfaceSpec {
 
 impl<'de> Deserialize<'de> for InterfaceSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let fields = with_kinds(&OWN, 3);
+        let fields = with_kinds(&OWN, 3).map_err(D::Error::custom)?;
         deserializer.deserialize_struct("InterfaceSpec", fields, SpecVisitor(fields))
     }
 }
@@ -134,6 +134,7 @@ impl<'de> Visitor<'de> for SpecVisitor {
 
 impl Serialize for InterfaceSpec {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        with_kinds(&OWN, 3).map_err(S::Error::custom)?;
         let count = OWN.len() + self.laws.iter().count();
         let mut fields = serializer.serialize_struct("InterfaceSpec", count)?;
         fields.serialize_field("name", &self.name)?;

@@ -43,21 +43,33 @@ impl<T> BySlot<T> {
 }
 
 /// The names of a struct's fields: its own, with the words of all kinds after so many of them.
-pub(crate) fn with_kinds(own: &[&'static str], after: usize) -> &'static [&'static str] {
+///
+/// # Errors
+/// A registered kind has the word of one of its own fields, which could then not be told apart.
+pub(crate) fn with_kinds(
+    own: &[&'static str],
+    after: usize,
+) -> Result<&'static [&'static str], String> {
     static KNOWN: Mutex<BTreeSet<&'static [&'static str]>> = Mutex::new(BTreeSet::new());
     let (before, behind) = own.split_at(after.min(own.len()));
     let kinds = Kind::all();
+    if let Some(kind) = kinds.iter().find(|k| own.contains(&k.word())) {
+        return Err(format!(
+            "the registered kind of law `{kind}` (code {}) has the name of the field `{kind}`; register it with another word",
+            kind.code()
+        ));
+    }
     let words = kinds.iter().map(|k| k.word());
     let names = before.iter().copied().chain(words);
     let names: Vec<&str> = names.chain(behind.iter().copied()).collect();
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(same) = known.get(names.as_slice()) {
-        return same;
+        return Ok(same);
     }
     // serde wants them for ever; there is one list for each struct and set of kinds.
     let names: &'static [&'static str] = names.leak();
     known.insert(names);
-    names
+    Ok(names)
 }
 
 /// A field: one of the struct's own, by its name, or a slot.
@@ -118,7 +130,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for BySlot<T> {
                 Ok(BySlot(slots))
             }
         }
-        let fields = with_kinds(&[], 0);
+        let fields = with_kinds(&[], 0).map_err(D::Error::custom)?;
         deserializer.deserialize_struct("SlotValues", fields, Slots(fields, PhantomData))
     }
 }

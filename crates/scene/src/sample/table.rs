@@ -47,7 +47,6 @@ impl Table {
         optional: &[&str],
         lengths: bool,
     ) -> Result<Self, InputError> {
-        let mut metres: Vec<f64> = Vec::new();
         if text.starts_with('\u{feff}') {
             text.drain(..'\u{feff}'.len_utf8());
         }
@@ -63,6 +62,7 @@ impl Table {
             header: Vec::new(),
             rows: Vec::new(),
         };
+        let mut metres: Vec<f64> = Vec::new();
         let mut record = StringRecord::new();
         loop {
             let more = reader.read_record(&mut record);
@@ -72,49 +72,17 @@ impl Table {
                 break;
             }
             if table.header.is_empty() {
-                let mut header: Vec<String> = record.iter().map(str::to_owned).collect();
-                if lengths {
-                    for name in &mut header {
-                        let (short, metre) = length(name).map_err(|m| {
-                            fail(m).expected(
-                                "`m`, `mm`, `um` or `nm` in brackets, or no unit for metres",
-                            )
-                        })?;
-                        *name = short;
-                        metres.push(metre);
-                    }
-                }
+                let (header, units) = parse_header(&record, lengths, &fail)?;
                 check_header(&header, required, optional).map_err(|(message, near)| {
                     let columns = [required, optional].concat().join(", ");
                     fail(message)
                         .expected(format!("columns of the names {columns}"))
                         .did_you_mean(near.as_deref())
                 })?;
-                table.header = header;
+                (table.header, metres) = (header, units);
                 continue;
             }
-            if record.len() != table.header.len() {
-                return Err(fail(format!(
-                    "this line has {} values and the header {} columns",
-                    record.len(),
-                    table.header.len()
-                )));
-            }
-            let mut row = Vec::with_capacity(record.len());
-            for (word, column) in record.iter().zip(&table.header) {
-                match word.parse().ok().filter(|x: &f64| x.is_finite()) {
-                    Some(x) => {
-                        let metre = metres.get(row.len()).copied().unwrap_or(1.0);
-                        row.push(x * metre);
-                    }
-                    None => {
-                        return Err(fail(format!(
-                            "the value `{word}` of `{column}` is not a number"
-                        ))
-                        .expected("a finite number"));
-                    }
-                }
-            }
+            let row = parse_row(&record, &table.header, &metres, &fail)?;
             table.rows.push((span, row));
         }
         table.text = text;
@@ -150,6 +118,52 @@ impl Table {
         let span = self.rows[row].0.clone();
         InputError::at(&self.name, &self.text, span, message)
     }
+}
+
+/// Names of the columns, and of a table of lengths the unit of each in metres.
+fn parse_header(
+    record: &StringRecord,
+    lengths: bool,
+    fail: &impl Fn(String) -> InputError,
+) -> Result<(Vec<String>, Vec<f64>), InputError> {
+    let mut header: Vec<String> = record.iter().map(str::to_owned).collect();
+    let mut metres = Vec::new();
+    if lengths {
+        for name in &mut header {
+            let (short, metre) = length(name).map_err(|m| {
+                fail(m).expected("`m`, `mm`, `um` or `nm` in brackets, or no unit for metres")
+            })?;
+            *name = short;
+            metres.push(metre);
+        }
+    }
+    Ok((header, metres))
+}
+
+/// The values of a row, multiplied by the units of their columns.
+fn parse_row(
+    record: &StringRecord,
+    header: &[String],
+    metres: &[f64],
+    fail: &impl Fn(String) -> InputError,
+) -> Result<Vec<f64>, InputError> {
+    if record.len() != header.len() {
+        return Err(fail(format!(
+            "this line has {} values and the header {} columns",
+            record.len(),
+            header.len()
+        )));
+    }
+    let mut row = Vec::with_capacity(record.len());
+    for (word, column) in record.iter().zip(header) {
+        let number = word.parse().ok().filter(|x: &f64| x.is_finite());
+        let number = number.ok_or_else(|| {
+            fail(format!("the value `{word}` of `{column}` is not a number"))
+                .expected("a finite number")
+        })?;
+        row.push(number * metres.get(row.len()).copied().unwrap_or(1.0));
+    }
+    Ok(row)
 }
 
 /// Splits a column's name into its name and its unit in metres.

@@ -22,19 +22,19 @@ impl Source {
 
     /// Converts an error from ron, located at the token that caused it.
     pub(super) fn explain(&self, error: &SpannedError) -> InputError {
-        let told = self.tell(error);
+        let error = self.locate_parse_error(error);
         // An unclosed bracket makes the text after it look wrong: report it as well.
         match &self.tree.fault {
-            Some(fault) if fault.message != told.message => {
+            Some(fault) if fault.message != error.message => {
                 let cause = self.error_in(&fault.span, "");
                 let (line, column) = cause.position().unwrap_or_default();
-                told.note(format!("{line}:{column}: {}", fault.message))
+                error.note(format!("{line}:{column}: {}", fault.message))
             }
-            _ => told,
+            _ => error,
         }
     }
 
-    fn tell(&self, error: &SpannedError) -> InputError {
+    fn locate_parse_error(&self, error: &SpannedError) -> InputError {
         let start = self.offset(&error.span.start);
         let end = self.offset(&error.span.end).max(start);
         match &error.code {
@@ -83,7 +83,7 @@ impl Source {
             }
             RonError::InvalidValueForType { expected, found } => {
                 let message = format!("wrong value: found {}", shorten(found));
-                self.error_in(&self.judged(start, end), message)
+                self.error_in(&self.validated_span(start, end), message)
                     .expected(expected.clone())
             }
             RonError::ExpectedDifferentLength { expected, found } => {
@@ -93,7 +93,7 @@ impl Source {
                 self.error_in(&span, format!("wrong length: found {found} {elements}"))
                     .expected(expected.clone())
             }
-            RonError::Message(message) => self.judgement(message, start, end),
+            RonError::Message(message) => self.validation_error(message, start, end),
             RonError::ExpectedDifferentStructName { expected, found } => {
                 let span = self.word(found, end);
                 self.error_in(&span, format!("wrong struct name `{found}`"))
@@ -176,15 +176,15 @@ impl Source {
     }
 
     /// The value that a type has just validated: the one that ends or begins here.
-    fn judged(&self, start: usize, end: usize) -> Range<usize> {
+    fn validated_span(&self, start: usize, end: usize) -> Range<usize> {
         let node = self.tree.ending_at(end).or_else(|| self.tree.around(end));
         node.map_or(start..end, |node| node.head(&self.text))
     }
 
     /// An error reported by a type's validation; its message may continue a sentence that begins with the
     /// field's name.
-    fn judgement(&self, message: &str, start: usize, end: usize) -> InputError {
-        let span = self.judged(start, end);
+    fn validation_error(&self, message: &str, start: usize, end: usize) -> InputError {
+        let span = self.validated_span(start, end);
         let predicate = ["must ", "is ", "has ", "cannot "];
         let follows = predicate.iter().any(|word| message.starts_with(word));
         let node = self.tree.ending_at(end);
@@ -244,7 +244,7 @@ impl Source {
             }
         }
         if let RonError::IntegerOutOfBounds = code {
-            let span = self.judged(start, end);
+            let span = self.validated_span(start, end);
             let written = text[span.clone()].to_owned();
             let negative = written.starts_with('-');
             let error = self.error_in(
@@ -280,7 +280,7 @@ impl Source {
 
     /// Whether a function of time is expected at this value.
     fn is_time_function(&self, node: &Node) -> bool {
-        let way = self.way_to(&node.span);
+        let way = self.steps_to(&node.span);
         // The list of `Axes([...])` adds one level to the path.
         way.iter().rev().take(2).any(|step| match step {
             (Some("Velocity" | "Displacement" | "Force" | "Scaled" | "Axes"), _) => true,

@@ -9,12 +9,12 @@ mod explain;
 mod file;
 mod nearest;
 pub mod numbers;
-mod pieces;
 mod repeated;
 mod respell;
 mod scan;
 mod schema;
 mod set;
+mod source_map;
 mod terminal;
 mod tree;
 
@@ -37,7 +37,7 @@ pub use nearest::nearest;
 pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};
 pub use tree::{Entry, Group, Kind, MAX_DEPTH, Node, Shape, SyntaxError, Tree};
 
-use pieces::SourceMap;
+use source_map::SourceMap;
 
 /// An input text and its origin.
 #[derive(Debug, Clone)]
@@ -48,7 +48,7 @@ pub struct Source {
     text: String,
     tree: Tree,
     sets: Vec<String>,
-    pieces: SourceMap,
+    source_map: SourceMap,
 }
 
 impl Source {
@@ -74,7 +74,7 @@ impl Source {
             path,
             original: text.as_str().into(),
             tree: Tree::of(&text),
-            pieces: SourceMap::whole(text.len()),
+            source_map: SourceMap::whole(text.len()),
             sets: Vec::new(),
             text,
         }
@@ -217,7 +217,7 @@ impl Source {
 
     /// Makes an error at bytes of the text in use, located in the file.
     fn error_in(&self, span: &Range<usize>, message: impl Into<String>) -> InputError {
-        let place = self.pieces.place(span);
+        let place = self.source_map.place(span);
         let error = InputError::within(
             &self.name,
             self.original.clone(),

@@ -56,7 +56,7 @@ impl Source {
             _ => None,
         }?;
         let mut alike = Vec::new();
-        let way = self.way_to(&node.span);
+        let way = self.steps_to(&node.span);
         let root = self.tree.root.as_ref()?;
         self.collect(root, &way, change, &mut alike);
         let added = if change == Change::Constant {
@@ -91,7 +91,7 @@ impl Source {
         })
     }
 
-    pub(super) fn way_to(&self, span: &Range<usize>) -> Vec<(Option<&str>, Step)> {
+    pub(super) fn steps_to(&self, span: &Range<usize>) -> Vec<(Option<&str>, Step)> {
         let mut way = Vec::new();
         let mut node = self.tree.root.as_ref();
         while let Some((current, group)) = node.and_then(|n| Some((n, n.group()?))) {
@@ -161,7 +161,7 @@ impl Source {
         match change {
             Change::Constant => {
                 for (at, text) in [(span.end, ")"), (span.start, CONSTANT)] {
-                    self.pieces.insert(at, text.len());
+                    self.source_map.insert(at, text.len());
                     self.text.insert_str(at, text);
                 }
             }

@@ -165,7 +165,7 @@ impl<'de> Deserializer<'de> for Probe<'_> {
         visitor: V,
     ) -> Result<V::Value, Error> {
         let written = self.node.and_then(|node| {
-            let node = node.peel(self.text);
+            let node = node.unwrap_some(self.text);
             let span = node.group().map_or(Some(&node.span), |g| g.name.as_ref())?;
             Some(&self.text[span.clone()])
         });
@@ -253,7 +253,7 @@ impl<'de> VariantAccess<'de> for Probe<'_> {
             self.note(Level::Tuple);
         }
         let content = self.node.and_then(|node| {
-            let group = node.peel(self.text).group()?;
+            let group = node.unwrap_some(self.text).group()?;
             let own = group.entries.len() == 1 && group.entries[0].key.is_none();
             own.then(|| &group.entries[0].value)
         });

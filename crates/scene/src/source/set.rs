@@ -173,7 +173,7 @@ impl Source {
 
     /// Quotes the value of the `--set` that inserted the text at `offset`, unless it has quotes.
     pub(super) fn quote_set_at(&mut self, offset: usize) -> bool {
-        let Some((set, _)) = self.pieces.place(&(offset..offset)).set else {
+        let Some((set, _)) = self.source_map.place(&(offset..offset)).set else {
             return false;
         };
         let node = self.tree.around(offset);
@@ -181,11 +181,12 @@ impl Source {
             return false;
         };
         let span = node.span.clone();
-        let Some((_, argument)) = self.pieces.place(&span).set else {
+        let Some((_, argument)) = self.source_map.place(&span).set else {
             return false;
         };
         let new = quote(&self.text[span.clone()]);
-        self.pieces.replace(&span, set, &[(new.len(), argument)]);
+        self.source_map
+            .replace(&span, set, &[(new.len(), argument)]);
         self.text.replace_range(span, &new);
         self.tree = Tree::of(&self.text);
         true
@@ -203,7 +204,7 @@ impl Source {
             .filter(|(text, _)| !text.is_empty())
             .map(|(text, range)| (text.len(), (*range).clone()))
             .collect();
-        self.pieces.replace(&span, self.sets.len(), &lengths);
+        self.source_map.replace(&span, self.sets.len(), &lengths);
         self.text.replace_range(span, &new);
         self.tree = Tree::of(&self.text);
         self.sets.push(wanted.argument.to_owned());
@@ -364,10 +365,10 @@ impl Source {
 impl Node {
     /// The value inside nested `Some(...)` and one-tuples.
     fn inner(&self, text: &str) -> &Node {
-        let mut node = self.peel(text);
+        let mut node = self.unwrap_some(text);
         while let Some(group) = node.group() {
             match (group.shape, group.entries.as_slice()) {
-                (Shape::Tuple, [only]) => node = only.value.peel(text),
+                (Shape::Tuple, [only]) => node = only.value.unwrap_some(text),
                 _ => break,
             }
         }
@@ -383,7 +384,7 @@ fn replacement(
 ) -> Result<(Range<usize>, String), InputError> {
     let value = wanted.value();
     let option = value == "None" || value.starts_with("Some(");
-    let held = node.peel(text);
+    let held = node.unwrap_some(text);
     // An existing `Some` around the old value is kept, unless the new value has its own.
     let target = if option { node } else { held };
     let is_text = matches!(held.kind, Kind::Text);

@@ -250,7 +250,7 @@ impl Node {
     }
 
     /// The value inside any number of `Some(...)`.
-    pub fn peel(&self, text: &str) -> &Node {
+    pub fn unwrap_some(&self, text: &str) -> &Node {
         let mut node = self;
         while let Some(group) = node.group().filter(|group| group.is_some(text)) {
             node = &group.entries[0].value;
@@ -284,7 +284,7 @@ impl Node {
     }
 
     pub(super) fn step(&self, text: &str, part: &str) -> Option<&Node> {
-        let mut node = self.peel(text);
+        let mut node = self.unwrap_some(text);
         loop {
             let group = node.group()?;
             let at = |index: usize| group.entries.get(index).map(|entry| &entry.value);
@@ -297,7 +297,7 @@ impl Node {
                 Shape::Tuple => match (index.and_then(at), group.entries.as_slice()) {
                     (Some(found), _) => Some(found),
                     (None, [only]) => {
-                        node = only.value.peel(text);
+                        node = only.value.unwrap_some(text);
                         continue;
                     }
                     _ => None,
@@ -329,7 +329,7 @@ impl Node {
 
     /// Valid components after this value in a path.
     pub(super) fn choices(&self, text: &str) -> Vec<String> {
-        let node = self.peel(text);
+        let node = self.unwrap_some(text);
         let Some(group) = node.group() else {
             return Vec::new();
         };

@@ -20,7 +20,7 @@ pub enum Found {
 #[derive(Debug)]
 pub struct ResumePoint {
     /// Its results file, opened.
-    pub kept: PreviousResults,
+    pub results: PreviousResults,
     /// Number of the frame.
     pub number: u64,
     /// Serialized state.
@@ -50,8 +50,8 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
         path: path.clone(),
         reason,
     };
-    let kept = PreviousResults::open(&path).map_err(unreadable)?;
-    let slots = kept.checkpoints().map_err(unreadable)?;
+    let results = PreviousResults::open(&path).map_err(unreadable)?;
+    let slots = results.checkpoints().map_err(unreadable)?;
     let mut frames: Vec<Frame> = slots.iter().filter_map(|b| Frame::read(b)).collect();
     frames.sort_by_key(|f| f.number);
     let Some(frame) = frames.last() else {
@@ -82,7 +82,7 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
     Ok(match states.next_back() {
         None => Found::Nothing,
         Some(frame) => Found::State(ResumePoint {
-            kept,
+            results,
             number: frame.number,
             state: frame.state,
         }),

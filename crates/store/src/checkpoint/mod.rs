@@ -11,10 +11,10 @@ mod error;
 mod find;
 mod frame;
 mod identity;
-mod keeper;
+mod writer;
 
 pub use error::ResumeError;
 pub use find::{Found, LAST, ResumePoint, find};
 pub use frame::{Frame, Kind};
 pub use identity::Identity;
-pub use keeper::CheckpointWriter;
+pub use writer::CheckpointWriter;

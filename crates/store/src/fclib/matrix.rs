@@ -38,83 +38,41 @@ impl Stored {
             let reason = "the layout requires this matrix";
             return Err(FclibError::missing(source.path(), name, reason));
         }
-        let at = |part: &str| format!("{name}/{part}");
-        let wrong =
-            |part: &str, reason: String| Err(FclibError::wrong(source.path(), &at(part), reason));
         let (rows, columns) = expected;
-        for (part, what, size) in [("m", "rows", rows), ("n", "columns", columns)] {
-            let found = source.integer(&at(part))?;
-            if usize::try_from(found) != Ok(size) {
-                return wrong(
-                    part,
-                    format!("{found} {what}, but the vectors make it {size}"),
-                );
-            }
-        }
-        let nz = source.integer(&at("nz"))?;
-        if nz < -2 {
-            let reason = format!(
-                "is {nz}; it must be -1 (compressed columns), -2 (compressed rows), or the number of triplets"
-            );
-            return wrong("nz", reason);
-        }
-        let nzmax = source.integer(&at("nzmax"))?;
-        if nzmax < nz.max(0) {
-            let reason = format!("is {nzmax}; it must be the number of entries or more");
-            return wrong("nzmax", reason);
-        }
+        let wrong = |(part, reason): (&str, String)| {
+            FclibError::wrong(source.path(), &format!("{name}/{part}"), reason)
+        };
+        let (nz, nzmax) = read_sizes(source, name, expected)?;
         // Some writers omit the arrays if the matrix has no entries.
-        let arrays = ["p", "i", "x"].map(at);
-        let none = nz == 0 || (nz < 0 && nzmax == 0);
-        let there = |k: usize| !none || source.has(&arrays[k]);
-        let integers = |k: usize| {
-            if there(k) {
-                source.integers(&arrays[k])
-            } else {
-                Ok(Vec::new())
-            }
+        let empty = nz == 0 || (nz < 0 && nzmax == 0);
+        let arrays = ["p", "i", "x"].map(|part| format!("{name}/{part}"));
+        let present = |k: usize| !empty || source.has(&arrays[k]);
+        let integers = |k: usize| match present(k) {
+            true => source.integers(&arrays[k]),
+            false => Ok(Vec::new()),
         };
         let (mut p, mut i) = (integers(0)?, integers(1)?);
-        let mut x = if there(2) {
-            source.reals(&arrays[2])?
-        } else {
-            Vec::new()
+        let mut x = match present(2) {
+            true => source.reals(&arrays[2])?,
+            false => Vec::new(),
         };
         let lines = match nz {
             -1 => columns,
             _ => rows,
         };
-        let count = if nz >= 0 {
-            if p.len() < nz as usize {
-                let reason = format!("{} column indices for {nz} triplets", p.len());
-                return wrong("p", reason);
-            }
-            p.truncate(nz as usize);
-            nz as usize
-        } else if none && p.is_empty() {
+        if nz < 0 && empty && p.is_empty() {
             p = vec![0; lines + 1];
-            0
-        } else {
-            if p.len() != lines + 1 {
-                let reason = format!("{} pointers, but {} are expected", p.len(), lines + 1);
-                return wrong("p", reason);
-            }
-            if p[0] != 0 || p.windows(2).any(|w| w[1] < w[0]) {
-                return wrong(
-                    "p",
-                    "the pointers must begin with 0 and never decrease".to_owned(),
-                );
-            }
-            p[lines] as usize
-        };
+        }
+        let count = entries(nz, &mut p, lines).map_err(|reason| wrong(("p", reason)))?;
         for (part, have) in [("i", i.len()), ("x", x.len())] {
             if have < count {
-                return wrong(part, format!("{have} entries, but {count} are expected"));
+                let reason = format!("{have} entries, but {count} are expected");
+                return Err(wrong((part, reason)));
             }
         }
         i.truncate(count);
         x.truncate(count);
-        let stored = Self {
+        Ok(Self {
             name: name.to_owned(),
             rows,
             columns,
@@ -122,8 +80,7 @@ impl Stored {
             p,
             i,
             x,
-        };
-        Ok(stored)
+        })
     }
 
     /// The order of its triplets, if its indices are valid in one order only.
@@ -218,6 +175,57 @@ impl Stored {
         );
         FclibError::wrong(source.path(), &place, reason)
     }
+}
+
+/// Checks the number of rows and columns, and reads the storage code and the room for entries.
+fn read_sizes(
+    source: &Source,
+    name: &str,
+    (rows, columns): (usize, usize),
+) -> Result<(i64, i64), FclibError> {
+    let at = |part: &str| format!("{name}/{part}");
+    let wrong =
+        |part: &str, reason: String| Err(FclibError::wrong(source.path(), &at(part), reason));
+    for (part, what, size) in [("m", "rows", rows), ("n", "columns", columns)] {
+        let found = source.integer(&at(part))?;
+        if usize::try_from(found) != Ok(size) {
+            let reason = format!("{found} {what}, but the vectors make it {size}");
+            return wrong(part, reason);
+        }
+    }
+    let nz = source.integer(&at("nz"))?;
+    if nz < -2 {
+        let reason = format!(
+            "is {nz}; it must be -1 (compressed columns), -2 (compressed rows), or the number of triplets"
+        );
+        return wrong("nz", reason);
+    }
+    let nzmax = source.integer(&at("nzmax"))?;
+    if nzmax < nz.max(0) {
+        let reason = format!("is {nzmax}; it must be the number of entries or more");
+        return wrong("nzmax", reason);
+    }
+    Ok((nz, nzmax))
+}
+
+/// Number of entries, from the storage code and the array `p`: the indices of triplets, which are cut to their number, or the
+/// pointers of compressed lines.
+fn entries(nz: i64, p: &mut Vec<i64>, lines: usize) -> Result<usize, String> {
+    if nz >= 0 {
+        if p.len() < nz as usize {
+            return Err(format!("{} column indices for {nz} triplets", p.len()));
+        }
+        p.truncate(nz as usize);
+        return Ok(nz as usize);
+    }
+    if p.len() != lines + 1 {
+        let count = p.len();
+        return Err(format!("{count} pointers, but {} are expected", lines + 1));
+    }
+    if p[0] != 0 || p.windows(2).any(|w| w[1] < w[0]) {
+        return Err("the pointers must begin with 0 and never decrease".to_owned());
+    }
+    Ok(p[lines] as usize)
 }
 
 /// Determines the order of the triplets of a whole file, since a writer uses one order.

@@ -21,7 +21,7 @@ pub struct Grown {
     /// Whether they are integers.
     pub whole: bool,
     /// Buffered numbers of the last rows, as bits.
-    pub(super) held: Vec<u64>,
+    pub(super) buffered: Vec<u64>,
 }
 
 impl Grown {
@@ -32,7 +32,7 @@ impl Grown {
 
     /// Number of rows in the file.
     pub(super) fn written(&self) -> u64 {
-        self.rows - self.held.len() as u64 / self.width
+        self.rows - self.buffered.len() as u64 / self.width
     }
 
     /// A shape or offset for a number of rows.
@@ -58,7 +58,7 @@ pub(super) struct Bytes {
     /// Capacity in the file, in bytes.
     pub size: u64,
     /// Content that is not in the file yet.
-    pub held: Option<Vec<u8>>,
+    pub buffered: Option<Vec<u8>>,
 }
 
 impl Bytes {

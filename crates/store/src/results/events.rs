@@ -9,7 +9,7 @@ use fretwork_observe::statistics::Column;
 #[derive(Debug, Default)]
 pub(super) struct Events {
     columns: Vec<Growing>,
-    held: Vec<Vec<f64>>,
+    buffered: Vec<Vec<f64>>,
 }
 
 impl Events {
@@ -29,25 +29,25 @@ impl Events {
         });
         Ok(Self {
             columns: grown.collect::<Result<_, _>>()?,
-            held: vec![Vec::new(); columns.len()],
+            buffered: vec![Vec::new(); columns.len()],
         })
     }
 
     /// Buffers an event.
     pub fn hold(&mut self, row: &[f64]) {
-        for (column, value) in self.held.iter_mut().zip(row) {
+        for (column, value) in self.buffered.iter_mut().zip(row) {
             column.push(*value);
         }
     }
 
     /// Number of buffered events.
     pub fn rows(&self) -> usize {
-        self.held.first().map_or(0, Vec::len)
+        self.buffered.first().map_or(0, Vec::len)
     }
 
     /// Writes the buffered events.
     pub fn write(&mut self, store: &mut Store) -> Result<(), ResultsError> {
-        for (column, values) in self.columns.iter().zip(&mut self.held) {
+        for (column, values) in self.columns.iter().zip(&mut self.buffered) {
             store.append(*column, values)?;
             values.clear();
         }

@@ -32,11 +32,11 @@ impl Growth {
 
     /// Writes rows to the file without a sync. Readers see them after the next [`Growth::flush`].
     pub fn write(&mut self, grown: &mut [Grown]) -> hdf5::Result<()> {
-        for dataset in grown.iter_mut().filter(|g| !g.held.is_empty()) {
+        for dataset in grown.iter_mut().filter(|g| !g.buffered.is_empty()) {
             let index = self.index(dataset.name())?;
             let (first, count) = (dataset.written(), dataset.rows - dataset.written());
-            let held = std::mem::take(&mut dataset.held);
-            let bytes: Vec<u8> = held.iter().flat_map(|x| x.to_le_bytes()).collect();
+            let buffered = std::mem::take(&mut dataset.buffered);
+            let bytes: Vec<u8> = buffered.iter().flat_map(|x| x.to_le_bytes()).collect();
             let writer = self.writer()?;
             writer.set_extent(index, &dataset.shape(dataset.rows, dataset.width))?;
             let place = dataset.shape(first, 0);

@@ -16,14 +16,14 @@ mod dataset;
 mod declare;
 mod events;
 mod growth;
-mod kept;
+mod previous;
 mod reader;
 pub mod shapes;
 pub mod state;
 mod store;
 mod view;
 
-pub use kept::PreviousResults;
+pub use previous::PreviousResults;
 pub use reader::Reader;
 pub use store::ResultsError;
 pub use view::{Cells, Part};
@@ -72,17 +72,17 @@ pub struct Header {
 }
 
 /// Limit on buffered rows of statistics, or events, regardless of time.
-const MAX_HELD_ROWS: usize = 8192;
+const MAX_BUFFERED_ROWS: usize = 8192;
 
 /// Minimum time between flushes of a file.
-const PACE: Duration = Duration::from_secs(2);
+const FLUSH_INTERVAL: Duration = Duration::from_secs(2);
 
 /// Minimum time between flushes of a file that grows in place, since each flush syncs once per dataset, some
 /// 200 times. Checkpoints also flush it, usually earlier; in between, rows are written without a sync.
-const PACE_IN_PLACE: Duration = Duration::from_secs(60);
+const FLUSH_INTERVAL_IN_PLACE: Duration = Duration::from_secs(60);
 
-/// Flushes take at most 1/`PART` of the time, however slow the disk.
-const PART: u32 = 20;
+/// Flushes take at most 1/`FLUSH_COST_FACTOR` of the time, however slow the disk.
+const FLUSH_COST_FACTOR: u32 = 20;
 
 /// The two checkpoint slots, written in turn.
 const CHECKPOINTS: [&str; 2] = ["/checkpoints/even", "/checkpoints/odd"];
@@ -92,11 +92,11 @@ const CHECKPOINTS: [&str; 2] = ["/checkpoints/even", "/checkpoints/odd"];
 pub struct Results {
     store: Option<Store>,
     statistics: Vec<Growing>,
-    held: Vec<Vec<f64>>,
+    buffered: Vec<Vec<f64>>,
     broken: Events,
     debris: Events,
     debris_grains: Option<Growing>,
-    held_grains: Vec<f64>,
+    buffered_grains: Vec<f64>,
     views: Vec<View>,
     checkpoints: Vec<Slot>,
     /// Time and duration of the last flush.
@@ -110,50 +110,13 @@ impl Results {
     /// The file cannot be written.
     pub fn create(path: &Path, header: &Header) -> Result<Self, ResultsError> {
         let mut store = Store::create(path)?;
-        for (name, text) in [
-            ("program", "fretwork"),
-            ("version", &header.version),
-            ("case", &header.case_name),
-            (
-                "units",
-                "SI; in two dimensions masses, forces and energies are per metre of depth",
-            ),
-        ] {
-            store.text_attribute("/", name, text)?;
-        }
-        store.integer_attribute("/", "seed", &[header.seed as i64])?;
-        store.integer_attribute("/", "dimension", &[header.dimension as i64])?;
-        let doc = "the case as it was run, changes of the command line applied";
-        store.texts("/case", &[&header.case_text], doc)?;
-        store.group("/materials")?;
-        for (name, text) in &header.materials {
-            store.texts(&format!("/materials/{name}"), &[text], "the material file")?;
-        }
-        store.group("/plugins")?;
-        type Get = fn(&PluginStamp) -> &str;
-        let columns: [(&str, &str, Get); 5] = [
-            ("kind", "kind of the law", |p| &p.kind),
-            ("name", "its name", |p| &p.name),
-            ("version", "its version", |p| &p.version),
-            ("sha256", "SHA-256 of its library", |p| &p.sha256),
-            ("path", "where its library was found", |p| &p.path),
-        ];
-        for (name, doc, get) in columns {
-            let texts: Vec<&str> = header.plugins.iter().map(get).collect();
-            if !texts.is_empty() {
-                store.texts(&format!("/plugins/{name}"), &texts, doc)?;
-            }
-        }
+        write_origin(&mut store, header)?;
         header.shapes.write(&mut store, header.dimension)?;
         store.group("/statistics")?;
         let mut statistics = Vec::new();
         for c in &header.statistics {
-            statistics.push(store.growing::<f64>(
-                &format!("/statistics/{}", c.name),
-                1,
-                (c.unit, c.doc),
-                MANY,
-            )?);
+            let path = format!("/statistics/{}", c.name);
+            statistics.push(store.growing::<f64>(&path, 1, (c.unit, c.doc), MANY)?);
         }
         if !header.broken.is_empty() || !header.debris.is_empty() {
             store.group("/events")?;
@@ -165,23 +128,7 @@ impl Results {
             true => None,
             false => Some(store.growing::<f64>("/events/debris/grains", 1, ("", doc), MANY)?),
         };
-        store.group("/views")?;
-        let bodies = if header.dimension == 2 {
-            Cells::Lines
-        } else {
-            Cells::Polygons
-        };
-        let mut views = Vec::new();
-        let all = header.fields.iter().zip(&header.numbers);
-        let kinds = [
-            ("grains", Cells::Vertices),
-            ("contacts", Cells::Lines),
-            ("bodies", bodies),
-        ];
-        for ((name, cells), (fields, numbers)) in kinds.into_iter().zip(all) {
-            let path = format!("/views/{name}");
-            views.push(View::declare(&mut store, &path, cells, (fields, numbers))?);
-        }
+        let views = declare_views(&mut store, header)?;
         store.link("/VTKHDF", "/views/grains")?;
         store.group("/checkpoints")?;
         let doc = "a checkpoint of the run; see docs/checkpoints.md";
@@ -191,11 +138,11 @@ impl Results {
         Ok(Self {
             store: Some(store),
             statistics,
-            held: vec![Vec::new(); header.statistics.len()],
+            buffered: vec![Vec::new(); header.statistics.len()],
             broken,
             debris,
             debris_grains,
-            held_grains: Vec::new(),
+            buffered_grains: Vec::new(),
             views,
             checkpoints,
             flushed: Some((Instant::now(), Duration::ZERO)),
@@ -218,7 +165,7 @@ impl Results {
     /// # Errors
     /// The file cannot be written.
     pub fn rows(&mut self) -> Result<Vec<(u64, u32)>, ResultsError> {
-        self.write_held()?;
+        self.write_buffered()?;
         let store = self.store.iter();
         Ok(store
             .flat_map(|s| s.grown().iter().map(|g| (g.rows, g.sum)))
@@ -242,9 +189,9 @@ impl Results {
     }
 
     /// Stores a checkpoint to be written at the end of the file, see [`Results::finish`].
-    pub fn keep(&mut self, number: u64, bytes: &[u8]) {
+    pub fn set_final_checkpoint(&mut self, number: u64, bytes: &[u8]) {
         if let Some(store) = &mut self.store {
-            store.keep(self.checkpoints[(number % 2) as usize], bytes);
+            store.buffer_slot(self.checkpoints[(number % 2) as usize], bytes);
         }
     }
 
@@ -253,10 +200,10 @@ impl Results {
     /// # Errors
     /// The file cannot be written.
     pub fn append_statistics(&mut self, row: &[f64]) -> Result<(), ResultsError> {
-        for (column, value) in self.held.iter_mut().zip(row) {
+        for (column, value) in self.buffered.iter_mut().zip(row) {
             column.push(*value);
         }
-        self.write_in_time(self.held.first().map_or(0, Vec::len))
+        self.flush_if_due(self.buffered.first().map_or(0, Vec::len))
     }
 
     /// Appends an event to its table; one of a table that the file does not have is left out.
@@ -267,11 +214,11 @@ impl Results {
         match event.table {
             "broken" => {
                 self.broken.hold(&event.row);
-                self.write_in_time(self.broken.rows())
+                self.flush_if_due(self.broken.rows())
             }
             "debris" => {
                 self.debris.hold(&event.row);
-                self.held_grains.extend_from_slice(&event.grains);
+                self.buffered_grains.extend_from_slice(&event.grains);
                 Ok(())
             }
             _ => Ok(()),
@@ -279,15 +226,17 @@ impl Results {
     }
 
     /// Flushes the file if enough time has passed, or if many rows are buffered.
-    fn write_in_time(&mut self, rows: usize) -> Result<(), ResultsError> {
-        if rows >= MAX_HELD_ROWS {
-            self.write_held()?;
+    fn flush_if_due(&mut self, rows: usize) -> Result<(), ResultsError> {
+        if rows >= MAX_BUFFERED_ROWS {
+            self.write_buffered()?;
         }
-        let pace = match self.store.as_ref().is_some_and(Store::grows_in_place) {
-            true => PACE_IN_PLACE,
-            false => PACE,
+        let interval = match self.store.as_ref().is_some_and(Store::grows_in_place) {
+            true => FLUSH_INTERVAL_IN_PLACE,
+            false => FLUSH_INTERVAL,
         };
-        let rested = |(last, cost): (Instant, Duration)| last.elapsed() >= pace.max(cost * PART);
+        let rested = |(last, cost): (Instant, Duration)| {
+            last.elapsed() >= interval.max(cost * FLUSH_COST_FACTOR)
+        };
         let full = self.store.as_ref().is_some_and(Store::full);
         if full || self.flushed.is_none_or(rested) {
             self.flush()?;
@@ -297,26 +246,26 @@ impl Results {
 
     /// Makes all appended rows visible to readers and syncs them to disk.
     fn flush(&mut self) -> Result<(), ResultsError> {
-        self.write_held()?;
+        self.write_buffered()?;
         let clock = Instant::now();
         let flushed = self.store.as_mut().map_or(Ok(()), Store::flush);
         self.flushed = Some((Instant::now(), clock.elapsed()));
         flushed
     }
 
-    fn write_held(&mut self) -> Result<(), ResultsError> {
+    fn write_buffered(&mut self) -> Result<(), ResultsError> {
         let Some(store) = &mut self.store else {
             return Ok(());
         };
-        for (column, values) in self.statistics.iter().zip(&mut self.held) {
+        for (column, values) in self.statistics.iter().zip(&mut self.buffered) {
             store.append(*column, values)?;
             values.clear();
         }
         self.broken.write(store)?;
         // Grain identities first, so that every readable piece has all its grains.
         if let Some(list) = &self.debris_grains {
-            store.append(*list, &self.held_grains)?;
-            self.held_grains.clear();
+            store.append(*list, &self.buffered_grains)?;
+            self.buffered_grains.clear();
         }
         self.debris.write(store)
     }
@@ -332,7 +281,7 @@ impl Results {
         for (view, part) in self.views.iter_mut().zip(parts) {
             view.append(store, time, part)?;
         }
-        self.write_in_time(0)
+        self.flush_if_due(0)
     }
 
     /// Completes the file and writes its companion files.
@@ -340,7 +289,7 @@ impl Results {
     /// # Errors
     /// A file cannot be written.
     pub fn finish(&mut self, folder: &Path) -> Result<(), ResultsError> {
-        self.write_held()?;
+        self.write_buffered()?;
         let Some(store) = self.store.take() else {
             return Ok(());
         };
@@ -351,4 +300,65 @@ impl Results {
         }
         Ok(())
     }
+}
+
+/// Writes where the results come from: program, case, materials, plugins.
+fn write_origin(store: &mut Store, header: &Header) -> Result<(), ResultsError> {
+    for (name, text) in [
+        ("program", "fretwork"),
+        ("version", &header.version),
+        ("case", &header.case_name),
+        (
+            "units",
+            "SI; in two dimensions masses, forces and energies are per metre of depth",
+        ),
+    ] {
+        store.text_attribute("/", name, text)?;
+    }
+    store.integer_attribute("/", "seed", &[header.seed as i64])?;
+    store.integer_attribute("/", "dimension", &[header.dimension as i64])?;
+    let doc = "the case as it was run, changes of the command line applied";
+    store.texts("/case", &[&header.case_text], doc)?;
+    store.group("/materials")?;
+    for (name, text) in &header.materials {
+        store.texts(&format!("/materials/{name}"), &[text], "the material file")?;
+    }
+    store.group("/plugins")?;
+    type Get = fn(&PluginStamp) -> &str;
+    let columns: [(&str, &str, Get); 5] = [
+        ("kind", "kind of the law", |p| &p.kind),
+        ("name", "its name", |p| &p.name),
+        ("version", "its version", |p| &p.version),
+        ("sha256", "SHA-256 of its library", |p| &p.sha256),
+        ("path", "where its library was found", |p| &p.path),
+    ];
+    for (name, doc, get) in columns {
+        let texts: Vec<&str> = header.plugins.iter().map(get).collect();
+        if !texts.is_empty() {
+            store.texts(&format!("/plugins/{name}"), &texts, doc)?;
+        }
+    }
+    Ok(())
+}
+
+/// Declares the views of grains, contacts and bodies.
+fn declare_views(store: &mut Store, header: &Header) -> Result<Vec<View>, ResultsError> {
+    store.group("/views")?;
+    let bodies = if header.dimension == 2 {
+        Cells::Lines
+    } else {
+        Cells::Polygons
+    };
+    let kinds = [
+        ("grains", Cells::Vertices),
+        ("contacts", Cells::Lines),
+        ("bodies", bodies),
+    ];
+    let columns = header.fields.iter().zip(&header.numbers);
+    let mut views = Vec::new();
+    for ((name, cells), (fields, numbers)) in kinds.into_iter().zip(columns) {
+        let path = format!("/views/{name}");
+        views.push(View::declare(store, &path, cells, (fields, numbers))?);
+    }
+    Ok(views)
 }

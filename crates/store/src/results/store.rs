@@ -20,7 +20,7 @@ const LARGE: u64 = 64 << 20;
 const LARGE_FROM: &str = "FRETWORK_COPY_LIMIT";
 
 /// Limit on the bytes of buffered rows.
-const MAX_HELD: usize = 8 << 20;
+const MAX_BUFFERED: usize = 8 << 20;
 
 /// Error in writing results, or in reading those of a stopped run.
 #[derive(Debug, thiserror::Error)]
@@ -67,7 +67,7 @@ pub struct Store {
     /// Pending attributes of groups: group, name, value.
     attributes: Vec<(String, String, i64)>,
     /// Bytes of buffered rows.
-    held: usize,
+    buffered: usize,
     /// Size from which the file grows in place, in bytes.
     large: u64,
 }
@@ -96,7 +96,7 @@ impl Store {
             grown: Vec::new(),
             slots: Vec::new(),
             attributes: Vec::new(),
-            held: 0,
+            buffered: 0,
             large: std::env::var(LARGE_FROM)
                 .ok()
                 .and_then(|n| n.parse().ok())
@@ -120,7 +120,7 @@ impl Store {
             sum: 0,
             width,
             whole,
-            held: Vec::new(),
+            buffered: Vec::new(),
         });
         Growing {
             place: self.grown.len() - 1,
@@ -182,8 +182,8 @@ impl Store {
 
     /// Stores bytes for a slot, to be written with the next flush or at close. A slot never shrinks: bytes
     /// beyond the new content keep their old values.
-    pub fn keep(&mut self, slot: Slot, bytes: &[u8]) {
-        self.slots[slot.place].held = Some(bytes.to_vec());
+    pub fn buffer_slot(&mut self, slot: Slot, bytes: &[u8]) {
+        self.slots[slot.place].buffered = Some(bytes.to_vec());
     }
 
     /// Overwrites a slot. On return it is synced to disk together with all appended rows. At no moment does the file
@@ -193,7 +193,7 @@ impl Store {
     /// The file cannot be written.
     pub fn write(&mut self, slot: Slot, bytes: &[u8], seal: usize) -> Result<(), ResultsError> {
         let Some(growth) = &mut self.growth else {
-            self.keep(slot, bytes);
+            self.buffer_slot(slot, bytes);
             self.flush()?;
             sync_folder(self.path());
             return Ok(());
@@ -203,7 +203,7 @@ impl Store {
         let written = growth
             .write(&mut self.grown)
             .and_then(|()| growth.write_over(name, &mut state.size, bytes, seal));
-        self.held = 0;
+        self.buffered = 0;
         self.named(written)?;
         self.sync(self.path())
     }
@@ -242,16 +242,18 @@ impl Store {
         dataset.sum = sum.finalize();
         dataset.rows += bytes.len() as u64 / (8 * dataset.width);
         let numbers = bytes.as_chunks::<8>().0.iter();
-        dataset.held.extend(numbers.map(|b| u64::from_le_bytes(*b)));
-        self.held += bytes.len();
-        if self.held < MAX_HELD {
+        dataset
+            .buffered
+            .extend(numbers.map(|b| u64::from_le_bytes(*b)));
+        self.buffered += bytes.len();
+        if self.buffered < MAX_BUFFERED {
             return Ok(());
         }
         match &mut self.growth {
             // Written to the file, but not counted in it before the next flush.
             Some(growth) => {
                 let written = growth.write(&mut self.grown);
-                self.held = 0;
+                self.buffered = 0;
                 self.named(written)
             }
             None if self.name.is_none() => self.flush(),
@@ -267,7 +269,7 @@ impl Store {
 
     /// Whether the buffer is full and should be flushed.
     pub fn full(&self) -> bool {
-        self.held >= MAX_HELD
+        self.buffered >= MAX_BUFFERED
     }
 
     /// Makes appended rows visible to readers and syncs them to disk.
@@ -277,7 +279,7 @@ impl Store {
     pub fn flush(&mut self) -> Result<(), ResultsError> {
         if let Some(growth) = &mut self.growth {
             let written = growth.write(&mut self.grown).and_then(|()| growth.flush());
-            self.held = 0;
+            self.buffered = 0;
             return self.named(written);
         }
         if self.is_settled() {
@@ -324,28 +326,28 @@ impl Store {
 
     /// Whether the buffers are empty.
     fn is_settled(&self) -> bool {
-        let slots = self.slots.iter().all(|s| s.held.is_none());
-        self.held == 0 && slots && self.attributes.is_empty()
+        let slots = self.slots.iter().all(|s| s.buffered.is_none());
+        self.buffered == 0 && slots && self.attributes.is_empty()
     }
 
     /// Marks the buffers as written.
     fn settle(&mut self) {
         for dataset in &mut self.grown {
-            dataset.held = Vec::new();
+            dataset.buffered = Vec::new();
         }
         for slot in &mut self.slots {
-            let length = slot.held.take().map_or(0, |b| b.len() as u64);
+            let length = slot.buffered.take().map_or(0, |b| b.len() as u64);
             slot.size = slot.size.max(length);
         }
         self.attributes.clear();
-        self.held = 0;
+        self.buffered = 0;
     }
 
     fn write_into(&self, file: &H5File) -> hdf5::Result<()> {
         for (path, name, value) in &self.attributes {
             group(file, path)?.set_attr_numeric::<i64>(name, value)?;
         }
-        for grown in self.grown.iter().filter(|g| !g.held.is_empty()) {
+        for grown in self.grown.iter().filter(|g| !g.buffered.is_empty()) {
             let places = |rows: u64, width: u64| -> Vec<usize> {
                 let shape = grown.shape(rows, width);
                 shape.iter().map(|n| *n as usize).collect()
@@ -353,10 +355,14 @@ impl Store {
             let (first, count) = (grown.written(), grown.rows - grown.written());
             let dataset = file.dataset_writer(grown.name())?;
             dataset.extend(&places(grown.rows, grown.width))?;
-            dataset.write_slice(&places(first, 0), &places(count, grown.width), &grown.held)?;
+            dataset.write_slice(
+                &places(first, 0),
+                &places(count, grown.width),
+                &grown.buffered,
+            )?;
         }
         for slot in &self.slots {
-            let Some(bytes) = &slot.held else {
+            let Some(bytes) = &slot.buffered else {
                 continue;
             };
             let dataset = file.dataset_writer(slot.name())?;
@@ -384,11 +390,11 @@ impl Store {
         if let Some(mut growth) = self.growth.take() {
             let rows = growth.write(&mut self.grown);
             let slots = self.slots.iter_mut().try_for_each(|slot| {
-                let held = slot.held.take();
+                let buffered = slot.buffered.take();
                 let write = |b: Vec<u8>| {
                     growth.write_slot(slot.path.trim_start_matches('/'), &mut slot.size, &b)
                 };
-                held.map_or(Ok(()), write)
+                buffered.map_or(Ok(()), write)
             });
             let counts = self
                 .attributes

@@ -87,70 +87,25 @@ impl View {
         store.group(&format!("{path}/Steps"))?;
         store.group(&format!("{path}/Steps/{place}Offsets"))?;
         store.integer_attribute(&format!("{path}/Steps"), "NSteps", &[0])?;
-        let whole = |store: &mut Store, name: &str, width: u64, chunk: usize, doc: &str| {
-            store.growing::<i64>(&format!("{path}/{name}"), width, ("", doc), chunk)
-        };
-        let number_of_points = whole(store, "NumberOfPoints", 1, FEW, "points of each state")?;
-        let mut kinds = Vec::new();
-        for kind in KINDS {
-            store.group(&format!("{path}/{kind}"))?;
-            let mine = KINDS[cells.kind()] == kind;
-            let many = if mine { MANY } else { FEW };
-            let mut one = |name: &str, chunk: usize, doc: &str| {
-                whole(store, &format!("{kind}/{name}"), 1, chunk, doc)
-            };
-            kinds.push([
-                one("NumberOfCells", FEW, "cells of each state")?,
-                one(
-                    "NumberOfConnectivityIds",
-                    FEW,
-                    "corners of all cells of each state",
-                )?,
-                one(
-                    "Offsets",
-                    many,
-                    "where the corners of each cell begin, and where those of the last end",
-                )?,
-                one(
-                    "Connectivity",
-                    many,
-                    "points of the corners, counted in their state from 0",
-                )?,
-            ]);
-        }
-        let all: [[Growing; 4]; 4] = [kinds[0], kinds[1], kinds[2], kinds[3]];
-        let steps = [
-            whole(
-                store,
-                "Steps/PartOffsets",
-                1,
-                FEW,
-                "number of the first part of each state",
-            )?,
-            whole(
-                store,
-                "Steps/NumberOfParts",
-                1,
-                FEW,
-                "parts of each state; 1",
-            )?,
-            whole(
-                store,
-                "Steps/PointOffsets",
-                1,
-                FEW,
-                "first point of each state",
-            )?,
-        ];
+        let doc = "points of each state";
+        let number_of_points = declare_whole(store, path, "NumberOfPoints", (1, FEW), doc)?;
+        let all = declare_cells(store, path, cells)?;
+        let doc = "number of the first part of each state";
+        let parts = declare_whole(store, path, "Steps/PartOffsets", (1, FEW), doc)?;
+        let doc = "parts of each state; 1";
+        let number = declare_whole(store, path, "Steps/NumberOfParts", (1, FEW), doc)?;
+        let doc = "first point of each state";
+        let first_points = declare_whole(store, path, "Steps/PointOffsets", (1, FEW), doc)?;
         let doc = "first cell of each state, by kind: vertices, lines, polygons, strips";
-        let cell_offsets = whole(store, "Steps/CellOffsets", 4, FEW, doc)?;
+        let cell_offsets = declare_whole(store, path, "Steps/CellOffsets", (4, FEW), doc)?;
         let doc = "first corner of each state, by kind: vertices, lines, polygons, strips";
-        let connectivity_offsets = whole(store, "Steps/ConnectivityIdOffsets", 4, FEW, doc)?;
+        let name = "Steps/ConnectivityIdOffsets";
+        let connectivity_offsets = declare_whole(store, path, name, (4, FEW), doc)?;
         let doc = ("s", "time of the state");
         let values = store.growing::<f64>(&format!("{path}/Steps/Values"), 1, doc, FEW)?;
         let doc = ("m", "coordinates");
         let points = store.growing::<f64>(&format!("{path}/Points"), 3, doc, MANY)?;
-        let (mut data, mut whole_data, mut data_offsets) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut data, mut whole, mut data_offsets) = (Vec::new(), Vec::new(), Vec::new());
         for (k, field) in fields.iter().chain(numbers).enumerate() {
             let (name, doc) = (
                 format!("{path}/{place}/{}", field.name),
@@ -159,14 +114,11 @@ impl View {
             if k < fields.len() {
                 data.push(store.growing::<f64>(&name, 1, doc, MANY)?);
             } else {
-                whole_data.push(store.growing::<i64>(&name, 1, doc, MANY)?);
+                whole.push(store.growing::<i64>(&name, 1, doc, MANY)?);
             }
-            data_offsets.push(store.growing::<i64>(
-                &format!("{path}/Steps/{place}Offsets/{}", field.name),
-                1,
-                ("", "first value of each state"),
-                FEW,
-            )?);
+            let name = format!("Steps/{place}Offsets/{}", field.name);
+            let doc = "first value of each state";
+            data_offsets.push(declare_whole(store, path, &name, (1, FEW), doc)?);
         }
         Ok(Self {
             cells,
@@ -176,9 +128,9 @@ impl View {
             connectivity: all.map(|n| n[3]),
             offsets: all.map(|n| n[2]),
             data,
-            whole: whole_data,
+            whole,
             values,
-            steps,
+            steps: [parts, number, first_points],
             cell_offsets,
             connectivity_offsets,
             data_offsets,
@@ -253,4 +205,42 @@ impl View {
     fn steps_path(&self) -> String {
         format!("{}/Steps", self.path)
     }
+}
+
+/// Declares a dataset of integers of a view, with its width and chunk size.
+fn declare_whole(
+    store: &mut Store,
+    path: &str,
+    name: &str,
+    (width, chunk): (u64, usize),
+    doc: &str,
+) -> Result<Growing, ResultsError> {
+    store.growing::<i64>(&format!("{path}/{name}"), width, ("", doc), chunk)
+}
+
+/// Declares all four kinds of cells: numbers of cells and corners, offsets, connectivity of each.
+fn declare_cells(
+    store: &mut Store,
+    path: &str,
+    cells: Cells,
+) -> Result<[[Growing; 4]; 4], ResultsError> {
+    let mut kinds = Vec::new();
+    for kind in KINDS {
+        store.group(&format!("{path}/{kind}"))?;
+        let used = KINDS[cells.kind()] == kind;
+        let many = if used { MANY } else { FEW };
+        let mut column = |name: &str, chunk: usize, doc: &str| {
+            declare_whole(store, path, &format!("{kind}/{name}"), (1, chunk), doc)
+        };
+        let doc = "corners of all cells of each state";
+        let bounds = "where the corners of each cell begin, and where those of the last end";
+        let corners = "points of the corners, counted in their state from 0";
+        kinds.push([
+            column("NumberOfCells", FEW, "cells of each state")?,
+            column("NumberOfConnectivityIds", FEW, doc)?,
+            column("Offsets", many, bounds)?,
+            column("Connectivity", many, corners)?,
+        ]);
+    }
+    Ok([kinds[0], kinds[1], kinds[2], kinds[3]])
 }

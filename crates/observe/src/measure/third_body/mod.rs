@@ -353,7 +353,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
 
     fn verdict(&self, table: &Table) -> Vec<(String, String)> {
         let (flow, cluster, over) = self.flow(table);
-        let said = Regime::of(flow.as_ref(), cluster).said(flow.as_ref(), cluster);
+        let said = Regime::of(flow.as_ref(), cluster).describe(flow.as_ref(), cluster);
         vec![(self.column("regime"), format!("{said}; {over}"))]
     }
 

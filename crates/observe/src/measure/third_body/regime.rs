@@ -107,7 +107,7 @@ impl Regime {
     }
 
     /// Name and criteria as a sentence.
-    pub fn said(self, flow: Option<&Flow>, cluster: f64) -> String {
+    pub fn describe(self, flow: Option<&Flow>, cluster: f64) -> String {
         let Some(f) = flow else {
             return "none: there is no sliding, or fewer than three bins lie in the interior"
                 .to_owned();

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 /// that belong to this state is stored here.
 #[derive(Serialize, Deserialize)]
 #[serde(bound = "")]
-struct Carried<'a, S: Space> {
+struct RunLoopState<'a, S: Space> {
     simulation: Cow<'a, State<S>>,
     /// Number of steps over which states and pictures are distributed.
     spread: u64,
@@ -35,27 +35,27 @@ struct Carried<'a, S: Space> {
 
 impl<S: Dimensional> Recorder<'_, S> {
     /// Writes a checkpoint of the current state to the results.
-    pub(super) fn keep(&mut self) -> Result<(), RunError> {
+    pub(super) fn write_checkpoint(&mut self) -> Result<(), RunError> {
         let begun = Instant::now();
         let state = self.state()?;
-        self.mark(Kind::State, state)?;
+        self.write_frame(Kind::State, state)?;
         // The other files can be regenerated from the results; this one is for the user to read.
         self.table
             .flush()
             .map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
-        self.keeper.written(begun);
+        self.checkpoint_writer.written(begun);
         Ok(())
     }
 
     /// Writes a checkpoint frame into the results.
-    pub(super) fn mark(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
-        let (number, bytes) = self.keeper.frame(kind, state);
+    pub(super) fn write_frame(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
+        let (number, bytes) = self.checkpoint_writer.frame(kind, state);
         Ok(self.results.checkpoint(number, &bytes)?)
     }
 
     /// Moves the results file to its final name, with a first checkpoint in it, and opens the table.
     pub(super) fn publish(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
-        self.mark(kind, state)?;
+        self.write_frame(kind, state)?;
         // Remove the marker of a finished earlier run: from now on this folder holds an unfinished one.
         match std::fs::remove_file(self.out.join(LAST)) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
@@ -67,7 +67,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         let replaces = kind == Kind::Begun && results.exists();
         self.results.publish(&results)?;
         if replaces {
-            clear::clear(&self.out)?;
+            clear::clear(&self.out, &self.observers)?;
         }
         let path = self.out.join("statistics.csv");
         self.table.open(&path).map_err(|e| unwritable(&path, &e))
@@ -75,7 +75,7 @@ impl<S: Dimensional> Recorder<'_, S> {
 
     fn state(&mut self) -> Result<Vec<u8>, RunError> {
         let rows = self.results.rows()?;
-        Ok(encode(&Carried {
+        Ok(encode(&RunLoopState {
             simulation: Cow::Borrowed(&self.simulation.state),
             spread: self.spread,
             rows,
@@ -84,36 +84,36 @@ impl<S: Dimensional> Recorder<'_, S> {
             observers: self.observers.save()?,
             problems: self.problems,
             unconverged: self.unconverged,
-            wall: self.spent.0 + self.clock.elapsed(),
-            processor: self.spent.1 + self.processor.elapsed(),
+            wall: self.elapsed_before_resume.0 + self.clock.elapsed(),
+            processor: self.elapsed_before_resume.1 + self.processor.elapsed(),
         })?)
     }
 
     /// Restores the state of a stopped run, and its rows up to there, in a new file that then replaces the
     /// old one.
-    pub(super) fn take_up(&mut self, stop: ResumePoint) -> Result<(), RunError> {
-        let path = stop.kept.path().to_owned();
+    pub(super) fn restore(&mut self, stop: ResumePoint) -> Result<(), RunError> {
+        let path = stop.results.path().to_owned();
         let refused = |source: CodeError| ResumeError::State {
             path: path.clone(),
             source,
         };
-        let kept: Carried<'_, S> = decode(&stop.state).map_err(refused)?;
-        if !self.simulation.restore(kept.simulation.into_owned()) {
+        let state: RunLoopState<'_, S> = decode(&stop.state).map_err(refused)?;
+        if !self.simulation.restore(state.simulation.into_owned()) {
             return Err(refused(CodeError::other("bodies or laws")).into());
         }
-        let processes = self.simulation.restore_processes(&kept.processes);
+        let processes = self.simulation.restore_processes(&state.processes);
         processes.map_err(refused)?;
-        self.observers.restore(&kept.observers).map_err(refused)?;
-        self.set_end(kept.spread, &path)?;
-        self.camera.paint(kept.paints.into_owned());
+        self.observers.restore(&state.observers).map_err(refused)?;
+        self.set_end(state.spread, &path)?;
+        self.camera.paint(state.paints.into_owned());
         self.resumed_at = self.simulation.state.steps;
-        (self.problems, self.unconverged) = (kept.problems, kept.unconverged);
-        self.spent = (kept.wall, kept.processor);
-        self.results.take_over(&stop.kept, &kept.rows)?;
+        (self.problems, self.unconverged) = (state.problems, state.unconverged);
+        self.elapsed_before_resume = (state.wall, state.processor);
+        self.results.take_over(&stop.results, &state.rows)?;
         let names: Vec<String> = self.table.columns.iter().map(|c| c.name.clone()).collect();
         // The columns of the statistics are declared first.
-        let rows = kept.rows.first().map_or(0, |r| r.0 as usize);
-        let columns = stop.kept.statistics(&names, rows)?;
+        let rows = state.rows.first().map_or(0, |r| r.0 as usize);
+        let columns = stop.results.statistics(&names, rows)?;
         self.publish(Kind::State, stop.state)?;
         let written = self.table.extend(&columns);
         written.map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;

@@ -52,7 +52,7 @@ impl SourceMap {
 
     /// Location of a range of the text in use.
     pub fn place(&self, span: &Range<usize>) -> Place {
-        let (start, first) = self.piece_at(span.start);
+        let (start, first) = self.range_at(span.start);
         match &first.from {
             Origin::Set {
                 set,
@@ -78,7 +78,7 @@ impl SourceMap {
             },
             Origin::File(file) => {
                 let begin = file + (span.start - start).min(first.length);
-                let (last_start, last) = self.piece_at(span.end.saturating_sub(1).max(span.start));
+                let (last_start, last) = self.range_at(span.end.saturating_sub(1).max(span.start));
                 let end = match &last.from {
                     Origin::File(file) => {
                         file + (span.end - last_start.min(span.end)).min(last.length)
@@ -95,7 +95,7 @@ impl SourceMap {
     }
 
     /// The range that contains a byte (the last one, for the end of the text), and its start.
-    fn piece_at(&self, at: usize) -> (usize, &SourceRange) {
+    fn range_at(&self, at: usize) -> (usize, &SourceRange) {
         let mut start = 0;
         for piece in &self.0 {
             if at < start + piece.length {

@@ -1,6 +1,6 @@
 //! Output of `fretwork solve`.
 
-use super::{Choice, SolveArgs, Solved};
+use super::{SolveArgs, Solved, SolverChoice};
 use crate::record::fclib::Problem;
 use crate::solve::local::scale_free;
 use crate::solve::local::solver::Outcome;
@@ -45,6 +45,33 @@ pub fn text(solved: &Solved, args: &SolveArgs) -> String {
         ),
     );
     line("solver", best.method.clone());
+    errors(best, args, &mut line);
+    if let Some(worst) = best.worst {
+        line("worst", format!("contact {worst} (counted from 0)"));
+    }
+    line("iterations", best.iterations.to_string());
+    line(
+        "time",
+        format!("{} (the solve alone)", seconds(best.seconds)),
+    );
+    line("reading", seconds(solved.read_seconds));
+    if kind(problem) != "local" {
+        line(
+            "reduction",
+            format!("{} to the local form", seconds(solved.reduce_seconds)),
+        );
+    }
+    if args.solver == SolverChoice::All {
+        out += &table(&solved.outcomes);
+    }
+    if let Some(path) = &args.out {
+        let _ = writeln!(out, "  solution in {}", path.display());
+    }
+    out.trim_end().to_owned()
+}
+
+/// Both errors, with what they mean.
+fn errors(best: &Outcome, args: &SolveArgs, line: &mut impl FnMut(&str, String)) {
     let verdict = if best.converged {
         "solved"
     } else {
@@ -78,28 +105,6 @@ pub fn text(solved: &Solved, args: &SolveArgs) -> String {
     if let Some(warning) = warning(best, args) {
         line("WARNING", warning);
     }
-    if let Some(worst) = best.worst {
-        line("worst", format!("contact {worst} (counted from 0)"));
-    }
-    line("iterations", best.iterations.to_string());
-    line(
-        "time",
-        format!("{} (the solve alone)", seconds(best.seconds)),
-    );
-    line("reading", seconds(solved.read_seconds));
-    if kind(problem) != "local" {
-        line(
-            "reduction",
-            format!("{} to the local form", seconds(solved.reduce_seconds)),
-        );
-    }
-    if args.solver == Choice::All {
-        out += &table(&solved.outcomes);
-    }
-    if let Some(path) = &args.out {
-        let _ = writeln!(out, "  solution in {}", path.display());
-    }
-    out.trim_end().to_owned()
 }
 
 /// Warning if the FCLIB error passes and the scale-free one does not.
@@ -166,7 +171,7 @@ pub fn json(solved: &Solved, args: &SolveArgs) -> Value {
     });
     if let (Value::Object(into), Value::Object(more)) = (&mut value, more) {
         into.extend(more);
-        if args.solver == Choice::All {
+        if args.solver == SolverChoice::All {
             let all = solved.outcomes.iter().map(|o| outcome(o, args)).collect();
             into.insert("solvers".to_owned(), Value::Array(all));
         }

@@ -73,13 +73,13 @@ fn wanted_by_default(name: &str) -> bool {
 ///
 /// # Errors
 /// A name is unknown, a preset does not apply to the case, or the case rejects a key or value.
-pub fn knobs(
+pub fn parameters(
     loaded: &Loaded,
     methods: &[Method],
     names: &[String],
     vary: &[String],
 ) -> Result<Vec<StudyParameter>, TradeError> {
-    let mut knobs = Vec::new();
+    let mut parameters = Vec::new();
     for name in names {
         if name == "precision" {
             let text = "--knob precision: Fretwork computes and stores in f64 only, so precision cannot be varied";
@@ -89,24 +89,27 @@ pub fn knobs(
             return Err(unknown(name));
         }
         match preset(loaded, methods, name) {
-            Ok(knob) => knobs.push(knob),
+            Ok(parameter) => parameters.push(parameter),
             Err(why) => return Err(TradeError::Usage(format!("--knob {name}: {why}"))),
         }
     }
     if names.is_empty() && vary.is_empty() {
         let usual = PRESETS.iter().filter(|p| wanted_by_default(p.0));
-        knobs.extend(usual.filter_map(|p| preset(loaded, methods, p.0).ok()));
+        parameters.extend(usual.filter_map(|p| preset(loaded, methods, p.0).ok()));
     }
     for argument in vary {
-        knobs.push(listed(loaded, argument)?);
+        parameters.push(listed(loaded, argument)?);
     }
-    for (k, knob) in knobs.iter().enumerate() {
-        if knobs[..k].iter().any(|other| other.name == knob.name) {
-            let text = format!("`{}` is varied twice; name it once", knob.name);
+    for (k, parameter) in parameters.iter().enumerate() {
+        if parameters[..k]
+            .iter()
+            .any(|other| other.name == parameter.name)
+        {
+            let text = format!("`{}` is varied twice; name it once", parameter.name);
             return Err(TradeError::Usage(text));
         }
     }
-    Ok(knobs)
+    Ok(parameters)
 }
 
 fn unknown(name: &str) -> TradeError {
@@ -142,77 +145,22 @@ fn number(key: &str, x: f64) -> Level {
 /// Levels of a preset, or the reason why it does not apply to the case.
 fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<StudyParameter, String> {
     let case = &loaded.case;
-    let knob = |sense, levels: Vec<Level>, own: usize, reference: usize| {
-        Ok(StudyParameter {
-            name: name.to_owned(),
-            sense,
-            levels,
-            own,
-            reference,
-        })
-    };
-    match name {
+    let (levels, own) = match name {
         "step" => {
             let factors = [0.25, 0.5, 1.0, 2.0, 4.0];
-            Ok(steps(case, factors.map(|f| f * case.time.step).into()))
+            return Ok(steps(case, factors.map(|f| f * case.time.step).into()));
         }
         "tolerance" => {
             let own = case.solver.tolerance;
             let all = [-2, -1, 0, 1, 2].map(|k| own * 10f64.powi(k));
             // Iterations cannot reach a tolerance below rounding; at 0.1 the problem is hardly solved.
             let useful = |t: &f64| (1e-13..=0.1).contains(t);
-            Ok(tolerances(case, all.into_iter().filter(useful).collect()))
+            let useful = all.into_iter().filter(useful).collect();
+            return Ok(tolerances(case, useful));
         }
-        "solver" => {
-            let own = methods.iter().position(|m| *m == case.solver.method);
-            if methods.len() < 2 {
-                return Err("only one solver supports this case".into());
-            }
-            let level = |m: &Method| Level {
-                label: m.name().to_owned(),
-                sets: vec![format!("solver.method={m:?}")],
-                number: None,
-            };
-            let own = own.unwrap_or(0);
-            knob(Sense::Choice, methods.iter().map(level).collect(), own, own)
-        }
-        "test_every" => {
-            if !sweeps(case.solver.method) {
-                return Err(format!(
-                    "the solver of the case, {}, does not iterate in sweeps between tests",
-                    case.solver.method.name()
-                ));
-            }
-            let own = case.solver.test_every.max(1);
-            let mut all = vec![(own / 4).max(1), own, own.saturating_mul(4)];
-            all.dedup();
-            let place = all.iter().position(|n| *n == own).unwrap_or(0);
-            let level = |n: &u32| number("solver.test_every", f64::from(*n));
-            knob(Sense::Choice, all.iter().map(level).collect(), place, place)
-        }
-        "coupling" => {
-            if !case
-                .interfaces
-                .iter()
-                .any(|i| i.law(Kind::DAMAGE).is_some())
-            {
-                return Err("the case has no damage law, whose coupling could be varied".into());
-            }
-            let own = usize::from(case.coupling != Coupling::Explicit);
-            let level = |label: &str, set: &str| Level {
-                label: label.into(),
-                sets: vec![set.into()],
-                number: None,
-            };
-            let levels = vec![
-                level("explicit", "coupling=Explicit"),
-                level(
-                    "implicit",
-                    "coupling=Implicit(tolerance: 1e-6, max_iterations: 50)",
-                ),
-            ];
-            knob(Sense::Choice, levels, own, own)
-        }
+        "solver" => solver_levels(case, methods)?,
+        "test_every" => test_every_levels(case)?,
+        "coupling" => coupling_levels(case)?,
         "correction" => {
             let own = case.solver.correction;
             let mut all = vec![0.0, 0.05, 0.2, own];
@@ -220,20 +168,73 @@ fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<StudyParame
             all.dedup();
             let place = all.iter().position(|c| *c == own).unwrap_or(0);
             let level = |c: &f64| number("solver.correction", *c);
-            knob(Sense::Choice, all.iter().map(level).collect(), place, place)
+            (all.iter().map(level).collect(), place)
         }
         _ => {
             let (k, count) = counted(case).ok_or(
                 "no lattice or deposit says how many grains there are; vary the size of the sample with --vary",
             )?;
             let key = format!("grains.{k}.count");
-            let levels = vec![
-                number(&key, count as f64),
-                number(&key, count.div_ceil(2) as f64),
-            ];
-            knob(Sense::Choice, levels, 0, 0)
+            let counts = [count, count.div_ceil(2)];
+            (counts.map(|n| number(&key, n as f64)).into(), 0)
         }
+    };
+    Ok(StudyParameter {
+        name: name.to_owned(),
+        sense: Sense::Choice,
+        levels,
+        own,
+        reference: own,
+    })
+}
+
+/// Levels of a choice, and the index of the case's own.
+type Choices = (Vec<Level>, usize);
+
+fn solver_levels(case: &Case, methods: &[Method]) -> Result<Choices, String> {
+    if methods.len() < 2 {
+        return Err("only one solver supports this case".into());
     }
+    let level = |m: &Method| Level {
+        label: m.name().to_owned(),
+        sets: vec![format!("solver.method={m:?}")],
+        number: None,
+    };
+    let own = methods.iter().position(|m| *m == case.solver.method);
+    Ok((methods.iter().map(level).collect(), own.unwrap_or(0)))
+}
+
+fn test_every_levels(case: &Case) -> Result<Choices, String> {
+    if !sweeps(case.solver.method) {
+        return Err(format!(
+            "the solver of the case, {}, does not iterate in sweeps between tests",
+            case.solver.method.name()
+        ));
+    }
+    let own = case.solver.test_every.max(1);
+    let mut all = vec![(own / 4).max(1), own, own.saturating_mul(4)];
+    all.dedup();
+    let place = all.iter().position(|n| *n == own).unwrap_or(0);
+    let level = |n: &u32| number("solver.test_every", f64::from(*n));
+    Ok((all.iter().map(level).collect(), place))
+}
+
+fn coupling_levels(case: &Case) -> Result<Choices, String> {
+    let mut interfaces = case.interfaces.iter();
+    if !interfaces.any(|i| i.law(Kind::DAMAGE).is_some()) {
+        return Err("the case has no damage law, whose coupling could be varied".into());
+    }
+    let level = |label: &str, set: &str| Level {
+        label: label.into(),
+        sets: vec![set.into()],
+        number: None,
+    };
+    let implicit = "coupling=Implicit(tolerance: 1e-6, max_iterations: 50)";
+    let levels = vec![
+        level("explicit", "coupling=Explicit"),
+        level("implicit", implicit),
+    ];
+    Ok((levels, usize::from(case.coupling != Coupling::Explicit)))
 }
 
 /// Whether a solver iterates in sweeps, to which `test_every` applies.

@@ -19,7 +19,7 @@ pub struct PreviousResults {
 
 impl std::fmt::Debug for PreviousResults {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Kept")
+        f.debug_struct("PreviousResults")
             .field("path", &self.path)
             .finish_non_exhaustive()
     }
