@@ -16,6 +16,7 @@ pub struct NodalSystem<S: Space> {
     pub nodes: Vec<u32>,
     /// Their velocities without contacts (m/s).
     pub free: Vec<S::Vector>,
+    /// Column by column: the responses of all nodes to an impulse on one are read in a row in each update of a contact.
     compliance: Arc<[S::Matrix]>,
     pub(super) velocity: Vec<S::Vector>,
 }
@@ -25,39 +26,45 @@ impl<S: Space> NodalSystem<S> {
     pub fn new(nodes: Vec<u32>, free: Vec<S::Vector>, compliance: Vec<S::Matrix>) -> Self {
         debug_assert!(nodes.is_sorted() && free.len() == nodes.len());
         debug_assert!(compliance.len() == nodes.len() * nodes.len());
+        let count = nodes.len();
+        let column = |b: usize| compliance.iter().skip(b).step_by(count).copied();
+        let columns = (0..count).flat_map(column).collect();
         Self {
             velocity: free.clone(),
             nodes,
             free,
-            compliance: compliance.into(),
+            compliance: columns,
         }
     }
 
-    /// Compliance P_a A^-1 P_b^T between its nodes, row by row (1/kg).
-    pub fn compliance(&self) -> &[S::Matrix] {
-        &self.compliance
+    /// Compliance P_a A^-1 P_b^T of two of its nodes, by their places in the list (1/kg).
+    pub(super) fn block(&self, a: u32, b: u32) -> &S::Matrix {
+        &self.column(b as usize)[a as usize]
     }
 
-    /// The block of two of its nodes, by their places in the list.
-    pub(super) fn block(&self, a: u32, b: u32) -> &S::Matrix {
-        &self.compliance[a as usize * self.nodes.len() + b as usize]
+    /// The blocks of all nodes for an impulse on one.
+    fn column(&self, at: usize) -> &[S::Matrix] {
+        let count = self.nodes.len();
+        &self.compliance[at * count..(at + 1) * count]
     }
 
     /// The velocities that impulses on its nodes give.
     pub(super) fn response(&self, impulses: &[S::Vector]) -> Vec<S::Vector> {
-        let rows = self.compliance.chunks(self.nodes.len().max(1));
-        let of = |row: &[S::Matrix]| {
-            let terms = row.iter().zip(impulses);
-            terms.fold(S::Vector::zero(), |sum, (block, p)| sum + block.apply(p))
-        };
-        rows.map(of).collect()
+        let mut velocities = vec![S::Vector::zero(); impulses.len()];
+        for (at, p) in impulses.iter().enumerate() {
+            for (velocity, block) in velocities.iter_mut().zip(self.column(at)) {
+                *velocity += block.apply(p);
+            }
+        }
+        velocities
     }
 
     /// Adds what an impulse on a node does to the velocities of all.
     pub(super) fn push(&mut self, at: u32, impulse: &S::Vector) {
         let count = self.nodes.len();
-        for (a, velocity) in self.velocity.iter_mut().enumerate() {
-            *velocity += self.compliance[a * count + at as usize].apply(impulse);
+        let column = &self.compliance[at as usize * count..][..count];
+        for (velocity, block) in self.velocity.iter_mut().zip(column) {
+            *velocity += block.apply(impulse);
         }
     }
 }
@@ -302,6 +309,7 @@ mod tests {
             let ids = (0..count as u32).collect();
             problem.push_system(NodalSystem::new(ids, free, blocks.collect()));
         }
+        assert_eq!(problem.systems[0].block(0, 2).entry(0, 1), -0.04);
         let side = |system: u32, terms: &[(u32, f64)]| Side::Nodes {
             system,
             nodes: Nodes::sum(terms).unwrap(),
