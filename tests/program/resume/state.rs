@@ -170,6 +170,45 @@ fn what_phases_have_set_goes_on() {
     assert_eq!(mu(&resumed), mu(&whole));
     assert!(mu(&resumed) != first && mu(&resumed)[0] == 0.1);
     assert!(!scene(&[r#"phases=[(name: "only")]"#]).restore(decode(&bytes).unwrap()));
+    let before = all(&whole);
+    assert!(
+        !whole.restore(decode(&bytes).unwrap()),
+        "a scene that has stepped"
+    );
+    assert!(all(&whole) == before);
+}
+
+/// Bonds formed and broken in the last step are read by processes before the next one: they are part of the state.
+#[test]
+fn bonds_of_the_last_step_are_part_of_the_state() {
+    let scene = || match built("verification/healing", &[]) {
+        Scene::Dim2(built) => built.simulation,
+        Scene::Dim3(_) => panic!("a plane case"),
+    };
+    let mut whole = scene();
+    let formed = (0..2000).any(|_| {
+        steps(&mut whole, 1);
+        !whole.state.network.bonds_formed.is_empty()
+    });
+    assert!(formed, "no bond formed");
+    let mut resumed = scene();
+    assert!(resumed.restore(decode(&all(&whole)).unwrap()));
+    assert_eq!(
+        resumed.state.network.bonds_formed,
+        whole.state.network.bonds_formed
+    );
+    let broken = (0..4000).any(|_| {
+        steps(&mut whole, 1);
+        !whole.state.network.bond_breaks.is_empty()
+    });
+    assert!(broken, "no bond broke");
+    let mut resumed = scene();
+    assert!(resumed.restore(decode(&all(&whole)).unwrap()));
+    let keys = |s: &fretwork::step::Simulation<_>| {
+        let breaks = &s.state.network.bond_breaks;
+        breaks.iter().map(|b| b.key).collect::<Vec<_>>()
+    };
+    assert_eq!(keys(&resumed), keys(&whole));
 }
 
 /// The motion of the walls in the last step is a part of the state: what is read between a resumption and the next step is what

@@ -128,7 +128,8 @@ impl Nodes {
 /// 2. [`advance`](Self::advance) by (1 - theta) h, to q_m, where contacts are found,
 /// 3. [`linearise`](Self::linearise) and [`free_velocity`](Self::free_velocity), once,
 /// 4. [`contact_nodes`](Self::contact_nodes) once for each contact, then [`compliance`](Self::compliance) of the nodes that are
-///    touched; both again only where the step is solved again with more contacts,
+///    touched; where the step is solved again with more contacts, nodes of all contacts again, and the compliance if other
+///    nodes are touched,
 /// 5. [`set_velocity`](Self::set_velocity) with v+; several times where a step is solved again,
 /// 6. `advance` by theta h, and [`work`](Self::work) at the end.
 ///

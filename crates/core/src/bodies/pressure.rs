@@ -29,6 +29,11 @@ pub struct Servo {
 }
 
 impl Servo {
+    /// Index among the driven bodies.
+    pub(crate) fn place(&self) -> usize {
+        self.place
+    }
+
     /// Returns the servos of one degree of freedom, one for each stage that is a pressure.
     ///
     /// # Errors

@@ -5,7 +5,8 @@ use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
 /// A broken bond.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Break<S: Space> {
     /// Key of its contact at that time.
     pub key: Key,

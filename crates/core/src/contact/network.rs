@@ -148,7 +148,7 @@ impl<S: Space> Contact<S> {
     }
 }
 
-/// All contacts, sorted by key, and their neighbour list. Data of the last step only are not part of
+/// All contacts, sorted by key, and their neighbour list. What contacts dissipated and wore in the last step is not part of
 /// checkpoints.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
@@ -167,10 +167,8 @@ pub struct Network<S: Space> {
     /// Energy of bonds broken because their contact moved out of range (J); collected by the energy ledger.
     pub torn_energy: f64,
     /// Bonds broken in the last step, in order.
-    #[serde(skip)]
     pub bond_breaks: Vec<Break<S>>,
     /// Bodies (candidate, antagonist) and interface law of the bonds formed in the last step.
-    #[serde(skip)]
     pub bonds_formed: Vec<([u32; 2], u16)>,
     /// Energy dissipated at the contacts in the last step, in their order; `None` unless an output requests
     /// it.
@@ -217,6 +215,16 @@ impl<S: Space> Network<S> {
     pub(crate) fn names_bodies_below(&self, bodies: usize) -> bool {
         let below = |b: &u32| (*b as usize) < bodies;
         self.contacts.iter().all(|c| c.bodies.iter().all(below))
+    }
+
+    /// Returns whether its contacts and their memory are those of interfaces with these numbers of internal variables.
+    pub(crate) fn fits_interfaces(&self, mut variables: impl Iterator<Item = usize>) -> bool {
+        let memory_fits = |m: &Memory<S>| variables.next() == Some(m.variables.len());
+        let in_range = |c: &Contact<S>| {
+            let memory = self.memory.get(c.law as usize);
+            memory.is_some_and(|m| c.memory().is_none_or(|slot| slot < m.bonds.len()))
+        };
+        self.memory.iter().all(memory_fits) && self.contacts.iter().all(in_range)
     }
 
     /// Forces a rebuild of the neighbour list in the next step, because the set of possible pairs has

@@ -15,6 +15,7 @@ type Motions<S> = Vec<(<S as Space>::Vector, <S as Space>::Spin)>;
 impl<S: Space> Simulation<S> {
     /// See [`Simulation::step`].
     pub(super) fn one_step(&mut self) -> Result<StepReport, StepError> {
+        self.refuse_projection_of_systems()?;
         self.between_steps()?;
         self.check_worn_through()?;
         let mut report = StepReport::default();
@@ -59,6 +60,8 @@ impl<S: Space> Simulation<S> {
         network.bonds_formed.clear();
         if self.options.record_dissipation {
             network.dissipation.get_or_insert_default();
+        } else {
+            network.dissipation = None;
         }
         if !self.state.scars.is_empty() {
             network.losses.get_or_insert_default();
@@ -79,7 +82,7 @@ impl<S: Space> Simulation<S> {
         self.begin_systems((1.0 - theta) * h);
         let (network, bodies) = (&mut self.state.network, &self.state.bodies);
         detect(network, &self.shapes, bodies, &self.table, time, h);
-        report.projected = self.project()?;
+        report.projected = self.project();
         start.take_rotated_spins(&self.state.bodies);
         self.state.started = start.of_driven(&self.state.bodies);
         let (bodies, gravity) = (&self.state.bodies, &self.state.gravity);

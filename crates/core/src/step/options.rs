@@ -37,6 +37,6 @@ pub struct Options {
     /// Penetration, as a fraction of the smaller body's length, beyond which bodies are moved apart; 0 for
     /// never. See [`super::projection`].
     pub projection: f64,
-    /// Whether each step leaves in [`crate::contact::Network::spent`] what every contact dissipated.
+    /// Whether each step leaves in [`crate::contact::Network::dissipation`] what every contact dissipated.
     pub record_dissipation: bool,
 }

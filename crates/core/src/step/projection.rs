@@ -42,24 +42,25 @@ const TOLERANCE: f64 = 1e-3;
 const MAX_SWEEPS: u32 = 5000;
 
 impl<S: Space> Simulation<S> {
-    /// Removes penetrations if one exceeds the bound, repeats detection, and books the work.
+    /// Refuses projection in a scene with dynamical systems, which it would leave where they are.
     ///
     /// # Errors
-    /// There are dynamical systems: they would stay where they are, and their overlaps with them.
-    pub(super) fn project(&mut self) -> Result<Option<Projected>, StepError> {
-        if self.options.projection <= 0.0 {
-            return Ok(None);
-        }
+    /// Projection is on and there are systems.
+    pub(super) fn refuse_projection_of_systems(&self) -> Result<(), StepError> {
         match self.state.systems.get(0) {
-            None => Ok(self.project_bodies()),
-            Some(system) => Err(StepError::SystemProjection {
+            Some(system) if self.options.projection > 0.0 => Err(StepError::SystemProjection {
                 step: self.state.steps + 1,
                 system: system.name().to_owned(),
             }),
+            _ => Ok(()),
         }
     }
 
-    fn project_bodies(&mut self) -> Option<Projected> {
+    /// Removes penetrations if one exceeds the bound, repeats detection, and books the work.
+    pub(super) fn project(&mut self) -> Option<Projected> {
+        if self.options.projection <= 0.0 {
+            return None;
+        }
         let before = self.deepest_overlap();
         if before <= self.options.projection {
             return None;

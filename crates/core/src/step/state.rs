@@ -11,7 +11,7 @@ use crate::bodies::{Bodies, Systems};
 use crate::contact::Network;
 use crate::energy::Energy;
 use crate::geometry::space::{Space, VectorLike};
-use crate::laws::LawHistory;
+use crate::laws::{Interface, LawHistory};
 use crate::solve::AutoState;
 use crate::wear::{Scar, WornThrough};
 use serde::{Deserialize, Serialize};
@@ -115,17 +115,20 @@ impl<S: Space> State<S> {
             && self.started.len() == built.started.len()
             && self.scars.len() == built.scars.len()
             && self.network.memory.len() == built.network.memory.len()
-            && self.control.fits(&scene.phases, &scene.laws)
+            && (self.network).fits_interfaces(scene.laws.iter().map(Interface::variables))
+            && (self.control).fits(&scene.phases, &scene.laws, self.bodies.driven.len())
     }
 }
 
 impl<S: Space> Simulation<S> {
-    /// Goes on from a state of a simulation that was built from the same case; this one has not stepped. The next step gives
-    /// the same bits as in the simulation that the state is of. Returns false, and changes nothing, if the state belongs to
-    /// another case.
+    /// Continues from the state of a simulation that was built from the same case. The next step gives the same bits as in that
+    /// simulation. Returns false, and changes nothing, if the state belongs to another case, or if this simulation has made steps
+    /// already: build it again then, since laws and surfaces follow the state. A decoded state is restored here, not assigned to
+    /// `state`, which would leave dynamical systems without their data.
     #[must_use]
     pub fn restore(&mut self, mut state: State<S>) -> bool {
-        if !state.fits(self) || !state.systems.take_up(&self.state.systems) {
+        if self.state.steps > 0 || !state.fits(self) || !state.systems.take_up(&self.state.systems)
+        {
             return false;
         }
         self.state = state;

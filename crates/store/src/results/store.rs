@@ -6,7 +6,7 @@
 //! copies would be too expensive, and the file grows in place by HDF5's single-writer protocol
 //! ([`super::growth`]), whose flush syncs once per dataset.
 //!
-//! In this module only this file, `dataset.rs`, `growth.rs`, `reader.rs` and `kept.rs` use the HDF5 crate.
+//! In this module only this file, `declare.rs`, `growth.rs`, `previous.rs` and `reader.rs` use the HDF5 crate.
 
 use super::dataset::{Bytes, Growing, Grown, Number, Slot};
 use super::declare::group;

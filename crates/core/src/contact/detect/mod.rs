@@ -210,8 +210,8 @@ fn drop_contact<S: Space>(network: &mut Network<S>, k: usize) {
         let contact = contact.clone();
         network.broken_pairs.insert(contact.key.pair());
         network.record_break(&contact);
-        if let Some(told) = network.bond_breaks.last_mut() {
-            told.torn = torn;
+        if let Some(record) = network.bond_breaks.last_mut() {
+            record.torn = torn;
         }
     }
     network.memory[law].release(slot as u32);

@@ -175,6 +175,12 @@ impl<S: Space> BlockContact<S> {
         }
     }
 
+    /// Whether a bond may act on it, which is a second block of unknowns in W.
+    pub fn is_bonded(&self) -> bool {
+        let e = &self.elastic;
+        e.b_n > 0.0 || e.b_t > 0.0 || e.a_n != 0.0 || e.a_t != S::Tangent::zero()
+    }
+
     /// What is unilateral and what rubs, at a free velocity of the block.
     fn terms(&self) -> Terms<S> {
         Terms {

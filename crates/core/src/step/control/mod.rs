@@ -62,10 +62,12 @@ impl<S: Space> Control<S> {
     }
 
     /// Whether it is at one of these phases, and sets no other parameters than these laws have.
-    pub(super) fn fits(&self, phases: &[Phase<S>], laws: &[Interface]) -> bool {
+    pub(super) fn fits(&self, phases: &[Phase<S>], laws: &[Interface], driven: usize) -> bool {
         let parameters = |law: &Interface| law.contact().parameters.len();
         let mut set = self.contact_parameters.keys();
         self.phase() <= phases.len()
+            && self.servos.iter().all(|s| s.place() < driven)
+            && self.gates.iter().all(|(place, _)| *place < driven)
             && set.all(|(law, at)| laws.get(*law).is_some_and(|law| *at < parameters(law)))
     }
 
