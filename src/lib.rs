@@ -6,15 +6,25 @@
 //! ```text
 //!  case.ron ─► scene ─► bodies with shapes ─┐
 //!                                           ▼
-//!       ┌───────────────────────────────► detect ─► contacts (memory: bonds, damage, variables of laws)
-//!       │                                           │
-//!       │                                  laws: prepare (batches, plugin ABI)
-//!       │                                           ▼
-//!       │                                  solve: standard local form ─► impulses, velocities
-//!       │                                           │
-//!       │                                  laws: commit (damage, breaks, wear, dissipation)
-//!       │                                           ▼
-//!       └─ advance ◄─ wear ◄─ processes ◄─ energy ledger ─► observers, results, pictures
+//!       ┌───────────────────────────► detect ─► contacts (memory: bonds, damage, variables of laws)
+//!       │                                   ▼
+//!       │                             laws: prepare (batches, plugin ABI)
+//!       │                                   ▼
+//!       │                             solve: standard local form ─► impulses, velocities
+//!       │                                   ▼
+//!       │                             laws: commit (damage, breaks, wear, dissipation)
+//!       │                                   ▼
+//!       │                             energy ledger
+//!       │                                   ▼
+//!       │                             advance the bodies to the end of the step
+//!       │                                   ▼
+//!       │                             processes after the move: wear lowers surfaces
+//!       │                                   ▼
+//!       │                             observers look at the step
+//!       │                                   ▼
+//!       │                             processes between steps: cycle jumps, circuit
+//!       │                                   ▼
+//!       └──────────────────────────── results, pictures
 //! ```
 //!
 //! | word in the picture | module |

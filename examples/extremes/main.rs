@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example extremes` runs all of them and prints the table of `docs/dev/extremes.md`;
 //! arguments select rows by the beginning of their names (`-- mass step`). Each row declares its expected
-//! result: `held` if its criterion is met; `told` if a limit is reached and the program reports the cause and
+//! result: `met` if its criterion is met; `reported` if a limit is reached and the program reports the cause and
 //! what to change; anything else is `BROKEN` and gives exit code 1. `-- quick` omits rows that take minutes.
 
 mod bench;
@@ -27,12 +27,12 @@ fn main() {
                 let verdict = match &row.verdict {
                     Verdict::Held(words) => {
                         held += 1;
-                        let but = if words.is_empty() { "" } else { "; told: " };
-                        format!("held{but}{words}")
+                        let but = if words.is_empty() { "" } else { "; reported: " };
+                        format!("met{but}{words}")
                     }
                     Verdict::Told(words) => {
                         told += 1;
-                        format!("told: {words}")
+                        format!("reported: {words}")
                     }
                     Verdict::Broken(words) => {
                         broken += 1;
@@ -46,7 +46,7 @@ fn main() {
             }
         }
     }
-    println!("\n{held} rows held, {told} were told.");
+    println!("\n{held} rows are met, {told} are reported.");
     if broken > 0 {
         eprintln!("{broken} rows are broken");
         std::process::exit(1);

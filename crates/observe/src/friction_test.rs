@@ -39,7 +39,7 @@ struct Followed<S: Space> {
 }
 
 impl<S: Space> FrictionTest<S> {
-    /// A test of a body with these cycles, from the state at hand on.
+    /// A test of a body with these cycles, from the current state on.
     pub fn new(body: RubbedBody, cycles: Cycles, s: &Simulation<S>) -> Self {
         Self {
             body,
@@ -127,7 +127,7 @@ impl<S: Space> Observer<S> for FrictionTest<S> {
             after,
             damage_ratio(s),
         );
-        // The cycle at hand may stand for others, see the process of cycle jumps.
+        // The current cycle may stand for others, see the process of cycle jumps.
         let number = state.cycles.number(s.state.time);
         if let Some(cycle) = state.cycles.list.last_mut().filter(|c| c.cycle == number) {
             cycle.jumped = s.state.network.cycle_multiplier as u32 - 1;

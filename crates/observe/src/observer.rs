@@ -1,5 +1,5 @@
-//! Observers: everything that looks at a run. The run loop has a list of them and knows none by name; one that a user of the
-//! library writes is one more.
+//! Observers: everything that reads the state of a run without changing it. The run loop keeps a list of them, independent of
+//! their types; users of the library can add their own.
 //!
 //! After a step: `before_step` ─► the step ─► `after_step` ─► the processes act between the steps ─► `after_processes` ─► where
 //! a row of the statistics is due `sample`. At the end: `files`, `figures` and `summarise`.
@@ -43,7 +43,7 @@ pub trait Observer<S: Space>: Debug + Send {
     /// Its name: tells the observers of a run apart in checkpoints.
     fn name(&self) -> String;
 
-    /// The state at hand is the one from which deformations count: that of the start, and again that at which the second phase
+    /// The current state is the one from which deformations count: that of the start, and again that at which the second phase
     /// begins.
     fn begin(&mut self, _: &Simulation<S>) {}
 
@@ -94,12 +94,12 @@ pub trait Observer<S: Space>: Debug + Send {
         None
     }
 
-    /// What stands under the pictures of a moment.
+    /// Lines of text below the pictures of the current step.
     fn caption(&self, _: &Simulation<S>) -> Vec<String> {
         Vec::new()
     }
 
-    /// Its pictures of a moment; of two with the same name the first observer's is drawn.
+    /// Its pictures of the current step; of two with the same name the first observer's is drawn.
     fn pictures(&self, _: &Simulation<S>) -> Vec<Picture> {
         Vec::new()
     }
@@ -143,12 +143,12 @@ pub trait Observer<S: Space>: Debug + Send {
     /// ends within a step, and for what is said of a run as it goes.
     fn summarise_so_far(&self, _: &mut Summary) {}
 
-    /// Files that it leaves at the end of a run whatever the case says of figures.
+    /// Files that it writes at the end of a run, independently of `output.figures`.
     fn files(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
         Vec::new()
     }
 
-    /// Files and figures that it leaves at the end of a run where the case asks for figures (`output.figures`).
+    /// Files and figures that it writes at the end of a run if the case asks for figures (`output.figures`).
     fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
         Vec::new()
     }
@@ -168,10 +168,10 @@ pub trait Observer<S: Space>: Debug + Send {
         Ok(Vec::new())
     }
 
-    /// Goes on from what [`Observer::save`] gave.
+    /// Restores the state that [`Observer::save`] returned.
     ///
     /// # Errors
-    /// The bytes are of something else.
+    /// The bytes do not encode its state.
     fn restore(&mut self, _: &[u8]) -> Result<(), CodeError> {
         Ok(())
     }

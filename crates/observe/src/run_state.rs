@@ -223,7 +223,7 @@ impl<S: Space> Observer<S> for RunState {
     }
 }
 
-/// Observes the phases of a run: the number of the one at hand.
+/// Observes the phases of a run: the number of the current one.
 #[derive(Clone, Copy, Debug)]
 pub struct Phases {
     any: bool,

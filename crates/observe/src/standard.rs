@@ -16,7 +16,7 @@ use fretwork_core::step::Simulation;
 use fretwork_scene::case::Case;
 use fretwork_scene::processes;
 
-/// The observers of a run of a case, from the state at hand of its simulation on, in the order of the columns of the
+/// The observers of a run of a case, from the current state of its simulation on, in the order of the columns of the
 /// statistics. `density` is that of the first bodies (kg/m^3).
 pub fn observers<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> {
     let test = processes::FrictionTest::of(case, s);

@@ -94,7 +94,7 @@ pub struct LocalShear<S: Space> {
 }
 
 impl<S: Space> LocalShear<S> {
-    /// Counts from the state at hand, with the shear that is drawn darkest.
+    /// Counts from the current state, with the shear that is drawn darkest.
     pub fn new(s: &Simulation<S>, top: f64) -> Self {
         Self {
             strain: Strain::new(s),

@@ -4,7 +4,7 @@
 //! use fretwork_plot::{Axis, Chart, DrawChart, Series};
 //!
 //! let points = (0..=50).map(|k| 1e-3 * f64::from(k)).map(|t| (t, 0.5 * 9.81 * t * t)).collect();
-//! let chart = Chart::new("A fall", Axis::new("time t", "s"), Axis::new("way s", "m"))
+//! let chart = Chart::new("Free fall", Axis::new("time t", "s"), Axis::new("distance s", "m"))
 //!     .with(Series::new("s = g t²/2", points));
 //! let path = std::env::temp_dir().join(format!("fretwork-fall-{}.png", std::process::id()));
 //! chart.draw(&path)?;

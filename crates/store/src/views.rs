@@ -181,7 +181,7 @@ pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
     [8 * (3 + 2 + grain), 8 * (6 + 3 + contact)]
 }
 
-/// Appends the state at hand of a case, with the values of the observers' columns of the grains, in the order of the header.
+/// Appends the current state of a case, with the values of the observers' columns of the grains, in the order of the header.
 ///
 /// # Errors
 /// The file cannot be written.

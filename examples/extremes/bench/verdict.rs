@@ -78,12 +78,12 @@ impl Verdict {
                 "not all is finite, or the ledger does not close; {words}"
             ))
         } else if met != expected.met {
-            let what = if met { "held" } else { "missed" };
+            let what = if met { "met" } else { "missed" };
             Self::Broken(format!(
                 "the criterion is {what}, against what is expected; {words}"
             ))
         } else if !causes.eq(expected.told) {
-            Self::Broken(format!("expected to be told {:?}; {words}", expected.told))
+            Self::Broken(format!("expected reports {:?}; {words}", expected.told))
         } else if let Some((cause, _)) = told.iter().find(|(c, w)| !w.contains(c.proposal())) {
             Self::Broken(format!("{cause:?} proposes nothing; {words}"))
         } else if met {

@@ -1,4 +1,5 @@
-//! Removal of an older run's files that the new run would not overwrite; no other files are removed.
+//! Removal of an older run's files that the new run would not overwrite: pictures, problems and figures of the program, and the
+//! pictures and files that observers name (`picture_names`, `file_names`). No other files are removed.
 
 use super::frame::PICTURES;
 use super::{RunError, unwritable};

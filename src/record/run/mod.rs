@@ -374,7 +374,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         Ok(self.results.append_statistics(&row)?)
     }
 
-    /// Writes the state at hand.
+    /// Writes the current state.
     fn record_state(&mut self) -> Result<(), RunError> {
         let values = self.observers.grain_values(&self.simulation);
         let (results, s) = (&mut self.results, &self.simulation);

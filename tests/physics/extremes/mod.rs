@@ -1,4 +1,4 @@
-//! The extremes that take seconds: each ends as it declares, held, or told with its cause and what to change. The whole
+//! The extremes that take seconds: each ends as it declares, met, or reported with its cause and what to change. The whole
 //! table: `cargo run --release --example extremes`.
 
 #[path = "../../../examples/extremes/bench/mod.rs"]
@@ -18,8 +18,8 @@ fn each_extreme_ends_as_it_declares() {
                 rows += 1;
                 let name = format!("{}, {dimension}D, {}: {}", group.name, row.value, row.found);
                 match row.verdict {
-                    Verdict::Held(words) => println!("held: {name}; {words}"),
-                    Verdict::Told(words) => println!("told: {name}; {words}"),
+                    Verdict::Held(words) => println!("met: {name}; {words}"),
+                    Verdict::Told(words) => println!("reported: {name}; {words}"),
                     Verdict::Broken(words) => panic!("{name} ({}); {words}", group.criterion),
                 }
             }
@@ -39,7 +39,7 @@ fn another_cause_than_the_declared_one_is_broken() {
     let late = (Cause::Late, late);
     assert!(!broken(HELD, true, true, &[]));
     assert!(!broken(told(&[Cause::Late]), false, true, &[late]));
-    // Missed and silent; told where it should have held; held where a limit was declared; another cause; one more.
+    // Missed and silent; reported where it should be met; met where a limit was declared; another cause; one more.
     assert!(broken(HELD, false, true, &[]));
     assert!(broken(told(&[Cause::Late]), false, true, &[]));
     assert!(broken(HELD, false, true, &[late]));

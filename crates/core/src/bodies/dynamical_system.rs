@@ -158,13 +158,13 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// Number of generalised velocities.
     fn freedoms(&self) -> usize;
 
-    /// The generalised velocities at hand.
+    /// The current generalised velocities.
     fn velocity(&self) -> &[f64];
 
     /// Takes generalised velocities, as many as [`Self::freedoms`].
     fn set_velocity(&mut self, velocity: &[f64]);
 
-    /// Begins a step at the state at hand, which it remembers as its start. A linear system forms A here where h or theta have
+    /// Begins a step at the current state, which it remembers as its start. A linear system forms A here where h or theta have
     /// changed.
     fn begin_step(&mut self, step: &SystemStep<S>);
 
@@ -173,7 +173,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// needs A; [`Self::begin_step`] has remembered the start. Here nothing: A is that of a linear system.
     fn linearise(&mut self, _step: &SystemStep<S>) {}
 
-    /// Moves the coordinates by a time (s) at the velocities at hand.
+    /// Moves the coordinates by a time (s) at the current velocities.
     fn advance(&mut self, time: f64);
 
     /// v_free, the velocities at the end of the step without contacts; those of an imposed motion as they are imposed.

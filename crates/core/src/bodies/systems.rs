@@ -185,7 +185,7 @@ impl<S: Space> Systems<S> {
         entry.system.contact_nodes(contactor, arm)
     }
 
-    /// Velocity of a point of a system at the velocities at hand (m/s).
+    /// Velocity of a point of a system at the current velocities (m/s).
     pub fn velocity_at(&self, system: usize, nodes: &Nodes) -> S::Vector {
         let system = &self.entries[system].system;
         nodes

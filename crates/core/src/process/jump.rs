@@ -110,7 +110,7 @@ pub struct Jumps {
 }
 
 impl Jumps {
-    /// Begins at the state at hand: with the cycles of the test, the body that is rubbed, and the steps of a cycle and of the whole
+    /// Begins at the current state: with the cycles of the test, the body that is rubbed, and the steps of a cycle and of the whole
     /// run.
     pub fn new<S: Space>(
         spec: JumpSpec,
@@ -151,17 +151,17 @@ impl Jumps {
         }
     }
 
-    /// Cycles so far, those jumped over included, when a share of the cycle at hand is done.
+    /// Cycles so far, those jumped over included, when a share of the current cycle is done.
     fn cycles(&self, share: f64) -> f64 {
         f64::from(self.represented) + share * f64::from(self.cycle_multiplier)
     }
 
-    /// Cycles that were jumped over, when a share of the cycle at hand is done.
+    /// Cycles that were jumped over, when a share of the current cycle is done.
     fn jumped(&self, share: f64) -> f64 {
         f64::from(self.represented - self.computed) + share * f64::from(self.cycle_multiplier - 1)
     }
 
-    /// Cycles so far, those jumped over and the part of the one at hand included, at a time (s).
+    /// Cycles so far, those jumped over and the part of the current one included, at a time (s).
     pub fn cycles_at(&self, time: f64) -> f64 {
         self.cycles(self.open_share(time))
     }
@@ -176,7 +176,7 @@ impl Jumps {
         self.clock.period.unwrap_or(0.0)
     }
 
-    /// Share of the cycle at hand that is done. A cycle that was closed with the last step is among those represented.
+    /// Share of the current cycle that is done. A cycle that was closed with the last step is among those represented.
     fn open_share(&self, time: f64) -> f64 {
         let share = self.clock.share(time);
         if share < 1.0 { share } else { 0.0 }

@@ -1,4 +1,4 @@
-//! Surfaces follow their wear.
+//! Recession: worn surfaces are lowered by the depth of their scars.
 //!
 //! What a step wears off is put on the scars with the closest points of its contacts, at q_m. The surfaces fall after the step's
 //! motion: the gap that opens is met by the next step's detection. Nobody does work in between: a load that
@@ -24,7 +24,7 @@ impl<S: Space> Process<S> for Recession {
         Ok(())
     }
 
-    /// Lowers the surfaces whose turn it is.
+    /// Lowers the surfaces that are due in this step, at the interval `every` of their scars.
     fn after_move(&mut self, s: &mut Simulation<S>, _: &StepReport) -> Result<(), ProcessError> {
         let steps = s.state.steps;
         // A step that wears for many is followed at once: the contact must find what protrudes.

@@ -74,7 +74,7 @@ pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) 
             Place::System(r) => problem.of_systems[r as usize].terms(),
             _ => &[],
         };
-        if !carries || !(form.bodies.iter().any(moves) || !terms.is_empty()) {
+        if !carries || (!form.bodies.iter().any(moves) && terms.is_empty()) {
             continue;
         }
         for term in terms {

@@ -149,7 +149,7 @@ impl<S: Space> Problem<S> {
         work
     }
 
-    /// Relative velocities at the contacts with systems, at the velocities at hand (m/s).
+    /// Relative velocities at the contacts with systems, at the current velocities (m/s).
     #[cfg(test)]
     fn relative_velocities_of_systems(&self) -> Vec<S::Vector> {
         let rows = self.of_systems.iter();

@@ -2,15 +2,18 @@
 //!
 //! ```text
 //!       ┌──────► detect (broad, narrow) ─► contact network (memory: bonds, D, slip)
-//!       │                                        │
+//!       │                                        ▼
 //!       │                         laws: prepare (batch, plugin ABI)
 //!       │                                        ▼
 //!       │                         solve: standard local form ─► p
-//!       │                                        │
+//!       │                                        ▼
 //!       │                         laws: commit (damage, broken, wear, dissipation)
-//!       └── advance bodies ◄─────────────────────┤
-//!                                                ▼
-//!                               energy ledger, processes ─► observers and files, in the layers above
+//!       │                                        ▼
+//!       │                         energy ledger
+//!       │                                        ▼
+//!       │                         advance bodies, processes after the move
+//!       │                                        ▼
+//!       └──────────────── observers and files (layers above), processes between steps
 //! ```
 mod answers;
 mod columns;

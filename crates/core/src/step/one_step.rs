@@ -30,7 +30,7 @@ impl<S: Space> Simulation<S> {
         Ok(report)
     }
 
-    /// The step at hand, as laws are told of it.
+    /// Data of the current step for the laws.
     fn step_info(&self) -> StepInfo {
         let Scheme { h, theta } = self.options.scheme;
         StepInfo {

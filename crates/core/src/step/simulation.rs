@@ -72,7 +72,7 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// The options of the solver, with the tolerance that the phase at hand has set, if any.
+    /// The options of the solver, with the tolerance that the current phase has set, if any.
     pub fn solver_in_force(&self) -> solve::Options {
         let given = self.options.solver;
         solve::Options {

@@ -9,7 +9,7 @@ use crate::geometry::shape::Ball;
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::{NodalSystem, Side};
 
-/// What the contacts of a step act on where dynamical systems take part, found once for the contacts at hand.
+/// What the contacts of a step act on where dynamical systems take part, found once for the current contacts.
 #[derive(Debug)]
 pub(super) struct SystemContacts<S: Space> {
     /// The sides of each contact, in the network's order; none where both are rigid, and empty without systems.
@@ -57,7 +57,7 @@ impl<S: Space> Simulation<S> {
         index
     }
 
-    /// The step at hand, as systems are told of it.
+    /// The current step, as systems are told of it.
     fn system_step(&self) -> SystemStep<S> {
         SystemStep {
             time: self.state.time,
@@ -134,7 +134,7 @@ impl<S: Space> Simulation<S> {
         self.workspace.systems.nodal.clear();
     }
 
-    /// Finds what the contacts at hand act on. Asked again in the same step, for more contacts, it keeps the compliance of
+    /// Finds what the current contacts act on. Asked again in the same step, for more contacts, it keeps the compliance of
     /// systems of which no other nodes are touched.
     pub(super) fn find_system_contacts(&mut self) {
         if self.state.systems.is_empty() {
@@ -209,7 +209,7 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
-    /// Velocity of a side of a contact, at the velocities at hand (m/s).
+    /// Velocity of a side of a contact, at the current velocities (m/s).
     fn velocity_of_side(&self, side: &Side<S>) -> S::Vector {
         match side {
             Side::Nodes { system, nodes } => {

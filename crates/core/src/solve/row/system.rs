@@ -102,7 +102,7 @@ impl<S: Space> SystemRow<S> {
         }
     }
 
-    /// Solves the contact for the velocities at hand, goes `relaxation` times as far, and updates them.
+    /// Solves the contact for the current velocities, goes `relaxation` times as far, and updates them.
     pub fn update(
         &mut self,
         solver_bodies: &mut [SolverBody<S>],
@@ -170,7 +170,7 @@ impl<S: Space> SystemRow<S> {
             .solution(&self.relative(solver_bodies, systems))
     }
 
-    /// What the free velocities, which are those at hand, give to measure against.
+    /// Scales of the error from the free velocities, which are the current ones.
     pub fn scale(&self, solver_bodies: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> Scale {
         let u = self.relative(solver_bodies, systems);
         let speed = u.dot(&u);

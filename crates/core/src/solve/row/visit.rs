@@ -203,7 +203,7 @@ pub fn noise(own: f64, friction: f64) -> f64 {
     own * (1.0 + mu * mu) * ROUNDINGS
 }
 
-/// Sums what the free velocities, which are those at hand, give to measure against.
+/// Sums the scales of the error from the free velocities, which are the current ones.
 #[derive(Default)]
 pub struct Free {
     free: [f64; APART],
