@@ -60,8 +60,6 @@ impl<S: Space> Simulation<S> {
         network.bonds_formed.clear();
         if self.options.record_dissipation {
             network.dissipation.get_or_insert_default();
-        } else {
-            network.dissipation = None;
         }
         if !self.state.scars.is_empty() {
             network.losses.get_or_insert_default();

@@ -37,6 +37,7 @@ pub struct Options {
     /// Penetration, as a fraction of the smaller body's length, beyond which bodies are moved apart; 0 for
     /// never. See [`super::projection`].
     pub projection: f64,
-    /// Whether each step leaves in [`crate::contact::Network::dissipation`] what every contact dissipated.
+    /// Whether steps write into [`crate::contact::Network::dissipation`] what every contact dissipated. Once there, the record is
+    /// continued until it is set to `None`.
     pub record_dissipation: bool,
 }

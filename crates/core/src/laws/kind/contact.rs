@@ -1,5 +1,5 @@
 //! Contact laws: friction, restitution, rolling. The host takes their answers into the local form of each contact, see
-//! [`super::super::prepare`].
+//! `laws::prepare`.
 
 use super::{
     CertificateSpec, CheckSet, Domain, KindSpec, Output, commit_state, fits_always, templates,
