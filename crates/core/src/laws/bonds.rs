@@ -52,19 +52,15 @@ impl LawEvaluator {
         info: &StepInfo,
         totals: &mut Totals,
     ) -> Result<(), LawError> {
-        let mut bond_step = std::mem::take(&mut self.bond_step);
-        self.update_openings(
+        let mut bond_step = self.open_bonds(
             index,
             law,
+            history,
             network,
             contact_steps,
             moment_steps,
             info,
-            &mut bond_step,
-        );
-        self.gather_after(law, network, contact_steps, info);
-        self.update_damage(law, history, info, &mut bond_step)
-            .map_err(|e| self.locate(law, network, e))?;
+        )?;
         for (at, damage) in self.members.iter().zip(&mut bond_step.damage) {
             let bond = network.bond(&network.contacts[*at]);
             let (before, used) = bond.map_or((0.0, 0.0), |b| (b.damage, b.step_damage));
@@ -103,19 +99,15 @@ impl LawEvaluator {
                 continue;
             }
             let before = network.memory[index].clone_openings();
-            let mut bond_step = std::mem::take(&mut self.bond_step);
-            self.update_openings(
+            let bond_step = self.open_bonds(
                 index,
                 law,
+                history,
                 network,
                 contact_steps,
                 moment_steps,
                 info,
-                &mut bond_step,
-            );
-            self.gather_after(law, network, contact_steps, info);
-            self.update_damage(law, history, info, &mut bond_step)
-                .map_err(|e| self.locate(law, network, e))?;
+            )?;
             network.memory[index].restore_openings(before);
             for (k, at) in self.members.iter().enumerate() {
                 let Some(slot) = network.contacts[*at].memory() else {
@@ -139,6 +131,34 @@ impl LawEvaluator {
         for (index, slot, damage) in self.trials.drain(..) {
             network.memory[index].bonds[slot].step_damage = damage;
         }
+    }
+
+    /// Updates the openings of the bonds of one interface with the motion of the step, and computes the damage that they give.
+    #[allow(clippy::too_many_arguments)]
+    fn open_bonds<S: Space>(
+        &mut self,
+        index: usize,
+        law: &Interface,
+        history: &mut LawHistory,
+        network: &mut Network<S>,
+        contact_steps: &[ContactStep<S>],
+        moment_steps: &[MomentStep<S>],
+        info: &StepInfo,
+    ) -> Result<BondStep, LawError> {
+        let mut bond_step = std::mem::take(&mut self.bond_step);
+        self.update_openings(
+            index,
+            law,
+            network,
+            contact_steps,
+            moment_steps,
+            info,
+            &mut bond_step,
+        );
+        self.gather_after(law, network, contact_steps, info);
+        self.update_damage(law, history, info, &mut bond_step)
+            .map_err(|e| self.locate(law, network, e))?;
+        Ok(bond_step)
     }
 
     /// Computes damage at the current openings as the maximum of the cohesion law's and the damage law's
