@@ -162,11 +162,11 @@ impl Bench {
             theta: 0.5,
         };
         self.contact(states, motions, &info, &mut answers)?;
-        let held = self.update_damage(states, motions, &info)?;
+        let bond_step = self.update_damage(states, motions, &info)?;
         for (k, answer) in answers.iter_mut().enumerate() {
-            answer.damage = held.damage.get(k).copied().unwrap_or(states[k].damage);
+            answer.damage = bond_step.damage.get(k).copied().unwrap_or(states[k].damage);
         }
-        self.cohesion(states, motions, &info, &held, &mut answers)?;
+        self.cohesion(states, motions, &info, &bond_step, &mut answers)?;
         let broke: Vec<f64> = answers.iter().map(|a| a.damage).collect();
         self.end(states, motions, &info, &broke, &mut answers)?;
         for (state, (motion, answer)) in states.iter_mut().zip(motions.iter().zip(&answers)) {
@@ -252,15 +252,15 @@ impl Bench {
         motions: &[Motion],
         info: &StepInfo,
     ) -> Result<BondStep, LawError> {
-        let mut held = BondStep::default();
+        let mut bond_step = BondStep::default();
         if self.law.opens() {
             self.fill(states, motions, info, true);
             self.evaluator
-                .update_damage(&self.law, &mut self.history, info, &mut held)?;
+                .update_damage(&self.law, &mut self.history, info, &mut bond_step)?;
             self.said.clone_from(&self.evaluator.columns.out.damage);
             self.keep(states);
         }
-        Ok(held)
+        Ok(bond_step)
     }
 
     fn cohesion(
@@ -268,7 +268,7 @@ impl Bench {
         states: &[State],
         motions: &[Motion],
         info: &StepInfo,
-        held: &BondStep,
+        bond_step: &BondStep,
         answers: &mut [Answer],
     ) -> Result<(), LawError> {
         let Some(cohesion) = self.law.cohesion().cloned() else {
@@ -277,7 +277,7 @@ impl Bench {
         self.fill(states, motions, info, true);
         let opens = self.law.opens();
         if opens {
-            self.evaluator.columns.damage.clone_from(&held.damage);
+            self.evaluator.columns.damage.clone_from(&bond_step.damage);
         }
         self.evaluator
             .run(&cohesion, &mut self.history, info, 0.0, Call::Prepare)?;
@@ -301,7 +301,7 @@ impl Bench {
                 answer.traction[0] = 0.0;
                 answer.stiffness[0] = 0.0;
             }
-            answer.stored = held.stored(&self.law, k);
+            answer.stored = bond_step.stored(&self.law, k);
         }
         Ok(())
     }
