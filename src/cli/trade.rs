@@ -305,7 +305,7 @@ fn report_study(
     inform("");
     inform(table::text(study, &found, &verdicts).trim_end());
     inform(&format!(
-        "{} runs in {}, {} kept from before; the forecast for the reference and one knob at a time was {}",
+        "{} runs in {}, {} reused from earlier studies; the forecast for the reference and one parameter at a time was {}",
         study.fresh,
         table::seconds(study.started.elapsed().as_secs_f64()),
         study.reused,

@@ -165,7 +165,7 @@ impl Energy {
             ),
             (
                 "carried",
-                "kinetic energy of bodies when they were taken out",
+                "kinetic energy of bodies when they were removed",
                 carried,
             ),
             (

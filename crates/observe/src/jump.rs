@@ -47,7 +47,7 @@ impl<S: Space> Observer<S> for CycleJumps {
 
     fn set_end(&mut self, _: f64, later: bool) -> Result<(), &'static str> {
         match later {
-            true => Err("its jumps over cycles are as long as what was left of it let them be"),
+            true => Err("the lengths of its cycle jumps depend on the end of the run"),
             false => Ok(()),
         }
     }
@@ -86,7 +86,7 @@ pub fn warnings(jump: &JumpSummary) -> Vec<Warning> {
     }
     if jump.error_estimate.is_none() && !jump.jumps.is_empty() {
         let text = "the error of the jumps cannot be related to a growth; compare with a run of smaller jump.at_most";
-        list.push(Warning::serious("JUMPS NOT JUDGED", text));
+        list.push(Warning::serious("JUMP ERROR UNKNOWN", text));
     }
     if jump.unchecked_cycles > 0 {
         let text = format!(

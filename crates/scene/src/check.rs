@@ -141,7 +141,7 @@ fn solver(case: &Case) -> Result<(), ValidationError> {
     }
     if !(0.0..1.0).contains(&s.projection) {
         let expected =
-            "0 (never) or the part of a radius beyond which an overlap is taken out, below 1";
+            "0 (never) or the fraction of a radius above which an overlap is removed, below 1";
         return outside("projection", s.projection, expected);
     }
     if !(1.0..2.0).contains(&s.relaxation) {

@@ -77,12 +77,12 @@ impl Demands {
                 }
                 Requirement::Sometimes => {
                     may = Some(format!(
-                        "may be refused, interface `{name}` asks for it in some contacts: {reason}"
+                        "may be refused, interface `{name}` requires it in some contacts: {reason}"
                     ));
                 }
                 Requirement::Unseen => {
                     may = may.or(Some(format!(
-                        "may be refused, the laws of interface `{name}` decide at run time and did not ask for it in trials: {reason}"
+                        "may be refused, the laws of interface `{name}` decide at run time and did not require it in the sampled contacts: {reason}"
                     )));
                 }
             }

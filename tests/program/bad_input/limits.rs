@@ -87,7 +87,7 @@ fn a_skin_that_makes_all_grains_neighbours() {
             "    detection: (skin: ‸1e3),\n    materials:",
         ),
         &[
-            "pairs to look at, of 2e8 at most",
+            "candidate pairs, of 2e8 at most",
             "smaller than the largest radius",
         ],
     );

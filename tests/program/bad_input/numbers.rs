@@ -110,7 +110,7 @@ fn a_bound_for_overlaps_that_is_none() {
             ),
             &[
                 &format!("got {said}"),
-                "expected 0 (never) or the part of a radius beyond which an overlap is taken out, below 1",
+                "expected 0 (never) or the fraction of a radius above which an overlap is removed, below 1",
             ],
         );
     }

@@ -183,7 +183,7 @@ impl StepSizeDiagnostics {
         });
         let unwatched = (self.unwatched_steps > 0).then(|| {
             format!(
-                "in {} steps a body moved so far that not all in its way was looked at, {}; it may have passed through others",
+                "in {} steps a body moved farther than contacts were searched for, {}; it may have passed through others",
                 self.unwatched_steps,
                 first(&self.first_unwatched)
             )

@@ -82,7 +82,7 @@ fn executable() -> Result<(&'static Path, &'static str), LawError> {
         Err(reason) => Err(LawError::Unusable {
             path: PathBuf::from("built in"),
             reason: format!(
-                "the program's own file, whose SHA-256 stands for its built-in laws, cannot be read ({reason})"
+                "the program's own file, whose SHA-256 identifies its built-in laws, cannot be read ({reason})"
             ),
         }),
     }

@@ -117,7 +117,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let note = match made.merged {
             0 => String::new(),
             n => format!(
-                "; {} sides shorter than {:e} m were taken out",
+                "; {} sides shorter than {:e} m were removed",
                 n.div_ceil(2),
                 SHORTEST * size
             ),
@@ -180,7 +180,7 @@ impl<S: Dimensional> Builder<'_, S> {
             if S::D == 2 { "side" } else { "face" },
         );
         let message = format!(
-            "half the gap and the rounding take {band:e} m off each {side}, which leaves nothing of the thinnest cell; make them smaller, or the cells more alike with more `rounds`"
+            "half the gap and the rounding take {band:e} m off each {side}, which leaves nothing of the thinnest cell; make them smaller, or make the cells more uniform with more `rounds`"
         );
         let field = if spec.rounding > 0.0 {
             "rounding"

@@ -375,7 +375,7 @@ impl<S: Dimensional> Builder<'_, S> {
             return Ok(());
         }
         let message = format!(
-            "a skin of {skin:e} m makes {pairs:.1e} pairs to look at, of {MAX_PAIRS:e} at most; make it smaller than \
+            "a skin of {skin:e} m gives {pairs:.1e} candidate pairs, of {MAX_PAIRS:e} at most; make it smaller than \
              the largest radius ({largest:e} m), the default is 0.3 of the smallest"
         );
         Err(self.fail("detection.skin", message))
