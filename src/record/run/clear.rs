@@ -19,6 +19,15 @@ const FIGURES: [&str; 8] = [
     "biaxial.png",
 ];
 
+/// Files of the program in the folder of a run: they are in place when older files are removed, and no observer's.
+const OWN: [&str; 5] = [
+    "results.h5",
+    "bodies.vtkhdf",
+    "contacts.vtkhdf",
+    "statistics.csv",
+    "summary.json",
+];
+
 /// Removes pictures, problems and figures of an older run from its folder, and the pictures and files that the observers of the
 /// new run name as theirs.
 pub(super) fn clear<S: Space>(folder: &Path, observers: &Observers<S>) -> Result<(), RunError> {
@@ -34,7 +43,8 @@ pub(super) fn clear<S: Space>(folder: &Path, observers: &Observers<S>) -> Result
         numbered(name, "step-", ".hdf5")
     })?;
     remove(folder, &|name| {
-        FIGURES.contains(&name) || files.iter().any(|f| f == name)
+        let of_observers = files.iter().any(|f| f == name) && !OWN.contains(&name);
+        FIGURES.contains(&name) || of_observers
     })
 }
 

@@ -57,7 +57,8 @@ impl<S: Space> Observer<S> for Speeds {
     }
 
     fn file_names(&self) -> Vec<String> {
-        vec!["speeds.csv".to_owned()]
+        // The program's own file is not removed, whoever names it.
+        vec!["speeds.csv".to_owned(), "results.h5".to_owned()]
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {
