@@ -6,7 +6,7 @@ use super::evaluator::LawEvaluator;
 use super::history::LawHistory;
 use super::interface::Interface;
 use super::library::Call;
-use super::step_result::{ContactStep, MomentStep, Totals};
+use super::step_result::{SolvedStep, Totals};
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -40,27 +40,16 @@ impl BondStep {
 
 impl LawEvaluator {
     /// Completes the step of the intact bonds of one interface, given as members.
-    #[allow(clippy::too_many_arguments)]
     pub(super) fn commit_bonds<S: Space>(
         &mut self,
         index: usize,
         law: &Interface,
         history: &mut LawHistory,
         network: &mut Network<S>,
-        contact_steps: &[ContactStep<S>],
-        moment_steps: &[MomentStep<S>],
-        info: &StepInfo,
+        step: &SolvedStep<'_, S>,
         totals: &mut Totals,
     ) -> Result<(), LawError> {
-        let mut bond_step = self.open_bonds(
-            index,
-            law,
-            history,
-            network,
-            contact_steps,
-            moment_steps,
-            info,
-        )?;
+        let mut bond_step = self.open_bonds(index, law, history, network, step)?;
         for (at, damage) in self.members.iter().zip(&mut bond_step.damage) {
             let bond = network.bond(&network.contacts[*at]);
             let (before, used) = bond.map_or((0.0, 0.0), |b| (b.damage, b.step_damage));
@@ -85,9 +74,7 @@ impl LawEvaluator {
         laws: &[Interface],
         history: &mut LawHistory,
         network: &mut Network<S>,
-        contact_steps: &[ContactStep<S>],
-        moment_steps: &[MomentStep<S>],
-        info: &StepInfo,
+        step: &SolvedStep<'_, S>,
     ) -> Result<f64, LawError> {
         let mut worst = 0.0f64;
         self.trials.clear();
@@ -99,15 +86,7 @@ impl LawEvaluator {
                 continue;
             }
             let before = network.memory[index].clone_openings();
-            let bond_step = self.open_bonds(
-                index,
-                law,
-                history,
-                network,
-                contact_steps,
-                moment_steps,
-                info,
-            )?;
+            let bond_step = self.open_bonds(index, law, history, network, step)?;
             network.memory[index].restore_openings(before);
             for (k, at) in self.members.iter().enumerate() {
                 let Some(slot) = network.contacts[*at].memory() else {
@@ -134,29 +113,18 @@ impl LawEvaluator {
     }
 
     /// Updates the openings of the bonds of one interface with the motion of the step, and computes the damage that they give.
-    #[allow(clippy::too_many_arguments)]
     fn open_bonds<S: Space>(
         &mut self,
         index: usize,
         law: &Interface,
         history: &mut LawHistory,
         network: &mut Network<S>,
-        contact_steps: &[ContactStep<S>],
-        moment_steps: &[MomentStep<S>],
-        info: &StepInfo,
+        step: &SolvedStep<'_, S>,
     ) -> Result<BondStep, LawError> {
         let mut bond_step = std::mem::take(&mut self.bond_step);
-        self.update_openings(
-            index,
-            law,
-            network,
-            contact_steps,
-            moment_steps,
-            info,
-            &mut bond_step,
-        );
-        self.gather_after(law, network, contact_steps, info);
-        self.update_damage(law, history, info, &mut bond_step)
+        self.update_openings(index, law, network, step, &mut bond_step);
+        self.gather_after(law, network, step.contacts, step.info);
+        self.update_damage(law, history, step.info, &mut bond_step)
             .map_err(|e| self.locate(law, network, e))?;
         Ok(bond_step)
     }
@@ -203,15 +171,12 @@ impl LawEvaluator {
     }
 
     /// Updates the openings. Work of the bond's impulse that is not stored is damping.
-    #[allow(clippy::too_many_arguments)]
     fn update_openings<S: Space>(
         &self,
         index: usize,
         law: &Interface,
         network: &mut Network<S>,
-        contact_steps: &[ContactStep<S>],
-        moment_steps: &[MomentStep<S>],
-        info: &StepInfo,
+        step: &SolvedStep<'_, S>,
         bond_step: &mut BondStep,
     ) {
         let (works, lost, turned) = (
@@ -227,7 +192,7 @@ impl LawEvaluator {
         } = network;
         let memory = &mut memory[index];
         for at in &self.members {
-            let (contact, contact_step) = (&contacts[*at], &contact_steps[*at]);
+            let (contact, contact_step) = (&contacts[*at], &step.contacts[*at]);
             let Some(slot) = contact.memory() else {
                 works.push(0.0);
                 lost.push(0.0);
@@ -241,11 +206,11 @@ impl LawEvaluator {
                 S::tangential(n, &contact_step.average),
             );
             let before = bond.opening_n;
-            bond.opening_n += info.h * un;
+            bond.opening_n += step.info.h * un;
             // A tension-only bond is not linear across zero opening; its energy there depends on the step.
             turned.push(law.tension_only() && (before > 0.0) != (bond.opening_n > 0.0));
             lost.push(contact_step.lost);
-            bond.opening_t += ut * info.h;
+            bond.opening_t += ut * step.info.h;
             let s = &contact_step.solution;
             let (en, et) = (
                 n.dot(&s.impulse) - s.unilateral_n,
@@ -260,18 +225,18 @@ impl LawEvaluator {
         if !memory.rotates {
             return;
         }
-        // `moment_steps` and `members` both follow the order of the contacts, members by interface.
+        // `step.moments` and `members` both follow the order of the contacts, members by interface.
         let mut place = vec![usize::MAX; contacts.len()];
-        for (k, moment_step) in moment_steps.iter().enumerate() {
+        for (k, moment_step) in step.moments.iter().enumerate() {
             place[moment_step.moment.contact as usize] = k;
         }
         for (at, (work, lost)) in self.members.iter().zip(works.iter_mut().zip(lost)) {
             let (Some(moment_step), Some(slot)) =
-                (moment_steps.get(place[*at]), contacts[*at].memory())
+                (step.moments.get(place[*at]), contacts[*at].memory())
             else {
                 continue;
             };
-            memory.rotations[slot] += moment_step.spin * info.h;
+            memory.rotations[slot] += moment_step.spin * step.info.h;
             let turned =
                 (moment_step.moment.moment - moment_step.moment.friction).dot(&moment_step.spin);
             let life = &mut memory.bonds[slot].life;

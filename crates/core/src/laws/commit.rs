@@ -7,13 +7,12 @@ use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::kind::Domain;
 use super::library::Call;
-use super::step_result::{ContactStep, MomentStep, Totals};
+use super::step_result::{ContactStep, MomentStep, SolvedStep, Totals};
 use crate::contact::{Contact, ContactDissipation, Network};
 use crate::geometry::space::{Space, VectorLike};
 
 impl LawEvaluator {
-    /// Completes the step. `contact_steps` holds the results of the contacts in the network's order, `moment_steps` the
-    /// moments of those that resist rotation.
+    /// Completes the step.
     ///
     /// # Errors
     /// The law's error, with the contact.
@@ -22,9 +21,7 @@ impl LawEvaluator {
         laws: &[Interface],
         history: &mut LawHistory,
         network: &mut Network<S>,
-        contact_steps: &[ContactStep<S>],
-        moment_steps: &[MomentStep<S>],
-        info: &StepInfo,
+        step: &SolvedStep<'_, S>,
     ) -> Result<Totals, LawError> {
         let mut totals = Totals::default();
         if let Some(dissipation) = &mut network.dissipation {
@@ -34,24 +31,15 @@ impl LawEvaluator {
         if let Some(losses) = &mut network.losses {
             losses.clear();
         }
-        commit_contacts(network, contact_steps, info, &mut totals);
-        commit_moments(network, moment_steps, &mut totals);
+        commit_contacts(network, step.contacts, step.info, &mut totals);
+        commit_moments(network, step.moments, &mut totals);
         for (index, law) in laws.iter().enumerate() {
             if law.opens() {
                 self.select(network, |c| {
                     c.law as usize == index && network.bond(c).is_some_and(|b| b.intact())
                 });
                 if !self.members.is_empty() {
-                    self.commit_bonds(
-                        index,
-                        law,
-                        history,
-                        network,
-                        contact_steps,
-                        moment_steps,
-                        info,
-                        &mut totals,
-                    )?;
+                    self.commit_bonds(index, law, history, network, step, &mut totals)?;
                 }
             }
             for loaded in law.loaded().filter(|l| !law.acts_on_bonds(l)) {
@@ -68,8 +56,8 @@ impl LawEvaluator {
                     interface: law,
                     law: loaded,
                     network,
-                    contact_steps,
-                    info,
+                    contact_steps: step.contacts,
+                    info: step.info,
                     totals: &mut totals,
                     evaluator: self,
                     history,

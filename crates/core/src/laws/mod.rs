@@ -35,4 +35,4 @@ pub use plugin_table::Field;
 
 pub use range::Range;
 pub use search::{Place, SearchPath};
-pub use step_result::{ContactStep, MomentStep, Totals, Velocities};
+pub use step_result::{ContactStep, MomentStep, SolvedStep, Totals, Velocities};

@@ -1,5 +1,6 @@
 //! What the contacts did in a step, as the solver gives it to the laws, and the sums of their energies.
 
+use super::columns::StepInfo;
 use crate::geometry::space::Space;
 use crate::solve::MomentSolution;
 use crate::solve::form::ContactSolution;
@@ -32,6 +33,17 @@ pub struct MomentStep<S: Space> {
     pub spin: S::Spin,
     /// Work dissipated by the time scheme (J).
     pub lost: f64,
+}
+
+/// What laws are given of a solved step.
+#[derive(Debug)]
+pub struct SolvedStep<'a, S: Space> {
+    /// Results of the contacts, in the network's order.
+    pub contacts: &'a [ContactStep<S>],
+    /// Moments of the contacts that resist rotation.
+    pub moments: &'a [MomentStep<S>],
+    /// Time and scheme of the step.
+    pub info: &'a StepInfo,
 }
 
 /// Relative velocities at the start of a step, one per contact.

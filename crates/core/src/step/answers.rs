@@ -5,7 +5,8 @@ use super::Simulation;
 use super::motion::StepStart;
 use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};
-use crate::laws::{ContactStep, Interface, MomentStep, Velocities};
+use crate::laws::columns::StepInfo;
+use crate::laws::{ContactStep, Interface, MomentStep, SolvedStep, Velocities};
 use crate::solve::{self, MomentForm};
 
 /// Results of the contacts in a solved step. The buffers are reused from step to step, because allocating
@@ -15,6 +16,17 @@ pub(super) struct Solved<S: Space> {
     pub before: Velocities<S>,
     pub contact_steps: Vec<ContactStep<S>>,
     pub moment_steps: Vec<MomentStep<S>>,
+}
+
+impl<S: Space> Solved<S> {
+    /// What laws are given of it.
+    pub fn step<'a>(&'a self, info: &'a StepInfo) -> SolvedStep<'a, S> {
+        SolvedStep {
+            contacts: &self.contact_steps,
+            moments: &self.moment_steps,
+            info,
+        }
+    }
 }
 
 impl<S: Space> Default for Solved<S> {

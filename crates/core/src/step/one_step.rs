@@ -1,6 +1,5 @@
 //! One time step, in the order of the picture in [`super`].
 
-use super::answers::Solved;
 use super::motion::{self, StepStart};
 use super::{Scheme, Simulation, StepError, StepReport};
 use crate::contact::detect::detect;
@@ -106,18 +105,11 @@ impl<S: Space> Simulation<S> {
     /// Has laws update damage, bonds and wear with the impulses of the step.
     fn commit_laws(&mut self, info: &StepInfo, report: &mut StepReport) -> Result<(), StepError> {
         let clock = Instant::now();
-        let Solved {
-            contact_steps,
-            moment_steps,
-            ..
-        } = &self.workspace.solved;
         let committed = self.workspace.evaluator.commit(
             &self.laws,
             &mut self.state.law_history,
             &mut self.state.network,
-            contact_steps,
-            moment_steps,
-            info,
+            &self.workspace.solved.step(info),
         );
         report.totals = committed.map_err(|e| self.law_error(e))?;
         self.act(|process, simulation| process.after_solve(simulation))?;

@@ -1,6 +1,5 @@
 //! The contact problem of a step: set up from bodies, contacts and laws, solved, and its velocities taken over.
 
-use super::answers::Solved;
 use super::coupling::{Coupling, Progress};
 use super::motion::StepStart;
 use super::{Simulation, StepError, StepReport};
@@ -59,18 +58,11 @@ impl<S: Space> Simulation<S> {
                 return Ok(());
             };
             let clock = Instant::now();
-            let Solved {
-                contact_steps,
-                moment_steps,
-                ..
-            } = &self.workspace.solved;
             let change = self.workspace.evaluator.trial_damage(
                 &self.laws,
                 &mut self.state.law_history,
                 &mut self.state.network,
-                contact_steps,
-                moment_steps,
-                info,
+                &self.workspace.solved.step(info),
             );
             let change = change.map_err(|e| self.law_error(e))?;
             report.timing.laws += clock.elapsed();
