@@ -87,7 +87,7 @@ fn a_law_that_decides_at_run_time_is_told_apart() {
     );
     let chosen = line(&text, "method");
     assert!(
-        chosen.starts_with("newton may be refused") && chosen.contains("trials"),
+        chosen.starts_with("newton may be refused") && chosen.contains("sampled contacts"),
         "{chosen}"
     );
 }

@@ -118,7 +118,7 @@ mod tests {
             Service::May(t) | Service::Refuses(t) => t,
         };
         assert!(text(service(Sometimes, Never, Method::Newton)).contains("some contacts"));
-        assert!(text(service(Unseen, Never, Method::Newton)).contains("trials"));
+        assert!(text(service(Unseen, Never, Method::Newton)).contains("sampled contacts"));
         let both = service(Unseen, Always, Method::Interior);
         assert!(matches!(both, Service::Refuses(t) if t.contains("cohesion")));
         let failed = Demands(vec![("a".into(), None)]);
