@@ -455,6 +455,7 @@ fn contact<S: Space>(a: u32, b: u32, normal: S::Vector, push: f64) -> ContactFor
         tension: 0.0,
         cohesion: 0.0,
         elastic: None,
+        compliance: [0.0; 2],
         impulse: normal * push,
     }
 }

@@ -77,6 +77,7 @@ fn pile<S: Space>(stiff: f64, blocks: bool) -> (Problem<S>, Vec<ContactForm<S>>)
                 tension_only: forms.len() % 3 != 0,
                 ..Elastic::none()
             }),
+            compliance: [0.0; 2],
             impulse: S::Vector::zero(),
         };
         problem.push(&form);

@@ -8,6 +8,7 @@
 
 mod blocks;
 mod bonded;
+mod compliant;
 mod extremes;
 mod library;
 mod masonry;

@@ -52,6 +52,7 @@ fn contact<S: Space>(bodies: [u32; 2], normal: S::Vector) -> ContactForm<S> {
         tension: 0.0,
         cohesion: 0.0,
         elastic: None,
+        compliance: [0.0; 2],
         impulse: S::Vector::zero(),
     }
 }

@@ -1,7 +1,7 @@
 //! Interface laws of a case: finds the plugins, resolves and checks their parameters.
 
 use super::case::{Case, InterfaceSpec};
-use super::material::{Given, InterfaceParameters, MaterialLibrary, Sourced};
+use super::material::{self, Given, InterfaceParameters, MaterialLibrary, Sourced};
 use super::source::{InputError, Source, ValidationError, nearest};
 use super::units;
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
@@ -31,6 +31,7 @@ pub fn build(
     case: &Case,
     source: &Source,
     library: &MaterialLibrary,
+    properties: &[BTreeMap<String, Sourced>],
     path: &SearchPath,
 ) -> Result<Laws, InputError> {
     let materials: Vec<&String> = case.materials.keys().collect();
@@ -73,11 +74,13 @@ pub fn build(
         }
         let (parameters, file) =
             read_parameters(spec, library, &mut out.files, source, &here, &at)?;
-        let interface =
-            build_interface(case, spec, &parameters, path).map_err(|error| match &file {
+        let sides = pair.map(|m| &properties[usize::from(m)]);
+        let interface = build_interface(case, spec, &parameters, &sides, path).map_err(
+            |error| match &file {
                 Some(file) if error.in_file => file.locate(error.fault),
                 _ => at(error.fault),
-            })?;
+            },
+        )?;
         out.table.set(pair[0], pair[1], k as u16);
         out.interfaces.push(interface);
     }
@@ -209,6 +212,7 @@ fn build_interface(
     case: &Case,
     spec: &InterfaceSpec,
     file: &InterfaceParameters,
+    sides: &Sides<'_>,
     path: &SearchPath,
 ) -> Result<Interface, InterfaceError> {
     if let BondRule::At(time) = spec.bonds
@@ -238,7 +242,8 @@ fn build_interface(
     for (kind, name) in laws_of(spec) {
         let of_file = file.slots.get(kind).and_then(|laws| laws.get(name));
         let own = spec.parameters.get(kind).unwrap_or(&none);
-        laws.push(load_law(case, kind, name, of_file, own, path)?);
+        let plugin = find_law(case, kind, name, path)?;
+        laws.push(load_law(case, plugin, of_file, own, (sides, spec))?);
     }
     // What does not fit is said of the damage law, or of `healing`.
     let unfit = |e: LawError| InterfaceError::from(ValidationError::new("damage", e.to_string()));
@@ -251,17 +256,69 @@ fn build_interface(
         .map_err(unfit)
 }
 
-/// Finds a law, resolves its parameters and has it check them.
+/// Properties of the two materials of an interface, in its order.
+type Sides<'a> = [&'a BTreeMap<String, Sourced>; 2];
+
+/// Parameters that are properties of materials, where neither the case nor the parameter file gives them: `young_1` is `young` of the
+/// first material of the interface, `young_2` that of the second.
+fn properties_of_sides<'a>(
+    plugin: &'a Plugin,
+    given: &BTreeMap<&str, f64>,
+    sides: &Sides<'_>,
+    spec: &InterfaceSpec,
+) -> Result<Vec<(&'a str, f64)>, ValidationError> {
+    let mut out = Vec::new();
+    let names = [&spec.between.0, &spec.between.1];
+    for field in &plugin.parameters {
+        let name = field.name.as_str();
+        let Some((property, side)) = name.strip_suffix("_1").map(|p| (p, 0)).or_else(|| {
+            let property = name.strip_suffix("_2")?;
+            Some((property, 1))
+        }) else {
+            continue;
+        };
+        if !material::is_property(property) || given.contains_key(name) {
+            continue;
+        }
+        let slot = plugin.kind.word();
+        let Some(sourced) = sides[side].get(property) else {
+            let message = format!(
+                "the {slot} law `{}` needs `{property}` of the material `{}`",
+                plugin.name, names[side]
+            );
+            return Err(ValidationError::new(slot, message).expected(format!(
+                "`{property}` among the properties of the material's file, or `{name}` in the parameters of the law"
+            )));
+        };
+        let number = GivenNumber {
+            value: sourced.value,
+            unit: &sourced.unit,
+            at: slot.to_owned(),
+            in_case: true,
+        };
+        let value = parameter_value(plugin, plugin.kind, name, &number).map_err(|mut fault| {
+            fault.path = slot.to_owned();
+            fault.message = format!(
+                "{}, a property of the material `{}`",
+                fault.message, names[side]
+            );
+            fault
+        })?;
+        out.push((name, value));
+    }
+    Ok(out)
+}
+
+/// Resolves the parameters of a law and has it check them.
 fn load_law(
     case: &Case,
-    kind: Kind,
-    name: &str,
+    plugin: Plugin,
     file: Option<&BTreeMap<String, Sourced>>,
     own: &BTreeMap<String, Given>,
-    path: &SearchPath,
+    (sides, spec): (&Sides<'_>, &InterfaceSpec),
 ) -> Result<Loaded, InterfaceError> {
+    let (kind, name) = (plugin.kind, plugin.name.as_str());
     let slot = kind.word();
-    let plugin = find_law(case, kind, name, path)?;
     for (flag, only, dimension) in [(FLAG_2D_ONLY, "two", 2), (FLAG_3D_ONLY, "three", 3)] {
         if plugin.flags & flag != 0 && case.dimension != dimension {
             let message = format!(
@@ -280,6 +337,8 @@ fn load_law(
             })?;
         values.insert(parameter, value);
     }
+    let of_materials = properties_of_sides(&plugin, &values, sides, spec)?;
+    values.extend(of_materials);
     let parameters: Vec<f64> = plugin
         .parameters
         .iter()

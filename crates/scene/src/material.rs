@@ -108,7 +108,8 @@ pub struct Material {
     pub doc: String,
     /// Density (kg/m^3).
     pub density: Sourced,
-    /// Further properties, for the record.
+    /// Further properties: laws with parameters of their names followed by `_1` or `_2` take them, the others are for the
+    /// record.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub properties: BTreeMap<String, Sourced>,
 }
@@ -125,6 +126,11 @@ const PROPERTIES: [(&str, &str); 9] = [
     ("heat_capacity", "J/(kg K)"),
     ("expansion", "1/K"),
 ];
+
+/// Whether a name is that of a property with a known unit.
+pub fn is_property(name: &str) -> bool {
+    PROPERTIES.iter().any(|p| p.0 == name)
+}
 
 impl Material {
     /// The density (kg/m^3); also checks the units of all properties.

@@ -1,4 +1,4 @@
-/* fretwork.h - the C interface between Fretwork and its law plugins, version 1.0.
+/* fretwork.h - the C interface between Fretwork and its law plugins, version 1.1.
  *
  * A plugin is a shared library named libfretwork_KIND_NAME.so (KIND one of contact, cohesion, damage,
  * wear; NAME with '-' written '_') which exports one function, fretwork_plugin(), returning a static
@@ -43,7 +43,7 @@ extern "C" {
 #endif
 
 #define FW_ABI_MAJOR 1u
-#define FW_ABI_MINOR 0u
+#define FW_ABI_MINOR 1u
 
 /* Kind of plugin: friction, restitution, rolling (fills the non-smooth part of the local form). */
 #define FW_KIND_CONTACT 1
@@ -83,6 +83,8 @@ extern "C" {
 #define FW_FLAG_BREAKS (UINT64_C(1) << 6)
 /* Flag (cohesion): bonds may form in contact during a run, again after they broke. */
 #define FW_FLAG_FORMS (UINT64_C(1) << 7)
+/* Flag (contact): the contact is a unilateral spring; prepare fills the out_contact_* columns. Since 1.1. */
+#define FW_FLAG_COMPLIANT (UINT64_C(1) << 8)
 
 /* Describes one parameter or one internal variable. Frozen within a major version. */
 typedef struct fw_field {
@@ -169,6 +171,19 @@ typedef struct fw_batch {
     double *out_moment_t2; /* Bending moment over the area, against rotation_t2 (N m/m^2). */
     double *out_stiffness_twist; /* Twisting stiffness over the area (N m/m^2 per rad). */
     double *out_stiffness_bend; /* Bending stiffness over the area (N m/m^2 per rad). */
+    /* Since version 1.1; null for a contact law without FW_FLAG_COMPLIANT. */
+    const double *overlap; /* Overlap (m), not negative: in prepare an estimate of that at the end of the step, at which the law gives force and stiffness; in commit that at the end of the step. */
+    const double *effective_mass; /* Effective mass of the contact along its normal (kg; kg/m in 2D); 0 if neither body can move. */
+    const double *spring_t1; /* Force of the tangential spring along t1 (N; N/m in 2D), positive where the candidate was displaced along t1: at the start of the step in prepare, at its end in commit. */
+    const double *spring_t2; /* Force of the tangential spring along t2 (N). */
+    double *out_contact_force_n; /* Contact: compressive force of the spring at overlap (N; N/m in 2D), not negative. */
+    double *out_contact_force_t1; /* Contact: force of the tangential spring along t1 at the start of the step (N): spring_t1, unless the law changes it. */
+    double *out_contact_force_t2; /* Contact: force of the tangential spring along t2 (N). */
+    double *out_contact_stiffness_n; /* Contact: slope of the normal force at overlap (N/m). */
+    double *out_contact_stiffness_t; /* Contact: slope of the tangential force (N/m); 0 for a rigid tangential contact. */
+    double *out_contact_unloading_t; /* Contact: stiffness of the tangential spring when it unloads (N/m), which defines its stored energy; 0 where it is out_contact_stiffness_t. */
+    double *out_contact_damping_n; /* Contact: normal damping (N s/m). */
+    double *out_contact_damping_t; /* Contact: tangential damping (N s/m). */
 } fw_batch;
 
 /* Checks parameters in addition to their ranges (relations between them). May be null. */

@@ -17,7 +17,7 @@ use core::ffi::c_char;
 /// Major version: a host refuses a plugin of another major.
 pub const ABI_MAJOR: u32 = 1;
 /// Minor version: incremented when structs grow at their end.
-pub const ABI_MINOR: u32 = 0;
+pub const ABI_MINOR: u32 = 1;
 /// Name of the one exported function, of type [`FwEntry`].
 pub const ENTRY_SYMBOL: &str = "fretwork_plugin";
 
@@ -60,6 +60,8 @@ pub const FLAG_FORMS: u64 = 1 << 7;
 /// Flag (contact): `prepare` depends on the parameters only, so the host may call it once for one
 /// contact and use the result for all.
 pub const FLAG_CONSTANT: u64 = 1 << 4;
+/// Flag (contact): the contact is a unilateral spring; `prepare` fills the `out_contact_*` columns. Since version 1.1.
+pub const FLAG_COMPLIANT: u64 = 1 << 8;
 
 /// Describes one parameter or one internal variable. Frozen within a major version.
 #[repr(C)]
@@ -223,6 +225,34 @@ pub struct FwBatch {
     pub out_stiffness_twist: *mut f64,
     /// Bending stiffness over the area (N m/m^2 per rad).
     pub out_stiffness_bend: *mut f64,
+    // Since version 1.1; null for a contact law without [`FLAG_COMPLIANT`].
+    /// Overlap of the bodies (m), not negative: in `prepare` an estimate of that at the end of the step, at which the
+    /// law gives force and stiffness; in `commit` that at the end of the step.
+    pub overlap: *const f64,
+    /// Effective mass of the contact along its normal, 1/W_nn (kg; kg/m in 2D); 0 if neither body can move.
+    pub effective_mass: *const f64,
+    /// Force of the tangential spring along t1 (N; N/m in 2D), positive where the candidate was displaced along t1: at the
+    /// start of the step in `prepare`, at its end in `commit`.
+    pub spring_t1: *const f64,
+    /// Force of the tangential spring along t2 (N).
+    pub spring_t2: *const f64,
+    /// Contact: compressive force of the spring at `overlap` (N; N/m in 2D), not negative.
+    pub out_contact_force_n: *mut f64,
+    /// Contact: force of the tangential spring along t1 at the start of the step (N): `spring_t1`, unless the law changes it.
+    pub out_contact_force_t1: *mut f64,
+    /// Contact: force of the tangential spring along t2 (N).
+    pub out_contact_force_t2: *mut f64,
+    /// Contact: slope of the normal force at `overlap` (N/m).
+    pub out_contact_stiffness_n: *mut f64,
+    /// Contact: slope of the tangential force (N/m); 0 for a rigid tangential contact.
+    pub out_contact_stiffness_t: *mut f64,
+    /// Contact: stiffness of the tangential spring when it unloads (N/m), which defines its stored energy; 0 where that is
+    /// `out_contact_stiffness_t`.
+    pub out_contact_unloading_t: *mut f64,
+    /// Contact: normal damping (N s/m).
+    pub out_contact_damping_n: *mut f64,
+    /// Contact: tangential damping (N s/m).
+    pub out_contact_damping_t: *mut f64,
 }
 
 /// Checks parameters in addition to their ranges (relations between them). May be null.

@@ -82,7 +82,19 @@ fn rust_layout() -> Vec<(String, u64)> {
         out_moment_t1,
         out_moment_t2,
         out_stiffness_twist,
-        out_stiffness_bend
+        out_stiffness_bend,
+        overlap,
+        effective_mass,
+        spring_t1,
+        spring_t2,
+        out_contact_force_n,
+        out_contact_force_t1,
+        out_contact_force_t2,
+        out_contact_stiffness_n,
+        out_contact_stiffness_t,
+        out_contact_unloading_t,
+        out_contact_damping_n,
+        out_contact_damping_t
     );
     layout!(
         out,
@@ -131,6 +143,7 @@ fn rust_layout() -> Vec<(String, u64)> {
         ("FW_FLAG_MOMENT", FLAG_MOMENT),
         ("FW_FLAG_BREAKS", FLAG_BREAKS),
         ("FW_FLAG_FORMS", FLAG_FORMS),
+        ("FW_FLAG_COMPLIANT", FLAG_COMPLIANT),
     ] {
         out.push((name.to_owned(), value));
     }

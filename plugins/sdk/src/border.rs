@@ -1,11 +1,11 @@
 //! The interface layer: from the host's columns to one contact and back. All `unsafe` code of a law is here.
 
 use crate::traits::{CohesionLaw, ContactLaw, DamageLaw, Intact, Law, Site, WearLaw};
-use core::cell::Cell;
+use core::cell::{Cell, OnceCell};
 use core::ffi::c_char;
 use core::mem::{MaybeUninit, offset_of};
 use fretwork_abi::{
-    FwBatch, FwMessage, STATUS_BAD_PARAMETER, STATUS_ERROR, STATUS_OK, STATUS_PANIC,
+    FLAG_COMPLIANT, FwBatch, FwMessage, STATUS_BAD_PARAMETER, STATUS_ERROR, STATUS_OK, STATUS_PANIC,
 };
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -118,6 +118,9 @@ unsafe fn site(b: &FwBatch, k: usize) -> Site {
             ],
             impulse: [at(b.impulse_n, k), at(b.impulse_t1, k), at(b.impulse_t2, k)],
             damage: at(b.damage, k),
+            overlap: at(b.overlap, k),
+            effective_mass: at(b.effective_mass, k),
+            spring_t: [at(b.spring_t1, k), at(b.spring_t2, k)],
             h: b.h,
             theta: b.theta,
             time: b.time,
@@ -281,9 +284,10 @@ pub unsafe extern "C" fn contact_prepare<L: ContactLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
+    let damping = OnceCell::new();
     over::<L, false>(batch, message, |law, b, k, site, state, _| {
         let f = law.friction(site, state);
-        give!(
+        let friction = give!(
             b,
             k,
             out_friction = f.mu,
@@ -293,6 +297,22 @@ pub unsafe extern "C" fn contact_prepare<L: ContactLaw>(
             out_shear_cohesion = f.shear_cohesion,
             out_rolling = f.rolling,
             out_spinning = f.spinning,
+        );
+        if friction.is_some() || L::FLAGS & FLAG_COMPLIANT == 0 {
+            return friction;
+        }
+        let s = law.spring(site, state, *damping.get_or_init(|| law.damping()));
+        give!(
+            b,
+            k,
+            out_contact_force_n = s.force_n,
+            out_contact_force_t1 = s.force_t[0],
+            out_contact_force_t2 = s.force_t[1],
+            out_contact_stiffness_n = s.stiffness_n,
+            out_contact_stiffness_t = s.stiffness_t,
+            out_contact_unloading_t = s.unloading_t,
+            out_contact_damping_n = s.damping_n,
+            out_contact_damping_t = s.damping_t,
         )
     })
 }

@@ -34,6 +34,6 @@ mod traits;
 
 pub use fretwork_abi as abi;
 pub use traits::{
-    CohesionLaw, ContactLaw, DamageLaw, Friction, Intact, Law, Parameters, Site, Traction,
-    Variable, WearLaw, bounded,
+    CohesionLaw, ContactLaw, DamageLaw, Friction, Intact, Law, Parameters, Site, Spring, Traction,
+    Variable, WearLaw, bounded, damping_ratio,
 };

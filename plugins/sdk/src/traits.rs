@@ -82,6 +82,15 @@ pub struct Site {
     pub impulse: [f64; 3],
     /// Damage D; 1 without a bond.
     pub damage: f64,
+    /// Overlap (m), with `FLAG_COMPLIANT`: at the start of a step an estimate of that at its end, for which the law gives
+    /// force and stiffness; at the end of a step that which is there.
+    pub overlap: f64,
+    /// Effective mass along the normal (kg; kg/m in 2D), with `FLAG_COMPLIANT` at the start of a step; 0 if neither body can
+    /// move.
+    pub effective_mass: f64,
+    /// Force of the tangential spring along t1 and t2 (N; N/m in 2D), with `FLAG_COMPLIANT`; positive where the candidate was displaced
+    /// along them.
+    pub spring_t: [f64; 2],
     /// Time step (s).
     pub h: f64,
     /// Theta of the time scheme.
@@ -134,6 +143,65 @@ pub struct Friction {
     pub rolling: f64,
     /// Spinning friction length (m).
     pub spinning: f64,
+}
+
+/// The unilateral spring of a compliant contact at the site's overlap (N, N/m; per metre of depth in 2D).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Spring {
+    /// Compressive force.
+    pub force_n: f64,
+    /// Its slope with the overlap.
+    pub stiffness_n: f64,
+    /// Normal damping (N s/m).
+    pub damping_n: f64,
+    /// Tangential force at the start of the step: the site's `spring_t`, unless the law changes it.
+    pub force_t: [f64; 2],
+    /// Its slope; 0 for a rigid tangential contact.
+    pub stiffness_t: f64,
+    /// Its slope when it unloads, where that is another; 0 otherwise.
+    pub unloading_t: f64,
+    /// Tangential damping (N s/m).
+    pub damping_t: f64,
+}
+
+/// Damping ratio zeta of a linear spring, d = 2 zeta sqrt(k m), whose impacts rebound with this share of the approach velocity when the contact
+/// ends as soon as its force is zero, not when the overlap is (T. Schwager, T. Poschel, Granular Matter 9 (2007) 465, eqs. 20 to
+/// 22). The same ratio holds for Hertz' spring with d = 2 zeta sqrt(5/6) sqrt(k m) at each overlap, k the slope.
+///
+/// The ratio of restitution 0 is infinite; that of 1e-6 is given instead.
+pub fn damping_ratio(restitution: f64) -> f64 {
+    let wanted = restitution.clamp(1e-6, 1.0);
+    if wanted == 1.0 {
+        return 0.0;
+    }
+    let (mut low, mut high) = (0.0, 1e4);
+    for _ in 0..60 {
+        // Of 1e4 in the end 1e-14.
+        let middle = 0.5 * (low + high);
+        if rebound(middle) > wanted {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Restitution of a linear spring with damping ratio zeta.
+fn rebound(zeta: f64) -> f64 {
+    use std::f64::consts::PI;
+    let share = 2.0 * zeta * zeta;
+    if zeta < 1.0 {
+        let w = (1.0 - zeta * zeta).sqrt();
+        let angle = (2.0 * zeta * w).atan2(1.0 - share);
+        (-zeta / w * (PI - angle)).exp()
+    } else if zeta == 1.0 {
+        (-2.0f64).exp()
+    } else {
+        let w = (zeta * zeta - 1.0).sqrt();
+        // (zeta + w)/(zeta - w) = (zeta + w)^2
+        (-zeta / w * 2.0 * (zeta + w).ln()).exp()
+    }
 }
 
 /// Output of a cohesion law: traction at the current opening and damage, with its stiffness.
@@ -269,6 +337,16 @@ impl Intact {
 pub trait ContactLaw: Law {
     /// At the start of a step.
     fn friction(&self, site: &Site, state: &[f64]) -> Friction;
+    /// The spring of a compliant contact at the start of a step, with `FLAG_COMPLIANT`; `damping` is
+    /// [`Self::damping`].
+    fn spring(&self, _site: &Site, _state: &[f64], _damping: f64) -> Spring {
+        Spring::default()
+    }
+    /// A number of its parameters alone that [`Self::spring`] is given, and that is computed once a batch: the damping
+    /// ratio.
+    fn damping(&self) -> f64 {
+        0.0
+    }
     /// New internal variables at the end of a step; they are unchanged by default.
     fn commit(&self, _site: &Site, _state: &[f64], _next: &mut [f64]) {}
 }

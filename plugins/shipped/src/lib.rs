@@ -43,6 +43,8 @@ laws! {
     contact_coulomb "../../contact/coulomb/src/lib.rs"
     contact_coulomb_damage "../../contact/coulomb_damage/src/lib.rs"
     contact_frictionless "../../contact/frictionless/src/lib.rs"
+    contact_hertz_mindlin "../../contact/hertz_mindlin/src/lib.rs"
+    contact_linear_contact "../../contact/linear_contact/src/lib.rs"
     contact_mohr_coulomb "../../contact/mohr_coulomb/src/lib.rs"
     contact_newton_restitution "../../contact/newton_restitution/src/lib.rs"
     contact_rail_falling_friction "../../contact/rail_falling_friction/src/lib.rs"

@@ -4,10 +4,12 @@ pub mod events;
 pub mod id;
 pub mod memory;
 pub mod network;
+pub mod spring;
 pub mod step_size;
 
 pub use events::{Break, ContactDissipation, Life, Loss};
 pub use id::{ContactId, ContactNames, ContactorId, ContactorKind};
 pub use memory::{Bond, BondState, Memory};
 pub use network::{Contact, Key, Network};
+pub use spring::Spring;
 pub use step_size::StepSizeDiagnostics;

@@ -2,6 +2,7 @@
 
 use super::events::{Break, ContactDissipation, Loss};
 use super::memory::{BondState, Memory};
+use super::spring::Spring;
 use super::step_size::StepSizeDiagnostics;
 use crate::bodies::Bodies;
 use crate::geometry::space::{Space, VectorLike};
@@ -90,6 +91,8 @@ pub struct Contact<S: Space> {
     pub slides: bool,
     /// Energy dissipated by friction since the contact formed (J).
     pub friction_work: f64,
+    /// Its spring, where its law is compliant.
+    pub spring: Spring<S>,
 }
 
 /// Where two bodies touch.
@@ -139,6 +142,7 @@ impl<S: Space> Contact<S> {
             beyond: false,
             slides: false,
             friction_work: 0.0,
+            spring: Spring::relaxed(),
         }
     }
 
@@ -341,8 +345,25 @@ impl<S: Space> Network<S> {
         (self.bonds_broken() as f64 + intact) / made as f64
     }
 
+    /// The gap of the spring of a compliant contact (m): without what cement fills. An overlap at which a bond was made
+    /// stays in the spring.
+    pub fn spring_gap(&self, contact: &Contact<S>) -> f64 {
+        let bond = self.bond(contact).filter(|b| b.intact());
+        contact.gap - bond.map_or(0.0, |b| b.gap.max(0.0))
+    }
+
     /// Returns the energy stored in bonds (J).
-    pub fn elastic_energy(&self) -> f64 {
+    pub fn bond_energy(&self) -> f64 {
         self.memory.iter().map(Memory::energy).sum()
+    }
+
+    /// Returns the energy stored in the springs of compliant contacts (J).
+    pub fn spring_energy(&self) -> f64 {
+        self.contacts.iter().map(|c| c.spring.stored()).sum()
+    }
+
+    /// Returns the energy stored in bonds and in the springs of compliant contacts (J).
+    pub fn elastic_energy(&self) -> f64 {
+        self.bond_energy() + self.spring_energy()
     }
 }

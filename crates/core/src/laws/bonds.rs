@@ -123,7 +123,7 @@ impl LawEvaluator {
     ) -> Result<BondStep, LawError> {
         let mut bond_step = std::mem::take(&mut self.bond_step);
         self.update_openings(index, law, network, step, &mut bond_step);
-        self.gather_after(law, network, step.contacts, step.info);
+        self.gather_after(law, network, step);
         self.update_damage(law, history, step.info, &mut bond_step)
             .map_err(|e| self.locate(law, network, e))?;
         Ok(bond_step)

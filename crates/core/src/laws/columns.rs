@@ -56,6 +56,12 @@ pub struct Columns {
     pub rotation: Triple,
     /// Undamaged moment over the area (N m/m^2); as `rotation`.
     pub intact_moment: Triple,
+    /// Overlap (m); empty unless the contact law is compliant.
+    pub overlap: Vec<f64>,
+    /// Effective mass along the normal (kg); as `overlap`.
+    pub effective_mass: Vec<f64>,
+    /// Force of the tangential spring (N), along t1 and t2; as `overlap`.
+    pub spring: [Vec<f64>; 2],
     /// Internal variables at the start of the step.
     pub state: Vec<Vec<f64>>,
     /// Internal variables at the end of the step.
@@ -110,12 +116,21 @@ pub struct Outputs {
     pub moment: Triple,
     pub stiffness_twist: Vec<f64>,
     pub stiffness_bend: Vec<f64>,
+    pub contact_force: Triple,
+    pub contact_stiffness_n: Vec<f64>,
+    pub contact_stiffness_t: Vec<f64>,
+    pub contact_unloading_t: Vec<f64>,
+    pub contact_damping_n: Vec<f64>,
+    pub contact_damping_t: Vec<f64>,
 }
 
 impl Outputs {
-    /// Iterates over all columns.
-    fn all(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
-        let single = [
+    /// The columns of every call, and those of compliant contacts.
+    fn groups(&mut self) -> ([&mut Vec<f64>; 22], [&mut Vec<f64>; 8]) {
+        let [tn, t1, t2] = &mut self.traction;
+        let [mn, m1, m2] = &mut self.moment;
+        let [force_n, f1, f2] = &mut self.contact_force;
+        let all = [
             &mut self.friction,
             &mut self.restitution_n,
             &mut self.restitution_t,
@@ -132,9 +147,30 @@ impl Outputs {
             &mut self.volume,
             &mut self.stiffness_twist,
             &mut self.stiffness_bend,
+            tn,
+            t1,
+            t2,
+            mn,
+            m1,
+            m2,
         ];
-        let triples = [&mut self.traction, &mut self.moment];
-        single.into_iter().chain(triples.into_iter().flatten())
+        let springs = [
+            &mut self.contact_stiffness_n,
+            &mut self.contact_stiffness_t,
+            &mut self.contact_unloading_t,
+            &mut self.contact_damping_n,
+            &mut self.contact_damping_t,
+            force_n,
+            f1,
+            f2,
+        ];
+        (all, springs)
+    }
+
+    /// Iterates over all columns.
+    fn all(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+        let (all, springs) = self.groups();
+        all.into_iter().chain(springs)
     }
 }
 
@@ -206,6 +242,8 @@ impl Columns {
             &mut self.energy_intact,
             &mut self.slip,
             &mut self.friction_work,
+            &mut self.overlap,
+            &mut self.effective_mass,
         ];
         let triples = [
             &mut self.opening,
@@ -215,7 +253,8 @@ impl Columns {
             &mut self.rotation,
             &mut self.intact_moment,
         ];
-        single.into_iter().chain(triples.into_iter().flatten())
+        let all = single.into_iter().chain(triples.into_iter().flatten());
+        all.chain(&mut self.spring)
     }
 
     /// Returns the index of the first contact with a new internal variable that is not finite.
@@ -252,13 +291,16 @@ impl Columns {
         }
     }
 
-    /// Resizes the outputs to `n` zeros.
+    /// Resizes the outputs to `n` zeros; those of compliant contacts only where the law is one.
     pub fn size_outputs(&mut self) {
-        let (n, out) = (self.n, &mut self.out);
-        for column in out.all() {
+        let (all, springs) = self.out.groups();
+        let zeros = |column: &mut Vec<f64>, n| {
             column.clear();
             column.resize(n, 0.0);
-        }
+        };
+        all.into_iter().for_each(|column| zeros(column, self.n));
+        let n = self.overlap.len();
+        springs.into_iter().for_each(|column| zeros(column, n));
     }
 
     /// Runs `call` with the batch of these columns.
@@ -365,6 +407,18 @@ impl Columns {
             out_moment_t2: pointers.output_3d(&mut out.moment[2]),
             out_stiffness_twist: pointers.output(&mut out.stiffness_twist),
             out_stiffness_bend: pointers.output(&mut out.stiffness_bend),
+            overlap: pointers.input(&self.overlap),
+            effective_mass: pointers.input(&self.effective_mass),
+            spring_t1: pointers.input(&self.spring[0]),
+            spring_t2: pointers.input_3d(&self.spring[1]),
+            out_contact_force_n: pointers.output(&mut out.contact_force[0]),
+            out_contact_force_t1: pointers.output(&mut out.contact_force[1]),
+            out_contact_force_t2: pointers.output_3d(&mut out.contact_force[2]),
+            out_contact_stiffness_n: pointers.output(&mut out.contact_stiffness_n),
+            out_contact_stiffness_t: pointers.output(&mut out.contact_stiffness_t),
+            out_contact_unloading_t: pointers.output(&mut out.contact_unloading_t),
+            out_contact_damping_n: pointers.output(&mut out.contact_damping_n),
+            out_contact_damping_t: pointers.output(&mut out.contact_damping_t),
         }
     }
 }

@@ -1,12 +1,13 @@
 //! Commit: the laws' update at the end of a solved step.
 
-use super::columns::{Columns, StepInfo};
+use super::columns::Columns;
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::kind::Domain;
 use super::library::Call;
+use super::spring::SpringStep;
 use super::step_result::{ContactStep, MomentStep, SolvedStep, Totals};
 use crate::contact::{Contact, ContactDissipation, Network};
 use crate::geometry::space::{Space, VectorLike};
@@ -31,7 +32,7 @@ impl LawEvaluator {
         if let Some(losses) = &mut network.losses {
             losses.clear();
         }
-        commit_contacts(network, step.contacts, step.info, &mut totals);
+        commit_contacts(network, step, &mut totals);
         commit_moments(network, step.moments, &mut totals);
         for (index, law) in laws.iter().enumerate() {
             if law.opens() {
@@ -56,8 +57,7 @@ impl LawEvaluator {
                     interface: law,
                     law: loaded,
                     network,
-                    contact_steps: step.contacts,
-                    info: step.info,
+                    step,
                     totals: &mut totals,
                     evaluator: self,
                     history,
@@ -86,12 +86,21 @@ impl LawEvaluator {
 /// Stores the impulses of the contacts, and books what they dissipated.
 fn commit_contacts<S: Space>(
     network: &mut Network<S>,
-    contact_steps: &[ContactStep<S>],
-    info: &StepInfo,
+    step: &SolvedStep<'_, S>,
     totals: &mut Totals,
 ) {
-    for (k, (contact, contact_step)) in network.contacts.iter_mut().zip(contact_steps).enumerate() {
-        let dissipated = commit_contact(contact, contact_step, info.h);
+    let contacts = network.contacts.iter_mut().zip(step.contacts);
+    for (k, (contact, contact_step)) in contacts.enumerate() {
+        let dissipated = match step.spring(k) {
+            None => commit_contact(contact, contact_step, step.info.h),
+            Some(spring) => {
+                let (dissipated, stored) =
+                    commit_spring(contact, contact_step, spring, step.info.h);
+                totals.springs += stored;
+                totals.viscous += dissipated.viscous;
+                dissipated
+            }
+        };
         totals.friction += dissipated.friction;
         totals.correction += dissipated.correction;
         totals.adhesion += dissipated.adhesion;
@@ -102,7 +111,29 @@ fn commit_contacts<S: Space>(
     }
 }
 
-/// Stores the impulse of a contact; returns what it dissipated.
+/// Stores the impulse and the spring of a compliant contact; returns what it dissipated, and the rest of the work done on
+/// it, which its spring took.
+fn commit_spring<S: Space>(
+    contact: &mut Contact<S>,
+    contact_step: &ContactStep<S>,
+    step: &SpringStep<S>,
+    h: f64,
+) -> (ContactDissipation, f64) {
+    let all = commit_contact(contact, contact_step, h);
+    let (friction, viscous) = (step.friction, step.viscous);
+    contact.friction_work += friction - all.friction;
+    contact.spring = step.spring;
+    let dissipated = ContactDissipation {
+        friction,
+        viscous,
+        adhesion: all.adhesion,
+        ..ContactDissipation::default()
+    };
+    let work = all.friction + all.impact;
+    (dissipated, work - friction - viscous)
+}
+
+/// Stores the impulse of a rigid contact; returns what it dissipated.
 #[inline]
 fn commit_contact<S: Space>(
     contact: &mut Contact<S>,
@@ -164,10 +195,8 @@ pub struct SlotCommit<'a, S: Space> {
     pub law: &'a Loaded,
     /// All contacts.
     pub network: &'a mut Network<S>,
-    /// What each contact did, in the order of the network.
-    pub contact_steps: &'a [ContactStep<S>],
-    /// Time and scheme.
-    pub info: &'a StepInfo,
+    /// What each contact did, in the order of the network, and time and scheme.
+    pub step: &'a SolvedStep<'a, S>,
     /// Energies and volumes of the step.
     pub totals: &'a mut Totals,
     pub(super) evaluator: &'a mut LawEvaluator,
@@ -189,18 +218,27 @@ impl<S: Space> SlotCommit<'_, S> {
     /// Fills the columns by the end of the step.
     pub fn gather(&mut self) {
         let Self { evaluator, .. } = self;
-        evaluator.gather_after(self.interface, self.network, self.contact_steps, self.info);
+        evaluator.gather_after(self.interface, self.network, self.step);
         evaluator.columns.size_outputs();
     }
 
     /// Adds the columns of slip (m) and friction work (J) over the step, negative where friction gave back.
     pub fn add_slip(&mut self) {
-        let Self { evaluator, .. } = self;
+        let Self {
+            evaluator, step, ..
+        } = self;
         for at in &evaluator.members {
-            let (contact, contact_step) = (&self.network.contacts[*at], &self.contact_steps[*at]);
-            let ut = S::tangential(&contact.normal, &contact_step.average);
-            evaluator.columns.slip.push(self.info.h * ut.norm());
-            let work = -contact_step.solution.unilateral_t.dot(&ut);
+            let contact_step = &step.contacts[*at];
+            let (slip, work) = match step.spring(*at) {
+                Some(spring) => (spring.slip.norm(), spring.friction),
+                None => {
+                    let normal = &self.network.contacts[*at].normal;
+                    let ut = S::tangential(normal, &contact_step.average);
+                    let work = -contact_step.solution.unilateral_t.dot(&ut);
+                    (step.info.h * ut.norm(), work)
+                }
+            };
+            evaluator.columns.slip.push(slip);
             evaluator.columns.friction_work.push(work);
         }
     }
@@ -237,7 +275,7 @@ impl<S: Space> SlotCommit<'_, S> {
     pub fn call(&mut self) -> Result<(), LawError> {
         let called = self
             .evaluator
-            .run(self.law, self.history, self.info, 0.0, Call::Commit);
+            .run(self.law, self.history, self.step.info, 0.0, Call::Commit);
         called.map_err(|e| self.evaluator.locate(self.interface, self.network, e))
     }
 

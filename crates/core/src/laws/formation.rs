@@ -6,8 +6,9 @@ use super::evaluator::LawEvaluator;
 use super::history::LawHistory;
 use super::interface::Interface;
 use super::library::Call;
+use super::step_result::Velocities;
 use crate::contact::Network;
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::Space;
 
 impl LawEvaluator {
     /// Allocates the internal variables of contacts and forms the bonds that are due: by the case's bond
@@ -95,7 +96,7 @@ impl LawEvaluator {
         if self.members.is_empty() || !law.loaded().any(|l| l.plugin.initialises()) {
             return Ok(());
         }
-        let still = vec![S::Vector::zero(); network.contacts.len()];
+        let still = Velocities::still(&network.contacts);
         self.gather(law, network, &still, info);
         self.columns.size_outputs();
         for loaded in law.loaded() {

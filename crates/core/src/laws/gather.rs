@@ -3,8 +3,8 @@
 use super::columns::{Columns, StepInfo, Triple};
 use super::evaluator::LawEvaluator;
 use super::interface::Interface;
-use super::step_result::ContactStep;
-use crate::contact::{Contact, Network};
+use super::step_result::{SolvedStep, Velocities};
+use crate::contact::{Contact, Network, Spring};
 use crate::geometry::space::{Space, VectorLike};
 
 impl LawEvaluator {
@@ -13,7 +13,7 @@ impl LawEvaluator {
         &mut self,
         law: &Interface,
         network: &Network<S>,
-        before: &[S::Vector],
+        before: &Velocities<S>,
         info: &StepInfo,
     ) {
         self.columns.clear();
@@ -24,11 +24,16 @@ impl LawEvaluator {
                 law,
                 network,
                 contact,
-                &before[*at],
+                &before.relative[*at],
                 info,
                 true,
             );
             push_vector::<S>(&mut self.columns.impulse, &contact.normal, &contact.impulse);
+            if law.compliant() {
+                let mass = before.effective_mass[*at];
+                let overlap = before.overlap[*at];
+                push_spring(&mut self.columns, contact, &contact.spring, overlap, mass);
+            }
         }
         self.gather_state(law, network);
     }
@@ -38,19 +43,18 @@ impl LawEvaluator {
         &mut self,
         law: &Interface,
         network: &Network<S>,
-        contact_steps: &[ContactStep<S>],
-        info: &StepInfo,
+        step: &SolvedStep<'_, S>,
     ) {
         self.columns.clear();
         for at in &self.members {
-            let (contact, contact_step) = (&network.contacts[*at], &contact_steps[*at]);
+            let (contact, contact_step) = (&network.contacts[*at], &step.contacts[*at]);
             gather_contact(
                 &mut self.columns,
                 law,
                 network,
                 contact,
                 &contact_step.average,
-                info,
+                step.info,
                 false,
             );
             push_vector::<S>(
@@ -58,6 +62,10 @@ impl LawEvaluator {
                 &contact.normal,
                 &contact_step.solution.impulse,
             );
+            if law.compliant() {
+                let spring = step.spring(*at).map_or(contact.spring, |s| s.spring);
+                push_spring(&mut self.columns, contact, &spring, spring.overlap, 0.0);
+            }
         }
         self.gather_state(law, network);
     }
@@ -100,6 +108,22 @@ fn push_vector<S: Space>(triple: &mut Triple, n: &S::Vector, v: &S::Vector) {
     triple[0].push(n.dot(v));
     triple[1].push(t1);
     triple[2].push(t2);
+}
+
+/// Fills the columns of a compliant contact.
+fn push_spring<S: Space>(
+    columns: &mut Columns,
+    contact: &Contact<S>,
+    spring: &Spring<S>,
+    overlap: f64,
+    effective_mass: f64,
+) {
+    columns.overlap.push(overlap);
+    columns.effective_mass.push(effective_mass);
+    let force = S::components(&contact.normal, &spring.force_t);
+    for (column, x) in columns.spring.iter_mut().zip(force) {
+        column.push(x);
+    }
 }
 
 #[inline]

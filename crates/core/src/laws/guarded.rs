@@ -253,12 +253,14 @@ macro_rules! slots {
 fn inputs(batch: &mut FwBatch) -> Vec<(&'static str, &mut *const f64)> {
     slots!(batch: gap area radius age opening_n opening_t1 opening_t2 velocity_n velocity_t1 velocity_t2
         impulse_n impulse_t1 impulse_t2 damage energy_intact intact_n intact_t1 intact_t2 slip friction_work pressed
-        rotation_n rotation_t1 rotation_t2 intact_moment_n intact_moment_t1 intact_moment_t2)
+        rotation_n rotation_t1 rotation_t2 intact_moment_n intact_moment_t1 intact_moment_t2
+        overlap effective_mass spring_t1 spring_t2)
 }
 
 fn outputs(batch: &mut FwBatch) -> Vec<(&'static str, &mut *mut f64)> {
     slots!(batch: out_friction out_restitution_n out_restitution_t out_tension_strength out_shear_cohesion out_rolling
         out_spinning out_traction_n out_traction_t1 out_traction_t2 out_stiffness_n out_stiffness_t out_damping_n
         out_damping_t out_energy out_damage out_volume out_moment_n out_moment_t1 out_moment_t2 out_stiffness_twist
-        out_stiffness_bend)
+        out_stiffness_bend out_contact_force_n out_contact_force_t1 out_contact_force_t2 out_contact_stiffness_n
+        out_contact_stiffness_t out_contact_unloading_t out_contact_damping_n out_contact_damping_t)
 }

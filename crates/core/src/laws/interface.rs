@@ -4,7 +4,8 @@ use super::error::LawError;
 use super::kind::{Domain, Kind};
 use super::library::Plugin;
 use fretwork_abi::{
-    FLAG_BREAKS, FLAG_CONSTANT, FLAG_FORMS, FLAG_MOMENT, FLAG_OPENING, FLAG_TENSION_ONLY,
+    FLAG_BREAKS, FLAG_COMPLIANT, FLAG_CONSTANT, FLAG_FORMS, FLAG_MOMENT, FLAG_OPENING,
+    FLAG_TENSION_ONLY,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -296,6 +297,11 @@ impl Interface {
     /// Returns whether the normal stiffness acts in tension only.
     pub fn tension_only(&self) -> bool {
         self.cohesion_flags & FLAG_TENSION_ONLY != 0
+    }
+
+    /// Returns whether contacts are springs.
+    pub fn compliant(&self) -> bool {
+        self.contact().has(FLAG_COMPLIANT)
     }
 
     /// Returns whether friction and restitution are the same for all contacts and steps.

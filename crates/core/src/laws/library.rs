@@ -225,6 +225,14 @@ impl Plugin {
         if self.flags & abi::FLAG_CONSTANT != 0 && !self.variables.is_empty() {
             return Err("it says that it depends on its parameters only (FW_FLAG_CONSTANT) and has internal variables; drop one of the two".into());
         }
+        if self.flags & abi::FLAG_COMPLIANT != 0 {
+            if self.kind != Kind::CONTACT {
+                return Err("only a contact law can be a spring (FW_FLAG_COMPLIANT)".into());
+            }
+            if self.flags & abi::FLAG_CONSTANT != 0 {
+                return Err("a spring depends on the overlap of each contact: drop FW_FLAG_CONSTANT or FW_FLAG_COMPLIANT".into());
+            }
+        }
         for (k, field) in self.parameters.iter().enumerate() {
             if self.parameters[..k].iter().any(|f| f.name == field.name) {
                 return Err(format!("its parameter `{}` is declared twice", field.name));

@@ -20,6 +20,7 @@ mod plugin_table;
 mod prepare;
 mod range;
 pub mod search;
+mod spring;
 pub mod static_memory;
 mod step_result;
 mod trust;
@@ -35,4 +36,5 @@ pub use plugin_table::Field;
 
 pub use range::Range;
 pub use search::{Place, SearchPath};
+pub use spring::{SpringForm, SpringStep};
 pub use step_result::{ContactStep, MomentStep, SolvedStep, Totals, Velocities};

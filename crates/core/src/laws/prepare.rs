@@ -7,6 +7,7 @@ use super::gather::contact_area;
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::library::Call;
+use super::spring::SpringForm;
 use super::step_result::Velocities;
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
@@ -47,6 +48,7 @@ struct Preparation<'a, S: Space> {
     before: &'a Velocities<S>,
     info: &'a StepInfo,
     forms: &'a mut [ContactForm<S>],
+    springs: &'a mut [Option<SpringForm<S>>],
     moments: &'a mut Vec<MomentForm<S>>,
 }
 
@@ -64,15 +66,21 @@ impl LawEvaluator {
         before: &Velocities<S>,
         info: &StepInfo,
         forms: &mut [ContactForm<S>],
+        springs: &mut Vec<Option<SpringForm<S>>>,
         moments: &mut Vec<MomentForm<S>>,
     ) -> Result<(), LawError> {
         moments.clear();
+        springs.clear();
+        if laws.iter().any(Interface::compliant) {
+            springs.resize(forms.len(), None);
+        }
         self.held_back.clear();
         let mut step = Preparation {
             network,
             before,
             info,
             forms,
+            springs,
             moments,
         };
         for (index, law) in laws.iter().enumerate() {
@@ -126,7 +134,7 @@ impl LawEvaluator {
             self.columns.clear();
             self.columns.n = 1;
         } else {
-            self.gather(law, network, &step.before.relative, info);
+            self.gather(law, network, step.before, info);
         }
         self.columns.size_outputs();
         self.run(law.contact(), history, info, 0.0, Call::Prepare)
@@ -134,6 +142,11 @@ impl LawEvaluator {
         for (k, at) in self.members.iter().enumerate() {
             let friction = Friction::of(&self.columns.out, if constant { 0 } else { k });
             let area = contact_area(law, network, &network.contacts[*at]);
+            if law.compliant() {
+                let spring = self.spring(k, &network.contacts[*at], network);
+                spring.apply(info.h, &mut step.forms[*at]);
+                step.springs[*at] = Some(spring);
+            }
             let held_back = apply_friction(
                 &mut step.forms[*at],
                 &friction,
@@ -175,7 +188,7 @@ impl LawEvaluator {
         let (network, info) = (step.network, step.info);
         let count = self.members.len();
         if law.constant_contact() {
-            self.gather(law, network, &step.before.relative, info);
+            self.gather(law, network, step.before, info);
         } else {
             // The members are the first in the columns of the contact law.
             self.columns.truncate(count);
@@ -196,6 +209,29 @@ impl LawEvaluator {
             }
         }
         Ok(())
+    }
+
+    /// The spring of a member, as its law gave it.
+    fn spring<S: Space>(
+        &self,
+        k: usize,
+        contact: &Contact<S>,
+        network: &Network<S>,
+    ) -> SpringForm<S> {
+        let (columns, out) = (&self.columns, &self.columns.out);
+        let [force_n, t1, t2] = &out.contact_force;
+        let t2 = if S::D == 3 { t2[k] } else { 0.0 };
+        SpringForm {
+            gap: network.spring_gap(contact),
+            overlap: columns.overlap[k],
+            force_n: force_n[k],
+            stiffness_n: out.contact_stiffness_n[k],
+            damping_n: out.contact_damping_n[k],
+            force_t: S::from_components(&contact.normal, t1[k], t2),
+            stiffness_t: out.contact_stiffness_t[k],
+            unloading_t: out.contact_unloading_t[k],
+            damping_t: out.contact_damping_t[k],
+        }
     }
 
     fn apply_cohesion<S: Space>(

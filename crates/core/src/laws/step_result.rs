@@ -1,7 +1,9 @@
 //! What the contacts did in a step, as the solver gives it to the laws, and the sums of their energies.
 
 use super::columns::StepInfo;
-use crate::geometry::space::Space;
+use super::spring::SpringStep;
+use crate::contact::Contact;
+use crate::geometry::space::{Space, VectorLike};
 use crate::solve::MomentSolution;
 use crate::solve::form::ContactSolution;
 
@@ -40,19 +42,32 @@ pub struct MomentStep<S: Space> {
 pub struct SolvedStep<'a, S: Space> {
     /// Results of the contacts, in the network's order.
     pub contacts: &'a [ContactStep<S>],
+    /// What compliant contacts did, in the network's order; empty without a compliant law.
+    pub springs: &'a [Option<SpringStep<S>>],
     /// Moments of the contacts that resist rotation.
     pub moments: &'a [MomentStep<S>],
     /// Time and scheme of the step.
     pub info: &'a StepInfo,
 }
 
-/// Relative velocities at the start of a step, one per contact.
+impl<S: Space> SolvedStep<'_, S> {
+    /// What a contact did, where it is compliant.
+    pub fn spring(&self, contact: usize) -> Option<&SpringStep<S>> {
+        self.springs.get(contact)?.as_ref()
+    }
+}
+
+/// What is known of the contacts at the start of a step: relative velocities, one per contact.
 #[derive(Clone, Debug)]
 pub struct Velocities<S: Space> {
     /// u^- (m/s).
     pub relative: Vec<S::Vector>,
     /// Relative spins (rad/s); empty unless a bond resists rotation.
     pub turning: Vec<S::Spin>,
+    /// Estimates of the overlaps at the end of the step (m), one per contact; empty without a compliant law.
+    pub overlap: Vec<f64>,
+    /// Effective masses along the normals (kg; kg/m in 2D), zero between immovable bodies; as `overlap`.
+    pub effective_mass: Vec<f64>,
 }
 
 impl<S: Space> Default for Velocities<S> {
@@ -60,6 +75,20 @@ impl<S: Space> Default for Velocities<S> {
         Self {
             relative: Vec::new(),
             turning: Vec::new(),
+            overlap: Vec::new(),
+            effective_mass: Vec::new(),
+        }
+    }
+}
+
+impl<S: Space> Velocities<S> {
+    /// Contacts at rest, with the overlaps that they have.
+    pub(super) fn still(contacts: &[Contact<S>]) -> Self {
+        Self {
+            relative: vec![S::Vector::zero(); contacts.len()],
+            turning: Vec::new(),
+            overlap: contacts.iter().map(|c| (-c.gap).max(0.0)).collect(),
+            effective_mass: vec![0.0; contacts.len()],
         }
     }
 }
@@ -73,8 +102,10 @@ pub struct Totals {
     pub impact: f64,
     /// Dissipated against tensile strength (cohesion without opening).
     pub adhesion: f64,
-    /// Dissipated by damping of bonds.
+    /// Dissipated by damping of bonds and of compliant contacts.
     pub viscous: f64,
+    /// Work into the springs of compliant contacts, less what they dissipated.
+    pub springs: f64,
     /// Work of the position correction, negative: it separates penetrating bodies.
     pub correction: f64,
     /// Fracture energy released by damage.

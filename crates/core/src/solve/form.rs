@@ -31,6 +31,9 @@ pub struct ContactForm<S: Space> {
     pub cohesion: f64,
     /// The single-valued (bond) part, if any.
     pub elastic: Option<Elastic<S>>,
+    /// Compliance c of the unilateral part over the step, normal and tangential (1/kg): its law is in u + s + c p; zero for
+    /// a rigid contact.
+    pub compliance: [f64; 2],
     /// Initial impulse, in world axes (N s).
     pub impulse: S::Vector,
 }
@@ -50,6 +53,7 @@ impl<S: Space> ContactForm<S> {
             tension: 0.0,
             cohesion: 0.0,
             elastic: None,
+            compliance: [0.0; 2],
             impulse: S::Vector::zero(),
         }
     }
@@ -195,6 +199,7 @@ pub(super) enum Place {
 ///     tension: 0.0,
 ///     cohesion: 0.0,
 ///     elastic: None,
+///     compliance: [0.0; 2],
 ///     impulse: Vector2::zero(),
 /// });
 /// let report = nlgs::solve(&mut problem, &Options { tolerance: 1e-10, ..Options::default() });
@@ -214,7 +219,7 @@ pub struct Problem<S: Space> {
     pub(super) masses: Vec<Mobility<S>>,
     /// Contacts of two balls (or a ball and an immovable body), without bond: the fast path.
     pub(super) plain: Vec<PlainRow<S>>,
-    /// Contacts as in `plain`, but with bonds, cohesion or tangential restitution.
+    /// Contacts as in `plain`, but with springs, bonds, cohesion or tangential restitution.
     pub(super) full: Vec<FullRow<S>>,
     /// Contacts with lever arms, or of bodies that are free along some axes only.
     pub(super) general: Vec<GeneralRow<S>>,
@@ -323,6 +328,7 @@ impl<S: Space> Problem<S> {
         let plain = contact.elastic.is_none()
             && contact.tension == 0.0
             && contact.cohesion == 0.0
+            && contact.compliance == [0.0; 2]
             && contact.shift_t == S::Tangent::zero();
         if contact.central {
             let (i, j) = (contact.bodies[0] as usize, contact.bodies[1] as usize);

@@ -188,6 +188,7 @@ mod tests {
             tension: 0.0,
             cohesion: 0.0,
             elastic: None,
+            compliance: [0.0; 2],
             impulse: Vector2::zeros(),
         }
     }

@@ -4,9 +4,9 @@
 use super::Simulation;
 use super::motion::StepStart;
 use crate::contact::Contact;
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::laws::columns::StepInfo;
-use crate::laws::{ContactStep, Interface, MomentStep, SolvedStep, Velocities};
+use crate::laws::{ContactStep, Interface, MomentStep, SolvedStep, SpringStep, Velocities};
 use crate::solve::{self, MomentForm};
 
 /// Results of the contacts in a solved step. The buffers are reused from step to step, because allocating
@@ -15,6 +15,8 @@ use crate::solve::{self, MomentForm};
 pub(super) struct Solved<S: Space> {
     pub before: Velocities<S>,
     pub contact_steps: Vec<ContactStep<S>>,
+    /// Those of compliant contacts; empty without a compliant law.
+    pub springs: Vec<Option<SpringStep<S>>>,
     pub moment_steps: Vec<MomentStep<S>>,
 }
 
@@ -23,6 +25,7 @@ impl<S: Space> Solved<S> {
     pub fn step<'a>(&'a self, info: &'a StepInfo) -> SolvedStep<'a, S> {
         SolvedStep {
             contacts: &self.contact_steps,
+            springs: &self.springs,
             moments: &self.moment_steps,
             info,
         }
@@ -34,6 +37,7 @@ impl<S: Space> Default for Solved<S> {
         Self {
             before: Velocities::default(),
             contact_steps: Vec::new(),
+            springs: Vec::new(),
             moment_steps: Vec::new(),
         }
     }
@@ -69,7 +73,52 @@ impl<S: Space> Simulation<S> {
                 .turning
                 .extend(self.state.network.contacts.iter().map(relative));
         }
+        before.overlap.clear();
+        before.effective_mass.clear();
+        if self.laws.iter().any(Interface::compliant) {
+            let h = self.options.scheme.h;
+            let contacts = self.state.network.contacts.iter().zip(&before.relative);
+            for (contact, u) in contacts {
+                let gap = self.state.network.spring_gap(contact) + h * contact.normal.dot(u);
+                before.overlap.push((-gap).max(0.0));
+                let mass = self.effective_mass(contact);
+                before.effective_mass.push(mass);
+            }
+        }
         self.workspace.solved.before = before;
+    }
+
+    /// The mass of a contact along its normal, 1/W_nn (kg; kg/m in 2D); zero between bodies that cannot move.
+    fn effective_mass(&self, contact: &Contact<S>) -> f64 {
+        let (bodies, n) = (&self.state.bodies, &contact.normal);
+        let mobility = |side: usize| {
+            let b = contact.bodies[side] as usize;
+            let turning = S::rotation_block(&contact.arms[side], &bodies.inverse_tensor(b));
+            n.dot(&n.scaled_by(&bodies.inverse_mass[b])) + n.dot(&turning.apply(n))
+        };
+        let w = mobility(0) + mobility(1);
+        if w > 0.0 { 1.0 / w } else { 0.0 }
+    }
+
+    /// Collects what compliant contacts did.
+    fn collect_spring_steps(&mut self) {
+        let mut springs = std::mem::take(&mut self.workspace.solved.springs);
+        springs.clear();
+        let steps = self.workspace.solved.contact_steps.iter();
+        let all = self.workspace.springs.iter().zip(steps).enumerate();
+        springs.extend(all.map(|(k, (spring, contact_step))| {
+            let contact = &self.state.network.contacts[k];
+            let end = self.relative_velocity(k, contact);
+            Some(spring.as_ref()?.complete(
+                &self.workspace.forms[k],
+                &contact_step.solution,
+                [&end, &contact_step.average],
+                contact_step.slides,
+                &contact.spring,
+                self.options.scheme.h,
+            ))
+        }));
+        self.workspace.solved.springs = springs;
     }
 
     /// Collects the results of all contacts.
@@ -92,6 +141,7 @@ impl<S: Space> Simulation<S> {
             // The shift comes from the position correction unless restitution replaced it; a bounce does no
             // correction work.
             let lifts = form.shift_n < 0.0
+                && form.compliance[0] == 0.0
                 && n.dot(before) >= form.shift_n
                 && form.shift_n == self.shift_of_gap(contact, self.options.scheme.h);
             let lift = if lifts {
@@ -112,6 +162,7 @@ impl<S: Space> Simulation<S> {
             }
         }));
         self.workspace.solved.contact_steps = contact_steps;
+        self.collect_spring_steps();
     }
 
     /// Collects the results of the contacts that resist rotation.

@@ -74,6 +74,7 @@ impl<S: Space> Simulation<S> {
     ) -> Result<(StepStart<S>, Motions<S>), StepError> {
         let StepInfo { time, h, theta, .. } = *info;
         let mut start = StepStart::new(&self.state.bodies);
+        self.workspace.spring_energy = self.state.network.spring_energy();
         let clock = Instant::now();
         motion::advance(&mut self.state.bodies, (1.0 - theta) * h);
         self.begin_systems((1.0 - theta) * h);
@@ -169,6 +170,8 @@ impl<S: Space> Simulation<S> {
             h,
             theta,
         );
+        let change = self.state.network.spring_energy() - self.workspace.spring_energy;
+        work.scheme += totals.springs - change;
         let (moving, stored) = self.end_systems(theta * h, &mut work);
         let (mut kinetic, mut elastic) = (
             self.state.bodies.kinetic_energy(),

@@ -32,6 +32,7 @@ impl<S: Space> Simulation<S> {
                 &self.workspace.solved.before,
                 info,
                 &mut self.workspace.forms,
+                &mut self.workspace.springs,
                 &mut self.workspace.moments,
             );
             prepared.map_err(|e| self.law_error(e))?;
@@ -162,6 +163,7 @@ impl<S: Space> Simulation<S> {
             tension: 0.0,
             cohesion: 0.0,
             elastic: None,
+            compliance: [0.0; 2],
             impulse: contact.impulse,
         }));
         self.workspace.forms = forms;

@@ -212,6 +212,7 @@ fn pose<S: Space>(problem: &mut Problem<S>, bodies: &Bodies<S>, network: &Networ
             tension: hold,
             cohesion: hold,
             elastic: None,
+            compliance: [0.0; 2],
             impulse: S::Vector::zero(),
         });
     }

@@ -3,6 +3,7 @@
 use super::answers::Solved;
 use super::systems::SystemContacts;
 use crate::geometry::space::Space;
+use crate::laws::SpringForm;
 use crate::laws::evaluator::LawEvaluator;
 use crate::solve::{ContactForm, MomentForm, Problem};
 
@@ -15,6 +16,10 @@ pub(super) struct Workspace<S: Space> {
     pub problem: Problem<S>,
     /// Its contacts in the standard form, in the network's order.
     pub forms: Vec<ContactForm<S>>,
+    /// What the laws of compliant contacts gave, in the same order; empty without one.
+    pub springs: Vec<Option<SpringForm<S>>>,
+    /// Energy in springs of contacts at the start of the step (J).
+    pub spring_energy: f64,
     /// Those that resist rotation.
     pub moments: Vec<MomentForm<S>>,
     /// What contacts with dynamical systems act on.
@@ -31,6 +36,8 @@ impl<S: Space> Default for Workspace<S> {
             evaluator: LawEvaluator::default(),
             problem: Problem::default(),
             forms: Vec::new(),
+            springs: Vec::new(),
+            spring_energy: 0.0,
             moments: Vec::new(),
             systems: SystemContacts::default(),
             solved: Solved::default(),

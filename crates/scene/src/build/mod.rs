@@ -18,7 +18,7 @@ pub use surface::Dimensional;
 
 use super::case::Case;
 use super::interfaces;
-use super::material::{Material, MaterialLibrary};
+use super::material::{Material, MaterialLibrary, Sourced};
 use super::methods::{Demands, Service};
 use super::recorded::RecordReader;
 use super::scene_file::{self, SceneFile};
@@ -101,9 +101,13 @@ impl Loaded {
     /// Implementation of [`Self::build_in`], compiled once for each dimension.
     fn build_by<S: Dimensional>(&self, path: &SearchPath) -> Result<Built<S>, InputError> {
         let shelf = self.shelf();
-        let (densities, mut materials) = self.materials(&shelf)?;
-        let laws = interfaces::build(&self.case, &self.source, &shelf, path)?;
-        materials.extend(laws.files);
+        let Materials {
+            densities,
+            properties,
+            mut texts,
+        } = self.materials(&shelf)?;
+        let laws = interfaces::build(&self.case, &self.source, &shelf, &properties, path)?;
+        texts.extend(laws.files);
         let mut builder = Builder::<S> {
             case: &self.case,
             source: &self.source,
@@ -149,7 +153,7 @@ impl Loaded {
         let simulation = builder.finish(laws.interfaces, laws.table)?;
         Ok(Built {
             simulation,
-            materials,
+            materials: texts,
             densities,
             names,
             samples,
@@ -159,17 +163,13 @@ impl Loaded {
 
     /// Density of a material of the case (kg/m^3), without inertia scaling.
     pub fn density(&self, name: &str) -> Option<f64> {
-        let (densities, _) = self.materials(&self.shelf()).ok()?;
-        densities.get(name).map(|d| d.1)
+        let materials = self.materials(&self.shelf()).ok()?;
+        materials.densities.get(name).map(|d| d.1)
     }
 
-    /// Reads the materials: densities in the order of the case, and the texts of the files.
-    #[allow(clippy::type_complexity)]
-    fn materials(
-        &self,
-        shelf: &MaterialLibrary,
-    ) -> Result<(BTreeMap<String, (u16, f64)>, Vec<(String, String)>), InputError> {
-        let (mut densities, mut texts) = (BTreeMap::new(), Vec::new());
+    /// Reads the materials.
+    fn materials(&self, shelf: &MaterialLibrary) -> Result<Materials, InputError> {
+        let mut out = Materials::default();
         for (k, (name, file)) in self.case.materials.iter().enumerate() {
             let here = format!("materials.{name}");
             let source = shelf.read(file).map_err(|e| match e {
@@ -185,13 +185,25 @@ impl Loaded {
             })?;
             let material: Material = source.parse()?;
             let density = material.density().map_err(|f| source.locate(f))?;
-            densities.insert(name.clone(), (k as u16, density));
-            if !texts.iter().any(|t: &(String, String)| t.0 == *file) {
-                texts.push((file.clone(), source.text().to_owned()));
+            out.densities.insert(name.clone(), (k as u16, density));
+            out.properties.push(material.properties);
+            if !out.texts.iter().any(|t| t.0 == *file) {
+                out.texts.push((file.clone(), source.text().to_owned()));
             }
         }
-        Ok((densities, texts))
+        Ok(out)
     }
+}
+
+/// What the files of a case's materials say.
+#[derive(Default)]
+struct Materials {
+    /// Index in the order of the case and density (kg/m^3), by name.
+    densities: BTreeMap<String, (u16, f64)>,
+    /// Further properties, in the order of the case.
+    properties: Vec<BTreeMap<String, Sourced>>,
+    /// Names and texts of the files.
+    texts: Vec<(String, String)>,
 }
 
 /// Limit on the pairs of grains that a large skin may make neighbours, see [`Builder::refuse_wide_skin`].

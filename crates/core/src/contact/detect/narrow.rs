@@ -250,6 +250,13 @@ impl<'a, S: Space> Narrow<'a, S> {
                 found.slot = old.slot;
                 found.broken = old.broken;
                 let from = old.normal;
+                found.spring = old.spring;
+                if found.spring.force_t != S::Tangent::zero() {
+                    let [i, j] = found.bodies.map(|b| self.bodies.spin[b as usize]);
+                    let angle = 0.5 * self.h * S::split_spin(&found.normal, &(i + j)).0;
+                    let force = &mut found.spring.force_t;
+                    *force = S::transport(&from, &found.normal, angle, force);
+                }
                 if let Some(slot) = found.memory() {
                     // The memory of a bond rotates with the pair.
                     let [i, j] = found.bodies.map(|b| self.bodies.spin[b as usize]);

@@ -29,7 +29,7 @@ fn outputs(out: &mut Outputs, call: Call) -> Vec<Output<'_>> {
     if call != Call::Prepare {
         return Vec::new();
     }
-    [
+    let mut columns: Vec<_> = [
         ("out_friction", &mut out.friction, NotNegative),
         ("out_restitution_n", &mut out.restitution_n, Share),
         ("out_restitution_t", &mut out.restitution_t, Signed),
@@ -43,5 +43,24 @@ fn outputs(out: &mut Outputs, call: Call) -> Vec<Output<'_>> {
         ("out_shear_cohesion", &mut out.shear_cohesion, NotNegative),
     ]
     .map(Output::ranged)
-    .into()
+    .into();
+    let [force_n, force_t1, force_t2] = &mut out.contact_force;
+    if force_n.is_empty() {
+        return columns;
+    }
+    let springs = [
+        ("out_contact_force_n", force_n),
+        ("out_contact_stiffness_n", &mut out.contact_stiffness_n),
+        ("out_contact_stiffness_t", &mut out.contact_stiffness_t),
+        ("out_contact_unloading_t", &mut out.contact_unloading_t),
+        ("out_contact_damping_n", &mut out.contact_damping_n),
+        ("out_contact_damping_t", &mut out.contact_damping_t),
+    ];
+    columns.extend(springs.map(|(name, values)| Output::ranged((name, values, NotNegative))));
+    let tangential = [
+        ("out_contact_force_t1", force_t1),
+        ("out_contact_force_t2", force_t2),
+    ];
+    columns.extend(tangential.map(Output::finite));
+    columns
 }

@@ -6,11 +6,12 @@ use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
 use crate::solve::local::contact::Local;
 
-/// (1 + W B)^-1 and W' = (1 + W B)^-1 W of a block.
+/// (1 + W B)^-1, W' = (1 + W B)^-1 W, and W' + C with the compliance of the unilateral part.
 #[derive(Clone, Debug)]
 struct Block<S: Space> {
     m: S::Matrix,
     w: S::Matrix,
+    compliant: S::Matrix,
     iwn: f64,
     iwt: f64,
     exact: Exact,
@@ -54,7 +55,8 @@ impl Exact {
 }
 
 impl<S: Space> Block<S> {
-    fn new(w: S::Matrix, n: &S::Vector, mu: f64, b_n: f64, b_t: f64) -> Self {
+    fn new(w: S::Matrix, contact: &ContactForm<S>, [b_n, b_t]: [f64; 2]) -> Self {
+        let (n, mu, [c_n, c_t]) = (&contact.normal, contact.friction, contact.compliance);
         let mut ones = S::Vector::zero();
         for k in 0..S::D {
             ones[k] = 1.0;
@@ -63,7 +65,8 @@ impl<S: Space> Block<S> {
         let nn = S::Matrix::dyad(n, n);
         let b = nn.scaled(b_n - b_t) + one.scaled(b_t);
         let m = (one + w.times(&b)).inverse().unwrap_or(one);
-        let w = m.times(&w);
+        let rigid = m.times(&w);
+        let w = rigid + nn.scaled(c_n - c_t) + one.scaled(c_t);
         let [t1, t2] = S::tangents(n);
         let (a, c) = (t1.dot(&w.apply(&t1)), t2.dot(&w.apply(&t2)));
         let cross = t1.dot(&w.apply(&t2));
@@ -72,7 +75,8 @@ impl<S: Space> Block<S> {
         Self {
             m,
             exact: Exact::new::<S>(&w, n, mu),
-            w,
+            w: rigid,
+            compliant: w,
             iwn: inverse(w_n),
             iwt: inverse_along(largest, w_n),
         }
@@ -103,7 +107,7 @@ impl<S: Space> Terms<S> {
         }
         // In P = s + tension and u + shift it is Coulomb's law.
         let shift = *n * self.shift_n + S::tangent_vector(n, &self.shift_t);
-        let f = *f + shift - block.w.apply(&(*n * self.tension));
+        let f = *f + shift - block.compliant.apply(&(*n * self.tension));
         let (pn, pt) = block.exact.solve::<S>(n, &f);
         (pn - self.tension, pt)
     }
@@ -116,9 +120,15 @@ impl<S: Space> Terms<S> {
         let (mut sn, mut st) = self.start;
         for _ in 0..ALTERNATIONS {
             let (old_n, old_t) = (sn, st);
-            let u = block.w.apply(&(*n * sn + S::tangent_vector(n, &st))) + *f;
+            let u = block
+                .compliant
+                .apply(&(*n * sn + S::tangent_vector(n, &st)))
+                + *f;
             sn = (sn - (n.dot(&u) + self.shift_n) * block.iwn).max(-self.tension);
-            let u = block.w.apply(&(*n * sn + S::tangent_vector(n, &st))) + *f;
+            let u = block
+                .compliant
+                .apply(&(*n * sn + S::tangent_vector(n, &st)))
+                + *f;
             let ut = S::tangential(n, &u) + self.shift_t;
             let bound = self.mu * (sn + self.tension) + self.cohesion;
             st = (st - ut * block.iwt).limited(bound);
@@ -145,6 +155,7 @@ pub(in crate::solve) struct BlockContact<S: Space> {
     tension: f64,
     cohesion: f64,
     elastic: Elastic<S>,
+    compliance: [f64; 2],
     sn: f64,
     st: S::Tangent,
 }
@@ -154,10 +165,10 @@ impl<S: Space> BlockContact<S> {
     pub fn new(contact: &ContactForm<S>, block: S::Matrix) -> Self {
         let n = contact.normal;
         let elastic = contact.elastic.unwrap_or_else(Elastic::none);
-        let pulled = Block::new(block, &n, contact.friction, elastic.b_n, elastic.b_t);
+        let pulled = Block::new(block, contact, [elastic.b_n, elastic.b_t]);
         let slack = elastic
             .tension_only
-            .then(|| Block::new(block, &n, contact.friction, 0.0, elastic.b_t));
+            .then(|| Block::new(block, contact, [0.0, elastic.b_t]));
         Self {
             n,
             p: contact.impulse,
@@ -170,6 +181,7 @@ impl<S: Space> BlockContact<S> {
             tension: contact.tension,
             cohesion: contact.cohesion,
             elastic,
+            compliance: contact.compliance,
             sn: n.dot(&contact.impulse).max(0.0),
             st: S::Tangent::zero(),
         }
@@ -281,12 +293,13 @@ impl<S: Space> BlockContact<S> {
         let rho = self.rho();
         let (un, ut) = (n.dot(u), S::tangential(n, u));
         if rho > 0.0 {
-            let pn = n.dot(&self.p) - en + self.tension;
+            let pn = n.dot(&self.p) - en;
             let pt = S::tangential(n, &self.p) - et;
+            let [c_n, c_t] = self.compliance;
             natural_map(
-                (pn, pt),
+                (pn + self.tension, pt),
                 (un, ut),
-                (self.shift_n, self.shift_t),
+                (self.shift_n + pn * c_n, self.shift_t + pt * c_t),
                 rho,
                 self.mu,
                 self.cohesion,
@@ -328,6 +341,7 @@ mod tests {
                 tension: 0.0,
                 cohesion: 0.0,
                 elastic: None,
+                compliance: [0.0; 2],
                 impulse: S::Vector::zero(),
             };
             let mut contact = BlockContact::<S>::new(&form, S::Matrix::uniform(1.0));

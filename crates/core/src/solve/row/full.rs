@@ -1,4 +1,4 @@
-//! Contact of two balls with a bond, cohesion or tangential restitution, solved in closed form.
+//! Contact of two balls with a spring, a bond, cohesion or tangential restitution, solved in closed form.
 
 use super::{
     Residual, Row, SolverBody, inverse, inverse_along, natural_map, push, relative, restore_parts,
@@ -7,9 +7,9 @@ use super::{
 use crate::geometry::space::{Space, VectorLike, greatest, least};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
 
-/// One direction with w = W_cc, f = u - w p and p_el = -(a + b u): by elimination of u, s = q - f/w while
-/// the contact is closed (or sticks), and p_el = -(k + c (w s + f)), q = a - (1 + w b) shift/w, k = a/(1 + w
-/// b), c = b/(1 + w b).
+/// One direction with w = W_cc, f = u - w p and p_el = -(a + b u): by elimination of u, s = q - f iw while
+/// the contact is closed (or sticks), and p_el = -(k + c (w s + f)). With the compliance C of the unilateral part, which keeps u + shift + C s
+/// at zero: iw = 1/(w + C (1 + w b)), q = (w a - (1 + w b) shift) iw, k = a/(1 + w b), c = b/(1 + w b).
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct Direction<T> {
@@ -27,6 +27,7 @@ struct Bond<T> {
     a: T,
     b: f64,
     shift: T,
+    compliance: f64,
 }
 
 /// See the module. `lanes` reads its fields in their order.
@@ -38,8 +39,9 @@ pub(in crate::solve) struct FullRow<S: Space> {
     pt: S::Tangent,
     normal: Direction<f64>,
     tangent: Direction<S::Tangent>,
-    /// Inactive tension-only bond: s = q_0 - f/w.
+    /// Inactive tension-only bond: s = q_0 - f iw_0.
     q_slack: f64,
+    iw_slack: f64,
     /// Threshold above which the bond's normal part is inactive: 0 for a tension-only bond, otherwise
     /// infinity.
     limit: f64,
@@ -48,6 +50,8 @@ pub(in crate::solve) struct FullRow<S: Space> {
     /// Friction bound at zero normal impulse, mu h c_n + h c_t.
     grip: f64,
     cohesion: f64,
+    /// Of the natural map: 1/(W' + C), the smaller of both directions.
+    rho: f64,
     bond_n: Bond<f64>,
     bond_t: Bond<S::Tangent>,
     bodies: [u32; 2],
@@ -61,6 +65,16 @@ impl<S: Space> FullRow<S> {
         let (iwn, iwt) = (inverse(w_n), inverse_along(w_t, w_n));
         // Between two immovable bodies there is no contact impulse; their bond still acts.
         let movable = f64::from(u8::from(w_n > 0.0));
+        let [cn, ct] = contact.compliance;
+        // What a compliance leaves of 1/w, where the bond multiplies w by 1/d; 1 for a rigid contact.
+        let share = |w: f64, c: f64, d: f64| if c > 0.0 { w / (w + c * d) } else { 1.0 };
+        let (share_n, share_t) = (share(w_n, cn, dn), share(w_t, ct, dt));
+        let share_slack = share(w_n, cn, 1.0);
+        // 1/W' of a direction is (1 + w b)/w.
+        let rho = least(
+            iwn * share_n + e.b_n * share_n,
+            iwt * share_t + e.b_t * share_t,
+        );
         Self {
             bodies: contact.bodies,
             n,
@@ -68,9 +82,9 @@ impl<S: Space> FullRow<S> {
             pt: S::tangential(&n, &contact.impulse),
             normal: Direction {
                 w: w_n,
-                iw: iwn,
+                iw: iwn * share_n,
                 q: if w_n > 0.0 {
-                    e.a_n - contact.shift_n * dn * iwn
+                    (e.a_n - contact.shift_n * dn * iwn) * share_n
                 } else {
                     0.0
                 },
@@ -79,30 +93,34 @@ impl<S: Space> FullRow<S> {
             },
             tangent: Direction {
                 w: w_t,
-                iw: iwt,
-                q: e.a_t * movable - contact.shift_t * (dt * iwt),
+                iw: iwt * share_t,
+                q: (e.a_t * movable - contact.shift_t * (dt * iwt)) * share_t,
                 k: e.a_t * (1.0 / dt),
                 c: e.b_t / dt,
             },
             q_slack: if w_n > 0.0 {
-                -contact.shift_n * iwn
+                -contact.shift_n * iwn * share_slack
             } else {
                 0.0
             },
+            iw_slack: iwn * share_slack,
             limit: if e.tension_only { 0.0 } else { f64::INFINITY },
             mu: contact.friction,
             tension: contact.tension,
             grip: contact.friction * contact.tension + contact.cohesion,
             cohesion: contact.cohesion,
+            rho: if iwn == 0.0 { 0.0 } else { rho },
             bond_n: Bond {
                 a: e.a_n,
                 b: e.b_n,
                 shift: contact.shift_n,
+                compliance: cn,
             },
             bond_t: Bond {
                 a: e.a_t,
                 b: e.b_t,
                 shift: contact.shift_t,
+                compliance: ct,
             },
         }
     }
@@ -136,7 +154,7 @@ impl<S: Space> Row<S> for FullRow<S> {
         // often.
         let with = greatest(n.q - f * n.iw, -self.tension);
         let pull = -(n.k + n.c * (n.w * with + f));
-        let without = greatest(self.q_slack - f * n.iw, -self.tension);
+        let without = greatest(self.q_slack - f * self.iw_slack, -self.tension);
         let slack = pull > self.limit;
         let sn = std::hint::select_unpredictable(slack, without, with);
         let en = std::hint::select_unpredictable(slack, 0.0, pull);
@@ -181,14 +199,7 @@ impl<S: Space> Row<S> for FullRow<S> {
     }
 
     fn rho(&self) -> f64 {
-        if self.normal.iw == 0.0 {
-            return 0.0;
-        }
-        // 1/W' of a direction is (1 + w b)/w.
-        least(
-            self.normal.iw + self.bond_n.b,
-            self.tangent.iw + self.bond_t.b,
-        )
+        self.rho
     }
 
     fn residual(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> Residual {
@@ -198,8 +209,12 @@ impl<S: Space> Row<S> for FullRow<S> {
         }
         let (un, ut) = relative(&self.n, a, b);
         let (en, et) = self.bond(un, ut);
-        let shifted = (self.pn - en + self.tension, self.pt - et);
-        let shift = (self.bond_n.shift, self.bond_t.shift);
+        let (sn, st) = (self.pn - en, self.pt - et);
+        let shifted = (sn + self.tension, st);
+        let shift = (
+            self.bond_n.shift + sn * self.bond_n.compliance,
+            self.bond_t.shift + st * self.bond_t.compliance,
+        );
         natural_map(shifted, (un, ut), shift, rho, self.mu, self.cohesion)
     }
 

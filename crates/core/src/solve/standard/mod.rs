@@ -146,6 +146,9 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             Law::Coulomb(mu)
         };
         let mut own = axes;
+        for (d, axis) in own.iter_mut().enumerate() {
+            axis.compliance = form.compliance[usize::from(d > 0)];
+        }
         if open(form) {
             // It carries no normal impulse at any velocity: w p = 0, without coupling to the bodies.
             let mobility = |b: &u32| {
@@ -289,7 +292,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
                 let shift = S::components(n, &form.shift_t);
                 let q = &mut self.q[c as usize];
                 if !open(form) {
-                    q[0] += form.shift_n;
+                    q[0] += form.shift_n - form.compliance[0] * form.tension;
                 }
                 for k in 1..D {
                     q[k] += shift[k - 1];

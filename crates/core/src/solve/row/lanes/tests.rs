@@ -55,6 +55,7 @@ fn contact<S: Space>(pair: u32) -> ContactForm<S> {
         tension: 0.0,
         cohesion: 0.0,
         elastic: None,
+        compliance: [0.0; 2],
         impulse: normal * (1.0 + wave(32, pair)),
     }
 }

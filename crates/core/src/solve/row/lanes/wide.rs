@@ -226,6 +226,7 @@ struct Full<F: Frame, const U: usize> {
     normal: Direction<U, Lanes<U>>,
     tangent: Direction<U, F::T<U>>,
     q_slack: Lanes<U>,
+    iw_slack: Lanes<U>,
     limit: Lanes<U>,
     mu: Lanes<U>,
     tension: Lanes<U>,
@@ -237,7 +238,7 @@ impl<F: Frame, const U: usize> Full<F, U> {
     unsafe fn new(rows: &Records<FullRow<F>, U>) -> Self {
         let [v, t] = const {
             let [v, t] = sizes::<F>();
-            assert!(size_of::<FullRow<F>>() == 8 * (Bonds::<F, U>::BEFORE + 2 * t + 5 + 1));
+            assert!(size_of::<FullRow<F>>() == 8 * (Bonds::<F, U>::BEFORE + 2 * t + 8 + 1));
             [v, t]
         };
         // SAFETY: the row is those numbers, then those of `Bonds` and two indices.
@@ -261,6 +262,7 @@ impl<F: Frame, const U: usize> Full<F, U> {
                 c: r.number(),
             },
             q_slack: r.number(),
+            iw_slack: r.number(),
             limit: r.number(),
             mu: r.number(),
             tension: r.number(),
@@ -272,42 +274,41 @@ impl<F: Frame, const U: usize> Full<F, U> {
 /// Additional data of the convergence test.
 struct Bonds<F: Frame, const U: usize> {
     cohesion: Lanes<U>,
+    rho: Lanes<U>,
     a_n: Lanes<U>,
     b_n: Lanes<U>,
     shift_n: Lanes<U>,
+    compliance_n: Lanes<U>,
     a_t: F::T<U>,
     b_t: Lanes<U>,
     shift_t: F::T<U>,
+    compliance_t: Lanes<U>,
 }
 
 impl<F: Frame, const U: usize> Bonds<F, U> {
     /// Number of numbers of a row before these.
     const BEFORE: usize = {
         let [v, t] = sizes::<F>();
-        v + 3 * t + 14
+        v + 3 * t + 15
     };
 
     #[inline(always)]
     unsafe fn new(rows: &Records<FullRow<F>, U>) -> Self {
         let [_, t] = const { sizes::<F>() };
         // SAFETY: the row ends with them and two indices.
-        let mut r = unsafe { Reader::new(rows, Self::BEFORE, 2 * t + 5) };
+        let mut r = unsafe { Reader::new(rows, Self::BEFORE, 2 * t + 8) };
         Self {
             cohesion: r.number(),
+            rho: r.number(),
             a_n: r.number(),
             b_n: r.number(),
             shift_n: r.number(),
+            compliance_n: r.number(),
             a_t: r.tuple(t),
             b_t: r.number(),
             shift_t: r.tuple(t),
+            compliance_t: r.number(),
         }
-    }
-
-    #[inline(always)]
-    fn rho(&self, row: &Full<F, U>) -> Lanes<U> {
-        let rho = (row.normal.iw + self.b_n).min(row.tangent.iw + self.b_t);
-        let zero = Lanes::all(0.0);
-        row.normal.iw.above(zero).choose(rho, zero)
     }
 }
 
@@ -333,7 +334,7 @@ impl<F: Frame> Wide for FullRow<F> {
             let f = un - n.w * r.pn;
             let with = (n.q - f * n.iw).max(-r.tension);
             let pull = -(n.k + n.c * (n.w * with + f));
-            let without = (r.q_slack - f * n.iw).max(-r.tension);
+            let without = (r.q_slack - f * r.iw_slack).max(-r.tension);
             let slack = pull.above(r.limit);
             let sn = slack.choose(without, with);
             let en = slack.choose(Lanes::all(0.0), pull);
@@ -355,7 +356,7 @@ impl<F: Frame> Wide for FullRow<F> {
             n: r.n,
             pn: r.pn,
             pt: r.pt,
-            rho: bonds.rho(&r),
+            rho: bonds.rho,
             mu: r.mu,
         }
     }
@@ -372,16 +373,13 @@ impl<F: Frame> Wide for FullRow<F> {
         let pull = -(bonds.a_n + bonds.b_n * un);
         let en = pull.above(r.limit).choose(Lanes::all(0.0), pull);
         let et = -(bonds.a_t + ut * bonds.b_t);
-        let shifted = (r.pn - en + r.tension, r.pt - et);
-        let shift = (bonds.shift_n, bonds.shift_t);
-        natural_map(
-            shifted,
-            (un, ut),
-            shift,
-            bonds.rho(&r),
-            r.mu,
-            bonds.cohesion,
-        )
+        let (sn, st) = (r.pn - en, r.pt - et);
+        let shifted = (sn + r.tension, st);
+        let shift = (
+            bonds.shift_n + sn * bonds.compliance_n,
+            bonds.shift_t + st * bonds.compliance_t,
+        );
+        natural_map(shifted, (un, ut), shift, bonds.rho, r.mu, bonds.cohesion)
     }
 }
 

@@ -1,0 +1,35 @@
+//! The state of the spring of a compliant contact.
+
+use crate::geometry::space::{Space, VectorLike};
+use serde::{Deserialize, Serialize};
+
+/// The spring of a compliant contact at the end of a step; all zero for a rigid contact and one that does not touch.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct Spring<S: Space> {
+    /// Overlap of the bodies (m).
+    pub overlap: f64,
+    /// Normal force of the spring at this overlap (N; N/m in 2D).
+    pub force_n: f64,
+    /// Tangential force of the spring (N; N/m in 2D), along the displacement of the candidate.
+    pub force_t: S::Tangent,
+    /// Stored energy, normal and tangential (J; J/m in 2D).
+    pub energy: [f64; 2],
+}
+
+impl<S: Space> Spring<S> {
+    /// Returns a spring that carries nothing.
+    pub fn relaxed() -> Self {
+        Self {
+            overlap: 0.0,
+            force_n: 0.0,
+            force_t: S::Tangent::zero(),
+            energy: [0.0; 2],
+        }
+    }
+
+    /// Returns the stored energy (J).
+    pub fn stored(&self) -> f64 {
+        self.energy[0] + self.energy[1]
+    }
+}
