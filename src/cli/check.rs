@@ -4,6 +4,7 @@ mod bonds;
 pub(super) mod cost;
 mod features;
 mod load;
+mod springs;
 
 use super::output::answer;
 use super::{CaseArgs, Failure};
@@ -112,6 +113,9 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
     let load = Load::of(case, built);
     groups(loaded, built, largest, &mut line);
     biaxial_groups(loaded, built, &mut line);
+    for (label, text) in springs::lines(case, built, &load) {
+        line(label, text);
+    }
     for (label, text) in bonds::lines(case, built, &load) {
         line(label, text);
     }

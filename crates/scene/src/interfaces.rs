@@ -63,6 +63,15 @@ pub fn build(
                 "this pair of materials has an interface already",
             )));
         }
+        let alert = case.detection.alert;
+        if let Some(within) = spec.bonds_within
+            && !(within.is_finite() && within >= 0.0 && alert.is_none_or(|a| within <= a))
+        {
+            let message = format!("{within:e} m must be a gap between 0 and the alert distance");
+            return Err(at(ValidationError::new("bonds_within", message).expected(
+                "at most `detection.alert`, beyond which no contact is known, or a larger `alert`",
+            )));
+        }
         if spec.healing.is_some_and(|t| !(t.is_finite() && t >= 0.0)) {
             return Err(at(ValidationError::new(
                 "healing",
@@ -251,6 +260,7 @@ fn build_interface(
     interface.area = AreaRule {
         factor: spec.area_factor,
     };
+    (interface.bonds_within, interface.bond_opening) = (spec.bonds_within, spec.bond_opening);
     interface
         .with_bonds(spec.bonds, spec.healing)
         .map_err(unfit)

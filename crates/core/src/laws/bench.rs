@@ -2,6 +2,7 @@
 //! testing machine.
 
 pub mod scale;
+pub mod spring;
 
 use super::bonds::BondStep;
 use super::columns::StepInfo;

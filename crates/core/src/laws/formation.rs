@@ -4,7 +4,7 @@ use super::columns::StepInfo;
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::history::LawHistory;
-use super::interface::Interface;
+use super::interface::{BondOpening, Interface};
 use super::library::Call;
 use super::step_result::Velocities;
 use crate::contact::Network;
@@ -37,6 +37,7 @@ impl LawEvaluator {
             let initial = law.initial();
             let memory = &mut network.memory[index];
             self.members.clear();
+            let mut stretched = Vec::new();
             for (k, contact) in network.contacts.iter_mut().enumerate() {
                 if contact.law as usize != index {
                     continue;
@@ -47,12 +48,14 @@ impl LawEvaluator {
                 let healed = law.healing.is_some_and(|time| {
                     contact.compression_time > 0.0 && reached(contact.compression_time, time)
                 });
-                let bonds =
-                    !intact && !contact.vertex_contact && !contact.beyond && (due || healed);
+                let near = law.bonds_within.is_none_or(|most| contact.gap <= most);
+                let may = !intact && !contact.vertex_contact && !contact.beyond && near;
+                let bonds = may && (due || healed);
                 // The rest position of a new bond: a tension-only bond starts without tension over its gap;
                 // one that also pushes yields until the gap is closed. Penetration is included in both, so
                 // that a bond is formed without stress.
-                let filled = if law.tension_only() {
+                let open = law.bond_opening == BondOpening::Gap && contact.gap > 0.0;
+                let filled = if law.tension_only() && !open {
                     contact.gap
                 } else {
                     contact.gap.min(0.0)
@@ -71,6 +74,10 @@ impl LawEvaluator {
                     }
                     _ => {}
                 }
+                if let (true, Some(slot)) = (bonds && open, contact.memory()) {
+                    memory.bonds[slot].opening_n = contact.gap;
+                    stretched.push(k);
+                }
                 if bonds {
                     network.bonds_formed.push((contact.bodies, contact.law));
                 }
@@ -80,6 +87,39 @@ impl LawEvaluator {
                 }
             }
             self.initialise(index, law, history, network, info)?;
+            self.store_initial_energy(law, stretched, history, network, info)?;
+        }
+        Ok(())
+    }
+
+    /// Gives bonds that begin open the energy of their opening, which counts as negative fracture energy.
+    fn store_initial_energy<S: Space>(
+        &mut self,
+        law: &Interface,
+        stretched: Vec<usize>,
+        history: &mut LawHistory,
+        network: &mut Network<S>,
+        info: &StepInfo,
+    ) -> Result<(), LawError> {
+        let Some(cohesion) = law.cohesion().filter(|_| !stretched.is_empty()) else {
+            return Ok(());
+        };
+        self.members = stretched;
+        let still = Velocities::still(&network.contacts);
+        self.gather(law, network, &still, info);
+        self.columns.damage.fill(0.0);
+        self.columns.size_outputs();
+        self.run(cohesion, history, info, 0.0, Call::Energy)
+            .map_err(|e| self.locate(law, network, e))?;
+        for (at, energy) in self.members.iter().zip(&self.columns.out.energy) {
+            let contact = &network.contacts[*at];
+            let Some(slot) = contact.memory() else {
+                continue;
+            };
+            let bond = &mut network.memory[usize::from(contact.law)].bonds[slot];
+            bond.energy = energy * bond.area;
+            bond.life.fracture -= bond.energy;
+            network.torn_energy -= bond.energy;
         }
         Ok(())
     }

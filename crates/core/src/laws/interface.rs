@@ -60,6 +60,17 @@ pub enum BondRule {
     Never,
 }
 
+/// Opening at which a bond begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum BondOpening {
+    /// Zero: cement fills the gap, and the bodies cannot come nearer while the bond holds.
+    #[default]
+    Filled,
+    /// The gap, where there is one: the bond pulls from the start, with the energy of this opening, and the bodies are free to close
+    /// it. LMGC90's cohesive laws do so.
+    Gap,
+}
+
 /// Area on which tractions act, from the reduced radius r = r1 r2/(r1 + r2): `factor` r times unit depth in
 /// 2D, `factor` pi r^2 in 3D. LMGC90's benchmark scene uses the factor 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -93,6 +104,10 @@ pub struct Interface {
     pub name: String,
     /// When bonds are made.
     pub bonds: BondRule,
+    /// Largest gap at which a bond is made (m); the alert distance without one.
+    pub bonds_within: Option<f64>,
+    /// Opening at which a bond begins.
+    pub bond_opening: BondOpening,
     /// Time under compression (s) after which a contact forms a bond, including after an earlier bond broke.
     pub healing: Option<f64>,
     /// Area of a contact.
@@ -116,6 +131,8 @@ impl Interface {
         let mut law = Self {
             name: name.into(),
             bonds: BondRule::default(),
+            bonds_within: None,
+            bond_opening: BondOpening::default(),
             healing: None,
             area: AreaRule::default(),
             slots: laws.into_iter().collect(),

@@ -29,7 +29,7 @@ pub mod watch;
 pub use built_in::BuiltInLaws;
 pub use error::LawError;
 pub use history::LawHistory;
-pub use interface::{AreaRule, BondRule, Interface, Loaded};
+pub use interface::{AreaRule, BondOpening, BondRule, Interface, Loaded};
 pub use kind::{Kind, KindSpec};
 pub use library::{Call, Plugin};
 pub use plugin_table::Field;

@@ -17,6 +17,7 @@ use crate::bodies::Bodies;
 use crate::contact::detect::detect;
 use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
+use crate::laws::Interface;
 use crate::solve::error::Norm;
 use crate::solve::{ContactForm, Options, Problem, nlgs};
 
@@ -69,6 +70,7 @@ impl<S: Space> Simulation<S> {
             &mut self.workspace.problem,
             &self.state.bodies,
             &self.state.network,
+            &self.laws,
         );
         let options = Options {
             tolerance: TOLERANCE,
@@ -120,7 +122,7 @@ impl<S: Space> Simulation<S> {
         let bodies = &self.state.bodies;
         let grain = bodies.grain_flags();
         let depth = |c: &Contact<S>| {
-            if c.gap >= 0.0 {
+            if c.gap >= 0.0 || self.laws[usize::from(c.law)].compliant() {
                 return 0.0;
             }
             let [i, j] = c.bodies.map(|b| b as usize);
@@ -183,7 +185,12 @@ fn displace<S: Space>(bodies: &mut Bodies<S>, b: usize, shift: &S::Vector, turn:
 }
 
 /// Sets up the problem of bodies at rest, with gaps to close or open in a unit of time.
-fn pose<S: Space>(problem: &mut Problem<S>, bodies: &Bodies<S>, network: &Network<S>) {
+fn pose<S: Space>(
+    problem: &mut Problem<S>,
+    bodies: &Bodies<S>,
+    network: &Network<S>,
+    laws: &[Interface],
+) {
     /// Times total moved mass times deepest penetration: larger than any impulse of this problem.
     const UNBREAKABLE: f64 = 1e6;
     problem.clear();
@@ -200,13 +207,15 @@ fn pose<S: Space>(problem: &mut Problem<S>, bodies: &Bodies<S>, network: &Networ
     let grip = UNBREAKABLE * deepest * bodies.mass.iter().sum::<f64>();
     for contact in &network.contacts {
         let held = network.bond(contact).is_some_and(|b| b.intact());
+        // The overlap of a spring carries its load.
+        let kept = held || (contact.gap < 0.0 && laws[usize::from(contact.law)].compliant());
         let hold = if held { grip } else { 0.0 };
         problem.push(&ContactForm {
             bodies: contact.bodies,
             normal: contact.normal,
             arms: contact.arms,
             central: contact.central,
-            shift_n: if held { 0.0 } else { contact.gap },
+            shift_n: if kept { 0.0 } else { contact.gap },
             shift_t: S::Tangent::zero(),
             friction: 0.0,
             tension: hold,

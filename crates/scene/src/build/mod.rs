@@ -310,7 +310,9 @@ impl<S: Dimensional> Builder<'_, S> {
         let case = self.case;
         let smallest = self.radii().fold(f64::INFINITY, f64::min);
         let smallest = if smallest.is_finite() { smallest } else { 1.0 };
-        let alert = case.detection.alert.unwrap_or(0.05 * smallest);
+        let needed = case.interfaces.iter().filter_map(|i| i.bonds_within);
+        let needed = needed.fold(0.05 * smallest, f64::max);
+        let alert = case.detection.alert.unwrap_or(needed);
         let skin = case.detection.skin.unwrap_or(0.3 * smallest);
         let largest = self.radii().fold(0.0, f64::max);
         if largest > 0.0 && alert > 10.0 * largest {

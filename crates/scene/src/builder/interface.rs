@@ -3,7 +3,7 @@
 use crate::case::slots::BySlot;
 use crate::case::{InterfaceSpec, SlotValues};
 use crate::material::Given;
-use fretwork_core::laws::{BondRule, Kind};
+use fretwork_core::laws::{BondOpening, BondRule, Kind};
 use std::collections::BTreeMap;
 
 fn values(parameters: &[(&str, f64)]) -> BTreeMap<String, Given> {
@@ -30,6 +30,8 @@ impl InterfaceSpec {
             parameters: SlotValues::default(),
             bonds: BondRule::default(),
             healing: None,
+            bonds_within: None,
+            bond_opening: BondOpening::default(),
             area_factor: 1.0,
         };
         spec.with(Kind::CONTACT, contact, parameters)
@@ -67,6 +69,20 @@ impl InterfaceSpec {
     #[must_use]
     pub fn bonds(mut self, rule: BondRule) -> Self {
         self.bonds = rule;
+        self
+    }
+
+    /// Largest gap at which a bond is made (m); the alert distance by default.
+    #[must_use]
+    pub fn bonds_within(mut self, gap: f64) -> Self {
+        self.bonds_within = Some(gap);
+        self
+    }
+
+    /// The same with another opening at which bonds begin.
+    #[must_use]
+    pub fn bond_opening(mut self, opening: BondOpening) -> Self {
+        self.bond_opening = opening;
         self
     }
 

@@ -2,7 +2,7 @@
 
 use super::slots::{BySlot, Field, FieldName, with_kinds};
 use crate::material::Given;
-use fretwork_core::laws::{BondRule, Kind};
+use fretwork_core::laws::{BondOpening, BondRule, Kind};
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::ser::{Error as _, SerializeStruct};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -28,6 +28,10 @@ pub struct InterfaceSpec {
     pub parameters: SlotValues,
     /// When bonds are made.
     pub bonds: BondRule,
+    /// Largest gap at which a bond is made (m), at most the alert distance, which it is without one.
+    pub bonds_within: Option<f64>,
+    /// Opening at which bonds begin.
+    pub bond_opening: BondOpening,
     /// Time under compression after which a contact bonds, also again after its bond broke (s).
     pub healing: Option<f64>,
     /// Factor of the contact's area, see `AreaRule`.
@@ -35,12 +39,14 @@ pub struct InterfaceSpec {
 }
 
 /// Its fields but for the slots, which stand after the first three.
-const OWN: [&str; 7] = [
+const OWN: [&str; 9] = [
     "name",
     "between",
     "parameters_from",
     "parameters",
     "bonds",
+    "bonds_within",
+    "bond_opening",
     "healing",
     "area_factor",
 ];
@@ -89,6 +95,7 @@ impl<'de> Visitor<'de> for SpecVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<InterfaceSpec, A::Error> {
         let (mut name, mut between, mut file) = (None, None, None);
         let (mut parameters, mut bonds, mut healing, mut factor) = (None, None, None, None);
+        let (mut within, mut opening) = (None, None);
         let (mut laws, mut seen) = (BySlot::default(), BTreeSet::new());
         while let Some(field) = map.next_key_seed(FieldName(self.0))? {
             match field {
@@ -109,6 +116,8 @@ impl<'de> Visitor<'de> for SpecVisitor {
                     "parameters_from" => once(&mut map, &mut file, own)?,
                     "parameters" => once(&mut map, &mut parameters, own)?,
                     "bonds" => once(&mut map, &mut bonds, own)?,
+                    "bonds_within" => once(&mut map, &mut within, own)?,
+                    "bond_opening" => once(&mut map, &mut opening, own)?,
                     "healing" => once(&mut map, &mut healing, own)?,
                     _ => once(&mut map, &mut factor, own)?,
                 },
@@ -122,6 +131,8 @@ impl<'de> Visitor<'de> for SpecVisitor {
             laws,
             parameters: parameters.unwrap_or_default(),
             bonds: bonds.unwrap_or_default(),
+            bonds_within: within.flatten(),
+            bond_opening: opening.unwrap_or_default(),
             healing: healing.flatten(),
             area_factor: factor.unwrap_or(1.0),
         };
@@ -152,6 +163,12 @@ impl Serialize for InterfaceSpec {
             fields.serialize_field("parameters", &self.parameters)?;
         }
         fields.serialize_field("bonds", &self.bonds)?;
+        if self.bonds_within.is_some() {
+            fields.serialize_field("bonds_within", &self.bonds_within)?;
+        }
+        if self.bond_opening != BondOpening::default() {
+            fields.serialize_field("bond_opening", &self.bond_opening)?;
+        }
         if self.healing.is_some() {
             fields.serialize_field("healing", &self.healing)?;
         }

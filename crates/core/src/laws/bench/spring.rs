@@ -1,0 +1,79 @@
+//! The spring of a compliant contact under any law: its force at an overlap, and the overlap under a force.
+
+use super::{Bench, Motion};
+use crate::laws::{LawError, library::Call};
+
+/// Smallest and largest overlap of a search, over the reduced radius.
+const RANGE: [f64; 2] = [1e-15, 1e3];
+/// Bisections of the logarithm of the overlap: a relative error of 1e-9.
+const BISECTIONS: u32 = 40;
+
+/// The spring at an overlap (N, N/m; per metre of depth in 2D).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpringAnswer {
+    /// Normal force.
+    pub force: f64,
+    /// Its slope.
+    pub stiffness: f64,
+    /// Slope of the tangential force without any; 0 for a rigid tangential contact.
+    pub tangential: f64,
+}
+
+impl Bench {
+    /// Returns the spring at an overlap (m); `None` if the contact law is rigid.
+    ///
+    /// # Errors
+    /// The law's error.
+    pub fn spring(&mut self, overlap: f64) -> Result<Option<SpringAnswer>, LawError> {
+        if !self.law.compliant() {
+            return Ok(None);
+        }
+        let state = self.fresh();
+        let motion = Motion {
+            gap: -overlap,
+            ..Motion::default()
+        };
+        let info = crate::laws::columns::StepInfo {
+            dimension: self.dimension,
+            time: 0.0,
+            h: 1.0,
+            theta: 0.5,
+        };
+        self.fill(&[state], &[motion], &info, false);
+        let columns = &mut self.evaluator.columns;
+        columns.overlap.push(overlap);
+        columns.effective_mass.push(0.0);
+        columns.spring.iter_mut().for_each(|c| c.push(0.0));
+        columns.size_outputs();
+        let contact = self.law.contact().clone();
+        self.evaluator
+            .run(&contact, &mut self.history, &info, 0.0, Call::Prepare)?;
+        let out = &self.evaluator.columns.out;
+        Ok(Some(SpringAnswer {
+            force: out.contact_force[0][0],
+            stiffness: out.contact_stiffness_n[0],
+            tangential: out.contact_stiffness_t[0],
+        }))
+    }
+
+    /// Returns the overlap (m) under a normal force (N; N/m in 2D), at most a thousand times the reduced radius; `None` if the contact law
+    /// is rigid.
+    ///
+    /// # Errors
+    /// The law's error.
+    pub fn overlap_under(&mut self, force: f64) -> Result<Option<f64>, LawError> {
+        let [mut low, mut high] = RANGE.map(|share| (share * self.radius).ln());
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            let Some(spring) = self.spring(middle.exp())? else {
+                return Ok(None);
+            };
+            if spring.force < force {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Ok(Some((0.5 * (low + high)).exp()))
+    }
+}
