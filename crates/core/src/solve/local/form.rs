@@ -93,7 +93,7 @@ impl<'a, const D: usize> Form<'a, D> {
             norm,
             free: squared(q),
             energy: match norm {
-                Norm::Balance => q
+                Norm::Balance | Norm::Power => q
                     .iter()
                     .enumerate()
                     .map(|(c, q)| (1.0 / largest(w.diagonal(c)), q))
@@ -140,7 +140,7 @@ impl<'a, const D: usize> Form<'a, D> {
             None => self.sums(p, u),
         };
         let work = match self.norm {
-            Norm::Balance => dot(p, u) - dot(p, self.q),
+            Norm::Balance | Norm::Power => dot(p, u) - dot(p, self.q),
             _ => 0.0,
         };
         let scale = Scale {
@@ -182,12 +182,19 @@ impl<'a, const D: usize> Form<'a, D> {
                 }
                 _ => natural,
             };
+            let slip = match self.laws[c] {
+                Law::Coulomb(_) | Law::Cohesive { .. } => dot(&p[c], &u[c]) - p[c][0] * u[c][0],
+                _ => 0.0,
+            };
+            let slip = slip.abs();
             sums.add(
                 &Residual {
                     squared,
                     velocity: dot(&u[c], &u[c]),
                     impulse: dot(&p[c], &p[c]) * over * over,
                     power: dot(&p[c], &r) * over,
+                    unbalanced: dot(&p[c], &r).abs() * over,
+                    slip,
                 },
                 c,
             );

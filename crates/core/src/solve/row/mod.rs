@@ -65,6 +65,10 @@ pub struct Residual {
     pub impulse: f64,
     /// p . r, r the residual velocity (J).
     pub power: f64,
+    /// |p . r| (J).
+    pub unbalanced: f64,
+    /// |p_t . (u_t + s_t)|, the work of slip (J).
+    pub slip: f64,
 }
 
 /// A contact in the solver.
@@ -155,6 +159,8 @@ fn natural_map<T: VectorLike>(
         velocity: un * un + ut.dot(&ut),
         impulse: (pn * pn + pt.dot(&pt)) * (over * over),
         power: pn * rn + pt.dot(&rt),
+        unbalanced: (pn * rn + pt.dot(&rt)).abs(),
+        slip: pt.dot(&slide).abs(),
     }
 }
 

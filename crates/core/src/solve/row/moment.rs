@@ -164,6 +164,8 @@ impl<S: Space> MomentRow<S> {
             velocity: w.dot(&w) * self.lever * self.lever,
             impulse: shifted.dot(&shifted) * over * over,
             power: shifted.dot(&r),
+            unbalanced: shifted.dot(&r).abs(),
+            slip: shifted.dot(&w).abs(),
         }
     }
 

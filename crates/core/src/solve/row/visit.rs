@@ -133,6 +133,8 @@ pub struct Measure {
     velocity: [f64; APART],
     impulse: [f64; APART],
     power: [f64; APART],
+    unbalanced: [f64; APART],
+    slip: [f64; APART],
     worst: [f64; APART],
     worst_at: [f64; APART],
 }
@@ -147,6 +149,8 @@ impl Measure {
                 velocity: self.velocity[k],
                 impulse: self.impulse[k],
                 power: self.power[k],
+                unbalanced: self.unbalanced[k],
+                slip: self.slip[k],
                 worst: self.worst[k],
                 worst_at: first + self.worst_at[k] as usize,
             });
@@ -171,6 +175,8 @@ impl Visit for Measure {
         self.velocity[k] += r.velocity;
         self.impulse[k] += r.impulse;
         self.power[k] += r.power;
+        self.unbalanced[k] += r.unbalanced;
+        self.slip[k] += r.slip;
         if r.squared > self.worst[k] {
             self.worst[k] = r.squared;
             self.worst_at[k] = at as f64;
@@ -192,6 +198,8 @@ impl Visit for Measure {
         r.velocity.add_to(&mut self.velocity);
         r.impulse.add_to(&mut self.impulse);
         r.power.add_to(&mut self.power);
+        r.unbalanced.add_to(&mut self.unbalanced);
+        r.slip.add_to(&mut self.slip);
         r.squared.raise(&mut self.worst, &mut self.worst_at, at);
     }
 }

@@ -11,6 +11,8 @@ pub struct Residuals<const U: usize> {
     pub velocity: Lanes<U>,
     pub impulse: Lanes<U>,
     pub power: Lanes<U>,
+    pub unbalanced: Lanes<U>,
+    pub slip: Lanes<U>,
 }
 
 /// Data of the rows for the error: normal, impulse, rho of the natural map, friction.
@@ -410,12 +412,15 @@ fn natural_map<T: Tuple<U>, const U: usize>(
     let lost = most * (squared_mu / (one + squared_mu));
     let larger = natural.max(lost * lost);
     let squared = (most * most).not_above(natural).choose(natural, larger);
-    let power = pn * rn + pt.dot(rt);
+    let power = any.choose(pn * rn + pt.dot(rt), zero);
+    let slip = any.choose(pt.dot(slide), zero);
     Residuals {
         squared: any.choose(squared, zero),
         velocity: any.choose(un * un + ut.dot(ut), zero),
         impulse: (pn * pn + pt.dot(pt)) * (over * over),
-        power: any.choose(power, zero),
+        power,
+        unbalanced: power.abs(),
+        slip: slip.abs(),
     }
 }
 
