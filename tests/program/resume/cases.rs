@@ -24,6 +24,7 @@ fn resumes(name: &str, job: Job<'_>, states: &[u64]) {
 #[test]
 fn fretting_with_damage_in_the_plane() {
     let sets = [
+        "grains.0.count=700",
         "time.step=1e-4",
         "solver.tolerance=1e-4",
         "time.end=0.056",
