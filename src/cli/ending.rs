@@ -96,6 +96,12 @@ mod posix {
             Some((law, call)) => format!("{law} ended the program in {call} (it called exit)"),
             None => "something that a law loaded ended the program (it called exit)".to_owned(),
         };
+        // A library that ends the program while it is loaded holds a lock of the dynamic linker that a new thread
+        // would wait for.
+        if watch::nothing_to_save() {
+            put(&[&format!("error: {who}; {}\n", Saved::Nothing.words())]);
+            super::now(FAILED);
+        }
         // The calling thread's thread-local variables are already destroyed; another thread does the saving.
         let (done, saved) = std::sync::mpsc::sync_channel(1);
         let told = who.clone();

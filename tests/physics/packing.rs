@@ -38,31 +38,38 @@ fn steps(mu: &str, seed: u64) -> Vec<LocalProblem> {
 }
 
 /// Where sliding contacts fell behind their thresholds, stick and slip alternated in every iteration and the
-/// conjugate gradients were no faster than the plain ones. Totals over several steps, and with the most friction over several
-/// samples: on a single packing any of the methods may stagnate.
+/// conjugate gradients were no faster than the plain ones. Totals over several steps: in a single one any of the methods may
+/// stagnate.
 #[test]
 fn conjugate_gradients_are_faster_than_sweeps() {
-    for (mu, seeds) in [
-        ("0", &[11][..]),
-        ("0.1", &[11]),
-        ("0.4", &[11, 1, 2, 3, 4, 5]),
-    ] {
-        let problems: Vec<LocalProblem> = seeds.iter().flat_map(|seed| steps(mu, *seed)).collect();
-        let iterations = |method: Method| {
-            let limits = Limits {
-                tolerance: 1e-6,
-                scale_free: None,
-                max_iterations: 20_000,
-                seconds: 60.0,
-            };
-            let solved = problems.iter().map(|p| solve(p, method, &limits));
-            let each: Vec<u32> = solved.map(|outcome| outcome.iterations).collect();
-            println!("mu {mu}, {}: {each:?}", method.name());
-            each.iter().sum::<u32>()
-        };
-        let [nlgs, pg, cpg, pcpg] =
-            [Method::Nlgs, Method::Pg, Method::Cpg, Method::Pcpg].map(iterations);
-        assert!(2 * cpg < nlgs && 2 * cpg < pg, "mu {mu}: {cpg} of {nlgs}");
-        assert!(2 * pcpg < nlgs, "mu {mu}: {pcpg} of {nlgs}");
+    for (mu, seed) in [("0", 11), ("0.1", 11), ("0.4", 2)] {
+        are_faster(mu, &[seed]);
     }
+}
+
+/// With the most friction, over several samples: on a single one any of the methods may stagnate.
+#[test]
+#[ignore = "nightly: six samples; one is in conjugate_gradients_are_faster_than_sweeps"]
+fn conjugate_gradients_are_faster_over_samples() {
+    are_faster("0.4", &[11, 1, 2, 3, 4, 5]);
+}
+
+fn are_faster(mu: &str, seeds: &[u64]) {
+    let problems: Vec<LocalProblem> = seeds.iter().flat_map(|seed| steps(mu, *seed)).collect();
+    let iterations = |method: Method| {
+        let limits = Limits {
+            tolerance: 1e-6,
+            scale_free: None,
+            max_iterations: 20_000,
+            seconds: 60.0,
+        };
+        let solved = problems.iter().map(|p| solve(p, method, &limits));
+        let each: Vec<u32> = solved.map(|outcome| outcome.iterations).collect();
+        println!("mu {mu}, {}: {each:?}", method.name());
+        each.iter().sum::<u32>()
+    };
+    let [nlgs, pg, cpg, pcpg] =
+        [Method::Nlgs, Method::Pg, Method::Cpg, Method::Pcpg].map(iterations);
+    assert!(2 * cpg < nlgs && 2 * cpg < pg, "mu {mu}: {cpg} of {nlgs}");
+    assert!(2 * pcpg < nlgs, "mu {mu}: {pcpg} of {nlgs}");
 }

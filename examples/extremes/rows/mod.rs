@@ -16,10 +16,12 @@ pub const ALL: &[Group] = &[
     inertia::MASS,
     inertia::SIZE,
     inertia::COLUMN,
+    inertia::HIGH_COLUMN,
     packed::FRICTION,
     bonds::STIFFNESS,
     bonds::TORN,
     time::STEP,
+    time::LONG_STEP,
     time::JUMP,
     time::MANY,
     packed::WEDGE,
@@ -34,3 +36,7 @@ pub const ALL: &[Group] = &[
     geometry::LENGTH,
     packed::TOLERANCE,
 ];
+
+/// What the tests run in place of groups that are not quick.
+#[allow(dead_code, reason = "the table has the whole groups")]
+pub const IN_THEIR_PLACE: &[Group] = &[time::FEW_LONG_STEPS];

@@ -2,8 +2,8 @@
 
 use super::super::bench::Cause::{Refused, Unconverged};
 use super::super::bench::{
-    Group, HELD, Row, Sketch, ball, floor, go, grains, held_though, overlap, place, refused, told,
-    up, watch,
+    Expected, Group, HELD, Row, Sketch, ball, floor, go, grains, held_though, overlap, place,
+    refused, told, up, watch,
 };
 use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
@@ -11,8 +11,20 @@ use fretwork::scene::build::Dimensional;
 pub const STEP: Group = Group {
     name: "step",
     criterion: "20 falling disks, 40 falling spheres, 200 steps: energy never above its initial value, the ledger closes to 1e-9, overlap below 1e-3 of the radius",
-    runs: &[(2, steps::<Dim2>), (3, steps::<Dim3>)],
+    runs: &[(2, steps_in_the_plane), (3, short_steps_in_space)],
     quick: true,
+};
+
+pub const LONG_STEP: Group = Group {
+    runs: &[(3, long_steps_in_space)],
+    quick: false,
+    ..STEP
+};
+
+pub const FEW_LONG_STEPS: Group = Group {
+    criterion: "the same after 20 steps",
+    runs: &[(3, few_long_steps_in_space)],
+    ..STEP
 };
 
 pub const JUMP: Group = Group {
@@ -29,13 +41,37 @@ pub const MANY: Group = Group {
     quick: false,
 };
 
-fn steps<S: Dimensional>() -> Vec<Row> {
-    // Disks are resolved and held; spheres become wedged, with more unknowns than degrees of freedom, and in
-    // the longest step some overlap remains.
-    let (coarse, senseless) = match S::D {
-        2 => (HELD, HELD),
-        _ => (held_though(&[Unconverged]), told(&[Unconverged])),
-    };
+/// Steps that resolve the fall (s).
+const SHORT: [(f64, Expected); 5] = [
+    (1e-12, HELD),
+    (1e-9, HELD),
+    (1e-6, HELD),
+    (1e-4, HELD),
+    (1e-3, HELD),
+];
+
+fn steps_in_the_plane() -> Vec<Row> {
+    let long = [(1e-2, HELD), (0.1, HELD), (1.0, HELD)];
+    falling::<Dim2>(&[&SHORT[..], &long].concat(), 200)
+}
+
+fn short_steps_in_space() -> Vec<Row> {
+    falling::<Dim3>(&SHORT, 200)
+}
+
+/// Spheres become wedged, with more unknowns than degrees of freedom, and in the longest step some overlap remains.
+fn long_steps_in_space() -> Vec<Row> {
+    let coarse = held_though(&[Unconverged]);
+    let long = [(1e-2, coarse), (0.1, coarse), (1.0, told(&[Unconverged]))];
+    falling::<Dim3>(&long, 200)
+}
+
+fn few_long_steps_in_space() -> Vec<Row> {
+    let coarse = held_though(&[Unconverged]);
+    falling::<Dim3>(&[(1e-2, HELD), (0.1, coarse)], 20)
+}
+
+fn falling<S: Dimensional>(steps: &[(f64, Expected)], count: u64) -> Vec<Row> {
     let falling = |(h, expected)| {
         let mut all = Vec::new();
         let layers = if S::D == 2 { 1 } else { 2 };
@@ -73,7 +109,7 @@ fn steps<S: Dimensional>() -> Vec<Row> {
             Err(e) => return refused(value, expected, &e),
         };
         let (mut most, mut deepest) = (f64::NEG_INFINITY, 0.0f64);
-        let ran = watch(&mut s, 200, |s| {
+        let ran = watch(&mut s, count, |s| {
             most = most.max(s.state.energy.kinetic + s.state.energy.potential);
             deepest = deepest.max(overlap(s));
         });
@@ -84,18 +120,7 @@ fn steps<S: Dimensional>() -> Vec<Row> {
         let met = gained < 1e-9 && residual < 1e-9 && deepest < 1e-3;
         ran.row(&s, (value, found), met, expected)
     };
-    [
-        (1e-12, HELD),
-        (1e-9, HELD),
-        (1e-6, HELD),
-        (1e-4, HELD),
-        (1e-3, HELD),
-        (1e-2, coarse),
-        (0.1, coarse),
-        (1.0, senseless),
-    ]
-    .map(falling)
-    .into()
+    steps.iter().copied().map(falling).collect()
 }
 
 fn jumps<S: Dimensional>() -> Vec<Row> {

@@ -27,7 +27,6 @@ pub(crate) use entry::export;
 macro_rules! laws {
     ($($module:ident $path:literal)*) => {
         $(
-            #[doc(hidden)]
             #[path = $path]
             pub mod $module;
         )*

@@ -163,12 +163,21 @@ pub fn run<S: Dimensional>(
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
+    run_scene(loaded, S::scene(built), options, progress)
+}
+
+/// Not generic: compiled here, once for each dimension, and not again in every program that calls [`run`].
+fn run_scene(
+    loaded: &Loaded,
+    scene: Scene,
+    options: &RunOptions,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Summary, RunError> {
     let progress: &mut OnProgress<'_> = &mut |p| {
         progress(p);
         ControlFlow::Continue(())
     };
-    // Compiled here, once for each dimension.
-    match S::scene(built) {
+    match scene {
         Scene::Dim2(built) => Run::new(loaded, *built, options).execute(progress),
         Scene::Dim3(built) => Run::new(loaded, *built, options).execute(progress),
     }

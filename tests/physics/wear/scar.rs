@@ -176,7 +176,7 @@ fn a_block_sinks_into_what_it_covers() {
     let at = format!("bodies.block.position=[0.0, {half}]");
     let moved = "bodies.block.dofs.x=Displacement(Sine(amplitude: 0.002, frequency: 10.0))";
     let load = "bodies.block.dofs.y=Force(Constant(-1e5))";
-    let law = "interfaces.0.parameters.wear.k=3e-11";
+    let law = "interfaces.0.parameters.wear.k=7.5e-11";
     let sets = [
         &points,
         &shape,
@@ -188,7 +188,7 @@ fn a_block_sinks_into_what_it_covers() {
         "detection.alert=2e-4",
     ];
     let mut s = scene::<Dim2>("verification/worn_slide", &sets);
-    for _ in 0..10_000 {
+    for _ in 0..4_000 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }
     let b = s.state.bodies.driven[1].body as usize;

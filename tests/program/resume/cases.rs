@@ -2,17 +2,21 @@
 
 use super::common::{Folder, Job, same};
 
-fn resumes(name: &str, job: Job<'_>, states: u64) {
+/// The run is killed as soon as each of these numbers of states was kept; what each kill leaves is resumed twice.
+fn resumes(name: &str, job: Job<'_>, states: &[u64]) {
     let whole = Folder::new(&format!("{name}-whole"));
     job.done(&whole.0, &[]);
-    for threads in ["1", "2"] {
-        let stopped = Folder::new(&format!("{name}-{threads}"));
-        job.killed_after(&stopped.0, states);
-        let told = job.done(&stopped.0, &["--resume", "--threads", threads]);
-        assert!(told.contains("resuming the run"), "{told}");
-        same(&whole.0, &stopped.0);
-        let again = job.done(&stopped.0, &["--resume"]);
-        assert!(again.contains("is finished"), "{again}");
+    for states in states {
+        let stopped = Folder::new(&format!("{name}-{states}-2"));
+        job.killed_after(&stopped.0, *states);
+        let copy = stopped.copied(&format!("{name}-{states}-1"));
+        for (threads, folder) in [("1", &copy), ("2", &stopped)] {
+            let told = job.done(&folder.0, &["--resume", "--threads", threads]);
+            assert!(told.contains("resuming the run"), "{told}");
+            same(&whole.0, &folder.0);
+            let again = job.done(&folder.0, &["--resume"]);
+            assert!(again.contains("is finished"), "{again}");
+        }
     }
 }
 
@@ -20,6 +24,7 @@ fn resumes(name: &str, job: Job<'_>, states: u64) {
 #[test]
 fn fretting_with_damage_in_the_plane() {
     let sets = [
+        "grains.0.count=700",
         "time.step=1e-4",
         "solver.tolerance=1e-4",
         "time.end=0.056",
@@ -31,7 +36,7 @@ fn fretting_with_damage_in_the_plane() {
         case: "wheel_rail_fretting",
         sets: &sets,
     };
-    resumes("fretting", job, 7);
+    resumes("fretting", job, &[7]);
 }
 
 /// A height field, wear, overlaps that are taken out; steps written as problems.
@@ -47,7 +52,7 @@ fn shear_in_space() {
         case: "shear_cell_3d",
         sets: &sets,
     };
-    resumes("space", job, 3);
+    resumes("space", job, &[3]);
 }
 
 /// Phases of which one ends by rest, colours and strains that begin with the second one, means of profiles.
@@ -69,14 +74,14 @@ fn phases_and_measures() {
         sets: &sets,
     };
     // Before and after the second phase began.
-    resumes("phases-1", job, 3);
-    resumes("phases-2", job, 11);
+    resumes("phases", job, &[3, 11]);
 }
 
 /// The circuit of a third body: bonds that break, debris, grains that are ejected, lost and taken out.
 #[test]
 fn the_circuit() {
     let sets = [
+        "grains.0.count=300",
         "time.end=0.07",
         "output.checkpoint=Steps(150)",
         "output.frames=2",
@@ -86,7 +91,7 @@ fn the_circuit() {
         case: "third_body_steady",
         sets: &sets,
     };
-    resumes("circuit", job, 9);
+    resumes("circuit", job, &[9]);
 }
 
 /// A profile that wears, and jumps over cycles.
@@ -102,13 +107,13 @@ fn scars_and_jumps() {
         case: "fretting_wear_jump",
         sets: &sets,
     };
-    resumes("jumps", job, 5);
+    resumes("jumps", job, &[5]);
     let sets = ["time.end=0.2", "output.checkpoint=Steps(300)"];
     let job = Job {
         case: "punch_scar",
         sets: &sets,
     };
-    resumes("scar", job, 4);
+    resumes("scar", job, &[4]);
 }
 
 /// Walls that follow an area, stages, a band of shear: what a biaxial test measures from.
@@ -125,5 +130,5 @@ fn a_biaxial_test() {
         case: "biaxial",
         sets: &sets,
     };
-    resumes("biaxial", job, 3);
+    resumes("biaxial", job, &[3]);
 }

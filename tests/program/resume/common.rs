@@ -20,6 +20,18 @@ impl Folder {
         std::fs::remove_dir_all(&dir).ok();
         Self(dir)
     }
+
+    /// Another folder with the same files.
+    pub fn copied(&self, name: &str) -> Self {
+        let copy = Self::new(name);
+        std::fs::create_dir_all(&copy.0).unwrap();
+        for name in files(&self.0) {
+            let to = copy.0.join(&name);
+            std::fs::create_dir_all(to.parent().unwrap()).unwrap();
+            std::fs::copy(self.0.join(&name), to).unwrap();
+        }
+        copy
+    }
 }
 
 impl Drop for Folder {

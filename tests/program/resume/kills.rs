@@ -1,6 +1,6 @@
 //! SIGKILL at random moments: what is left opens, the run resumes, and ends in the same bits.
 //!
-//! A few in the suite; a hundred by
+//! A few in the suite; a hundred every night (`.ci/nightly`), by
 //! `FRETWORK_KILLS=100 cargo test --release --test program resume::kills -- --nocapture`.
 
 use super::common::{Folder, IN_PLACE, Job, last_frame, marked, same};
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 fn kills() -> u32 {
     let kills = std::env::var("FRETWORK_KILLS");
-    kills.ok().and_then(|n| n.parse().ok()).unwrap_or(8)
+    kills.ok().and_then(|n| n.parse().ok()).unwrap_or(5)
 }
 
 /// A file that is copied and replaced is never seen half written.

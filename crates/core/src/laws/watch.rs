@@ -155,6 +155,11 @@ pub fn save(who: &str) -> Saved {
     }
 }
 
+/// Whether no rescue is registered. It does not wait: a thread that was stopped may hold the list.
+pub fn nothing_to_save() -> bool {
+    RESCUES.try_lock().is_ok_and(|rescues| rescues.is_empty())
+}
+
 /// Starts the watchdog thread, for the lifetime of the program. It reports, once, a call that exceeds the
 /// limit, and the result of the rescue actions.
 ///
