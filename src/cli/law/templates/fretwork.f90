@@ -6,7 +6,7 @@ module fretwork
   public
 
   integer(c_int32_t), parameter :: FW_ABI_MAJOR = 1
-  integer(c_int32_t), parameter :: FW_ABI_MINOR = 0
+  integer(c_int32_t), parameter :: FW_ABI_MINOR = 1
   integer(c_int32_t), parameter :: FW_KIND_CONTACT = 1
   integer(c_int32_t), parameter :: FW_KIND_COHESION = 2
   integer(c_int32_t), parameter :: FW_KIND_DAMAGE = 3
@@ -24,6 +24,7 @@ module fretwork
   integer(c_int64_t), parameter :: FW_FLAG_MOMENT = shiftl(1_c_int64_t, 5)
   integer(c_int64_t), parameter :: FW_FLAG_BREAKS = shiftl(1_c_int64_t, 6)
   integer(c_int64_t), parameter :: FW_FLAG_FORMS = shiftl(1_c_int64_t, 7)
+  integer(c_int64_t), parameter :: FW_FLAG_COMPLIANT = shiftl(1_c_int64_t, 8)
 
   type, bind(c) :: fw_field
     type(c_ptr) :: name = c_null_ptr
@@ -103,6 +104,19 @@ module fretwork
     type(c_ptr) :: out_moment_t2 = c_null_ptr
     type(c_ptr) :: out_stiffness_twist = c_null_ptr
     type(c_ptr) :: out_stiffness_bend = c_null_ptr
+    ! Since version 1.1; null for a contact law without FW_FLAG_COMPLIANT.
+    type(c_ptr) :: overlap = c_null_ptr
+    type(c_ptr) :: effective_mass = c_null_ptr
+    type(c_ptr) :: spring_t1 = c_null_ptr
+    type(c_ptr) :: spring_t2 = c_null_ptr
+    type(c_ptr) :: out_contact_force_n = c_null_ptr
+    type(c_ptr) :: out_contact_force_t1 = c_null_ptr
+    type(c_ptr) :: out_contact_force_t2 = c_null_ptr
+    type(c_ptr) :: out_contact_stiffness_n = c_null_ptr
+    type(c_ptr) :: out_contact_stiffness_t = c_null_ptr
+    type(c_ptr) :: out_contact_unloading_t = c_null_ptr
+    type(c_ptr) :: out_contact_damping_n = c_null_ptr
+    type(c_ptr) :: out_contact_damping_t = c_null_ptr
   end type fw_batch
 
   type, bind(c) :: fw_plugin
