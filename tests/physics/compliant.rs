@@ -313,3 +313,25 @@ fn every_method_serves_compliant_contacts() {
         assert!(worst < 1e-6, "{method}: {worst:e}");
     }
 }
+
+/// Two balls that overlap at the start fly apart with the energy of their spring, which is booked as supplied.
+#[test]
+fn overlaps_of_the_initial_state_bring_their_energy() {
+    let (overlap, k) = (1e-4, 1e6);
+    let mut s: Simulation<Dim3> = built(
+        r#"contact: "linear-contact""#,
+        &format!("stiffness: {k:e}, mu: 0.0"),
+        1e-6,
+        &format!(
+            r#"grains: [List(material: "grain", grains: [
+                (at: [0.0, 0.0, 0.0], radius: 0.05), (at: [{:?}, 0.0, 0.0], radius: 0.05)])]"#,
+            0.1 - overlap
+        ),
+    );
+    let stored = 0.5 * k * overlap * overlap;
+    steps(&mut s, 1);
+    near(s.state.energy.external_work, stored, 1e-9);
+    steps(&mut s, 4000);
+    near(s.state.energy.kinetic, stored, 1e-2);
+    near(s.state.energy.scheme, stored - s.state.energy.kinetic, 1e-6);
+}

@@ -21,7 +21,7 @@ pub struct Energy {
     pub kinetic: f64,
     /// Potential energy of bodies and dynamical systems in gravity now, zero at the start.
     pub potential: f64,
-    /// Energy stored in bonds and in dynamical systems now.
+    /// Energy stored in bonds, compliant contacts and dynamical systems now.
     pub elastic: f64,
     /// Energy released by damage.
     pub fracture: f64,
@@ -31,17 +31,19 @@ pub struct Energy {
     pub impact: f64,
     /// Work done against cohesion without an opening.
     pub adhesion: f64,
-    /// Dissipated by damping of bonds and in dynamical systems.
+    /// Dissipated by damping of bonds, compliant contacts and dynamical systems.
     pub viscous: f64,
     /// Work of removing penetrations, negative where energy is added; see `solver.correction` and
     /// `solver.projection`.
     pub correction: f64,
     /// Dissipated by the scheme, (theta - 1/2) |v+ - v|_M^2, and of dynamical systems what
-    /// [`crate::bodies::SystemWork::scheme`] says; zero at theta = 1/2 but for systems that are not linear.
+    /// [`crate::bodies::SystemWork::scheme`] says; zero at theta = 1/2 but for systems that are not linear and for
+    /// compliant contacts, whose springs are integrated by implicit Euler.
     pub scheme: f64,
     /// Kinetic energy that bodies had when they were removed from the scene.
     pub carried: f64,
-    /// Work of imposed forces and motions, and what dynamical systems stored when they were added.
+    /// Work of imposed forces and motions, what dynamical systems stored when they were added, and what
+    /// compliant contacts stored at the start.
     pub external_work: f64,
     /// Residual of the balance.
     pub residual: f64,
@@ -133,7 +135,7 @@ impl Energy {
             ("potential", "potential energy since the start", potential),
             (
                 "elastic",
-                "energy stored in bonds and deformable bodies",
+                "energy stored in bonds, compliant contacts and deformable bodies",
                 elastic,
             ),
             (
@@ -150,7 +152,7 @@ impl Energy {
             ),
             (
                 "viscous",
-                "energy dissipated by damping of bonds and deformable bodies",
+                "energy dissipated by damping of bonds, compliant contacts and deformable bodies",
                 viscous,
             ),
             (
@@ -160,7 +162,7 @@ impl Energy {
             ),
             (
                 "scheme",
-                "energy dissipated by the time integration; 0 at theta = 1/2",
+                "energy dissipated by the time integration; 0 at theta = 1/2 without compliant contacts",
                 scheme,
             ),
             (

@@ -8,6 +8,7 @@ mod apart;
 mod bond;
 mod border;
 mod rig;
+mod spring;
 mod static_memory;
 mod surface;
 
@@ -206,6 +207,9 @@ fn certify_with_events(
             (Err(e), _) => book.write(Line::failed(SCALE, &e)),
             (Ok(()), CheckSet::Bond) if rig.opens() => book.make(&mut rig, &bond::CHECKS),
             (Ok(()), checks) => book.make(&mut rig, surface::checks(checks)),
+        }
+        if rig.tested().has(fretwork_abi::FLAG_COMPLIANT) {
+            book.make(&mut rig, &spring::CHECKS);
         }
         if k == 0 {
             book.partner.clear();

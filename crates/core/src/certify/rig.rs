@@ -5,7 +5,7 @@ use crate::laws::{Interface, Kind, LawError, Loaded, Plugin, SearchPath};
 use rand::{RngExt, SeedableRng};
 
 /// Reduced radius of the contacts on the bench (m); the area is pi r^2 in 3D.
-const RADIUS: f64 = 1e-5;
+pub const RADIUS: f64 = 1e-5;
 /// Compressive pressure for laws that need one (Pa).
 pub const PRESSURE: f64 = 1e6;
 

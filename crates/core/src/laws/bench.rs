@@ -190,7 +190,13 @@ impl Bench {
         c.clear();
         c.n = states.len();
         let rotates = self.law.rotates();
+        let compliant = self.law.compliant();
         for (state, motion) in states.iter().zip(motions) {
+            if compliant {
+                c.overlap.push((-motion.gap).max(0.0));
+                c.effective_mass.push(0.0);
+                c.spring.iter_mut().for_each(|t| t.push(0.0));
+            }
             c.gap.push(motion.gap);
             c.area.push(self.area);
             c.radius.push(self.radius);

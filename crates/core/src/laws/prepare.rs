@@ -140,11 +140,13 @@ impl LawEvaluator {
         self.run(law.contact(), history, info, 0.0, Call::Prepare)
             .map_err(|e| self.locate(law, network, e))?;
         for (k, at) in self.members.iter().enumerate() {
-            let friction = Friction::of(&self.columns.out, if constant { 0 } else { k });
+            let mut friction = Friction::of(&self.columns.out, if constant { 0 } else { k });
             let area = contact_area(law, network, &network.contacts[*at]);
             if law.compliant() {
                 let spring = self.spring(k, &network.contacts[*at], network);
                 spring.apply(info.h, &mut step.forms[*at]);
+                // A spring rebounds by its damping.
+                (friction.e_n, friction.e_t) = (0.0, 0.0);
                 step.springs[*at] = Some(spring);
             }
             let held_back = apply_friction(

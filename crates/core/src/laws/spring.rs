@@ -69,6 +69,13 @@ impl<S: Space> SpringForm<S> {
         }
     }
 
+    /// Returns the energy of the overlap at detection (J), for a spring that was there before the first step.
+    pub fn initial_energy(&self) -> f64 {
+        let overlap = (-self.gap).max(0.0);
+        let force = self.force_n + self.stiffness_n * (overlap - self.overlap);
+        0.5 * force.max(0.0) * overlap
+    }
+
     /// Completes the step of the contact from its solution: relative velocities at the end of the step and averaged over it
     /// (m/s), and the spring before.
     pub fn complete(

@@ -149,6 +149,7 @@ mod tests {
                 tension: 0.0,
                 cohesion: 0.0,
                 elastic: None,
+                compliance: [0.0; 2],
                 impulse: normal,
             };
             problem.push(&form);

@@ -4,8 +4,8 @@ use super::motion::{self, StepStart};
 use super::{Scheme, Simulation, StepError, StepReport};
 use crate::contact::detect::detect;
 use crate::geometry::space::{Space, VectorLike};
-use crate::laws::Totals;
 use crate::laws::columns::StepInfo;
+use crate::laws::{SpringForm, Totals};
 use std::time::Instant;
 
 /// Velocity and spin of each body.
@@ -170,6 +170,11 @@ impl<S: Space> Simulation<S> {
             h,
             theta,
         );
+        if self.state.steps == 0 {
+            let springs = self.workspace.springs.iter().flatten();
+            self.workspace.spring_energy = springs.map(SpringForm::initial_energy).sum();
+            work.external += self.workspace.spring_energy;
+        }
         let change = self.state.network.spring_energy() - self.workspace.spring_energy;
         work.scheme += totals.springs - change;
         let (moving, stored) = self.end_systems(theta * h, &mut work);

@@ -206,7 +206,7 @@ impl Summary {
             ("friction", e.friction),
             ("fracture", e.fracture),
             ("impact", e.impact),
-            ("damping of bonds", e.viscous),
+            ("damping", e.viscous),
             ("adhesion", e.adhesion),
             ("time integration", e.scheme),
             ("position correction", e.correction),
@@ -228,7 +228,7 @@ impl Summary {
             ));
         }
         if shown(e.elastic) {
-            stored.push(format!("in bonds {}", quantity(e.elastic, unit)));
+            stored.push(format!("elastic energy {}", quantity(e.elastic, unit)));
         }
         if !stored.is_empty() {
             lines.add("stored", stored.join("; "));

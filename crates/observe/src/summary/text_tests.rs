@@ -139,17 +139,17 @@ fn energies_are_named_as_in_the_ledger_and_balance() {
     place(&text, "friction 60.00 J, adhesion 25.00 J\n");
     place(
         &text,
-        "kinetic energy 5.000 J, 1.000 J at the start; in bonds 3.000 J\n",
+        "kinetic energy 5.000 J, 1.000 J at the start; elastic energy 3.000 J\n",
     );
     place(&text, "12.00 J; gravity gave 80.00 J; the ledger");
-    assert!(!text.contains("damping of bonds") && !text.contains("time integration"));
+    assert!(!text.contains("damping") && !text.contains("time integration"));
     // Damping and time integration are separate entries; a rise takes energy.
     let e = &mut summary.energy;
     (e.viscous, e.scheme, e.potential) = (2.0, 4.0, 7.0);
     let text = summary.text(false);
     place(
         &text,
-        "damping of bonds 2.000 J, adhesion 25.00 J, time integration 4.000 J\n",
+        "damping 2.000 J, adhesion 25.00 J, time integration 4.000 J\n",
     );
     place(&text, "gravity took 7.000 J");
 }

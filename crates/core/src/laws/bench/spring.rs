@@ -40,11 +40,6 @@ impl Bench {
             theta: 0.5,
         };
         self.fill(&[state], &[motion], &info, false);
-        let columns = &mut self.evaluator.columns;
-        columns.overlap.push(overlap);
-        columns.effective_mass.push(0.0);
-        columns.spring.iter_mut().for_each(|c| c.push(0.0));
-        columns.size_outputs();
         let contact = self.law.contact().clone();
         self.evaluator
             .run(&contact, &mut self.history, &info, 0.0, Call::Prepare)?;

@@ -1,0 +1,42 @@
+//! Check of laws that are springs.
+
+use super::rig::{RADIUS, Rig};
+use super::{Check, Line};
+use crate::laws::LawError;
+use crate::laws::bench::spring::SpringAnswer;
+
+/// The checks of compliant contact laws.
+pub const CHECKS: [(&str, Check); 1] = [("spring", slope)];
+
+/// Overlaps, over the reduced radius.
+const OVERLAPS: [f64; 5] = [1e-7, 1e-5, 1e-4, 1e-3, 1e-2];
+/// Relative change of the overlap for the slope.
+const CHANGE: f64 = 1e-4;
+
+/// Checks that the stiffness is the slope of the force, and that there is no force without overlap: with a wrong slope a step
+/// converges to a wrong force.
+fn slope(rig: &mut Rig) -> Result<Line, LawError> {
+    let mut bench = rig.strict();
+    let mut at = |overlap: f64| -> Result<SpringAnswer, LawError> {
+        Ok(bench.spring(overlap)?.unwrap_or_default())
+    };
+    let mut worst = 0.0f64;
+    for share in OVERLAPS {
+        let overlap = share * RADIUS;
+        let (less, more) = (at(overlap * (1.0 - CHANGE))?, at(overlap * (1.0 + CHANGE))?);
+        let slope = (more.force - less.force) / (2.0 * CHANGE * overlap);
+        let told = at(overlap)?;
+        let scale = told
+            .stiffness
+            .max(told.force / overlap)
+            .max(f64::MIN_POSITIVE);
+        worst = worst.max((slope - told.stiffness).abs() / scale);
+        worst = worst.max(at(0.0)?.force / told.force.max(f64::MIN_POSITIVE));
+    }
+    Ok(Line::below(
+        "spring",
+        worst,
+        1e-3,
+        "largest difference between the stiffness and the slope of the force, relative; force without overlap",
+    ))
+}
