@@ -42,6 +42,13 @@ fn case(dimension: usize, laws: &str) -> String {
 fn goes_on_with(kind: Kind, name: &str, dimension: usize) -> bool {
     let bond = "contact: \"coulomb\", cohesion: \"elastic-bond\"";
     let laws = match kind.word() {
+        // The material has no moduli.
+        "contact" if name == "hertz-mindlin" => {
+            let young = ["young_1", "young_2"].map(|p| format!("\"{p}\": 1e9"));
+            let poisson = ["poisson_1", "poisson_2"].map(|p| format!("\"{p}\": 0.3"));
+            let all = [young, poisson].concat().join(", ");
+            format!("contact: \"{name}\", parameters: (contact: {{{all}}})")
+        }
         "contact" => format!("contact: \"{name}\""),
         "cohesion" => format!("contact: \"coulomb\", cohesion: \"{name}\""),
         "damage" => format!("{bond}, damage: \"{name}\""),
