@@ -50,6 +50,7 @@ fn quote(text: &str) -> String {
         "mu",
         "stiffness",
         "ratio",
+        "force",
     ] {
         out = out.replace(&format!("{name}: "), &format!("\"{name}\": "));
     }
@@ -334,4 +335,59 @@ fn overlaps_of_the_initial_state_bring_their_energy() {
     steps(&mut s, 4000);
     near(s.state.energy.kinetic, stored, 1e-2);
     near(s.state.energy.scheme, stored - s.state.energy.kinetic, 1e-2);
+}
+
+/// A stiff Hertz contact finds its equilibrium in large steps too, k h^2/m of 30 to 3e4, and after a kick.
+#[test]
+fn stiff_contacts_come_to_rest_in_large_steps() {
+    for step in [2e-4, 1e-3, 5e-3] {
+        let mut s: Simulation<Dim3> = built(
+            HERTZ,
+            &moduli("restitution: 0.05, mu: 0.3"),
+            step,
+            r#"gravity: [0.0, 0.0, -9.81],
+            grains: [List(material: "grain", grains: [(at: [0.0, 0.0, 0.05], radius: 0.05)])],
+            bodies: [(name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 0.0, 1.0])])]"#,
+        );
+        let weight = s.state.bodies.mass[0] * 9.81;
+        let wanted = (0.75 * weight / (MODULUS * 0.05f64.sqrt())).powf(2.0 / 3.0);
+        for kick in [0.0, wanted / step] {
+            s.state.bodies.velocity[0].z += kick;
+            for _ in 0..400 {
+                s.step().unwrap_or_else(|e| panic!("{e}"));
+            }
+            near(-s.state.network.contacts[0].gap, wanted, 1e-3);
+        }
+    }
+}
+
+/// A ball hangs below a plate by an attraction of twice its weight, and does not creep along it when gravity is tilted: the spring
+/// carries what the attraction leaves of the weight.
+#[test]
+fn attraction_presses_a_spring() {
+    let (k, angle) = (1e6, 0.1f64);
+    let mass = 1000.0 * 4.0 / 3.0 * PI * 0.05f64.powi(3);
+    let weight = mass * 9.81;
+    let mut s: Simulation<Dim3> = built(
+        r#"contact: "linear-contact", cohesion: "constant-attraction""#,
+        &format!(
+            "stiffness: {k:e}, mu: 0.5, restitution: 0.1}}, cohesion: {{force: {:e}",
+            2.0 * weight
+        ),
+        1e-4,
+        &format!(
+            r#"gravity: [{:e}, 0.0, -{:e}],
+            grains: [List(material: "grain", grains: [(at: [0.0, 0.0, -0.05], radius: 0.05)])],
+            bodies: [(name: "plate", material: "grain", shapes: [HalfSpace(normal: [0.0, 0.0, -1.0])])]"#,
+            9.81 * angle.sin(),
+            9.81 * angle.cos()
+        ),
+    );
+    // It does not roll.
+    s.state.bodies.inverse_inertia[0] = 0.0;
+    steps(&mut s, 4000);
+    let overlap = weight * (2.0 - angle.cos()) / k;
+    near(-s.state.network.contacts[0].gap, overlap, 1e-4);
+    let speed = s.state.bodies.velocity[0].norm();
+    assert!(speed < 1e-3 * weight / (k * 0.4), "{speed:e}");
 }

@@ -176,6 +176,8 @@ typedef struct fw_batch {
     const double *effective_mass; /* Effective mass of the contact along its normal (kg; kg/m in 2D); 0 if neither body can move. */
     const double *spring_t1; /* Force of the tangential spring along t1 (N; N/m in 2D), positive where the candidate was displaced along t1: at the start of the step in prepare, at its end in commit. */
     const double *spring_t2; /* Force of the tangential spring along t2 (N). */
+    const double *spring_before_t1; /* Commit: force of the tangential spring along t1 at the start of the step (N). */
+    const double *spring_before_t2; /* Commit: force of the tangential spring along t2 at the start of the step (N). */
     double *out_contact_force_n; /* Contact: compressive force of the spring at overlap (N; N/m in 2D), not negative. */
     double *out_contact_force_t1; /* Contact: force of the tangential spring along t1 at the start of the step (N): spring_t1, unless the law changes it. */
     double *out_contact_force_t2; /* Contact: force of the tangential spring along t2 (N). */

@@ -236,6 +236,10 @@ pub struct FwBatch {
     pub spring_t1: *const f64,
     /// Force of the tangential spring along t2 (N).
     pub spring_t2: *const f64,
+    /// Commit: force of the tangential spring along t1 at the start of the step (N).
+    pub spring_before_t1: *const f64,
+    /// Commit: force of the tangential spring along t2 at the start of the step (N).
+    pub spring_before_t2: *const f64,
     /// Contact: compressive force of the spring at `overlap` (N; N/m in 2D), not negative.
     pub out_contact_force_n: *mut f64,
     /// Contact: force of the tangential spring along t1 at the start of the step (N): `spring_t1`, unless the law changes it.

@@ -87,6 +87,8 @@ fn rust_layout() -> Vec<(String, u64)> {
         effective_mass,
         spring_t1,
         spring_t2,
+        spring_before_t1,
+        spring_before_t2,
         out_contact_force_n,
         out_contact_force_t1,
         out_contact_force_t2,

@@ -121,6 +121,7 @@ unsafe fn site(b: &FwBatch, k: usize) -> Site {
             overlap: at(b.overlap, k),
             effective_mass: at(b.effective_mass, k),
             spring_t: [at(b.spring_t1, k), at(b.spring_t2, k)],
+            spring_before_t: [at(b.spring_before_t1, k), at(b.spring_before_t2, k)],
             h: b.h,
             theta: b.theta,
             time: b.time,
@@ -284,6 +285,16 @@ pub unsafe extern "C" fn contact_prepare<L: ContactLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
+    // SAFETY: the host passes a valid batch.
+    let old = unsafe { known(batch) }.is_some_and(|b| b.n > 0 && b.out_contact_force_n.is_null());
+    if L::FLAGS & FLAG_COMPLIANT != 0 && old {
+        tell(
+            message,
+            -1,
+            "this law is a spring, which needs a program of version 1.1 of the plugin interface or later",
+        );
+        return STATUS_ERROR;
+    }
     let damping = OnceCell::new();
     over::<L, false>(batch, message, |law, b, k, site, state, _| {
         let f = law.friction(site, state);

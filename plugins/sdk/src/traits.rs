@@ -91,6 +91,8 @@ pub struct Site {
     /// Force of the tangential spring along t1 and t2 (N; N/m in 2D), with `FLAG_COMPLIANT`; positive where the candidate was displaced
     /// along them.
     pub spring_t: [f64; 2],
+    /// The same at the start of the step, in commit (N; N/m in 2D).
+    pub spring_before_t: [f64; 2],
     /// Time step (s).
     pub h: f64,
     /// Theta of the time scheme.

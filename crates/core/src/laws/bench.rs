@@ -195,7 +195,8 @@ impl Bench {
             if compliant {
                 c.overlap.push((-motion.gap).max(0.0));
                 c.effective_mass.push(0.0);
-                c.spring.iter_mut().for_each(|t| t.push(0.0));
+                let forces = c.spring.iter_mut().chain(&mut c.spring_before);
+                forces.for_each(|t| t.push(0.0));
             }
             c.gap.push(motion.gap);
             c.area.push(self.area);

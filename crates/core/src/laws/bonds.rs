@@ -219,7 +219,10 @@ impl LawEvaluator {
             let (opens, slides) = (en * un, et.dot(&ut));
             bond.life.work[0] -= opens;
             bond.life.work[1] -= slides;
-            bond.life.friction -= s.unilateral_t.dot(&ut);
+            bond.life.friction += match step.spring(*at) {
+                Some(spring) => spring.friction,
+                None => -s.unilateral_t.dot(&ut),
+            };
             works.push(opens + slides);
         }
         if !memory.rotates {

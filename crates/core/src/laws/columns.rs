@@ -62,6 +62,8 @@ pub struct Columns {
     pub effective_mass: Vec<f64>,
     /// Force of the tangential spring (N), along t1 and t2; as `overlap`.
     pub spring: [Vec<f64>; 2],
+    /// The same at the start of the step, for commit.
+    pub spring_before: [Vec<f64>; 2],
     /// Internal variables at the start of the step.
     pub state: Vec<Vec<f64>>,
     /// Internal variables at the end of the step.
@@ -254,7 +256,7 @@ impl Columns {
             &mut self.intact_moment,
         ];
         let all = single.into_iter().chain(triples.into_iter().flatten());
-        all.chain(&mut self.spring)
+        all.chain(&mut self.spring).chain(&mut self.spring_before)
     }
 
     /// Returns the index of the first contact with a new internal variable that is not finite.
@@ -411,6 +413,8 @@ impl Columns {
             effective_mass: pointers.input(&self.effective_mass),
             spring_t1: pointers.input(&self.spring[0]),
             spring_t2: pointers.input_3d(&self.spring[1]),
+            spring_before_t1: pointers.input(&self.spring_before[0]),
+            spring_before_t2: pointers.input_3d(&self.spring_before[1]),
             out_contact_force_n: pointers.output(&mut out.contact_force[0]),
             out_contact_force_t1: pointers.output(&mut out.contact_force[1]),
             out_contact_force_t2: pointers.output_3d(&mut out.contact_force[2]),

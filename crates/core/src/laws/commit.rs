@@ -126,11 +126,11 @@ fn commit_spring<S: Space>(
     let dissipated = ContactDissipation {
         friction,
         viscous,
-        adhesion: all.adhesion,
+        adhesion: step.adhesion,
         ..ContactDissipation::default()
     };
-    let work = all.friction + all.impact;
-    (dissipated, work - friction - viscous)
+    let work = all.friction + all.impact + all.adhesion;
+    (dissipated, work - friction - viscous - step.adhesion)
 }
 
 /// Stores the impulse of a rigid contact; returns what it dissipated.

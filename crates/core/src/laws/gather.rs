@@ -65,6 +65,11 @@ impl LawEvaluator {
             if law.compliant() {
                 let spring = step.spring(*at).map_or(contact.spring, |s| s.spring);
                 push_spring(&mut self.columns, contact, &spring, spring.overlap, 0.0);
+                let before = step.spring(*at).map_or(spring.force_t, |s| s.force_before);
+                let before = S::components(&contact.normal, &before);
+                for (column, x) in self.columns.spring_before.iter_mut().zip(before) {
+                    column.push(x);
+                }
             }
         }
         self.gather_state(law, network);

@@ -254,7 +254,8 @@ fn inputs(batch: &mut FwBatch) -> Vec<(&'static str, &mut *const f64)> {
     slots!(batch: gap area radius age opening_n opening_t1 opening_t2 velocity_n velocity_t1 velocity_t2
         impulse_n impulse_t1 impulse_t2 damage energy_intact intact_n intact_t1 intact_t2 slip friction_work pressed
         rotation_n rotation_t1 rotation_t2 intact_moment_n intact_moment_t1 intact_moment_t2
-        overlap effective_mass spring_t1 spring_t2)
+        overlap effective_mass spring_t1 spring_t2
+        spring_before_t1 spring_before_t2)
 }
 
 fn outputs(batch: &mut FwBatch) -> Vec<(&'static str, &mut *mut f64)> {

@@ -95,6 +95,15 @@ impl LawEvaluator {
                 self.prepare_cohesion(law, cohesion, history, &mut step, first_moment)?;
             }
         }
+        // The spring carries the load and the attraction, P = p + h c_n A: its law is in u + s + c P.
+        for (form, _) in step
+            .forms
+            .iter_mut()
+            .zip(step.springs.iter())
+            .filter(|(_, s)| s.is_some())
+        {
+            form.shift_n += form.compliance[0] * form.tension;
+        }
         Ok(())
     }
 

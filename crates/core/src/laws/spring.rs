@@ -48,6 +48,10 @@ pub struct SpringStep<S: Space> {
     pub friction: f64,
     /// Dissipated by damping (J).
     pub viscous: f64,
+    /// Work against an attraction that has no opening (J).
+    pub adhesion: f64,
+    /// Tangential force of the spring at the start of the step (N).
+    pub force_before: S::Tangent,
 }
 
 impl<S: Space> SpringForm<S> {
@@ -73,7 +77,16 @@ impl<S: Space> SpringForm<S> {
     pub fn initial_energy(&self) -> f64 {
         let overlap = (-self.gap).max(0.0);
         let force = self.force_n + self.stiffness_n * (overlap - self.overlap);
-        0.5 * force.max(0.0) * overlap
+        self.energy(overlap, force.max(0.0))
+    }
+
+    /// The energy at an overlap (J) under a force (N) that grows with a power of the overlap, as a linear spring and Hertz' do: F d/(1 + k d/F).
+    fn energy(&self, overlap: f64, force: f64) -> f64 {
+        if force > 0.0 {
+            force * overlap / (1.0 + self.stiffness_n * overlap / force)
+        } else {
+            0.0
+        }
     }
 
     /// Completes the step of the contact from its solution: relative velocities at the end of the step and averaged over it
@@ -83,21 +96,26 @@ impl<S: Space> SpringForm<S> {
         form: &ContactForm<S>,
         solution: &ContactSolution<S>,
         [end, average]: [&S::Vector; 2],
-        slides: bool,
         before: &Spring<S>,
         h: f64,
     ) -> SpringStep<S> {
         let mut spring = Spring::relaxed();
         let n = &form.normal;
         let un = n.dot(end);
-        let pressed = solution.unilateral_n > 0.0;
+        let pressed = solution.unilateral_n + form.tension > 0.0;
+        let adhesion = form.tension * n.dot(average);
+        let force_before = self.force_t;
         spring.overlap = (-(self.gap + h * un)).max(0.0);
         if spring.overlap > 0.0 {
             let change = self.stiffness_n * (spring.overlap - self.overlap);
             spring.force_n = (self.force_n + change).max(0.0);
             // The trapezium is exact for a linear spring.
             let work = 0.5 * (before.force_n + spring.force_n) * (spring.overlap - before.overlap);
-            spring.energy[0] = (before.energy[0] + work).max(0.0);
+            spring.energy[0] = if before.overlap > 0.0 {
+                (before.energy[0] + work).max(0.0)
+            } else {
+                self.energy(spring.overlap, spring.force_n)
+            };
         }
         let damped = if self.gap > 0.0 {
             spring.overlap / h
@@ -116,6 +134,8 @@ impl<S: Space> SpringForm<S> {
                 slip: S::Tangent::zero(),
                 friction: before.energy[1],
                 viscous,
+                adhesion,
+                force_before,
             };
         }
         let p = solution.unilateral_t;
@@ -126,14 +146,13 @@ impl<S: Space> SpringForm<S> {
                 slip: slip * h,
                 friction: before.energy[1] - p.dot(&slip),
                 viscous,
+                adhesion,
+                force_before,
             };
         }
         let ut = S::tangential(n, end);
-        let slip = if slides {
-            ut + form.shift_t + p * form.compliance[1]
-        } else {
-            S::Tangent::zero()
-        };
+        // Zero up to the residual where the contact sticks.
+        let slip = ut + form.shift_t + p * form.compliance[1];
         let stretch = ut - slip;
         let force = p * (-1.0 / h) - stretch * self.damping_t;
         let unloading = if self.unloading_t > 0.0 {
@@ -158,6 +177,8 @@ impl<S: Space> SpringForm<S> {
             slip: slip * h + micro,
             friction: changed - p.dot(&slip) - p.dot(&micro) * (1.0 / h),
             viscous,
+            adhesion,
+            force_before,
         }
     }
 }

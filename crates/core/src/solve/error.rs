@@ -122,7 +122,7 @@ pub struct Sums {
     pub impulse: f64,
     /// Sum of p . r (J).
     pub power: f64,
-    /// Sum of |p . r| (J).
+    /// Sum of |p . r|, or of rho |r|^2 where that is larger (J).
     pub unbalanced: f64,
     /// Sum of |p_t . (u_t + s_t)| (J).
     pub slip: f64,

@@ -41,21 +41,22 @@ impl Law for HertzMindlin {
     const FLAGS: u64 = abi::FLAG_COMPLIANT;
     const VARIABLES: &'static [Variable] = &[
         variable(c"contact_radius", c"m", c"contact radius a"),
-        variable(c"force_t1", c"N", c"tangential force along t1"),
-        variable(c"force_t2", c"N", c"tangential force along t2"),
         variable(
-            c"turn_t1",
+            c"turn_along",
             c"N",
-            c"tangential force along t1 where it last turned",
+            c"force where it last turned, along the tangential force",
         ),
         variable(
-            c"turn_t2",
+            c"turn_across",
             c"N",
-            c"tangential force along t2 where it last turned",
+            c"force where it last turned, across the tangential force",
         ),
         variable(c"turned", c"", c"1 after the tangential force has turned"),
     ];
 }
+
+/// Change of the force, over mu F, from which it turns.
+const SMALL: f64 = 1e-6;
 
 /// Slope below which a contact is taken to slip as a whole, over k_0.
 const LEAST_SLOPE: f64 = 1e-3;
@@ -86,19 +87,38 @@ impl HertzMindlin {
         (a, 4.0 / 3.0 * modulus * a * d, 2.0 * modulus * a)
     }
 
-    /// Tangential forces of the state, scaled to a contact radius: a smaller contact carries less, a larger one the same.
-    fn tangential(site: &Site, state: &[f64], a: f64) -> ([f64; 2], [f64; 2]) {
-        let share = if state[0] > a && state[0] > 0.0 {
-            a / state[0]
-        } else {
-            1.0
-        };
-        let turn = if state[5] > 0.0 {
-            [state[3], state[4]]
-        } else {
-            [0.0; 2]
-        };
-        (site.spring_t.map(|t| t * share), turn.map(|t| t * share))
+    /// The tangential force and the force where it last turned, if it did: a contact that has become smaller carries less, a larger one the
+    /// same. The turning point is kept by its parts along and across the force, which the host turns with the pair.
+    fn history(force: [f64; 2], state: &[f64], a: f64) -> ([f64; 2], Option<[f64; 2]>) {
+        let [radius, along, across, turned] = [state[0], state[1], state[2], state[3]];
+        let share = if radius > a { a / radius } else { 1.0 };
+        let [x, y] = unit(force);
+        let turn = [along * x - across * y, along * y + across * x];
+        let turn = (turned > 0.0).then(|| turn.map(|t| t * share));
+        (force.map(|t| t * share), turn)
+    }
+
+    /// The turning point after a change of the force: a change backwards by more than rounding makes one.
+    fn turned(
+        force: [f64; 2],
+        change: [f64; 2],
+        turn: Option<[f64; 2]>,
+        limit: f64,
+    ) -> Option<[f64; 2]> {
+        let since = minus(force, turn.unwrap_or_default());
+        let (length, size) = (dot(since, since).sqrt(), dot(change, change).sqrt());
+        let back = dot(since, change) < 0.0 && size > SMALL * limit && length > 0.0;
+        if back { Some(force) } else { turn }
+    }
+}
+
+/// Direction of a force; the first axis for none.
+fn unit(force: [f64; 2]) -> [f64; 2] {
+    let length = dot(force, force).sqrt();
+    if length > 0.0 {
+        force.map(|t| t / length)
+    } else {
+        [1.0, 0.0]
     }
 }
 
@@ -146,15 +166,13 @@ impl ContactLaw for HertzMindlin {
             };
         }
         let k_0 = shear * a;
-        let (force, mut turn) = Self::tangential(site, state, a);
-        let mut turned = state[5] > 0.0;
+        let (force, turn) = Self::history(site.spring_t, state, a);
         let shift = [site.h * site.velocity[1], site.h * site.velocity[2]];
-        if dot(minus(force, turn), shift) < 0.0 {
-            (turn, turned) = (force, true);
-        }
+        let bound = self.mu * force_n;
+        let turn = Self::turned(force, shift.map(|x| k_0 * x), turn, bound);
         // The slope to where the force would be after the displacement that is expected.
-        let limit = if turned { 2.0 } else { 1.0 } * self.mu * force_n;
-        let since = minus(force, turn);
+        let limit = if turn.is_some() { 2.0 } else { 1.0 } * bound;
+        let since = minus(force, turn.unwrap_or_default());
         let x = if limit > 0.0 {
             dot(since, since).sqrt() / limit
         } else {
@@ -194,34 +212,22 @@ impl ContactLaw for HertzMindlin {
             return;
         }
         let [modulus, _] = self.moduli();
-        let (a, ..) = self.normal(site, modulus);
-        let (last, mut turn) = Self::tangential(
-            &Site {
-                spring_t: [state[1], state[2]],
-                ..*site
-            },
-            state,
-            a,
-        );
-        let (force, mut turned) = (site.spring_t, state[5] > 0.0);
+        let (a, force_n, _) = self.normal(site, modulus);
         if a == 0.0 {
             next.fill(0.0);
             return;
         }
-        if dot(minus(last, turn), minus(force, last)) < 0.0 {
-            (turn, turned) = (last, true);
+        // The force at the start of the step is the one that `spring` returned, which is scaled already.
+        let (before, force) = (site.spring_before_t, site.spring_t);
+        let (_, turn) = Self::history(before, state, a);
+        let change = minus(force, before);
+        let mut turn = Self::turned(before, change, turn, self.mu * force_n);
+        if turn.is_some_and(|t| is_back(force, t)) {
+            turn = None;
         }
-        if turned && is_back(force, turn) {
-            (turn, turned) = ([0.0; 2], false);
-        }
-        next.copy_from_slice(&[
-            a,
-            force[0],
-            force[1],
-            turn[0],
-            turn[1],
-            if turned { 1.0 } else { 0.0 },
-        ]);
+        let ([x, y], [p, q]) = (unit(force), turn.unwrap_or_default());
+        let turned = if turn.is_some() { 1.0 } else { 0.0 };
+        next.copy_from_slice(&[a, p * x + q * y, q * x - p * y, turned]);
     }
 }
 
@@ -256,10 +262,10 @@ mod tests {
     fn force_is_that_of_hertz() {
         let [modulus, _] = STEEL.moduli();
         assert!((modulus - 2.1e11 / (2.0 * 0.91)).abs() < 1e-3 * modulus);
-        let s = STEEL.spring(&site(1e-6), &[0.0; 6], 0.0);
+        let s = STEEL.spring(&site(1e-6), &[0.0; 4], 0.0);
         let a = (0.75 * s.force_n * 0.01 / modulus).cbrt();
         assert!((a * a / 0.01 - 1e-6).abs() < 1e-15);
-        let more = STEEL.spring(&site(1.0001e-6), &[0.0; 6], 0.0).force_n;
+        let more = STEEL.spring(&site(1.0001e-6), &[0.0; 4], 0.0).force_n;
         assert!(((more - s.force_n) / 1e-10 / s.stiffness_n - 1.0).abs() < 1e-4);
     }
 
@@ -272,7 +278,7 @@ mod tests {
                     dimension,
                     ..site(1e-6)
                 },
-                &[0.0; 6],
+                &[0.0; 4],
                 0.0,
             );
             let ratio = s.stiffness_t / s.stiffness_n;
@@ -291,11 +297,11 @@ mod tests {
                         spring_t: [1e3, -1e3],
                         ..site(overlap)
                     };
-                    let s = law.spring(&at, &[1e-4, 1.0, 0.0, 1.0, 1.0, 1.0], 0.5);
+                    let s = law.spring(&at, &[1e-4, 1.0, 0.5, 1.0], 0.5);
                     assert!(s.force_n.is_finite() && s.stiffness_t.is_finite(), "{s:?}");
                     assert!(s.force_t.iter().all(|t| t.is_finite()), "{s:?}");
-                    let mut next = [0.0; 6];
-                    law.commit(&at, &[1e-4, 1.0, 0.0, 1.0, 1.0, 1.0], &mut next);
+                    let mut next = [0.0; 4];
+                    law.commit(&at, &[1e-4, 1.0, 0.5, 1.0], &mut next);
                     assert!(next.iter().all(|x| x.is_finite()), "{next:?}");
                 }
             }

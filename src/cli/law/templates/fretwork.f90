@@ -109,6 +109,8 @@ module fretwork
     type(c_ptr) :: effective_mass = c_null_ptr
     type(c_ptr) :: spring_t1 = c_null_ptr
     type(c_ptr) :: spring_t2 = c_null_ptr
+    type(c_ptr) :: spring_before_t1 = c_null_ptr
+    type(c_ptr) :: spring_before_t2 = c_null_ptr
     type(c_ptr) :: out_contact_force_n = c_null_ptr
     type(c_ptr) :: out_contact_force_t1 = c_null_ptr
     type(c_ptr) :: out_contact_force_t2 = c_null_ptr

@@ -193,7 +193,7 @@ impl<'a, const D: usize> Form<'a, D> {
                     velocity: dot(&u[c], &u[c]),
                     impulse: dot(&p[c], &p[c]) * over * over,
                     power: dot(&p[c], &r) * over,
-                    unbalanced: dot(&p[c], &r).abs() * over,
+                    unbalanced: (dot(&p[c], &r).abs() * over).max(rho * natural),
                     slip,
                 },
                 c,

@@ -25,7 +25,7 @@ pub(super) use visit::{Free, Load, Measure, Update, Visit, visit};
 
 use super::form::ContactSolution;
 use super::{cone, error};
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::{Space, VectorLike, greatest};
 
 /// Velocity record of a body in the solver: 64 bytes in both dimensions.
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +65,7 @@ pub struct Residual {
     pub impulse: f64,
     /// p . r, r the residual velocity (J).
     pub power: f64,
-    /// |p . r| (J).
+    /// |p . r|, or rho |r|^2 where that is larger: a contact without the impulse that it should have (J).
     pub unbalanced: f64,
     /// |p_t . (u_t + s_t)|, the work of slip (J).
     pub slip: f64,
@@ -159,7 +159,7 @@ fn natural_map<T: VectorLike>(
         velocity: un * un + ut.dot(&ut),
         impulse: (pn * pn + pt.dot(&pt)) * (over * over),
         power: pn * rn + pt.dot(&rt),
-        unbalanced: (pn * rn + pt.dot(&rt)).abs(),
+        unbalanced: greatest((pn * rn + pt.dot(&rt)).abs(), rho * (rn * rn + rt.dot(&rt))),
         slip: pt.dot(&slide).abs(),
     }
 }

@@ -164,7 +164,7 @@ impl<S: Space> MomentRow<S> {
             velocity: w.dot(&w) * self.lever * self.lever,
             impulse: shifted.dot(&shifted) * over * over,
             power: shifted.dot(&r),
-            unbalanced: shifted.dot(&r).abs(),
+            unbalanced: shifted.dot(&r).abs().max(rho * r.dot(&r)),
             slip: shifted.dot(&w).abs(),
         }
     }

@@ -419,7 +419,7 @@ fn natural_map<T: Tuple<U>, const U: usize>(
         velocity: any.choose(un * un + ut.dot(ut), zero),
         impulse: (pn * pn + pt.dot(pt)) * (over * over),
         power,
-        unbalanced: power.abs(),
+        unbalanced: power.abs().max(any.choose(rho * natural, zero)),
         slip: slip.abs(),
     }
 }
