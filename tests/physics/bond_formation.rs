@@ -1,12 +1,16 @@
 //! Where bonds are made and from which opening they begin.
 
 use fretwork::geometry::space::Dim2;
-use fretwork::scene::load_text;
+use fretwork::scene::{InputError, load_text};
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::Path;
 
 fn built(alert: f64, bonds: &str, rest: &str) -> Simulation<Dim2> {
+    tried(alert, bonds, rest).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn tried(alert: f64, bonds: &str, rest: &str) -> Result<Simulation<Dim2>, InputError> {
     let text = format!(
         r#"(
     name: "formation",
@@ -20,9 +24,8 @@ fn built(alert: f64, bonds: &str, rest: &str) -> Simulation<Dim2> {
     {rest}
 )"#
     );
-    let loaded = load_text("formation.ron", &text, Path::new("."), &[]);
-    let built = loaded.and_then(|l| l.build_in::<Dim2>(&search_path()));
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
+    let loaded = load_text("formation.ron", &text, Path::new("."), &[])?;
+    Ok(loaded.build_in::<Dim2>(&search_path())?.simulation)
 }
 
 /// Eleven disks in a row whose gaps grow from 0.1 to 1 mm: how many are bonded does not depend on how far contacts are
@@ -51,6 +54,9 @@ fn bonds_are_made_within_their_own_distance() {
     for alert in [5e-4, 1e-3, 2e-3] {
         assert_eq!(made(alert, "bonds_within: 4.5e-4,"), 4, "alert {alert}");
     }
+    // Beyond the alert distance no contact is known.
+    let refused = tried(4e-4, "bonds_within: 4.5e-4,", &row).unwrap_err();
+    assert!(refused.to_string().contains("detection.alert"), "{refused}");
     // Without it the alert distance decides.
     assert_eq!([5.5e-4, 9.5e-4].map(|alert| made(alert, "")), [5, 9]);
 }

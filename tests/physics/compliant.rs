@@ -391,3 +391,44 @@ fn attraction_presses_a_spring() {
     let speed = s.state.bodies.velocity[0].norm();
     assert!(speed < 1e-3 * weight / (k * 0.4), "{speed:e}");
 }
+
+/// Moduli come from the materials of the interface, in its order, unless the case gives them; a material without them is refused.
+#[test]
+fn moduli_come_from_the_materials() {
+    let moduli = |first: &str, parameters: &str| {
+        let text = format!(
+            r#"(
+    name: "moduli", dimension: 3, time: (step: 1e-5, end: 1e-3),
+    materials: {{"first": "{first}", "second": "rail_steel_r260"}},
+    interfaces: [(name: "all", between: ("first", "second"), contact: "hertz-mindlin", {parameters})],
+    grains: [List(material: "first", grains: [(at: [0.0, 0.0, 0.1], radius: 0.05)])],
+    bodies: [(name: "floor", material: "second", shapes: [HalfSpace(normal: [0.0, 0.0, 1.0])])],
+    output: (frames: 0, views: 0),
+)"#
+        );
+        let loaded = load_text("moduli.ron", &text, Path::new("."), &[])?;
+        let built = loaded.build_in::<Dim3>(&search_path())?;
+        let contact = built.simulation.laws[0].contact();
+        let value = |name: &str| {
+            let at = contact
+                .plugin
+                .parameters
+                .iter()
+                .position(|p| p.name == name);
+            contact.parameters[at.unwrap()]
+        };
+        Ok::<_, fretwork::scene::InputError>(
+            ["young_1", "poisson_1", "young_2", "poisson_2"].map(value),
+        )
+    };
+    let of_files = moduli("magnetite", "").unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(of_files, [1.65e11, 0.35, 2.1e11, 0.3]);
+    let own = r#"parameters: (contact: {"young_1": (value: 7.0, unit: "GPa")})"#;
+    let given = moduli("magnetite", own).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(given, [7e9, 0.35, 2.1e11, 0.3]);
+    let refused = moduli("verification_grain", "").unwrap_err().to_string();
+    assert!(
+        refused.contains("needs `young` of the material `first`"),
+        "{refused}"
+    );
+}

@@ -25,13 +25,13 @@ fn slope(rig: &mut Rig) -> Result<Line, LawError> {
         let overlap = share * RADIUS;
         let (less, more) = (at(overlap * (1.0 - CHANGE))?, at(overlap * (1.0 + CHANGE))?);
         let slope = (more.force - less.force) / (2.0 * CHANGE * overlap);
-        let told = at(overlap)?;
-        let scale = told
+        let here = at(overlap)?;
+        let scale = here
             .stiffness
-            .max(told.force / overlap)
+            .max(here.force / overlap)
             .max(f64::MIN_POSITIVE);
-        worst = worst.max((slope - told.stiffness).abs() / scale);
-        worst = worst.max(at(0.0)?.force / told.force.max(f64::MIN_POSITIVE));
+        worst = worst.max((slope - here.stiffness).abs() / scale);
+        worst = worst.max(at(0.0)?.force / here.force.max(f64::MIN_POSITIVE));
     }
     Ok(Line::below(
         "spring",

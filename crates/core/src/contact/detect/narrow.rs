@@ -249,18 +249,17 @@ impl<'a, S: Space> Narrow<'a, S> {
                 found.compression_time = old.compression_time;
                 found.slot = old.slot;
                 found.broken = old.broken;
-                let from = old.normal;
                 found.spring = old.spring;
+                let (from, normal) = (old.normal, found.normal);
+                // Tangential forces of springs and the memory of a bond rotate with the pair.
+                let [i, j] = found.bodies.map(|b| self.bodies.spin[b as usize]);
+                let angle = || 0.5 * self.h * S::split_spin(&normal, &(i + j)).0;
                 if found.spring.force_t != S::Tangent::zero() {
-                    let [i, j] = found.bodies.map(|b| self.bodies.spin[b as usize]);
-                    let angle = 0.5 * self.h * S::split_spin(&found.normal, &(i + j)).0;
                     let force = &mut found.spring.force_t;
-                    *force = S::transport(&from, &found.normal, angle, force);
+                    *force = S::transport(&from, &normal, angle(), force);
                 }
                 if let Some(slot) = found.memory() {
-                    // The memory of a bond rotates with the pair.
-                    let [i, j] = found.bodies.map(|b| self.bodies.spin[b as usize]);
-                    let angle = 0.5 * self.h * S::split_spin(&found.normal, &(i + j)).0;
+                    let angle = angle();
                     let memory = &mut network.memory[found.law as usize];
                     let bond = &mut memory.bonds[slot];
                     bond.opening_t = S::transport(&from, &found.normal, angle, &bond.opening_t);

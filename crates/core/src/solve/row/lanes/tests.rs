@@ -60,7 +60,7 @@ fn contact<S: Space>(pair: u32) -> ContactForm<S> {
     }
 }
 
-/// Contacts with bonds, some of them tension-only, cohesion, restitution, or none of these.
+/// Contacts with springs, bonds, some of them tension-only, cohesion, restitution, or none of these.
 fn bonded<S: Space>(pair: u32) -> ContactForm<S> {
     let mut tangent = S::Tangent::zero();
     for k in 0..S::Tangent::N {
@@ -80,6 +80,7 @@ fn bonded<S: Space>(pair: u32) -> ContactForm<S> {
         tension: 0.2 * f64::from(pair % 4),
         cohesion: 0.1 * f64::from(pair % 5),
         elastic: (!pair.is_multiple_of(7)).then_some(elastic),
+        compliance: [0.3 * f64::from(pair % 2), 0.2 * f64::from(pair % 3)],
         ..contact(pair)
     }
 }
