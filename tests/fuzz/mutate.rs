@@ -244,10 +244,9 @@ const SIGNS: [&[u8]; 9] = [
 fn place(bytes: &[u8], rng: &mut Pcg64) -> usize {
     if rng.random_range(0..2) == 0 {
         let from = rng.random_range(0..bytes.len());
-        let starts = |k: usize, s: &[u8]| s.first() == Some(&bytes[k]) && bytes[k..].starts_with(s);
-        let sign = |k: &usize| SIGNS.iter().any(|s| starts(*k, s));
-        if let Some(k) = (from..bytes.len()).find(sign) {
-            return (k + rng.random_range(0..96)).min(bytes.len() - 1);
+        let rest = &bytes[from..];
+        if let Some(k) = SIGNS.iter().filter_map(|s| memchr::memmem::find(rest, s)).min() {
+            return (from + k + rng.random_range(0..96)).min(bytes.len() - 1);
         }
     }
     if rng.random_range(0..2) == 0 {
