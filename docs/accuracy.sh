@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
-# What the friction of the fretting case depends on, with rigid and with compliant contacts: one cycle, three to seven seeds, one setting
-# at a time. Prints a line a run: contacts, setting, seed, friction coefficient, damage ratio, position correction (J/m), external work (J/m),
+# What the friction of the fretting cases depends on: one cycle, several seeds, one setting at a time. Groups: rigid and compliant, disks with
+# rigid and with compliant contacts (cases/wheel_rail_fretting.ron); angular, polygons with compliant contacts (cases/wheel_rail_angular.ron).
+# Prints a line a run: group, setting, seed, friction coefficient, plateau Q/P, damage ratio, position correction (J/m), external work (J/m),
 # seconds of processor time.
-# Usage: docs/accuracy.sh [FOLDER], from the root of the repository, after `cargo build --release`; ten minutes on two cores.
+# Usage: docs/accuracy.sh [FOLDER [GROUP...]], from the root of the repository, after `cargo build --release`; disks take ten minutes on two
+# cores, angular half an hour. SEEDS="7 8" takes other seeds than each group's own.
 set -eu
 out="${1:-results/accuracy}"
+shift || true
+groups=("${@:-rigid compliant angular}")
 program="${FRETWORK:-target/release/fretwork}"
 mkdir -p "$out"
 
@@ -19,30 +23,51 @@ number() {
     sed -n "s/^ *\"$2\": \([-+.0-9e]*\),*\$/\1/p" "$1" | head -1
 }
 
+# run GROUP SETTING SEED CASE OPTIONS...
 run() {
-    local contacts="$1" setting="$2" seed="$3"
-    shift 3
-    local name="$out/$contacts-$setting-$seed"
-    "$program" run cases/wheel_rail_fretting.ron --out "$name" --set time.end=0.1 --set "seed=$seed" --set output.frames=0 \
-        --set output.views=0 "${within[@]}" "$@" >"$name.log" 2>&1 || true
+    local group="$1" setting="$2" seed="$3" case="$4"
+    shift 4
+    local name="$out/$group-$setting-$seed"
+    "$program" run "cases/$case.ron" --out "$name" --set "seed=$seed" --set output.frames=0 --set output.views=0 "$@" \
+        >"$name.log" 2>&1 || true
     local of="$name/summary.json"
-    echo "$contacts $setting $seed $(number "$of" friction_coefficient) $(number "$of" damage_ratio) $(number "$of" correction)" \
-        "$(number "$of" external_work) $(number "$of" cpu_seconds)"
+    echo "$group $setting $seed $(number "$of" friction_coefficient) $(number "$of" plateau_friction) $(number "$of" damage_ratio)" \
+        "$(number "$of" correction) $(number "$of" external_work) $(number "$of" cpu_seconds)"
 }
 
-all() {
-    local contacts="$1" tolerance="$2" tight="$3"
+# disks GROUP TOLERANCE TIGHT OPTIONS...
+disks() {
+    local group="$1" tolerance="$2" tight="$3" case=wheel_rail_fretting
     shift 3
-    for seed in 7 8 9 10 11 12 13; do
-        run "$contacts" base "$seed" --set "solver.tolerance=$tolerance" "$@"
-        run "$contacts" inertia-tenth "$seed" --set "solver.tolerance=$tolerance" --set inertia_scaling=5.8e7 "$@"
+    set -- --set time.end=0.1 "${within[@]}" "$@"
+    for seed in ${SEEDS:-7 8 9 10 11 12 13}; do
+        run "$group" base "$seed" $case --set "solver.tolerance=$tolerance" "$@"
+        run "$group" inertia-tenth "$seed" $case --set "solver.tolerance=$tolerance" --set inertia_scaling=5.8e7 "$@"
     done
-    for seed in 7 8 9; do
-        run "$contacts" tolerance "$seed" --set "solver.tolerance=$tight" "$@"
-        run "$contacts" half-step "$seed" --set "solver.tolerance=$tolerance" --set time.step=2.5e-5 "$@"
-        run "$contacts" alert-twice "$seed" --set "solver.tolerance=$tolerance" --set detection.alert=4e-7 "$@"
+    for seed in ${SEEDS:-7 8 9}; do
+        run "$group" tolerance "$seed" $case --set "solver.tolerance=$tight" "$@"
+        run "$group" half-step "$seed" $case --set "solver.tolerance=$tolerance" --set time.step=2.5e-5 "$@"
+        run "$group" alert-twice "$seed" $case --set "solver.tolerance=$tolerance" --set detection.alert=4e-7 "$@"
     done
 }
-all rigid 1e-3 1e-4 &
-all compliant 0.5 0.005 "${springs[@]}"
+
+angular() {
+    local case=wheel_rail_angular
+    for seed in ${SEEDS:-7 8 9 10 11 12}; do
+        run angular base "$seed" $case --set time.end=0.075
+        run angular half-step "$seed" $case --set time.end=0.075 --set time.step=2.5e-5
+        run angular alert-twice "$seed" $case --set time.end=0.075 --set detection.alert=4e-7
+        run angular tolerance "$seed" $case --set time.end=0.075 --set solver.tolerance=0.005
+        run angular inertia-tenth "$seed" $case --set time.end=0.075 --set inertia_scaling=5.8e7
+    done
+}
+
+for group in ${groups[*]}; do
+    case "$group" in
+    rigid) disks rigid 1e-3 1e-4 & ;;
+    compliant) disks compliant 0.5 0.005 "${springs[@]}" & ;;
+    angular) angular & ;;
+    *) echo "unknown group $group: rigid, compliant or angular" >&2 && exit 1 ;;
+    esac
+done
 wait

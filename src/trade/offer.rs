@@ -49,6 +49,7 @@ impl Offer {
                     "friction_coefficient",
                     "friction_from_dissipation",
                     "peak_friction",
+                    "plateau_friction",
                     "cycles",
                     "fretting",
                 ],

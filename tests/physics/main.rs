@@ -6,6 +6,7 @@
     reason = "a test fails by a panic"
 )]
 
+mod angular_layer;
 mod blocks;
 mod bond_formation;
 mod bonded;

@@ -58,6 +58,8 @@ pub struct Cycle {
     pub stick_ratio: f64,
     /// Mean of |Q|/P at the reversals of the motion.
     pub reversal_ratio: f64,
+    /// |Q|/P over the second half of the strokes, without the elastic travel after a reversal; 0 before the first reversal.
+    pub plateau_ratio: f64,
     /// Partial or gross slip, from the energy ratio.
     pub regime: Regime,
     /// Volume worn off first bodies (m^3; m^3/m in 2D).
@@ -227,6 +229,7 @@ impl Cycles {
             0.0
         };
         cycle.reversal_ratio = self.shape.reversal();
+        cycle.plateau_ratio = self.shape.plateau().unwrap_or(0.0);
         cycle.regime = Regime::of(cycle.energy_ratio);
         let clock = &self.clock;
         let end = clock

@@ -184,6 +184,8 @@ impl<S: Space> Observer<S> for FrictionTest<S> {
         summary.friction_coefficient = cycles.last().map(|c| c.friction_coefficient);
         summary.friction_from_dissipation = cycles.last().map(|c| c.friction_from_dissipation);
         summary.peak_friction = cycles.last().and_then(Cycle::peak_ratio);
+        let plateau = cycles.last().map(|c| c.plateau_ratio);
+        summary.plateau_friction = plateau.filter(|p| *p > 0.0);
         summary.cycles.clone_from(&cycles.list);
         summary.fretting = fretting::Outcome::new(&cycles.list).filter(|_| cycles.oscillates());
         summary.friction_scatter = cycles.scatter();

@@ -1,4 +1,4 @@
-//! Shape of a fretting loop Q(delta): its crossings of Q = 0, and Q/P at the reversals of the motion.
+//! Shape of a fretting loop Q(delta): its crossings of Q = 0, Q/P at the reversals of the motion, and its plateau.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +12,10 @@ pub struct Loop {
     crossings: Option<[f64; 2]>,
     /// Sum of |Q|/P over the reversals, and their number.
     reversals: (f64, u32),
+    /// Path since the last reversal, and the longest path between two reversals so far (m).
+    stroke: [f64; 2],
+    /// Integrals of |Q| and of P over the path in the second half of each stroke (J).
+    plateau: [f64; 2],
 }
 
 impl Loop {
@@ -19,6 +23,7 @@ impl Loop {
     pub fn next_cycle(&mut self) {
         self.crossings = None;
         self.reversals = (0.0, 0);
+        self.plateau = [0.0; 2];
     }
 
     /// Adds a sample: the displacement at its end (m), and Q and P over it (N; N/m in 2D).
@@ -30,15 +35,36 @@ impl Loop {
                 let [low, high] = self.crossings.unwrap_or([at, at]);
                 self.crossings = Some([low.min(at), high.max(at)]);
             }
-            if motion * self.motion < 0.0 && p0 > 0.0 {
+            let turns = motion * self.motion < 0.0;
+            if turns && p0 > 0.0 {
                 self.reversals.0 += q0.abs() / p0;
                 self.reversals.1 += 1;
             }
+            self.add_to_plateau(motion.abs(), turns, q, p);
             if motion != 0.0 {
                 self.motion = motion;
             }
         }
         self.last = Some([displacement, q, p]);
+    }
+
+    fn add_to_plateau(&mut self, path: f64, turns: bool, q: f64, p: f64) {
+        let [since, longest] = &mut self.stroke;
+        if turns {
+            *longest = longest.max(*since);
+            *since = 0.0;
+        }
+        *since += path;
+        if *longest > 0.0 && *since > 0.5 * *longest {
+            self.plateau[0] += q.abs() * path;
+            self.plateau[1] += p * path;
+        }
+    }
+
+    /// |Q|/P over the second half of the strokes, weighted by the path; `None` before the first reversal. A stroke is the path
+    /// between two reversals; its half is that of the longest so far.
+    pub fn plateau(&self) -> Option<f64> {
+        (self.plateau[1] > 0.0).then(|| self.plateau[0] / self.plateau[1])
     }
 
     /// Half of the loop's width at Q = 0, the sliding amplitude (m).
@@ -108,5 +134,31 @@ mod tests {
         }
         assert!((l.aperture() / a - 1.0).abs() < 1e-4);
         assert!((l.reversal() - 0.4).abs() < 1e-12);
+    }
+
+    /// An elastic slider (spring k, friction mu P) under +-a: Q rises by k delta after each reversal up to mu P at 2 mu P/k.
+    #[test]
+    fn the_plateau_of_an_elastic_slider_leaves_its_elastic_travel_out() {
+        let (a, n, mu, p, k) = (1e-5, 4000, 0.4, 100.0, 1e7);
+        // Elastic travel 2 mu P/k = 8 um of a stroke of 20 um.
+        let (mut l, mut x, mut q) = (Loop::default(), 0.0, 0.0_f64);
+        let (mut work, mut path) = (0.0, 0.0);
+        for step in 0..=3 * n {
+            let to = a * (std::f64::consts::TAU * f64::from(step) / f64::from(n)).sin();
+            if step % n == 0 {
+                (work, path) = (0.0, 0.0);
+                l.next_cycle();
+            }
+            q = (q + k * (to - x)).clamp(-mu * p, mu * p);
+            work += q * (to - x);
+            path += p * (to - x).abs();
+            x = to;
+            l.add(x, q, p);
+            if step == 3 * n - 1 {
+                assert!((l.plateau().unwrap() / mu - 1.0).abs() < 1e-12);
+                // The energetic coefficient: 4 mu P (a - mu P/k) over 4 a P.
+                assert!((work / path / (mu * (1.0 - 0.4)) - 1.0).abs() < 2e-3);
+            }
+        }
     }
 }

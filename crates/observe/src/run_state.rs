@@ -126,6 +126,7 @@ impl<S: Space> Observer<S> for RunState {
         self.iterations += u64::from(report.solver.iterations);
         solver.iterations_max = solver.iterations_max.max(report.solver.iterations);
         solver.error_max = solver.error_max.max(report.solver.error);
+        solver.error_parts.add(&report.solver.parts);
         let used = report.solver.used.name().to_owned();
         *solver.steps_by_method.entry(used).or_default() += 1;
         solver.choice.add(&report.solver);

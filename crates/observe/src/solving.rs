@@ -1,7 +1,35 @@
 //! Solver statistics of a run.
 
 use super::choice::SolverStats;
+use fretwork_core::solve::error::ErrorParts;
 use serde::{Deserialize, Serialize};
+
+/// Parts of the error over the steps of a run, each weighted by the heat of slip of its step: what matters for friction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ErrorPartsOfRun {
+    /// Mean unbalanced share of the work of a step.
+    pub force_balance: f64,
+    /// Mean of the residual velocities over the relative velocities of the contacts.
+    pub velocity: f64,
+    /// Mean energy that residuals make in violation of the contact law, over the heat of slip (the error of the norm `Power`).
+    pub contact_law: f64,
+    /// Heat of slip of all steps (J; J/m in 2D).
+    pub slip_energy: f64,
+}
+
+impl ErrorPartsOfRun {
+    /// Adds a step.
+    pub fn add(&mut self, step: &ErrorParts) {
+        if step.slip_energy <= 0.0 || !step.contact_law.is_finite() {
+            return;
+        }
+        self.slip_energy += step.slip_energy;
+        let share = step.slip_energy / self.slip_energy;
+        self.force_balance += share * (step.force_balance - self.force_balance);
+        self.velocity += share * (step.velocity - self.velocity);
+        self.contact_law += share * (step.contact_law - self.contact_law);
+    }
+}
 
 /// Solver statistics over the steps of a run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -12,6 +40,8 @@ pub struct SolverSummary {
     pub iterations_max: u32,
     /// Largest error at the end of a step.
     pub error_max: f64,
+    /// What the solutions got wrong, in parts.
+    pub error_parts: ErrorPartsOfRun,
     /// Steps that did not reach the tolerance.
     pub unconverged_steps: u64,
     /// Steps in which damage and opening did not reach the coupling's tolerance.
@@ -42,4 +72,26 @@ pub struct SolverSummary {
     pub fclib_written: u64,
     /// Steps that could not be written as FCLIB problems, since the format cannot represent them.
     pub fclib_skipped: u64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_weighted_by_the_heat_of_slip() {
+        let mut run = ErrorPartsOfRun::default();
+        let step = |velocity, slip_energy| ErrorParts {
+            force_balance: 2.0 * velocity,
+            velocity,
+            contact_law: 3.0 * velocity,
+            slip_energy,
+        };
+        // A step at rest says nothing.
+        run.add(&step(7.0, 0.0));
+        run.add(&step(0.1, 1.0));
+        run.add(&step(0.5, 3.0));
+        assert!((run.velocity - 0.4).abs() < 1e-15 && run.slip_energy == 4.0);
+        assert!((run.force_balance - 0.8).abs() < 1e-15 && (run.contact_law - 1.2).abs() < 1e-15);
+    }
 }

@@ -13,6 +13,8 @@ use fretwork_scene::methods::{Demands, Service};
 pub const LEDGER: f64 = 1e-6;
 /// Penetration after a projection, as a fraction of the smaller body's length, that is worth a note.
 const OVERLAP: f64 = 1e-2;
+/// Residual velocities, as a share of those of the contacts, below which they are not worth a note.
+const LOOSE: f64 = 1e-3;
 
 /// Steps that ended above the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -218,6 +220,19 @@ fn phases(summary: &Summary) -> Option<String> {
     })
 }
 
+/// Steps that reached their tolerance, but whose residuals outweigh the slip that they are to resolve.
+fn loose_velocities(summary: &Summary) -> Option<String> {
+    let parts = &summary.solver.error_parts;
+    (parts.contact_law > 1.0 && parts.velocity > LOOSE).then(|| {
+        format!(
+            "the residuals of the steps make {:.1} times the heat of slip: slow sliding, and with it friction, may be wrong although \
+             the steps reached solver.tolerance; take a smaller one, or compliant contacts with solver.norm Power \
+             (docs/accuracy.md)",
+            parts.contact_law
+        )
+    })
+}
+
 /// Notes that do not affect the trust in the results.
 fn notes(summary: &Summary) -> Vec<Warning> {
     let mut notes = Vec::new();
@@ -244,6 +259,7 @@ fn notes(summary: &Summary) -> Vec<Warning> {
         }),
     );
     note("COARSE DRIVE", drives(summary, false));
+    note("LOOSE VELOCITIES", loose_velocities(summary));
     let over = summary.solver.overlap_after;
     note(
         "OVERLAP",
@@ -314,6 +330,21 @@ mod tests {
                 .to_string()
                 .starts_with("NOT CONVERGED: 12 of 600 steps")
         );
+    }
+
+    #[test]
+    fn loose_velocities_are_noted_where_slip_is_outweighed() {
+        let parts = |velocity, contact_law| {
+            of_run(|s| {
+                s.solver.error_parts.velocity = velocity;
+                s.solver.error_parts.contact_law = contact_law;
+            })
+        };
+        assert_eq!(parts(1e-2, 0.3), []);
+        // At rest both are small, whatever their ratio.
+        assert_eq!(parts(1e-7, 4.0), []);
+        let list = parts(3e-2, 1.8);
+        assert!(list.len() == 1 && !list[0].serious && list[0].of == "LOOSE VELOCITIES");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::bodies::Bodies;
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// Penetration, as a fraction of a contact's radius, from which a contact counts as found late.
+/// Penetration, as a fraction of the reduced radius of two bodies, from which a contact counts as found late.
 const LATE: f64 = 0.01;
 /// Time and bodies of the first occurrence of an event.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -75,16 +75,17 @@ pub struct StepSizeDiagnostics {
 impl StepSizeDiagnostics {
     /// Records a contact that is found for the first time, of a pair that already penetrates by `known` (m)
     /// elsewhere: a body that rests slightly too deep in a surface meets the next facet at the same depth,
-    /// which is not due to its speed.
+    /// which is not due to its speed. `size` is the reduced radius of the bodies (m): that of the contact is the part of a face
+    /// that a point stands for, which may be much smaller.
     pub(super) fn record_late<S: Space>(
         &mut self,
         contact: &Contact<S>,
-        known: f64,
+        [known, size]: [f64; 2],
         time: f64,
         bodies: &Bodies<S>,
     ) {
-        let depth = -contact.gap / contact.radius;
-        if depth > LATE + known.max(0.0) / contact.radius {
+        let depth = -contact.gap / size;
+        if depth > LATE + known.max(0.0) / size {
             self.late += 1;
             self.deepest = self.deepest.max(depth);
             self.first_late
@@ -194,5 +195,38 @@ impl StepSizeDiagnostics {
             .flatten()
             .collect();
         (!told.is_empty()).then(|| format!("{}; take a smaller time.step", told.join("; ")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Key;
+    use crate::contact::network::ContactGeometry;
+    use crate::geometry::space::Dim2;
+    use nalgebra::Vector2;
+
+    /// Two sides that share 1e-9 m of grains of 1e-6 m: an overlap of twice that length is no sign of speed, one of 2 % of the grain is.
+    #[test]
+    fn late_contacts_are_measured_by_their_bodies() {
+        let bodies = Bodies::<Dim2>::default();
+        let mut found = StepSizeDiagnostics::default();
+        for (depth, late) in [(2e-9, 0), (2e-8, 1)] {
+            let geometry = ContactGeometry {
+                gap: -depth,
+                normal: Vector2::new(0.0, 1.0),
+                arms: [Vector2::zeros(); 2],
+                radius: 1e-9,
+            };
+            let key = Key {
+                candidate: Key::PIECE,
+                antagonist: Key::PIECE | 1,
+                feature: 0,
+            };
+            let contact = Contact::new(key, [0, 1], 0, geometry, 0.0);
+            found.record_late(&contact, [0.0, 1e-6], 1.0, &bodies);
+            assert_eq!(found.late, late);
+        }
+        assert!((found.deepest - 0.02).abs() < 1e-12);
     }
 }

@@ -111,6 +111,19 @@ pub struct Scale {
     pub work: f64,
 }
 
+/// What a solution gets wrong, in parts, whichever norm decides when it is good enough.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ErrorParts {
+    /// Force balance: the unbalanced share of the step's work, |sum p.r| / |v - v_free|_M^2.
+    pub force_balance: f64,
+    /// Velocity: the residual velocities over those of the contacts, |r| / max(|u|, |u_free|).
+    pub velocity: f64,
+    /// Contact law: the error of [`Norm::Power`], the energy that the residuals make over the heat of slip.
+    pub contact_law: f64,
+    /// Heat of slip, sum |p_t.(u_t + s_t)| (J).
+    pub slip_energy: f64,
+}
+
 /// Sums over contacts, added in a fixed order that does not depend on the number of threads.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sums {
@@ -199,6 +212,22 @@ impl Sums {
                 (self.unbalanced / self.slip).min(AT_REST * self.balance(local, scale))
             }
             Norm::Power => AT_REST * self.balance(local, scale),
+        }
+    }
+
+    /// Returns the parts of the error.
+    pub fn parts(&self, scale: &Scale) -> ErrorParts {
+        if self.residual <= scale.noise {
+            return ErrorParts {
+                slip_energy: self.slip,
+                ..ErrorParts::default()
+            };
+        }
+        ErrorParts {
+            force_balance: over(self.power.abs(), scale.work.max(scale.energy)),
+            velocity: self.local(Norm::Velocity, scale.free),
+            contact_law: self.error(Norm::Power, scale),
+            slip_energy: self.slip,
         }
     }
 

@@ -3,7 +3,7 @@
 use super::accelerate::Acceleration;
 use super::chosen::SolvePath;
 use super::colour::Order;
-use super::error::Norm;
+use super::error::{ErrorParts, Norm};
 use super::form::{Place, Problem};
 use super::local::solver::Method;
 use super::measure::{free_velocity, measure, scale};
@@ -54,6 +54,8 @@ pub struct Report {
     pub iterations: u32,
     /// Error, recomputed from the impulses at the end.
     pub error: f64,
+    /// Its parts.
+    pub parts: ErrorParts,
     /// Whether the error is within the tolerance.
     pub converged: bool,
     /// Index, as pushed, of the contact with the largest residual; `None` without contacts.
@@ -81,9 +83,11 @@ pub(super) fn judge<S: Space>(problem: &mut Problem<S>, options: &Options) -> Re
     let free = free_velocity(problem);
     problem.reload(options.parallel);
     let sums = measure(problem, options.parallel);
-    let error = sums.error(options.norm, &scale(problem, free));
+    let scale = scale(problem, free);
+    let error = sums.error(options.norm, &scale);
     Report {
         error,
+        parts: sums.parts(&scale),
         converged: error <= options.tolerance,
         worst: problem.pushed(sums.worst_at),
         ..Report::default()
@@ -132,7 +136,9 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
                 problem.reload(options.parallel);
                 sums = measure(problem, options.parallel);
             }
-            report.error = sums.error(options.norm, &scale(problem, free));
+            let scale = scale(problem, free);
+            report.error = sums.error(options.norm, &scale);
+            report.parts = sums.parts(&scale);
             report.converged = report.error <= options.tolerance;
             if ended || report.converged {
                 report.worst = problem.pushed(sums.worst_at);

@@ -76,6 +76,14 @@ impl Summary {
             s.iterations_mean, s.iterations_max, s.error_max, s.tolerance
         );
         lines.add("solver", text);
+        let e = &s.error_parts;
+        if e.slip_energy > 0.0 {
+            let text = format!(
+                "force balance {:.1e} of the work, velocities {:.1e}, contact law {:.1e} of the heat of slip; means over slip",
+                e.force_balance, e.velocity, e.contact_law
+            );
+            lines.add("parts of the error", text);
+        }
         let used = s.steps_by_method.iter();
         let used: Vec<String> = used
             .map(|(name, n)| format!("{name} ended {n} steps"))

@@ -127,6 +127,8 @@ pub struct Summary {
     pub friction_from_dissipation: Option<f64>,
     /// Largest |Q| over the mean P of the same cycle.
     pub peak_friction: Option<f64>,
+    /// |Q|/P over the second half of the strokes of that cycle: friction without the elastic travel after a reversal.
+    pub plateau_friction: Option<f64>,
     /// How the friction coefficient scatters over cycles or blocks, for its interval.
     #[serde(skip)]
     pub friction_scatter: Option<Scatter>,

@@ -103,6 +103,13 @@ impl Summary {
             let text = format!("{} {over}: largest |Q| over mean P", number(peak, 4));
             lines.add("peak Q/P", text);
         }
+        if let Some(plateau) = self.plateau_friction {
+            let text = format!(
+                "{} {over}: |Q|/P over the second half of each stroke, without the elastic travel after a reversal",
+                number(plateau, 4)
+            );
+            lines.add("plateau Q/P", text);
+        }
         let Some(f) = &self.fretting else { return };
         let complete = self.cycles.iter().filter(|c| c.complete);
         if let (Some(first), true) = (complete.clone().next(), complete.clone().count() > 1) {

@@ -169,7 +169,7 @@ impl<S: Space> Narrow<'_, S> {
                     self.time,
                 )
             };
-            self.add_contact(network, found, before);
+            self.add_contact(network, found, before, pair.radius);
         }
         for k in old {
             if !taken.contains(&k) {

@@ -135,7 +135,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                 self.time,
             )
         };
-        self.add_contact(network, found, old);
+        self.add_contact(network, found, old, p.radius * q.radius / sum);
     }
 
     /// Returns whether a body's response to impulses is isotropic.
@@ -205,7 +205,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                     self.time,
                 )
             };
-            self.add_contact(network, found, matched);
+            self.add_contact(network, found, matched, ball.radius);
         }
         for k in old.clone() {
             if !taken[k - old.start] {
@@ -232,12 +232,13 @@ impl<'a, S: Space> Narrow<'a, S> {
         network.alert + old.filter_map(stretch).fold(0.0, f64::max)
     }
 
-    /// Adds a contact, with the memory of an old one of the same key.
+    /// Adds a contact, with the memory of an old one of the same key, of bodies of the reduced radius `size` (m).
     pub(super) fn add_contact(
         &self,
         network: &mut Network<S>,
         mut found: Contact<S>,
         old: Option<usize>,
+        size: f64,
     ) {
         match old {
             Some(k) => {
@@ -278,7 +279,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                     let known = same.map(|c| -c.gap).fold(0.0, f64::max);
                     network
                         .step_size
-                        .record_late(&found, known, self.time, self.bodies);
+                        .record_late(&found, [known, size], self.time, self.bodies);
                 }
             }
         }

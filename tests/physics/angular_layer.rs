@@ -1,0 +1,80 @@
+//! The fretting layer of angular grains with elastic contacts, in a window of a fifth: its steps are solved to any tolerance, and say what they
+//! get wrong.
+
+use fretwork::geometry::space::Dim2;
+use fretwork::scene::load;
+use fretwork::shipped::search_path;
+use fretwork::solve::Report;
+use fretwork::solve::error::Norm;
+use fretwork::step::Simulation;
+use std::path::Path;
+
+/// The layer at 1.12 GPa, shortly after the wheel began to slide.
+fn sliding(more: &[&str]) -> Simulation<Dim2> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/wheel_rail_angular.ron");
+    let window = [
+        "periodic.x=8e-5",
+        "grains.0.high=[8e-5, 4.25e-5]",
+        "bodies.rail.shapes.0.points=160",
+        "bodies.wheel.shapes.0.points=160",
+        "bodies.rail.shapes.0.longest=4e-5",
+        "bodies.wheel.shapes.0.longest=4e-5",
+        "bodies.wheel.mass=2200.0",
+        "bodies.wheel.dofs.y=Force(Table([(0.0, -448.0), (0.005, -448.0), (0.022, -8.96e4)]))",
+    ];
+    let sets: Vec<String> = window.iter().chain(more).map(|s| (*s).to_owned()).collect();
+    let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<Dim2>(&search_path());
+    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    while s.state.time < 0.027 {
+        s.step().unwrap();
+    }
+    s
+}
+
+fn slips(s: &mut Simulation<Dim2>, norm: Norm, tolerance: f64, most: u32) -> Vec<Report> {
+    let solver = &mut s.options.solver;
+    (solver.norm, solver.tolerance, solver.max_iterations) = (norm, tolerance, most);
+    (0..20).map(|_| s.step().unwrap().solver).collect()
+}
+
+/// A prototype found that sweeps to 1e-8 grow as 55 sqrt(k h^2/m), up to 29 here: 300.
+#[test]
+fn elastic_contacts_are_solved_to_any_tolerance_while_they_slip() {
+    let mut s = sliding(&[]);
+    for (tolerance, most) in [(1e-6, 1000), (1e-8, 2000)] {
+        for report in slips(&mut s, Norm::Balance, tolerance, most) {
+            assert!(report.converged, "{report:?} at {tolerance}");
+            // The heat of the residuals vanishes with the tolerance.
+            let parts = report.parts;
+            assert!(
+                parts.slip_energy > 0.0 && parts.contact_law < 1e3 * tolerance,
+                "{parts:?}"
+            );
+        }
+    }
+}
+
+/// Rigid contacts reach the tolerance of the rigid fretting case, with velocities that are wrong: the heat of the residuals says so. With
+/// springs and the norm `Power` it stays below the bound.
+#[test]
+fn the_parts_of_the_error_tell_loose_velocities() {
+    let law = |interface: &str| format!("interfaces.{interface}.contact=coulomb");
+    let laws = ["third_body", "rail_oxide", "wheel_oxide"].map(law);
+    let mut rigid: Vec<&str> = laws.iter().map(String::as_str).collect();
+    rigid.extend([
+        "solver.norm=Balance",
+        "solver.tolerance=1e-3",
+        "solver.correction=0.05",
+    ]);
+    let heat = |mut s: Simulation<Dim2>, norm, tolerance| {
+        let reports = slips(&mut s, norm, tolerance, 20_000);
+        let sum = |f: fn(&Report) -> f64| reports.iter().map(f).sum::<f64>();
+        assert!(reports.iter().all(|r| r.converged), "{reports:?}");
+        sum(|r| r.parts.contact_law * r.parts.slip_energy) / sum(|r| r.parts.slip_energy)
+    };
+    let elastic = heat(sliding(&[]), Norm::Power, 0.5);
+    let rigid = heat(sliding(&rigid), Norm::Balance, 1e-3);
+    println!("heat of residuals over that of slip: rigid {rigid:.2}, elastic {elastic:.2}");
+    assert!(elastic <= 0.5 && rigid > 1.0, "{elastic} and {rigid}");
+}
