@@ -7,6 +7,7 @@
 )]
 
 mod blocks;
+mod bond_energy;
 mod bond_formation;
 mod bonded;
 mod compliant;
