@@ -28,6 +28,8 @@ struct Broken {
     broken: u64,
     torn: u64,
     at_once: u64,
+    /// Those that began at their gap.
+    begun_open: u64,
     released: f64,
     /// What the law declares for them; not a number where it declares nothing.
     declared: f64,
@@ -43,6 +45,7 @@ impl Broken {
         }
         self.broken += 1;
         self.at_once += u64::from(b.damage_before <= 0.0);
+        self.begun_open += u64::from(b.life.given > 0.0);
         self.released += b.life.fracture + b.life.given;
         let angle = b.opening[1].atan2(b.opening[0].max(0.0));
         let declared = law.declared_fracture_energy(angle);
@@ -105,15 +108,12 @@ impl Fracture {
         if broken.broken > 0 {
             if broken.declared.is_finite() {
                 (out.declared, out.reference) = (Some(broken.declared), Reference::Declared);
+                out.comparable = broken.begun_open == 0;
             } else if let Ok(Some(energy)) = broken.by_slow_pulls(&mut bench) {
-                let constant =
-                    !law.bonds_remember() && bench.fracture_energy_is_constant().unwrap_or(false);
-                out.declared = Some(energy);
-                out.reference = if constant {
-                    Reference::SlowPull
-                } else {
-                    Reference::SlowPullOnly
-                };
+                (out.declared, out.reference) = (Some(energy), Reference::SlowPull);
+                out.comparable = broken.begun_open == 0
+                    && !law.bonds_remember()
+                    && bench.fracture_energy_is_constant().unwrap_or(false);
             }
             out.released_over_declared = out
                 .declared

@@ -36,14 +36,19 @@ pub struct BondSites {
 }
 
 impl BondSites {
-    /// Bond sites of the interface with index `law`; `None` if it governs no contact and no grain.
+    /// Bond sites of the interface with index `law`; `None` if it governs no contact and no grain. While there are fewer contacts than
+    /// grains, the lightest pairs that grains may form count for the largest ratios.
     pub fn of<S: Space>(s: &Simulation<S>, law: usize) -> Option<Self> {
         let area = |radius: f64| s.laws[law].area.area(S::D, radius);
         let pairs = of_contacts(s, law);
-        if !pairs.is_empty() {
+        let grains = s.shapes.balls.len() + s.shapes.pieces.len();
+        if !pairs.is_empty() && pairs.len() >= grains {
             return Self::of_pairs(pairs.len(), pairs, &[], area);
         }
         let Candidates { usual, extreme } = of_grains(s, law);
+        if !pairs.is_empty() {
+            return Self::of_pairs(pairs.len(), pairs, &extreme, area);
+        }
         Self::of_pairs(0, usual, &extreme, area)
     }
 

@@ -19,11 +19,8 @@ const RESOLVED: f64 = 0.01;
 pub enum Reference {
     /// The fracture energy that the law declares.
     Declared,
-    /// The work of a slow pull to failure on the test bench, as the law declares nothing; it depends on neither speed, pressure nor
-    /// history.
+    /// The work of a slow pull to failure on the test bench, as the law declares nothing.
     SlowPull,
-    /// The same, of a law by which the energy depends on speed, pressure or history: the ratio is not an error.
-    SlowPullOnly,
     /// None: bonds do not break by damage.
     #[default]
     None,
@@ -46,6 +43,9 @@ pub struct BondEnergies {
     pub reference: Reference,
     /// Released over declared; null without broken bonds.
     pub released_over_declared: Option<f64>,
+    /// Whether a ratio other than 1 is an error of the step: the law declares the energy, or it depends on neither speed, pressure nor
+    /// history; and no broken bond began at its gap, with an energy that its law may not have allowed.
+    pub comparable: bool,
     /// Share of the broken bonds that had no damage at the start of the step in which they broke.
     pub broken_at_once: Option<f64>,
     /// Opening of a slow pull at which a bond breaks, the smaller of both modes (m).
@@ -65,7 +65,7 @@ pub struct BondEnergies {
 /// Energy that broken bonds released, over what their laws declare; the slide of bonds in a step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FractureSummary {
-    /// Energy released over that of the laws, over all bonds that damage broke under laws for which it is constant; null without any.
+    /// Energy released over that of the laws, over all bonds that damage broke in interfaces where they are `comparable`; null without any.
     pub released_over_declared: Option<f64>,
     /// The interfaces that made bonds.
     pub interfaces: Vec<BondEnergies>,
@@ -165,8 +165,7 @@ impl BondEnergies {
     }
 
     fn unresolved(&self) -> Option<String> {
-        let constant = matches!(self.reference, Reference::Declared | Reference::SlowPull);
-        let ratio = self.released_over_declared.filter(|_| constant);
+        let ratio = self.released_over_declared.filter(|_| self.comparable);
         let wrong = ratio.filter(|r| (r - 1.0).abs() > WRONG_ENERGY);
         let at_once = self.softening_at_once().filter(|s| *s > AT_ONCE);
         if wrong.is_none() && at_once.is_none() {
