@@ -7,7 +7,7 @@ use super::history::LawHistory;
 use super::interface::Interface;
 use super::library::Call;
 use super::step_result::{SolvedStep, Totals};
-use crate::contact::{Contact, Network};
+use crate::contact::{Contact, Memory, Network};
 use crate::geometry::space::{Space, VectorLike};
 
 /// State of the bonds after a step, in the order of the batch members.
@@ -231,9 +231,20 @@ impl LawEvaluator {
             };
             works.push(opens + shears);
         }
-        if !memory.rotates {
-            return;
+        if memory.rotates {
+            self.update_rotations(contacts, memory, step, works, lost);
         }
+    }
+
+    /// Updates the rotations of the bonds of one interface, and adds the work of their moments.
+    fn update_rotations<S: Space>(
+        &self,
+        contacts: &[Contact<S>],
+        memory: &mut Memory<S>,
+        step: &SolvedStep<'_, S>,
+        works: &mut [f64],
+        lost: &mut [f64],
+    ) {
         // `step.moments` and `members` both follow the order of the contacts, members by interface.
         let mut place = vec![usize::MAX; contacts.len()];
         for (k, moment_step) in step.moments.iter().enumerate() {
