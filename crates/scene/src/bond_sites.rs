@@ -33,6 +33,8 @@ pub struct BondSites {
     pub shear_median: f64,
     /// The pairs, by inverse mass along the normal, heaviest first.
     pairs: Vec<BondPair>,
+    /// The lightest pair.
+    lightest: BondPair,
 }
 
 impl BondSites {
@@ -64,6 +66,8 @@ impl BondSites {
         let middle = |of: &dyn Fn(&BondPair) -> f64| median(pairs.iter().map(of).collect());
         let largest =
             |of: &dyn Fn(&BondPair) -> f64| pairs.iter().chain(extreme).map(of).fold(0.0, f64::max);
+        let by_mass = |a: &&BondPair, b: &&BondPair| a.normal.total_cmp(&b.normal);
+        let lightest = *pairs.iter().chain(extreme).max_by(by_mass)?;
         let out = Self {
             contacts,
             radius: middle(&|p| p.radius)?,
@@ -72,14 +76,17 @@ impl BondSites {
             normal_median: middle(&normal)?,
             shear_median: middle(&shear)?,
             pairs: Vec::new(),
+            lightest,
         };
-        pairs.extend(extreme.iter().max_by(|a, b| a.normal.total_cmp(&b.normal)));
         pairs.sort_by(|a, b| a.normal.total_cmp(&b.normal));
         Some(Self { pairs, ..out })
     }
 
     /// The pair below which a share of all pairs lie by inverse mass along the normal: 0.5 the median, 1 the lightest.
     pub fn pair(&self, share: f64) -> BondPair {
+        if share >= 1.0 {
+            return self.lightest;
+        }
         let last = self.pairs.len() - 1;
         self.pairs[((share * last as f64).round() as usize).min(last)]
     }

@@ -79,9 +79,7 @@ pub struct FractureSummary {
 impl FractureSummary {
     /// Of the bonds of some interfaces, in a run with a time step (s).
     pub fn new(interfaces: Vec<BondEnergies>, jumps: bool, step: f64) -> Self {
-        let constant =
-            |b: &&BondEnergies| matches!(b.reference, Reference::Declared | Reference::SlowPull);
-        let known = || interfaces.iter().filter(constant);
+        let known = || interfaces.iter().filter(|b| b.comparable);
         let declared: f64 = known().filter_map(|b| b.declared).sum();
         let released: f64 = known().map(|b| b.released).sum();
         Self {
