@@ -31,11 +31,12 @@ fn main() {
     let plugin = path
         .find(Kind::DAMAGE, "mac")
         .unwrap_or_else(|e| panic!("{e}"));
-    let parameters = [0.1, 0.0, 1e-3];
+    let parameters = [0.1, 0.0, 1e-3, 1e30];
     let law = Mac {
         w: parameters[0],
         b: parameters[1],
         beta_broken: parameters[2],
+        opening_broken: parameters[3],
     };
     println!(
         "{:>8} {:>16} {:>16} {:>14}",

@@ -8,6 +8,7 @@
 
 mod angular_layer;
 mod blocks;
+mod bond_energy;
 mod bond_formation;
 mod bonded;
 mod compliant;

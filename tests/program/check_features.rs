@@ -289,3 +289,50 @@ fn the_run_time_is_estimated() {
         .unwrap();
     assert!(!String::from_utf8_lossy(&output.stdout).contains("run time"));
 }
+
+/// A small disk at the side of a bonded pair: the median pair is that of the large ones, the lightest pair has its own radius and masses; before
+/// there are contacts the lightest grain is paired with every other one.
+#[test]
+fn grains_of_different_size_are_weighed_in_pairs() {
+    let (large, small) = (0.1, 0.02);
+    let mass = |r: f64| 1000.0 * std::f64::consts::PI * r * r;
+    let ratio = |a: f64, b: f64| a * b / (a + b) * (1.0 / mass(a) + 1.0 / mass(b));
+    let beside = r#"grains: [List(material: "grain", grains: [(at: [0.4, 0.0], radius: 0.1), "#;
+    for gap in [0.0, 0.05] {
+        let little = format!(
+            "(at: [{:?}, 0.0], radius: {small:?})",
+            -(large + small + gap)
+        );
+        let text = PAIR
+            .replace(r#"grains: [List(material: "grain", grains: ["#, beside)
+            .replace("radius: 0.1)])]", &format!("radius: 0.1), {little}])]"));
+        let text = if gap > 0.0 {
+            text.replace("[0.2, 0.0]", "[0.25, 0.0]")
+                .replace("[0.4, 0.0]", "[0.5, 0.0]")
+        } else {
+            text
+        };
+        let made = Made::new(&format!("sizes-{gap}"), &text);
+        let bonds = made.check(&[]);
+        assert_eq!(bonds.contains("no contact yet"), gap > 0.0, "{bonds}");
+        // Of all pairs of these sizes, and for a wall, the ratio of area to mass decides.
+        let lightest = ratio(large, small).max(small / mass(small));
+        let normal = 1e-4 * (1e9 * lightest).sqrt();
+        near(after(&bonds, "frequency of a bond: "), normal, 1e-2);
+        // The tangent of two disks: three times the stiffness over mass, by their rotation.
+        let median = 1e-4 * (1e9 * 3.0 * ratio(large, large)).sqrt();
+        near(after(&bonds, "pair of bodies ("), median, 1e-2);
+        // A spring of 1e9 N/m a metre on the same pairs.
+        let springs = made.check(&[
+            "interfaces.bond.contact=linear-contact",
+            "interfaces.bond.parameters.contact={\"stiffness\": 1e9, \"restitution\": 0.5, \"mu\": 0.3}",
+        ]);
+        let per_mass = |a: f64, b: f64| 1e-8 * 1e9 * (1.0 / mass(a) + 1.0 / mass(b));
+        near(after(&springs, "k h^2/m "), per_mass(large, large), 0.06);
+        near(
+            after(&springs, "bodies, up to "),
+            per_mass(large, small),
+            0.06,
+        );
+    }
+}

@@ -13,6 +13,7 @@ pub mod circuit;
 pub mod coordination;
 mod figures;
 pub mod first_bodies;
+pub mod fracture;
 pub mod fretting;
 pub mod friction;
 pub mod friction_test;

@@ -2,6 +2,7 @@
 
 use super::biaxial::Biaxial;
 use super::circuit::{BrokenBonds, CircuitAccount};
+use super::fracture::Fracture;
 use super::friction::Cycles;
 use super::friction_test::FrictionTest;
 use super::jump::CycleJumps;
@@ -43,6 +44,7 @@ pub fn observers<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Obse
         all.push(Box::new(CycleJumps));
     }
     all.push(Box::new(BrokenBonds::default()));
+    all.push(Box::new(Fracture::of(case, s)));
     if let Some(circuit) = &case.circuit {
         all.push(Box::new(CircuitAccount::new(circuit.start)));
     }

@@ -3,38 +3,101 @@
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 
-/// Statistics of the contacts on which bonds form.
+/// A pair of bodies that a bond may join.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BondPair {
+    /// Reduced radius r1 r2/(r1 + r2) (m).
+    pub radius: f64,
+    /// Sum of the inverse masses along the normal (1/kg).
+    pub normal: f64,
+    /// The same along the tangents, where the grains' rotation is included (1/kg).
+    pub shear: f64,
+}
+
+/// Statistics of the contacts on which bonds form.
+#[derive(Clone, Debug, PartialEq)]
 pub struct BondSites {
     /// Number of contacts of the interface at the start; 0 if there are none yet and the estimate is made
     /// from the grains.
     pub contacts: usize,
-    /// Median of their reduced radii r1 r2/(r1 + r2) (m).
+    /// Median of their reduced radii (m).
     pub radius: f64,
     /// Largest ratio of contact area to effective mass along the normal (m^2/kg; in 2D per metre of depth). A
     /// bond stiffness of k (Pa/m) times this ratio is the square of the bond's angular frequency.
     pub normal: f64,
-    /// The same ratio along the tangents, where the grains' rotation is included.
+    /// The same ratio along the tangents.
     pub shear: f64,
+    /// Median of the ratio along the normal.
+    pub normal_median: f64,
+    /// Median of the ratio along the tangents.
+    pub shear_median: f64,
+    /// The pairs, by inverse mass along the normal, heaviest first.
+    pairs: Vec<BondPair>,
+    /// The lightest pair.
+    lightest: BondPair,
 }
 
 impl BondSites {
-    /// Bond sites of the interface with index `law`; `None` if it governs no contact and no grain.
+    /// Bond sites of the interface with index `law`; `None` if it governs no contact and no grain. While there are fewer contacts than
+    /// grains, the lightest pairs that grains may form count for the largest ratios.
     pub fn of<S: Space>(s: &Simulation<S>, law: usize) -> Option<Self> {
-        Self::of_contacts(s, law).or_else(|| Self::of_grains(s, law))
+        let area = |radius: f64| s.laws[law].area.area(S::D, radius);
+        let pairs = of_contacts(s, law);
+        let grains = s.shapes.balls.len() + s.shapes.pieces.len();
+        if !pairs.is_empty() && pairs.len() >= grains {
+            return Self::of_pairs(pairs.len(), pairs, &[], area);
+        }
+        let Candidates { usual, extreme } = of_grains(s, law);
+        if !pairs.is_empty() {
+            return Self::of_pairs(pairs.len(), pairs, &extreme, area);
+        }
+        Self::of_pairs(0, usual, &extreme, area)
     }
 
-    fn of_contacts<S: Space>(s: &Simulation<S>, law: usize) -> Option<Self> {
-        let mut out = Self {
-            contacts: 0,
-            radius: 0.0,
-            normal: 0.0,
-            shear: 0.0,
+    /// Of the usual pairs, and of others that count for the largest ratios only.
+    fn of_pairs(
+        contacts: usize,
+        mut pairs: Vec<BondPair>,
+        extreme: &[BondPair],
+        area: impl Fn(f64) -> f64,
+    ) -> Option<Self> {
+        let normal = |p: &BondPair| area(p.radius) * p.normal;
+        let shear = |p: &BondPair| area(p.radius) * p.shear;
+        let middle = |of: &dyn Fn(&BondPair) -> f64| median(pairs.iter().map(of).collect());
+        let largest =
+            |of: &dyn Fn(&BondPair) -> f64| pairs.iter().chain(extreme).map(of).fold(0.0, f64::max);
+        let by_mass = |a: &&BondPair, b: &&BondPair| a.normal.total_cmp(&b.normal);
+        let lightest = *pairs.iter().chain(extreme).max_by(by_mass)?;
+        let out = Self {
+            contacts,
+            radius: middle(&|p| p.radius)?,
+            normal: largest(&normal),
+            shear: largest(&shear),
+            normal_median: middle(&normal)?,
+            shear_median: middle(&shear)?,
+            pairs: Vec::new(),
+            lightest,
         };
-        let mut radii = Vec::new();
-        let contacts = s.state.network.contacts.iter();
-        for c in contacts.filter(|c| usize::from(c.law) == law && c.radius > 0.0) {
-            let area = s.laws[law].area.area(S::D, c.radius);
+        pairs.sort_by(|a, b| a.normal.total_cmp(&b.normal));
+        Some(Self { pairs, ..out })
+    }
+
+    /// The pair below which a share of all pairs lie by inverse mass along the normal: 0.5 the median, 1 the lightest.
+    pub fn pair(&self, share: f64) -> BondPair {
+        if share >= 1.0 {
+            return self.lightest;
+        }
+        let last = self.pairs.len() - 1;
+        self.pairs[((share * last as f64).round() as usize).min(last)]
+    }
+}
+
+/// The contacts of an interface.
+fn of_contacts<S: Space>(s: &Simulation<S>, law: usize) -> Vec<BondPair> {
+    let contacts = s.state.network.contacts.iter();
+    let bonded = contacts.filter(|c| usize::from(c.law) == law && c.radius > 0.0);
+    bonded
+        .map(|c| {
             let (mut normal, mut shear) = (0.0, 0.0);
             for (body, arm) in c.bodies.iter().zip(&c.arms) {
                 let body = *body as usize;
@@ -44,64 +107,126 @@ impl BondSites {
                 normal += along;
                 shear += most + arm.norm().powi(2) * s.state.bodies.inverse_inertia[body];
             }
-            radii.push(c.radius);
-            out.normal = out.normal.max(area * normal);
-            out.shear = out.shear.max(area * shear);
-        }
-        out.contacts = radii.len();
-        out.radius = median(&mut radii)?;
-        Some(out)
-    }
-
-    /// Estimate from two equal grains of the materials that the interface governs: the median radius, and the
-    /// lightest grain for the frequencies.
-    fn of_grains<S: Space>(s: &Simulation<S>, law: usize) -> Option<Self> {
-        let governs = |material: u16| {
-            let others = s.shapes.balls.iter().map(|b| b.material);
-            let others = others.chain(s.shapes.pieces.iter().map(|p| p.material));
-            let mut others = others.chain(s.shapes.surfaces.iter().map(|x| x.material));
-            others.any(|m| s.table.get(material, m).map(usize::from) == Some(law))
-        };
-        let balls = s
-            .shapes
-            .balls
-            .iter()
-            .map(|b| (b.body, b.radius, b.material));
-        let pieces = s.shapes.pieces.iter();
-        let pieces = pieces.map(|p| (p.body, p.size, p.material));
-        let mut known: Vec<(u16, bool)> = Vec::new();
-        let (mut radii, mut normal, mut shear) = (Vec::new(), 0.0f64, 0.0f64);
-        for (body, radius, material) in balls.chain(pieces) {
-            let yes = match known.iter().find(|k| k.0 == material) {
-                Some(k) => k.1,
-                None => {
-                    let yes = governs(material);
-                    known.push((material, yes));
-                    yes
-                }
-            };
-            if !yes {
-                continue;
+            BondPair {
+                radius: c.radius,
+                normal,
+                shear,
             }
-            let area = s.laws[law].area.area(S::D, 0.5 * radius);
-            let body = body as usize;
-            let inverse = &s.state.bodies.inverse_mass[body];
-            let inverse = (0..S::D).map(|k| inverse[k]).fold(0.0, f64::max);
-            let turning = radius * radius * s.state.bodies.inverse_inertia[body];
-            radii.push(0.5 * radius);
-            normal = normal.max(2.0 * area * inverse);
-            shear = shear.max(2.0 * area * (inverse + turning));
-        }
-        Some(Self {
-            contacts: 0,
-            radius: median(&mut radii)?,
-            normal,
-            shear,
         })
+        .collect()
+}
+
+/// A grain, or a surface of a body: its body, curvature (1/m), inverse mass along the normal and the tangents (1/kg), material.
+#[derive(Clone, Copy)]
+struct Side {
+    body: u32,
+    curvature: f64,
+    normal: f64,
+    shear: f64,
+    material: u16,
+}
+
+impl Side {
+    fn with(&self, other: &Self) -> BondPair {
+        BondPair {
+            radius: 1.0 / (self.curvature + other.curvature),
+            normal: self.normal + other.normal,
+            shear: self.shear + other.shear,
+        }
     }
 }
 
-fn median(values: &mut [f64]) -> Option<f64> {
+/// Pairs that may come into contact.
+#[derive(Default)]
+struct Candidates {
+    /// Such as most contacts may be.
+    usual: Vec<BondPair>,
+    /// The lightest grain with every other, and with surfaces.
+    extreme: Vec<BondPair>,
+}
+
+/// Pairs before there are contacts: each grain with the next one in the scene, or with each surface where the interface has no pairs
+/// of grains.
+fn of_grains<S: Space>(s: &Simulation<S>, law: usize) -> Candidates {
+    let governed = |a: &Side, b: &Side| {
+        let found = s.table.get(a.material, b.material);
+        found.map(usize::from) == Some(law)
+    };
+    let join = |a: &Side, b: &Side| governed(a, b).then(|| a.with(b));
+    let apart = |a: &Side, b: &Side| (a.body != b.body).then(|| join(a, b)).flatten();
+    let (grains, surfaces) = (grains(s), surfaces(s));
+    let mut out = Candidates::default();
+    let neighbours = grains.windows(2);
+    out.usual
+        .extend(neighbours.filter_map(|w| apart(&w[0], &w[1])));
+    let lightest = grains.iter().max_by(|a, b| a.normal.total_cmp(&b.normal));
+    if let Some(lightest) = lightest {
+        out.extreme
+            .extend(grains.iter().filter_map(|g| apart(lightest, g)));
+    }
+    let mut at_surfaces: Vec<BondPair> = Vec::new();
+    for surface in &surfaces {
+        at_surfaces.extend(grains.iter().filter_map(|g| join(surface, g)));
+    }
+    if out.usual.is_empty() {
+        std::mem::swap(&mut out.usual, &mut out.extreme);
+    }
+    if out.usual.is_empty() {
+        out.usual = at_surfaces;
+    } else {
+        out.extreme.append(&mut at_surfaces);
+    }
+    // A single grain, which may meet grains like itself.
+    if out.usual.is_empty() {
+        out.usual.extend(grains.iter().filter_map(|g| join(g, g)));
+    }
+    out
+}
+
+fn grains<S: Space>(s: &Simulation<S>) -> Vec<Side> {
+    let balls = s.shapes.balls.iter();
+    let balls = balls.map(|b| (b.body, b.radius, b.material));
+    let pieces = s.shapes.pieces.iter();
+    let pieces = pieces.map(|p| (p.body, p.size, p.material));
+    let side = |(body, radius, material): (u32, f64, u16)| {
+        let inverse = inverse_mass(s, body);
+        let turning = radius * radius * s.state.bodies.inverse_inertia[body as usize];
+        Side {
+            body,
+            curvature: 1.0 / radius,
+            normal: inverse,
+            shear: inverse + turning,
+            material,
+        }
+    };
+    balls.chain(pieces).map(side).collect()
+}
+
+/// One surface for each material and mass.
+fn surfaces<S: Space>(s: &Simulation<S>) -> Vec<Side> {
+    let mut out: Vec<Side> = Vec::new();
+    for surface in &s.shapes.surfaces {
+        let normal = inverse_mass(s, surface.body);
+        let known = |x: &Side| x.material == surface.material && x.normal == normal;
+        if !out.iter().any(known) {
+            out.push(Side {
+                body: surface.body,
+                curvature: 0.0,
+                normal,
+                shear: normal,
+                material: surface.material,
+            });
+        }
+    }
+    out
+}
+
+fn inverse_mass<S: Space>(s: &Simulation<S>, body: u32) -> f64 {
+    let inverse = &s.state.bodies.inverse_mass[body as usize];
+    (0..S::D).map(|k| inverse[k]).fold(0.0, f64::max)
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }

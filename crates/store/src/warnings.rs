@@ -237,6 +237,8 @@ fn loose_velocities(summary: &Summary) -> Option<String> {
 fn notes(summary: &Summary) -> Vec<Warning> {
     let mut notes = Vec::new();
     let mut note = |of, text: Option<String>| notes.extend(text.map(|t| Warning::note(of, t)));
+    let bonds = summary.fracture.as_ref().and_then(|f| f.warning());
+    note("BONDS NOT RESOLVED", bonds);
     let unfinished = !summary.cycles.is_empty() && summary.cycles.iter().all(|c| !c.complete);
     note(
         "NO COMPLETE CYCLE",

@@ -3,6 +3,8 @@
 use super::load::Load;
 use crate::geometry::space::Space;
 use crate::laws::bench::Bench;
+use crate::laws::bench::spring::SpringAnswer;
+use crate::laws::{Interface, LawError};
 use crate::scene::bond_sites::BondSites;
 use crate::scene::build::Built;
 use crate::scene::case::Case;
@@ -11,6 +13,9 @@ use crate::scene::case::Case;
 const SOFT: f64 = 0.05;
 /// Overlap over the radius at which stiffnesses are told where no pressure is known.
 const SHOWN: f64 = 0.01;
+
+/// Shares of the pairs of bodies, by mass, on which the stiffness is compared with the step: the median first, the lightest last.
+const QUANTILES: [f64; 4] = [0.5, 0.75, 0.95, 1.0];
 
 /// Report lines on every interface whose contacts are springs.
 pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<(&'static str, String)> {
@@ -21,10 +26,7 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<(&'sta
         let Some(sites) = BondSites::of(s, place) else {
             continue;
         };
-        // Of two like grains.
-        let radius = 2.0 * sites.radius;
-        let mut bench = Bench::new(law.clone(), S::D as u32, sites.radius);
-        let text = match text::<S>(&mut bench, radius, case.time.step, &sites, load) {
+        let text = match text::<S>(law, case.time.step, &sites, load) {
             Ok(text) => text,
             Err(e) => format!("NOT KNOWN: on the test bench, {e}"),
         };
@@ -33,28 +35,70 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<(&'sta
     out
 }
 
-fn text<S: Space>(
-    bench: &mut Bench,
+/// A contact on the bench under the load.
+struct Pressed {
+    /// Radius of the two like grains that have its reduced radius (m).
     radius: f64,
+    /// Its overlap under the pressure, or the one shown without (m).
+    overlap: f64,
+    /// Stiffnesses there (N/m; N/m per m of depth in 2D).
+    spring: SpringAnswer,
+}
+
+impl Pressed {
+    /// A contact of a reduced radius (m); `None` where the law cannot carry the load.
+    fn find<S: Space>(
+        law: &Interface,
+        reduced: f64,
+        load: &Load,
+    ) -> Result<Option<Self>, LawError> {
+        let radius = 2.0 * reduced;
+        let mut bench = Bench::new(law.clone(), S::D as u32, reduced);
+        let overlap = match load.pressure.filter(|p| p.0 > 0.0) {
+            Some((p, _)) => {
+                let force = p * (2.0 * radius).powi(S::D as i32 - 1);
+                bench.overlap_under(force)?
+            }
+            None => Some(SHOWN * radius),
+        };
+        let Some(overlap) = overlap else {
+            return Ok(None);
+        };
+        let spring = bench.spring(overlap)?;
+        Ok(spring.map(|spring| Self {
+            radius,
+            overlap,
+            spring,
+        }))
+    }
+}
+
+fn text<S: Space>(
+    law: &Interface,
     h: f64,
     sites: &BondSites,
     load: &Load,
-) -> Result<String, crate::laws::LawError> {
+) -> Result<String, LawError> {
     let per = if S::D == 2 { "N/m per m" } else { "N/m" };
     let known = load.pressure.filter(|p| p.0 > 0.0);
-    let overlap = match known {
-        Some((p, _)) => {
-            let force = p * (2.0 * radius).powi(S::D as i32 - 1);
-            bench.overlap_under(force)?
-        }
-        None => Some(SHOWN * radius),
-    };
-    let Some((overlap, spring)) = overlap.zip(bench.spring(overlap.unwrap_or(0.0))?) else {
+    let Some(Pressed {
+        radius,
+        overlap,
+        spring,
+    }) = Pressed::find::<S>(law, sites.radius, load)?
+    else {
         return Ok(String::new());
     };
-    // Area over mass is known, the mass along the normal follows.
-    let area = bench.area();
-    let kappa = spring.stiffness * sites.normal / area * h * h;
+    // Each pair with the stiffness of its own contact: light pairs are small, and may be softer.
+    let mut kappas = Vec::new();
+    for quantile in QUANTILES {
+        let pair = sites.pair(quantile);
+        if let Some(contact) = Pressed::find::<S>(law, pair.radius, load)? {
+            kappas.push(contact.spring.stiffness * pair.normal * h * h);
+        }
+    }
+    let largest = kappas.iter().copied().fold(0.0, f64::max);
+    let middle = kappas.first().copied().unwrap_or(0.0);
     let share = overlap / radius;
     let under = known.map_or_else(
         || format!("at an overlap of {SHOWN} of the radius"),
@@ -72,7 +116,7 @@ fn text<S: Space>(
         },
     );
     Ok(format!(
-        "{:.2e} {per} along the normal, {:.2e} along tangents, {under}; k h^2/m up to {kappa:.1e}",
+        "{:.2e} {per} along the normal, {:.2e} along tangents, {under}; k h^2/m {middle:.1e} on the median pair of bodies, up to {largest:.1e}",
         spring.stiffness, spring.tangential
     ))
 }

@@ -25,6 +25,8 @@ pub struct Break<S: Space> {
     pub torn: f64,
     /// Whether damage broke it; otherwise its contact moved out of range, or a body was removed.
     pub damaged: bool,
+    /// Damage at the start of the step in which it broke.
+    pub damage_before: f64,
     /// Energy history.
     pub life: Life,
 }
@@ -35,8 +37,10 @@ pub struct Break<S: Space> {
 pub struct Life {
     /// Work done on the bond by normal opening, by sliding, and by rotation.
     pub work: [f64; 3],
-    /// Fracture energy released by damage.
+    /// Fracture energy released by damage, less what the bond was given.
     pub fracture: f64,
+    /// Energy of its first opening, where it began at its gap: given without work.
+    pub given: f64,
     /// Dissipated by damping.
     pub viscous: f64,
     /// Friction work at the contact while the bond was intact: a sum of p . u_th, which may decrease in a

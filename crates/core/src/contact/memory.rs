@@ -51,6 +51,43 @@ impl<S: Space> Bond<S> {
     }
 }
 
+/// How far bonds opened or slid in a step, over all steps of all bonds while they were intact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Slides {
+    /// Number of steps of bonds.
+    pub steps: u64,
+    /// Sum of the slides (m).
+    pub sum: f64,
+    /// Largest slide (m).
+    pub largest: f64,
+    /// Sum of the slides, each times the energy that damage released in the step (J m; J).
+    pub by_released: f64,
+    /// Sum of these energies (J; J/m in 2D).
+    pub released: f64,
+}
+
+impl Slides {
+    /// Adds a step of a bond: its slide (m), and the energy that damage released in it (J).
+    #[inline]
+    pub fn add(&mut self, slide: f64, released: f64) {
+        self.steps += 1;
+        self.sum += slide;
+        self.largest = self.largest.max(slide);
+        self.by_released += slide * released;
+        self.released += released;
+    }
+
+    /// Mean slide (m).
+    pub fn mean(&self) -> Option<f64> {
+        (self.steps > 0).then(|| self.sum / self.steps as f64)
+    }
+
+    /// Mean slide in which energy was released, weighted by that energy (m).
+    pub fn mean_by_released(&self) -> Option<f64> {
+        (self.released > 0.0).then(|| self.by_released / self.released)
+    }
+}
+
 /// The state of the bond of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BondState {
@@ -88,6 +125,8 @@ pub struct Memory<S: Space> {
     pub made: u64,
     /// Number of bonds broken so far.
     pub broken: u64,
+    /// How far bonds opened or slid in a step.
+    pub slides: Slides,
     free: Vec<u32>,
 }
 
@@ -101,6 +140,7 @@ impl<S: Space> Memory<S> {
             rotations: Vec::new(),
             made: 0,
             broken: 0,
+            slides: Slides::default(),
             free: Vec::new(),
         }
     }

@@ -9,7 +9,7 @@ pub mod step_size;
 
 pub use events::{Break, ContactDissipation, Life, Loss};
 pub use id::{ContactId, ContactNames, ContactorId, ContactorKind};
-pub use memory::{Bond, BondState, Memory};
+pub use memory::{Bond, BondState, Memory, Slides};
 pub use network::{Contact, Key, Network};
 pub use spring::Spring;
 pub use step_size::StepSizeDiagnostics;

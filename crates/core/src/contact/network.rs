@@ -300,8 +300,8 @@ impl<S: Space> Network<S> {
         contact.gap - bond.map_or(0.0, |b| b.gap)
     }
 
-    /// Records that the bond of a contact broke, with its energy history.
-    pub(crate) fn record_break(&mut self, contact: &Contact<S>) {
+    /// Records that the bond of a contact broke, with its energy history and its damage at the start of the step.
+    pub(crate) fn record_break(&mut self, contact: &Contact<S>, damage_before: f64) {
         let Some(bond) = self.bond(contact) else {
             return;
         };
@@ -314,6 +314,7 @@ impl<S: Space> Network<S> {
             area: bond.area,
             torn: 0.0,
             damaged: bond.damage >= 1.0,
+            damage_before,
             life: bond.life,
         });
     }

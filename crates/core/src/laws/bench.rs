@@ -1,6 +1,7 @@
 //! A test bench for interface laws: drives a single contact, without bodies, along a prescribed path, like a
 //! testing machine.
 
+pub mod fracture;
 pub mod scale;
 pub mod spring;
 

@@ -7,7 +7,7 @@ use super::history::LawHistory;
 use super::interface::Interface;
 use super::library::Call;
 use super::step_result::{SolvedStep, Totals};
-use crate::contact::{Contact, Network};
+use crate::contact::{Contact, Memory, Network};
 use crate::geometry::space::{Space, VectorLike};
 
 /// State of the bonds after a step, in the order of the batch members.
@@ -19,6 +19,8 @@ pub(super) struct BondStep {
     lost: Vec<f64>,
     /// Whether the tension-only normal part was switched on or off within the step.
     turned: Vec<bool>,
+    /// Length of the change of the opening (m).
+    slide: Vec<f64>,
     /// Energy of the undamaged bond per area at the new opening (J/m^2).
     intact: Vec<f64>,
     /// The new damage.
@@ -179,14 +181,16 @@ impl LawEvaluator {
         step: &SolvedStep<'_, S>,
         bond_step: &mut BondStep,
     ) {
-        let (works, lost, turned) = (
+        let (works, lost, turned, slides) = (
             &mut bond_step.work,
             &mut bond_step.lost,
             &mut bond_step.turned,
+            &mut bond_step.slide,
         );
         works.clear();
         lost.clear();
         turned.clear();
+        slides.clear();
         let Network {
             contacts, memory, ..
         } = network;
@@ -197,6 +201,7 @@ impl LawEvaluator {
                 works.push(0.0);
                 lost.push(0.0);
                 turned.push(false);
+                slides.push(0.0);
                 continue;
             };
             let bond = &mut memory.bonds[slot];
@@ -211,23 +216,35 @@ impl LawEvaluator {
             turned.push(law.tension_only() && (before > 0.0) != (bond.opening_n > 0.0));
             lost.push(contact_step.lost);
             bond.opening_t += ut * step.info.h;
+            slides.push(step.info.h * un.hypot(ut.norm()));
             let s = &contact_step.solution;
             let (en, et) = (
                 n.dot(&s.impulse) - s.unilateral_n,
                 S::tangential(n, &s.impulse) - s.unilateral_t,
             );
-            let (opens, slides) = (en * un, et.dot(&ut));
+            let (opens, shears) = (en * un, et.dot(&ut));
             bond.life.work[0] -= opens;
-            bond.life.work[1] -= slides;
+            bond.life.work[1] -= shears;
             bond.life.friction += match step.spring(*at) {
                 Some(spring) => spring.friction,
                 None => -s.unilateral_t.dot(&ut),
             };
-            works.push(opens + slides);
+            works.push(opens + shears);
         }
-        if !memory.rotates {
-            return;
+        if memory.rotates {
+            self.update_rotations(contacts, memory, step, works, lost);
         }
+    }
+
+    /// Updates the rotations of the bonds of one interface, and adds the work of their moments.
+    fn update_rotations<S: Space>(
+        &self,
+        contacts: &[Contact<S>],
+        memory: &mut Memory<S>,
+        step: &SolvedStep<'_, S>,
+        works: &mut [f64],
+        lost: &mut [f64],
+    ) {
         // `step.moments` and `members` both follow the order of the contacts, members by interface.
         let mut place = vec![usize::MAX; contacts.len()];
         for (k, moment_step) in step.moments.iter().enumerate() {
@@ -304,17 +321,19 @@ impl LawEvaluator {
                 dissipation[*at].viscous += viscous;
                 dissipation[*at].fracture += fracture;
             }
+            let damage_before = bond.damage;
             bond.energy = kept;
             bond.damage = bond_step.damage[k];
             bond.step_damage = bond.damage;
-            if bond.damage >= 1.0 {
+            memory.slides.add(bond_step.slide[k], fracture);
+            if bond_step.damage[k] >= 1.0 {
                 totals.broken += 1;
                 memory.broken += 1;
                 contact.broken = true;
                 contact.compression_time = 0.0;
                 network.broken_pairs.insert(contact.key.pair());
                 let contact = contact.clone();
-                network.record_break(&contact);
+                network.record_break(&contact, damage_before);
                 if law.variables() == 0 {
                     network.memory[index].release(slot as u32);
                     network.contacts[*at].slot = Contact::<S>::NO_MEMORY;

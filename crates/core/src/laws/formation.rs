@@ -118,6 +118,7 @@ impl LawEvaluator {
             };
             let bond = &mut network.memory[usize::from(contact.law)].bonds[slot];
             bond.energy = energy * bond.area;
+            bond.life.given += bond.energy;
             bond.life.fracture -= bond.energy;
             network.torn_energy -= bond.energy;
         }

@@ -3,10 +3,12 @@
 mod circuit;
 mod details;
 mod estimate;
+mod fracture;
 mod text;
 
 pub use self::circuit::{Base, CircuitSummary, Rates};
 pub use self::estimate::{Estimate, Uncertainty};
+pub use self::fracture::{BondEnergies, FractureSummary, Reference};
 
 use crate::biaxial::Outcome;
 pub use crate::first_bodies::BodyWear;
@@ -120,6 +122,8 @@ pub struct Summary {
     pub damage_ratio: f64,
     /// Mean damage over all bonds.
     pub mean_damage: f64,
+    /// Energy that broken bonds released, over what their laws declare; null without bonds.
+    pub fracture: Option<FractureSummary>,
     /// Friction coefficient from forces, over the last complete cycle, or the second half; null without a
     /// friction test.
     pub friction_coefficient: Option<f64>,

@@ -1,6 +1,6 @@
 //! Text at the end of a run: warnings, friction, damage, wear, energies. Further output is in `details`.
 
-use super::{BodyWear, Summary};
+use super::{BodyWear, FractureSummary, Summary};
 use crate::biaxial::Outcome;
 use crate::friction::Cycle;
 use crate::jump;
@@ -151,6 +151,7 @@ impl Summary {
                 number(self.mean_damage, 4)
             );
             lines.add("damage", text);
+            lines.all(self.fracture.iter().flat_map(FractureSummary::lines));
         }
     }
 

@@ -12,8 +12,12 @@ parameters! {
         w: "J/m^2" = 0.1, 0.0, 1e30, "Dupre's energy: fracture energy of the bond";
         b: "J s/m^2" = 0.0, 0.0, 1e30, "viscosity of damage";
         beta_broken: "" = 1e-3, 0.0, 1.0, "intensity of adhesion below which the bond is broken";
+        opening_broken: "m" = 1e30, 1e-30, 1e30, "normal opening beyond which the bond is broken, whatever it still carries";
     }
 }
+
+/// Value of `opening_broken` with which a bond never breaks by its opening (m).
+const NEVER: f64 = 1e30;
 
 impl Law for Mac {
     const NAME: &'static str = "mac";
@@ -21,8 +25,10 @@ impl Law for Mac {
     const REFERENCE: &'static str = "Y. Monerie, V. Acary, Formulation dynamique d'un modele de zone cohesive tridimensionnel, Rev. Eur. Elements Finis 10 (2001); M. Raous, L. Cangemi, M. Cocou, Comput. Methods Appl. Mech. Engrg 177 (1999) 383-399";
 
     fn fracture_energy(&self, _angle: f64) -> Option<f64> {
-        // Viscosity increases it with the speed; the cut at beta_broken reduces it by a fraction that depends on m.
-        (self.b == 0.0 && self.beta_broken <= 5e-3).then_some(self.w)
+        // Viscosity increases it with the speed; the cut at beta_broken reduces it by a fraction that depends on m, that at an opening by one
+        // that depends on the stiffness.
+        let tail = self.beta_broken <= 5e-3 && self.opening_broken >= NEVER;
+        (self.b == 0.0 && tail).then_some(self.w)
     }
 }
 
@@ -64,7 +70,8 @@ impl DamageLaw for Mac {
         // `max` and `min` rather than `clamp`, so that a NaN damage reaches the host, which reports it.
         let d = self.damage(site.damage, site.h, intact);
         let d = d.max(site.damage).min(1.0);
-        if 1.0 - d < self.beta_broken { 1.0 } else { d }
+        let broken = 1.0 - d < self.beta_broken || site.opening[0] > self.opening_broken;
+        if broken { 1.0 } else { d }
     }
 }
 
@@ -109,6 +116,7 @@ mod tests {
             w: 0.1,
             b: 0.0,
             beta_broken: 0.0,
+            ..Mac::default()
         };
         let (peak, area) = pull(&law, 0.045, 2e-9, 3.16228e-6);
         assert!((peak / 0.316228e6 - 1.0).abs() < 1e-3, "{peak}");
@@ -127,6 +135,7 @@ mod tests {
                 w: 0.1,
                 b,
                 beta_broken: 0.0,
+                ..Mac::default()
             };
             let (p, a) = pull(&law, 0.045, 5e-9, 100e-6);
             assert!(
@@ -142,6 +151,7 @@ mod tests {
             w: 0.1,
             b: 0.0,
             beta_broken: 1e-3,
+            ..Mac::default()
         };
         let weak = Intact {
             energy: 0.01,
@@ -164,11 +174,32 @@ mod tests {
     }
 
     #[test]
+    fn it_breaks_beyond_an_opening() {
+        let law = Mac {
+            opening_broken: 2e-5,
+            ..Mac::default()
+        };
+        let at = |opening| {
+            let site = Site {
+                opening: [opening, 1.0, 0.0],
+                h: 1e-6,
+                ..Site::default()
+            };
+            law.grow(&site, &Intact::default(), &[], &mut [])
+        };
+        assert_eq!((at(2e-5), at(2.001e-5), at(-1.0)), (0.0, 1.0, 0.0));
+        assert!(
+            law.fracture_energy(0.0).is_none() && Mac::default().fracture_energy(0.0).is_some()
+        );
+    }
+
+    #[test]
     fn a_brittle_bond_snaps_at_w() {
         let law = Mac {
             w: 0.1,
             b: 0.0,
             beta_broken: 1e-3,
+            ..Mac::default()
         };
         let at = |energy| {
             let intact = Intact {
@@ -211,6 +242,7 @@ mod tests {
                 w: 0.1,
                 b,
                 beta_broken: 0.0,
+                ..Mac::default()
             };
             let d = step(&law, 0.2, m);
             let y = m * (1.0 - d).powf(m - 1.0) * 0.3;

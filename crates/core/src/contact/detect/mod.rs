@@ -203,13 +203,13 @@ fn drop_contact<S: Space>(network: &mut Network<S>, k: usize) {
     let bond = &mut network.memory[law].bonds[slot];
     if bond.intact() {
         // A grain beyond the end of its surface breaks the bond.
-        let torn = bond.energy;
+        let (torn, damage) = (bond.energy, bond.damage);
         bond.life.fracture += torn;
         network.torn_energy += torn;
         network.memory[law].broken += 1;
         let contact = contact.clone();
         network.broken_pairs.insert(contact.key.pair());
-        network.record_break(&contact);
+        network.record_break(&contact, damage);
         if let Some(record) = network.bond_breaks.last_mut() {
             record.torn = torn;
         }

@@ -1,0 +1,152 @@
+//! Fracture energy of a bond under any law: what the law declares, or the work of a slow pull to failure.
+
+use super::{Answer, Bench, Motion};
+use crate::laws::{Interface, LawError};
+use fretwork_abi::FLAG_BREAKS;
+
+/// First opening of a search (m).
+const FIRST: f64 = 1e-13;
+/// Largest opening of a search (m).
+const LAST: f64 = 1.0;
+/// Speed of a slow pull (m/s).
+const SLOW: f64 = 1e-6;
+/// Ratio of the speeds, and relative difference of the energies, at which a law is taken to depend on the speed.
+const FASTER: f64 = 1e6;
+const SAME: f64 = 1e-3;
+/// Share of the peak traction below which a bond that does not break counts as broken, as
+/// [`Mode::broken`](super::scale::Mode::broken) has it for openings; the tail of MAC has then released all but a thousandth.
+const LITTLE: f64 = 1e-5;
+/// Steps of a pull up to just beyond its peak.
+const STEPS: usize = 2000;
+
+impl Interface {
+    /// Fracture energy (J/m^2) that the laws of the interface declare for an opening at an angle (rad) from the normal: the damage
+    /// law's, or without one the cohesion law's. `None` where none is declared, and where both laws damage the bond.
+    pub fn declared_fracture_energy(&self, angle: f64) -> Option<f64> {
+        let cohesion = self.cohesion()?;
+        let law = match self.damage() {
+            Some(_) if cohesion.has(FLAG_BREAKS) => return None,
+            Some(damage) => damage,
+            None => cohesion,
+        };
+        law.plugin.fracture_energy(&law.parameters, angle)
+    }
+
+    /// Whether laws that act on bonds have internal variables, so that the energy to break one depends on its history.
+    pub fn bonds_remember(&self) -> bool {
+        self.variables_of_bonds().next().is_some()
+    }
+}
+
+impl Bench {
+    /// Work (J/m^2) of opening a new bond slowly, at an angle (rad) from the normal, until it breaks: all of it is released by
+    /// damage, or by damping, which is negligible at this speed. `None` where the bond does not break within 1 m.
+    ///
+    /// # Errors
+    /// The law's error.
+    pub fn slow_fracture_energy(&mut self, angle: f64) -> Result<Option<f64>, LawError> {
+        self.work_to_break(angle, SLOW, 0.0)
+    }
+
+    /// Whether the energy to break a new bond depends on neither speed nor pressure, by pulls in both modes.
+    ///
+    /// # Errors
+    /// The law's error.
+    pub fn fracture_energy_is_constant(&mut self) -> Result<bool, LawError> {
+        for angle in [0.0, std::f64::consts::FRAC_PI_2] {
+            let Some(slow) = self.work_to_break(angle, SLOW, 0.0)? else {
+                continue;
+            };
+            let pressure = self.peak(angle)?;
+            for (speed, pressure) in [(SLOW * FASTER, 0.0), (SLOW, pressure)] {
+                let other = self.work_to_break(angle, speed, pressure)?;
+                if !other.is_some_and(|w| (w / slow - 1.0).abs() < SAME) {
+                    return Ok(false);
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    /// Largest traction of a slow pull (Pa).
+    fn peak(&mut self, angle: f64) -> Result<f64, LawError> {
+        let pull = self.pull(coarse(), angle, SLOW, 0.0)?;
+        Ok(pull.peak)
+    }
+
+    fn work_to_break(
+        &mut self,
+        angle: f64,
+        speed: f64,
+        pressure: f64,
+    ) -> Result<Option<f64>, LawError> {
+        let search = self.pull(coarse(), angle, speed, pressure)?;
+        let (Some(broken), true) = (search.broken, search.peak > 0.0) else {
+            return Ok(None);
+        };
+        let near = 1.06 * search.peak_at;
+        let steps = STEPS as f64;
+        let rise = (1..=STEPS).map(|k| near * k as f64 / steps);
+        let ratio = (1.06 * broken / near).max(1.0);
+        let rest = (1..=STEPS).map(|k| near * ratio.powf(k as f64 / steps));
+        let fine = self.pull(rise.chain(rest), angle, speed, pressure)?;
+        Ok(fine.broken.map(|_| fine.work))
+    }
+
+    /// Opens a new bond through a list of openings (m) until it breaks.
+    fn pull(
+        &mut self,
+        openings: impl Iterator<Item = f64>,
+        angle: f64,
+        speed: f64,
+        pressure: f64,
+    ) -> Result<Pull, LawError> {
+        let mut state = [self.fresh()];
+        let mut pull = Pull::default();
+        let (mut before, mut carried) = (0.0, 0.0);
+        for u in openings {
+            let opening = [u * angle.cos(), u * angle.sin(), 0.0];
+            let motion = Motion {
+                opening,
+                gap: opening[0],
+                pressure,
+                ..Motion::default()
+            };
+            let answer = self.step(&mut state, &[motion], (u - before) / speed)?[0];
+            let traction = along(&answer, angle);
+            pull.work += 0.5 * (traction + carried) * (u - before);
+            if traction > pull.peak {
+                (pull.peak, pull.peak_at) = (traction, u);
+            }
+            (before, carried) = (u, traction);
+            if answer.damage >= 1.0 || (pull.peak > 0.0 && traction < LITTLE * pull.peak) {
+                pull.broken = Some(u);
+                break;
+            }
+        }
+        Ok(pull)
+    }
+}
+
+/// A pull.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pull {
+    /// Work (J/m^2).
+    work: f64,
+    /// Largest traction (Pa), and its opening (m).
+    peak: f64,
+    peak_at: f64,
+    /// Opening at which the bond broke (m).
+    broken: Option<f64>,
+}
+
+/// Openings over all scales.
+fn coarse() -> impl Iterator<Item = f64> {
+    let steps = ((LAST / FIRST).ln() / 1.05f64.ln()).ceil() as i32;
+    (0..=steps).map(|k| FIRST * 1.05f64.powi(k))
+}
+
+/// Traction along the opening (Pa).
+fn along(answer: &Answer, angle: f64) -> f64 {
+    answer.traction[0] * angle.cos() + answer.traction[1] * angle.sin()
+}

@@ -1,0 +1,185 @@
+//! Observes broken bonds: the energy that they released over what their laws declare, and whether the step resolved them.
+
+use super::observer::{Observer, RunEnd};
+use super::summary::{BondEnergies, FractureSummary, Reference, Summary};
+use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::contact::Break;
+use fretwork_core::geometry::space::Space;
+use fretwork_core::laws::bench::Bench;
+use fretwork_core::laws::bench::scale::Mode;
+use fretwork_core::laws::{Interface, LawError};
+use fretwork_core::step::{Simulation, StepReport};
+use fretwork_scene::bond_sites::BondSites;
+use fretwork_scene::case::Case;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
+
+/// Angles of opening, evenly from the normal to the tangent, at which areas of broken bonds are collected for laws that declare no
+/// energy.
+const ANGLES: usize = 19;
+/// Reduced radius of the bond on the bench (m), where the scene has no contact any more.
+const RADIUS: f64 = 1e-3;
+/// Speed at which critical openings are sought (m/s).
+const SLOW: f64 = 1e-6;
+
+/// Broken bonds of an interface.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Broken {
+    broken: u64,
+    torn: u64,
+    at_once: u64,
+    /// Those that began at their gap.
+    begun_open: u64,
+    released: f64,
+    /// What the law declares for them; not a number where it declares nothing.
+    declared: f64,
+    /// Their areas by angle.
+    areas: Vec<f64>,
+}
+
+impl Broken {
+    fn add<S: Space>(&mut self, b: &Break<S>, law: &Interface) {
+        if !b.damaged {
+            self.torn += 1;
+            return;
+        }
+        self.broken += 1;
+        self.at_once += u64::from(b.damage_before <= 0.0);
+        self.begun_open += u64::from(b.life.given > 0.0);
+        self.released += b.life.fracture + b.life.given;
+        let angle = b.opening[1].atan2(b.opening[0].max(0.0));
+        let declared = law.declared_fracture_energy(angle);
+        self.declared += declared.map_or(f64::NAN, |g| g * b.area);
+        self.areas.resize(ANGLES, 0.0);
+        let place = angle / FRAC_PI_2 * (ANGLES - 1) as f64;
+        let low = (place as usize).min(ANGLES - 2);
+        let share = place - low as f64;
+        self.areas[low] += b.area * (1.0 - share);
+        self.areas[low + 1] += b.area * share;
+    }
+
+    /// What a slow pull takes for them.
+    fn by_slow_pulls(&self, bench: &mut Bench) -> Result<Option<f64>, LawError> {
+        let mut sum = 0.0;
+        for (k, area) in self.areas.iter().enumerate().filter(|(_, a)| **a > 0.0) {
+            let angle = FRAC_PI_2 * k as f64 / (ANGLES - 1) as f64;
+            match bench.slow_fracture_energy(angle)? {
+                Some(energy) => sum += energy * area,
+                None => return Ok(None),
+            }
+        }
+        Ok(Some(sum))
+    }
+}
+
+/// Observes broken bonds.
+#[derive(Clone, Debug)]
+pub struct Fracture {
+    jumps: bool,
+    step: f64,
+    /// One an interface.
+    broken: Vec<Broken>,
+}
+
+impl Fracture {
+    /// Of the bonds of a simulation.
+    pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Self {
+        Self {
+            jumps: case.jump.is_some(),
+            step: case.time.step,
+            broken: vec![Broken::default(); s.laws.len()],
+        }
+    }
+
+    fn energies<S: Space>(&self, s: &Simulation<S>, place: usize) -> BondEnergies {
+        let (law, broken) = (&s.laws[place], &self.broken[place]);
+        let sites = BondSites::of(s, place);
+        let radius = sites.as_ref().map_or(RADIUS, |s| s.radius);
+        let mut bench = Bench::new(law.clone(), S::D as u32, radius);
+        let mut out = BondEnergies {
+            interface: law.name.clone(),
+            broken: broken.broken,
+            torn: broken.torn,
+            released: broken.released,
+            broken_at_once: share(broken.at_once, broken.broken),
+            ..BondEnergies::default()
+        };
+        // A law that fails on the bench leaves out what is sought there.
+        if broken.broken > 0 {
+            if broken.declared.is_finite() {
+                (out.declared, out.reference) = (Some(broken.declared), Reference::Declared);
+                out.comparable = broken.begun_open == 0;
+            } else if let Ok(Some(energy)) = broken.by_slow_pulls(&mut bench) {
+                (out.declared, out.reference) = (Some(energy), Reference::SlowPull);
+                out.comparable = broken.begun_open == 0
+                    && !law.bonds_remember()
+                    && bench.fracture_energy_is_constant().unwrap_or(false);
+            }
+            out.released_over_declared = out
+                .declared
+                .filter(|e| *e > 0.0)
+                .map(|e| broken.released / e);
+        }
+        let Ok(Some(scale)) = bench.scale(SLOW) else {
+            return out;
+        };
+        let modes = [&scale.normal, &scale.shear];
+        let ends = |m: &Mode| m.broken.or(m.peak.map(|p| p.1));
+        out.critical_opening = modes.into_iter().filter_map(ends).reduce(f64::min);
+        let peaks = modes.into_iter().filter_map(|m| m.peak.map(|p| p.1));
+        out.peak_opening = peaks.reduce(f64::min);
+        out.slide(&s.state.network.memory[place].slides);
+        out.step_times_frequency = sites.map(|sites| {
+            let of = |n: f64, t: f64| {
+                let squared = (scale.normal.stiffness * n).max(scale.shear.stiffness * t);
+                self.step * squared.sqrt()
+            };
+            [
+                of(sites.normal_median, sites.shear_median),
+                of(sites.normal, sites.shear),
+            ]
+        });
+        out
+    }
+}
+
+fn share(part: u64, of: u64) -> Option<f64> {
+    (of > 0).then(|| part as f64 / of as f64)
+}
+
+impl<S: Space> Observer<S> for Fracture {
+    fn name(&self) -> String {
+        "fracture energy".to_owned()
+    }
+
+    fn reads_statistics(&self) -> bool {
+        false
+    }
+
+    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
+        for b in &s.state.network.bond_breaks {
+            let place = usize::from(b.law);
+            if let (Some(broken), Some(law)) = (self.broken.get_mut(place), s.laws.get(place)) {
+                broken.add(b, law);
+            }
+        }
+    }
+
+    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+        let s = end.simulation;
+        let memories = s.state.network.memory.iter().enumerate();
+        let bonded = memories.filter(|(k, m)| m.made > 0 && s.laws[*k].opens());
+        let interfaces: Vec<BondEnergies> = bonded.map(|(k, _)| self.energies(s, k)).collect();
+        summary.fracture = (!interfaces.is_empty())
+            .then(|| FractureSummary::new(interfaces, self.jumps, self.step));
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        encode(&self.broken)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        self.broken = decode(from)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,188 @@
+//! Energy of broken bonds and resolution of bonds by the step, in the summary.
+
+use crate::quantity::number;
+use fretwork_core::contact::Slides;
+use serde::Serialize;
+
+/// Relative difference of the released energy from that of the laws from which bonds count as not resolved.
+pub const WRONG_ENERGY: f64 = 0.05;
+/// Share of bonds that break within the step in which their damage begins, from which they count as not resolved.
+pub const AT_ONCE: f64 = 0.1;
+/// A bond that breaks below this multiple of its opening at peak traction is brittle: it breaks at once however small the step.
+const BRITTLE: f64 = 1.05;
+/// Slide per step over critical opening with which a step resolves a bond, as in `fretwork check`.
+const RESOLVED: f64 = 0.01;
+
+/// What the energy to break a bond is compared with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reference {
+    /// The fracture energy that the law declares.
+    Declared,
+    /// The work of a slow pull to failure on the test bench, as the law declares nothing.
+    SlowPull,
+    /// None: bonds do not break by damage.
+    #[default]
+    None,
+}
+
+/// Bonds of one interface.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct BondEnergies {
+    /// Name of the interface.
+    pub interface: String,
+    /// Bonds that damage broke.
+    pub broken: u64,
+    /// Bonds whose contact moved out of range, or whose body was removed.
+    pub torn: u64,
+    /// Energy that the bonds broken by damage released, all that was stored at the break included (J; J/m in 2D).
+    pub released: f64,
+    /// Fracture energy of their laws for their areas and openings (J; J/m in 2D).
+    pub declared: Option<f64>,
+    /// Where the latter comes from.
+    pub reference: Reference,
+    /// Released over declared; null without broken bonds.
+    pub released_over_declared: Option<f64>,
+    /// Whether a ratio other than 1 is an error of the step: the law declares the energy, or it depends on neither speed, pressure nor
+    /// history; and no broken bond began at its gap, with an energy that its law may not have allowed.
+    pub comparable: bool,
+    /// Share of the broken bonds that had no damage at the start of the step in which they broke.
+    pub broken_at_once: Option<f64>,
+    /// Opening of a slow pull at which a bond breaks, the smaller of both modes (m).
+    pub critical_opening: Option<f64>,
+    /// Smallest opening at the peak of the traction (m).
+    pub peak_opening: Option<f64>,
+    /// Change of the opening of an intact bond in a step over the critical opening: mean over bonds and steps.
+    pub slide_mean: Option<f64>,
+    /// The same, mean over the steps that released energy, weighted by that energy.
+    pub slide_breaking: Option<f64>,
+    /// Its largest value.
+    pub slide_largest: Option<f64>,
+    /// Time step times the frequency of a bond at the contacts at the end: median and largest.
+    pub step_times_frequency: Option<[f64; 2]>,
+}
+
+/// Energy that broken bonds released, over what their laws declare; the slide of bonds in a step.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FractureSummary {
+    /// Energy released over that of the laws, over all bonds that damage broke in interfaces where they are `comparable`; null without any.
+    pub released_over_declared: Option<f64>,
+    /// The interfaces that made bonds.
+    pub interfaces: Vec<BondEnergies>,
+    /// Whether cycles were skipped: damage then grows by more than what the energies of a step say, and nothing is compared.
+    pub jumps: bool,
+    /// Time step (s).
+    #[serde(skip)]
+    pub step: f64,
+}
+
+impl FractureSummary {
+    /// Of the bonds of some interfaces, in a run with a time step (s).
+    pub fn new(interfaces: Vec<BondEnergies>, jumps: bool, step: f64) -> Self {
+        let known = || interfaces.iter().filter(|b| b.comparable);
+        let declared: f64 = known().filter_map(|b| b.declared).sum();
+        let released: f64 = known().map(|b| b.released).sum();
+        Self {
+            released_over_declared: (declared > 0.0 && !jumps).then(|| released / declared),
+            interfaces,
+            jumps,
+            step,
+        }
+    }
+
+    /// Lines of the text at the end of a run.
+    pub(super) fn lines(&self) -> Vec<(&'static str, String)> {
+        let Some(ratio) = self.released_over_declared else {
+            return Vec::new();
+        };
+        let once = self.interfaces.iter().filter_map(|b| {
+            let share = b.softening_at_once().filter(|s| *s > 0.0)?;
+            Some(format!(
+                "{} % of the bonds of `{}` broke within one step",
+                number(100.0 * share, 3),
+                b.interface
+            ))
+        });
+        let mut text = vec![format!(
+            "{} of the fracture energy of the broken bonds",
+            number(ratio, 4)
+        )];
+        text.extend(once);
+        vec![("released", text.join("; "))]
+    }
+
+    /// Says which bonds the step does not resolve, and what to change; `None` where it resolves all, or nothing is known.
+    pub fn warning(&self) -> Option<String> {
+        if self.jumps {
+            return None;
+        }
+        let texts = self.interfaces.iter().filter_map(BondEnergies::unresolved);
+        let texts: Vec<String> = texts.collect();
+        if texts.is_empty() {
+            return None;
+        }
+        let slides = self.interfaces.iter().filter_map(|b| b.slide_breaking);
+        let slide = slides.fold(0.0, f64::max);
+        let target = if slide > RESOLVED {
+            format!(
+                " ({:.0e} s would let them slide by 1 % of their critical opening in a step)",
+                self.step * RESOLVED / slide
+            )
+        } else {
+            String::new()
+        };
+        Some(format!(
+            "{}; take a smaller time.step{target}, and compare with the other coupling of damage at the same step (`coupling`)",
+            texts.join("; ")
+        ))
+    }
+}
+
+impl BondEnergies {
+    /// Adds how far its bonds slid in a step.
+    pub(crate) fn slide(&mut self, slides: &Slides) {
+        let Some(critical) = self.critical_opening else {
+            return;
+        };
+        self.slide_mean = slides.mean().map(|x| x / critical);
+        self.slide_breaking = slides.mean_by_released().map(|x| x / critical);
+        self.slide_largest = (slides.steps > 0).then_some(slides.largest / critical);
+    }
+
+    /// Whether bonds break at their peak, without softening.
+    fn brittle(&self) -> bool {
+        match (self.critical_opening, self.peak_opening) {
+            (Some(critical), Some(peak)) => critical <= BRITTLE * peak,
+            _ => false,
+        }
+    }
+
+    /// Share of the bonds that broke within one step, where they should soften.
+    fn softening_at_once(&self) -> Option<f64> {
+        self.broken_at_once.filter(|_| !self.brittle())
+    }
+
+    fn unresolved(&self) -> Option<String> {
+        let ratio = self.released_over_declared.filter(|_| self.comparable);
+        let wrong = ratio.filter(|r| (r - 1.0).abs() > WRONG_ENERGY);
+        let at_once = self.softening_at_once().filter(|s| *s > AT_ONCE);
+        if wrong.is_none() && at_once.is_none() {
+            return None;
+        }
+        let mut text = format!("the {} broken bonds of `{}`", self.broken, self.interface);
+        if let Some(ratio) = ratio {
+            text += &format!(" released {} of their fracture energy", number(ratio, 3));
+        }
+        if let Some(share) = at_once {
+            let and = if ratio.is_some() { ", and" } else { "," };
+            text += &format!("{and} {:.0} % of them broke within one step", 100.0 * share);
+        }
+        if let Some(slide) = self.slide_breaking {
+            text += &format!(
+                " (they slide by {} of their critical opening in a step that breaks them)",
+                number(slide, 2)
+            );
+        }
+        Some(text)
+    }
+}
