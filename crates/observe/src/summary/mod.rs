@@ -10,6 +10,7 @@ pub use self::estimate::{Estimate, Uncertainty};
 
 use crate::biaxial::Outcome;
 pub use crate::first_bodies::BodyWear;
+use crate::error_estimate::Repeats;
 use crate::fretting;
 use crate::friction::Cycle;
 use crate::jump::JumpSummary;
@@ -130,6 +131,9 @@ pub struct Summary {
     /// How the friction coefficient scatters over cycles or blocks, for its interval.
     #[serde(skip)]
     pub friction_scatter: Option<Scatter>,
+    /// What repeated steps say of the error, and shares of the energy; in `uncertainty` too.
+    #[serde(skip)]
+    pub repeats: Repeats,
     /// How well the main results are known from this run alone.
     pub uncertainty: Uncertainty,
     /// Cycles of the friction test.
