@@ -245,7 +245,11 @@ fn place(bytes: &[u8], rng: &mut Pcg64) -> usize {
     if rng.random_range(0..2) == 0 {
         let from = rng.random_range(0..bytes.len());
         let rest = &bytes[from..];
-        if let Some(k) = SIGNS.iter().filter_map(|s| memchr::memmem::find(rest, s)).min() {
+        if let Some(k) = SIGNS
+            .iter()
+            .filter_map(|s| memchr::memmem::find(rest, s))
+            .min()
+        {
             return (from + k + rng.random_range(0..96)).min(bytes.len() - 1);
         }
     }

@@ -43,6 +43,17 @@ impl<S: Space> Simulation<S> {
         })
     }
 
+    /// Goes on with another step (s). Impulses of contacts, from which the solver starts and which laws see, are those of the same
+    /// forces.
+    pub fn change_step(&mut self, h: f64) {
+        let ratio = h / self.options.scheme.h;
+        self.options.scheme.h = h;
+        for contact in &mut self.state.network.contacts {
+            contact.impulse = contact.impulse * ratio;
+            contact.moment = contact.moment * ratio;
+        }
+    }
+
     /// Has `trial` make steps from the current state, with options that it may change, and then restores the state before it:
     /// the next step gives the same bits as without the trial.
     ///

@@ -34,8 +34,9 @@ pub struct Stretch {
     pub converged: bool,
 }
 
-/// Cost of a step without its iterations, in iterations: detection, laws and motion take about as long as this many sweeps.
-const FIXED_ITERATIONS: f64 = 20.0;
+/// Cost of a step without its iterations, in iterations: detection, laws and motion take about as long as this many sweeps of contacts
+/// with three laws each.
+const FIXED_ITERATIONS: f64 = 60.0;
 
 /// Cost of a step in iterations times contacts: the same on every machine.
 pub fn cost<S: Space>(s: &Simulation<S>, report: &StepReport) -> f64 {

@@ -28,7 +28,7 @@ const TIGHTER: f64 = 100.0;
 /// Below this tolerance rounding decides, not the solver.
 const ROUNDING: f64 = 1e-12;
 /// Most iterations with the tight tolerance: this many times those of the run, and this many in any case.
-const MOST_ITERATIONS: (f64, f64) = (20.0, 200.0);
+const MOST_ITERATIONS: (f64, f64) = (4.0, 100.0);
 /// Share of the cost of the run beyond which no further repeats are made.
 const MOST_COST: f64 = 0.05;
 
@@ -59,6 +59,8 @@ pub struct ErrorEstimate {
     /// Steps of the run when it was begun.
     total: u64,
     body: Option<RubbedBody>,
+    /// Whether repeats are left out once they cost too much: where the case does not say how many there are.
+    limited: bool,
     /// Why there is no estimate.
     reason: Option<String>,
     places: Vec<Place>,
@@ -79,26 +81,26 @@ impl ErrorEstimate {
     pub fn new<S: Space>(case: &Case, s: &Simulation<S>, total: u64) -> Self {
         let test = FrictionTest::of(case, s);
         let mut estimate = Self {
-            length: case.uncertainty.steps,
             total,
             body: test.map(|t| t.body),
+            limited: case.uncertainty.repeats.is_none(),
             ..Self::default()
         };
         let from = test.map_or(0.0, |t| t.clock.start / case.time.step);
         let from = (from.round().max(0.0) as u64).min(total);
-        let count = places::count(&case.uncertainty, total);
+        let plan = places::plan(&case.uncertainty, total);
         let permitted = s.repeatable().map_err(|e| e.to_string());
-        match count.and_then(|count| permitted.map(|()| count)) {
-            Ok(count) => {
-                let length = u64::from(estimate.length);
-                estimate.to_come = places::draw(case.seed, count, from, total, length).into();
+        match plan.and_then(|plan| permitted.map(|()| plan)) {
+            Ok(plan) => {
+                estimate.length = plan.length;
+                estimate.to_come = plan.draw(case.seed, from, total).into();
             }
             Err(reason) => estimate.reason = Some(reason),
         }
         estimate
     }
 
-    /// Repeats the steps that are to come, where one of the places is reached.
+    /// Repeats the steps that are next, where one of the places is reached.
     ///
     /// # Errors
     /// A process could not be put back: the run cannot go on.
@@ -130,7 +132,7 @@ impl ErrorEstimate {
     /// Whether one more place, at the mean cost of those so far, would take more than its share of the run.
     fn costs_too_much(&self, step: u64) -> bool {
         let done = self.places.len() + self.failed as usize;
-        if done < change::FEWEST || step == 0 {
+        if !self.limited || done < change::FEWEST || step == 0 {
             return false;
         }
         let each = self.cost[1] / done as f64;
@@ -144,9 +146,7 @@ impl ErrorEstimate {
         let Some(base) = self.stretch(s, length, |_| ())? else {
             return Ok(None);
         };
-        let finer = self.stretch(s, FINER * length, |s| {
-            s.options.scheme.h /= f64::from(FINER);
-        })?;
+        let finer = self.stretch(s, FINER * length, shorten)?;
         let most = MOST_ITERATIONS.1.max(MOST_ITERATIONS.0 * base.iterations);
         let tighter = self.stretch(s, length, |s| tighten(s, most))?;
         let damages = s.laws.iter().any(Interface::damages);
@@ -154,8 +154,8 @@ impl ErrorEstimate {
         if damages && s.options.coupling == Coupling::Explicit {
             coupled = self.stretch(s, length, |s| {
                 s.options.coupling = Coupling::Implicit {
-                    tolerance: 1e-6,
-                    max_iterations: 50,
+                    tolerance: 1e-3,
+                    max_iterations: 5,
                 };
             })?;
         }
@@ -200,6 +200,14 @@ impl ErrorEstimate {
             self.supplied[1] += supplied;
         }
     }
+}
+
+/// Sets a shorter step, in which as much of an overlap is taken out in a given time.
+fn shorten<S: Space>(s: &mut Simulation<S>) {
+    let parts = f64::from(FINER);
+    s.change_step(s.options.scheme.h / parts);
+    let left = 1.0 - s.options.correction;
+    s.options.correction = 1.0 - left.powf(1.0 / parts);
 }
 
 /// Sets a tight tolerance, also where a phase has set its own.

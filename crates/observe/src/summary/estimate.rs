@@ -39,6 +39,19 @@ pub struct Uncertainty {
 }
 
 impl Estimate {
+    /// ` +- 0.004 (step) +- 0.002 (tolerance)`, with the half-widths formatted by `shown`; empty where none is known.
+    pub fn from_settings(&self, shown: impl Fn(f64) -> String) -> String {
+        let known = [
+            (self.step, "step"),
+            (self.tolerance, "tolerance"),
+            (self.coupling, "coupling"),
+        ];
+        let known = known.iter().filter_map(|(half, of)| Some(((*half)?, of)));
+        known
+            .map(|(half, of)| format!(" +- {} ({of})", shown(half)))
+            .collect()
+    }
+
     /// Puts in what repeated steps say of a result.
     fn repeated(&mut self, repeats: &Repeats, part: fn(&Effects) -> Option<Change>) {
         let half = |effects: &Effects| Some(self.value?.abs() * part(effects)?.bound());

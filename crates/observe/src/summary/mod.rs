@@ -9,8 +9,8 @@ pub use self::circuit::{Base, CircuitSummary, Rates};
 pub use self::estimate::{Estimate, Uncertainty};
 
 use crate::biaxial::Outcome;
-pub use crate::first_bodies::BodyWear;
 use crate::error_estimate::Repeats;
+pub use crate::first_bodies::BodyWear;
 use crate::fretting;
 use crate::friction::Cycle;
 use crate::jump::JumpSummary;
