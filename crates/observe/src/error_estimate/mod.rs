@@ -140,7 +140,8 @@ impl ErrorEstimate {
         self.cost[1] + each > MOST_COST * run
     }
 
-    /// Repeats one stretch in all ways; `None` where a step failed.
+    /// Repeats one stretch in all ways; `None` where a step failed. Steps of the stretch itself are repeated too, so that all are
+    /// measured in the same way.
     fn repeat<S: Steps>(&mut self, s: &mut Simulation<S>) -> Result<Option<Place>, RepeatError> {
         let length = self.length;
         let Some(base) = self.stretch(s, length, |_| ())? else {
