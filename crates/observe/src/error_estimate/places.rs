@@ -9,7 +9,7 @@ use rand_pcg::Pcg64;
 /// 5 % of the run may go into them.
 const STEPS_EACH: u64 = 220;
 /// Places over which the repeats are distributed before stretches are made longer, for the interval.
-const PLACES: u64 = 5;
+const PLACES: u64 = 4;
 /// Longest stretch: what the change of settings disturbs at its start has died away by then.
 const LONGEST: u64 = 8;
 /// Mixed into the seed of the case, so that places are not drawn with the numbers of its grains.
