@@ -80,7 +80,7 @@ impl<S: Space> FrictionTest<S> {
 }
 
 /// The side on which the contacts of a driven body push it along an axis: 1 or -1.
-fn facing<S: Space>(s: &Simulation<S>, place: usize, axis: usize) -> f64 {
+pub(crate) fn facing<S: Space>(s: &Simulation<S>, place: usize, axis: usize) -> f64 {
     let body = s.state.bodies.driven[place].body;
     let push: f64 = s
         .state

@@ -11,6 +11,7 @@ pub mod chart;
 pub mod choice;
 pub mod circuit;
 pub mod coordination;
+pub mod error_estimate;
 mod figures;
 pub mod first_bodies;
 pub mod fracture;

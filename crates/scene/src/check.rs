@@ -23,6 +23,7 @@ pub fn numbers(case: &Case) -> Result<(), ValidationError> {
     }
     let dimension = case.dimension as usize;
     time(case)?;
+    repeats(case)?;
     output_intervals(case)?;
     positive("inertia_scaling", case.inertia_scaling)?;
     coupling(case)?;
@@ -110,6 +111,12 @@ fn output_intervals(case: &Case) -> Result<(), ValidationError> {
         _ => return Ok(()),
     };
     Err(ValidationError::new("output.checkpoint", message))
+}
+
+/// Steps repeated at each place.
+fn repeats(case: &Case) -> Result<(), ValidationError> {
+    let steps = case.uncertainty.steps;
+    steps.map_or(Ok(()), |steps| at_least_one("uncertainty.steps", steps))
 }
 
 fn coupling(case: &Case) -> Result<(), ValidationError> {

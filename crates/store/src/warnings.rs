@@ -1,10 +1,11 @@
 //! Warnings about a run with advice: reasons not to trust it, and notes. The table is in docs/trustworthy.md.
 
-use crate::summary::Summary;
+use crate::summary::{Summary, Uncertainty};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::solve::Report;
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::step::Simulation;
+use fretwork_observe::error_estimate::Change;
 pub use fretwork_observe::warning::{NOT_REACHED, Warning};
 use fretwork_scene::methods::{Demands, Service};
 
@@ -15,6 +16,8 @@ pub const LEDGER: f64 = 1e-6;
 const OVERLAP: f64 = 1e-2;
 /// Residual velocities, as a share of those of the contacts, below which they are not worth a note.
 const LOOSE: f64 = 1e-3;
+/// Share of a result, or of the energy, by which an error is worth a note.
+const LARGE_ERROR: f64 = 0.05;
 
 /// Steps that ended above the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -233,6 +236,76 @@ fn loose_velocities(summary: &Summary) -> Option<String> {
     })
 }
 
+/// The position correction, where it is a large share of the energy.
+fn correction(summary: &Summary) -> Option<String> {
+    let share = summary.uncertainty.repeats.shares.correction?;
+    (share > LARGE_ERROR).then(|| {
+        format!(
+            "{:.0} % of the energy comes from taking overlaps out, not from the drives: take a smaller solver.tolerance or time.step, or \
+             compliant contacts (docs/compliant.md)",
+            100.0 * share
+        )
+    })
+}
+
+/// A result, its change with a setting, and that setting.
+type SettingEffect = (&'static str, Change, &'static str);
+
+/// The changes of the main results, as found by repeated steps, that may be large.
+fn large_effects(uncertainty: &Uncertainty) -> Vec<SettingEffect> {
+    let repeats = &uncertainty.repeats;
+    let settings = [
+        (Some(&repeats.step), "time.step"),
+        (Some(&repeats.tolerance), "solver.tolerance"),
+        (repeats.coupling.as_ref(), "coupling: Explicit"),
+    ];
+    let known = settings.into_iter().filter_map(|(e, of)| Some((e?, of)));
+    let effects = known.flat_map(|(e, of)| {
+        [
+            ("friction", e.friction_coefficient, of),
+            ("damage", e.damage, of),
+            ("wear", e.wear, of),
+        ]
+    });
+    let effects = effects.filter_map(|(what, change, of)| Some((what, change?, of)));
+    effects.filter(|e| e.1.bound() > LARGE_ERROR).collect()
+}
+
+/// Results that repeated steps show to be wrong by more than 5 %.
+fn estimated_error(uncertainty: &Uncertainty) -> Option<String> {
+    let list = large_effects(uncertainty).into_iter();
+    let texts = list.filter(|(_, c, _)| c.change.abs() > c.half_width);
+    let texts = texts.map(|(what, c, of)| {
+        let (change, half) = (100.0 * c.change, 100.0 * c.half_width);
+        format!("{what} {change:+.0} +- {half:.0} % for {of}")
+    });
+    let texts: Vec<String> = texts.collect();
+    (!texts.is_empty()).then(|| {
+        format!(
+            "repeated steps with finer settings give another result: {}; take a finer one of each, and see \
+             `uncertainty` in summary.json",
+            texts.join(", ")
+        )
+    })
+}
+
+/// Results of which the repeated steps do not tell whether they are right to 5 %.
+fn unknown_error(uncertainty: &Uncertainty) -> Option<String> {
+    let list = large_effects(uncertainty).into_iter();
+    let texts = list.filter(|(_, c, _)| c.change.abs() <= c.half_width);
+    let texts = texts.map(|(what, c, of)| format!("{what} to {:.0} % for {of}", 100.0 * c.bound()));
+    let texts: Vec<String> = texts.collect();
+    (!texts.is_empty()).then(|| {
+        format!(
+            "from {} places with repeated steps results are known only so well: {}; a longer run, or more places (`uncertainty: (repeats: \
+             {})`, for more time) tell more",
+            uncertainty.repeats.places,
+            texts.join(", "),
+            4 * uncertainty.repeats.places
+        )
+    })
+}
+
 /// Notes that do not affect the trust in the results.
 fn notes(summary: &Summary) -> Vec<Warning> {
     let mut notes = Vec::new();
@@ -262,6 +335,10 @@ fn notes(summary: &Summary) -> Vec<Warning> {
     );
     note("COARSE DRIVE", drives(summary, false));
     note("LOOSE VELOCITIES", loose_velocities(summary));
+    note("POSITION CORRECTION", correction(summary));
+    let uncertainty = &summary.uncertainty;
+    note("ESTIMATED ERROR", estimated_error(uncertainty));
+    note("ERROR NOT KNOWN", unknown_error(uncertainty));
     let over = summary.solver.overlap_after;
     note(
         "OVERLAP",
@@ -347,6 +424,39 @@ mod tests {
         assert_eq!(parts(1e-7, 4.0), []);
         let list = parts(3e-2, 1.8);
         assert!(list.len() == 1 && !list[0].serious && list[0].of == "LOOSE VELOCITIES");
+    }
+
+    #[test]
+    fn errors_above_five_per_cent_are_notes_that_say_whether_they_are_known() {
+        let change = |change, half_width| Some(Change { change, half_width });
+        let list = of_run(|s| {
+            let repeats = &mut s.uncertainty.repeats;
+            repeats.places = 6;
+            repeats.step.friction_coefficient = change(0.01, 0.02);
+            repeats.tolerance.friction_coefficient = change(-0.08, 0.02);
+            repeats.tolerance.damage = change(0.03, 0.06);
+            repeats.shares.correction = Some(0.04);
+        });
+        assert_eq!(list.len(), 2, "{list:?}");
+        assert!(list.iter().all(|w| !w.serious));
+        let text = list[0].to_string();
+        assert!(
+            text.starts_with("ESTIMATED ERROR")
+                && text.contains("friction -8 +- 2 % for solver.tolerance"),
+            "{text}"
+        );
+        let text = list[1].to_string();
+        assert!(
+            text.starts_with("ERROR NOT KNOWN")
+                && text.contains("damage to 9 % for solver.tolerance"),
+            "{text}"
+        );
+        let list = of_run(|s| s.uncertainty.repeats.shares.correction = Some(0.23));
+        assert!(
+            list.len() == 1
+                && list[0].of == "POSITION CORRECTION"
+                && list[0].text.starts_with("23 %")
+        );
     }
 
     #[test]

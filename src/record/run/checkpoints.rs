@@ -8,6 +8,7 @@ use crate::record::code::{CodeError, decode, encode};
 use crate::report::Paint;
 use crate::scene::build::Dimensional;
 use crate::step::{ProcessState, State};
+use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::observer::ObserverState;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -29,6 +30,7 @@ struct RunLoopState<'a, S: Space> {
     observers: Vec<ObserverState>,
     problems: (u64, u64),
     unconverged: u64,
+    estimate: Cow<'a, ErrorEstimate>,
     wall: Duration,
     processor: Duration,
 }
@@ -84,6 +86,7 @@ impl<S: Dimensional> Recorder<'_, S> {
             observers: self.observers.save()?,
             problems: self.problems,
             unconverged: self.unconverged,
+            estimate: Cow::Borrowed(&self.estimate),
             wall: self.elapsed_before_resume.0 + self.clock.elapsed(),
             processor: self.elapsed_before_resume.1 + self.processor.elapsed(),
         })?)
@@ -108,6 +111,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         self.camera.paint(state.paints.into_owned());
         self.resumed_at = self.simulation.state.steps;
         (self.problems, self.unconverged) = (state.problems, state.unconverged);
+        self.estimate = state.estimate.into_owned();
         self.elapsed_before_resume = (state.wall, state.processor);
         self.results.take_over(&stop.results, &state.rows)?;
         let names: Vec<String> = self.table.columns.iter().map(|c| c.name.clone()).collect();

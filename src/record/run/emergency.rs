@@ -89,13 +89,16 @@ impl<S: Steps> Recorder<'_, S> {
         let place = Arc::clone(&self.emergency.outputs);
         let place = || place.lock().unwrap_or_else(|e| e.into_inner());
         *place() = Some(outputs);
-        let report = self.simulation.step();
+        // A law may not come back from a repeated step either.
+        let repeated = self.estimate.before_step(&mut self.simulation);
+        let repeated = repeated.map_err(RunError::from);
+        let report = repeated.and_then(|()| Ok(self.simulation.step()?));
         // The watch took it just before the law came back: it is written.
         let outputs = place().take().ok_or(RunError::TakenOver)?;
         self.table = outputs.table;
         self.results = outputs.results;
         self.observers = outputs.observers;
         self.summary = outputs.summary;
-        Ok(report?)
+        report
     }
 }

@@ -23,6 +23,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         self.observers.summarise(&self.end(wall), &mut summary);
         let solver = &mut summary.solver;
         (solver.fclib_written, solver.fclib_skipped) = self.problems;
+        summary.repeats = self.estimate.report(&self.simulation.state.energy);
         summary.complete();
         self.summary = summary;
         let notice = self.warn();

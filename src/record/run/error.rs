@@ -4,7 +4,7 @@ use crate::record::checkpoint::ResumeError;
 use crate::record::code::CodeError;
 use crate::record::results::ResultsError;
 use crate::report::ReportError;
-use crate::step::StepError;
+use crate::step::{RepeatError, StepError};
 use std::path::{Path, PathBuf};
 
 /// Reason why a run failed. What was computed is on disk.
@@ -29,6 +29,9 @@ pub enum RunError {
         /// Reason.
         reason: String,
     },
+    /// The state before repeated steps cannot be restored.
+    #[error(transparent)]
+    Repeat(#[from] RepeatError),
     /// Two columns of the statistics have one name.
     #[error(
         "two columns of the statistics are named `{name}`; give a measure or an observer another name"

@@ -28,6 +28,7 @@ use crate::scene::case::Case;
 use crate::scene::{processes, sampling};
 use crate::step::{Simulation, StepReport};
 use cpu_time::ProcessTime;
+use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::run_state::damage_ratio;
 use fretwork_observe::standard;
 use fretwork_observe::{Observer, Observers};
@@ -213,6 +214,8 @@ struct Recorder<'a, S: Space> {
     problems: (u64, u64),
     /// Steps that missed the tolerance.
     unconverged: u64,
+    /// The estimate of the error of the run.
+    estimate: ErrorEstimate,
     /// Steps that were done when the run was resumed.
     resumed_at: u64,
     /// Total steps of the run, and the steps over which states and pictures are distributed, as set when it
@@ -264,7 +267,9 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let results = create_results(&part, loaded, &built, &summary, &observers)?;
         let simulation = built.simulation;
         let total = (case.time.end / case.time.step - 1e-6).ceil().max(1.0) as u64;
+        let estimate = ErrorEstimate::new(case, &simulation, total);
         let mut recorder = Self {
+            estimate,
             camera: Camera::new(&simulation, &case.output),
             out: options.out.clone(),
             table: Table::new(columns),
@@ -310,6 +315,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             let recurs = self.simulation.phase_recurs();
             let report = self.step()?;
             self.unconverged += u64::from(!report.solver.converged);
+            self.estimate.after_step(&self.simulation, &report);
             self.observers.after_step(&self.simulation, &report);
             if phase == 1 && self.simulation.state.control.phase() == 2 {
                 self.camera.dye(&self.simulation);

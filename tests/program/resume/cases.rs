@@ -29,6 +29,7 @@ fn fretting_with_damage_in_the_plane() {
         "solver.tolerance=1e-4",
         "time.end=0.056",
         "output.checkpoint=Steps(70)",
+        "uncertainty.repeats=6",
         "output.frames=3",
         "output.figures=false",
     ];
@@ -84,6 +85,8 @@ fn the_circuit() {
         "grains.0.count=300",
         "time.end=0.07",
         "output.checkpoint=Steps(150)",
+        "uncertainty.repeats=8",
+        "uncertainty.steps=3",
         "output.frames=2",
         "output.fclib=30",
     ];
@@ -100,6 +103,7 @@ fn scars_and_jumps() {
     // A row of the statistics is begun before some checkpoints and ends after.
     let sets = [
         "output.checkpoint=Steps(300)",
+        "uncertainty.repeats=12",
         "output.frames=2",
         "output.every=40",
     ];

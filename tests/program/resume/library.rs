@@ -221,6 +221,20 @@ fn a_run_does_not_go_on_without_its_observers() {
     resume(&folder, Some(MeanGap::default())).unwrap_or_else(|e| panic!("{e}"));
 }
 
+/// What a process of a user does in a step cannot be undone unless it says so: the run does not estimate its error then.
+#[test]
+fn steps_with_a_process_that_does_not_permit_it_are_not_repeated() {
+    let folder = Folder::new("library-repeats");
+    let (mut loaded, built) = cradle();
+    loaded.case.uncertainty.repeats = Some(5);
+    let options = options(&folder);
+    let run = Run::new(&loaded, built, &options);
+    let summary = run.execute(&mut |_| ControlFlow::Continue(())).unwrap();
+    let repeats = &summary.uncertainty.repeats;
+    let reason = repeats.reason.as_deref().unwrap_or_default();
+    assert!(repeats.places == 0 && reason.contains("`push`"), "{reason}");
+}
+
 #[test]
 fn two_columns_of_one_name_are_refused() {
     let folder = Folder::new("library-twice");

@@ -9,6 +9,7 @@ mod kills;
 mod laws;
 mod library;
 mod observer_files;
+mod repeats;
 #[cfg(unix)]
 mod signals;
 mod state;

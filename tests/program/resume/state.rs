@@ -8,7 +8,7 @@ use fretwork::step::Steps;
 use fretwork::step::{Simulation, State};
 use std::path::Path;
 
-fn built(case: &str, sets: &[&str]) -> Scene {
+pub fn built(case: &str, sets: &[&str]) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{case}.ron"));
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
@@ -17,11 +17,11 @@ fn built(case: &str, sets: &[&str]) -> Scene {
 }
 
 /// All that a simulation holds, as text: numbers are printed so that they read back as they are.
-fn all<S: Steps>(s: &Simulation<S>) -> Vec<u8> {
+pub fn all<S: Steps>(s: &Simulation<S>) -> Vec<u8> {
     encode(&s.state).unwrap()
 }
 
-fn steps<S: Steps>(s: &mut Simulation<S>, count: u32) {
+pub fn steps<S: Steps>(s: &mut Simulation<S>, count: u32) {
     for _ in 0..count {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }

@@ -441,6 +441,10 @@ impl<S: Space> Process<S> for CircuitProcess<S> {
         Ok(())
     }
 
+    fn repeats(&self) -> bool {
+        true
+    }
+
     fn save(&self) -> Result<Vec<u8>, CodeError> {
         encode(&self.state)
     }

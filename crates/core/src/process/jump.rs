@@ -365,6 +365,10 @@ impl<S: Space> Process<S> for Jumps {
         "cycle jumps"
     }
 
+    fn repeats(&self) -> bool {
+        true
+    }
+
     fn after_move(
         &mut self,
         _: &mut Simulation<S>,

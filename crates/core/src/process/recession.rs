@@ -19,6 +19,10 @@ impl<S: Space> Process<S> for Recession {
         "wear recession"
     }
 
+    fn repeats(&self) -> bool {
+        true
+    }
+
     fn after_solve(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
         put_losses(s);
         Ok(())

@@ -64,6 +64,12 @@ pub trait Process<S: Space>: Any + Debug + Send + Sync {
         false
     }
 
+    /// Whether steps in which it acts may be repeated from a saved state, see [`Simulation::repeat`]: all that it does is undone by
+    /// restoring the simulation and by [`Process::restore`]. A run with a process that says no, as by default, does not estimate its error.
+    fn repeats(&self) -> bool {
+        false
+    }
+
     /// What it carries from step to step, as bytes for a checkpoint ([`crate::code::encode`]); none where it carries nothing.
     ///
     /// # Errors

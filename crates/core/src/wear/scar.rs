@@ -150,6 +150,11 @@ impl<S: Space> Scar<S> {
         }
     }
 
+    /// Whether the surface is at the same depths as another state of this scar has it.
+    pub fn shows_as(&self, other: &Self) -> bool {
+        self.shown == other.shown
+    }
+
     /// Returns the wear volume so far (m^3; m^3/m in 2D).
     pub fn volume(&self) -> f64 {
         self.volume

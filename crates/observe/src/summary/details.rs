@@ -27,6 +27,7 @@ impl Summary {
             );
             lines.add(&format!("cycle {}{unfinished}", c.cycle), text);
         }
+        self.repeat_lines(lines);
         self.phase_lines(lines);
         self.solver_lines(lines);
         for p in &self.plugins {
@@ -49,6 +50,21 @@ impl Summary {
                 quantity(self.cpu_seconds, "s")
             ),
         );
+    }
+
+    /// The repeated steps from which the error is estimated.
+    fn repeat_lines(&self, lines: &mut Lines) {
+        let r = &self.uncertainty.repeats;
+        let text = match &r.reason {
+            Some(reason) => format!("none, {reason}"),
+            None => format!(
+                "{} steps repeated at each of {} places, at the cost of {} % of the run",
+                r.steps,
+                r.places,
+                number(100.0 * r.cost_share, 2)
+            ),
+        };
+        lines.add("estimate of the error", text);
     }
 
     fn phase_lines(&self, lines: &mut Lines) {

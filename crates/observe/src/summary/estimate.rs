@@ -1,6 +1,7 @@
 //! Uncertainty of the main results.
 
 use super::Summary;
+use crate::error_estimate::{Change, Effects, Repeats};
 use crate::scatter::{self, Scatter};
 use serde::Serialize;
 
@@ -12,10 +13,12 @@ pub struct Estimate {
     pub value: Option<f64>,
     /// From the scatter within the run.
     pub scatter: Option<f64>,
-    /// From the time step; not estimated by a single run, see `fretwork trade`.
+    /// From the time step, by repeated steps: the size of the change that they show, and what is not known of it.
     pub step: Option<f64>,
-    /// From the solver's tolerance; not estimated by a single run.
+    /// From the solver's tolerance, in the same way.
     pub tolerance: Option<f64>,
+    /// From the explicit coupling of damage and opening, in the same way; a part of the effect of the step too.
+    pub coupling: Option<f64>,
     /// Method of the scatter estimate, or the reason why there is none.
     pub method: Option<String>,
 }
@@ -29,11 +32,51 @@ pub struct Uncertainty {
     pub damage_ratio: Estimate,
     /// Volume worn off first bodies (m^3; m^3/m in 2D).
     pub wear: Estimate,
+    /// Energy dissipated by friction (J; J/m in 2D).
+    pub friction_energy: Estimate,
+    /// The repeated steps on which `step`, `tolerance` and `coupling` rest, and shares of the energy.
+    pub repeats: Repeats,
+}
+
+impl Estimate {
+    /// ` +- 0.004 (step) +- 0.002 (tolerance)`, with the half-widths formatted by `shown`; empty where none is known.
+    pub fn from_settings(&self, shown: impl Fn(f64) -> String) -> String {
+        let known = [
+            (self.step, "step"),
+            (self.tolerance, "tolerance"),
+            (self.coupling, "coupling"),
+        ];
+        let known = known.iter().filter_map(|(half, of)| Some(((*half)?, of)));
+        known
+            .map(|(half, of)| format!(" +- {} ({of})", shown(half)))
+            .collect()
+    }
+
+    /// Puts in what repeated steps say of a result.
+    fn repeated(&mut self, repeats: &Repeats, part: fn(&Effects) -> Option<Change>) {
+        let half = |effects: &Effects| Some(self.value?.abs() * part(effects)?.bound());
+        let (step, tolerance) = (half(&repeats.step), half(&repeats.tolerance));
+        self.coupling = repeats.coupling.as_ref().and_then(half);
+        (self.step, self.tolerance) = (step, tolerance);
+    }
 }
 
 impl Uncertainty {
     /// Estimates for a summary with its other values; `friction` is the scatter of the friction coefficient.
     pub fn new(summary: &Summary, friction: Option<&Scatter>) -> Self {
+        let mut all = Self::scattered(summary, friction);
+        let repeats = &summary.repeats;
+        all.friction_energy.value = Some(summary.energy.friction).filter(|e| *e > 0.0);
+        (all.friction_coefficient).repeated(repeats, |e| e.friction_coefficient);
+        all.damage_ratio.repeated(repeats, |e| e.damage);
+        all.wear.repeated(repeats, |e| e.wear);
+        all.friction_energy.repeated(repeats, |e| e.friction_energy);
+        all.repeats = repeats.clone();
+        all
+    }
+
+    /// Values, and their scatter within the run.
+    fn scattered(summary: &Summary, friction: Option<&Scatter>) -> Self {
         let mut all = Self::default();
         let mu = &mut all.friction_coefficient;
         mu.value = summary.friction_coefficient;

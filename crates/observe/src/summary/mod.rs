@@ -11,6 +11,7 @@ pub use self::estimate::{Estimate, Uncertainty};
 pub use self::fracture::{BondEnergies, FractureSummary, Reference};
 
 use crate::biaxial::Outcome;
+use crate::error_estimate::Repeats;
 pub use crate::first_bodies::BodyWear;
 use crate::fretting;
 use crate::friction::Cycle;
@@ -136,6 +137,9 @@ pub struct Summary {
     /// How the friction coefficient scatters over cycles or blocks, for its interval.
     #[serde(skip)]
     pub friction_scatter: Option<Scatter>,
+    /// What repeated steps say of the error, and shares of the energy; in `uncertainty` too.
+    #[serde(skip)]
+    pub repeats: Repeats,
     /// How well the main results are known from this run alone.
     pub uncertainty: Uncertainty,
     /// Cycles of the friction test.

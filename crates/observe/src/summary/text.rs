@@ -84,13 +84,16 @@ impl Summary {
             (_, false) => "over the completed part of the evaluated time".to_owned(),
         };
         let known = &self.uncertainty.friction_coefficient;
-        let mean = match (known.value, known.scatter, &known.method) {
-            (Some(value), Some(half), Some(method)) => {
-                format!("{} +- {} ({method}); ", number(value, 4), number(half, 2))
-            }
-            _ => String::new(),
+        let settings = known.from_settings(|half| number(half, 2));
+        let text = match (known.value, known.scatter, &known.method) {
+            (Some(value), Some(half), Some(method)) => format!(
+                "{} +- {} ({method}){settings}; {} {over}, from forces",
+                number(value, 4),
+                number(half, 2),
+                number(mu, 4)
+            ),
+            _ => format!("{}{settings} {over}, from forces", number(mu, 4)),
         };
-        let text = format!("{mean}{} {over}, from forces", number(mu, 4));
         lines.add("friction coefficient", text);
         if let Some(energetic) = self.friction_from_dissipation {
             let text = format!(
@@ -143,9 +146,11 @@ impl Summary {
 
     fn damage(&self, lines: &mut Lines) {
         if self.bonds > 0 {
+            let known = &self.uncertainty.damage_ratio;
             let text = format!(
-                "ratio {} ({} of {} bonds broken), mean damage {}",
+                "ratio {}{} ({} of {} bonds broken), mean damage {}",
                 number(self.damage_ratio, 4),
+                known.from_settings(|half| number(half, 2)),
                 self.broken,
                 self.bonds,
                 number(self.mean_damage, 4)
@@ -167,12 +172,16 @@ impl Summary {
         if w.volume_third_body > 0.0 {
             lines.add("wear between grains", quantity(w.volume_third_body, volume));
         }
-        if w.bodies.len() > 1 {
-            let known = &self.uncertainty.wear;
+        let known = &self.uncertainty.wear;
+        let settings = known.from_settings(|half| quantity(half, volume));
+        if w.bodies.len() > 1 || !settings.is_empty() {
             let half = known
                 .scatter
                 .map_or(String::new(), |h| format!(" +- {}", quantity(h, volume)));
-            let text = format!("{}{half}", quantity(w.volume_first_bodies, volume));
+            let text = format!(
+                "{}{half}{settings}",
+                quantity(w.volume_first_bodies, volume)
+            );
             lines.add("wear of first bodies", text);
         }
         if let Some(alpha) = self.fretting.as_ref().and_then(|f| f.alpha) {

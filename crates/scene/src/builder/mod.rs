@@ -82,6 +82,7 @@ impl<S: Dimensional> CaseBuilder<S> {
                 circuit: None,
                 jump: None,
                 measures: Vec::new(),
+                uncertainty: Default::default(),
                 output: Default::default(),
             },
             folder: PathBuf::new(),

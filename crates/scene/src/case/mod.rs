@@ -5,12 +5,14 @@ mod interface;
 mod shapes;
 pub(crate) mod slots;
 pub(crate) mod text;
+mod uncertainty;
 mod wear;
 
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
 pub use interface::{InterfaceSpec, SlotValues};
 pub use shapes::{Coordinates, ShapeSpec, Side, StandardName};
 pub use slots::BySlot;
+pub use uncertainty::UncertaintySpec;
 pub use wear::WearSpec;
 
 use super::circuit::CircuitSpec;
@@ -96,6 +98,9 @@ pub struct Case {
     /// Other quantities that are measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub measures: Vec<MeasureSpec>,
+    /// How the run estimates its own error.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub uncertainty: UncertaintySpec,
     /// Output files and their intervals.
     #[serde(default)]
     pub output: OutputSpec,

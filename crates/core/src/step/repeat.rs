@@ -1,0 +1,88 @@
+//! Repeating steps from a saved state: steps with other options, after which all is as before.
+
+use super::{Options, ProcessState, Simulation, State};
+use crate::code::CodeError;
+use crate::geometry::space::Space;
+use crate::laws::Interface;
+
+/// Why steps cannot be repeated.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RepeatError {
+    /// A process may do what cannot be undone.
+    #[error(
+        "the process `{process}` does not declare that its steps can be repeated (Process::repeats)"
+    )]
+    Process {
+        /// Its name.
+        process: String,
+    },
+    /// A process cannot be saved or restored.
+    #[error("a process cannot be put back to its state before the repeated steps: {0}")]
+    Code(#[from] CodeError),
+}
+
+/// All of a simulation that steps may change.
+struct Saved<S: Space> {
+    state: State<S>,
+    options: Options,
+    laws: Vec<Interface>,
+    processes: Vec<ProcessState>,
+}
+
+impl<S: Space> Simulation<S> {
+    /// Whether steps can be repeated.
+    ///
+    /// # Errors
+    /// Which process does not permit it.
+    pub fn repeatable(&self) -> Result<(), RepeatError> {
+        let other = self.processes.iter().find(|p| !p.repeats());
+        other.map_or(Ok(()), |p| {
+            Err(RepeatError::Process {
+                process: p.name().to_owned(),
+            })
+        })
+    }
+
+    /// Goes on with another step (s). Impulses of contacts, from which the solver starts and which laws see, are those of the same
+    /// forces.
+    pub fn change_step(&mut self, h: f64) {
+        let ratio = h / self.options.scheme.h;
+        self.options.scheme.h = h;
+        for contact in &mut self.state.network.contacts {
+            contact.impulse = contact.impulse * ratio;
+            contact.moment = contact.moment * ratio;
+        }
+    }
+
+    /// Has `trial` make steps from the current state, with options that it may change, and then restores the state before it:
+    /// the next step gives the same bits as without the trial.
+    ///
+    /// # Errors
+    /// Steps cannot be repeated; nothing was done then, unless a process could not be restored.
+    pub fn repeat<R>(&mut self, trial: impl FnOnce(&mut Self) -> R) -> Result<R, RepeatError> {
+        self.repeatable()?;
+        let saved = Saved {
+            processes: self.save_processes()?,
+            state: self.state.clone(),
+            options: self.options,
+            laws: self.laws.clone(),
+        };
+        let result = trial(self);
+        self.put_back(saved)?;
+        Ok(result)
+    }
+
+    fn put_back(&mut self, saved: Saved<S>) -> Result<(), RepeatError> {
+        let worn = self.state.scars.iter().zip(&saved.state.scars);
+        let worn: Vec<bool> = worn.map(|(now, then)| !now.shows_as(then)).collect();
+        self.state = saved.state;
+        self.options = saved.options;
+        self.laws = saved.laws;
+        let scars = self.state.scars.iter().zip(worn);
+        for (scar, _) in scars.filter(|(_, worn)| *worn) {
+            scar.show_again(&mut self.shapes);
+        }
+        self.processes.truncate(saved.processes.len());
+        Ok(self.restore_processes(&saved.processes)?)
+    }
+}

@@ -1,0 +1,94 @@
+//! What the results of a run grow by over a few steps.
+
+use crate::friction_test::facing;
+use fretwork_core::geometry::space::Space;
+use fretwork_core::process::cycle::RubbedBody;
+use fretwork_core::step::{Simulation, StepError, StepReport, Steps};
+use serde::{Deserialize, Serialize};
+
+/// Growth of the results over a stretch of steps (per metre of depth in 2D).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Increments {
+    /// Work of the tangential force that moves the body under test (J).
+    pub work: f64,
+    /// Normal force on it times its sliding distance (N m).
+    pub load_path: f64,
+    /// Energy dissipated by friction (J).
+    pub friction_energy: f64,
+    /// Sum of the damage of all bonds.
+    pub damage: f64,
+    /// Volume worn off first bodies (m^3).
+    pub wear: f64,
+}
+
+/// A stretch of steps.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stretch {
+    /// Growth of the results.
+    pub increments: Increments,
+    /// Cost, see [`cost`].
+    pub cost: f64,
+    /// Mean number of solver iterations of a step.
+    pub iterations: f64,
+    /// Whether all steps reached the tolerance.
+    pub converged: bool,
+}
+
+/// Cost of a step without its iterations, in iterations: detection, laws and motion take about as long as this many sweeps of contacts
+/// with three laws each.
+const FIXED_ITERATIONS: f64 = 60.0;
+
+/// Cost of a step in iterations times contacts: the same on every machine.
+pub fn cost<S: Space>(s: &Simulation<S>, report: &StepReport) -> f64 {
+    let iterations = f64::from(report.solver.iterations) + FIXED_ITERATIONS;
+    iterations * s.state.network.contact_count().max(1) as f64
+}
+
+/// The sum of the damage of all bonds; broken ones count 1.
+fn damage<S: Space>(s: &Simulation<S>) -> f64 {
+    let network = &s.state.network;
+    network.mean_damage() * network.bonds_made() as f64
+}
+
+impl Stretch {
+    /// Makes steps of a simulation and measures those after the first half: by then what the change of settings disturbs has
+    /// mostly died away, such as damage that explicit coupling lets lag by a step.
+    ///
+    /// # Errors
+    /// A step failed.
+    pub fn of<S: Steps>(
+        s: &mut Simulation<S>,
+        steps: u32,
+        body: Option<&RubbedBody>,
+    ) -> Result<Self, StepError> {
+        let (mut friction, mut bonds) = (s.state.energy.friction, damage(s));
+        let mut stretch = Self {
+            converged: true,
+            ..Self::default()
+        };
+        let sums = &mut stretch.increments;
+        let mut iterations = 0.0;
+        for k in 0..steps {
+            if k == steps / 2 {
+                *sums = Increments::default();
+                (friction, bonds) = (s.state.energy.friction, damage(s));
+            }
+            let report = s.step()?;
+            stretch.cost += cost(s, &report);
+            stretch.converged &= report.solver.converged;
+            iterations += f64::from(report.solver.iterations);
+            sums.wear += report.totals.worn_first;
+            if let Some(body) = body {
+                let slide = body.slide(s);
+                let push = s.state.received[body.place].0[body.normal];
+                let normal = push * facing(s, body.place, body.normal) / s.options.scheme.h;
+                sums.work += body.tangential_force(s) * slide;
+                sums.load_path += normal * slide.abs();
+            }
+        }
+        sums.friction_energy = s.state.energy.friction - friction;
+        sums.damage = damage(s) - bonds;
+        stretch.iterations = iterations / f64::from(steps.max(1));
+        Ok(stretch)
+    }
+}

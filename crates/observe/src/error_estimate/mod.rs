@@ -1,0 +1,221 @@
+//! The error of a run by its own estimate: at places drawn from the seed it repeats a few steps with a quarter of the step, with a hundredth of
+//! the tolerance, and with implicit coupling, and compares what friction, damage and wear grow by.
+//!
+//! The state is restored after each repeat, so that the run has the same bits as without. Observers see no repeated step.
+
+mod change;
+mod increments;
+mod places;
+mod report;
+
+pub use change::Change;
+pub use report::{Effects, Repeats, Shares};
+
+use fretwork_core::geometry::space::Space;
+use fretwork_core::laws::Interface;
+use fretwork_core::process::cycle::RubbedBody;
+use fretwork_core::step::coupling::Coupling;
+use fretwork_core::step::{RepeatError, Simulation, StepReport, Steps};
+use fretwork_scene::case::Case;
+use fretwork_scene::processes::FrictionTest;
+use increments::{Increments, Stretch, cost};
+use serde::{Deserialize, Serialize};
+
+/// The shorter steps of a repeat are the step over this number.
+const FINER: u32 = 4;
+/// The tight tolerance is the tolerance over this number.
+const TIGHTER: f64 = 100.0;
+/// Below this tolerance rounding decides, not the solver.
+const ROUNDING: f64 = 1e-12;
+/// Most iterations with the tight tolerance: this many times those of the run, and this many in any case.
+const MOST_ITERATIONS: (f64, f64) = (4.0, 100.0);
+/// Share of the cost of the run beyond which no further repeats are made.
+const MOST_COST: f64 = 0.05;
+
+/// One place with its repeats.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Place {
+    /// Steps done before it.
+    step: u64,
+    /// As the run computes it.
+    base: Increments,
+    /// With a quarter of the step.
+    finer: Increments,
+    /// With a hundredth of the tolerance.
+    tighter: Increments,
+    /// Whether that tolerance was reached.
+    tight: bool,
+    /// With implicit coupling, where the run has explicit coupling of damage.
+    coupled: Option<Increments>,
+}
+
+/// Estimates the error of a run; all of it is part of a checkpoint.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct ErrorEstimate {
+    /// Steps of a stretch.
+    length: u32,
+    /// Steps after which stretches are repeated, those to come.
+    to_come: std::collections::VecDeque<u64>,
+    /// Steps of the run when it was begun.
+    total: u64,
+    body: Option<RubbedBody>,
+    /// Whether repeats are left out once they cost too much: where the case does not say how many there are.
+    limited: bool,
+    /// Why there is no estimate.
+    reason: Option<String>,
+    places: Vec<Place>,
+    /// Places at which a repeated step failed.
+    failed: u32,
+    /// Places left out since repeats cost too much.
+    left_out: u32,
+    /// Cost of the steps of the run, and of the repeats.
+    cost: [f64; 2],
+    /// External work and potential energy at the end of the last step (J).
+    last: [f64; 2],
+    /// Sum of their changes in all steps, and in those that missed the tolerance (J).
+    supplied: [f64; 2],
+}
+
+impl ErrorEstimate {
+    /// Draws the places of a run of so many steps.
+    pub fn new<S: Space>(case: &Case, s: &Simulation<S>, total: u64) -> Self {
+        let test = FrictionTest::of(case, s);
+        let mut estimate = Self {
+            total,
+            body: test.map(|t| t.body),
+            limited: case.uncertainty.repeats.is_none(),
+            ..Self::default()
+        };
+        let from = test.map_or(0.0, |t| t.clock.start / case.time.step);
+        let from = (from.round().max(0.0) as u64).min(total);
+        let plan = places::plan(&case.uncertainty, total);
+        let permitted = s.repeatable().map_err(|e| e.to_string());
+        match plan.and_then(|plan| permitted.map(|()| plan)) {
+            Ok(plan) => {
+                estimate.length = plan.length;
+                estimate.to_come = plan.draw(case.seed, from, total).into();
+            }
+            Err(reason) => estimate.reason = Some(reason),
+        }
+        estimate
+    }
+
+    /// Repeats the steps that are next, where one of the places is reached.
+    ///
+    /// # Errors
+    /// A process could not be put back: the run cannot go on.
+    pub fn before_step<S: Steps>(&mut self, s: &mut Simulation<S>) -> Result<(), RepeatError> {
+        let step = s.state.steps;
+        let mut due = false;
+        while self.to_come.front().is_some_and(|at| *at <= step) {
+            due |= self.to_come.pop_front() == Some(step);
+        }
+        if !due || self.reason.is_some() {
+            return Ok(());
+        }
+        if let Err(other) = s.repeatable() {
+            // A process that was added since the start.
+            self.reason = Some(other.to_string());
+            return Ok(());
+        }
+        if self.costs_too_much(step) {
+            self.left_out += 1;
+            return Ok(());
+        }
+        match self.repeat(s)? {
+            Some(place) => self.places.push(place),
+            None => self.failed += 1,
+        }
+        Ok(())
+    }
+
+    /// Whether one more place, at the mean cost of those so far, would take more than its share of the run.
+    fn costs_too_much(&self, step: u64) -> bool {
+        let done = self.places.len() + self.failed as usize;
+        if !self.limited || done < change::FEWEST || step == 0 {
+            return false;
+        }
+        let each = self.cost[1] / done as f64;
+        let run = self.cost[0] / step as f64 * self.total as f64;
+        self.cost[1] + each > MOST_COST * run
+    }
+
+    /// Repeats one stretch in all ways; `None` where a step failed. Steps of the stretch itself are repeated too, so that all are
+    /// measured in the same way.
+    fn repeat<S: Steps>(&mut self, s: &mut Simulation<S>) -> Result<Option<Place>, RepeatError> {
+        let length = self.length;
+        let Some(base) = self.stretch(s, length, |_| ())? else {
+            return Ok(None);
+        };
+        let finer = self.stretch(s, FINER * length, shorten)?;
+        let most = MOST_ITERATIONS.1.max(MOST_ITERATIONS.0 * base.iterations);
+        let tighter = self.stretch(s, length, |s| tighten(s, most))?;
+        let damages = s.laws.iter().any(Interface::damages);
+        let mut coupled = None;
+        if damages && s.options.coupling == Coupling::Explicit {
+            coupled = self.stretch(s, length, |s| {
+                s.options.coupling = Coupling::Implicit {
+                    tolerance: 1e-3,
+                    max_iterations: 5,
+                };
+            })?;
+        }
+        let (Some(finer), Some(tighter)) = (finer, tighter) else {
+            return Ok(None);
+        };
+        Ok(Some(Place {
+            step: s.state.steps,
+            base: base.increments,
+            finer: finer.increments,
+            tighter: tighter.increments,
+            tight: tighter.converged,
+            coupled: coupled.map(|c| c.increments),
+        }))
+    }
+
+    /// Makes steps with other options, and restores the state.
+    fn stretch<S: Steps>(
+        &mut self,
+        s: &mut Simulation<S>,
+        steps: u32,
+        options: impl FnOnce(&mut Simulation<S>),
+    ) -> Result<Option<Stretch>, RepeatError> {
+        let body = self.body;
+        let made = s.repeat(|s| {
+            options(s);
+            Stretch::of(s, steps, body.as_ref()).ok()
+        })?;
+        self.cost[1] += made.as_ref().map_or(0.0, |m| m.cost);
+        Ok(made)
+    }
+
+    /// Takes in a step of the run.
+    pub fn after_step<S: Space>(&mut self, s: &Simulation<S>, report: &StepReport) {
+        self.cost[0] += cost(s, report);
+        let e = &s.state.energy;
+        let now = [e.external_work, e.potential];
+        let supplied = (now[0] - self.last[0]).abs() + (now[1] - self.last[1]).abs();
+        self.last = now;
+        self.supplied[0] += supplied;
+        if !report.solver.converged {
+            self.supplied[1] += supplied;
+        }
+    }
+}
+
+/// Sets a shorter step, in which as much of an overlap is taken out in a given time.
+fn shorten<S: Space>(s: &mut Simulation<S>) {
+    let parts = f64::from(FINER);
+    s.change_step(s.options.scheme.h / parts);
+    let left = 1.0 - s.options.correction;
+    s.options.correction = 1.0 - left.powf(1.0 / parts);
+}
+
+/// Sets a tight tolerance, also where a phase has set its own.
+fn tighten<S: Space>(s: &mut Simulation<S>, most_iterations: f64) {
+    let tight = |tolerance: f64| (tolerance / TIGHTER).max(ROUNDING.min(tolerance));
+    let solver = &mut s.options.solver;
+    solver.tolerance = tight(solver.tolerance);
+    solver.max_iterations = (f64::from(solver.max_iterations)).min(most_iterations) as u32;
+    s.state.control.tolerance = s.state.control.tolerance.map(tight);
+}

@@ -1,0 +1,111 @@
+//! What the repeats say, for the summary.
+
+use super::change::{Change, Pair};
+use super::increments::Increments;
+use super::{ErrorEstimate, FINER, Place};
+use fretwork_core::energy::Energy;
+use serde::Serialize;
+
+/// Effect of one setting on the results: relative changes between the run and its repeats, null where they cannot be compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Effects {
+    /// Friction coefficient, from forces.
+    pub friction_coefficient: Option<Change>,
+    /// Energy dissipated by friction.
+    pub friction_energy: Option<Change>,
+    /// Sum of the damage of all bonds.
+    pub damage: Option<Change>,
+    /// Volume worn off first bodies.
+    pub wear: Option<Change>,
+}
+
+impl Effects {
+    fn of(pairs: &[(Increments, Increments)], extrapolation: f64) -> Self {
+        let change = |part: fn(&Increments) -> [f64; 2]| {
+            let pairs = pairs.iter().map(|(coarse, fine)| Pair {
+                coarse: part(coarse),
+                fine: part(fine),
+            });
+            Change::over(&pairs.collect::<Vec<_>>(), extrapolation)
+        };
+        Self {
+            friction_coefficient: change(|i| [i.work, i.load_path]),
+            friction_energy: change(|i| [i.friction_energy, 1.0]),
+            damage: change(|i| [i.damage, 1.0]),
+            wear: change(|i| [i.wear, 1.0]),
+        }
+    }
+}
+
+/// Shares of the energy supplied that are a measure of the error.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Shares {
+    /// Energy of the position correction over the external work, or over the energy dissipated where that is more; null where
+    /// there is neither.
+    pub correction: Option<f64>,
+    /// Work supplied in steps that missed the tolerance over that in all steps; null where none is supplied.
+    pub unconverged: Option<f64>,
+}
+
+/// Repeats of a run, and what they say.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Repeats {
+    /// Number of places.
+    pub places: usize,
+    /// Steps that were repeated at each.
+    pub steps: u32,
+    /// Steps done before each place.
+    pub at: Vec<u64>,
+    /// Places at which a repeated step failed.
+    pub failed: u32,
+    /// Places left out because repeats were dearer than planned.
+    pub left_out: u32,
+    /// Places at which a hundredth of the tolerance was reached; at the others the repeat came as near to it as twenty times the
+    /// iterations go.
+    pub tight: usize,
+    /// Cost of the repeats over that of the run, in solver iterations times contacts.
+    pub cost_share: f64,
+    /// Why there is no estimate; null where there is one.
+    pub reason: Option<String>,
+    /// A quarter of the step, extrapolated to none at the first order.
+    pub step: Effects,
+    /// A hundredth of the tolerance.
+    pub tolerance: Effects,
+    /// Implicit coupling; null where the run has it, or has no damage.
+    pub coupling: Option<Effects>,
+    /// Shares of the energy.
+    pub shares: Shares,
+}
+
+impl ErrorEstimate {
+    /// What it has found.
+    pub fn report(&self, energy: &Energy) -> Repeats {
+        let pairs = |fine: fn(&Place) -> Option<Increments>| {
+            let pairs = self.places.iter().filter_map(|p| Some((p.base, fine(p)?)));
+            pairs.collect::<Vec<_>>()
+        };
+        let coupled = pairs(|p| p.coupled);
+        let short = 1.0 / f64::from(FINER);
+        let share = |part: f64, whole: f64| (whole > 0.0).then(|| part / whole);
+        let correction = energy.correction.abs();
+        // What corrections supply is dissipated elsewhere.
+        let dissipated = energy.dissipated() - energy.correction;
+        Repeats {
+            places: self.places.len(),
+            steps: self.length,
+            at: self.places.iter().map(|p| p.step).collect(),
+            failed: self.failed,
+            left_out: self.left_out,
+            tight: self.places.iter().filter(|p| p.tight).count(),
+            cost_share: share(self.cost[1], self.cost[0]).unwrap_or(0.0),
+            reason: self.reason.clone(),
+            step: Effects::of(&pairs(|p| Some(p.finer)), 1.0 / (1.0 - short)),
+            tolerance: Effects::of(&pairs(|p| Some(p.tighter)), 1.0),
+            coupling: (!coupled.is_empty()).then(|| Effects::of(&coupled, 1.0)),
+            shares: Shares {
+                correction: share(correction, energy.external_work.abs().max(dissipated)),
+                unconverged: share(self.supplied[1], self.supplied[0]),
+            },
+        }
+    }
+}
