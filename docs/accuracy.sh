@@ -19,8 +19,17 @@ for interface in third_body rail_oxide wheel_oxide; do
     springs+=(--set "interfaces.$interface.contact=hertz-mindlin")
 done
 
+# number FILE KEY...: a value of a summary by its path; nan where there is none.
 number() {
-    sed -n "s/^ *\"$2\": \([-+.0-9e]*\),*\$/\1/p" "$1" | head -1
+    python3 -c '
+import json, sys
+try:
+    value = json.load(open(sys.argv[1]))
+    for key in sys.argv[2:]:
+        value = value[key]
+except (OSError, KeyError, TypeError, ValueError):
+    value = None
+print("nan" if value is None else value)' "$@"
 }
 
 # run GROUP SETTING SEED CASE OPTIONS...
@@ -32,7 +41,7 @@ run() {
         >"$name.log" 2>&1 || true
     local of="$name/summary.json"
     echo "$group $setting $seed $(number "$of" friction_coefficient) $(number "$of" plateau_friction) $(number "$of" damage_ratio)" \
-        "$(number "$of" correction) $(number "$of" external_work) $(number "$of" cpu_seconds)"
+        "$(number "$of" energy correction) $(number "$of" energy external_work) $(number "$of" cpu_seconds)"
 }
 
 # disks GROUP TOLERANCE TIGHT OPTIONS...

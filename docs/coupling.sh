@@ -9,8 +9,17 @@ out="${1:-results/coupling}"
 program="${FRETWORK:-target/release/fretwork}"
 mkdir -p "$out"
 
+# number FILE KEY...: a value of a summary by its path; nan where there is none.
 number() {
-    sed -n "s/^ *\"$2\": \([-+.0-9e]*\),*\$/\1/p" "$1" | head -1
+    python3 -c '
+import json, sys
+try:
+    value = json.load(open(sys.argv[1]))
+    for key in sys.argv[2:]:
+        value = value[key]
+except (OSError, KeyError, TypeError, ValueError):
+    value = None
+print("nan" if value is None else value)' "$@"
 }
 
 run() {
@@ -23,8 +32,8 @@ run() {
     "$program" run cases/wheel_rail_fretting.ron --out "$name" --set time.end=0.075 --set "seed=$seed" --set "time.step=$step" \
         --set "coupling=$set" --set output.frames=0 --set output.views=0 ${SETS:-} >"$name.log" 2>&1 || true
     local of="$name/summary.json"
-    echo "$coupling $step $seed $(number "$of" damage_ratio) $(number "$of" fracture) $(number "$of" released_over_declared)" \
-        "$(number "$of" friction_coefficient) $(number "$of" uncoupled_steps) $(number "$of" cpu_seconds)"
+    echo "$coupling $step $seed $(number "$of" damage_ratio) $(number "$of" energy fracture) $(number "$of" fracture released_over_declared)" \
+        "$(number "$of" friction_coefficient) $(number "$of" solver uncoupled_steps) $(number "$of" cpu_seconds)"
 }
 
 for step in ${STEPS:-5e-5 2.5e-5 1.25e-5 6.25e-6}; do

@@ -29,6 +29,7 @@ fn sliding(more: &[&str]) -> Simulation<Dim2> {
     while s.state.time < 0.027 {
         s.step().unwrap();
     }
+    assert_eq!(s.state.network.step_size.warning(), None);
     s
 }
 
@@ -55,8 +56,8 @@ fn elastic_contacts_are_solved_to_any_tolerance_while_they_slip() {
     }
 }
 
-/// Rigid contacts reach the tolerance of the rigid fretting case, with velocities that are wrong: the heat of the residuals says so. With
-/// springs and the norm `Power` it stays below the bound.
+/// With a tenth of the inertia rigid contacts reach the tolerance of the rigid fretting case, with velocities that are wrong: the heat of the
+/// residuals says so. With springs and the norm `Power` it stays below the bound.
 #[test]
 fn the_parts_of_the_error_tell_loose_velocities() {
     let law = |interface: &str| format!("interfaces.{interface}.contact=coulomb");
@@ -66,6 +67,7 @@ fn the_parts_of_the_error_tell_loose_velocities() {
         "solver.norm=Balance",
         "solver.tolerance=1e-3",
         "solver.correction=0.05",
+        "inertia_scaling=5.8e7",
     ]);
     let heat = |mut s: Simulation<Dim2>, norm, tolerance| {
         let reports = slips(&mut s, norm, tolerance, 20_000);
@@ -73,7 +75,7 @@ fn the_parts_of_the_error_tell_loose_velocities() {
         assert!(reports.iter().all(|r| r.converged), "{reports:?}");
         sum(|r| r.parts.contact_law * r.parts.slip_energy) / sum(|r| r.parts.slip_energy)
     };
-    let elastic = heat(sliding(&[]), Norm::Power, 0.5);
+    let elastic = heat(sliding(&["inertia_scaling=5.8e7"]), Norm::Power, 0.5);
     let rigid = heat(sliding(&rigid), Norm::Balance, 1e-3);
     println!("heat of residuals over that of slip: rigid {rigid:.2}, elastic {elastic:.2}");
     assert!(elastic <= 0.5 && rigid > 1.0, "{elastic} and {rigid}");

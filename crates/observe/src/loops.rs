@@ -12,8 +12,11 @@ pub struct Loop {
     crossings: Option<[f64; 2]>,
     /// Sum of |Q|/P over the reversals, and their number.
     reversals: (f64, u32),
-    /// Path since the last reversal, and the longest path between two reversals so far (m).
+    /// Path since the last reversal, and the longest path between two reversals so far (m): before the second one, twice that to
+    /// the first.
     stroke: [f64; 2],
+    /// Reversals since the first cycle.
+    turns: u32,
     /// Integrals of |Q| and of P over the path in the second half of each stroke (J).
     plateau: [f64; 2],
 }
@@ -51,7 +54,13 @@ impl Loop {
     fn add_to_plateau(&mut self, path: f64, turns: bool, q: f64, p: f64) {
         let [since, longest] = &mut self.stroke;
         if turns {
-            *longest = longest.max(*since);
+            self.turns = self.turns.saturating_add(1);
+            // A motion usually starts in the middle of its stroke.
+            *longest = match self.turns {
+                1 => 2.0 * *since,
+                2 => *since,
+                _ => longest.max(*since),
+            };
             *since = 0.0;
         }
         *since += path;
@@ -62,7 +71,7 @@ impl Loop {
     }
 
     /// |Q|/P over the second half of the strokes, weighted by the path; `None` before the first reversal. A stroke is the path
-    /// between two reversals; its half is that of the longest so far.
+    /// between two reversals; its half is that of the longest so far (of twice the path to the first reversal, before there are two).
     pub fn plateau(&self) -> Option<f64> {
         (self.plateau[1] > 0.0).then(|| self.plateau[0] / self.plateau[1])
     }
@@ -154,6 +163,10 @@ mod tests {
             path += p * (to - x).abs();
             x = to;
             l.add(x, q, p);
+            if step == n - 1 {
+                // From the first reversal on.
+                assert!((l.plateau().unwrap() / mu - 1.0).abs() < 1e-12);
+            }
             if step == 3 * n - 1 {
                 assert!((l.plateau().unwrap() / mu - 1.0).abs() < 1e-12);
                 // The energetic coefficient: 4 mu P (a - mu P/k) over 4 a P.

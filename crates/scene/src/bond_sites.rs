@@ -159,7 +159,15 @@ fn of_grains<S: Space>(s: &Simulation<S>, law: usize) -> Candidates {
     let neighbours = grains.windows(2);
     out.usual
         .extend(neighbours.filter_map(|w| apart(&w[0], &w[1])));
-    let lightest = grains.iter().max_by(|a, b| a.normal.total_cmp(&b.normal));
+    let mut kinds: Vec<u16> = grains.iter().map(|g| g.material).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    let own = |g: &&Side| {
+        let with = |kind: &u16| s.table.get(g.material, *kind).map(usize::from) == Some(law);
+        kinds.iter().any(with)
+    };
+    let lightest = grains.iter().filter(own);
+    let lightest = lightest.max_by(|a, b| a.normal.total_cmp(&b.normal));
     if let Some(lightest) = lightest {
         out.extreme
             .extend(grains.iter().filter_map(|g| apart(lightest, g)));

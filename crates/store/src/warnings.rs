@@ -226,7 +226,8 @@ fn phases(summary: &Summary) -> Option<String> {
 /// Steps that reached their tolerance, but whose residuals outweigh the slip that they are to resolve.
 fn loose_velocities(summary: &Summary) -> Option<String> {
     let parts = &summary.solver.error_parts;
-    (parts.contact_law > 1.0 && parts.velocity > LOOSE).then(|| {
+    // Where steps missed it, NOT CONVERGED says so.
+    (summary.solver.unconverged_steps == 0 && parts.contact_law > 1.0 && parts.velocity > LOOSE).then(|| {
         format!(
             "the residuals of the steps make {:.1} times the heat of slip: slow sliding, and with it friction, may be wrong although \
              the steps reached solver.tolerance; take a smaller one, or compliant contacts with solver.norm Power \
@@ -257,7 +258,7 @@ fn large_effects(uncertainty: &Uncertainty) -> Vec<SettingEffect> {
     let settings = [
         (Some(&repeats.step), "time.step"),
         (Some(&repeats.tolerance), "solver.tolerance"),
-        (repeats.coupling.as_ref(), "coupling: Explicit"),
+        (repeats.coupling.as_ref(), "explicit coupling"),
     ];
     let known = settings.into_iter().filter_map(|(e, of)| Some((e?, of)));
     let effects = known.flat_map(|(e, of)| {
@@ -282,8 +283,8 @@ fn estimated_error(uncertainty: &Uncertainty) -> Option<String> {
     let texts: Vec<String> = texts.collect();
     (!texts.is_empty()).then(|| {
         format!(
-            "repeated steps with finer settings give another result: {}; take a finer one of each, and see \
-             `uncertainty` in summary.json",
+            "repeated steps with finer settings give another result: {}; take a smaller time.step (also where it is the \
+             coupling) or solver.tolerance, and see `uncertainty` in summary.json",
             texts.join(", ")
         )
     })
@@ -293,12 +294,15 @@ fn estimated_error(uncertainty: &Uncertainty) -> Option<String> {
 fn unknown_error(uncertainty: &Uncertainty) -> Option<String> {
     let list = large_effects(uncertainty).into_iter();
     let texts = list.filter(|(_, c, _)| c.change.abs() <= c.half_width);
-    let texts = texts.map(|(what, c, of)| format!("{what} to {:.0} % for {of}", 100.0 * c.bound()));
+    let texts = texts.map(|(what, c, of)| match c.bound() {
+        bound if bound < 1.0 => format!("{what} up to {:.0} % for {of}", 100.0 * bound),
+        _ => format!("{what} of any size for {of}"),
+    });
     let texts: Vec<String> = texts.collect();
     (!texts.is_empty()).then(|| {
         format!(
-            "from {} places with repeated steps results are known only so well: {}; a longer run, or more places (`uncertainty: (repeats: \
-             {})`, for more time) tell more",
+            "repeated steps at {} places do not tell whether results are right to 5 %. Possible errors: {}. A longer run, or more places \
+             (`uncertainty: (repeats: {})`, for more time), tell more",
             uncertainty.repeats.places,
             texts.join(", "),
             4 * uncertainty.repeats.places
@@ -448,7 +452,7 @@ mod tests {
         let text = list[1].to_string();
         assert!(
             text.starts_with("ERROR NOT KNOWN")
-                && text.contains("damage to 9 % for solver.tolerance"),
+                && text.contains("damage up to 9 % for solver.tolerance"),
             "{text}"
         );
         let list = of_run(|s| s.uncertainty.repeats.shares.correction = Some(0.23));

@@ -16,8 +16,12 @@ fn wrong_input_is_answered_with_the_nearest_name() {
             "did you mean `friction_coefficient`?",
         ),
         (
+            &["--output", "elastic=1%"],
+            "did you mean `energy.elastic`?",
+        ),
+        (
             &["--output", "fracture=1%"],
-            "did you mean `energy.fracture`?",
+            "it is not a number but a group",
         ),
         (
             &["--output", "statistics.kinetc=1%"],

@@ -119,6 +119,8 @@ pub struct Memory<S: Space> {
     pub variables: Vec<Vec<f64>>,
     /// Whether bonds store their rotation.
     pub rotates: bool,
+    /// Whether the contacts of the law are springs, which overlap as they are pressed.
+    pub compliant: bool,
     /// Rotations of the bonds (rad), one per slot; empty unless `rotates`.
     pub rotations: Vec<S::Spin>,
     /// Number of bonds formed so far.
@@ -137,6 +139,7 @@ impl<S: Space> Memory<S> {
             bonds: Vec::new(),
             variables: vec![Vec::new(); variables],
             rotates: false,
+            compliant: false,
             rotations: Vec::new(),
             made: 0,
             broken: 0,

@@ -17,7 +17,7 @@ pub enum RepeatError {
         process: String,
     },
     /// A process cannot be saved or restored.
-    #[error("a process cannot be put back to its state before the repeated steps: {0}")]
+    #[error("the state of a process cannot be saved or put back for repeated steps: {0}")]
     Code(#[from] CodeError),
 }
 

@@ -57,6 +57,7 @@ impl<S: Space> Simulation<S> {
         let mut network = Network::new(alert, skin, &variables);
         for (memory, law) in network.memory.iter_mut().zip(&laws) {
             memory.rotates = law.rotates();
+            memory.compliant = law.compliant();
         }
         network.fast = detect::fast_motion(&shapes, alert);
         Self {

@@ -24,7 +24,7 @@ pub struct Pair {
 pub struct Change {
     /// Fine over coarse, less 1, extrapolated to the limit of fine settings.
     pub change: f64,
-    /// Half-width of its 95 % confidence interval.
+    /// Half-width of its 95 % confidence interval; infinite where all of the result grew in one stretch (null in JSON).
     pub half_width: f64,
 }
 
@@ -38,7 +38,12 @@ impl Change {
         }
         let change = ratio(pairs, None)?;
         let without: Option<Vec<f64>> = (0..n).map(|k| ratio(pairs, Some(k))).collect();
-        let without = without?;
+        let Some(without) = without else {
+            return Some(Self {
+                change: extrapolation * change,
+                half_width: f64::INFINITY,
+            });
+        };
         let mean = without.iter().sum::<f64>() / n as f64;
         let square: f64 = without.iter().map(|x| (x - mean).powi(2)).sum();
         let t = StudentsT::new(0.0, 1.0, (n - 1) as f64).ok()?;
@@ -106,5 +111,10 @@ mod tests {
         assert_eq!(Change::over(&[pair(1.0, 1.1); 2], 1.0), None);
         assert_eq!(Change::over(&[pair(0.0, 0.1); 4], 1.0), None);
         assert_eq!(Change::over(&[pair(0.0, 0.0); 4], 1.0), None);
+        // All of it at one place.
+        let mut pairs = [pair(0.0, 0.0); 4];
+        pairs[2] = pair(1.0, 1.1);
+        let change = Change::over(&pairs, 1.0).unwrap();
+        assert!((change.change - 0.1).abs() < 1e-12 && change.half_width.is_infinite());
     }
 }

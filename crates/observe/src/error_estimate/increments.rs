@@ -28,8 +28,8 @@ pub struct Stretch {
     pub increments: Increments,
     /// Cost, see [`cost`].
     pub cost: f64,
-    /// Mean number of solver iterations of a step.
-    pub iterations: f64,
+    /// Largest number of solver iterations of a step.
+    pub iterations: u32,
     /// Whether all steps reached the tolerance.
     pub converged: bool,
 }
@@ -51,14 +51,14 @@ fn damage<S: Space>(s: &Simulation<S>) -> f64 {
 }
 
 impl Stretch {
-    /// Makes steps of a simulation and measures those after the first half: by then what the change of settings disturbs has
+    /// Makes `length` steps of a run, each in `parts`, and measures those after the first half of the `length`: by then what the change of settings disturbs has
     /// mostly died away, such as damage that explicit coupling lets lag by a step.
     ///
     /// # Errors
     /// A step failed.
     pub fn of<S: Steps>(
         s: &mut Simulation<S>,
-        steps: u32,
+        [length, parts]: [u32; 2],
         body: Option<&RubbedBody>,
     ) -> Result<Self, StepError> {
         let (mut friction, mut bonds) = (s.state.energy.friction, damage(s));
@@ -67,16 +67,17 @@ impl Stretch {
             ..Self::default()
         };
         let sums = &mut stretch.increments;
-        let mut iterations = 0.0;
+        let steps = parts * length;
         for k in 0..steps {
-            if k == steps / 2 {
+            // The same stretch of time in as many parts as there may be.
+            if k == parts * (length / 2) {
                 *sums = Increments::default();
                 (friction, bonds) = (s.state.energy.friction, damage(s));
             }
             let report = s.step()?;
             stretch.cost += cost(s, &report);
             stretch.converged &= report.solver.converged;
-            iterations += f64::from(report.solver.iterations);
+            stretch.iterations = stretch.iterations.max(report.solver.iterations);
             sums.wear += report.totals.worn_first;
             if let Some(body) = body {
                 let slide = body.slide(s);
@@ -88,7 +89,6 @@ impl Stretch {
         }
         sums.friction_energy = s.state.energy.friction - friction;
         sums.damage = damage(s) - bonds;
-        stretch.iterations = iterations / f64::from(steps.max(1));
         Ok(stretch)
     }
 }

@@ -144,16 +144,18 @@ impl ErrorEstimate {
     /// measured in the same way.
     fn repeat<S: Steps>(&mut self, s: &mut Simulation<S>) -> Result<Option<Place>, RepeatError> {
         let length = self.length;
-        let Some(base) = self.stretch(s, length, |_| ())? else {
+        let Some(base) = self.stretch(s, [length, 1], |_| ())? else {
             return Ok(None);
         };
-        let finer = self.stretch(s, FINER * length, shorten)?;
-        let most = MOST_ITERATIONS.1.max(MOST_ITERATIONS.0 * base.iterations);
-        let tighter = self.stretch(s, length, |s| tighten(s, most))?;
+        let finer = self.stretch(s, [length, FINER], shorten)?;
+        let most = MOST_ITERATIONS
+            .1
+            .max(MOST_ITERATIONS.0 * f64::from(base.iterations));
+        let tighter = self.stretch(s, [length, 1], |s| tighten(s, most))?;
         let damages = s.laws.iter().any(Interface::damages);
         let mut coupled = None;
         if damages && s.options.coupling == Coupling::Explicit {
-            coupled = self.stretch(s, length, |s| {
+            coupled = self.stretch(s, [length, 1], |s| {
                 s.options.coupling = Coupling::Implicit {
                     tolerance: 1e-3,
                     max_iterations: 5,
@@ -177,7 +179,7 @@ impl ErrorEstimate {
     fn stretch<S: Steps>(
         &mut self,
         s: &mut Simulation<S>,
-        steps: u32,
+        steps: [u32; 2],
         options: impl FnOnce(&mut Simulation<S>),
     ) -> Result<Option<Stretch>, RepeatError> {
         let body = self.body;

@@ -51,7 +51,8 @@ impl Plan {
     /// Numbers of completed steps after which stretches are repeated, between two steps, in order.
     pub fn draw(&self, seed: u64, from: u64, to: u64) -> Vec<u64> {
         let mut rng = Pcg64::seed_from_u64(seed ^ STREAM);
-        let (count, length) = (self.count, u64::from(self.length));
+        let steps = usize::try_from(to.saturating_sub(from)).unwrap_or(usize::MAX);
+        let (count, length) = (self.count.min(steps), u64::from(self.length));
         let span = u128::from(to.saturating_sub(from));
         let edge = |k: usize| from + (span * k as u128 / count.max(1) as u128) as u64;
         let mut places: Vec<u64> = (0..count)

@@ -40,7 +40,7 @@ impl Effects {
 /// Shares of the energy supplied that are a measure of the error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Shares {
-    /// Energy of the position correction over the external work, or over the energy dissipated where that is more; null where
+    /// Energy that the position correction supplies over the external work, or over the energy dissipated where that is more; null where
     /// there is neither.
     pub correction: Option<f64>,
     /// Work supplied in steps that missed the tolerance over that in all steps; null where none is supplied.
@@ -60,8 +60,8 @@ pub struct Repeats {
     pub failed: u32,
     /// Places left out because repeats were dearer than planned.
     pub left_out: u32,
-    /// Places at which a hundredth of the tolerance was reached; at the others the repeat came as near to it as twenty times the
-    /// iterations go.
+    /// Places at which a hundredth of the tolerance was reached; at the others the repeat ended at four times the
+    /// largest number of iterations of the run's own steps there, or at 100 if that is more.
     pub tight: usize,
     /// Cost of the repeats over that of the run, in solver iterations times contacts.
     pub cost_share: f64,
@@ -87,7 +87,8 @@ impl ErrorEstimate {
         let coupled = pairs(|p| p.coupled);
         let short = 1.0 / f64::from(FINER);
         let share = |part: f64, whole: f64| (whole > 0.0).then(|| part / whole);
-        let correction = energy.correction.abs();
+        // Negative where it supplies energy.
+        let correction = (-energy.correction).max(0.0);
         // What corrections supply is dissipated elsewhere.
         let dissipated = energy.dissipated() - energy.correction;
         Repeats {

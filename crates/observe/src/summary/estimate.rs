@@ -28,7 +28,8 @@ pub struct Estimate {
 pub struct Uncertainty {
     /// Friction coefficient: the mean over the steady cycles or blocks.
     pub friction_coefficient: Estimate,
-    /// Broken bonds over bonds made.
+    /// Broken bonds over bonds made; its half-widths are those of the sum of the damage of all bonds, of which the ratio counts the
+    /// part that is complete.
     pub damage_ratio: Estimate,
     /// Volume worn off first bodies (m^3; m^3/m in 2D).
     pub wear: Estimate,
@@ -39,17 +40,26 @@ pub struct Uncertainty {
 }
 
 impl Estimate {
-    /// ` +- 0.004 (step) +- 0.002 (tolerance)`, with the half-widths formatted by `shown`; empty where none is known.
+    /// ` +- 0.004 (step) +- 0.002 (tolerance)`, with the half-widths formatted by `shown`; those as large as the value say that nothing
+    /// is known of that effect. Empty where nothing was estimated.
     pub fn from_settings(&self, shown: impl Fn(f64) -> String) -> String {
         let known = [
             (self.step, "step"),
             (self.tolerance, "tolerance"),
             (self.coupling, "coupling"),
         ];
-        let known = known.iter().filter_map(|(half, of)| Some(((*half)?, of)));
-        known
-            .map(|(half, of)| format!(" +- {} ({of})", shown(half)))
-            .collect()
+        let known = known.iter().filter_map(|(half, of)| Some(((*half)?, *of)));
+        let size = self.value.unwrap_or(0.0).abs();
+        let (known, unknown): (Vec<_>, Vec<_>) = known.partition(|(half, _)| *half < size);
+        let mut text: String = known
+            .iter()
+            .map(|(half, of)| format!(" +- {} ({of})", shown(*half)))
+            .collect();
+        if !unknown.is_empty() {
+            let unknown: Vec<&str> = unknown.iter().map(|(_, of)| *of).collect();
+            text += &format!(" (effect of {} not known)", unknown.join(" and "));
+        }
+        text
     }
 
     /// Puts in what repeated steps say of a result.
@@ -102,5 +112,27 @@ impl Uncertainty {
             all.wear.method = Some(format!("wear of a cycle times {cycles}: {}", s.method()));
         }
         all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_half_width_as_large_as_the_value_says_that_nothing_is_known() {
+        let damage = Estimate {
+            value: Some(0.5),
+            step: Some(2.6),
+            tolerance: Some(0.25),
+            coupling: Some(0.5),
+            ..Estimate::default()
+        };
+        let text = damage.from_settings(|x| x.to_string());
+        assert_eq!(
+            text,
+            " +- 0.25 (tolerance) (effect of step and coupling not known)"
+        );
+        assert_eq!(Estimate::default().from_settings(|x| x.to_string()), "");
     }
 }

@@ -21,7 +21,7 @@ pub enum Reference {
     Declared,
     /// The work of a slow pull to failure on the test bench, as the law declares nothing.
     SlowPull,
-    /// None: bonds do not break by damage.
+    /// None: bonds do not break by damage, none has broken, or the law failed on the test bench.
     #[default]
     None,
 }
@@ -179,7 +179,7 @@ impl BondEnergies {
         }
         if let Some(slide) = self.slide_breaking {
             text += &format!(
-                " (they slide by {} of their critical opening in a step that breaks them)",
+                " (they slide by {} of their critical opening in the steps in which they release energy)",
                 number(slide, 2)
             );
         }

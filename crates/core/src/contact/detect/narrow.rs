@@ -277,9 +277,14 @@ impl<'a, S: Space> Narrow<'a, S> {
                     let before = network.old[..self.at].iter().rev();
                     let same = before.take_while(|c| c.key.pair() == pair);
                     let known = same.map(|c| -c.gap).fold(0.0, f64::max);
-                    network
-                        .step_size
-                        .record_late(&found, [known, size], self.time, self.bodies);
+                    let compliant = network.memory[found.law as usize].compliant;
+                    network.step_size.record_late(
+                        &found,
+                        [known, size],
+                        compliant,
+                        self.time,
+                        self.bodies,
+                    );
                 }
             }
         }

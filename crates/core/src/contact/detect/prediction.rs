@@ -367,7 +367,10 @@ impl<'a, S: Space> Prediction<'a, S> {
     /// Follows a pair through the step: adds its contacts if it meets, or reports it.
     fn follow(&mut self, names: (u32, u32), pair: &Pair<S>) {
         let sweep = self.sweep;
-        let Some(margin) = margin(self.network, names, pair, self.stage) else {
+        let [one, other] = pair.materials();
+        let law = self.laws.get(one, other);
+        let compliant = law.is_some_and(|l| self.network.memory[l as usize].compliant);
+        let Some(margin) = margin(self.network, names, pair, self.stage, compliant) else {
             return;
         };
         if sweep.course(pair, margin.deepest) == Course::Clear {
@@ -378,11 +381,8 @@ impl<'a, S: Space> Prediction<'a, S> {
             step_size.record_passing(sweep.time, sweep.bodies, pair.bodies());
             return;
         }
-        let [one, other] = pair.materials();
         let known = self.found.len();
-        if let (Course::Meets(s), Some(law)) =
-            (sweep.course(pair, margin.begins), self.laws.get(one, other))
-        {
+        if let (Course::Meets(s), Some(law)) = (sweep.course(pair, margin.begins), law) {
             sweep.contacts(pair, s, law, &mut self.found);
             self.meetings.push(PredictedMeeting {
                 names,
@@ -413,6 +413,7 @@ fn margin<S: Space>(
     names: (u32, u32),
     pair: &Pair<S>,
     stage: Stage,
+    compliant: bool,
 ) -> Option<Margin> {
     let contacts = &network.contacts;
     let first = contacts.partition_point(|c| c.key.pair() < names);
@@ -433,6 +434,8 @@ fn margin<S: Space>(
     let begins = TOLERATED * network.fast + overlap;
     let deepest = match stage {
         Stage::Before if any => return None,
+        // A spring holds its pair at the overlap of its force.
+        Stage::Report if any && compliant => return None,
         Stage::After if any => network.fast + overlap,
         Stage::Before | Stage::After => begins,
         Stage::Report => PASSED * pair.half_thickness + overlap,

@@ -13,8 +13,7 @@ const SLOW: f64 = 1e-6;
 /// Ratio of the speeds, and relative difference of the energies, at which a law is taken to depend on the speed.
 const FASTER: f64 = 1e6;
 const SAME: f64 = 1e-3;
-/// Share of the peak traction below which a bond that does not break counts as broken, as
-/// [`Mode::broken`](super::scale::Mode::broken) has it for openings; the tail of MAC has then released all but a thousandth.
+/// Share of the peak traction below which a bond that does not break counts as broken; the tail of MAC has then released all but a thousandth.
 const LITTLE: f64 = 1e-5;
 /// Steps of a pull up to just beyond its peak.
 const STEPS: usize = 2000;
