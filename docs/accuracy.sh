@@ -62,11 +62,15 @@ disks() {
 
 angular() {
     local case=wheel_rail_angular
+    local wide=(--set periodic.x=8e-4 --set "grains.0.high=[8e-4, 4.25e-5]" --set bodies.rail.shapes.0.points=1600
+        --set bodies.wheel.shapes.0.points=1600 --set bodies.wheel.mass=22000.0
+        --set "bodies.wheel.dofs.y=Force(Table([(0.0, -4480.0), (0.005, -4480.0), (0.022, -8.96e5)]))")
     for seed in ${SEEDS:-7 8 9 10 11 12}; do
         run angular base "$seed" $case --set time.end=0.075
         run angular half-step "$seed" $case --set time.end=0.075 --set time.step=2.5e-5
         run angular alert-twice "$seed" $case --set time.end=0.075 --set detection.alert=4e-7
         run angular tolerance "$seed" $case --set time.end=0.075 --set solver.tolerance=0.005
+        run angular window-twice "$seed" $case --set time.end=0.075 "${wide[@]}"
         run angular inertia-tenth "$seed" $case --set time.end=0.075 --set inertia_scaling=5.8e7
     done
 }
