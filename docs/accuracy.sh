@@ -3,7 +3,7 @@
 # rigid and with compliant contacts (cases/wheel_rail_fretting.ron); angular, polygons with compliant contacts (cases/wheel_rail_angular.ron).
 # Prints a line a run: group, setting, seed, friction coefficient, plateau Q/P, damage ratio, position correction (J/m), external work (J/m),
 # seconds of processor time.
-# Usage: docs/accuracy.sh [FOLDER [GROUP...]], from the root of the repository, after `cargo build --release`; disks take ten minutes on two
+# Usage: docs/accuracy.sh [FOLDER [GROUP...]], from the root of the repository, after `cargo build --release`; needs python3; disks take ten minutes on two
 # cores, angular half an hour. SEEDS="7 8" takes other seeds than each group's own.
 set -eu
 out="${1:-results/accuracy}"
@@ -19,17 +19,8 @@ for interface in third_body rail_oxide wheel_oxide; do
     springs+=(--set "interfaces.$interface.contact=hertz-mindlin")
 done
 
-# number FILE KEY...: a value of a summary by its path; nan where there is none.
 number() {
-    python3 -c '
-import json, sys
-try:
-    value = json.load(open(sys.argv[1]))
-    for key in sys.argv[2:]:
-        value = value[key]
-except (OSError, KeyError, TypeError, ValueError):
-    value = None
-print("nan" if value is None else value)' "$@"
+    python3 docs/summary_value.py "$@"
 }
 
 # run GROUP SETTING SEED CASE OPTIONS...

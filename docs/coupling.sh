@@ -2,24 +2,15 @@
 # Explicit and implicit coupling of damage on the fretting case at h, h/2, h/4 and h/8: half a cycle, three seeds. Prints a line a run:
 # coupling, step, seed, damage ratio, fracture energy (J/m), energy released by broken bonds over what their laws take, friction
 # coefficient, steps that were not coupled, seconds of processor time; then the means over the seeds, with their standard errors.
-# Usage: docs/coupling.sh [FOLDER], from the root of the repository, after `cargo build --release`; half an hour on one core.
+# Usage: docs/coupling.sh [FOLDER], from the root of the repository, after `cargo build --release`; needs python3; half an hour on one core.
 # SEEDS, STEPS and SETS (further `--set`s) may be given in the environment.
 set -eu
 out="${1:-results/coupling}"
 program="${FRETWORK:-target/release/fretwork}"
 mkdir -p "$out"
 
-# number FILE KEY...: a value of a summary by its path; nan where there is none.
 number() {
-    python3 -c '
-import json, sys
-try:
-    value = json.load(open(sys.argv[1]))
-    for key in sys.argv[2:]:
-        value = value[key]
-except (OSError, KeyError, TypeError, ValueError):
-    value = None
-print("nan" if value is None else value)' "$@"
+    python3 docs/summary_value.py "$@"
 }
 
 run() {
