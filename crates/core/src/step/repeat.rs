@@ -74,7 +74,7 @@ impl<S: Space> Simulation<S> {
 
     fn put_back(&mut self, saved: Saved<S>) -> Result<(), RepeatError> {
         let worn = self.state.scars.iter().zip(&saved.state.scars);
-        let worn: Vec<bool> = worn.map(|(now, then)| !now.shows_as(then)).collect();
+        let worn: Vec<bool> = worn.map(|(now, then)| !now.same_depths(then)).collect();
         self.state = saved.state;
         self.options = saved.options;
         self.laws = saved.laws;

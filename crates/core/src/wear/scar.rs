@@ -151,7 +151,7 @@ impl<S: Space> Scar<S> {
     }
 
     /// Whether the surface is at the same depths as another state of this scar has it.
-    pub fn shows_as(&self, other: &Self) -> bool {
+    pub fn same_depths(&self, other: &Self) -> bool {
         self.shown == other.shown
     }
 

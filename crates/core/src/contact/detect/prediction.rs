@@ -16,6 +16,8 @@ use crate::geometry::space::{Space, VectorLike};
 pub(super) const TOLERATED: f64 = 0.05;
 /// Fraction of the half thickness by which a pair may penetrate before it is reported.
 const PASSED: f64 = 0.25;
+/// The same for a pair that is held by springs, which overlaps as it is pressed: from the middle on its normal may turn over.
+const PASSED_SPRING: f64 = 1.0;
 /// Factor on the required range of the neighbour list, so that the list stays valid while bodies accelerate.
 const HEADROOM: f64 = 1.5;
 /// Limits on the pairs of a widened neighbour list: a multiple of those of the plain list, plus a constant.
@@ -434,10 +436,9 @@ fn margin<S: Space>(
     let begins = TOLERATED * network.fast + overlap;
     let deepest = match stage {
         Stage::Before if any => return None,
-        // A spring holds its pair at the overlap of its force.
-        Stage::Report if any && compliant => return None,
         Stage::After if any => network.fast + overlap,
         Stage::Before | Stage::After => begins,
+        Stage::Report if any && compliant => PASSED_SPRING * pair.half_thickness + overlap,
         Stage::Report => PASSED * pair.half_thickness + overlap,
     };
     Some(Margin { deepest, begins })
