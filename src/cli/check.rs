@@ -86,7 +86,7 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
         ),
     );
     methods(s, &mut line);
-    line("error", case.solver.norm.formula().into());
+    line("error", solver.norm.formula().into());
     interfaces(s, &mut line);
     for pair in without_interface(case, s) {
         line("no interface", pair);

@@ -17,7 +17,7 @@ use crate::trade::child::{Launcher, Limits, Status};
 use crate::trade::compare::Comparison;
 use crate::trade::offer::Offer;
 use crate::trade::output::Output;
-use crate::trade::parameters::{StudyParameter, openings, parameters};
+use crate::trade::parameters::{Solving, StudyParameter, openings, parameters};
 use crate::trade::setting::Setting;
 use crate::trade::study::{Event, Ledger, Study};
 use crate::trade::{TradeError, figure, files, forecast::Forecast, table, verdict::verdicts};
@@ -118,7 +118,7 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     let first = Facts::of(&loaded, &scene);
     let outputs = refuse::outputs(args, &first.offer)?;
     let random = seed_matters(args, &loaded, &search, &first)?;
-    let parameters = parameters(&loaded, &first.methods, &args.parameters, &args.vary)?;
+    let parameters = parameters(&loaded, &first.solving, &args.parameters, &args.vary)?;
     check_varied_cases(args, &loaded, &search, &parameters)?;
     if parameters.is_empty() {
         return Err(Failure::Usage(
@@ -379,7 +379,7 @@ fn same_key(set: &str, vary: &str) -> bool {
 
 /// Properties of a scene that a study needs.
 struct Facts {
-    methods: Vec<Method>,
+    solving: Solving,
     offer: Offer,
     materials: Vec<(String, String)>,
     /// Hash of the positions and shapes, which a seed may change.
@@ -409,7 +409,10 @@ impl Facts {
         );
         Self {
             offer: Offer::of(&loaded.case, built),
-            methods: Method::ALL.iter().copied().filter(serves).collect(),
+            solving: Solving {
+                methods: Method::ALL.iter().copied().filter(serves).collect(),
+                tolerance: s.options.solver.tolerance,
+            },
             materials: built.materials.clone(),
             drawn: hash.0,
         }

@@ -58,7 +58,10 @@ pub const PRESETS: &[(&str, &str)] = &[
     ("tolerance", "solver.tolerance over two decades each way"),
     ("solver", "the solvers that support the case"),
     ("test_every", "iterations between convergence tests"),
-    ("coupling", "damage coupling, explicit or implicit"),
+    (
+        "coupling",
+        "damage coupling: explicit, midpoint or implicit",
+    ),
     ("correction", "position correction, 0 to 0.2"),
     ("grains", "half the grains of the first lattice or deposit"),
 ];
@@ -69,13 +72,22 @@ fn wanted_by_default(name: &str) -> bool {
     name != "grains"
 }
 
+/// How the scene of a case is solved.
+#[derive(Debug)]
+pub struct Solving {
+    /// The methods that serve it.
+    pub methods: Vec<Method>,
+    /// Its tolerance.
+    pub tolerance: f64,
+}
+
 /// The parameters requested by name, or the default ones of the case, and those of `--vary`.
 ///
 /// # Errors
 /// A name is unknown, a preset does not apply to the case, or the case rejects a key or value.
 pub fn parameters(
     loaded: &Loaded,
-    methods: &[Method],
+    solving: &Solving,
     names: &[String],
     vary: &[String],
 ) -> Result<Vec<StudyParameter>, TradeError> {
@@ -88,17 +100,17 @@ pub fn parameters(
         if !PRESETS.iter().any(|p| p.0 == name) {
             return Err(unknown(name));
         }
-        match preset(loaded, methods, name) {
+        match preset(loaded, solving, name) {
             Ok(parameter) => parameters.push(parameter),
             Err(why) => return Err(TradeError::Usage(format!("--knob {name}: {why}"))),
         }
     }
     if names.is_empty() && vary.is_empty() {
         let usual = PRESETS.iter().filter(|p| wanted_by_default(p.0));
-        parameters.extend(usual.filter_map(|p| preset(loaded, methods, p.0).ok()));
+        parameters.extend(usual.filter_map(|p| preset(loaded, solving, p.0).ok()));
     }
     for argument in vary {
-        parameters.push(listed(loaded, argument)?);
+        parameters.push(listed(loaded, solving, argument)?);
     }
     for (k, parameter) in parameters.iter().enumerate() {
         if parameters[..k]
@@ -143,7 +155,7 @@ fn number(key: &str, x: f64) -> Level {
 }
 
 /// Levels of a preset, or the reason why it does not apply to the case.
-fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<StudyParameter, String> {
+fn preset(loaded: &Loaded, solving: &Solving, name: &str) -> Result<StudyParameter, String> {
     let case = &loaded.case;
     let (levels, own) = match name {
         "step" => {
@@ -151,14 +163,14 @@ fn preset(loaded: &Loaded, methods: &[Method], name: &str) -> Result<StudyParame
             return Ok(steps(case, factors.map(|f| f * case.time.step).into()));
         }
         "tolerance" => {
-            let own = case.solver.tolerance;
+            let own = solving.tolerance;
             let all = [-2, -1, 0, 1, 2].map(|k| own * 10f64.powi(k));
             // Iterations cannot reach a tolerance below rounding; at 0.1 the problem is hardly solved.
             let useful = |t: &f64| (1e-13..=0.1).contains(t);
             let useful = all.into_iter().filter(useful).collect();
-            return Ok(tolerances(case, useful));
+            return Ok(tolerances(case, own, useful));
         }
-        "solver" => solver_levels(case, methods)?,
+        "solver" => solver_levels(case, &solving.methods)?,
         "test_every" => test_every_levels(case)?,
         "coupling" => coupling_levels(case)?,
         "correction" => {
@@ -232,9 +244,15 @@ fn coupling_levels(case: &Case) -> Result<Choices, String> {
     let implicit = "coupling=Implicit(tolerance: 1e-6, max_iterations: 50)";
     let levels = vec![
         level("explicit", "coupling=Explicit"),
+        level("midpoint", "coupling=Midpoint"),
         level("implicit", implicit),
     ];
-    Ok((levels, usize::from(case.coupling != Coupling::Explicit)))
+    let own = match case.coupling {
+        Coupling::Explicit => 0,
+        Coupling::Midpoint => 1,
+        Coupling::Implicit { .. } => 2,
+    };
+    Ok((levels, own))
 }
 
 /// Whether a solver iterates in sweeps, to which `test_every` applies.
@@ -277,8 +295,7 @@ fn steps(case: &Case, values: Vec<f64>) -> StudyParameter {
     })
 }
 
-fn tolerances(case: &Case, values: Vec<f64>) -> StudyParameter {
-    let own = case.solver.tolerance;
+fn tolerances(case: &Case, own: f64, values: Vec<f64>) -> StudyParameter {
     ordered("tolerance", Sense::Tolerance, own, values, |t| {
         let mut level = number("solver.tolerance", t);
         if t < own {
@@ -311,7 +328,11 @@ pub fn openings(loaded: &Loaded) -> Vec<String> {
 }
 
 /// Parses `key.path=a,b,c`: commas within brackets or quotes belong to a value.
-fn listed(loaded: &Loaded, argument: &str) -> Result<StudyParameter, TradeError> {
+fn listed(
+    loaded: &Loaded,
+    solving: &Solving,
+    argument: &str,
+) -> Result<StudyParameter, TradeError> {
     let form = || {
         TradeError::Usage(format!(
             "--vary {argument}: expected key.path=a,b,c with two values or more, the finest first"
@@ -361,7 +382,9 @@ fn listed(loaded: &Loaded, argument: &str) -> Result<StudyParameter, TradeError>
     let positive = numbers.len() == levels.len() && numbers.iter().all(|x| *x > 0.0);
     match key.trim() {
         "time.step" if positive => return Ok(steps(&loaded.case, numbers)),
-        "solver.tolerance" if positive => return Ok(tolerances(&loaded.case, numbers)),
+        "solver.tolerance" if positive => {
+            return Ok(tolerances(&loaded.case, solving.tolerance, numbers));
+        }
         _ => {}
     }
     let own = own.unwrap_or_else(|| {

@@ -11,8 +11,8 @@ use fretwork_core::contact::StepSizeDiagnostics;
 use fretwork_core::energy::Energy;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::cycle::CycleClock;
+use fretwork_core::solve;
 use fretwork_core::step::{Simulation, StepReport};
-use fretwork_scene::case::Case;
 
 /// Broken bonds over bonds made.
 pub fn damage_ratio<S: Space>(s: &Simulation<S>) -> f64 {
@@ -82,15 +82,15 @@ pub struct RunState {
 }
 
 impl RunState {
-    /// Of a run of a case; its friction test may have cycles.
-    pub fn new(case: &Case, clock: Option<CycleClock>) -> Self {
+    /// Of a run solved with these options; its friction test may have cycles.
+    pub fn new(options: &solve::Options, clock: Option<CycleClock>) -> Self {
         Self {
             clock,
             counts: Counts::default(),
             solver: SolverSummary {
-                tolerance: case.solver.tolerance,
-                error_formula: case.solver.norm.formula().to_owned(),
-                method: case.solver.method.name().to_owned(),
+                tolerance: options.tolerance,
+                error_formula: options.norm.formula().to_owned(),
+                method: options.method.name().to_owned(),
                 ..SolverSummary::default()
             },
             iterations: 0,

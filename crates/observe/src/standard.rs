@@ -22,7 +22,10 @@ use fretwork_scene::processes;
 pub fn observers<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> {
     let test = processes::FrictionTest::of(case, s);
     let mut all = Observers::default();
-    all.push(Box::new(RunState::new(case, test.map(|t| t.clock))));
+    all.push(Box::new(RunState::new(
+        &s.options.solver,
+        test.map(|t| t.clock),
+    )));
     let start = test.map_or(0.0, |t| t.start);
     let along = case.friction.as_ref().map_or(0, |t| t.along);
     let wear = Wear::new(start, along, case.inertia_scaling, density);

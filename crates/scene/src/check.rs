@@ -133,10 +133,11 @@ fn coupling(case: &Case) -> Result<(), ValidationError> {
 
 fn solver(case: &Case) -> Result<(), ValidationError> {
     let s = &case.solver;
-    if !(s.tolerance.is_finite() && s.tolerance >= 0.0) {
+    let tolerance = s.tolerance.unwrap_or(0.0);
+    if !(tolerance.is_finite() && tolerance >= 0.0) {
         return Err(ValidationError::new(
             "solver.tolerance",
-            format!("must not be negative, got {}", s.tolerance),
+            format!("must not be negative, got {tolerance}"),
         ));
     }
     let outside = |field: &str, value: f64, expected: &str| {

@@ -208,7 +208,7 @@ impl Features {
         );
         let implicit = match s.options.coupling {
             Coupling::Implicit { tolerance, .. } => Some(format!("to {tolerance:e}")),
-            Coupling::Explicit => None,
+            Coupling::Explicit | Coupling::Midpoint => None,
         };
         self.say("implicit coupling", implicit);
         let scaling = case.inertia_scaling;

@@ -32,7 +32,7 @@ impl<S: Dimensional> Recorder<'_, S> {
             s.state.time,
             report.solver.used.name(),
             report.solver.error,
-            case.solver.norm.formula(),
+            s.options.solver.norm.formula(),
         );
         fclib::write_local(&path, &problem, &title, &description)
             .map_err(|e| unwritable(&path, &e))?;

@@ -102,10 +102,10 @@ pub enum BondState {
     Broken,
 }
 
-/// Openings and rotations of all slots.
+/// Openings, rotations and energy histories of all slots.
 #[derive(Debug)]
 pub struct Openings<S: Space> {
-    openings: Vec<(f64, S::Tangent)>,
+    openings: Vec<(f64, S::Tangent, Life)>,
     rotations: Vec<S::Spin>,
 }
 
@@ -189,22 +189,22 @@ impl<S: Space> Memory<S> {
         self.made += 1;
     }
 
-    /// Copies openings and rotations, to be restored after a trial.
+    /// Copies openings, rotations and energy histories, to be restored after a trial.
     pub fn clone_openings(&self) -> Openings<S> {
         Openings {
             openings: self
                 .bonds
                 .iter()
-                .map(|b| (b.opening_n, b.opening_t))
+                .map(|b| (b.opening_n, b.opening_t, b.life))
                 .collect(),
             rotations: self.rotations.clone(),
         }
     }
 
-    /// Restores copied openings.
+    /// Restores what was copied.
     pub fn restore_openings(&mut self, before: Openings<S>) {
-        for (bond, (n, t)) in self.bonds.iter_mut().zip(before.openings) {
-            (bond.opening_n, bond.opening_t) = (n, t);
+        for (bond, (n, t, life)) in self.bonds.iter_mut().zip(before.openings) {
+            (bond.opening_n, bond.opening_t, bond.life) = (n, t, life);
         }
         self.rotations = before.rotations;
     }

@@ -6,7 +6,7 @@ use super::evaluator::LawEvaluator;
 use super::history::LawHistory;
 use super::interface::Interface;
 use super::library::Call;
-use super::step_result::{SolvedStep, Totals};
+use super::step_result::{SolvedStep, Totals, Velocities};
 use crate::contact::{Contact, Memory, Network};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -55,7 +55,9 @@ impl LawEvaluator {
         for (at, damage) in self.members.iter().zip(&mut bond_step.damage) {
             let bond = network.bond(&network.contacts[*at]);
             let (before, used) = bond.map_or((0.0, 0.0), |b| (b.damage, b.step_damage));
-            *damage = damage.max(used);
+            if !step.predicted {
+                *damage = damage.max(used);
+            }
             if network.cycle_multiplier != 1.0 {
                 *damage = (before + network.cycle_multiplier * (*damage - before)).min(1.0);
             }
@@ -105,6 +107,38 @@ impl LawEvaluator {
             self.bond_step = bond_step;
         }
         Ok(worst)
+    }
+
+    /// Uses in the step, for every intact bond, the mean of its damage and of the damage that the law gives for the opening
+    /// which the motion at the start of the step leads to.
+    ///
+    /// # Errors
+    /// The law's error, with the contact.
+    pub fn predict_damage<S: Space>(
+        &mut self,
+        laws: &[Interface],
+        history: &mut LawHistory,
+        network: &mut Network<S>,
+        before: &Velocities<S>,
+        info: &StepInfo,
+    ) -> Result<(), LawError> {
+        if !laws.iter().any(Interface::damages) {
+            return Ok(());
+        }
+        let (contacts, moments) = before.continued();
+        let step = SolvedStep {
+            contacts: &contacts,
+            springs: &[],
+            moments: &moments,
+            info,
+            predicted: true,
+        };
+        self.trial_damage(laws, history, network, &step)?;
+        for (index, slot, damage) in self.trials.drain(..) {
+            let bond = &mut network.memory[index].bonds[slot];
+            bond.step_damage = 0.5 * (bond.damage + damage);
+        }
+        Ok(())
     }
 
     /// Uses the damage of the last trial in the impulses of the next solve.

@@ -48,6 +48,8 @@ pub struct SolvedStep<'a, S: Space> {
     pub moments: &'a [MomentStep<S>],
     /// Time and scheme of the step.
     pub info: &'a StepInfo,
+    /// Whether the damage used in the impulses was a prediction, of which the damage at the end may fall short.
+    pub predicted: bool,
 }
 
 impl<S: Space> SolvedStep<'_, S> {
@@ -82,6 +84,39 @@ impl<S: Space> Default for Velocities<S> {
 }
 
 impl<S: Space> Velocities<S> {
+    /// What contacts and moments would do, if the motion at the start of the step went on through it: velocities without
+    /// impulses.
+    pub(super) fn continued(&self) -> (Vec<ContactStep<S>>, Vec<MomentStep<S>>) {
+        let zero = S::Vector::zero();
+        let contacts = self.relative.iter().map(|u| ContactStep {
+            before: *u,
+            average: *u,
+            adheres: false,
+            lost: 0.0,
+            corrected: 0.0,
+            slides: false,
+            solution: ContactSolution {
+                impulse: zero,
+                unilateral_n: 0.0,
+                unilateral_t: S::Tangent::zero(),
+            },
+        });
+        let moments = self
+            .turning
+            .iter()
+            .zip(0..)
+            .map(|(spin, contact)| MomentStep {
+                moment: MomentSolution {
+                    contact,
+                    moment: S::Spin::zero(),
+                    friction: S::Spin::zero(),
+                },
+                spin: *spin,
+                lost: 0.0,
+            });
+        (contacts.collect(), moments.collect())
+    }
+
     /// Contacts at rest, with the overlaps that they have.
     pub(super) fn still(contacts: &[Contact<S>]) -> Self {
         Self {

@@ -50,6 +50,15 @@ pub enum Norm {
 }
 
 impl Norm {
+    /// The bound on the error of a case that states none: 1e-4 of velocities or forces, half of the heat of slip. (Absolute values
+    /// of the residuals' power are summed; of the net error of friction it is a bound by far: `docs/accuracy.md`.)
+    pub fn default_tolerance(self) -> f64 {
+        match self {
+            Self::Power => 0.5,
+            Self::Balance | Self::Velocity | Self::Field => 1e-4,
+        }
+    }
+
     /// Returns the formula, for reports.
     pub fn formula(self) -> &'static str {
         match self {

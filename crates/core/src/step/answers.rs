@@ -18,6 +18,8 @@ pub(super) struct Solved<S: Space> {
     /// Those of compliant contacts; empty without a compliant law.
     pub springs: Vec<Option<SpringStep<S>>>,
     pub moment_steps: Vec<MomentStep<S>>,
+    /// Whether the step was solved with predicted damage.
+    pub predicted: bool,
 }
 
 impl<S: Space> Solved<S> {
@@ -28,6 +30,7 @@ impl<S: Space> Solved<S> {
             springs: &self.springs,
             moments: &self.moment_steps,
             info,
+            predicted: self.predicted,
         }
     }
 }
@@ -39,6 +42,7 @@ impl<S: Space> Default for Solved<S> {
             contact_steps: Vec::new(),
             springs: Vec::new(),
             moment_steps: Vec::new(),
+            predicted: false,
         }
     }
 }

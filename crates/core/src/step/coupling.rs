@@ -6,8 +6,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Coupling {
     /// The step is solved with the damage at its start; damage grows at its end. First order in h.
-    #[default]
     Explicit,
+    /// The step is solved once, with the mean of the damage at its start and of the damage that the law gives for the
+    /// opening predicted from the velocity at its start; damage grows at its end. Second order in h where velocities are
+    /// smooth.
+    #[default]
+    Midpoint,
     /// The step is solved repeatedly until the damage used equals the damage that the resulting openings
     /// give. Damage never decreases between iterations, so that the iteration ends.
     Implicit {
@@ -40,7 +44,7 @@ pub(super) struct Progress {
 impl Progress {
     pub fn new(coupling: &Coupling) -> Self {
         let (tolerance, most) = match coupling {
-            Coupling::Explicit => (0.0, 1),
+            Coupling::Explicit | Coupling::Midpoint => (0.0, 1),
             Coupling::Implicit {
                 tolerance,
                 max_iterations,

@@ -12,8 +12,8 @@ use crate::solve::{self, ContactForm, MomentForm};
 use std::time::Instant;
 
 impl<S: Space> Simulation<S> {
-    /// Prepares and solves the step: once with explicit coupling, otherwise until the damage used in the
-    /// impulses is the one that the resulting openings give.
+    /// Prepares and solves the step: once with explicit coupling and with damage predicted at its middle, otherwise until the
+    /// damage used in the impulses is the one that the resulting openings give.
     pub(super) fn couple(
         &mut self,
         start: &StepStart<S>,
@@ -23,6 +23,19 @@ impl<S: Space> Simulation<S> {
     ) -> Result<(), StepError> {
         let mut coupling = Progress::new(&self.options.coupling);
         let options = self.solver_in_force();
+        self.workspace.solved.predicted = self.options.coupling == Coupling::Midpoint;
+        if self.workspace.solved.predicted {
+            let clock = Instant::now();
+            let predicted = self.workspace.evaluator.predict_damage(
+                &self.laws,
+                &mut self.state.law_history,
+                &mut self.state.network,
+                &self.workspace.solved.before,
+                info,
+            );
+            predicted.map_err(|e| self.law_error(e))?;
+            report.timing.laws += clock.elapsed();
+        }
         loop {
             let clock = Instant::now();
             let prepared = self.workspace.evaluator.prepare(

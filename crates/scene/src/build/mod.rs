@@ -30,7 +30,7 @@ use fretwork_core::geometry::periodic::Periodic;
 use fretwork_core::geometry::shape::Shapes;
 use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork_core::laws::{Interface, SearchPath};
-use fretwork_core::solve;
+use fretwork_core::solve::{self, error::Norm};
 use fretwork_core::step::{Scheme, Simulation};
 use fretwork_core::wear::Scar;
 use std::collections::BTreeMap;
@@ -348,9 +348,16 @@ impl<S: Dimensional> Builder<'_, S> {
             h: case.time.step,
             theta: case.time.theta,
         };
+        // A scene of springs can be slow: the error is then measured by the heat of slip.
+        let springs = simulation.laws.iter().any(Interface::compliant);
+        let norm = case
+            .solver
+            .norm
+            .unwrap_or(if springs { Norm::Power } else { Norm::Balance });
+        let tolerance = case.solver.tolerance;
         simulation.options.solver = solve::Options {
-            tolerance: case.solver.tolerance,
-            norm: case.solver.norm,
+            tolerance: tolerance.unwrap_or(norm.default_tolerance()),
+            norm,
             max_iterations: case.solver.max_iterations,
             test_every: case.solver.test_every,
             relaxation: case.solver.relaxation,

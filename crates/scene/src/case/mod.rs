@@ -166,10 +166,13 @@ pub struct SolverSpec {
     /// The method: `Auto`, `Nlgs`, `Anderson`, `Pg`, `Cpg`, `Pcpg`, `Apgd`, `Newton`, `Interior`; see
     /// `docs/solvers.md`.
     pub method: Method,
-    /// Bound on the error.
-    pub tolerance: f64,
-    /// Definition of the error, `Balance` or `Velocity`, see [`fretwork_core::solve::error`].
-    pub norm: Norm,
+    /// Bound on the error; by default the norm's own, [`Norm::default_tolerance`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
+    /// Definition of the error, `Balance`, `Velocity` or `Power`, see [`fretwork_core::solve::error`]; by default `Power` where
+    /// contacts are springs and `Balance` elsewhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub norm: Option<Norm>,
     /// Largest number of iterations per step.
     pub max_iterations: u32,
     /// Iterations between convergence tests.
@@ -190,8 +193,8 @@ impl Default for SolverSpec {
     fn default() -> Self {
         Self {
             method: Method::Auto,
-            tolerance: 1e-4,
-            norm: Norm::Balance,
+            tolerance: None,
+            norm: None,
             max_iterations: 10_000,
             test_every: 10,
             relaxation: 1.45,
